@@ -1,0 +1,140 @@
+# The functions CMakeLists.txt is written in.
+
+# anholon_layer(name [DEPENDS layers...] [LINKS targets...] [PRIVATE_LINKS targets...]
+#               [SOURCES generated...] [EXCLUDE file names...])
+#
+# Static library anholon_<name> from src/<name>/*.cpp; INTERFACE if there are only headers.
+# A layer without files makes no target; whoever depends on it gets what it depended on, so the
+# chain below a missing layer is not lost.
+function(anholon_layer name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "DEPENDS;LINKS;PRIVATE_LINKS;SOURCES;EXCLUDE")
+  set(folder "${PROJECT_SOURCE_DIR}/src/${name}")
+  # Globbed although the folder may be missing: its first file then triggers a new configure.
+  file(GLOB sources CONFIGURE_DEPENDS "${folder}/*.cpp" "${folder}/forms/*.cpp")
+  file(GLOB headers CONFIGURE_DEPENDS "${folder}/*.h" "${folder}/*.def")
+  list(LENGTH sources found_sources)
+  list(LENGTH headers found_headers)
+  foreach(excluded IN LISTS arg_EXCLUDE)
+    list(REMOVE_ITEM sources "${folder}/${excluded}")
+  endforeach()
+  list(APPEND sources ${arg_SOURCES})
+
+  set(links "")
+  foreach(layer IN LISTS arg_DEPENDS)
+    if(TARGET anholon_${layer})
+      list(APPEND links anholon_${layer})
+    else()
+      get_property(instead GLOBAL PROPERTY ANHOLON_LINKS_OF_${layer})
+      list(APPEND links ${instead})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES links)
+  set_property(GLOBAL PROPERTY ANHOLON_LINKS_OF_${name} "${links}")
+  if(found_sources EQUAL 0 AND found_headers EQUAL 0)
+    return()
+  endif()
+
+  if(sources)
+    add_library(anholon_${name} STATIC ${sources})
+    target_link_libraries(anholon_${name}
+      PUBLIC anholon_options ${links} ${arg_LINKS} PRIVATE anholon_warnings ${arg_PRIVATE_LINKS})
+  else()
+    add_library(anholon_${name} INTERFACE)
+    target_link_libraries(anholon_${name} INTERFACE anholon_options ${links} ${arg_LINKS})
+  endif()
+  if(name STREQUAL "cli" AND sources)
+    anholon_cli_definitions(anholon_cli)
+  endif()
+  set_property(GLOBAL APPEND PROPERTY ANHOLON_LAYERS ${name})
+endfunction()
+
+# The source folder is baked in here and nowhere else, so that ccache can serve the other layers
+# to a second checkout.
+function(anholon_cli_definitions target)
+  target_compile_definitions(${target} PRIVATE
+    ANHOLON_MODELS_DIR="${PROJECT_SOURCE_DIR}/models" ANHOLON_VERSION="${PROJECT_VERSION}")
+endfunction()
+
+# Links every layer below cli that exists.
+function(anholon_link_layers target)
+  get_property(layers GLOBAL PROPERTY ANHOLON_LAYERS)
+  list(REMOVE_ITEM layers cli)
+  list(TRANSFORM layers PREPEND anholon_)
+  target_link_libraries(${target} PRIVATE anholon_options ${layers})
+endfunction()
+
+# A formulation is found by its file name: src/formulation/forms/<name>.cpp defines
+# `extern const Formulation <name>;` in namespace anholon::forms. Linking by name (and not by
+# self-registration) keeps the linker from dropping one silently.
+function(anholon_formulation_registry result)
+  set(${result} "" PARENT_SCOPE)
+  file(GLOB forms CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/formulation/forms/*.cpp")
+  file(GLOB header CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/formulation/formulation.h")
+  if(NOT header)
+    return()
+  endif()
+  list(TRANSFORM forms REPLACE ".*/([^/]+)\\.cpp$" "\\1")
+  list(SORT forms)
+  set(declarations "")
+  set(entries "")
+  foreach(form IN LISTS forms)
+    if(NOT form MATCHES "^[a-z][a-z0-9_]*$")
+      message(FATAL_ERROR "src/formulation/forms/${form}.cpp: the file name must be the C++ name of its Formulation")
+    endif()
+    string(APPEND declarations "extern const Formulation ${form};\n")
+    string(APPEND entries "      &forms::${form},\n")
+  endforeach()
+  set(output "${CMAKE_BINARY_DIR}/generated/formulation_registry.cpp")
+  file(CONFIGURE OUTPUT "${output}" @ONLY CONTENT [=[
+// Written by the build from the file names in src/formulation/forms.
+#include <vector>
+
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+@declarations@}  // namespace anholon::forms
+
+namespace anholon {
+const std::vector<const Formulation*>& formulations();
+const std::vector<const Formulation*>& formulations() {
+  static const std::vector<const Formulation*> all{
+@entries@  };
+  return all;
+}
+}  // namespace anholon
+]=])
+  set(${result} "${output}" PARENT_SCOPE)
+endfunction()
+
+# Debian ships these without CMake packages: external::<name> from one header and its libraries.
+function(anholon_find_library name header)
+  find_path(ANHOLON_${name}_INCLUDE ${header})
+  find_library(ANHOLON_${name}_LIBRARY ${ARGN})
+  mark_as_advanced(ANHOLON_${name}_INCLUDE ANHOLON_${name}_LIBRARY)
+  if(NOT ANHOLON_${name}_INCLUDE OR NOT ANHOLON_${name}_LIBRARY)
+    message(FATAL_ERROR "${name} not found (<${header}>); ./dev setup installs it")
+  endif()
+  add_library(external::${name} INTERFACE IMPORTED)
+  target_include_directories(external::${name} INTERFACE "${ANHOLON_${name}_INCLUDE}")
+  target_link_libraries(external::${name} INTERFACE "${ANHOLON_${name}_LIBRARY}")
+endfunction()
+
+function(anholon_find_header name header)
+  find_path(ANHOLON_${name}_INCLUDE ${header})
+  mark_as_advanced(ANHOLON_${name}_INCLUDE)
+  if(NOT ANHOLON_${name}_INCLUDE)
+    message(FATAL_ERROR "${name} not found (<${header}>); ./dev setup installs it")
+  endif()
+  add_library(external::${name} INTERFACE IMPORTED)
+  target_include_directories(external::${name} INTERFACE "${ANHOLON_${name}_INCLUDE}")
+endfunction()
+
+function(anholon_pick_linker target)
+  find_program(ANHOLON_MOLD mold)
+  find_program(ANHOLON_LLD NAMES ld.lld-19)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND ANHOLON_LLD)
+    target_link_options(${target} INTERFACE -fuse-ld=lld)
+  elseif(ANHOLON_MOLD)
+    target_link_options(${target} INTERFACE -fuse-ld=mold)
+  endif()
+endfunction()

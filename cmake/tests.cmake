@@ -1,0 +1,105 @@
+# Every test ctest knows. Names: unit.<layer>.<Suite.Test>, <set>.<shard>, golden.<kind>.<case>, script.<name>.
+
+find_package(GTest REQUIRED)
+find_package(nlohmann_json REQUIRED)
+include(GoogleTest)
+
+# The system's python first: a version manager's shim costs ten times its start-up.
+find_program(ANHOLON_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(ANHOLON_PYTHON python3 REQUIRED)
+
+function(anholon_test_executable target)
+  add_executable(${target} ${ARGN})
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/test")
+  target_compile_definitions(${target} PRIVATE ANHOLON_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${target} PRIVATE anholon_options anholon_warnings
+    nlohmann_json::nlohmann_json GTest::gtest GTest::gtest_main)
+endfunction()
+
+# test/unit/<layer>/*_test.cpp: one executable per layer, one ctest test per TEST
+
+get_property(layers GLOBAL PROPERTY ANHOLON_LAYERS)
+set(upto "")
+foreach(layer IN LISTS layers)
+  list(APPEND upto anholon_${layer})
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/test/unit/${layer}/*_test.cpp")
+  if(sources)
+    anholon_test_executable(test_${layer} ${sources})
+    # A test may use anything declared up to its layer: a test of mechanics may read a model file.
+    target_link_libraries(test_${layer} PRIVATE ${upto})
+    gtest_discover_tests(test_${layer} TEST_PREFIX "unit.${layer}." PROPERTIES LABELS unit
+      DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+  endif()
+endforeach()
+
+# test/<set>/*_test.cpp: one executable over all layers, run in shards
+# Their tests share costly derivations within a process; shards keep that and fill the cores.
+
+file(GLOB support_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/test/support/*.cpp")
+if(support_sources)
+  add_library(anholon_test_support STATIC ${support_sources})
+  target_include_directories(anholon_test_support PUBLIC "${PROJECT_SOURCE_DIR}/test")
+  target_compile_definitions(anholon_test_support PUBLIC ANHOLON_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  anholon_link_layers(anholon_test_support)
+  target_link_libraries(anholon_test_support
+    PRIVATE anholon_warnings PUBLIC nlohmann_json::nlohmann_json GTest::gtest)
+endif()
+
+function(anholon_test_set set)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SHARDS" "LABELS")
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/test/${set}/*_test.cpp")
+  if(NOT sources)
+    return()
+  endif()
+  anholon_test_executable(test_${set} ${sources})
+  if(TARGET anholon_test_support)
+    target_link_libraries(test_${set} PRIVATE anholon_test_support)
+  endif()
+  anholon_link_layers(test_${set})
+  math(EXPR last "${arg_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME "${set}.${shard}" COMMAND test_${set} --gtest_brief=1)
+    set_tests_properties("${set}.${shard}" PROPERTIES LABELS "${arg_LABELS}"
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
+endfunction()
+
+# Label `long`: does more under ANHOLON_LONG=1, and is what ./dev long runs.
+# Label `long-only`: left out of ./dev test.
+anholon_test_set(oracle      SHARDS 4 LABELS oracle long)
+anholon_test_set(laws        SHARDS 4 LABELS laws long)
+anholon_test_set(backends    SHARDS 2 LABELS backends long)
+anholon_test_set(determinism SHARDS 2 LABELS determinism long)
+anholon_test_set(long        SHARDS 4 LABELS long-only)
+
+# Scripts
+
+function(anholon_script_test name)
+  add_test(NAME "script.${name}" COMMAND ${ANHOLON_PYTHON} ${ARGN} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
+  set_tests_properties("script.${name}" PROPERTIES LABELS script ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+endfunction()
+
+anholon_script_test(layers          tools/check_layers.py)
+anholon_script_test(layers_selftest tools/check_layers.py --self-test)
+anholon_script_test(refs            tools/check_refs.py)
+anholon_script_test(refs_selftest   tools/check_refs.py --self-test)
+anholon_script_test(golden_selftest tools/golden.py --self-test)
+
+if(TARGET anholon)
+  anholon_script_test(readme tools/readme.py --program $<TARGET_FILE:anholon>)
+
+  file(GLOB cases CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/test/golden"
+    "${PROJECT_SOURCE_DIR}/test/golden/good/*.md" "${PROJECT_SOURCE_DIR}/test/golden/bad/*.md")
+  foreach(case IN LISTS cases)
+    string(REGEX REPLACE "\\.md$" "" name "${case}")
+    string(REPLACE "/" "." name "${name}")
+    add_test(NAME "golden.${name}" WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+      COMMAND ${ANHOLON_PYTHON} tools/golden.py --program $<TARGET_FILE:anholon> "test/golden/${case}")
+    set_tests_properties("golden.${name}" PROPERTIES LABELS golden ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+  endforeach()
+
+  if(ANHOLON_SAME_BITS_WITH)
+    anholon_script_test(same_bits tools/same_bits.py $<TARGET_FILE:anholon> "${ANHOLON_SAME_BITS_WITH}")
+    set_tests_properties(script.same_bits PROPERTIES SKIP_RETURN_CODE 77 LABELS "script;determinism")
+  endif()
+endif()

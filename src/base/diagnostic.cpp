@@ -1,0 +1,115 @@
+#include "base/diagnostic.h"
+
+#include <algorithm>
+
+#include "base/utf8.h"
+
+namespace anholon {
+
+std::string SourceText::line(std::uint32_t number) const {
+  std::size_t begin = 0;
+  for (std::uint32_t l = 1; l < number; ++l) {
+    begin = text.find('\n', begin);
+    if (begin == std::string::npos) return {};
+    ++begin;
+  }
+  std::size_t end = text.find('\n', begin);
+  if (end == std::string::npos) end = text.size();
+  if (end > begin && text[end - 1] == '\r') --end;
+  return text.substr(begin, end - begin);
+}
+
+void Diagnostics::error(Span span, std::string message, std::string hint) {
+  add({Severity::error, span, std::move(message), std::move(hint)});
+}
+
+void Diagnostics::warning(Span span, std::string message, std::string hint) {
+  add({Severity::warning, span, std::move(message), std::move(hint)});
+}
+
+bool Diagnostics::has_errors() const {
+  return std::any_of(list_.begin(), list_.end(),
+                     [](const Diagnostic& d) { return d.severity == Severity::error; });
+}
+
+static const char* word(Severity s) {
+  switch (s) {
+    case Severity::error: return "error";
+    case Severity::warning: return "warning";
+    case Severity::note: return "note";
+  }
+  return "";
+}
+
+// A source line is shown whole up to this many characters, else the part around the caret.
+static constexpr std::size_t kShownWidth = 160;
+
+std::string print(const Diagnostic& d, const SourceText& source) {
+  std::string out = source.name;
+  if (d.span.line > 0)
+    out += ":" + std::to_string(d.span.line) + ":" + std::to_string(d.span.column);
+  out += std::string(": ") + word(d.severity) + ": " + d.message + "\n";
+  if (d.span.line > 0) {
+    const std::string number = std::to_string(d.span.line);
+    std::string line = source.line(d.span.line);
+    std::size_t column = d.span.column > 0 ? d.span.column - 1 : 0;
+    if (utf8_length(line) > kShownWidth) {
+      const std::size_t from = column > kShownWidth / 2 ? column - kShownWidth / 2 : 0;
+      line = (from > 0 ? "…" : "") + utf8_substr(line, from, kShownWidth) + "…";
+      column = column - from + (from > 0 ? 1 : 0);
+    }
+    const std::size_t width = utf8_length(line);
+    std::size_t length = std::max<std::size_t>(1, d.span.length);
+    if (column < width) length = std::min(length, width - column);
+    else length = 1;
+    out += "  " + number + " | " + line + "\n";
+    out += "  " + std::string(number.size(), ' ') + " | " + std::string(column, ' ') + "^" +
+           std::string(length - 1, '~') + "\n";
+  }
+  if (!d.hint.empty()) out += "hint: " + d.hint + "\n";
+  return out;
+}
+
+std::string Diagnostics::print(const SourceText& source) const {
+  std::vector<const Diagnostic*> sorted;
+  for (const Diagnostic& d : list_) sorted.push_back(&d);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic* a, const Diagnostic* b) {
+    return a->span.line != b->span.line ? a->span.line < b->span.line
+                                        : a->span.column < b->span.column;
+  });
+  std::string out;
+  for (const Diagnostic* d : sorted) out += anholon::print(*d, source);
+  return out;
+}
+
+static std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
+  if (name.size() > 64) return best;
+  for (const std::string& c : candidates) {
+    if (c == name || c.size() > 64) continue;
+    const std::size_t distance = edit_distance(name, c);
+    if (distance < best_distance && distance < std::max(c.size(), name.size())) {
+      best = c;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+}  // namespace anholon

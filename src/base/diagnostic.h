@@ -1,0 +1,63 @@
+// What is wrong with the user's input: collected, positioned, with a hint that works if pasted.
+//
+// A Diagnostic points into one source text. Code that finds something wrong inside one formula
+// throws it as a Failure, which the reader of the enclosing element catches and collects, so that
+// all errors of a file are reported at once.
+#pragma once
+#include <cstdint>
+#include <exception>
+#include <string>
+#include <vector>
+
+namespace anholon {
+
+// A place in a source text: 1-based line and column (in characters), length in characters.
+// line 0 means "the text as a whole".
+struct Span {
+  std::uint32_t line = 0, column = 0, length = 1;
+};
+
+enum class Severity : std::uint8_t { error, warning, note };
+
+struct Diagnostic {
+  Severity severity = Severity::error;
+  Span span;
+  std::string message;
+  std::string hint;
+};
+
+struct Failure : std::exception {
+  Diagnostic diagnostic;
+  explicit Failure(Diagnostic d) : diagnostic(std::move(d)) {}
+  Failure(Span span, std::string message, std::string hint = {})
+      : diagnostic{Severity::error, span, std::move(message), std::move(hint)} {}
+  const char* what() const noexcept override { return diagnostic.message.c_str(); }
+};
+
+// A text with a name, as read from a file; lines are looked up for printing.
+struct SourceText {
+  std::string name;
+  std::string text;
+  std::string line(std::uint32_t number) const;
+};
+
+class Diagnostics {
+ public:
+  void add(Diagnostic d) { list_.push_back(std::move(d)); }
+  void error(Span span, std::string message, std::string hint = {});
+  void warning(Span span, std::string message, std::string hint = {});
+  bool has_errors() const;
+  const std::vector<Diagnostic>& list() const { return list_; }
+  // `file:line:col: error: …`, the source line, a caret range, `hint: …`; in order of position.
+  std::string print(const SourceText& source) const;
+
+ private:
+  std::vector<Diagnostic> list_;
+};
+
+std::string print(const Diagnostic& d, const SourceText& source);
+
+// The candidate closest to `name` by edit distance if it is close enough to be a slip, else "".
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
+
+}  // namespace anholon

@@ -1,0 +1,79 @@
+#include "base/json.h"
+
+#include <cstdio>
+
+namespace anholon {
+
+std::string json_escape(std::string_view s) {
+  std::string out;
+  for (const char c : s) {
+    switch (c) {
+      case '"': out += "\\\""; break;
+      case '\\': out += "\\\\"; break;
+      case '\n': out += "\\n"; break;
+      case '\t': out += "\\t"; break;
+      case '\r': out += "\\r"; break;
+      default:
+        if (static_cast<unsigned char>(c) < 0x20) {
+          char buffer[8];
+          std::snprintf(buffer, sizeof buffer, "\\u%04x", c);
+          out += buffer;
+        } else {
+          out += c;
+        }
+    }
+  }
+  return out;
+}
+
+void JsonWriter::separate() {
+  if (after_key_) {
+    after_key_ = false;
+    return;
+  }
+  if (open_.empty()) return;
+  if (!first_) out_ += ',';
+  first_ = false;
+  // Arrays of numbers stay on one line; objects get a line per entry.
+  if (open_.back() == '{') out_ += "\n" + std::string(2 * open_.size(), ' ');
+  else if (out_.back() == ',') out_ += ' ';
+}
+
+JsonWriter& JsonWriter::open(char bracket) {
+  separate();
+  out_ += bracket;
+  open_.push_back(bracket);
+  first_ = true;
+  return *this;
+}
+
+JsonWriter& JsonWriter::close() {
+  const char bracket = open_.back();
+  open_.pop_back();
+  if (bracket == '{' && !first_) out_ += "\n" + std::string(2 * open_.size(), ' ');
+  out_ += bracket == '{' ? '}' : ']';
+  first_ = false;
+  return *this;
+}
+
+JsonWriter& JsonWriter::key(std::string_view name) {
+  separate();
+  out_ += '"' + json_escape(name) + "\": ";
+  after_key_ = true;
+  return *this;
+}
+
+JsonWriter& JsonWriter::raw(std::string_view text) {
+  separate();
+  out_ += text;
+  return *this;
+}
+
+JsonWriter& JsonWriter::string(std::string_view value) { return raw('"' + json_escape(value) + '"'); }
+
+JsonWriter& JsonWriter::number(std::string_view digits) {
+  if (digits.find('n') != std::string_view::npos) return raw("null");  // nan, inf
+  return raw(digits);
+}
+
+}  // namespace anholon

@@ -1,0 +1,29 @@
+// What became of a numerical task. Never thrown: partial results are kept and sweeps go on.
+// The text of an outcome holds the remedy.
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace anholon {
+
+enum class OutcomeKind : std::uint8_t {
+  finished,
+  singular,          // the system Jacobian lost rank: a singular configuration
+  step_collapse,     // the step size fell below what the time can resolve
+  blow_up,           // a state grew without bound
+  not_a_number,      // a formula left its domain (root or logarithm of a negative number, 0/0)
+  no_convergence,    // Newton's iteration for the leading derivatives failed
+  inconsistent,      // no initial data satisfy the constraints with the values given
+  interrupted,       // Ctrl-C, or the step limit of the caller
+};
+
+struct Outcome {
+  OutcomeKind kind = OutcomeKind::finished;
+  std::string message;  // what happened, where
+  std::string hint;     // what to do
+  bool ok() const { return kind == OutcomeKind::finished; }
+};
+
+const char* name(OutcomeKind kind);
+
+}  // namespace anholon

@@ -1,0 +1,54 @@
+#include <cstdio>
+
+#include "base/json.h"
+#include "cli/input.h"
+
+namespace anholon::cli {
+
+int forms(const Options& o) {
+  std::optional<Reader> in;
+  std::optional<Mechanics> m;
+  if (!o.model.empty()) {
+    in = read(o);
+    m = mechanics(*in->model);
+  }
+  if (o.json) {
+    JsonWriter j;
+    j.open_array();
+    for (const Formulation* f : formulations()) {
+      const std::string why = m ? f->obstacle(*m) : std::string();
+      j.open_object().key("name").string(f->name).key("title").string(f->title).key("equation").string(f->equation);
+      j.key("source").string(f->source).key("applies").boolean(why.empty()).key("reason").string(why).close();
+    }
+    std::printf("%s\n", j.close().text().c_str());
+    return kOk;
+  }
+  for (const Formulation* f : formulations()) {
+    std::printf("%-14s %s, %s of %s\n", f->name, f->title, f->equation, f->source);
+    if (m) {
+      const std::string why = f->obstacle(*m);
+      std::printf("%-14s %s\n", "", why.empty() ? "applies" : ("does not apply: " + why).c_str());
+    }
+  }
+  return kOk;
+}
+
+int models(const Options& o) {
+  const std::vector<ShippedModel> list = shipped_models();
+  if (!o.model.empty()) {
+    const Reader r = read(o);
+    std::fputs(r.source.text.c_str(), stdout);
+    return kOk;
+  }
+  if (o.json) {
+    JsonWriter j;
+    j.open_array();
+    for (const ShippedModel& m : list) j.open_object().key("name").string(m.name).key("title").string(m.title).close();
+    std::printf("%s\n", j.close().text().c_str());
+    return kOk;
+  }
+  for (const ShippedModel& m : list) std::printf("%-34s %s\n", m.name.c_str(), m.title.c_str());
+  return kOk;
+}
+
+}  // namespace anholon::cli

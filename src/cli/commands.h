@@ -1,0 +1,34 @@
+// The commands: each takes its parsed options, calls one function of the house and prints.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace anholon::cli {
+
+enum ExitCode : int { kOk = 0, kStopped = 1, kBadInput = 2, kFault = 3 };
+
+struct Options {
+  std::string model;
+  std::string form = "routh";
+  bool form_given = false;
+  std::string format = "text";
+  std::string expand = "auto";
+  std::string show;
+  std::string output;
+  std::string numbers = "double";
+  std::string integrator = "taylor";
+  std::vector<std::string> set, q, qdot, at;
+  std::string t, to, every, tolerance;
+  int digits = 16;
+  int order = 0;
+  bool json = false, quiet = false;
+};
+
+int check(const Options& o);
+int derive(const Options& o);
+int evaluate(const Options& o);
+int simulate(const Options& o);
+int forms(const Options& o);
+int models(const Options& o);
+
+}  // namespace anholon::cli

@@ -1,0 +1,125 @@
+#include <cstdio>
+
+#include "base/json.h"
+#include "cli/input.h"
+#include "cli/show.h"
+#include "run/evaluate.h"
+
+namespace anholon::cli {
+
+namespace {
+
+void named(JsonWriter& j, const char* key, const StateReport::Named& list) {
+  j.key(key).open_object();
+  for (const auto& [name, value] : list) j.key(name).number(value);
+  j.close();
+}
+
+void vector(JsonWriter& j, const std::vector<std::string>& values) {
+  j.open_array();
+  for (const std::string& v : values) j.number(v);
+  j.close();
+}
+
+std::string json(const Scenario& s, const StateReport& r) {
+  JsonWriter j;
+  j.open_object();
+  j.key("model").string(s.model->title);
+  j.key("form").string(s.system.form->name);
+  j.key("t").number(r.t);
+  j.key("state").open_object();
+  for (const auto& [name, value] : r.q) j.key(name).number(value);
+  for (const auto& [name, value] : r.qdot) j.key(name + "'").number(value);
+  j.close();
+  for (const auto& [name, column] : r.forces) {
+    j.key(name).open_object();
+    for (std::size_t a = 0; a < column.size(); ++a) j.key(s.model->coordinates[a].name).number(column[a]);
+    j.close();
+  }
+  named(j, "derivatives", r.derivatives);
+  named(j, "lambda", r.lambda);
+  for (const auto& [name, value] : r.numbers) j.key(name).number(value);
+  j.key("mass_matrix").open_array();
+  for (const auto& row : r.mass_matrix) vector(j, row);
+  j.close();
+  j.key("reactions").open_object();
+  for (const StateReport::Reaction& x : r.reactions) {
+    j.key(x.body).open_object();
+    j.key("force");
+    vector(j, x.force);
+    j.key("torque");
+    vector(j, x.torque);
+    j.close();
+  }
+  j.close();
+  named(j, "residuals", r.residuals);
+  j.key("outcome").string("finished");
+  j.close();
+  return j.text() + "\n";
+}
+
+void print_text(const Scenario& s, const StateReport& r, int digits) {
+  const int width = std::max(12, std::min(digits, 16) + 8);
+  const auto line = [&](const std::string& name, const std::string& value) {
+    std::printf("  %-18s %*s\n", name.c_str(), width, value.c_str());
+  };
+  std::printf("%s\n%s, %s\n\nstate at t = %s\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation, r.t.c_str());
+  for (const auto& [name, value] : r.q) line(name, value);
+  for (const auto& [name, value] : r.qdot) line(name + "'", value);
+  std::printf("\naccelerations\n");
+  for (const auto& [name, value] : r.derivatives) line(name, value);
+  if (!r.lambda.empty()) std::printf("\nmultipliers\n");
+  for (const auto& [name, value] : r.lambda) line("lambda." + name, value);
+  std::printf("\ngeneralized forces\n  %-14s", "");
+  for (const Coordinate& c : s.model->coordinates) std::printf(" %*s", width, c.name.c_str());
+  std::printf("\n");
+  for (const auto& [name, column] : r.forces) {
+    std::printf("  %-14s", name.c_str());
+    for (const std::string& v : column) std::printf(" %*s", width, v.c_str());
+    std::printf("\n");
+  }
+  std::printf("\nenergy and power\n");
+  for (const auto& [name, value] : r.numbers) line(name, value);
+  std::printf("\nreactions (force; torque about the mass centre)\n");
+  for (const StateReport::Reaction& x : r.reactions) {
+    std::printf("  %-14s", x.body.c_str());
+    for (const std::string& v : x.force) std::printf(" %*s", width, v.c_str());
+    std::printf("  ;");
+    for (const std::string& v : x.torque) std::printf(" %*s", width, v.c_str());
+    std::printf("\n");
+  }
+  std::printf("\nresiduals (relative)\n");
+  for (const auto& [name, value] : r.residuals) line(name, value);
+}
+
+}  // namespace
+
+int evaluate(const Options& o) {
+  const Reader in = read(o);
+  const StateChoice choice = state_choice(o, *in.model);
+  Scenario s;
+  Outcome outcome = make_scenario(in.model, form(o, *in.model), choice, s);
+  form(o, *in.model, s.mechanics.get());
+  if (const auto d = not_integrated(*in.model, s.classes)) {
+    print_diagnostic(*d, in.source);
+    return kBadInput;
+  }
+  if (!o.show.empty()) return show(o, s);
+  StateReport report;
+  if (outcome.ok()) outcome = evaluate(s, choice, o.digits, report);
+  if (!outcome.ok()) {
+    if (o.json) {
+      JsonWriter j;
+      j.open_object().key("outcome").string(name(outcome.kind)).key("message").string(outcome.message);
+      j.key("hint").string(outcome.hint).close();
+      std::printf("%s\n", j.text().c_str());
+    }
+    print_outcome(outcome);
+    return outcome.kind == OutcomeKind::inconsistent ? kBadInput : kStopped;
+  }
+  if (o.json) std::fputs(json(s, report).c_str(), stdout);
+  else print_text(s, report, o.digits);
+  return kOk;
+}
+
+}  // namespace anholon::cli

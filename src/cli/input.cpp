@@ -1,0 +1,189 @@
+#include "cli/input.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace anholon::cli {
+
+namespace fs = std::filesystem;
+
+static std::vector<fs::path> model_folders() {
+  std::vector<fs::path> folders;
+  std::error_code ignored;
+  const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
+  if (!self.empty()) folders.push_back(self.parent_path().parent_path() / "share" / "anholon" / "models");
+  folders.emplace_back(ANHOLON_MODELS_DIR);
+  return folders;
+}
+
+static std::string first_line_value(const std::string& text, const std::string& key) {
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind(key, 0) == 0) {
+      const std::size_t a = line.find('"'), b = line.rfind('"');
+      if (a != std::string::npos && b > a) return line.substr(a + 1, b - a - 1);
+    }
+  return {};
+}
+
+static bool read_file(const fs::path& path, std::string& text) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return false;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return false;
+  std::ostringstream all;
+  all << in.rdbuf();
+  text = all.str();
+  return !in.bad();
+}
+
+std::vector<ShippedModel> shipped_models() {
+  std::vector<ShippedModel> list;
+  for (const fs::path& folder : model_folders()) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) continue;
+    for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
+      if (e.path().extension() != ".toml") continue;
+      std::string text;
+      read_file(e.path(), text);
+      list.push_back({e.path().stem().string(), e.path().string(), first_line_value(text, "title")});
+    }
+    if (!list.empty()) break;
+  }
+  std::sort(list.begin(), list.end(), [](const ShippedModel& a, const ShippedModel& b) { return a.path < b.path; });
+  return list;
+}
+
+void print_diagnostic(const Diagnostic& d, const SourceText& source) {
+  std::fflush(stdout);
+  std::fputs(print(d, source).c_str(), stderr);
+}
+
+void print_outcome(const Outcome& o) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "stopped (%s): %s\n", name(o.kind), o.message.c_str());
+  if (!o.hint.empty()) std::fprintf(stderr, "hint: %s\n", o.hint.c_str());
+}
+
+std::vector<std::string> split(const std::vector<std::string>& words) {
+  std::vector<std::string> out;
+  for (const std::string& w : words) {
+    int depth = 0;
+    std::string part;
+    for (char c : w) {
+      if (c == '(') ++depth;
+      if (c == ')') --depth;
+      if (c == ',' && depth == 0) {
+        out.push_back(part);
+        part.clear();
+      } else {
+        part += c;
+      }
+    }
+    if (!part.empty()) out.push_back(part);
+  }
+  return out;
+}
+
+Rational exact(const std::string& text, const std::string& option) {
+  if (const auto r = parse_rational(text)) return *r;
+  throw UsageError{"error: " + option + ": '" + text + "' is not a number\nhint: a decimal such as 0.25, 1e-12, or a fraction 1/3\n"};
+}
+
+static std::pair<std::string, std::string> assignment(const std::string& text, const std::string& option) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw UsageError{"error: " + option + ": '" + text + "' is not of the form NAME=VALUE\n"};
+  return {normal_name(text.substr(0, equals)), text.substr(equals + 1)};
+}
+
+Reader read(const Options& o) {
+  Reader r;
+  r.source.name = o.model;
+  if (!read_file(o.model, r.source.text)) {
+    bool found = false;
+    std::vector<std::string> names;
+    for (const ShippedModel& m : shipped_models()) {
+      names.push_back(m.name);
+      if (m.name != o.model || found) continue;
+      found = read_file(m.path, r.source.text);
+      r.source.name = m.name + ".toml";
+    }
+    if (!found) {
+      const std::string near = did_you_mean(o.model, names);
+      throw UsageError{"error: cannot read the model '" + o.model + "'\n" +
+                       (near.empty() ? "hint: a path to a .toml file, or a name that `anholon models` lists\n"
+                                     : "hint: did you mean the shipped model '" + near + "'?\n")};
+    }
+  }
+  Overrides overrides;
+  for (const std::string& s : split(o.set)) {
+    const auto [name, value] = assignment(s, "--set");
+    overrides[name] = value;
+  }
+  Diagnostics diagnostics;
+  auto model = read_model(r.source, diagnostics, overrides);
+  std::fflush(stdout);
+  if (!model) {
+    const std::size_t n = static_cast<std::size_t>(std::count_if(
+        diagnostics.list().begin(), diagnostics.list().end(), [](const Diagnostic& d) { return d.severity == Severity::error; }));
+    throw UsageError{diagnostics.print(r.source) + std::to_string(n) + (n == 1 ? " error\n" : " errors\n")};
+  }
+  std::fputs(diagnostics.print(r.source).c_str(), stderr);
+  r.model = std::make_shared<const Model>(std::move(*model));
+  return r;
+}
+
+const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics) {
+  std::string wanted = o.form;
+  if (!o.form_given && model.simulate.form) wanted = *model.simulate.form;
+  const Formulation* f = find_formulation(wanted);
+  if (!f) {
+    std::vector<std::string> names;
+    std::string list;
+    for (const Formulation* k : formulations()) {
+      names.push_back(k->name);
+      list += (list.empty() ? "" : ", ") + std::string(k->name);
+    }
+    const std::string near = did_you_mean(wanted, names);
+    throw UsageError{"error: there is no form '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                     "\nhint: the forms are " + list + "\n"};
+  }
+  if (mechanics)
+    if (const std::string why = f->obstacle(*mechanics); !why.empty()) {
+      std::string list;
+      for (const Formulation* k : formulations())
+        if (k->obstacle(*mechanics).empty()) list += (list.empty() ? "" : ", ") + std::string(k->name);
+      throw UsageError{"error: the form '" + wanted + "' does not apply: " + why + "\nhint: these do: " + list + "\n"};
+    }
+  return *f;
+}
+
+StateChoice state_choice(const Options& o, const Model& model) {
+  StateChoice c;
+  if (!o.t.empty()) c.t = exact(o.t, "--t");
+  for (const auto& [list, order, option] : {std::tuple{&o.q, 0U, "--q"}, std::tuple{&o.qdot, 1U, "--qdot"}})
+    for (const std::string& s : split(*list)) {
+      auto [name, value] = assignment(s, option);
+      unsigned k = order;
+      while (!name.empty() && name.back() == '\'') name.pop_back(), ++k;
+      if (order == 1 && k > 1) k = 1;  // --qdot "x'=2" means x' too
+      const auto it = std::find(model.names.coordinates.begin(), model.names.coordinates.end(), name);
+      if (it == model.names.coordinates.end()) {
+        const std::string near = did_you_mean(name, model.names.coordinates);
+        throw UsageError{"error: " + std::string(option) + ": there is no coordinate '" + name + "'" +
+                         (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
+      }
+      if (k > 1) throw UsageError{"error: " + std::string(option) + ": accelerations follow from the state\n"};
+      c.overrides.push_back({k, static_cast<std::size_t>(it - model.names.coordinates.begin()), exact(value, option)});
+    }
+  return c;
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,37 @@
+// From the words of a command line to a model, a state and exact numbers.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "cli/commands.h"
+#include "run/scenario.h"
+
+namespace anholon::cli {
+
+// Thrown for what the user must correct; the text is complete, exit code 2.
+struct UsageError {
+  std::string text;
+};
+
+struct Reader {
+  std::shared_ptr<const Model> model;
+  SourceText source;
+};
+// Reads the model named by the options (a path, or the name of a shipped model) with --set applied.
+Reader read(const Options& o);
+// The form asked for: --form, else [simulate] form, else Routh's; throws if it does not apply.
+const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics = nullptr);
+StateChoice state_choice(const Options& o, const Model& model);
+Rational exact(const std::string& text, const std::string& option);
+// "a,b,c" and repeated words alike.
+std::vector<std::string> split(const std::vector<std::string>& words);
+
+void print_diagnostic(const Diagnostic& d, const SourceText& source);
+void print_outcome(const Outcome& o);
+
+struct ShippedModel {
+  std::string name, path, title;
+};
+std::vector<ShippedModel> shipped_models();
+
+}  // namespace anholon::cli

@@ -1,0 +1,125 @@
+// The program anholon: the words of the command line, nothing else.
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <functional>
+
+#include "cli/input.h"
+
+using namespace anholon;
+using namespace anholon::cli;
+
+namespace {
+
+// --q x=1 y=2 MODEL: a word without '=' that slipped into a list of assignments is the model.
+void rescue_model(Options& o) {
+  for (std::vector<std::string>* list : {&o.q, &o.qdot, &o.set})
+    for (auto it = list->begin(); it != list->end();) {
+      if (o.model.empty() && it->find('=') == std::string::npos) o.model = *it, it = list->erase(it);
+      else ++it;
+    }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Anholon: the equations of nonholonomic mechanics, their motion, with a residual report."};
+  app.name("anholon");
+  app.set_version_flag("--version", "anholon " ANHOLON_VERSION);
+  app.require_subcommand(1);
+  app.footer("Examples:\n"
+             "  anholon models                                      the shipped models\n"
+             "  anholon check disc                                  what kind of system it is\n"
+             "  anholon derive luo-zhao-example-2 --format latex    its equations\n"
+             "  anholon simulate disc --to 10 -o disc.csv           its motion\n"
+             "Exit status: 0 ok, 1 the motion stopped early (what was computed is kept), 2 bad input, 3 internal fault.");
+  Options o;
+  std::function<int(const Options&)> command;
+
+  const auto model_command = [&](const char* name, const char* what, int (*f)(const Options&), const char* footer, bool required = true) {
+    CLI::App* c = app.add_subcommand(name, what);
+    c->footer(footer);
+    auto* m = c->add_option("MODEL", o.model, "a model file, or the name of a shipped model");
+    (void)m;
+    (void)required;
+    c->add_flag("--json", o.json, "JSON on the standard output");
+    c->add_flag("--quiet", o.quiet, "no progress, no report on stderr");
+    c->callback([&command, f] { command = f; });
+    return c;
+  };
+  const auto parameters = [&](CLI::App* c) {
+    c->add_option("--set", o.set, "NAME=VALUE: another value of a parameter")->type_name("NAME=VALUE");
+  };
+  const auto state = [&](CLI::App* c) {
+    c->add_option("--t", o.t, "initial time")->type_name("T");
+    c->add_option("--q", o.q, "initial positions x=0.2,y=1 (exact decimals); others from the file")->type_name("NAME=VALUE");
+    c->add_option("--qdot", o.qdot, "initial velocities x=0.2,y=1")->type_name("NAME=VALUE");
+  };
+  const auto form_option = [&](CLI::App* c) {
+    c->add_option("--form", o.form, "form of the equations (see `anholon forms`)")->type_name("NAME")->each([&o](const std::string&) { o.form_given = true; });
+    c->add_option("--show", o.show, "print one stage instead: mechanics, system, structure, program")->type_name("STAGE");
+  };
+
+  CLI::App* check_command = model_command("check", "classify the constraints, show structure and initial data", cli::check,
+                                          "Example: anholon check models/zoo/disc.toml");
+  parameters(check_command), state(check_command), form_option(check_command);
+
+  CLI::App* derive_command = model_command("derive", "print the equations of motion", cli::derive,
+                                           "Example: anholon derive disc --format latex");
+  parameters(derive_command), form_option(derive_command);
+  derive_command->add_option("--format", o.format, "text or latex")->type_name("FORMAT");
+  derive_command->add_option("--expand", o.expand, "auto (the shorter), none or full")->type_name("HOW");
+
+  CLI::App* evaluate_command = model_command("evaluate", "all forces, accelerations, multipliers, reactions at one state", cli::evaluate,
+                                             "Example: anholon evaluate disc --q theta=1 --qdot psi=0.3,phi=5 --json");
+  parameters(evaluate_command), state(evaluate_command), form_option(evaluate_command);
+  evaluate_command->add_option("--digits", o.digits, "more than 16: multiprecision")->type_name("N")->check(CLI::Range(1, 2000));
+
+  CLI::App* simulate_command = model_command("simulate", "integrate the motion", cli::simulate,
+                                             "Example: anholon simulate disc --to 10 --every 0.01 -o disc.csv");
+  parameters(simulate_command), state(simulate_command), form_option(simulate_command);
+  simulate_command->add_option("--to", o.to, "end time (absolute)")->type_name("T");
+  simulate_command->add_option("--at", o.at, "rows at exactly these times: 0.25,0.5")->type_name("T,…");
+  simulate_command->add_option("--every", o.every, "rows at this interval")->type_name("DT");
+  simulate_command->add_option("--tolerance", o.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
+  simulate_command->add_option("--digits", o.digits, "more than 16: multiprecision")->type_name("N")->check(CLI::Range(1, 2000));
+  simulate_command->add_option("--numbers", o.numbers, "double or long-double")->check(CLI::IsMember({"double", "long-double"}));
+  simulate_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
+  simulate_command->add_option("--integrator", o.integrator, "taylor")->type_name("NAME");
+  simulate_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
+
+  CLI::App* forms_command = model_command("forms", "the catalogue of forms, and which apply to a model", cli::forms,
+                                          "Example: anholon forms disc", false);
+  parameters(forms_command);
+  model_command("models", "the shipped models; with a name, the text of one", cli::models, "Example: anholon models disc", false);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    const int code = app.exit(e);
+    return code == 0 ? kOk : kBadInput;
+  }
+  rescue_model(o);
+  const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models"));
+  if (needs_model && o.model.empty()) {
+    std::fputs("error: no model is named\nhint: a path to a .toml file, or a name that `anholon models` lists\n", stderr);
+    return kBadInput;
+  }
+  return command(o);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const UsageError& e) {
+    std::fflush(stdout);
+    std::fputs(e.text.c_str(), stderr);
+    return kBadInput;
+  } catch (const std::bad_alloc&) {
+    std::fputs("error: out of memory\nhint: the model is too large for this machine\n", stderr);
+    return kStopped;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "internal fault: %s\nplease report this with the model\n", e.what());
+    return kFault;
+  }
+}

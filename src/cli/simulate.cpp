@@ -1,0 +1,190 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+
+#include "base/json.h"
+#include "cli/input.h"
+#include "cli/show.h"
+#include "run/simulate.h"
+
+namespace anholon::cli {
+
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+extern "C" void request_stop(int) { stop_requested = 1; }
+
+// Progress on stderr: a bar on a terminal, a plain line each ten per cent elsewhere.
+class Progress {
+ public:
+  Progress(double from, double to, bool quiet) : from_(from), to_(to), quiet_(quiet), terminal_(isatty(2) != 0) {}
+  void operator()(double t, std::size_t steps) {
+    if (quiet_ || to_ == from_) return;
+    const auto now = std::chrono::steady_clock::now();
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    if (elapsed < 0.5 || std::chrono::duration<double>(now - shown_).count() < (terminal_ ? 0.1 : 1.0)) return;
+    const double done = std::clamp((t - from_) / (to_ - from_), 0.0, 1.0);
+    const double left = done > 0 ? elapsed * (1 - done) / done : 0;
+    if (!terminal_ && done < next_line_) return;
+    next_line_ = done + 0.1;
+    shown_ = now;
+    any_ = terminal_;
+    const int bar = static_cast<int>(done * 30);
+    const std::string filled(static_cast<std::size_t>(bar), '#'), empty(static_cast<std::size_t>(30 - bar), '.');
+    std::fprintf(stderr, "%s[%s%s] %3.0f %%  t = %.6g  %.3g steps/s  %.0f s left%s", terminal_ ? "\r" : "", filled.c_str(),
+                 empty.c_str(), 100 * done, t, static_cast<double>(steps) / elapsed, left, terminal_ ? "\033[K" : "\n");
+  }
+  ~Progress() {
+    if (any_) std::fputs("\r\033[K", stderr);
+  }
+
+ private:
+  double from_, to_, next_line_ = 0;
+  bool quiet_, terminal_, any_ = false;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_ = start_;
+};
+
+SimulationOptions options(const Options& o, const Model& model) {
+  SimulationOptions s;
+  const SimulationSettings& file = model.simulate;
+  s.state = state_choice(o, model);
+  s.to = o.to.empty() ? file.to : std::optional<Rational>(exact(o.to, "--to"));
+  s.every = o.every.empty() ? file.every : std::optional<Rational>(exact(o.every, "--every"));
+  if (!o.every.empty() && *s.every <= 0) throw UsageError{"error: --every is a positive time\n"};
+  if (!o.at.empty()) {
+    for (const std::string& t : split(o.at)) s.at_text.push_back(t);
+    std::stable_sort(s.at_text.begin(), s.at_text.end(),
+                     [](const std::string& a, const std::string& b) { return exact(a, "--at") < exact(b, "--at"); });
+    for (const std::string& t : s.at_text) s.at.push_back(exact(t, "--at"));
+    s.every.reset();
+  } else if (o.every.empty()) {
+    s.at = file.at;
+  }
+  if (s.at.empty() && !s.to)
+    throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
+  s.digits = o.digits;
+  if (o.digits > 16) s.precision = Precision::multi;
+  else if (o.numbers == "long-double") s.precision = Precision::long_real;
+  s.tolerance = o.digits > 16 ? 0 : 1e-12;
+  if (o.digits > 16) s.tolerance = exact("1e-" + std::to_string(o.digits + 2), "--digits").get_d();
+  else if (file.tolerance) s.tolerance = file.tolerance->get_d();
+  if (!o.tolerance.empty()) s.tolerance = exact(o.tolerance, "--tolerance").get_d();
+  if (!(s.tolerance > 0) || s.tolerance >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
+  const double floor = s.precision == Precision::real ? 2e-16 : s.precision == Precision::long_real ? 1e-19 : 1e-290;
+  if (s.tolerance < floor) {
+    std::fprintf(stderr, "note: a tolerance below %.0e means %.0e in these numbers\n", floor, floor);
+    s.tolerance = floor;
+  }
+  s.order = o.order;
+  return s;
+}
+
+std::string small(double x) { return number_text(x, 3); }
+
+void write_json(const Scenario& s, const MemorySink& rows, const SimulationReport& r, std::FILE* file) {
+  JsonWriter j;
+  j.open_object();
+  j.key("model").string(s.model->title);
+  j.key("form").string(s.system.form->name);
+  j.key("columns").open_array();
+  for (const std::string& n : rows.names()) j.string(n);
+  j.close();
+  j.key("rows").open_array();
+  for (const auto& row : rows.rows()) {
+    j.open_array();
+    for (const std::string& v : row) j.number(v);
+    j.close();
+  }
+  j.close();
+  j.key("residuals").open_object();
+  for (const auto& [name, value] : {std::pair{"newton", r.newton}, {"projected", r.projected},
+                                    {"constraints", r.constraints_kept}, {"constraints_before_projection", r.constraints},
+                                    {"power", r.power}, {"smallest_sigma", r.smallest_sigma}})
+    j.key(name).number(small(value));
+  j.close();
+  j.key("steps").integer(static_cast<long long>(r.steps));
+  j.key("order").integer(r.order);
+  j.key("t").number(r.t);
+  j.key("outcome").string(name(r.outcome.kind));
+  if (!r.outcome.ok()) j.key("message").string(r.outcome.message).key("hint").string(r.outcome.hint);
+  j.close();
+  std::fputs((j.text() + "\n").c_str(), file);
+}
+
+void report(const Scenario& s, const SimulationReport& r) {
+  std::fflush(stdout);
+  for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
+  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (before projection %s), power balance %s\n",
+               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), small(r.constraints).c_str(), small(r.power).c_str());
+  std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s, %.3g s\n", r.steps, r.order,
+               r.rows, small(r.smallest_sigma).c_str(), r.seconds);
+}
+
+bool ends_with(const std::string& s, const std::string& end) {
+  return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
+}
+
+}  // namespace
+
+int simulate(const Options& o) {
+  if (o.integrator != "taylor")
+    throw UsageError{"error: the integrator '" + o.integrator + "' is not read yet\nhint: --integrator taylor\n"};
+  if (ends_with(o.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
+  const Reader in = read(o);
+  SimulationOptions options = cli::options(o, *in.model);
+  Scenario s;
+  const Outcome start = make_scenario(in.model, form(o, *in.model), options.state, s);
+  form(o, *in.model, s.mechanics.get());
+  if (const auto d = not_integrated(*in.model, s.classes)) {
+    print_diagnostic(*d, in.source);
+    return kBadInput;
+  }
+  if (!o.show.empty()) return show(o, s);
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  options.cancelled = [] { return stop_requested != 0; };
+
+  const bool json = o.json || ends_with(o.output, ".json");
+  SimulationReport r;
+  std::string write_error;
+  {
+    const double end = options.at.empty() ? options.to->get_d() : std::max(options.at.back().get_d(), options.to ? options.to->get_d() : options.at.back().get_d());
+    Progress progress(s.state.t, end, o.quiet);
+    options.progress = [&](double t, std::size_t steps) { progress(t, steps); };
+    if (json) {
+      MemorySink rows;
+      std::FILE* file = o.output.empty() || o.output == "-" ? stdout : std::fopen(o.output.c_str(), "w");
+      if (!file) throw UsageError{"error: cannot write " + o.output + "\n"};
+      if (start.ok()) r = anholon::simulate(s, options, rows);
+      else r.outcome = start, r.t = number_text(s.state.t);
+      write_json(s, rows, r, file);
+      if (std::fflush(file) != 0 || std::ferror(file)) write_error = "cannot write " + (o.output.empty() ? "the output" : o.output);
+      if (file != stdout) std::fclose(file);
+    } else {
+      if (!start.ok()) {
+        print_outcome(start);
+        return start.kind == OutcomeKind::inconsistent ? kBadInput : kStopped;
+      }
+      CsvSink rows(o.output);
+      if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
+      r = anholon::simulate(s, options, rows);
+      write_error = rows.close();
+    }
+  }
+  if (!o.quiet && r.rows > 0) report(s, r);
+  if (!r.outcome.ok()) {
+    print_outcome(r.outcome);
+    if (r.rows > 0 && !o.output.empty()) std::fprintf(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
+  }
+  if (!write_error.empty()) {
+    std::fprintf(stderr, "error: %s\n", write_error.c_str());
+    return kBadInput;
+  }
+  if (r.outcome.ok()) return kOk;
+  return r.outcome.kind == OutcomeKind::inconsistent ? kBadInput : kStopped;
+}
+
+}  // namespace anholon::cli

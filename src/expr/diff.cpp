@@ -1,0 +1,253 @@
+#include "expr/diff.h"
+
+#include <algorithm>
+
+#include "base/assert.h"
+
+namespace anholon {
+
+static bool is_symbol(Kind k) {
+  switch (k) {
+    case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass:
+    case Kind::multiplier: case Kind::given:
+      return true;
+    case Kind::number: case Kind::pi: case Kind::sum: case Kind::product: case Kind::function:
+    case Kind::atan2:
+      return false;
+  }
+  return false;
+}
+
+Expr derivative(Function f, [[maybe_unused]] Expr u, [[maybe_unused]] Expr v) {
+  switch (f) {
+#define ROW(name, formula, parity, latex, domain) \
+  case Function::name: return formula;
+#include "expr/elementary.def"
+#undef ROW
+  }
+  return {};
+}
+
+// The partial derivatives of a node with respect to its summands, in their order.
+static void local_partials(Graph& g, NodeId id, Column& out) {
+  out.clear();
+  const Node n = g.node(id);
+  const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
+  switch (n.kind) {
+    case Kind::sum:
+      for (const Term& t : terms) out.push_back(g.number(g.rational(t.weight)));
+      return;
+    case Kind::product:
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        std::vector<std::pair<Expr, Rational>> factors;
+        const Rational exponent = g.rational(terms[i].weight);
+        for (std::size_t j = 0; j < terms.size(); ++j) {
+          const Rational& r = g.rational(terms[j].weight);
+          factors.push_back({Expr{&g, terms[j].node}, j == i ? Rational(r - 1) : r});
+        }
+        out.push_back(exponent * g.product(factors));
+      }
+      return;
+    case Kind::function:
+      out.push_back(derivative(static_cast<Function>(n.index), Expr{&g, terms[0].node}, Expr{&g, id}));
+      return;
+    case Kind::atan2: {
+      const Expr y{&g, terms[0].node}, x{&g, terms[1].node}, r2 = x * x + y * y;
+      out.push_back(x / r2);
+      out.push_back(-(y / r2));
+      return;
+    }
+    case Kind::number: case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter:
+    case Kind::mass: case Kind::multiplier: case Kind::given:
+      return;
+  }
+}
+
+static Expr rate_of_symbol(Graph& g, const Node& n) {
+  switch (n.kind) {
+    case Kind::time: return g.one();
+    case Kind::jet: return g.jet(n.index, n.order + 1U);
+    case Kind::multiplier: return g.multiplier(n.index, n.order + 1U);
+    case Kind::given: return g.given(n.index, n.order + 1U);
+    case Kind::number: case Kind::pi: case Kind::parameter: case Kind::mass: case Kind::sum:
+    case Kind::product: case Kind::function: case Kind::atan2:
+      return g.zero();
+  }
+  return g.zero();
+}
+
+Column total_derivative(std::span<const Expr> es) {
+  if (es.empty()) return {};
+  Graph& g = *es[0].graph;
+  const std::vector<NodeId> ids = reachable(es);
+  std::unordered_map<NodeId, Expr> rate;
+  rate.reserve(ids.size());
+  Column partials;
+  for (NodeId id : ids) {
+    const Node n = g.node(id);
+    if (n.view_count == 0) {
+      rate[id] = rate_of_symbol(g, n);
+      continue;
+    }
+    const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
+    std::vector<std::pair<Rational, Expr>> parts;
+    const bool constant = std::all_of(terms.begin(), terms.end(),
+                                      [&](const Term& t) { return is_zero(rate[t.node]); });
+    if (constant) {
+      rate[id] = g.zero();
+      continue;
+    }
+    if (n.kind == Kind::sum) {
+      for (const Term& t : terms) parts.push_back({g.rational(t.weight), rate[t.node]});
+    } else {
+      local_partials(g, id, partials);
+      for (std::size_t i = 0; i < terms.size(); ++i)
+        if (!is_zero(rate[terms[i].node])) parts.push_back({1, partials[i] * rate[terms[i].node]});
+    }
+    rate[id] = g.sum(parts);
+  }
+  Column result;
+  for (Expr e : es) result.push_back(rate[e.id]);
+  return result;
+}
+
+Expr total_derivative(Expr e) { return total_derivative(std::span<const Expr>(&e, 1))[0]; }
+
+Expr total_derivative(Expr e, unsigned times) {
+  for (; times > 0; --times) e = total_derivative(e);
+  return e;
+}
+
+Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds,
+                std::span<const Expr> wanted) {
+  ANHOLON_ASSERT(outputs.size() == seeds.size());
+  if (wanted.empty()) return {};
+  Graph& g = *wanted[0].graph;
+  const std::vector<NodeId> ids = reachable(outputs);
+  std::unordered_map<NodeId, std::vector<std::pair<Rational, Expr>>> adjoint;
+  std::unordered_map<NodeId, bool> depends;
+  depends.reserve(ids.size());
+  for (Expr s : wanted) depends[s.id] = true;
+  for (NodeId id : ids)
+    for (const Term& t : g.summands(id))
+      if (depends[t.node]) depends[id] = true;
+  for (std::size_t c = 0; c < outputs.size(); ++c) adjoint[outputs[c].id].push_back({1, seeds[c]});
+  Column partials;
+  std::unordered_map<NodeId, Expr> found;
+  for (std::size_t k = ids.size(); k-- > 0;) {
+    const NodeId id = ids[k];
+    if (!depends[id]) continue;
+    const auto it = adjoint.find(id);
+    if (it == adjoint.end()) continue;
+    const Expr bar = g.sum(it->second);
+    adjoint.erase(it);
+    if (is_zero(bar)) continue;
+    const Node n = g.node(id);
+    if (n.view_count == 0) {
+      found[id] = bar;
+      continue;
+    }
+    const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
+    if (n.kind == Kind::sum) {
+      for (const Term& t : terms)
+        if (depends[t.node]) adjoint[t.node].push_back({g.rational(t.weight), bar});
+    } else {
+      local_partials(g, id, partials);
+      for (std::size_t i = 0; i < terms.size(); ++i)
+        if (depends[terms[i].node]) adjoint[terms[i].node].push_back({1, bar * partials[i]});
+    }
+  }
+  Column result;
+  for (Expr s : wanted) {
+    const auto it = found.find(s.id);
+    result.push_back(it == found.end() ? g.zero() : it->second);
+  }
+  return result;
+}
+
+Column gradient(Expr e, std::span<const Expr> wanted) {
+  const Expr one = e.graph->one();
+  return pullback({&e, 1}, {&one, 1}, wanted);
+}
+
+Expr partial(Expr e, Expr symbol) { return gradient(e, {&symbol, 1})[0]; }
+
+Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement) {
+  if (es.empty()) return {};
+  Graph& g = *es[0].graph;
+  std::unordered_map<NodeId, Expr> image;
+  for (NodeId id : reachable(es)) {
+    const Node n = g.node(id);
+    if (n.view_count == 0) {
+      const Expr r = is_symbol(n.kind) ? replacement(id) : Expr{};
+      image[id] = r.graph ? r : Expr{&g, id};
+      continue;
+    }
+    const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
+    const bool same = std::all_of(terms.begin(), terms.end(),
+                                  [&](const Term& t) { return image[t.node].id == t.node; });
+    if (same) {
+      image[id] = {&g, id};
+      continue;
+    }
+    switch (n.kind) {
+      case Kind::sum: {
+        std::vector<std::pair<Rational, Expr>> parts;
+        for (const Term& t : terms) parts.push_back({g.rational(t.weight), image[t.node]});
+        image[id] = g.sum(parts);
+        break;
+      }
+      case Kind::product: {
+        std::vector<std::pair<Expr, Rational>> parts;
+        for (const Term& t : terms) parts.push_back({image[t.node], g.rational(t.weight)});
+        image[id] = g.product(parts);
+        break;
+      }
+      case Kind::function:
+        image[id] = g.apply(static_cast<Function>(n.index), image[terms[0].node]);
+        break;
+      case Kind::atan2:
+        image[id] = g.arctangent2(image[terms[0].node], image[terms[1].node]);
+        break;
+      case Kind::number: case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter:
+      case Kind::mass: case Kind::multiplier: case Kind::given:
+        break;
+    }
+  }
+  Column result;
+  for (Expr e : es) result.push_back(image[e.id]);
+  return result;
+}
+
+std::vector<NodeId> symbols(std::span<const Expr> es) {
+  std::vector<NodeId> found;
+  for (NodeId id : reachable(es))
+    if (is_symbol(es[0].graph->node(id).kind)) found.push_back(id);
+  return found;
+}
+
+int jet_order(Expr e) {
+  int order = -1;
+  for (NodeId id : symbols({&e, 1})) {
+    const Node& n = e.graph->node(id);
+    if (n.kind == Kind::jet) order = std::max(order, static_cast<int>(n.order));
+  }
+  return order;
+}
+
+static Column combine(const Column& a, const Column& b, int sign) {
+  ANHOLON_ASSERT(a.size() == b.size());
+  Column r;
+  for (std::size_t i = 0; i < a.size(); ++i) r.push_back(sign > 0 ? a[i] + b[i] : a[i] - b[i]);
+  return r;
+}
+
+Column operator+(const Column& a, const Column& b) { return combine(a, b, 1); }
+Column operator-(const Column& a, const Column& b) { return combine(a, b, -1); }
+Column operator-(const Column& a) {
+  Column r;
+  for (Expr e : a) r.push_back(-e);
+  return r;
+}
+
+}  // namespace anholon

@@ -1,0 +1,406 @@
+#include <algorithm>
+
+#include "base/assert.h"
+#include "expr/formula.h"
+
+namespace anholon {
+
+// ---- vectors and rotations -------------------------------------------------------------------
+
+Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vector operator*(Expr k, const Vector& a) { return {k * a.x, k * a.y, k * a.z}; }
+Expr dot(const Vector& a, const Vector& b) {
+  const Expr parts[] = {a.x * b.x, a.y * b.y, a.z * b.z};
+  return sum(parts);
+}
+Vector cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Vector zero_vector(Graph& g) { return {g.zero(), g.zero(), g.zero()}; }
+bool is_zero(const Vector& a) { return is_zero(a.x) && is_zero(a.y) && is_zero(a.z); }
+Vector total_derivative(const Vector& a) {
+  const Expr parts[] = {a.x, a.y, a.z};
+  const Column d = total_derivative(std::span<const Expr>(parts));
+  return {d[0], d[1], d[2]};
+}
+Vector operator*(const Rotation& r, const Vector& a) {
+  return a.x * r[0] + a.y * r[1] + a.z * r[2];
+}
+Vector transpose_times(const Rotation& r, const Vector& a) {
+  return {dot(r[0], a), dot(r[1], a), dot(r[2], a)};
+}
+Rotation operator*(const Rotation& a, const Rotation& b) {
+  return {{a * b[0], a * b[1], a * b[2]}, a.rate + a * b.rate, transpose_times(b, a.own_rate) + b.own_rate};
+}
+Rotation identity_rotation(Graph& g) {
+  const Vector zero = zero_vector(g);
+  return {{{g.one(), g.zero(), g.zero()}, {g.zero(), g.one(), g.zero()}, {g.zero(), g.zero(), g.one()}},
+          zero, zero};
+}
+
+Rotation turn(int axis, Expr angle) {
+  Graph& g = *angle.graph;
+  const int j = (axis + 1) % 3, k = (axis + 2) % 3;
+  Rotation r = identity_rotation(g);
+  r.columns[j][j] = r.columns[k][k] = cos(angle);
+  r.columns[j][k] = sin(angle);
+  r.columns[k][j] = -sin(angle);
+  r.rate[axis] = r.own_rate[axis] = total_derivative(angle);
+  return r;
+}
+
+// Rodrigues: R v = v cos + (a x v) sin + a (a.v)(1 - cos).
+Rotation turn(const Vector& a, Expr angle) {
+  Graph& g = *angle.graph;
+  Rotation r = identity_rotation(g);
+  const Rotation e = r;
+  const Expr c = cos(angle), s = sin(angle);
+  for (int k = 0; k < 3; ++k)
+    r.columns[k] = c * e[k] + s * cross(a, e[k]) + ((1 - c) * a[k]) * a;
+  if (!is_zero(total_derivative(a))) return rotation_from_axes(r[0], r[1], r[2]);
+  r.rate = r.own_rate = total_derivative(angle) * a;
+  return r;
+}
+
+Rotation rotation_from_axes(const Vector& x, const Vector& y, const Vector& z) {
+  Graph& g = *x.x.graph;
+  Rotation r{{x, y, z}, zero_vector(g), zero_vector(g)};
+  for (const Vector& u : r.columns) r.rate = r.rate + cross(u, total_derivative(u));
+  r.rate = g.number(Rational(1, 2)) * r.rate;
+  r.own_rate = transpose_times(r, r.rate);
+  return r;
+}
+
+// ---- evaluation of syntax --------------------------------------------------------------------
+
+const char* type_name(const Value& v) {
+  switch (v.index()) {
+    case 0: return "a number";
+    case 1: return "a vector";
+    case 2: return "a rotation";
+    case 3: return "a body";
+    default: return "'inertial'";
+  }
+}
+
+namespace {
+
+// Derivatives of higher order than this are refused.
+constexpr int kHighestDerivative = 20;
+
+Expr* number(Value& v) { return std::get_if<Expr>(&v); }
+Vector* vector(Value& v) { return std::get_if<Vector>(&v); }
+Rotation* rotation(Value& v) { return std::get_if<Rotation>(&v); }
+
+[[noreturn]] void mismatch(const char* what, const Value& a, const Value& b, Span at,
+                           std::string hint = {}) {
+  throw Failure(at, std::string(what) + " of " + type_name(a) + " and " + type_name(b), std::move(hint));
+}
+
+// The number 0 stands for the zero vector where the other side is a vector.
+void lift_zero(Value& a, Value& b) {
+  if (number(a) && vector(b) && is_zero(*number(a))) a = zero_vector(*vector(b)->x.graph);
+  if (number(b) && vector(a) && is_zero(*number(b))) b = zero_vector(*vector(a)->x.graph);
+}
+
+Value add(Value a, Value b, bool minus, Span at) {
+  lift_zero(a, b);
+  if (number(a) && number(b)) return minus ? *number(a) - *number(b) : *number(a) + *number(b);
+  if (vector(a) && vector(b)) return minus ? *vector(a) - *vector(b) : *vector(a) + *vector(b);
+  const bool body = a.index() == 3 || b.index() == 3;
+  mismatch(minus ? "difference" : "sum", a, b, at, body ? "a body is not a point: write B.center" : "");
+}
+
+Value divide(Value a, Value b, Span at) {
+  if (!number(b)) throw Failure(at, std::string("division by ") + type_name(b));
+  if (is_zero(*number(b))) throw Failure(at, "division by zero");
+  if (number(a)) return *number(a) / *number(b);
+  if (vector(a)) return pow(*number(b), -1) * *vector(a);
+  mismatch("quotient", a, b, at);
+}
+
+Value multiply(Value a, Value b, Syntax::Op sign, Span at) {
+  if (number(a) && number(b)) return *number(a) * *number(b);
+  if (number(a) && vector(b)) return *number(a) * *vector(b);
+  if (vector(a) && number(b)) return *number(b) * *vector(a);
+  if (vector(a) && vector(b)) {
+    if (sign == Syntax::Op::dot) return dot(*vector(a), *vector(b));
+    if (sign == Syntax::Op::cross) return cross(*vector(a), *vector(b));
+    throw Failure(at, "product of two vectors", "write dot(a, b) or cross(a, b)");
+  }
+  if (rotation(a) && rotation(b)) return *rotation(a) * *rotation(b);
+  if (rotation(a) && vector(b)) return *rotation(a) * *vector(b);
+  const bool body = a.index() == 3 || b.index() == 3;
+  mismatch("product", a, b, at, body ? "a body is not a point: write B.center" : "");
+}
+
+Expr integer_power(Expr base, const Rational& exponent, Span at) {
+  if (is_zero(base) && exponent < 0) throw Failure(at, "zero to a negative power");
+  if (abs(exponent) > 1000) throw Failure(at, "a power above 1000");
+  return pow(base, exponent);
+}
+
+Value power(Value a, Value b, Span at) {
+  if (!number(b)) throw Failure(at, std::string("the exponent is ") + type_name(b) + ", not a number");
+  if (vector(a)) throw Failure(at, "power of a vector", "write norm2(a) for a·a");
+  if (!number(a)) throw Failure(at, std::string("power of ") + type_name(a));
+  const Expr base = *number(a), exponent = *number(b);
+  if (is_number(exponent)) return integer_power(base, number_value(exponent), at);
+  return exp(exponent * log(base));
+}
+
+Value differentiate(Value v, int times, Span at) {
+  if (times > kHighestDerivative)
+    throw Failure(at, "a derivative of order " + std::to_string(times) + "; at most " +
+                          std::to_string(kHighestDerivative) + " are read");
+  if (v.index() == 3)
+    throw Failure(at, "derivative of a body", "a body is not a point: write B.center, or angvel(B)");
+  for (; times > 0; --times) {
+    if (Expr* e = number(v)) v = total_derivative(*e);
+    else if (Vector* a = vector(v)) v = total_derivative(*a);
+    else throw Failure(at, std::string("derivative of ") + type_name(v), "take the derivative of its axes: R.x'");
+  }
+  if (Expr* e = number(v))
+    if (jet_order(*e) > kHighestDerivative)
+      throw Failure(at, "a derivative of order above " + std::to_string(kHighestDerivative));
+  return v;
+}
+
+struct Arguments {
+  const Syntax& call;
+  std::vector<Value>& values;
+
+  void expect(std::size_t n) const {
+    if (values.size() != n)
+      throw Failure(call.span, call.text + " takes " + std::to_string(n) + (n == 1 ? " argument, " : " arguments, ") +
+                                   std::to_string(values.size()) + (values.size() == 1 ? " is" : " are") + " given");
+  }
+  Expr number(std::size_t i) const {
+    if (Expr* e = std::get_if<Expr>(&values[i])) return *e;
+    throw Failure(call.args[i].span, "argument " + std::to_string(i + 1) + " of " + call.text + " is " +
+                                         type_name(values[i]) + ", not a number");
+  }
+  Vector vector(std::size_t i) const {
+    if (Vector* v = std::get_if<Vector>(&values[i])) return *v;
+    if (Expr* e = std::get_if<Expr>(&values[i]); e && is_zero(*e)) return zero_vector(*e->graph);
+    throw Failure(call.args[i].span, "argument " + std::to_string(i + 1) + " of " + call.text + " is " +
+                                         type_name(values[i]) + ", not a vector",
+                  values[i].index() == 3 ? "a body is not a point: write B.center" : "");
+  }
+  long integer(std::size_t i) const {
+    const Expr e = number(i);
+    if (!is_number(e) || number_value(e).get_den() != 1 || number_value(e) < 0 || number_value(e) > 1000)
+      throw Failure(call.args[i].span, "argument " + std::to_string(i + 1) + " of " + call.text +
+                                           " is not a whole number between 0 and 1000");
+    return number_value(e).get_num().get_si();
+  }
+};
+
+Rotation quaternion(Expr e0, Expr e1, Expr e2, Expr e3) {
+  Vector columns[3];
+  columns[0] = {e0 * e0 + e1 * e1 - e2 * e2 - e3 * e3, 2 * (e1 * e2 + e0 * e3), 2 * (e1 * e3 - e0 * e2)};
+  columns[1] = {2 * (e1 * e2 - e0 * e3), e0 * e0 - e1 * e1 + e2 * e2 - e3 * e3, 2 * (e2 * e3 + e0 * e1)};
+  columns[2] = {2 * (e1 * e3 + e0 * e2), 2 * (e2 * e3 - e0 * e1), e0 * e0 - e1 * e1 - e2 * e2 + e3 * e3};
+  return rotation_from_axes(columns[0], columns[1], columns[2]);
+}
+
+Rotation euler(const Syntax& call, const std::vector<Value>& values, Graph& g) {
+  // The letters arrive as a name: euler(zxz, a, b, c); quotes are part of the TOML string.
+  const std::string& letters = call.args[0].text;
+  if (letters.size() != values.size() || letters.empty())
+    throw Failure(call.args[0].span, "euler takes one angle for each of its axis letters",
+                  "euler(zxz, psi, theta, phi)");
+  Rotation r = identity_rotation(g);
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    if (letters[i] < 'x' || letters[i] > 'z')
+      throw Failure(call.args[0].span, "the axes of euler are the letters x, y and z");
+    const Expr* angle = std::get_if<Expr>(&values[i]);
+    if (!angle) throw Failure(call.args[i + 1].span, "an angle of euler is not a number");
+    r = r * turn(letters[i] - 'x', *angle);
+  }
+  return r;
+}
+
+Rotation matrix(const Syntax& call, Names& names) {
+  const Syntax* rows = call.args.size() == 1 ? &call.args[0] : nullptr;
+  if (!rows || rows->op != Syntax::Op::array || rows->args.size() != 3)
+    throw Failure(call.span, "matrix takes three rows of three numbers", "matrix([[1,0,0],[0,1,0],[0,0,1]])");
+  Vector columns[3];
+  for (int i = 0; i < 3; ++i) {
+    const Syntax& row = rows->args[static_cast<std::size_t>(i)];
+    if (row.op != Syntax::Op::array || row.args.size() != 3)
+      throw Failure(row.span, "matrix takes three rows of three numbers");
+    for (int j = 0; j < 3; ++j)
+      columns[j][i] = evaluate_number(row.args[static_cast<std::size_t>(j)], names);
+  }
+  return rotation_from_axes(columns[0], columns[1], columns[2]);
+}
+
+const std::vector<std::string>& built_in() {
+  static const std::vector<std::string> list = [] {
+    std::vector<std::string> l = {"sqrt", "atan2", "min", "max", "dot", "cross", "norm", "norm2", "unit",
+                                  "D", "rotx", "roty", "rotz", "rot", "quat", "euler", "matrix"};
+#define ROW(name, derivative, parity, latex, domain) l.push_back(#name);
+#include "expr/elementary.def"
+#undef ROW
+    return l;
+  }();
+  return list;
+}
+
+Value call(const Syntax& s, Names& names) {
+  Graph& g = names.graph();
+  const std::string& f = s.text;
+  for (const char* later : {"piecewise", "choose", "sum", "prod"})
+    if (f == later) throw Failure(s.span, f + "(…) is not read yet");
+  if (f == "matrix") return matrix(s, names);
+  std::vector<Value> values;
+  if (f == "euler") {
+    if (s.args.size() < 2 || s.args[0].op != Syntax::Op::name)
+      throw Failure(s.span, "euler takes its axis letters and the angles", "euler(zxz, psi, theta, phi)");
+    for (std::size_t i = 1; i < s.args.size(); ++i) values.push_back(evaluate(s.args[i], names));
+    return euler(s, values, g);
+  }
+  for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
+  const Arguments in{s, values};
+
+  Value result = g.zero();
+  if (names.call(f, values, s, result)) return result;
+  if (const int index = find_function(f); index >= 0) {
+    in.expect(1);
+    const Expr x = in.number(0);
+    if (f == "log" && is_number(x) && number_value(x) <= 0)
+      throw Failure(s.span, "logarithm of a number that is not positive");
+    return g.apply(static_cast<Function>(index), x);
+  }
+  if (f == "sqrt") {
+    in.expect(1);
+    if (is_number(in.number(0)) && number_value(in.number(0)) < 0)
+      throw Failure(s.span, "square root of a negative number");
+    return sqrt(in.number(0));
+  }
+  if (f == "atan2") return in.expect(2), atan2(in.number(0), in.number(1));
+  if (f == "min" || f == "max") {
+    in.expect(2);
+    const Expr a = in.number(0), b = in.number(1), gap = abs(a - b);
+    return Rational(1, 2) * (f == "max" ? a + b + gap : a + b - gap);
+  }
+  if (f == "dot") return in.expect(2), dot(in.vector(0), in.vector(1));
+  if (f == "cross") return in.expect(2), cross(in.vector(0), in.vector(1));
+  if (f == "norm2") return in.expect(1), dot(in.vector(0), in.vector(0));
+  if (f == "norm") return in.expect(1), sqrt(dot(in.vector(0), in.vector(0)));
+  if (f == "unit") {
+    in.expect(1);
+    const Vector a = in.vector(0);
+    if (is_zero(a)) throw Failure(s.span, "unit vector of the zero vector");
+    return pow(dot(a, a), {-1, 2}) * a;
+  }
+  if (f == "D") {
+    in.expect(2);
+    return differentiate(values[0], static_cast<int>(in.integer(1)), s.span);
+  }
+  if (f == "rotx" || f == "roty" || f == "rotz") return in.expect(1), turn(f[3] - 'x', in.number(0));
+  if (f == "rot") return in.expect(2), turn(in.vector(0), in.number(1));
+  if (f == "quat") return in.expect(4), quaternion(in.number(0), in.number(1), in.number(2), in.number(3));
+
+  std::vector<std::string> known = names.functions();
+  known.insert(known.end(), built_in().begin(), built_in().end());
+  const std::string near = did_you_mean(f, known);
+  throw Failure(s.span, "unknown function '" + f + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                near.empty() ? "a product is written with '*'" : "");
+}
+
+}  // namespace
+
+Value evaluate(const Syntax& s, Names& names) {
+  Graph& g = names.graph();
+  switch (s.op) {
+    case Syntax::Op::number: {
+      const auto r = parse_rational(s.text);
+      if (!r) throw Failure(s.span, "the number " + s.text.substr(0, 40) + " is out of all proportion");
+      return g.number(*r);
+    }
+    case Syntax::Op::name: return names.name(s.text, s.span);
+    case Syntax::Op::call: return call(s, names);
+    case Syntax::Op::member: return names.member(evaluate(s.args[0], names), s);
+    case Syntax::Op::index:
+      throw Failure(s.span, "families of elements (names with [ ]) are not read yet",
+                    "write the members out under names of their own");
+    case Syntax::Op::array: {
+      if (s.args.size() != 3) throw Failure(s.span, "a vector has three components");
+      return Vector{evaluate_number(s.args[0], names), evaluate_number(s.args[1], names),
+                    evaluate_number(s.args[2], names)};
+    }
+    case Syntax::Op::negate: {
+      Value v = evaluate(s.args[0], names);
+      if (Expr* e = number(v)) return -*e;
+      if (Vector* a = vector(v)) return g.number(-1) * *a;
+      throw Failure(s.span, std::string("minus ") + type_name(v));
+    }
+    case Syntax::Op::prime: {
+      // x''' is three nested primes: count them here, so that each order is one step.
+      int times = 1;
+      const Syntax* inner = &s.args[0];
+      for (; inner->op == Syntax::Op::prime; inner = &inner->args[0]) ++times;
+      return differentiate(evaluate(*inner, names), times, s.span);
+    }
+    case Syntax::Op::power:
+      return power(evaluate(s.args[0], names), evaluate(s.args[1], names), s.span);
+    case Syntax::Op::add: {
+      // Numbers are summed at once, so that a long sum is linear work.
+      std::vector<Value> values;
+      for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
+      if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 0; })) {
+        std::vector<std::pair<Rational, Expr>> parts;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          const bool minus = i > 0 && s.operators[i - 1].op == Syntax::Op::subtract;
+          parts.push_back({minus ? -1 : 1, std::get<Expr>(values[i])});
+        }
+        return g.sum(parts);
+      }
+      Value total = values[0];
+      for (std::size_t i = 1; i < values.size(); ++i)
+        total = add(total, values[i], s.operators[i - 1].op == Syntax::Op::subtract, s.operators[i - 1].span);
+      return total;
+    }
+    case Syntax::Op::multiply: {
+      Value product = evaluate(s.args[0], names);
+      for (std::size_t i = 1; i < s.args.size(); ++i) {
+        const Syntax::Operator& o = s.operators[i - 1];
+        Value factor = evaluate(s.args[i], names);
+        product = o.op == Syntax::Op::divide ? divide(product, factor, o.span)
+                                             : multiply(product, factor, o.op, o.span);
+      }
+      return product;
+    }
+    case Syntax::Op::subtract: case Syntax::Op::divide: case Syntax::Op::dot: case Syntax::Op::cross:
+      break;  // only inside `operators`
+  }
+  ANHOLON_ASSERT(false);
+  return g.zero();
+}
+
+Expr evaluate_number(const Syntax& s, Names& names) {
+  Value v = evaluate(s, names);
+  if (Expr* e = number(v)) return *e;
+  throw Failure(s.span, std::string("a number is expected, this is ") + type_name(v),
+                v.index() == 1 ? "take a component (.x, .y, .z), dot(…) or norm(…)" : "");
+}
+
+Vector evaluate_vector(const Syntax& s, Names& names) {
+  Value v = evaluate(s, names);
+  if (Vector* a = vector(v)) return *a;
+  if (Expr* e = number(v); e && is_zero(*e)) return zero_vector(names.graph());
+  throw Failure(s.span, std::string("a vector is expected, this is ") + type_name(v),
+                v.index() == 3 ? "a body is not a point: write B.center" : "");
+}
+
+Rotation evaluate_rotation(const Syntax& s, Names& names) {
+  Value v = evaluate(s, names);
+  if (Rotation* r = rotation(v)) return *r;
+  throw Failure(s.span, std::string("a rotation is expected, this is ") + type_name(v),
+                "rotx(…), roty(…), rotz(…), rot(axis, angle) and products of these");
+}
+
+}  // namespace anholon

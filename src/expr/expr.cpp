@@ -1,0 +1,403 @@
+#include "expr/expr.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/assert.h"
+
+namespace anholon {
+
+namespace {
+
+enum class Parity : std::uint8_t { none, even, odd };
+
+constexpr std::array kFunctions = {
+#define ROW(name, derivative, parity, latex, domain) FunctionInfo{#name, latex, domain},
+#include "expr/elementary.def"
+#undef ROW
+};
+
+constexpr std::array kParity = {
+#define ROW(name, derivative, parity, latex, domain) Parity::parity,
+#include "expr/elementary.def"
+#undef ROW
+};
+
+// A sum of more terms than this is computed through the partial sum it grew from.
+constexpr std::size_t kShortWayFrom = 8;
+
+std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
+  h ^= v + 0x9e3779b97f4a7c15ULL + (h << 6) + (h >> 2);
+  h *= 0xff51afd7ed558ccdULL;
+  return h ^ (h >> 33);
+}
+
+}  // namespace
+
+const FunctionInfo& info(Function f) { return kFunctions[static_cast<std::size_t>(f)]; }
+
+int find_function(const std::string& name) {
+  for (std::size_t i = 0; i < kFunctions.size(); ++i)
+    if (name == kFunctions[i].name) return static_cast<int>(i);
+  return -1;
+}
+
+Graph::Graph() {
+  zero_ = number(0).id;
+  one_ = number(1).id;
+}
+
+std::uint32_t Graph::rational_index(const Rational& r) {
+  const auto [it, fresh] =
+      rational_index_.try_emplace(r.get_str(62), static_cast<std::uint32_t>(rationals_.size()));
+  if (fresh) rationals_.push_back(r);
+  return it->second;
+}
+
+NodeId Graph::intern(Node node, std::span<const Term> operands, std::span<const Term> view) {
+  std::uint64_t h = mix(static_cast<std::uint64_t>(node.kind), node.index);
+  h = mix(h, node.order);
+  for (const Term& t : operands) h = mix(mix(h, t.weight), t.node);
+  const auto [begin, end] = index_.equal_range(h);
+  for (auto it = begin; it != end; ++it) {
+    const Node& other = nodes_[it->second];
+    if (other.kind != node.kind || other.index != node.index || other.order != node.order ||
+        other.count != operands.size())
+      continue;
+    const std::span<const Term> theirs = terms(it->second);
+    if (std::equal(operands.begin(), operands.end(), theirs.begin(), [](const Term& a, const Term& b) {
+          return a.weight == b.weight && a.node == b.node;
+        }))
+      return it->second;
+  }
+  node.first = node.view_first = static_cast<std::uint32_t>(terms_.size());
+  node.count = node.view_count = static_cast<std::uint32_t>(operands.size());
+  terms_.insert(terms_.end(), operands.begin(), operands.end());
+  if (!view.empty()) {
+    node.view_first = static_cast<std::uint32_t>(terms_.size());
+    node.view_count = static_cast<std::uint32_t>(view.size());
+    terms_.insert(terms_.end(), view.begin(), view.end());
+  }
+  const NodeId id = static_cast<NodeId>(nodes_.size());
+  ANHOLON_ASSERT(id < 0xffffffffU);
+  nodes_.push_back(node);
+  index_.emplace(h, id);
+  return id;
+}
+
+Expr Graph::leaf(Kind kind, std::uint32_t index, std::uint32_t order) {
+  ANHOLON_ASSERT(order < 256);
+  return {this, intern(Node{kind, static_cast<std::uint8_t>(order), index}, {}, {})};
+}
+
+Expr Graph::number(const Rational& r) { return leaf(Kind::number, rational_index(r), 0); }
+Expr Graph::jet(std::uint32_t c, std::uint32_t order) { return leaf(Kind::jet, c, order); }
+Expr Graph::multiplier(std::uint32_t c, std::uint32_t order) { return leaf(Kind::multiplier, c, order); }
+Expr Graph::given(std::uint32_t f, std::uint32_t order) { return leaf(Kind::given, f, order); }
+
+Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
+  struct Part {
+    NodeId node;
+    Rational coefficient;
+  };
+  std::vector<Part> parts;
+  NodeId longest = zero_;  // the operand sum with most terms, candidate for the short way
+  Rational longest_factor;
+  for (const auto& [factor, e] : operands) {
+    if (factor == 0) continue;
+    const Node& n = nodes_[e.id];
+    if (n.kind == Kind::number) {
+      parts.push_back({one_, factor * value(e.id)});
+    } else if (n.kind == Kind::sum) {
+      for (const Term& t : terms(e.id)) parts.push_back({t.node, factor * rational(t.weight)});
+      if (n.count > 1 && (longest == zero_ || n.count > nodes_[longest].count))
+        longest = e.id, longest_factor = factor;
+    } else {
+      parts.push_back({e.id, factor});
+    }
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.node < b.node; });
+  std::vector<Part> merged;
+  for (Part& p : parts) {
+    if (!merged.empty() && merged.back().node == p.node) merged.back().coefficient += p.coefficient;
+    else merged.push_back(std::move(p));
+  }
+  std::erase_if(merged, [](const Part& p) { return p.coefficient == 0; });
+  if (merged.empty()) return zero();
+  if (merged.size() == 1) {
+    if (merged[0].node == one_) return number(merged[0].coefficient);
+    if (merged[0].coefficient == 1) return {this, merged[0].node};
+  }
+  std::vector<Term> flat;
+  for (const Part& p : merged) flat.push_back({rational_index(p.coefficient), p.node});
+
+  std::vector<Term> view;
+  if (longest != zero_ && flat.size() > kShortWayFrom) {
+    // The short way holds if the longest operand survives whole: flat = factor * longest + rest.
+    view.push_back({rational_index(longest_factor), longest});
+    std::size_t matched = 0;
+    const std::span<const Term> inner = terms(longest);
+    for (const Part& p : merged) {
+      if (matched < inner.size() && inner[matched].node == p.node) {
+        if (longest_factor * rational(inner[matched].weight) != p.coefficient) break;
+        ++matched;
+      } else {
+        view.push_back({rational_index(p.coefficient), p.node});
+      }
+    }
+    if (matched != inner.size() || view.size() >= flat.size()) view.clear();
+  }
+  return {this, intern(Node{Kind::sum}, flat, view)};
+}
+
+Expr Graph::scaled(const Rational& factor, NodeId id) {
+  const std::pair<Rational, Expr> one_term[] = {{factor, Expr{this, id}}};
+  return sum(one_term);
+}
+
+// The rational content of a sum, with the sign that makes its first coefficient positive.
+static Rational content(const Graph& g, NodeId id) {
+  mpz_class num = 0, den = 1;
+  const std::span<const Term> terms = g.terms(id);
+  for (const Term& t : terms) {
+    const Rational& c = g.rational(t.weight);
+    num = gcd(num, c.get_num());
+    den = lcm(den, c.get_den());
+  }
+  Rational r(num, den);
+  r.canonicalize();
+  return g.rational(terms[0].weight) < 0 ? Rational(-r) : r;
+}
+
+Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
+  struct Part {
+    NodeId node;
+    Rational exponent;
+  };
+  Rational coefficient = 1;
+  std::vector<Part> parts;
+  // Operands are opened one level at a time: c*x inside a product gives up c, a product its factors.
+  std::vector<Part> pending;
+  for (auto it = operands.rbegin(); it != operands.rend(); ++it)
+    pending.push_back({it->first.id, it->second});
+  while (!pending.empty()) {
+    Part p = std::move(pending.back());
+    pending.pop_back();
+    if (p.exponent == 0) continue;
+    const Node n = nodes_[p.node];
+    const bool integer = p.exponent.get_den() == 1;
+    if (n.kind == Kind::number) {
+      const Rational& v = value(p.node);
+      if (v == 1) continue;
+      if (v == 0) {
+        ANHOLON_ASSERT(p.exponent > 0);
+        return zero();
+      }
+      std::optional<Rational> power;
+      if (integer && p.exponent.get_num().fits_slong_p()) {
+        power = exact_power(v, p.exponent.get_num().get_si());
+      } else if (p.exponent.get_den().fits_ulong_p() && p.exponent.get_num().fits_slong_p()) {
+        if (auto root = exact_root(v, p.exponent.get_den().get_ui()))
+          power = exact_power(*root, p.exponent.get_num().get_si());
+      }
+      if (power) coefficient *= *power;
+      else parts.push_back(std::move(p));
+    } else if (n.kind == Kind::sum && integer) {
+      const Rational c = n.count == 1 ? rational(terms_[n.first].weight) : content(*this, p.node);
+      std::optional<Rational> power = c == 1 ? std::optional<Rational>(1)
+                                             : exact_power(c, p.exponent.get_num().get_si());
+      if (c == 1 || !power) {
+        parts.push_back(std::move(p));
+        continue;
+      }
+      coefficient *= *power;
+      pending.push_back({scaled(1 / c, p.node).id, p.exponent});
+    } else if (n.kind == Kind::product && (integer || n.count == 1)) {
+      // (x^r)^n = x^(rn) for integer n; (x^r)^s = x^(rs) only where x^r keeps the sign of x.
+      const std::span<const Term> inner = terms(p.node);
+      if (!integer && rational(inner[0].weight).get_den() == 1) {
+        parts.push_back(std::move(p));
+        continue;
+      }
+      std::vector<Part> opened;
+      for (const Term& t : inner) opened.push_back({t.node, rational(t.weight) * p.exponent});
+      for (Part& o : opened) pending.push_back(std::move(o));
+    } else {
+      parts.push_back(std::move(p));
+    }
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.node < b.node; });
+  std::vector<Part> merged;
+  bool again = false;
+  for (Part& p : parts) {
+    if (!merged.empty() && merged.back().node == p.node) {
+      merged.back().exponent += p.exponent;
+      // A number or sum whose exponents joined to an integer opens up: sqrt(2)*sqrt(2) = 2.
+      const Kind k = nodes_[p.node].kind;
+      if (merged.back().exponent.get_den() == 1 && k != Kind::jet && k != Kind::parameter) again = true;
+    } else {
+      merged.push_back(std::move(p));
+    }
+  }
+  std::erase_if(merged, [](const Part& p) { return p.exponent == 0; });
+  if (again) {
+    bool opens = false;
+    for (const Part& p : merged) {
+      const Node& n = nodes_[p.node];
+      if (p.exponent.get_den() != 1) continue;
+      if (n.kind == Kind::number || n.kind == Kind::product) opens = true;
+      if (n.kind == Kind::sum && (n.count == 1 || content(*this, p.node) != 1)) opens = true;
+    }
+    if (opens) {
+      std::vector<std::pair<Expr, Rational>> factors;
+      for (const Part& p : merged) factors.push_back({Expr{this, p.node}, p.exponent});
+      return scaled(coefficient, product(factors).id);
+    }
+  }
+  if (merged.empty()) return number(coefficient);
+  NodeId id = merged[0].node;
+  if (merged.size() > 1 || merged[0].exponent != 1) {
+    std::vector<Term> flat;
+    for (const Part& p : merged) flat.push_back({rational_index(p.exponent), p.node});
+    id = intern(Node{Kind::product}, flat, {});
+  }
+  return coefficient == 1 ? Expr{this, id} : scaled(coefficient, id);
+}
+
+// True if the expression is written with a leading minus sign.
+static bool negative(const Graph& g, NodeId id) {
+  const Node& n = g.node(id);
+  if (n.kind == Kind::number) return g.value(id) < 0;
+  return n.kind == Kind::sum && g.rational(g.terms(id)[0].weight) < 0;
+}
+
+// The value at a rational argument, where it is rational.
+static std::optional<Rational> exact_value(Function f, const Rational& x) {
+  switch (f) {
+    case Function::sin: case Function::tan: case Function::asin: case Function::atan:
+    case Function::sinh: case Function::tanh: case Function::asinh: case Function::atanh:
+      if (x == 0) return Rational(0);
+      return std::nullopt;
+    case Function::cos: case Function::cosh: case Function::exp:
+      if (x == 0) return Rational(1);
+      return std::nullopt;
+    case Function::log: case Function::acos: case Function::acosh:
+      if (x == 1) return Rational(0);
+      return std::nullopt;
+    case Function::abs: return Rational(::abs(x));
+    case Function::sign: return Rational(sgn(x));
+  }
+  return std::nullopt;
+}
+
+// sin and cos at a rational multiple of pi with rational value.
+static std::optional<Rational> value_at_pi(const Graph& g, Function f, NodeId x) {
+  const Node& n = g.node(x);
+  Rational turns;  // x = turns * pi
+  if (n.kind == Kind::pi) turns = 1;
+  else if (n.kind == Kind::sum && n.count == 1 && g.node(g.terms(x)[0].node).kind == Kind::pi)
+    turns = g.rational(g.terms(x)[0].weight);
+  else return std::nullopt;
+  if (f != Function::sin && f != Function::cos) return std::nullopt;
+  Rational sixths = turns * 6;
+  if (sixths.get_den() != 1) return std::nullopt;
+  mpz_class k = f == Function::cos ? mpz_class(sixths.get_num() + 3) : sixths.get_num();
+  const unsigned long step = mpz_fdiv_ui(k.get_mpz_t(), 12);  // sin(step * pi/6)
+  switch (step) {
+    case 0: case 6: return Rational(0);
+    case 1: case 5: return Rational(1, 2);
+    case 3: return Rational(1);
+    case 7: case 11: return Rational(-1, 2);
+    case 9: return Rational(-1);
+    default: return std::nullopt;
+  }
+}
+
+Expr Graph::apply(Function f, Expr x) {
+  if (is_number(x.id))
+    if (auto v = exact_value(f, value(x.id))) return number(*v);
+  if (auto v = value_at_pi(*this, f, x.id)) return number(*v);
+  if (negative(*this, x.id)) {
+    switch (kParity[static_cast<std::size_t>(f)]) {
+      case Parity::even: return apply(f, -x);
+      case Parity::odd: return -apply(f, -x);
+      case Parity::none: break;
+    }
+  }
+  const Term operand[] = {{0, x.id}};
+  return {this, intern(Node{Kind::function, 0, static_cast<std::uint32_t>(f)}, operand, {})};
+}
+
+Expr Graph::arctangent2(Expr y, Expr x) {
+  if (anholon::is_zero(y) && anholon::is_number(x) && number_value(x) > 0) return zero();
+  const Term operands[] = {{0, y.id}, {0, x.id}};
+  return {this, intern(Node{Kind::atan2}, operands, {})};
+}
+
+bool is_zero(Expr e) { return e.graph->is_number(e.id) && e.graph->value(e.id) == 0; }
+bool is_number(Expr e) { return e.graph->is_number(e.id); }
+const Rational& number_value(Expr e) { return e.graph->value(e.id); }
+
+static Expr linear(const Rational& ca, Expr a, const Rational& cb, Expr b) {
+  const std::pair<Rational, Expr> terms[] = {{ca, a}, {cb, b}};
+  return a.graph->sum(terms);
+}
+
+Expr operator+(Expr a, Expr b) { return linear(1, a, 1, b); }
+Expr operator-(Expr a, Expr b) { return linear(1, a, -1, b); }
+Expr operator-(Expr a) { return Rational(-1) * a; }
+Expr operator*(const Rational& c, Expr a) {
+  const std::pair<Rational, Expr> terms[] = {{c, a}};
+  return a.graph->sum(terms);
+}
+Expr operator*(Expr a, Expr b) {
+  const std::pair<Expr, Rational> factors[] = {{a, 1}, {b, 1}};
+  return a.graph->product(factors);
+}
+Expr operator/(Expr a, Expr b) {
+  ANHOLON_ASSERT(!is_zero(b));
+  const std::pair<Expr, Rational> factors[] = {{a, 1}, {b, -1}};
+  return a.graph->product(factors);
+}
+Expr operator+(int c, Expr a) { return linear(c, a.graph->one(), 1, a); }
+Expr operator-(int c, Expr a) { return linear(c, a.graph->one(), -1, a); }
+Expr operator-(Expr a, int c) { return linear(1, a, -c, a.graph->one()); }
+Expr& operator+=(Expr& a, Expr b) { return a = a + b; }
+
+Expr pow(Expr base, const Exponent& exponent) {
+  ANHOLON_ASSERT(!(is_zero(base) && exponent.value < 0));
+  const std::pair<Expr, Rational> factors[] = {{base, exponent.value}};
+  return base.graph->product(factors);
+}
+
+Expr sum(std::span<const Expr> terms) {
+  ANHOLON_ASSERT(!terms.empty());
+  std::vector<std::pair<Rational, Expr>> parts;
+  for (Expr e : terms) parts.push_back({1, e});
+  return terms[0].graph->sum(parts);
+}
+
+#define ROW(name, derivative, parity, latex, domain) \
+  Expr name(Expr u) { return u.graph->apply(Function::name, u); }
+#include "expr/elementary.def"
+#undef ROW
+
+Expr atan2(Expr y, Expr x) { return y.graph->arctangent2(y, x); }
+
+std::vector<NodeId> reachable(std::span<const Expr> roots) {
+  std::vector<NodeId> found;
+  if (roots.empty()) return found;
+  const Graph& g = *roots[0].graph;
+  std::vector<bool> seen(g.size(), false);
+  for (Expr e : roots)
+    if (!seen[e.id]) seen[e.id] = true, found.push_back(e.id);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const Term& t : g.summands(found[i]))
+      if (!seen[t.node]) seen[t.node] = true, found.push_back(t.node);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace anholon

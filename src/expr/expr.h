@@ -1,0 +1,173 @@
+// The interned expression graph.
+//
+// An Expr is a handle (graph, id). Equal expressions built in any order have the same id, so
+// equality is comparison of ids, and every common subexpression exists once:
+//   sums      c0 + c1 x1 + c2 x2 + …   exact rational coefficients, flattened, sorted by id
+//   products  x1^r1 x2^r2 …            exact rational exponents, flattened, sorted by id
+//   f(x)                               one of elementary.def; atan2(y, x)
+//   leaves    number, pi, and symbols  t, q_a^(k), parameters, frozen masses mu_i, lambda_r^(k)
+//
+// Invariants
+//   (1) Operands of a node have smaller ids: a loop over ascending ids is a topological order, so
+//       nothing here recurses and a deep formula cannot overflow the stack.
+//   (2) Ids depend only on the order of construction, never on addresses or hash seeds.
+//   (3) A sum of many terms remembers the partial sum it was built from ("the chain": position
+//       of link i = position of link i-1 + …). Its flat terms decide equality; `summands` shows the
+//       short way to compute it, so sweeps over a chain of n links cost O(n), not O(n^2).
+//
+// Thread safety: a graph may be read by many threads while none builds.
+#pragma once
+#include <compare>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "numeric/rational.h"
+
+namespace anholon {
+
+enum class Kind : std::uint8_t {
+  number,      // rational
+  pi,
+  time,        // t
+  jet,         // q_index^(order)
+  parameter,   // p_index
+  mass,        // frozen mass symbol mu_index: a constant for every differentiation
+  multiplier,  // lambda_index^(order)
+  given,       // an unknown given function of time f_index^(order)
+  sum,
+  product,
+  function,    // elementary function `index` of one operand
+  atan2,       // two operands (y, x)
+};
+
+enum class Function : std::uint8_t {
+#define ROW(name, derivative, parity, latex, domain) name,
+#include "expr/elementary.def"
+#undef ROW
+};
+
+struct FunctionInfo {
+  const char* name;
+  const char* latex;
+  const char* undefined;  // where, in words; empty if defined everywhere
+};
+const FunctionInfo& info(Function f);
+// The function of that name, or -1.
+int find_function(const std::string& name);
+
+using NodeId = std::uint32_t;
+class Graph;
+
+struct Expr {
+  Graph* graph = nullptr;
+  NodeId id = 0;
+  friend bool operator==(const Expr& a, const Expr& b) { return a.id == b.id; }
+};
+
+// One operand of a sum (weight = coefficient) or product (weight = exponent).
+struct Term {
+  std::uint32_t weight;  // index into the graph's table of rationals
+  NodeId node;
+};
+
+struct Node {
+  Kind kind;
+  std::uint8_t order = 0;     // derivative order of a symbol
+  std::uint32_t index = 0;    // symbol, function or rational index
+  std::uint32_t first = 0, count = 0;          // flat terms
+  std::uint32_t view_first = 0, view_count = 0;  // terms of the short way (sums)
+};
+
+// Exact exponent p/q written as {p, q} or as an integer.
+struct Exponent {
+  Rational value;
+  Exponent(int p) : value(p) {}
+  Exponent(int p, int q) : value(p, q) { value.canonicalize(); }
+  Exponent(Rational r) : value(std::move(r)) {}
+};
+
+class Graph {
+ public:
+  Graph();
+  Graph(const Graph&) = delete;
+  Graph& operator=(const Graph&) = delete;
+
+  // Leaves.
+  Expr number(const Rational& r);
+  Expr zero() { return {this, zero_}; }
+  Expr one() { return {this, one_}; }
+  Expr pi() { return leaf(Kind::pi, 0, 0); }
+  Expr time() { return leaf(Kind::time, 0, 0); }
+  Expr jet(std::uint32_t coordinate, std::uint32_t order);
+  Expr parameter(std::uint32_t index) { return leaf(Kind::parameter, index, 0); }
+  Expr mass(std::uint32_t index) { return leaf(Kind::mass, index, 0); }
+  Expr multiplier(std::uint32_t constraint, std::uint32_t order);
+  Expr given(std::uint32_t function, std::uint32_t order);
+
+  // Canonical constructors.
+  Expr sum(std::span<const std::pair<Rational, Expr>> terms);
+  Expr product(std::span<const std::pair<Expr, Rational>> factors);
+  Expr apply(Function f, Expr argument);
+  Expr arctangent2(Expr y, Expr x);
+
+  // Reading.
+  std::size_t size() const { return nodes_.size(); }
+  const Node& node(NodeId id) const { return nodes_[id]; }
+  std::span<const Term> terms(NodeId id) const {
+    return {terms_.data() + nodes_[id].first, nodes_[id].count};
+  }
+  // Terms of a sum by the short way, operands of anything else: use this for every sweep.
+  std::span<const Term> summands(NodeId id) const {
+    return {terms_.data() + nodes_[id].view_first, nodes_[id].view_count};
+  }
+  const Rational& rational(std::uint32_t index) const { return rationals_[index]; }
+  const Rational& value(NodeId number) const { return rationals_[nodes_[number].index]; }
+  bool is_number(NodeId id) const { return nodes_[id].kind == Kind::number; }
+
+ private:
+  std::uint32_t rational_index(const Rational& r);
+  Expr leaf(Kind kind, std::uint32_t index, std::uint32_t order);
+  NodeId intern(Node node, std::span<const Term> operands, std::span<const Term> view);
+  Expr scaled(const Rational& factor, NodeId id);
+
+  std::vector<Node> nodes_;
+  std::vector<Term> terms_;
+  std::vector<Rational> rationals_;
+  std::unordered_multimap<std::uint64_t, NodeId> index_;
+  std::unordered_map<std::string, std::uint32_t> rational_index_;
+  NodeId zero_ = 0, one_ = 0;
+};
+
+bool is_zero(Expr e);  // the node 0 (structurally; see normal.h for the exact zero test)
+bool is_number(Expr e);
+const Rational& number_value(Expr e);
+
+Expr operator+(Expr a, Expr b);
+Expr operator-(Expr a, Expr b);
+Expr operator-(Expr a);
+Expr operator*(Expr a, Expr b);
+Expr operator/(Expr a, Expr b);  // REQUIRES: b is not the node 0
+Expr operator*(const Rational& c, Expr a);
+Expr operator+(int c, Expr a);
+Expr operator-(int c, Expr a);
+Expr operator-(Expr a, int c);
+inline Expr operator*(int c, Expr a) { return Rational(c) * a; }
+Expr& operator+=(Expr& a, Expr b);
+Expr pow(Expr base, const Exponent& exponent);  // REQUIRES: not 0^negative
+inline Expr sqrt(Expr a) { return pow(a, {1, 2}); }
+Expr sum(std::span<const Expr> terms);  // all at once
+
+#define ROW(name, derivative, parity, latex, domain) Expr name(Expr u);
+#include "expr/elementary.def"
+#undef ROW
+Expr atan2(Expr y, Expr x);
+
+// All nodes on which `roots` depend, by the short way, ascending (operands before users).
+std::vector<NodeId> reachable(std::span<const Expr> roots);
+
+}  // namespace anholon

@@ -1,0 +1,126 @@
+// Typed formulas: text -> syntax tree -> number, vector or rotation.
+//
+// The grammar (format.md): + - * / ^ with the usual strength (^ binds to the right and before a
+// leading minus), postfix ' for the total derivative, calls f(a, b), members P.x, arrays [a, b, c],
+// one or more `=` in an equation. Names are letters, digits and _; a Greek letter is the same name
+// as its spelling; superscript 2 3, ·, ×, − and other dashes are accepted. `#` starts a comment.
+#pragma once
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "expr/diff.h"
+
+namespace anholon {
+
+// Maps an offset (in characters) of a formula to its place in the file: the text of a TOML string
+// may start anywhere, hold escapes or run over several lines.
+class FormulaText {
+ public:
+  FormulaText() = default;
+  // A text that starts at `start` and runs without escapes.
+  FormulaText(std::string text, Span start);
+  // A text with the place of each of its characters.
+  FormulaText(std::string text, std::vector<Span> places);
+  const std::string& text() const { return text_; }
+  Span span(std::size_t offset, std::size_t length) const;  // in characters
+  Span whole() const;
+
+ private:
+  std::string text_;
+  Span start_;
+  std::vector<Span> places_;  // per character; empty: start_ plus offset
+};
+
+struct Syntax {
+  enum class Op : std::uint8_t {
+    number, name, call, member, index, array, negate, power, prime,
+    add,       // args joined by operators add, subtract
+    subtract,
+    multiply,  // args joined by operators multiply, divide, dot, cross
+    divide,
+    dot, cross,  // the signs · and ×: of two vectors these products, of numbers the ordinary one
+  };
+  struct Operator {
+    Op op;
+    Span span;
+  };
+  Op op;
+  std::string text;             // name, number or member
+  std::vector<Syntax> args;     // operands; of a call or index the arguments (callee in text)
+  Span span;                    // of the operator or name itself
+  std::size_t offset = 0, end = 0;  // the whole subformula, in characters
+  std::vector<Operator> operators;  // of add and multiply: before args[1], args[2], …
+};
+
+// Parses one formula; the sides of an equation with parse_equation. Throws Failure.
+Syntax parse_formula(const FormulaText& text);
+std::vector<Syntax> parse_equation(const FormulaText& text);  // one side or two
+
+// The spelling under which a name is known: Greek letters become their names.
+std::string normal_name(std::string_view name);
+bool is_identifier(std::string_view name);  // after normal_name
+
+// ---- values --------------------------------------------------------------------------------
+
+struct Vector {
+  Expr x, y, z;  // components along the observer's axes
+  Expr& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+  const Expr& operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
+};
+
+// A rotation with its angular velocity relative to the observer, in the observer's axes and in its
+// own; both are built up turn by turn, which keeps them as short as a person would write them.
+struct Rotation {
+  Vector columns[3];  // the new axes in the observer's axes
+  Vector rate;        // angular velocity, components along the observer's axes
+  Vector own_rate;    // the same vector, components along the new axes
+  const Vector& operator[](int k) const { return columns[k]; }
+};
+
+Vector operator+(const Vector& a, const Vector& b);
+Vector operator-(const Vector& a, const Vector& b);
+Vector operator*(Expr k, const Vector& a);
+Expr dot(const Vector& a, const Vector& b);
+Vector cross(const Vector& a, const Vector& b);
+Vector zero_vector(Graph& g);
+bool is_zero(const Vector& a);
+Vector total_derivative(const Vector& a);
+Vector operator*(const Rotation& r, const Vector& a);
+Vector transpose_times(const Rotation& r, const Vector& a);
+Rotation operator*(const Rotation& a, const Rotation& b);
+Rotation identity_rotation(Graph& g);
+Rotation turn(int axis, Expr angle);                   // rotx, roty, rotz: axis 0, 1, 2
+Rotation turn(const Vector& unit_axis, Expr angle);
+// The rotation with the given axes; its rate is 1/2 sum_k u_k x u_k' (theory.md section 1).
+Rotation rotation_from_axes(const Vector& x, const Vector& y, const Vector& z);
+
+// A body named in a formula: not a point and not a number, only `B.center`, `B.x`, vel(B, P), ….
+struct BodyName {
+  std::size_t index;
+};
+struct InertialName {};
+
+using Value = std::variant<Expr, Vector, Rotation, BodyName, InertialName>;
+const char* type_name(const Value& v);
+
+// What names mean. Lookups throw Failure for unknown names (with `span` for the position).
+struct Names {
+  virtual ~Names() = default;
+  virtual Graph& graph() = 0;
+  virtual Value name(const std::string& name, Span span) = 0;
+  // Functions beyond the built-in ones (velocity of a point, given functions); false if unknown.
+  virtual bool call(const std::string& function, const std::vector<Value>& arguments,
+                    const Syntax& syntax, Value& result) = 0;
+  virtual Value member(const Value& object, const Syntax& syntax) = 0;
+  virtual std::vector<std::string> functions() const = 0;  // for "did you mean"
+};
+
+Value evaluate(const Syntax& s, Names& names);
+Expr evaluate_number(const Syntax& s, Names& names);
+Vector evaluate_vector(const Syntax& s, Names& names);  // 0 is also the zero vector
+Rotation evaluate_rotation(const Syntax& s, Names& names);
+
+}  // namespace anholon

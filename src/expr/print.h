@@ -1,0 +1,34 @@
+// Expressions as text (which the formula parser reads back) and as LaTeX.
+//
+// The order of terms is fixed: in a sum, terms with the highest derivatives first; in a product,
+// parameters, then symbols, then functions, then sums. Printing sweeps the graph upwards, so depth
+// does not matter; a result beyond kLongestPrint characters is cut to "…".
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "expr/expr.h"
+
+namespace anholon {
+
+enum class Format : std::uint8_t { text, latex };
+
+inline constexpr std::size_t kLongestPrint = 1 << 20;
+
+// The names of symbols; each returns the base name, derivative marks are added by the printer.
+struct SymbolNames {
+  std::vector<std::string> coordinates, parameters, masses, multipliers, given;
+  // Names given to subexpressions ([define]): node -> name.
+  std::unordered_map<NodeId, std::string> defined;
+};
+
+std::string print(Expr e, const SymbolNames& names, Format format);
+std::vector<std::string> print(std::span<const Expr> es, const SymbolNames& names, Format format);
+
+// "theta" -> "\theta", "x1" -> "x_{1}", "front_wheel" -> "\mathrm{front\_wheel}".
+std::string latex_name(const std::string& name);
+// The name of the k-th derivative: "x''", "D(x,4)"; "\ddot{x}", "x^{(4)}".
+std::string derivative_name(const std::string& name, unsigned order, Format format);
+
+}  // namespace anholon

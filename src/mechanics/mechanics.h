@@ -1,0 +1,75 @@
+// Kinetic quantities and generalized forces of a model, by weighted points (theory.md sections 1-3).
+//
+// Masses stand as frozen symbols mu in everything here: a total derivative of T, S, V is the frozen
+// derivative D/Dt of the papers. After the last differentiation put_masses puts m(t, q, q') in.
+// mdot inside QR is the full total derivative of the mass, as it must be.
+#pragma once
+#include "model/model.h"
+
+namespace anholon {
+
+// A particle, a mass centre, or an axis vector of a body (weight e_k, dimensionless).
+struct WeightedPoint {
+  Expr weight;            // frozen mass or axis weight
+  Vector place;           // rho (or the axis vector u_k)
+  bool uniform_field;     // feels a0 and gravity: true for mass points, false for axes
+  std::size_t body;
+  Expr speed2, acceleration2;  // |v|^2, |a|^2
+};
+
+struct Mechanics {
+  const Model* model = nullptr;
+  std::vector<WeightedPoint> points;
+  Column q, qd, qdd;
+
+  Expr T;        // T_r = sum 1/2 m |v|^2, relative velocities
+  Expr S;        // S_r = sum 1/2 m |a|^2
+  Expr V_O;      // M a0 . rho_c
+  Expr V_omega;  // -1/2 sum m |omega x rho|^2
+
+  Column Q;              // given forces, gravity, -dV/dq
+  Column QR;             // mdot u
+  Column Qomega;         // -m (omega' x rho): the omega' term only
+  Column minus_dVO;      // -dV_O/dq
+  Column minus_dVomega;  // -dV_omega/dq
+  Column Gamma;          // -2 m omega x v
+
+  Column phi;                // constraints
+  std::vector<int> order;    // m of each
+  std::vector<Column> Phi;   // dphi/dq^(m), one row per constraint
+  Column lambda;             // multipliers
+  Column N;                  // sum lambda Phi
+
+  Graph& graph() const { return *model->graph; }
+};
+
+Mechanics mechanics(const Model& model);
+
+// Resultant force and torque about the mass centre on each body: given forces, gravity, reactive
+// force. Potentials and generalized forces have no place and are not among them.
+struct Load {
+  Vector force, torque;
+};
+std::vector<Load> given_loads(const Model& model);
+std::vector<Load> reactive_loads(const Model& model);
+
+// The total constraint reaction on each body: m a - F - mdot u - fictitious forces, and its torque
+// about the mass centre (theory.md section 6). Masses put in.
+std::vector<Load> reactions(const Mechanics& m);
+
+// Energy and its rate (theory.md section 7). Masses put in.
+struct Power {
+  Expr h;                // q' dT/dq' - T
+  Expr noncons;          // right side of the power identity without the constraints
+  Expr constraint;       // P_c = sum lambda Phi q'
+  Expr dh_dt;            // the total derivative of h, for comparison
+};
+Power power(const Mechanics& m);
+
+// d^2 T / dq' dq', masses put in; row by row.
+std::vector<Column> mass_matrix(const Mechanics& m);
+
+// Newton's left side sum m a . drho/dq by the points themselves, independent of T and S.
+Column newton_left_side(const Mechanics& m);
+
+}  // namespace anholon

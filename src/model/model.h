@@ -1,0 +1,148 @@
+// The checked model: what the user wrote, with every name resolved and every element keeping its
+// place in the source. Immutable once built; the graph that holds its expressions goes with it.
+//
+// All vectors are components along the observer's axes (theory.md section 1). Masses and weights
+// that vary stand as frozen symbols mu_i; `masses` says what each one is.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "expr/formula.h"
+#include "expr/print.h"
+
+namespace anholon {
+
+struct Coordinate {
+  std::string name;
+  Span span;
+};
+
+struct Parameter {
+  std::string name;
+  Expr value;  // exact, in terms of numbers and other parameters
+  std::string doc;
+  Span span;
+};
+
+// The observer's frame: moving components of its angular velocity and of the inertial acceleration
+// of its origin, functions of time only.
+struct Observer {
+  Vector spin;                 // omega
+  Vector origin_acceleration;  // a0
+  std::optional<Vector> origin_velocity;  // moving components of the inertial velocity of the origin
+  bool inertial = true;        // neither turns nor accelerates
+};
+
+// A mass or axis weight that varies with t, q, q': its frozen symbol is graph.mass(index).
+struct VaryingMass {
+  std::string name;
+  Expr value;
+  Span span;
+};
+
+// A second-moment axis vector u with weight e (theory.md section 1): moves like a mass point but
+// feels no uniform field. `frame_axis` k >= 0: u is axis k of the body's orientation.
+struct Axis {
+  Expr weight;  // frozen form
+  Vector vector;
+  std::vector<Expr> own;  // components along the body's own axes, if the body has an orientation
+};
+
+struct Body {
+  std::string name;
+  Span span;
+  bool particle = false;
+  Expr mass;  // frozen form; 0 for a massless rotor or a carrier
+  Vector center;
+  std::optional<Rotation> orientation;
+  std::vector<Axis> axes;
+  std::optional<Vector> expelled_velocity;  // u: leaving or joining matter minus exit point
+  Vector exit_point;                        // position of that material point
+  Vector gravity;                           // field at the centre
+};
+
+struct Force {
+  enum class Kind : std::uint8_t { vector, torque, tension, generalized };
+  struct Place {
+    std::size_t body = 0;
+    Vector point;          // position of the material point
+    bool at_center = true;
+  };
+  std::string name;
+  Span span;
+  Kind kind = Kind::vector;
+  Place on;
+  std::optional<Place> from;  // where the opposite acts
+  Vector vector;              // force or torque
+  Expr tension;
+  std::vector<std::pair<std::size_t, Expr>> generalized;  // coordinate, component
+};
+
+struct Potential {
+  std::string name;
+  Expr value;
+  Span span;
+};
+
+struct Constraint {
+  std::string name;     // "blade", or "rolling.x" for a component of a vector equation
+  Expr phi;             // left side - right side
+  int order = 0;        // highest derivative that truly occurs
+  std::string equation; // as written
+  Span span;
+};
+
+struct GivenValue {
+  Expr symbol;  // q_a^(k) or lambda_r^(k)
+  Expr value;   // exact
+  Span span;
+};
+
+struct Condition {
+  Expr residual;
+  std::string text;
+  Span span;
+};
+
+struct InitialData {
+  Expr t;
+  std::vector<GivenValue> given, guess;
+  std::vector<Condition> conditions;
+};
+
+struct SimulationSettings {
+  std::optional<Rational> to, tolerance, every;
+  std::vector<Rational> at;
+  std::optional<std::string> form;
+};
+
+struct Model {
+  std::shared_ptr<Graph> graph;
+  SourceText source_text;
+  std::string title, source;
+  std::vector<Coordinate> coordinates;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> unknown_functions;  // [functions] f = {}
+  Observer observer;
+  std::vector<VaryingMass> masses;
+  std::vector<Body> bodies;  // particles among them, in the order of the file
+  std::vector<Force> forces;
+  std::vector<Potential> potentials;
+  std::vector<Constraint> constraints;
+  InitialData initial;
+  SimulationSettings simulate;
+  SymbolNames names;
+  std::vector<std::string> notes;  // what the reader did on its own: components dropped, …
+};
+
+// mu -> m(t, q, q'): puts the masses in, after which derivatives are no longer frozen.
+Column put_masses(const Model& model, std::span<const Expr> es);
+Expr put_masses(const Model& model, Expr e);
+
+// Coordinates q, q', q'', … as columns of symbols.
+Column jets(const Model& model, unsigned order);
+
+}  // namespace anholon

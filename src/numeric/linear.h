@@ -1,0 +1,210 @@
+// Dense linear algebra over any number type: LU with scaled partial pivoting and one step of
+// iterative refinement, rank by full pivoting, least change in a metric.
+//
+// Sizes are those of mechanical systems (tens, a few hundred), matrices are row-major.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "numeric/number.h"
+
+namespace anholon {
+
+template <Number N>
+struct Matrix {
+  std::size_t rows = 0, cols = 0;
+  std::vector<N> data;
+
+  Matrix() = default;
+  Matrix(std::size_t r, std::size_t c) : rows(r), cols(c), data(r * c, N(0)) {}
+  N& operator()(std::size_t i, std::size_t j) { return data[i * cols + j]; }
+  const N& operator()(std::size_t i, std::size_t j) const { return data[i * cols + j]; }
+};
+
+// P A = L U of a square matrix. The pivot in a column is the entry largest in relation to its row.
+template <Number N>
+class Lu {
+ public:
+  // False if a pivot vanishes, or is not a number; the factors are then unusable.
+  bool factor(const Matrix<N>& a) {
+    original_ = a;
+    lu_ = a;
+    const std::size_t n = a.rows;
+    order_.resize(n);
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    row_scale_.assign(n, N(0));
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        if (N v = abs(a(i, j)); v > row_scale_[i]) row_scale_[i] = v;
+    for (std::size_t k = 0; k < n; ++k) {
+      std::size_t pivot = n;
+      N best(0);
+      for (std::size_t i = k; i < n; ++i) {
+        const N& scale = row_scale_[order_[i]];
+        if (!(scale > N(0))) return false;
+        if (N v = abs(lu_(order_[i], k)) / scale; v > best) best = v, pivot = i;
+      }
+      if (pivot == n || !is_finite(best)) return false;
+      std::swap(order_[k], order_[pivot]);
+      const N* top = &lu_(order_[k], 0);
+      for (std::size_t i = k + 1; i < n; ++i) {
+        N* row = &lu_(order_[i], 0);
+        if (row[k] == N(0)) continue;
+        row[k] /= top[k];
+        const N factor = -row[k];
+        for (std::size_t j = k + 1; j < n; ++j) addmul(row[j], factor, top[j]);
+      }
+    }
+    return true;
+  }
+
+  std::size_t size() const { return order_.size(); }
+
+  // x := A^-1 b, without refinement.
+  void solve_once(const std::vector<N>& b, std::vector<N>& x) const {
+    const std::size_t n = size();
+    x.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      N s = b[order_[i]];
+      const N* row = &lu_(order_[i], 0);
+      for (std::size_t j = 0; j < i; ++j) addmul(s, N(-row[j]), x[j]);
+      x[i] = s;
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      const N* row = &lu_(order_[i], 0);
+      N s = x[i];
+      for (std::size_t j = i + 1; j < n; ++j) addmul(s, N(-row[j]), x[j]);
+      x[i] = s / row[i];
+    }
+  }
+
+  // x := A^-1 b with one step of iterative refinement.
+  void solve(const std::vector<N>& b, std::vector<N>& x) const {
+    solve_once(b, x);
+    residual_ = b;
+    const std::size_t n = size();
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) addmul(residual_[i], N(-original_(i, j)), x[j]);
+    solve_once(residual_, correction_);
+    for (std::size_t i = 0; i < n; ++i) x[i] += correction_[i];
+  }
+
+  // x := A^-T b.
+  void solve_transposed(const std::vector<N>& b, std::vector<N>& x) const {
+    const std::size_t n = size();
+    std::vector<N> y(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      N s = b[i];
+      for (std::size_t j = 0; j < i; ++j) addmul(s, N(-lu_(order_[j], i)), y[j]);
+      y[i] = s / lu_(order_[i], i);
+    }
+    for (std::size_t i = n; i-- > 0;)
+      for (std::size_t j = i + 1; j < n; ++j) addmul(y[i], N(-lu_(order_[j], i)), y[j]);
+    x.assign(n, N(0));
+    for (std::size_t i = 0; i < n; ++i) x[order_[i]] = y[i];
+  }
+
+  // An estimate of the smallest singular value of A with rows divided by their largest entry, by
+  // `sweeps` of inverse iteration from `direction`, which is kept for the next call.
+  N smallest_singular_value(std::vector<N>& direction, int sweeps = 2) const {
+    const std::size_t n = size();
+    if (n == 0) return N(1);
+    if (direction.size() != n) direction.assign(n, N(1));
+    std::vector<N> y, scaled(n);
+    N sigma(0);
+    for (int k = 0; k < sweeps; ++k) {
+      solve_transposed(direction, y);               // (D^-1 A)^T w = v  with  w = D y
+      for (std::size_t i = 0; i < n; ++i) scaled[i] = y[i] * row_scale_[i] * row_scale_[i];
+      solve_once(scaled, direction);                // (D^-1 A) v' = w
+      N norm2(0);
+      for (const N& v : direction) addmul(norm2, v, v);
+      const N length = sqrt(norm2);
+      if (!(length > N(0)) || !is_finite(length)) return N(0);
+      for (N& v : direction) v /= length;
+      sigma = N(1) / sqrt(length);
+    }
+    return sigma;
+  }
+
+ private:
+  Matrix<N> original_, lu_;
+  std::vector<std::size_t> order_;
+  std::vector<N> row_scale_;
+  mutable std::vector<N> residual_, correction_;
+};
+
+// Rows of A that are linearly independent, chosen by elimination with full pivoting after scaling
+// each row to largest entry 1; a pivot below `threshold` ends the choice.
+template <Number N>
+struct RowChoice {
+  std::vector<std::size_t> independent;  // ascending
+  std::vector<std::size_t> dependent;    // ascending
+  std::vector<std::size_t> vanishing;    // those of the dependent rows that are zero themselves
+  std::vector<std::size_t> pivot_columns;
+  N smallest_pivot{1};
+};
+
+template <Number N>
+RowChoice<N> choose_rows(Matrix<N> a, const N& threshold) {
+  RowChoice<N> choice;
+  std::vector<bool> used(a.rows, false), column_used(a.cols, false);
+  for (std::size_t i = 0; i < a.rows; ++i) {
+    N largest(0);
+    for (std::size_t j = 0; j < a.cols; ++j)
+      if (N v = abs(a(i, j)); v > largest) largest = v;
+    if (largest > N(0))
+      for (std::size_t j = 0; j < a.cols; ++j) a(i, j) /= largest;
+    else
+      choice.vanishing.push_back(i);
+  }
+  for (std::size_t step = 0; step < a.rows; ++step) {
+    std::size_t row = a.rows, column = 0;
+    N best = threshold;
+    for (std::size_t i = 0; i < a.rows; ++i) {
+      if (used[i]) continue;
+      for (std::size_t j = 0; j < a.cols; ++j)
+        if (!column_used[j])
+          if (N v = abs(a(i, j)); v > best) best = v, row = i, column = j;
+    }
+    if (row == a.rows) break;
+    used[row] = column_used[column] = true;
+    choice.pivot_columns.push_back(column);
+    if (best < choice.smallest_pivot) choice.smallest_pivot = best;
+    for (std::size_t i = 0; i < a.rows; ++i) {
+      if (used[i]) continue;
+      const N factor = -(a(i, column) / a(row, column));
+      for (std::size_t j = 0; j < a.cols; ++j) addmul(a(i, j), factor, a(row, j));
+    }
+  }
+  for (std::size_t i = 0; i < a.rows; ++i)
+    (used[i] ? choice.independent : choice.dependent).push_back(i);
+  return choice;
+}
+
+// The smallest change x (in the norm x^T M x) with A x = b, by the bordered system
+//   [ M  -A^T ] [x]   [0]
+//   [ A    0  ] [mu] = [b].
+// A has independent rows and M is positive definite on the kernel of A; false otherwise.
+template <Number N>
+bool least_change(const Matrix<N>& m, const Matrix<N>& a, const std::vector<N>& b,
+                  std::vector<N>& x) {
+  const std::size_t n = m.rows, s = a.rows;
+  Matrix<N> k(n + s, n + s);
+  std::vector<N> rhs(n + s, N(0)), solution;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) k(i, j) = m(i, j);
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t j = 0; j < n; ++j) k(n + i, j) = a(i, j), k(j, n + i) = -a(i, j);
+    rhs[n + i] = b[i];
+  }
+  Lu<N> lu;
+  if (!lu.factor(k)) return false;
+  lu.solve(rhs, solution);
+  x.assign(solution.begin(), solution.begin() + static_cast<std::ptrdiff_t>(n));
+  return true;
+}
+
+}  // namespace anholon

@@ -1,0 +1,32 @@
+#include "numeric/number.h"
+
+#include <charconv>
+#include <cstdio>
+
+namespace anholon {
+
+std::string number_text(double x, int digits) {
+  if (!std::isfinite(x)) return std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
+  char buffer[64];
+  const auto r = digits > 0 ? std::to_chars(buffer, buffer + sizeof buffer, x,
+                                            std::chars_format::general, digits)
+                            : std::to_chars(buffer, buffer + sizeof buffer, x);
+  return std::string(buffer, r.ptr);
+}
+
+std::string number_text(long double x, int digits) {
+  if (!std::isfinite(x)) return std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
+  char buffer[64];
+  const auto r = digits > 0 ? std::to_chars(buffer, buffer + sizeof buffer, x,
+                                            std::chars_format::general, digits)
+                            : std::to_chars(buffer, buffer + sizeof buffer, x);
+  return std::string(buffer, r.ptr);
+}
+
+std::string number_text(const Multi& x, int digits) {
+  if (!x.finite()) return mpfr_nan_p(x.raw()) ? "nan" : mpfr_sgn(x.raw()) > 0 ? "inf" : "-inf";
+  if (digits <= 0) digits = static_cast<int>(static_cast<double>(Multi::working_bits()) / 3.3219281);
+  return x.to_string(digits);
+}
+
+}  // namespace anholon

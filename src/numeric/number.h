@@ -1,0 +1,94 @@
+// One trait for all number types on which the numerics run: double, long double, Multi.
+//
+// Algorithms are written once, as templates over N, with unqualified sin, sqrt, … found for each
+// type, and the functions below for what the built-in types lack.
+#pragma once
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <string>
+
+#include "numeric/multi.h"
+#include "numeric/rational.h"
+
+namespace anholon {
+
+using std::abs, std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh;
+using std::tanh, std::asinh, std::acosh, std::atanh, std::exp, std::log, std::sqrt, std::pow;
+using std::atan2;
+
+template <class N>
+concept Number = std::same_as<N, double> || std::same_as<N, long double> || std::same_as<N, Multi>;
+
+// The unit round-off: half the distance from 1 to the next number.
+template <Number N>
+N unit_roundoff() {
+  if constexpr (std::same_as<N, Multi>) {
+    Multi r(1);
+    mpfr_div_2ui(r.raw(), r.raw(), static_cast<unsigned long>(Multi::working_bits()), MPFR_RNDN);
+    return r;
+  } else {
+    return std::numeric_limits<N>::epsilon() / 2;
+  }
+}
+
+// The number nearest to r.
+template <Number N>
+N from_rational(const Rational& r) {
+  if constexpr (std::same_as<N, Multi>) {
+    return Multi(r);
+  } else {
+    // mpq_get_d truncates, and long double has no conversion: go through MPFR, which rounds.
+    mpfr_t v;
+    mpfr_init2(v, std::numeric_limits<N>::digits);
+    mpfr_set_q(v, r.get_mpq_t(), MPFR_RNDN);
+    const N n = static_cast<N>(mpfr_get_ld(v, MPFR_RNDN));
+    mpfr_clear(v);
+    return n;
+  }
+}
+
+inline double to_double(double x) { return x; }
+inline double to_double(long double x) { return static_cast<double>(x); }
+inline double to_double(const Multi& x) { return x.to_double(); }
+
+inline bool is_finite(double x) { return std::isfinite(x); }
+inline bool is_finite(long double x) { return std::isfinite(x); }
+inline bool is_finite(const Multi& x) { return x.finite(); }
+
+template <Number N>
+N sign(const N& x) {
+  return x > N(0) ? N(1) : x < N(0) ? N(-1) : N(0);
+}
+
+template <Number N>
+N pi() {
+  if constexpr (std::same_as<N, Multi>) {
+    Multi r;
+    mpfr_const_pi(r.raw(), MPFR_RNDN);
+    return r;
+  } else {
+    return static_cast<N>(3.14159265358979323846264338327950288L);
+  }
+}
+
+// acc += a * b, rounded after the product and after the sum, in every type alike.
+template <Number N>
+inline void addmul(N& acc, const N& a, const N& b) {
+  if constexpr (std::same_as<N, Multi>) {
+    thread_local Multi product;
+    mpfr_set_prec(product.raw(), Multi::working_bits());
+    mpfr_mul(product.raw(), a.raw(), b.raw(), MPFR_RNDN);
+    mpfr_add(acc.raw(), acc.raw(), product.raw(), MPFR_RNDN);
+  } else {
+    acc += a * b;
+  }
+}
+
+// The decimal text that reads back to the same number (built-in types), or `digits` significant
+// digits (Multi, or when digits > 0).
+std::string number_text(double x, int digits = 0);
+std::string number_text(long double x, int digits = 0);
+std::string number_text(const Multi& x, int digits = 0);
+
+}  // namespace anholon

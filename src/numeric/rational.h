@@ -1,0 +1,26 @@
+// Exact rational numbers and the decimal text that denotes them.
+#pragma once
+#include <gmpxx.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace anholon {
+
+using Rational = mpq_class;
+
+// "3", "-0.25", "1e-3", "22/7" exactly; nothing if the text is none of these, or so long or of so
+// large an exponent that its value could not be held in reasonable memory.
+std::optional<Rational> parse_rational(std::string_view text);
+
+// "3", "-1/4".
+std::string to_string(const Rational& r);
+
+// The exact root r^(1/n), if it is rational.
+std::optional<Rational> exact_root(const Rational& r, unsigned long n);
+
+// base^exponent for an integer exponent; nothing for 0^negative or an absurd size.
+std::optional<Rational> exact_power(const Rational& base, long exponent);
+
+}  // namespace anholon

@@ -1,0 +1,340 @@
+#include "program/expansion.h"
+
+#include <algorithm>
+
+#include "base/assert.h"
+
+namespace anholon {
+
+namespace {
+constexpr int kMostNewton = 30;
+constexpr int kMostProjections = 4;
+// A hidden constraint is left alone while its residual is below this many round-offs of its terms.
+constexpr int kQuietRoundoffs = 6;
+// An LU whose smallest scaled singular value is below this many round-offs is singular.
+constexpr int kSingularRoundoffs = 50;
+}  // namespace
+
+template <Number N>
+Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters, int stages)
+    : program_(&program), stages_(stages), machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters) {
+  const int largest_d = *std::max_element(program.d.begin(), program.d.end());
+  stride_ = static_cast<std::size_t>(stages + largest_d + 2);
+  x_.assign(program.unknowns() * stride_, N(0));
+  offset_.push_back(0);
+  for (int d : program.d) offset_.push_back(offset_.back() + static_cast<std::size_t>(d));
+  factorial_.push_back(N(1));
+  for (std::size_t k = 1; k < stride_ + 2; ++k) factorial_.push_back(factorial_.back() * N(static_cast<int>(k)));
+  const std::size_t n = program.unknowns();
+  tangent_ = Matrix<N>(program.tangent_rows, n);
+  j_ = Matrix<N>(n, n);
+  partials_.resize(program.tainted.size());
+  delta_.assign(program.tape.main_end, N(0));
+  r_.assign(n, N(0));
+}
+
+template <Number N>
+void Expansion<N>::load(const N& t, const std::vector<N>& state, const std::vector<N>& leading) {
+  t_ = t;
+  const Program& p = *program_;
+  for (std::size_t j = 0; j < p.unknowns(); ++j) {
+    N* x = &x_[j * stride_];
+    for (int k = 0; k < p.d[j]; ++k)
+      x[k] = state[offset_[j] + static_cast<std::size_t>(k)] / factorial_[static_cast<std::size_t>(k)];
+    x[p.d[j]] = leading.empty() ? N(0) : leading[j] / factorial_[static_cast<std::size_t>(p.d[j])];
+  }
+}
+
+template <Number N>
+N Expansion<N>::derivative(std::size_t j, int k) const {
+  return x_[j * stride_ + static_cast<std::size_t>(k)] * factorial_[static_cast<std::size_t>(k)];
+}
+
+template <Number N>
+void Expansion<N>::state(std::vector<N>& out) const {
+  out.resize(state_size());
+  for (std::size_t j = 0; j < program_->unknowns(); ++j)
+    for (int k = 0; k < program_->d[j]; ++k) out[offset_[j] + static_cast<std::size_t>(k)] = derivative(j, k);
+}
+
+template <Number N>
+void Expansion<N>::leading(std::vector<N>& out) const {
+  out.resize(program_->unknowns());
+  for (std::size_t j = 0; j < program_->unknowns(); ++j) out[j] = derivative(j, program_->d[j]);
+}
+
+template <Number N>
+void Expansion<N>::set_inputs(int stage, std::size_t from, std::size_t to) {
+  for (std::size_t i = from; i < to; ++i) {
+    const ProgramInput& in = program_->inputs[i];
+    const int p = stage + program_->tape.code[in.slot].lead;
+    if (p < 0) continue;
+    N& w = machine_.series(in.slot)[p];
+    switch (in.kind) {
+      case ProgramInput::Kind::time: w = p == 0 ? t_ : p == 1 ? N(1) : N(0); break;
+      case ProgramInput::Kind::variable: {
+        // (x^(k))_p = x_(p+k) (p+k)! / p!
+        const std::size_t up = static_cast<std::size_t>(p), k = up + static_cast<std::size_t>(in.order);
+        w = k < stride_ ? x_[in.variable * stride_ + k] * (factorial_[k] / factorial_[up]) : N(0);
+        break;
+      }
+      case ProgramInput::Kind::other: break;
+    }
+  }
+}
+
+template <Number N>
+void Expansion<N>::sweep(int stage) {
+  set_inputs(stage, 0, program_->inputs.size());
+  machine_.sweep(stage, 0, program_->tape.main_end);
+}
+
+template <Number N>
+void Expansion<N>::sweep_known(int last_stage) {
+  for (int s = -program_->tape.largest_lead; s <= last_stage; ++s) sweep(s);
+}
+
+template <Number N>
+void Expansion<N>::jacobian() {
+  const Program& p = *program_;
+  const Tape& tape = p.tape;
+  const std::size_t n = p.unknowns();
+  std::fill(tangent_.data.begin(), tangent_.data.end(), N(0));
+  for (const ProgramInput& in : p.inputs)
+    if (in.leading) tangent_(p.tangent_row[in.slot], in.variable) = N(1);
+  for (std::size_t k = 0; k < p.tainted.size(); ++k) {
+    const TaintedSlot& t = p.tainted[k];
+    const Instruction& in = tape.code[t.slot];
+    N* row = &tangent_(t.row, 0);
+    const auto add = [&](std::uint32_t slot, const N& factor) {
+      const N* from = &tangent_(p.tangent_row[slot], 0);
+      for (std::size_t j = 0; j < n; ++j) addmul(row[j], factor, from[j]);
+    };
+    if (in.op == Op::linear) {
+      for (std::uint32_t i = in.first; i < in.first + in.count; ++i) {
+        const LinearTerm& term = tape.linear_terms[i];
+        if (p.tangent_row[term.slot] != Program::kUntainted && tape.code[term.slot].lead == in.lead)
+          add(term.slot, machine_.rational(term.coefficient));
+      }
+      continue;
+    }
+    partials_[k] = machine_.partials(t.slot);
+    if (t.a) add(in.a, partials_[k].a);
+    if (t.b) add(in.b, partials_[k].b);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t row = p.tangent_row[tape.roots[i]];
+    for (std::size_t j = 0; j < n; ++j) j_(i, j) = row == Program::kUntainted ? N(0) : tangent_(row, j);
+  }
+}
+
+template <Number N>
+Outcome Expansion<N>::prepare() {
+  sweep_known(0);
+  jacobian();
+  for (const N& v : j_.data)
+    if (!is_finite(v))
+      return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
+              "the motion leaves the region where the model is defined: stop it before, or change the formula"};
+  const Outcome singular{OutcomeKind::singular, "the system Jacobian is singular",
+                         "a constraint has lost its hold here (its coefficients vanish or depend on one another), or no inertia "
+                         "acts in some direction"};
+  if (!lu_.factor(j_)) return singular;
+  if (smallest_singular_value() < unit_roundoff<N>() * N(kSingularRoundoffs)) return singular;
+  return {};
+}
+
+template <Number N>
+N Expansion<N>::root_scale(std::size_t i, int order) const {
+  const Tape& tape = program_->tape;
+  const Instruction& alias = tape.code[tape.roots[i]];
+  const std::uint32_t slot = tape.linear_terms[alias.first].slot;
+  const Instruction& in = tape.code[slot];
+  const std::size_t p = static_cast<std::size_t>(order);
+  N s(0);
+  const auto add_product = [&](std::uint32_t a, std::uint32_t b) {
+    const N *u = machine_.series(a), *v = machine_.series(b);
+    for (std::size_t k = 0; k <= p; ++k) s += abs(N(u[k] * v[p - k]));
+  };
+  if (in.op != Op::linear) return abs(machine_.series(slot)[p]);
+  for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
+    const LinearTerm& t = tape.linear_terms[k];
+    const Instruction& term = tape.code[t.slot];
+    if (p > 0 && term.constant) continue;
+    if (p > 0 && (term.op == Op::multiply)) add_product(term.a, term.b);
+    else s += abs(N(machine_.rational(t.coefficient) * machine_.series(t.slot)[p]));
+  }
+  return s;
+}
+
+// Residuals of the equations at derivative order c_i - level, as right sides for J.
+template <Number N>
+bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
+  const Program& p = *program_;
+  bool any = false;
+  worst = N(0);
+  for (std::size_t i = 0; i < p.unknowns(); ++i) {
+    const int order = p.c[i] - level;
+    r[i] = N(0);
+    if (order < 0) continue;
+    const N value = machine_.series(p.tape.roots[i])[order];
+    if (!is_finite(value)) {
+      worst = value;
+      return true;
+    }
+    r[i] = -(value * factorial_[static_cast<std::size_t>(order)]);
+    const N size = abs(value);
+    if (!(size > N(0))) continue;
+    any = true;
+    N scale = root_scale(i, order), moved(0);
+    for (std::size_t j = 0; j < p.unknowns(); ++j)
+      if (const int k = p.d[j] - level; k >= 0 && j_(i, j) != N(0))
+        moved += abs(N(j_(i, j) * x_[j * stride_ + static_cast<std::size_t>(k)]));
+    if (moved > scale) scale = moved;
+    if (!(scale > N(0))) scale = size;
+    const N relative = size / scale;
+    if (relative > worst) worst = relative;
+  }
+  return any;
+}
+
+template <Number N>
+Outcome Expansion<N>::project() {
+  const Program& p = *program_;
+  const N quiet = unit_roundoff<N>() * N(kQuietRoundoffs);
+  constraint_residual_ = N(0);
+  const int deepest = *std::max_element(p.c.begin(), p.c.end());
+  bool changed = false;
+  for (int level = deepest; level >= 1; --level) {
+    N worst(0), before(-1);
+    for (int k = 0;; ++k) {
+      if (changed || k > 0) sweep_known(-level);
+      if (!residual(level, r_, worst) || !(worst > quiet)) break;
+      if (!is_finite(worst))
+        return {OutcomeKind::not_a_number, "a constraint has no value", "the motion leaves the region where the constraint is defined"};
+      if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;
+      before = worst;
+      lu_.solve(r_, y_);
+      for (std::size_t j = 0; j < p.unknowns(); ++j) {
+        const int order = p.d[j] - level;
+        if (order < 0) continue;
+        x_[j * stride_ + static_cast<std::size_t>(order)] += y_[j] / factorial_[static_cast<std::size_t>(order)];
+      }
+      changed = true;
+    }
+    if (worst > constraint_residual_) constraint_residual_ = worst;
+  }
+  if (changed) sweep_known(0);
+  return {};
+}
+
+template <Number N>
+Outcome Expansion<N>::solve() {
+  const Program& p = *program_;
+  const N eps = unit_roundoff<N>();
+  N last(-1);
+  const Outcome failed{OutcomeKind::no_convergence, "Newton's iteration for the leading derivatives did not converge",
+                       "the equations may have no real solution here (a branch ends), or another branch is near: give a guess"};
+  for (int k = 0; k < kMostNewton; ++k) {
+    N worst(0);
+    residual(0, r_, worst);
+    if (!is_finite(worst))
+      return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
+              "the motion leaves the region where the model is defined: stop it before, or change the formula"};
+    equation_residual_ = worst;
+    lu_.solve(r_, y_);
+    N step(0), size(0);
+    for (std::size_t j = 0; j < p.unknowns(); ++j) {
+      N& x = x_[j * stride_ + static_cast<std::size_t>(p.d[j])];
+      const N change = y_[j] / factorial_[static_cast<std::size_t>(p.d[j])];
+      if (!is_finite(change)) return failed;
+      x += change;
+      if (abs(y_[j]) > step) step = abs(y_[j]);
+      if (N v = abs(x) * factorial_[static_cast<std::size_t>(p.d[j])]; v > size) size = v;
+    }
+    sweep(0);
+    const N floor = eps * N(4) * (size > N(1) ? size : N(1));
+    if (!(step > floor)) return {};
+    // Round-off reached: steps no longer shrink and are small.
+    if (last >= N(0) && !(step < last * N(0.5)) && step < floor * N(1000)) return {};
+    if (k >= 2 && last >= N(0) && step > last * N(0.1)) {
+      // Slow: the Jacobian has changed with the leading derivatives.
+      jacobian();
+      if (!lu_.factor(j_)) return failed;
+    }
+    last = step;
+  }
+  return failed;
+}
+
+// Adds the effect of the coefficients just found to all slots that depend on them.
+template <Number N>
+void Expansion<N>::add_leading(int stage) {
+  const Program& p = *program_;
+  const Tape& tape = p.tape;
+  for (const ProgramInput& in : p.inputs) {
+    if (!in.leading) continue;
+    const std::size_t order = static_cast<std::size_t>(stage + tape.code[in.slot].lead);
+    const std::size_t k = order + static_cast<std::size_t>(in.order);
+    const N value = x_[in.variable * stride_ + k] * (factorial_[k] / factorial_[order]);
+    machine_.series(in.slot)[order] = value;
+    delta_[in.slot] = value;
+  }
+  for (std::size_t k = 0; k < p.tainted.size(); ++k) {
+    const TaintedSlot& t = p.tainted[k];
+    const Instruction& in = tape.code[t.slot];
+    N change(0);
+    if (in.op == Op::linear) {
+      for (std::uint32_t i = in.first; i < in.first + in.count; ++i) {
+        const LinearTerm& term = tape.linear_terms[i];
+        if (p.tangent_row[term.slot] != Program::kUntainted && tape.code[term.slot].lead == in.lead)
+          addmul(change, machine_.rational(term.coefficient), delta_[term.slot]);
+      }
+    } else {
+      if (t.a) addmul(change, partials_[k].a, delta_[in.a]);
+      if (t.b) addmul(change, partials_[k].b, delta_[in.b]);
+    }
+    delta_[t.slot] = change;
+    machine_.series(t.slot)[stage + in.lead] += change;
+  }
+}
+
+template <Number N>
+Outcome Expansion<N>::extend() {
+  const Program& p = *program_;
+  // J and the partial derivatives at the leading derivatives found (they may enter nonlinearly).
+  jacobian();
+  if (!lu_.factor(j_)) return {OutcomeKind::singular, "the system Jacobian is singular", "stop the motion before this configuration"};
+  for (int stage = 1; stage <= stages_; ++stage) {
+    for (std::size_t j = 0; j < p.unknowns(); ++j) x_[j * stride_ + static_cast<std::size_t>(p.d[j] + stage)] = N(0);
+    sweep(stage);
+    const std::size_t s = static_cast<std::size_t>(stage);
+    for (std::size_t i = 0; i < p.unknowns(); ++i) {
+      const std::size_t order = s + static_cast<std::size_t>(p.c[i]);
+      r_[i] = -(machine_.series(p.tape.roots[i])[order] * (factorial_[order] / factorial_[s]));
+    }
+    lu_.solve(r_, y_);
+    for (std::size_t j = 0; j < p.unknowns(); ++j) {
+      const std::size_t order = s + static_cast<std::size_t>(p.d[j]);
+      x_[j * stride_ + order] = y_[j] * (factorial_[s] / factorial_[order]);
+      if (!is_finite(y_[j]))
+        return {OutcomeKind::not_a_number, "a derivative of the motion has no value here",
+                "look for abs, sqrt or a norm that passes through zero"};
+    }
+    add_leading(stage);
+  }
+  if (p.quadratures > 0) {
+    const std::uint32_t end = static_cast<std::uint32_t>(p.tape.code.size());
+    for (int stage = 0; stage <= stages_; ++stage) {
+      set_inputs(stage, 0, p.inputs.size());
+      machine_.sweep(stage, p.tape.main_end, end);
+    }
+  }
+  return {};
+}
+
+template class Expansion<double>;
+template class Expansion<long double>;
+template class Expansion<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,78 @@
+// The Taylor expansion of the motion at one point, in any number type.
+//
+// State: x_j^(k), k < d_j, of every unknown j, one after the other. Usage per step:
+//   load(t, state, guess) -> prepare() [values, J, LU] -> project() -> solve() -> extend(k).
+#pragma once
+#include "base/outcome.h"
+#include "numeric/linear.h"
+#include "program/program.h"
+
+namespace anholon {
+
+template <Number N>
+class Expansion {
+ public:
+  // stages: how many orders beyond the leading derivatives are computed.
+  Expansion(const Program& program, const std::vector<N>& parameters, int stages);
+
+  std::size_t state_size() const { return offset_.back(); }
+  std::size_t offset(std::size_t variable) const { return offset_[variable]; }
+  int stages() const { return stages_; }
+  const Program& program() const { return *program_; }
+
+  // Sets the point; `leading`: a first guess of x_j^(d_j) (zero if empty).
+  void load(const N& t, const std::vector<N>& state, const std::vector<N>& leading);
+  // Values at the point and J with its LU.
+  Outcome prepare();
+  // Corrects the state by least change so that all hidden constraints hold to round-off.
+  Outcome project();
+  // Newton's method for the leading derivatives.
+  Outcome solve();
+  // Coefficients of all stages 1..stages().
+  Outcome extend();
+
+  // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms, at the state as
+  // loaded or projected last.
+  const N& constraint_residual() const { return constraint_residual_; }
+  // Residual of the equations at the leading derivatives found, in relation to their terms.
+  const N& equation_residual() const { return equation_residual_; }
+  N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
+
+  const N& time() const { return t_; }
+  // x_j^(k) at the point (k <= d_j), or its Taylor coefficient of order k.
+  N derivative(std::size_t j, int k) const;
+  const N& coefficient(std::size_t j, int k) const { return x_[j * stride_ + static_cast<std::size_t>(k)]; }
+  void state(std::vector<N>& out) const;
+  void leading(std::vector<N>& out) const;
+  // The Taylor series (ascending) of quadrature i, orders 0..stages().
+  const N* quadrature(std::size_t i) const { return machine_.series(program_->tape.roots[program_->unknowns() + i]); }
+
+ private:
+  void set_inputs(int stage, std::size_t from, std::size_t to);
+  void sweep(int stage);
+  void sweep_known(int last_stage);
+  void jacobian();
+  N root_scale(std::size_t i, int order) const;
+  bool residual(int level, std::vector<N>& r, N& worst);
+  void add_leading(int stage);
+
+  const Program* program_;
+  int stages_;
+  std::size_t stride_;
+  std::vector<std::size_t> offset_;
+  Machine<N> machine_;
+  N t_{0};
+  std::vector<N> x_;           // Taylor coefficients of the unknowns
+  std::vector<N> factorial_;
+  Matrix<N> tangent_, j_;
+  Lu<N> lu_;
+  std::vector<typename Machine<N>::Partials> partials_;
+  std::vector<N> delta_, r_, y_, direction_;
+  N constraint_residual_{0}, equation_residual_{0};
+};
+
+extern template class Expansion<double>;
+extern template class Expansion<long double>;
+extern template class Expansion<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,128 @@
+#include "program/program.h"
+
+#include <algorithm>
+
+#include "base/assert.h"
+
+namespace anholon {
+
+Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures) {
+  Program p;
+  p.system = &system;
+  p.c = structure.c;
+  p.d = structure.d;
+  Column es = system.equations;
+  es.insert(es.end(), quadratures.begin(), quadratures.end());
+  p.quadratures = quadratures.size();
+  p.tape = compile(es, structure.c);
+
+  const Graph& g = *system.model->graph;
+  p.tangent_row.assign(p.tape.code.size(), Program::kUntainted);
+  for (const Input& in : p.tape.inputs) {
+    const Node& n = g.node(in.symbol);
+    ProgramInput input;
+    input.slot = in.slot;
+    if (n.kind == Kind::time) {
+      input.kind = ProgramInput::Kind::time;
+    } else if (const auto j = system.variable(in.symbol)) {
+      input.kind = ProgramInput::Kind::variable;
+      input.variable = *j;
+      input.order = n.order;
+      const int lead = p.tape.code[in.slot].lead;
+      input.leading = in.slot < p.tape.main_end && n.order + lead == p.d[*j];
+      if (input.leading) p.tangent_row[in.slot] = static_cast<std::uint32_t>(p.tangent_rows++);
+    }
+    p.inputs.push_back(input);
+  }
+
+  const std::vector<Instruction>& code = p.tape.code;
+  const auto tainted = [&](std::uint32_t slot, std::uint8_t lead) {
+    return p.tangent_row[slot] != Program::kUntainted && code[slot].lead == lead;
+  };
+  for (std::uint32_t s = 0; s < p.tape.main_end; ++s) {
+    const Instruction& in = code[s];
+    TaintedSlot t{s, 0, false, false};
+    switch (in.op) {
+      case Op::constant: case Op::pi: case Op::input: case Op::parameter: continue;
+      case Op::linear:
+        for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+          t.a = t.a || tainted(p.tape.linear_terms[k].slot, in.lead);
+        break;
+      case Op::multiply: case Op::scale: case Op::divide: case Op::arctan2:
+        t.a = tainted(in.a, in.lead);
+        t.b = tainted(in.b, in.lead);
+        break;
+      case Op::square: case Op::power: case Op::function: t.a = tainted(in.a, in.lead); break;
+    }
+    if (!t.a && !t.b) continue;
+    t.row = static_cast<std::uint32_t>(p.tangent_rows++);
+    p.tangent_row[s] = t.row;
+    p.tainted.push_back(t);
+  }
+  return p;
+}
+
+ProgramSize size(const Program& p) {
+  ProgramSize r{p.tape.code.size(), 0, 0, 0, p.tainted.size()};
+  for (const Instruction& in : p.tape.code) {
+    if (in.constant) continue;
+    switch (in.op) {
+      case Op::constant: case Op::pi: case Op::input: case Op::parameter: break;
+      case Op::linear: case Op::scale: ++r.linear; break;
+      case Op::multiply: case Op::square: case Op::divide: ++r.products; break;
+      case Op::power: case Op::function: case Op::arctan2: ++r.functions; break;
+    }
+  }
+  return r;
+}
+
+static std::string line(const Program& p, std::uint32_t s) {
+  const Instruction& in = p.tape.code[s];
+  const auto slot = [](std::uint32_t k) { return "s" + std::to_string(k); };
+  const Graph& g = *p.system->model->graph;
+  switch (in.op) {
+    case Op::constant: return p.tape.rationals[in.index].get_str();
+    case Op::pi: return "pi";
+    case Op::parameter: return p.system->model->parameters[in.index].name;
+    case Op::input:
+      return print(Expr{p.system->model->graph.get(), p.tape.inputs[in.index].symbol}, p.system->model->names, Format::text);
+    case Op::linear: {
+      std::string out;
+      for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
+        const LinearTerm& t = p.tape.linear_terms[k];
+        const std::string c = p.tape.rationals[t.coefficient].get_str();
+        out += (out.empty() ? "" : " + ") + (c == "1" ? "" : c + " ") + slot(t.slot);
+      }
+      return out;
+    }
+    case Op::multiply: case Op::scale: return slot(in.a) + " * " + slot(in.b);
+    case Op::square: return slot(in.a) + "^2";
+    case Op::divide: return slot(in.a) + " / " + slot(in.b);
+    case Op::power: return slot(in.a) + "^(" + p.tape.rationals[in.index].get_str() + ")";
+    case Op::function: return std::string(info(static_cast<Function>(in.index)).name) + "(" + slot(in.a) + ")";
+    case Op::arctan2: return "atan2(" + slot(in.a) + ", " + slot(in.b) + ")";
+  }
+  (void)g;
+  return {};
+}
+
+std::string print(const Program& p) {
+  std::string out;
+  for (std::uint32_t s = 0; s < p.tape.code.size(); ++s) {
+    const Instruction& in = p.tape.code[s];
+    out += "s" + std::to_string(s) + " = " + line(p, s);
+    if (in.lead > 0) out += "    lead " + std::to_string(in.lead);
+    if (s < p.tape.main_end && p.tangent_row[s] != Program::kUntainted) out += "    leading";
+    out += "\n";
+  }
+  for (std::size_t i = 0; i < p.c.size(); ++i)
+    out += "equation " + p.system->equation_names[i] + ": s" + std::to_string(p.tape.roots[i]) + " = 0, differentiated " +
+           std::to_string(p.c[i]) + " times\n";
+  const ProgramSize n = size(p);
+  out += std::to_string(n.slots) + " slots: " + std::to_string(n.products) + " products, " + std::to_string(n.linear) +
+         " linear, " + std::to_string(n.functions) + " functions; " + std::to_string(n.tainted) +
+         " depend on the unknowns of a stage\n";
+  return out;
+}
+
+}  // namespace anholon

@@ -1,0 +1,52 @@
+// The stepping program: what one Taylor expansion of the motion computes, order by order.
+//
+// At stage k >= 1 the coefficients of order k + d_j of every unknown enter all equations (at order
+// k + c_i) linearly and with the same matrix, the system Jacobian J. So a stage is one sweep over
+// the tape with those coefficients zero, one back-substitution, and one pass that adds their effect
+// to the slots that depend on them (the tainted ones). One LU serves all stages.
+#pragma once
+#include "structure/structure.h"
+#include "tape/tape.h"
+
+namespace anholon {
+
+struct ProgramInput {
+  enum class Kind : std::uint8_t { time, variable, other } kind = Kind::other;
+  std::uint32_t slot = 0;
+  std::size_t variable = 0;
+  int order = 0;         // of the derivative
+  bool leading = false;  // order + lead == d: the unknown of each stage
+};
+
+struct TaintedSlot {
+  std::uint32_t slot;
+  std::uint32_t row;   // its row in the tangent matrix
+  bool a, b;           // which operands are tainted (of a linear slot: see its terms)
+};
+
+struct Program {
+  const System* system = nullptr;
+  std::vector<int> c, d;
+  Tape tape;
+  std::vector<ProgramInput> inputs;
+  std::vector<TaintedSlot> tainted;              // ascending, leading inputs not among them
+  std::vector<std::uint32_t> tangent_row;        // slot -> row, or kUntainted
+  std::size_t tangent_rows = 0;
+  std::size_t quadratures = 0;                   // roots after the equations
+
+  static constexpr std::uint32_t kUntainted = 0xffffffffU;
+  std::size_t unknowns() const { return d.size(); }
+};
+
+// `quadratures`: expressions whose Taylor series follow from the solution (powers to integrate,
+// energies to watch).
+Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {});
+
+// Counts for tests and `--show program`.
+struct ProgramSize {
+  std::size_t slots, products, linear, functions, tainted;
+};
+ProgramSize size(const Program& program);
+std::string print(const Program& program);
+
+}  // namespace anholon

@@ -1,0 +1,49 @@
+// Rows of a result on their way to a file or to the standard output: columns once, then rows of
+// numbers as text. Writing stops at the first failure of the file, which `close` reports.
+#pragma once
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace anholon {
+
+class RowSink {
+ public:
+  virtual ~RowSink() = default;
+  virtual void columns(const std::vector<std::string>& names) = 0;
+  virtual void row(const std::vector<std::string>& values) = 0;
+};
+
+// CSV with one header row. Flushes at every row when the output is watched by a person.
+class CsvSink final : public RowSink {
+ public:
+  // An empty path or "-" is the standard output. Check `error` before use.
+  explicit CsvSink(const std::string& path);
+  ~CsvSink() override;
+  CsvSink(const CsvSink&) = delete;
+  CsvSink& operator=(const CsvSink&) = delete;
+  void columns(const std::vector<std::string>& names) override { row(names); }
+  void row(const std::vector<std::string>& values) override;
+  // Empty, or why the file could not be written.
+  std::string close();
+  const std::string& error() const { return error_; }
+
+ private:
+  std::string path_, error_;
+  std::FILE* file_ = nullptr;
+};
+
+// Keeps the rows, for JSON.
+class MemorySink final : public RowSink {
+ public:
+  void columns(const std::vector<std::string>& names) override { names_ = names; }
+  void row(const std::vector<std::string>& values) override { rows_.push_back(values); }
+  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<std::vector<std::string>>& rows() const { return rows_; }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace anholon

@@ -1,0 +1,38 @@
+// Everything about one state: each generalized force separately, accelerations, multipliers,
+// reactions, power, and the residual report. Numbers come out as text, in any precision.
+#pragma once
+#include "run/scenario.h"
+
+namespace anholon {
+
+struct StateReport {
+  using Named = std::vector<std::pair<std::string, std::string>>;  // name -> number
+  std::string t;
+  Named q, qdot;
+  std::vector<std::pair<std::string, std::vector<std::string>>> forces;  // Q, QR, … by coordinate
+  Named derivatives;   // "x''" …
+  Named lambda;
+  Named numbers;       // T_r, S_r, V_O, …
+  std::vector<std::vector<std::string>> mass_matrix;
+  struct Reaction {
+    std::string body;
+    std::vector<std::string> force, torque;
+  };
+  std::vector<Reaction> reactions;
+  Named residuals;     // newton (C1), projected (C2), constraints (C3), equations, power
+};
+
+// digits <= 16: computed in long double and rounded to double; else multiprecision.
+Outcome evaluate(const Scenario& scenario, const StateChoice& choice, int digits, StateReport& report);
+
+// Residuals C1 and C2 of theory.md section 6 from E - G and Phi at a state.
+template <Number N>
+struct Certificate {
+  N newton{0};     // |E - G - N| by the points themselves, in relation to the largest of the three
+  N projected{0};  // what is left of E - G after the best multipliers: needs no lambda
+};
+template <Number N>
+Certificate<N> certify(const std::vector<N>& inertia, const std::vector<N>& force, const std::vector<N>& reaction,
+                       const Matrix<N>& phi);
+
+}  // namespace anholon

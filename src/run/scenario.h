@@ -1,0 +1,90 @@
+// One model made ready: mechanics, consistent state, independent constraints, implicit system in a
+// form, structure. The composition of the whole main line up to the stepping program.
+#pragma once
+#include <memory>
+
+#include "integrate/taylor.h"
+#include "spec/read.h"
+#include "structure/consistent.h"
+
+namespace anholon {
+
+struct ConstraintClass {
+  std::string kind;      // holonomic, linear, affine, nonlinear (in its top derivative)
+  bool homogeneous = false;  // in the top derivative (order 1: it does no work)
+  bool rheonomic = false;    // holds t explicitly
+  bool redundant = false;    // follows from the others at the initial state
+};
+
+struct StateChoice {
+  std::vector<StateOverride> overrides;
+  std::optional<Rational> t;
+};
+
+struct Scenario {
+  std::shared_ptr<const Model> model;
+  std::unique_ptr<Mechanics> mechanics;
+  std::vector<ConstraintClass> classes;
+  InitialState<double> state;  // consistent, in double
+  std::vector<std::size_t> independent, redundant;
+  System system;
+  Structure structure;
+  std::vector<std::string> notes;
+};
+
+// Classes of the constraints, by exact tests on their partial derivatives.
+std::vector<ConstraintClass> classify(const Mechanics& mechanics);
+
+// Diagnostics: what this model lacks for numbers (unknown functions, orders not integrated yet).
+// The outcome tells of numbers: inconsistent data, a singular start.
+Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
+                      Scenario& scenario);
+
+// Nothing if numbers can be computed for the model, else why not.
+std::optional<Diagnostic> not_integrated(const Model& model, const std::vector<ConstraintClass>& classes);
+
+// The consistent state in the number type N, in the order of an Expansion's state, with its time.
+template <Number N>
+Outcome initial_state(const Scenario& s, const StateChoice& choice, N& t, std::vector<N>& state,
+                      InitialState<N>& named);
+
+template <Number N>
+std::vector<N> parameter_values(const Model& model) {
+  Column es;
+  for (const Parameter& p : model.parameters) es.push_back(p.value);
+  return evaluate_parameters<N>(*model.graph, es);
+}
+
+// Expressions evaluated at a point of the motion.
+template <Number N>
+class OutputTape {
+ public:
+  OutputTape(const Scenario& s, const Column& es, const std::vector<N>& parameters)
+      : system_(s.system), tape_(compile(put(s, es))), machine_(tape_, 0, parameters) {}
+  void evaluate(const Expansion<N>& point) {
+    const Graph& g = *system_.model->graph;
+    for (const Input& in : tape_.inputs) {
+      const Node& n = g.node(in.symbol);
+      N value(0);
+      if (n.kind == Kind::time) value = point.time();
+      else if (const auto j = system_.variable(in.symbol)) value = point.derivative(*j, n.order);
+      machine_.series(in.slot)[0] = value;
+    }
+    machine_.evaluate();
+  }
+  const N& operator[](std::size_t i) const { return machine_.value(i); }
+
+ private:
+  // Multipliers of redundant constraints are zero.
+  static Column put(const Scenario& s, const Column& es) {
+    Graph& g = *s.model->graph;
+    return substitute(es, [&](NodeId id) {
+      return g.node(id).kind == Kind::multiplier && !s.system.variable(id) ? g.zero() : Expr{};
+    });
+  }
+  const System& system_;
+  Tape tape_;
+  Machine<N> machine_;
+};
+
+}  // namespace anholon

@@ -1,0 +1,46 @@
+// [[body]], [[particle]] and [[force]].
+#pragma once
+#include <functional>
+
+#include "spec/names.h"
+
+namespace anholon {
+
+// Runs f and adds what it throws to the diagnostics (a silent failure only returns false).
+bool collect(Diagnostics& diagnostics, const std::function<void()>& f);
+
+// Calls f(table, index) for each element of an array of tables, collecting failures per element.
+void for_each_table(const Item& list, const std::string& what, Diagnostics& diagnostics,
+                    const std::function<void(const Item&, std::size_t)>& f);
+
+class BodyReader {
+ public:
+  BodyReader(Scope& scope, Model& model, Diagnostics& diagnostics)
+      : scope_(scope), model_(model), diagnostics_(diagnostics) {}
+  void declare(const Item& root);
+  void read();
+  void read_forces(const Item& root);
+
+ private:
+  struct Entry {
+    const Item* item;
+    bool particle;
+    std::size_t index;
+  };
+  void read_body(const Entry& entry);
+  void read_axes(Body& body, const Item& item, const Item* inertia, const Item* axes);
+  void read_force(const Item& item, std::size_t number);
+  Expr frozen(Expr value, const std::string& name, Span span);
+  Force::Place place(const Item& item);
+  void check_inertia(const Body& body, const Expr (&moment)[3][3], Span span);
+
+  Scope& scope_;
+  Model& model_;
+  Diagnostics& diagnostics_;
+  std::vector<Entry> entries_;
+};
+
+// The value of an expression of parameters and numbers; nothing if it depends on anything else.
+std::optional<double> constant_value(const Model& model, Expr e);
+
+}  // namespace anholon

@@ -1,0 +1,151 @@
+#include "spec/initial.h"
+
+#include <algorithm>
+
+#include "spec/bodies.h"
+#include "spec/keys.h"
+
+namespace anholon {
+
+namespace {
+
+class InitialReader {
+ public:
+  InitialReader(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics)
+      : section_(section), scope_(scope), model_(model), diagnostics_(diagnostics) {}
+
+  void run() {
+    InitialData& out = model_.initial;
+    for (const Item& i : section_.items)
+      collect(diagnostics_, [&] {
+        if (i.key == "t") {
+          out.t = constant(i);
+          return;
+        }
+        if (i.key == "conditions") return conditions(i);
+        if (i.key == "guess") {
+          if (i.kind != Item::Kind::table) throw Failure(i.span, "guess is a table", "guess = {theta = 0.3}");
+          for (const Item& v : i.items)
+            collect(diagnostics_, [&] { add(out.guess, v, symbol(v.key, v.key_span)); });
+          return;
+        }
+        if (i.key == "branch") throw Failure(i.key_span, "'branch' in [initial] is not read yet");
+        if (i.kind == Item::Kind::table) return group(i);
+        if (i.key == "lambda" || i.key == "lambdadot") throw Failure(i.span, "lambda is a table", "lambda = {NAME = 0.4}");
+        add(out.given, i, symbol(i.key, i.key_span));
+      });
+    for (std::size_t k = 0; k < out.given.size(); ++k)
+      for (std::size_t j = 0; j < k; ++j)
+        if (out.given[j].symbol == out.given[k].symbol)
+          diagnostics_.error(out.given[k].span, "this initial value is given twice (also in line " +
+                                                    std::to_string(out.given[j].span.line) + ")");
+  }
+
+ private:
+  Expr constant(const Item& i) {
+    const Expr e = scope_.number(i);
+    for (NodeId id : symbols({&e, 1}))
+      if (model_.graph->node(id).kind != Kind::parameter)
+        throw Failure(i.span, "an initial value is a number or a formula of parameters",
+                      "relations between unknowns stand under conditions = [\"…\"]");
+    return e;
+  }
+
+  void add(std::vector<GivenValue>& list, const Item& i, Expr symbol) {
+    list.push_back({symbol, constant(i), i.key_span});
+  }
+
+  std::size_t index(const std::vector<std::string>& names, const std::string& name, Span span, const char* what) {
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
+    const std::string near = did_you_mean(name, names);
+    throw Failure(span, std::string("there is no ") + what + " '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+
+  // "x", "x'", "D(x,3)".
+  Expr symbol(std::string key, Span span) {
+    unsigned order = 0;
+    if (key.rfind("D(", 0) == 0 && key.back() == ')') {
+      const std::size_t comma = key.find(',');
+      if (comma == std::string::npos) throw Failure(span, "'" + key + "' is not a derivative of a coordinate", "D(x,3)");
+      order = static_cast<unsigned>(std::strtoul(key.c_str() + comma + 1, nullptr, 10));
+      key = key.substr(2, comma - 2);
+      if (order > 20) throw Failure(span, "a derivative of order above 20");
+    } else {
+      while (!key.empty() && key.back() == '\'') key.pop_back(), ++order;
+      if (order > 20) throw Failure(span, "a derivative of order above 20");
+    }
+    if (key.find('[') != std::string::npos) throw Failure(span, "families of elements (names with [ ]) are not read yet");
+    return model_.graph->jet(static_cast<std::uint32_t>(index(model_.names.coordinates, key, span, "coordinate")), order);
+  }
+
+  void group(const Item& i) {
+    InitialData& out = model_.initial;
+    for (const auto& [key, order] : {std::pair{"q", 0U}, {"qdot", 1U}, {"qddot", 2U}, {"qdddot", 3U}})
+      if (i.key == key) {
+        for (const Item& v : i.items)
+          collect(diagnostics_, [&] {
+            add(out.given, v, model_.graph->jet(static_cast<std::uint32_t>(index(model_.names.coordinates, v.key, v.key_span, "coordinate")), order));
+          });
+        return;
+      }
+    for (const auto& [key, order] : {std::pair{"lambda", 0U}, {"lambdadot", 1U}})
+      if (i.key == key) return multipliers(i, "", order);
+    throw Failure(i.key_span, "unknown key '" + i.key + "' in [initial]", "q, qdot, qddot, qdddot, lambda, lambdadot are tables");
+  }
+
+  void multipliers(const Item& i, const std::string& prefix, unsigned order) {
+    for (const Item& v : i.items)
+      collect(diagnostics_, [&] {
+        if (v.kind == Item::Kind::table) return multipliers(v, prefix + v.key + ".", order);
+        const std::size_t k = index(model_.names.multipliers, prefix + v.key, v.key_span, "constraint");
+        add(model_.initial.given, v, model_.graph->multiplier(static_cast<std::uint32_t>(k), order));
+      });
+  }
+
+  void conditions(const Item& list) {
+    if (list.kind != Item::Kind::array) throw Failure(list.span, "conditions is a list of equations", "conditions = [\"x' = 1\"]");
+    for (const Item& c : list.items)
+      collect(diagnostics_, [&] {
+        const std::vector<Syntax> sides = scope_.equation(c);
+        const Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
+        const auto push = [&](Expr residual, const std::string& suffix) {
+          if (is_zero(residual)) return;
+          const int order = jet_order(residual);
+          if (order < 0) throw Failure(c.formula.whole(), "no unknown occurs in this condition");
+          if (order > 1)
+            throw Failure(c.formula.whole(), "conditions on accelerations are not read yet",
+                          "give positions and velocities");
+          model_.initial.conditions.push_back({residual, c.text() + suffix, c.formula.whole()});
+        };
+        if (left.index() == 0 && right.index() == 0) return push(std::get<Expr>(left) - std::get<Expr>(right), "");
+        const auto side = [&](const Value& v, const Syntax& s) {
+          if (const Vector* a = std::get_if<Vector>(&v)) return *a;
+          if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
+          throw Failure(s.span, std::string("one side of the condition is a vector, the other is ") + type_name(v));
+        };
+        const Vector residual = side(left, sides[0]) - side(right, sides[1]);
+        for (int i = 0; i < 3; ++i)
+          if (!is_zero(residual[i])) push(residual[i], std::string(" (") + "xyz"[i] + ")");
+      });
+  }
+
+  const Item& section_;
+  Scope& scope_;
+  Model& model_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+void read_initial(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
+  const Item* section = root.find("initial");
+  if (!section) return;
+  if (section->kind != Item::Kind::table) {
+    diagnostics.error(section->span, "'initial' is a section", "write [initial]");
+    return;
+  }
+  InitialReader(*section, scope, model, diagnostics).run();
+}
+
+}  // namespace anholon

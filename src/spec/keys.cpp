@@ -1,0 +1,29 @@
+#include "spec/keys.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+void check_keys(const Item& table, const std::string& where, const std::vector<std::string>& known,
+                const std::vector<std::string>& later, Diagnostics& diagnostics) {
+  for (const Item& i : table.items) {
+    if (std::find(known.begin(), known.end(), i.key) != known.end()) continue;
+    if (std::find(later.begin(), later.end(), i.key) != later.end()) {
+      diagnostics.error(i.key_span, "'" + i.key + "' in " + where + " is not read yet",
+                        "it belongs to the language, but this version does not know it");
+      continue;
+    }
+    std::vector<std::string> all = known;
+    all.insert(all.end(), later.begin(), later.end());
+    const std::string near = did_you_mean(i.key, all);
+    std::string hint;
+    if (near.empty()) {
+      hint = "known here: ";
+      for (std::size_t k = 0; k < known.size(); ++k) hint += (k ? ", " : "") + known[k];
+    }
+    diagnostics.error(i.key_span, "unknown key '" + i.key.substr(0, 60) + "' in " + where +
+                                      (near.empty() ? "" : "; did you mean '" + near + "'?"), hint);
+  }
+}
+
+}  // namespace anholon

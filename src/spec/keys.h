@@ -1,0 +1,16 @@
+// The keys of a section: known, known but not read yet, or a slip.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "spec/toml.h"
+
+namespace anholon {
+
+// Reports keys of `table` that are neither in `known` nor in `later`; those in `later` belong to the
+// language but are not read by this version, and say so.
+void check_keys(const Item& table, const std::string& where, const std::vector<std::string>& known,
+                const std::vector<std::string>& later, Diagnostics& diagnostics);
+
+}  // namespace anholon

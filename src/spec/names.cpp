@@ -1,0 +1,454 @@
+#include "spec/names.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+static constexpr std::size_t kDeepestDefinitions = 400;
+
+Failure silent_failure() { return Failure(Span{}, ""); }
+bool is_silent(const Diagnostic& d) { return d.message.empty(); }
+
+static const std::set<std::string>& reserved() {
+  static const std::set<std::string> names = {"t", "pi", "ex", "ey", "ez", "here", "lambda", "inertial"};
+  return names;
+}
+
+void Scope::declare(const std::string& name, Declaration d) {
+  if (name.find('[') != std::string::npos)
+    throw Failure(d.span, "families of elements (names with [ ]) are not read yet",
+                  "write the members out under names of their own");
+  if (!is_identifier(name))
+    throw Failure(d.span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+  if (reserved().count(name)) throw Failure(d.span, "the name '" + name + "' is reserved");
+  const auto [it, fresh] = declarations_.emplace(name, d);
+  if (!fresh)
+    throw Failure(d.span, "'" + name + "' is already declared in line " + std::to_string(it->second.span.line));
+}
+
+void Scope::declare_body(const std::string& name, Span span) {
+  parts_.emplace_back();
+  body_names_.push_back(name);
+  body_spans_.push_back(span);
+  if (name.find('[') != std::string::npos)
+    throw Failure(span, "families of elements (names with [ ]) are not read yet",
+                  "write the members out under names of their own");
+  if (!is_identifier(name)) throw Failure(span, "'" + name.substr(0, 40) + "' is not a name");
+  if (reserved().count(name)) throw Failure(span, "the name '" + name + "' is reserved");
+  for (std::size_t i = 0; i + 1 < body_names_.size(); ++i)
+    if (body_names_[i] == name)
+      throw Failure(span, "a body '" + name + "' is already declared in line " + std::to_string(body_spans_[i].line));
+}
+
+void Scope::set_gravity(const Item& field) { gravity_ = &field; }
+
+std::size_t Scope::body(const std::string& name, Span span) const {
+  for (std::size_t i = 0; i < body_names_.size(); ++i)
+    if (body_names_[i] == name) return i;
+  const std::string near = did_you_mean(name, body_names_);
+  throw Failure(span, "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+void Scope::unknown(const std::string& name, Span span) const {
+  std::vector<std::string> known(reserved().begin(), reserved().end());
+  for (const auto& [n, d] : declarations_) known.push_back(n);
+  known.insert(known.end(), body_names_.begin(), body_names_.end());
+  const std::string near = did_you_mean(name, known);
+  throw Failure(span, "unknown name '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                near.empty() ? "give it a value under [parameters] or [define]" : "");
+}
+
+// ---- evaluation ------------------------------------------------------------------------------
+
+Expr Scope::number(const Item& item) {
+  if (!item.is_formula()) throw Failure(item.span, "a number or a formula is expected here");
+  return evaluate_number(parse_formula(item.formula), *this);
+}
+
+Value Scope::evaluate_value(const Item& item) {
+  if (item.kind == Item::Kind::array) return vector(item);
+  if (!item.is_formula()) throw Failure(item.span, "a number or a formula is expected here");
+  return evaluate(parse_formula(item.formula), *this);
+}
+
+Vector Scope::vector(const Item& item) {
+  if (item.kind == Item::Kind::array) {
+    if (item.items.size() != 3)
+      throw Failure(item.span, "a vector has three components, " + std::to_string(item.items.size()) + " are given",
+                    item.items.size() == 2 ? "in the plane the third is 0" : "");
+    return {number(item.items[0]), number(item.items[1]), number(item.items[2])};
+  }
+  if (!item.is_formula()) throw Failure(item.span, "a vector is expected: [\"…\", \"…\", \"…\"] or a formula");
+  return evaluate_vector(parse_formula(item.formula), *this);
+}
+
+Rotation Scope::rotation(const Item& item) {
+  if (item.kind != Item::Kind::string) throw Failure(item.span, "a rotation is expected", "a formula such as \"rotz(theta)\"");
+  return evaluate_rotation(parse_formula(item.formula), *this);
+}
+
+std::vector<Syntax> Scope::equation(const Item& item) {
+  if (item.kind != Item::Kind::string) throw Failure(item.span, "an equation is expected", "a string such as \"x' = 0\"");
+  std::vector<Syntax> sides = parse_equation(item.formula);
+  if (sides.size() != 2) throw Failure(item.formula.whole(), "an equation needs '='", "write \"" + item.text().substr(0, 60) + " = 0\"");
+  return sides;
+}
+
+Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
+  Graph& g = *model_.graph;
+  switch (d.role) {
+    case Role::coordinate: return g.jet(static_cast<std::uint32_t>(d.index), 0);
+    case Role::function:
+      if (d.symbolic) return g.given(static_cast<std::uint32_t>(d.index), 0);
+      [[fallthrough]];
+    case Role::define: case Role::parameter: {
+      Value v = d.item ? Value(vector(*d.item)) : evaluate(parse_formula(d.formula), *this);
+      if (d.role == Role::define) {
+        if (Expr* e = std::get_if<Expr>(&v)) {
+          const Kind k = g.node(e->id).kind;
+          if (k == Kind::sum || k == Kind::product || k == Kind::function || k == Kind::atan2)
+            model_.names.defined.emplace(e->id, name);
+        }
+        return v;
+      }
+      if (d.role == Role::function) {
+        Expr* e = std::get_if<Expr>(&v);
+        if (e && jet_order(*e) >= 0)
+          throw Failure(d.span, "the given function '" + name + "' depends on a coordinate",
+                        "functions of t stand under [functions], formulas with coordinates under [define]");
+        return v;
+      }
+      const auto check = [&](Expr e) {
+        for (NodeId id : symbols({&e, 1}))
+          if (g.node(id).kind != Kind::parameter)
+            throw Failure(d.span, "the parameter '" + name + "' is not constant",
+                          "functions of t stand under [functions], formulas with coordinates under [define]");
+      };
+      if (Expr* e = std::get_if<Expr>(&v)) {
+        check(*e);
+        model_.parameters[d.index].value = *e;
+        return g.parameter(static_cast<std::uint32_t>(d.index));
+      }
+      if (Vector* a = std::get_if<Vector>(&v)) {
+        for (int i = 0; i < 3; ++i) check((*a)[i]);
+        return v;
+      }
+      throw Failure(d.span, std::string("a parameter is a number or a vector, this is ") + type_name(v));
+    }
+    case Role::frame: return evaluate_rotation(parse_formula(d.formula), *this);
+    case Role::point:
+      return d.item ? vector(*d.item) : evaluate_vector(parse_formula(d.formula), *this);
+  }
+  return InertialName{};
+}
+
+const Value& Scope::resolve(const std::string& name, Declaration& d, Span use) {
+  using State = Declaration::State;
+  if (d.state == State::done) return d.value;
+  if (d.state == State::failed) throw silent_failure();
+  if (d.state == State::open) {
+    std::string path;
+    const auto from = std::find(open_.begin(), open_.end(), name);
+    for (auto it = from; it != open_.end(); ++it) path += *it + " -> ";
+    throw Failure(use, "'" + name + "' is defined through itself: " + path + name);
+  }
+  if (open_.size() > kDeepestDefinitions)
+    throw Failure(use, "definitions lead through more than " + std::to_string(kDeepestDefinitions) + " others",
+                  "declare the names in the order in which they are used");
+  d.state = State::open;
+  open_.push_back(name);
+  // A definition means the same wherever it is used: not frozen, not inside a call.
+  const bool frozen = std::exchange(freeze_masses, false);
+  const auto arguments = std::exchange(arguments_, {});
+  const auto here = std::exchange(here_, std::nullopt);
+  const auto restore = [&] {
+    open_.pop_back();
+    freeze_masses = frozen;
+    arguments_ = arguments;
+    here_ = here;
+  };
+  try {
+    d.value = evaluate_declaration(name, d);
+    d.state = State::done;
+  } catch (const Failure& f) {
+    d.state = State::failed;
+    restore();
+    if (!is_silent(f.diagnostic)) failures.push_back(f.diagnostic);
+    throw silent_failure();
+  }
+  restore();
+  return d.value;
+}
+
+void Scope::resolve_all() {
+  std::vector<std::pair<std::uint64_t, std::string>> order;
+  for (const auto& [name, d] : declarations_)
+    order.push_back({(static_cast<std::uint64_t>(d.span.line) << 32) + d.span.column, name});
+  std::sort(order.begin(), order.end());
+  for (const auto& [place, name] : order) {
+    Declaration& d = declarations_.at(name);
+    try {
+      if (d.arguments.empty()) resolve(name, d, d.span);
+    } catch (const Failure&) {
+    }
+  }
+}
+
+Value Scope::name(const std::string& name, Span span) {
+  Graph& g = *model_.graph;
+  if (!arguments_.empty())
+    if (const auto it = arguments_.back().find(name); it != arguments_.back().end()) return it->second;
+  if (name == "t") return g.time();
+  if (name == "pi") return g.pi();
+  if (name == "ex" || name == "ey" || name == "ez") return identity_rotation(g)[name[1] - 'x'];
+  if (name == "inertial") return InertialName{};
+  if (name == "here") {
+    if (!here_) throw Failure(span, "'here' has a meaning only in the field of [gravity]");
+    return *here_;
+  }
+  if (name == "lambda")
+    throw Failure(span, "a multiplier is written lambda.NAME, in conditions only");
+  const auto it = declarations_.find(name);
+  if (it != declarations_.end()) {
+    if (!it->second.arguments.empty())
+      throw Failure(span, "the function '" + name + "' is used without its arguments", name + "(…)");
+    const Value v = resolve(name, it->second, span);
+    if (freeze_masses)
+      if (const Expr* e = std::get_if<Expr>(&v))
+        for (std::size_t i = 0; i < model_.masses.size(); ++i)
+          if (model_.masses[i].value == *e) return g.mass(static_cast<std::uint32_t>(i));
+    return v;
+  }
+  for (std::size_t i = 0; i < body_names_.size(); ++i)
+    if (body_names_[i] == name) return BodyName{i};
+  unknown(name, span);
+}
+
+std::vector<std::string> Scope::functions() const {
+  std::vector<std::string> list = {"vel", "acc", "angvel", "angacc", "gravity"};
+  for (const auto& [name, d] : declarations_)
+    if (d.role == Role::function || d.role == Role::frame) list.push_back(name);
+  list.insert(list.end(), body_names_.begin(), body_names_.end());
+  return list;
+}
+
+Value Scope::member(const Value& object, const Syntax& s) {
+  const std::string& m = s.text;
+  const int axis = m.size() == 1 && m[0] >= 'x' && m[0] <= 'z' ? m[0] - 'x' : -1;
+  if (const Vector* v = std::get_if<Vector>(&object)) {
+    if (axis >= 0) return (*v)[axis];
+    throw Failure(s.span, "a vector has the members x, y and z");
+  }
+  if (const Rotation* r = std::get_if<Rotation>(&object)) {
+    if (axis >= 0) return (*r)[axis];
+    throw Failure(s.span, "a frame has the members x, y and z");
+  }
+  if (const BodyName* b = std::get_if<BodyName>(&object)) {
+    if (m == "center" || m == "position") return center(b->index, s.span);
+    if (axis >= 0) return orientation(b->index, s.span)[axis];
+    throw Failure(s.span, "a body has the members center, x, y and z");
+  }
+  throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'");
+}
+
+Vector Scope::center(std::size_t body, Span use) {
+  BodyParts& p = parts_[body];
+  if (p.center_value) return *p.center_value;
+  if (!p.center) throw silent_failure();
+  if (p.center_open) throw Failure(use, "the centre of '" + body_names_[body] + "' is defined through itself");
+  p.center_open = true;
+  p.center_value = vector(*p.center);
+  p.center_open = false;
+  return *p.center_value;
+}
+
+const Rotation& Scope::orientation(std::size_t body, Span use) {
+  BodyParts& p = parts_[body];
+  if (p.orientation_value) return *p.orientation_value;
+  if (!has_orientation(body))
+    throw Failure(use, "the body '" + body_names_[body] + "' has no orientation",
+                  "give it orientation = \"…\", or angle = \"…\" in the plane");
+  if (p.orientation_open) throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
+  p.orientation_open = true;
+  p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle));
+  p.orientation_open = false;
+  return *p.orientation_value;
+}
+
+Vector Scope::gravity_at(const Vector& place, Span use) {
+  if (!gravity_) throw Failure(use, "there is no [gravity] field");
+  if (here_) throw Failure(use, "the field of [gravity] is defined through itself");
+  here_ = place;
+  const auto arguments = std::exchange(arguments_, {});
+  const auto restore = [&] { here_.reset(), arguments_ = arguments; };
+  try {
+    const Vector field = vector(*gravity_);
+    restore();
+    return field;
+  } catch (...) {
+    restore();
+    throw;
+  }
+}
+
+// ---- kinematics ------------------------------------------------------------------------------
+
+// vel(B, P): the velocity of the material point of B that is at P now.
+Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use) {
+  const Vector c = center(body, use);
+  const Vector v = total_derivative(c);
+  if (!has_orientation(body)) {
+    if (is_zero(place - c)) return v;
+    throw Failure(use, "the body '" + body_names_[body] + "' has no orientation: it has no material point there",
+                  "give it orientation = \"…\", or angle = \"…\" in the plane");
+  }
+  return v + cross(orientation(body, use).rate, place - c);
+}
+
+// The inertial rate of change of a vector given by its moving components.
+Vector Scope::inertial_rate(const Vector& v, Span) {
+  return total_derivative(v) + cross(model_.observer.spin, v);
+}
+
+std::size_t Scope::body_argument(const Value& value, const Syntax& argument) const {
+  if (const BodyName* b = std::get_if<BodyName>(&value)) return b->index;
+  if (argument.op == Syntax::Op::name) return body(argument.text, argument.span);
+  throw Failure(argument.span, std::string("a body is expected, this is ") + type_name(value));
+}
+
+static Vector point_argument(const Value& v, const Syntax& argument) {
+  if (const Vector* a = std::get_if<Vector>(&v)) return *a;
+  throw Failure(argument.span, std::string("a point is expected, this is ") + type_name(v),
+                v.index() == 3 ? "a body is not a point: write B.center" : "");
+}
+
+bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax& s, Value& result) {
+  Graph& g = *model_.graph;
+  const auto is_body = [&](std::size_t i) {
+    if (a[i].index() == 3) return true;
+    return s.args[i].op == Syntax::Op::name && a[i].index() != 4 &&
+           std::find(body_names_.begin(), body_names_.end(), s.args[i].text) != body_names_.end();
+  };
+  const auto count = [&](std::size_t least, std::size_t most) {
+    if (a.size() < least || a.size() > most)
+      throw Failure(s.span, f + " takes " + std::to_string(least) +
+                                (most > least ? " or " + std::to_string(most) : std::string()) + " arguments, " +
+                                std::to_string(a.size()) + (a.size() == 1 ? " is" : " are") + " given");
+  };
+  if (f == "vel" || f == "acc") {
+    count(1, 2);
+    if (a.size() == 2 && a[1].index() == 4) {
+      const Vector p = point_argument(a[0], s.args[0]);
+      const Observer& o = model_.observer;
+      if (f == "acc") {
+        result = o.origin_acceleration + inertial_rate(inertial_rate(p, s.span), s.span);
+      } else {
+        if (!o.origin_velocity)
+          throw Failure(s.span, "the inertial velocity of the observer's origin is not known",
+                        "give [observer] origin_velocity instead of origin_acceleration");
+        result = *o.origin_velocity + inertial_rate(p, s.span);
+      }
+      return true;
+    }
+    if (f == "vel" && a.size() == 2 && is_body(0)) {
+      result = material_velocity(body_argument(a[0], s.args[0]), point_argument(a[1], s.args[1]), s.span);
+      return true;
+    }
+    if (f == "vel" && a.size() == 2) {
+      const Vector p = point_argument(a[0], s.args[0]);
+      result = total_derivative(p) - material_velocity(body_argument(a[1], s.args[1]), p, s.span);
+      return true;
+    }
+    if (a.size() == 2) throw Failure(s.span, "acc(P) or acc(P, inertial)");
+    const Vector v = total_derivative(point_argument(a[0], s.args[0]));
+    result = f == "vel" ? v : total_derivative(v);
+    return true;
+  }
+  if (f == "angvel" || f == "angacc") {
+    count(1, 2);
+    const auto rate = [&](std::size_t i) -> Vector {
+      if (const Rotation* r = std::get_if<Rotation>(&a[i])) return r->rate;
+      return orientation(body_argument(a[i], s.args[i]), s.args[i].span).rate;
+    };
+    Vector w = rate(0);
+    if (f == "angacc") {
+      count(1, 1);
+      result = total_derivative(w);
+      return true;
+    }
+    if (a.size() == 2) w = a[1].index() == 4 ? w + model_.observer.spin : w - rate(1);
+    result = w;
+    return true;
+  }
+  if (f == "gravity") {
+    count(1, 1);
+    result = gravity_at(point_argument(a[0], s.args[0]), s.span);
+    return true;
+  }
+  const auto it = declarations_.find(f);
+  if (it == declarations_.end()) {
+    const auto b = std::find(body_names_.begin(), body_names_.end(), f);
+    if (b == body_names_.end()) return false;
+    count(3, 3);
+    const Rotation& r = orientation(static_cast<std::size_t>(b - body_names_.begin()), s.span);
+    Vector own = zero_vector(g);
+    for (int i = 0; i < 3; ++i) {
+      const Expr* e = std::get_if<Expr>(&a[static_cast<std::size_t>(i)]);
+      if (!e) throw Failure(s.args[static_cast<std::size_t>(i)].span, "a number is expected here");
+      own[i] = *e;
+    }
+    result = r * own;
+    return true;
+  }
+  Declaration& d = it->second;
+  if (d.role == Role::frame) {
+    count(3, 3);
+    const Rotation r = std::get<Rotation>(resolve(f, d, s.span));
+    Vector own = zero_vector(g);
+    for (int i = 0; i < 3; ++i) {
+      const Expr* e = std::get_if<Expr>(&a[static_cast<std::size_t>(i)]);
+      if (!e) throw Failure(s.args[static_cast<std::size_t>(i)].span, "a number is expected here");
+      own[i] = *e;
+    }
+    result = r * own;
+    return true;
+  }
+  if (d.role != Role::function) return false;
+  if (d.arguments.empty()) {
+    count(1, 1);
+    const Expr* e = std::get_if<Expr>(&a[0]);
+    if (!e) throw Failure(s.args[0].span, "a number is expected here");
+    const Value body = resolve(f, d, s.span);
+    if (*e == g.time()) {
+      result = body;
+      return true;
+    }
+    if (d.symbolic) throw Failure(s.args[0].span, "an unknown function is used at t only");
+    const Expr formula = std::get<Expr>(body);
+    const NodeId t = g.time().id;
+    result = substitute({&formula, 1}, [&](NodeId id) { return id == t ? *e : Expr{}; })[0];
+    return true;
+  }
+  count(d.arguments.size(), d.arguments.size());
+  if (d.state == Declaration::State::open) throw Failure(s.span, "the function '" + f + "' is defined through itself");
+  if (!d.parsed) {
+    d.body = parse_formula(d.formula);
+    d.parsed = true;
+  }
+  std::map<std::string, Value> bound;
+  for (std::size_t i = 0; i < a.size(); ++i) bound[d.arguments[i]] = a[i];
+  arguments_.push_back(std::move(bound));
+  d.state = Declaration::State::open;
+  try {
+    result = evaluate(d.body, *this);
+  } catch (...) {
+    d.state = Declaration::State::fresh;
+    arguments_.pop_back();
+    throw;
+  }
+  d.state = Declaration::State::fresh;
+  arguments_.pop_back();
+  return true;
+}
+
+}  // namespace anholon

@@ -1,0 +1,101 @@
+// What a name means in a model file: looked up when needed, in any order of declaration.
+//
+// Values (coordinates, parameters, functions, defines, frames, points) share one namespace, bodies
+// have their own, so that a point P and a body P may live together.
+#pragma once
+#include <map>
+#include <set>
+
+#include "model/model.h"
+#include "spec/toml.h"
+
+namespace anholon {
+
+class Scope final : public Names {
+ public:
+  explicit Scope(Model& model) : model_(model) {}
+
+  // Declarations. A formula is parsed and evaluated at its first use.
+  enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point };
+  struct Declaration {
+    Role role = Role::define;
+    std::size_t index = 0;                // of a coordinate, parameter or unknown function
+    FormulaText formula;
+    const Item* item = nullptr;           // an array value
+    std::vector<std::string> arguments;   // of a function with arguments
+    Span span;
+    bool symbolic = false;                // stands for itself: coordinate, unknown function
+    enum class State : std::uint8_t { fresh, open, done, failed } state = State::fresh;
+    Value value = InertialName{};
+    Syntax body{};                        // of a function with arguments
+    bool parsed = false;
+  };
+  // Throws Failure if the name is reserved, not an identifier or taken.
+  void declare(const std::string& name, Declaration d);
+  void declare_body(const std::string& name, Span span);
+  void set_gravity(const Item& field);
+
+  // The bodies' parts, evaluated on demand (a centre may refer to another body's centre).
+  struct BodyParts {
+    const Item* center = nullptr;
+    const Item* orientation = nullptr;
+    const Item* angle = nullptr;
+    bool center_open = false, orientation_open = false;
+    std::optional<Vector> center_value;
+    std::optional<Rotation> orientation_value;
+  };
+  BodyParts& parts(std::size_t body) { return parts_[body]; }
+  Vector center(std::size_t body, Span use);
+  bool has_orientation(std::size_t body) const { return parts_[body].orientation || parts_[body].angle; }
+  const Rotation& orientation(std::size_t body, Span use);
+  std::size_t body(const std::string& name, Span span) const;  // throws if there is none
+  const std::vector<std::string>& body_names() const { return body_names_; }
+
+  // Evaluation of items: a string or number is a formula, an array a vector.
+  Expr number(const Item& item);
+  Vector vector(const Item& item);
+  Rotation rotation(const Item& item);
+  std::vector<Syntax> equation(const Item& item);
+  Value evaluate_value(const Item& item);
+  void resolve_all();  // evaluates what nothing used, so that its errors are reported
+  const std::map<std::string, Declaration>& declarations() const { return declarations_; }
+
+  // In potentials the name of a varying mass means its frozen symbol.
+  bool freeze_masses = false;
+  // In conditions lambda.NAME means the multiplier of that constraint; elsewhere it is refused.
+  bool allow_multipliers = false;
+  Vector gravity_at(const Vector& place, Span use);
+  std::vector<Diagnostic> failures;  // of declarations evaluated on demand
+
+  // Names
+  Graph& graph() override { return *model_.graph; }
+  Value name(const std::string& name, Span span) override;
+  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax,
+            Value& result) override;
+  Value member(const Value& object, const Syntax& syntax) override;
+  std::vector<std::string> functions() const override;
+
+ private:
+  const Value& resolve(const std::string& name, Declaration& d, Span use);
+  Value evaluate_declaration(const std::string& name, Declaration& d);
+  [[noreturn]] void unknown(const std::string& name, Span span) const;
+  Vector material_velocity(std::size_t body, const Vector& place, Span use);
+  Vector inertial_rate(const Vector& v, Span use);
+  std::size_t body_argument(const Value& value, const Syntax& argument) const;
+
+  Model& model_;
+  std::map<std::string, Declaration> declarations_;
+  std::vector<std::string> body_names_;
+  std::vector<Span> body_spans_;
+  std::vector<BodyParts> parts_;
+  const Item* gravity_ = nullptr;
+  std::optional<Vector> here_;
+  std::vector<std::string> open_;                        // path of names being evaluated
+  std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
+};
+
+// A failure that was reported where it arose: uses of a broken definition stay silent.
+Failure silent_failure();
+bool is_silent(const Diagnostic& d);
+
+}  // namespace anholon

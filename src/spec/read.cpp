@@ -1,0 +1,339 @@
+#include "spec/read.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "expr/normal.h"
+#include "spec/bodies.h"
+#include "spec/initial.h"
+#include "spec/keys.h"
+#include "spec/names.h"
+#include "spec/observer.h"
+
+namespace anholon {
+
+namespace {
+
+// More coordinates than this are refused: the equations would not fit in memory.
+constexpr std::size_t kMostCoordinates = 5000;
+
+class Reader {
+ public:
+  Reader(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides)
+      : diagnostics_(diagnostics), overrides_(overrides), scope_(model_) {
+    model_.graph = std::make_shared<Graph>();
+    model_.source_text = source;
+    Graph& g = *model_.graph;
+    model_.observer.spin = model_.observer.origin_acceleration = zero_vector(g);
+    model_.observer.origin_velocity = zero_vector(g);
+    model_.initial.t = g.zero();
+  }
+
+  std::optional<Model> run() {
+    Item root;
+    if (!guard([&] { root = read_toml(model_.source_text); })) return std::nullopt;
+    sections(root);
+    guard([&] { coordinates(root); });
+    parameters(root);
+    functions(root);
+    named(root, "define", Scope::Role::define);
+    named(root, "frame", Scope::Role::frame);
+    named(root, "point", Scope::Role::point);
+    // Bodies are declared before anything is evaluated, their parts read when the masses are.
+    BodyReader bodies(scope_, model_, diagnostics_);
+    bodies.declare(root);
+    if (const Item* o = table(root, "observer")) guard([&] { read_observer(*o, scope_, model_, diagnostics_); });
+    gravity(root);
+    // A name that does not stand for a value is worth one report, at the place of its use.
+    bodies.read();
+    bodies.read_forces(root);
+    potentials(root);
+    constraints(root);
+    scope_.resolve_all();
+    read_initial(root, scope_, model_, diagnostics_);
+    guard([&] { simulate(root); });
+    for (const Diagnostic& d : scope_.failures) diagnostics_.add(d);
+    if (!diagnostics_.has_errors() && model_.bodies.empty())
+      diagnostics_.error({}, "the model has no body", "add [[body]] or [[particle]] with name, mass and center or position");
+    if (diagnostics_.has_errors()) return std::nullopt;
+    return std::move(model_);
+  }
+
+ private:
+  bool guard(const std::function<void()>& f) { return collect(diagnostics_, f); }
+
+  void sections(const Item& root) {
+    check_keys(root, "the model file",
+               {"title", "source", "coordinates", "dependent", "parameters", "functions", "define", "frame",
+                "point", "observer", "body", "particle", "force", "gravity", "potential", "constraint",
+                "initial", "simulate"},
+               {"base", "index", "table", "state", "mode", "event", "input", "output", "quasi", "case",
+                "dissipation", "monitor", "view", "notation"},
+               diagnostics_);
+    for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
+      if (const Item* i = root.find(key)) {
+        if (i->kind == Item::Kind::string) *target = i->text();
+        else diagnostics_.error(i->span, std::string("'") + key + "' is a text");
+      }
+  }
+
+  const Item* table(const Item& root, const char* key) {
+    const Item* i = root.find(key);
+    if (i && i->kind != Item::Kind::table) {
+      diagnostics_.error(i->span, std::string("'") + key + "' is a section", std::string("write [") + key + "]");
+      return nullptr;
+    }
+    return i;
+  }
+
+  void coordinates(const Item& root) {
+    const Item* list = root.find("coordinates");
+    if (!list) throw Failure({}, "the model has no coordinates", "coordinates = [\"x\", \"y\"] at the top of the file");
+    if (list->kind != Item::Kind::array || list->items.empty())
+      throw Failure(list->span, "coordinates is a list of names", "coordinates = [\"x\", \"y\"]");
+    if (list->items.size() > kMostCoordinates)
+      throw Failure(list->span, std::to_string(list->items.size()) + " coordinates; at most " +
+                                    std::to_string(kMostCoordinates) + " are accepted");
+    for (const Item& i : list->items)
+      guard([&] {
+        if (i.kind != Item::Kind::string) throw Failure(i.span, "a coordinate is a name in quotes");
+        const std::string name = normal_name(i.text());
+        Scope::Declaration d;
+        d.role = Scope::Role::coordinate;
+        d.index = model_.coordinates.size();
+        d.span = i.formula.whole();
+        scope_.declare(name, d);
+        model_.coordinates.push_back({name, d.span});
+        model_.names.coordinates.push_back(name);
+      });
+    if (const Item* d = root.find("dependent"); d && d->kind != Item::Kind::array)
+      diagnostics_.error(d->span, "dependent is a list of coordinates");
+  }
+
+  void parameters(const Item& root) {
+    std::vector<std::string> used;
+    const Item* section = table(root, "parameters");
+    if (section)
+      for (const Item& i : section->items)
+        guard([&] {
+          const Item* value = &i;
+          std::string doc;
+          if (i.kind == Item::Kind::table) {
+            check_keys(i, "a parameter", {"value", "doc"}, {"unit"}, diagnostics_);
+            value = i.find("value");
+            if (!value) throw Failure(i.key_span, "the parameter '" + i.key + "' has no value");
+            if (const Item* d = i.find("doc")) doc = d->text();
+          }
+          Scope::Declaration d;
+          d.role = Scope::Role::parameter;
+          d.index = model_.parameters.size();
+          d.span = i.key_span;
+          if (value->kind == Item::Kind::array) d.item = value;
+          else if (value->is_formula()) d.formula = value->formula;
+          else throw Failure(value->span, "the value of a parameter is a number, a formula or a vector");
+          if (const auto o = overrides_.find(i.key); o != overrides_.end()) {
+            d.formula = FormulaText(o->second, Span{});
+            d.item = nullptr;
+            used.push_back(o->first);
+          }
+          scope_.declare(i.key, d);
+          model_.parameters.push_back({i.key, model_.graph->zero(), doc, d.span});
+          model_.names.parameters.push_back(i.key);
+        });
+    for (const auto& [name, formula] : overrides_)
+      if (std::find(used.begin(), used.end(), name) == used.end()) {
+        std::vector<std::string> known;
+        for (const Parameter& p : model_.parameters) known.push_back(p.name);
+        const std::string near = did_you_mean(name, known);
+        diagnostics_.error({}, "--set: there is no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+      }
+  }
+
+  void functions(const Item& root) {
+    const Item* section = table(root, "functions");
+    if (!section) return;
+    for (const Item& i : section->items)
+      guard([&] {
+        Scope::Declaration d;
+        d.role = Scope::Role::function;
+        d.span = i.key_span;
+        std::string name = i.key;
+        if (const std::size_t open = name.find('('); open != std::string::npos && name.back() == ')') {
+          std::string list = name.substr(open + 1, name.size() - open - 2);
+          name.resize(open);
+          std::size_t from = 0;
+          while (from <= list.size()) {
+            const std::size_t comma = std::min(list.find(',', from), list.size());
+            std::string argument = list.substr(from, comma - from);
+            std::erase(argument, ' ');
+            if (!is_identifier(argument)) throw Failure(i.key_span, "'" + argument + "' is not a name of an argument");
+            d.arguments.push_back(argument);
+            from = comma + 1;
+          }
+          if (d.arguments.size() == 1 && d.arguments[0] == "t") d.arguments.clear();
+        }
+        if (i.kind == Item::Kind::table && i.items.empty()) {
+          d.symbolic = true;
+          d.index = model_.unknown_functions.size();
+          model_.unknown_functions.push_back(name);
+          model_.names.given.push_back(name);
+        } else if (i.is_formula()) {
+          d.formula = i.formula;
+        } else {
+          throw Failure(i.span, "a given function is a formula, or {} where it is not known");
+        }
+        scope_.declare(name, d);
+      });
+  }
+
+  void named(const Item& root, const char* key, Scope::Role role) {
+    const Item* section = table(root, key);
+    if (!section) return;
+    for (const Item& i : section->items)
+      guard([&] {
+        Scope::Declaration d;
+        d.role = role;
+        d.span = i.key_span;
+        if (i.kind == Item::Kind::array && role != Scope::Role::frame) d.item = &i;
+        else if (i.is_formula()) d.formula = i.formula;
+        else throw Failure(i.span, std::string("'") + i.key + "' in [" + key + "] is not a formula");
+        scope_.declare(i.key, d);
+      });
+  }
+
+  void gravity(const Item& root) {
+    const Item* section = table(root, "gravity");
+    if (!section) return;
+    check_keys(*section, "[gravity]", {"field"}, {"gradient"}, diagnostics_);
+    if (const Item* field = section->find("field")) scope_.set_gravity(*field);
+    else diagnostics_.error(section->span, "[gravity] has no field", "field = \"-g*ez\"");
+  }
+
+  void potentials(const Item& root) {
+    const Item* section = table(root, "potential");
+    if (!section) return;
+    scope_.freeze_masses = true;
+    for (const Item& i : section->items)
+      guard([&] {
+        const Expr v = scope_.number(i);
+        if (jet_order(v) > 0)
+          throw Failure(i.span, "the potential '" + i.key + "' depends on a velocity",
+                        "give a force instead");
+        model_.potentials.push_back({i.key, v, i.span});
+      });
+    scope_.freeze_masses = false;
+  }
+
+  // The highest order of derivative on which phi truly depends.
+  int true_order(Expr& phi) {
+    Graph& g = *model_.graph;
+    for (int k = jet_order(phi);; --k) {
+      if (k < 0) return k;
+      Column top;
+      for (NodeId id : symbols({&phi, 1}))
+        if (g.node(id).kind == Kind::jet && g.node(id).order == k) top.push_back({&g, id});
+      bool depends = false;
+      for (Expr d : gradient(phi, top))
+        if (!proved_zero(d)) depends = true;
+      if (depends) return k;
+      phi = substitute({&phi, 1}, [&](NodeId id) {
+        const Node& n = g.node(id);
+        return n.kind == Kind::jet && n.order == k ? g.zero() : Expr{};
+      })[0];
+    }
+  }
+
+  void add_constraint(const std::string& name, Expr phi, const Item& equation) {
+    const int order = true_order(phi);
+    if (order < 0) {
+      if (proved_zero(phi))
+        throw Failure(equation.formula.whole(), "this equation always holds: it constrains nothing");
+      throw Failure(equation.formula.whole(), "no coordinate or derivative occurs in this equation",
+                    "a constraint relates coordinates and their derivatives");
+    }
+    for (const Constraint& c : model_.constraints)
+      if (c.name == name) throw Failure(equation.span, "there are two constraints '" + name + "'");
+    model_.constraints.push_back({name, phi, order, equation.text(), equation.formula.whole()});
+    model_.names.multipliers.push_back(name);
+  }
+
+  void constraints(const Item& root) {
+    const Item* list = root.find("constraint");
+    if (!list) return;
+    for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
+      check_keys(c, "a constraint", {"name", "equation"}, {"along", "by"}, diagnostics_);
+      const Item* equation = c.find("equation");
+      if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"x' = 0\"");
+      const Item* named = c.find("name");
+      if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");
+      const std::string name = named ? normal_name(named->text()) : "constraint" + std::to_string(k + 1);
+      if (!is_identifier(name)) throw Failure(named->span, "'" + name.substr(0, 40) + "' is not a name");
+      const std::vector<Syntax> sides = scope_.equation(*equation);
+      Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
+      if (std::holds_alternative<Expr>(left) && std::holds_alternative<Expr>(right)) {
+        add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), *equation);
+        return;
+      }
+      const Vector phi = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
+      std::string dropped;
+      std::vector<int> kept;
+      for (int i = 0; i < 3; ++i) {
+        if (proved_zero(phi[i])) dropped += (dropped.empty() ? "" : ", ") + name + "." + std::string(1, "xyz"[i]);
+        else kept.push_back(i);
+      }
+      if (kept.empty()) throw Failure(equation->formula.whole(), "this equation always holds: it constrains nothing");
+      if (!dropped.empty())
+        model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
+      for (int i : kept) add_constraint(name + "." + std::string(1, "xyz"[i]), phi[i], *equation);
+    });
+  }
+
+  Vector evaluate_vector_side(const Value& v, const Syntax& s) {
+    if (const Vector* a = std::get_if<Vector>(&v)) return *a;
+    if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
+    throw Failure(s.span, std::string("one side of the equation is a vector, the other is ") + type_name(v),
+                  v.index() == 3 ? "a body is not a point: write B.center" : "0 is also the zero vector");
+  }
+
+  Rational rational(const Item& i) {
+    const Expr e = scope_.number(i);
+    if (!is_number(e)) throw Failure(i.span, "'" + i.key + "' is a plain number");
+    return number_value(e);
+  }
+
+  void simulate(const Item& root) {
+    const Item* s = table(root, "simulate");
+    if (!s) return;
+    check_keys(*s, "[simulate]", {"to", "tolerance", "every", "at", "form", "integrator"}, {}, diagnostics_);
+    SimulationSettings& out = model_.simulate;
+    if (const Item* i = s->find("to")) out.to = rational(*i);
+    if (const Item* i = s->find("tolerance")) {
+      out.tolerance = rational(*i);
+      if (*out.tolerance <= 0) throw Failure(i->span, "the tolerance is positive");
+    }
+    if (const Item* i = s->find("every")) {
+      out.every = rational(*i);
+      if (*out.every <= 0) throw Failure(i->span, "'every' is a positive time");
+    }
+    if (const Item* i = s->find("at")) {
+      if (i->kind != Item::Kind::array) throw Failure(i->span, "'at' is a list of times");
+      for (const Item& t : i->items) out.at.push_back(rational(t));
+    }
+    if (const Item* i = s->find("form")) out.form = i->text();
+    if (const Item* i = s->find("integrator"); i && i->text() != "taylor")
+      throw Failure(i->span, "the integrator '" + i->text() + "' is not read yet", "integrator = \"taylor\"");
+  }
+
+  Diagnostics& diagnostics_;
+  const Overrides& overrides_;
+  Model model_;
+  Scope scope_;
+};
+
+}  // namespace
+
+std::optional<Model> read_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides) {
+  return Reader(source, diagnostics, overrides).run();
+}
+
+}  // namespace anholon

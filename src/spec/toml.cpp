@@ -1,0 +1,148 @@
+#include "spec/toml.h"
+
+#include <algorithm>
+#include <sstream>
+#include <toml++/toml.h>
+
+#include "base/utf8.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr std::size_t kLongestFile = 16 << 20;
+
+Span span_of(const toml::source_region& r) {
+  Span s;
+  s.line = static_cast<std::uint32_t>(r.begin.line);
+  s.column = static_cast<std::uint32_t>(r.begin.column);
+  if (r.end.line == r.begin.line && r.end.column > r.begin.column)
+    s.length = static_cast<std::uint32_t>(r.end.column - r.begin.column);
+  return s;
+}
+
+// Walks the raw text of a value to find where each character of it stands.
+class Places {
+ public:
+  explicit Places(const SourceText& source) : text_(source.text) {
+    starts_ = {0, 0};
+    for (std::size_t i = 0; i < text_.size(); ++i)
+      if (text_[i] == '\n') starts_.push_back(i + 1);
+  }
+
+  std::size_t offset(Span s) const {
+    if (s.line == 0 || s.line >= starts_.size()) return text_.size();
+    std::size_t i = starts_[s.line];
+    for (std::uint32_t c = 1; c < s.column && i < text_.size(); ++c) i += utf8_width(text_, i);
+    return i;
+  }
+
+  // The characters of a number as written.
+  std::string number(Span s) const {
+    std::size_t i = offset(s);
+    std::string out;
+    for (; i < text_.size(); ++i) {
+      const char c = text_[i];
+      if (c == '_') continue;
+      if (!(std::isalnum(static_cast<unsigned char>(c)) || c == '+' || c == '-' || c == '.')) break;
+      out += c;
+    }
+    return out;
+  }
+
+  FormulaText string(const std::string& value, Span s) const {
+    std::size_t i = offset(s);
+    const auto starts = [&](const char* p) { return text_.compare(i, std::string(p).size(), p) == 0; };
+    const bool multiline = starts("\"\"\"") || starts("'''");
+    const bool basic = i < text_.size() && text_[i] == '"';
+    const std::size_t quote = multiline ? 3 : 1;
+    Span at = s;
+    at.length = 1;
+    at.column += static_cast<std::uint32_t>(quote);
+    i += quote;
+    const bool plain = !multiline && text_.compare(i, value.size(), value) == 0;
+    if (plain) return FormulaText(value, at);
+    if (multiline && i < text_.size() && text_[i] == '\r') ++i;
+    if (multiline && i < text_.size() && text_[i] == '\n') ++i, ++at.line, at.column = 1;
+    std::vector<Span> places;
+    for (std::size_t v = 0; v < value.size(); v += utf8_width(value, v)) {
+      places.push_back(at);
+      if (i >= text_.size()) continue;
+      std::size_t width = utf8_width(text_, i), columns = 1;
+      if (basic && text_[i] == '\\' && i + 1 < text_.size()) {
+        const char e = text_[i + 1];
+        width = columns = e == 'u' ? 6 : e == 'U' ? 10 : 2;
+      }
+      if (text_[i] == '\n') ++at.line, at.column = 1;
+      else at.column += static_cast<std::uint32_t>(columns);
+      i += width;
+    }
+    if (places.empty()) return FormulaText(value, at);
+    return FormulaText(value, std::move(places));
+  }
+
+ private:
+  const std::string& text_;
+  std::vector<std::size_t> starts_;
+};
+
+Item convert(const toml::node& node, const Places& places) {
+  Item item;
+  item.span = span_of(node.source());
+  if (const auto* s = node.as_string()) {
+    item.kind = Item::Kind::string;
+    item.formula = places.string(s->get(), item.span);
+  } else if (node.is_integer() || node.is_floating_point()) {
+    item.kind = Item::Kind::number;
+    Span start = item.span;
+    item.formula = FormulaText(places.number(item.span), start);
+  } else if (const auto* b = node.as_boolean()) {
+    item.kind = Item::Kind::boolean;
+    item.truth = b->get();
+  } else if (const auto* a = node.as_array()) {
+    item.kind = Item::Kind::array;
+    for (const toml::node& element : *a) item.items.push_back(convert(element, places));
+  } else if (const auto* t = node.as_table()) {
+    item.kind = Item::Kind::table;
+    for (const auto& [key, value] : *t) {
+      Item child = convert(value, places);
+      child.key = normal_name(key.str());
+      child.key_span = span_of(key.source());
+      item.items.push_back(std::move(child));
+    }
+    std::stable_sort(item.items.begin(), item.items.end(), [](const Item& x, const Item& y) {
+      return x.key_span.line != y.key_span.line ? x.key_span.line < y.key_span.line
+                                                : x.key_span.column < y.key_span.column;
+    });
+  } else {
+    item.kind = Item::Kind::other;
+  }
+  return item;
+}
+
+}  // namespace
+
+const Item* Item::find(const std::string& name) const {
+  for (const Item& i : items)
+    if (i.key == name) return &i;
+  return nullptr;
+}
+
+Item read_toml(const SourceText& source) {
+  if (source.text.size() > kLongestFile)
+    throw Failure({}, "the file is larger than " + std::to_string(kLongestFile >> 20) + " MiB");
+  try {
+    const toml::table document = toml::parse(source.text, source.name);
+    return convert(document, Places(source));
+  } catch (const toml::parse_error& e) {
+    std::string message(e.description());
+    constexpr std::string_view prefix = "Error while parsing ";
+    if (message.rfind(prefix, 0) == 0) message = "in " + message.substr(prefix.size());
+    throw Failure(span_of(e.source()), message,
+                  message.find("string") != std::string::npos || message.find("saw '") != std::string::npos
+                      ? "formulas and keys with ' stand in quotes: \"x'\" = \"a*b\""
+                      : "");
+  }
+}
+
+}  // namespace anholon

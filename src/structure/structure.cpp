@@ -1,0 +1,219 @@
+#include "structure/structure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "tape/tape.h"
+
+namespace anholon {
+
+int Structure::largest_c() const { return c.empty() ? 0 : *std::max_element(c.begin(), c.end()); }
+
+namespace {
+
+constexpr int kProbes = 3;
+// A partial derivative below this fraction of the largest one met in its equation is no dependence.
+constexpr double kNoDependence = 1e-11;
+
+// Forward tangents of all equations by all inputs at one point: |dE_i / d input_k|.
+class Probe {
+ public:
+  Probe(const System& s, const std::vector<double>& parameters)
+      : tape_(compile(s.equations)), machine_(tape_, 0, parameters), system_(s) {}
+
+  const std::vector<Input>& inputs() const { return tape_.inputs; }
+
+  // False if a formula has no value at the point.
+  bool measure(const ProbeHints& hints, std::mt19937_64& random, std::vector<std::vector<double>>& largest) {
+    const Graph& g = *system_.model->graph;
+    std::uniform_real_distribution<double> spread(0.05, 0.35);
+    for (const Input& in : tape_.inputs) {
+      const Node& n = g.node(in.symbol);
+      double base = 0.4;
+      if (n.kind == Kind::time) base = hints.t;
+      else if (n.kind == Kind::jet && n.order < hints.derivatives.size()) base = hints.derivatives[n.order][n.index];
+      machine_.series(in.slot)[0] = base + (1 + std::abs(base)) * spread(random);
+    }
+    machine_.evaluate();
+    const std::size_t cols = tape_.inputs.size();
+    Matrix<double> tangent(tape_.code.size(), cols);
+    std::size_t next_input = 0;
+    for (std::uint32_t s = 0; s < tape_.code.size(); ++s) {
+      const Instruction& in = tape_.code[s];
+      double* row = &tangent.data[s * cols];
+      const auto add = [&](std::uint32_t operand, double factor) {
+        const double* from = &tangent.data[operand * cols];
+        for (std::size_t k = 0; k < cols; ++k) row[k] += factor * from[k];
+      };
+      const auto partials = machine_.partials(s);
+      switch (in.op) {
+        case Op::constant: case Op::pi: case Op::parameter: break;
+        case Op::input: row[next_input++] = 1; break;
+        case Op::linear:
+          for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+            add(tape_.linear_terms[k].slot, machine_.rational(tape_.linear_terms[k].coefficient));
+          break;
+        case Op::multiply: case Op::scale: case Op::divide: case Op::arctan2:
+          add(in.a, partials.a);
+          add(in.b, partials.b);
+          break;
+        case Op::square: case Op::power: case Op::function: add(in.a, partials.a); break;
+      }
+    }
+    for (std::size_t i = 0; i < tape_.roots.size(); ++i)
+      for (std::size_t k = 0; k < cols; ++k) {
+        const double v = std::abs(tangent(tape_.roots[i], k));
+        if (!std::isfinite(v)) return false;
+        largest[i][k] = std::max(largest[i][k], v);
+      }
+    return true;
+  }
+
+ private:
+  Tape tape_;
+  Machine<double> machine_;
+  const System& system_;
+};
+
+// The assignment of variables to equations with the greatest sum of sigma (Hungarian method with
+// potentials); an entry -1 of `sigma` is forbidden. Empty if there is none.
+std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma) {
+  const std::size_t n = sigma.size();
+  const double inf = std::numeric_limits<double>::infinity(), forbidden = 1e9;
+  std::vector<double> u(n + 1, 0), v(n + 1, 0);
+  std::vector<std::size_t> row_of(n + 1, 0), way(n + 1, 0);
+  const auto cost = [&](std::size_t i, std::size_t j) {
+    return sigma[i - 1][j - 1] == kAbsent ? forbidden : -static_cast<double>(sigma[i - 1][j - 1]);
+  };
+  for (std::size_t i = 1; i <= n; ++i) {
+    row_of[0] = i;
+    std::size_t j0 = 0;
+    std::vector<double> least(n + 1, inf);
+    std::vector<bool> used(n + 1, false);
+    do {
+      used[j0] = true;
+      const std::size_t i0 = row_of[j0];
+      std::size_t j1 = 0;
+      double delta = inf;
+      for (std::size_t j = 1; j <= n; ++j) {
+        if (used[j]) continue;
+        const double reduced = cost(i0, j) - u[i0] - v[j];
+        if (reduced < least[j]) least[j] = reduced, way[j] = j0;
+        if (least[j] < delta) delta = least[j], j1 = j;
+      }
+      for (std::size_t j = 0; j <= n; ++j) {
+        if (used[j]) u[row_of[j]] += delta, v[j] -= delta;
+        else least[j] -= delta;
+      }
+      j0 = j1;
+    } while (row_of[j0] != 0);
+    do {
+      const std::size_t j1 = way[j0];
+      row_of[j0] = row_of[j1];
+      j0 = j1;
+    } while (j0 != 0);
+  }
+  std::vector<int> transversal(n, -1);
+  for (std::size_t j = 1; j <= n; ++j) {
+    if (sigma[row_of[j] - 1][j - 1] == kAbsent) return {};
+    transversal[row_of[j] - 1] = static_cast<int>(j) - 1;
+  }
+  return transversal;
+}
+
+// An unknown that cannot be matched, for the message.
+std::string undetermined(const System& s, const std::vector<std::vector<int>>& sigma) {
+  for (std::size_t j = 0; j < s.size(); ++j) {
+    bool occurs = false;
+    for (std::size_t i = 0; i < s.size(); ++i) occurs = occurs || sigma[i][j] != kAbsent;
+    if (!occurs) return s.variable_names[j];
+  }
+  return {};
+}
+
+}  // namespace
+
+Outcome analyse(const System& s, const std::vector<double>& parameters, const ProbeHints& hints, Structure& out) {
+  const std::size_t n = s.size();
+  const Graph& g = *s.model->graph;
+  Probe probe(s, parameters);
+  std::vector<std::vector<double>> largest(n, std::vector<double>(probe.inputs().size(), 0));
+  std::mt19937_64 random(20261121);
+  int measured = 0;
+  for (int attempt = 0; attempt < 20 && measured < kProbes; ++attempt) {
+    auto trial = largest;
+    if (probe.measure(hints, random, trial)) largest = std::move(trial), ++measured;
+  }
+  if (measured == 0)
+    return {OutcomeKind::not_a_number, "the equations have no value near the initial data",
+            "look for roots or logarithms of negative numbers and divisions by zero at the start"};
+
+  out.sigma.assign(n, std::vector<int>(n, kAbsent));
+  for (std::size_t i = 0; i < n; ++i) {
+    const double scale = *std::max_element(largest[i].begin(), largest[i].end());
+    for (std::size_t k = 0; k < probe.inputs().size(); ++k) {
+      const auto j = s.variable(probe.inputs()[k].symbol);
+      if (!j || !(largest[i][k] > kNoDependence * scale)) continue;
+      out.sigma[i][*j] = std::max(out.sigma[i][*j], static_cast<int>(g.node(probe.inputs()[k].symbol).order));
+    }
+  }
+  out.transversal = highest_transversal(out.sigma);
+  if (out.transversal.empty()) {
+    const std::string name = undetermined(s, out.sigma);
+    return {OutcomeKind::singular,
+            name.empty() ? "the equations do not determine the motion: there are more constraints than they leave room for"
+                         : "no equation determines '" + name + "'",
+            name.empty() ? "look for constraints that say the same, or leave one out"
+                         : "a coordinate needs a mass, an inertia or a constraint that it moves"};
+  }
+  // Smallest offsets: d_j = max (sigma_ij + c_i), c_i = d_j - sigma_ij on the transversal.
+  out.c.assign(n, 0);
+  out.d.assign(n, 0);
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t j = 0; j < n; ++j) {
+      out.d[j] = 0;
+      for (std::size_t i = 0; i < n; ++i)
+        if (out.sigma[i][j] != kAbsent) out.d[j] = std::max(out.d[j], out.sigma[i][j] + out.c[i]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t j = static_cast<std::size_t>(out.transversal[i]);
+      const int c = out.d[j] - out.sigma[i][j];
+      if (c != out.c[i]) out.c[i] = c, again = true;
+    }
+  }
+  out.state_dimension = 0;
+  for (int d : out.d) out.state_dimension += d;
+  for (int c : out.c) out.state_dimension -= c;
+  int holonomic = 0;
+  for (std::size_t r : s.constraints) holonomic += s.model->constraints[r].order == 0;
+  out.degrees_of_freedom = static_cast<int>(s.coordinates) - static_cast<int>(s.constraints.size());
+  out.configuration_dimension = static_cast<int>(s.coordinates) - holonomic;
+  return {};
+}
+
+std::string print(const System& s, const Structure& t) {
+  std::string out = "signature matrix (rows: equations, columns: unknowns; * on the transversal)\n";
+  std::size_t width = 4;
+  for (const std::string& v : s.variable_names) width = std::max(width, v.size() + 2);
+  const auto cell = [&](std::string text) { return std::string(width > text.size() ? width - text.size() : 0, ' ') + text; };
+  out += cell("");
+  for (const std::string& v : s.variable_names) out += cell(v);
+  out += cell("c") + "\n";
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    out += cell(s.equation_names[i]);
+    for (std::size_t j = 0; j < s.size(); ++j) {
+      std::string entry = t.sigma[i][j] == kAbsent ? "-" : std::to_string(t.sigma[i][j]);
+      if (t.transversal[i] == static_cast<int>(j)) entry += "*";
+      out += cell(entry);
+    }
+    out += cell(std::to_string(t.c[i])) + "\n";
+  }
+  out += cell("d");
+  for (int d : t.d) out += cell(std::to_string(d));
+  return out + "\n";
+}
+
+}  // namespace anholon

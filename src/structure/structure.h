@@ -1,0 +1,46 @@
+// Pryce's Sigma-method: what must be differentiated, what is solved for, what may be prescribed.
+//
+//   sigma_ij  order of the highest derivative of variable j that truly occurs in equation i
+//   Val       highest-value transversal;  offsets  d_j - c_i >= sigma_ij, equality on it
+//   J_ij      = dE_i / dx_j^(d_j - c_i), the system Jacobian
+// If J is regular at a consistent point, Val = sum d - sum c is the dimension of the state: equation
+// i is differentiated c_i times, x_j^(d_j) is solved for, and E_i^(k) = 0 (k < c_i) are the hidden
+// constraints [theory: the DAE view].
+//
+// "Truly" is decided by numbers, not by symbols: a derivative counts if the partial derivative by it
+// is not zero at random points (theory.md section 4.3, the jet trap).
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/outcome.h"
+#include "system/system.h"
+
+namespace anholon {
+
+inline constexpr int kAbsent = -1;  // no derivative of variable j occurs in equation i
+
+struct Structure {
+  std::vector<std::vector<int>> sigma;
+  std::vector<int> transversal;  // equation i -> variable
+  std::vector<int> c, d;
+  int state_dimension = 0;          // sum d - sum c
+  int degrees_of_freedom = 0;       // n - s: independent velocities
+  int configuration_dimension = 0;  // n - number of holonomic constraints
+
+  int largest_c() const;
+};
+
+// Values from which the probing points are drawn (coordinate jets by order); may be empty.
+struct ProbeHints {
+  std::vector<std::vector<double>> derivatives;  // [order][coordinate]
+  double t = 0;
+};
+
+// Outcome `singular` if the system has no transversal (an unknown that no equation determines).
+Outcome analyse(const System& system, const std::vector<double>& parameters, const ProbeHints& hints,
+                Structure& structure);
+
+std::string print(const System& system, const Structure& structure);
+
+}  // namespace anholon

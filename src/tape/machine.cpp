@@ -1,0 +1,194 @@
+#include "base/assert.h"
+#include "tape/tape.h"
+
+namespace anholon {
+
+namespace {
+
+template <Number N>
+N apply(Function f, const N& u) {
+  switch (f) {
+#define ROW(name, derivative, parity, latex, domain) \
+  case Function::name: return name(u);
+#include "expr/elementary.def"
+#undef ROW
+  }
+  return u;
+}
+
+template <Number N>
+N power_value(const N& u, const N& r, const Rational& exact) {
+  if (exact == Rational(1, 2)) return sqrt(u);
+  if (exact == Rational(-1, 2)) return N(1) / sqrt(u);
+  if (exact == Rational(3, 2)) return u * sqrt(u);
+  if (exact == Rational(-3, 2)) return N(1) / (u * sqrt(u));
+  return pow(u, r);
+}
+
+}  // namespace
+
+template <Number N>
+Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& parameters)
+    : tape_(&tape),
+      // An odd stride keeps histories of different slots off the same cache sets.
+      stride_((orders + static_cast<std::size_t>(tape.largest_lead) + 1) | 1),
+      data_(stride_ * tape.code.size(), N(0)) {
+  for (const Rational& r : tape.rationals) rationals_.push_back(from_rational<N>(r));
+  for (std::uint32_t s = 0; s < tape.code.size(); ++s) {
+    const Instruction& in = tape.code[s];
+    if (in.op == Op::parameter) series(s)[0] = parameters[in.index];
+  }
+  // Constant slots once and for all; derivatives of constants may stand later, and are not needed.
+  for (std::uint32_t s = 0; s < tape.code.size(); ++s)
+    if (tape.code[s].constant) step(tape.code[s], s, 0);
+}
+
+template <Number N>
+void Machine<N>::sweep(int stage, std::uint32_t from, std::uint32_t to) {
+  for (std::uint32_t s = from; s < to; ++s) {
+    const Instruction& in = tape_->code[s];
+    const int p = stage + in.lead;
+    if (in.constant || in.op == Op::input || p < 0) continue;
+    step(in, s, static_cast<std::size_t>(p));
+  }
+}
+
+template <Number N>
+void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) {
+  N* w = series(slot);
+  switch (in.op) {
+    case Op::constant: w[0] = rationals_[in.index]; return;
+    case Op::pi: w[0] = pi<N>(); return;
+    case Op::input: case Op::parameter: return;
+    case Op::linear: {
+      N s(0);
+      for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
+        const LinearTerm& t = tape_->linear_terms[k];
+        if (p > 0 && tape_->code[t.slot].constant) continue;
+        addmul(s, rationals_[t.coefficient], series(t.slot)[p]);
+      }
+      w[p] = s;
+      return;
+    }
+    case Op::scale: w[p] = series(in.a)[0] * series(in.b)[p]; return;
+    case Op::multiply: {
+      const N *a = series(in.a), *b = series(in.b);
+      N s(0);
+      for (std::size_t j = 0; j <= p; ++j) addmul(s, a[j], b[p - j]);
+      w[p] = s;
+      return;
+    }
+    case Op::square: {
+      const N* a = series(in.a);
+      N s(0);
+      for (std::size_t j = 0; 2 * j < p; ++j) addmul(s, a[j], a[p - j]);
+      s = s + s;
+      if (p % 2 == 0) addmul(s, a[p / 2], a[p / 2]);
+      w[p] = s;
+      return;
+    }
+    case Op::divide: {
+      const N *a = series(in.a), *b = series(in.b);
+      N s = p == 0 || !tape_->code[in.a].constant ? a[p] : N(0);
+      if (!tape_->code[in.b].constant)
+        for (std::size_t j = 1; j <= p; ++j) addmul(s, N(-b[j]), w[p - j]);
+      w[p] = s / b[0];
+      return;
+    }
+    case Op::power: {
+      const N* u = series(in.a);
+      const N& r = rationals_[in.index];
+      if (p == 0) {
+        w[0] = power_value(u[0], r, tape_->rationals[in.index]);
+        return;
+      }
+      // u w' = r w u'
+      N s(0);
+      for (std::size_t j = 0; j < p; ++j) {
+        const N factor = r * N(static_cast<int>(p - j)) - N(static_cast<int>(j));
+        addmul(s, N(factor * u[p - j]), w[j]);
+      }
+      w[p] = s / (N(static_cast<int>(p)) * u[0]);
+      return;
+    }
+    case Op::function: {
+      const N* u = series(in.a);
+      if (p == 0) {
+        w[0] = apply(static_cast<Function>(in.index), u[0]);
+        return;
+      }
+      // w' = f'(u) u'
+      const N* g = series(in.b);
+      if (tape_->code[in.b].constant) {
+        w[p] = g[0] * u[p];
+        return;
+      }
+      N s(0);
+      for (std::size_t j = 1; j <= p; ++j) addmul(s, N(N(static_cast<int>(j)) * u[j]), g[p - j]);
+      w[p] = s / N(static_cast<int>(p));
+      return;
+    }
+    case Op::arctan2: {
+      const N *y = series(in.a), *x = series(in.b), *gy = series(in.first), *gx = series(in.count);
+      if (p == 0) {
+        w[0] = atan2(y[0], x[0]);
+        return;
+      }
+      N s(0);
+      for (std::size_t j = 1; j <= p; ++j) {
+        const N k(static_cast<int>(j));
+        if (!tape_->code[in.a].constant) addmul(s, N(k * y[j]), gy[p - j]);
+        if (!tape_->code[in.b].constant) addmul(s, N(k * x[j]), gx[p - j]);
+      }
+      w[p] = s / N(static_cast<int>(p));
+      return;
+    }
+  }
+}
+
+template <Number N>
+typename Machine<N>::Partials Machine<N>::partials(std::uint32_t slot) const {
+  const Instruction& in = tape_->code[slot];
+  const N* w = series(slot);
+  switch (in.op) {
+    case Op::constant: case Op::pi: case Op::input: case Op::parameter: case Op::linear: break;
+    case Op::scale: return {N(0), series(in.a)[0]};
+    case Op::multiply: return {series(in.b)[0], series(in.a)[0]};
+    case Op::square: return {N(2) * series(in.a)[0], N(0)};
+    case Op::divide: {
+      const N& b = series(in.b)[0];
+      return {N(1) / b, -(w[0] / b)};
+    }
+    case Op::power: return {rationals_[in.index] * w[0] / series(in.a)[0], N(0)};
+    case Op::function: return {series(in.b)[0], N(0)};
+    case Op::arctan2: return {series(in.first)[0], series(in.count)[0]};
+  }
+  return {N(0), N(0)};
+}
+
+template <Number N>
+std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values) {
+  // Parameters may refer to each other in any order: put values in until none is left.
+  std::vector<N> out;
+  if (values.empty()) return out;
+  Column es(values.begin(), values.end());
+  for (std::size_t depth = 0; depth <= values.size() && !symbols(es).empty(); ++depth)
+    es = substitute(es, [&](NodeId id) {
+      const Node& n = graph.node(id);
+      return n.kind == Kind::parameter ? values[n.index] : Expr{};
+    });
+  const Tape tape = compile(es);
+  Machine<N> machine(tape, 0, {});
+  machine.evaluate();
+  for (std::size_t i = 0; i < es.size(); ++i) out.push_back(machine.value(i));
+  return out;
+}
+
+template class Machine<double>;
+template class Machine<long double>;
+template class Machine<Multi>;
+template std::vector<double> evaluate_parameters<double>(Graph&, std::span<const Expr>);
+template std::vector<long double> evaluate_parameters<long double>(Graph&, std::span<const Expr>);
+template std::vector<Multi> evaluate_parameters<Multi>(Graph&, std::span<const Expr>);
+
+}  // namespace anholon

@@ -1,0 +1,122 @@
+// A straight-line program for a list of expressions, and its interpreter over any number type.
+//
+// Slot i is the result of instruction i. A slot is a Taylor series; the interpreter computes the
+// coefficients of all slots one stage at a time:
+//
+//   stage s computes of each slot the coefficient of order s + lead(slot)   (if that is >= 0).
+//
+// The lead of a root is given by the caller (the offset c_i of equation i: how often the equation
+// is to be differentiated), the lead of any other slot is the largest among its users. Leads make
+// the derivatives of a constraint come out as higher Taylor coefficients of the constraint itself:
+// nothing is ever differentiated symbolically for that.
+//
+// This interpreter is the reference: slow but right. Faster kernels must agree with it.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "expr/diff.h"
+#include "numeric/linear.h"
+
+namespace anholon {
+
+enum class Op : std::uint8_t {
+  constant,   // rational `index`
+  pi,
+  input,      // input `index`
+  parameter,  // parameter `index`
+  linear,     // c0 + sum c_k * slot_k: terms [first, first + count) of `linear_terms`
+  multiply,   // a * b
+  scale,      // a * b with a constant in time
+  square,     // a^2
+  divide,     // a / b
+  power,      // a^r, r = rational `index`, not a whole positive number
+  function,   // elementary function `index` of a; b = slot of its derivative f'(a)
+  arctan2,    // atan2(a, b); `first` and `second` = slots of the derivatives by a and b
+};
+
+struct Instruction {
+  Op op;
+  bool constant = false;  // does not vary with time: only the coefficient of order 0
+  std::uint8_t lead = 0;
+  std::uint32_t a = 0, b = 0;
+  std::uint32_t index = 0;
+  std::uint32_t first = 0, count = 0;
+};
+
+struct LinearTerm {
+  std::uint32_t coefficient;  // rational index
+  std::uint32_t slot;
+};
+
+// The symbol an input slot stands for: t, q_a^(k), lambda_r^(k), …
+struct Input {
+  NodeId symbol;
+  std::uint32_t slot;
+};
+
+struct Tape {
+  std::vector<Instruction> code;
+  std::vector<LinearTerm> linear_terms;
+  std::vector<Rational> rationals;
+  std::vector<Input> inputs;
+  std::vector<std::uint32_t> roots;  // slots of the expressions, in the order given
+  std::uint32_t main_end = 0;        // slots below this serve the first `main_roots` expressions
+  int largest_lead = 0;
+};
+
+// Compiles the expressions. The first `leads.size()` of them are the main roots, with these leads;
+// those that follow have lead 0 and do not influence the slots of the main part.
+// REQUIRES: no frozen mass and no unknown given function occurs.
+Tape compile(std::span<const Expr> es, std::span<const int> leads);
+Tape compile(std::span<const Expr> es);
+
+// What a formula met that has no value there; slot 0.. for the message.
+struct DomainFault {
+  Op op;
+  std::uint32_t index;
+};
+
+template <Number N>
+class Machine {
+ public:
+  // Series of up to `orders` coefficients beyond the lead.
+  Machine(const Tape& tape, std::size_t orders, const std::vector<N>& parameters);
+
+  N* series(std::uint32_t slot) { return &data_[slot * stride_]; }
+  const N* series(std::uint32_t slot) const { return &data_[slot * stride_]; }
+  const N& value(std::size_t root) const { return series(tape_->roots[root])[0]; }
+
+  // Computes stage s of slots [from, to); inputs must be set by the caller.
+  void sweep(int stage, std::uint32_t from, std::uint32_t to);
+  // Values only: all slots at order 0.
+  void evaluate() { sweep(0, 0, static_cast<std::uint32_t>(tape_->code.size())); }
+
+  // d slot / d operand at order 0, for the operands of an instruction.
+  struct Partials {
+    N a, b;
+  };
+  Partials partials(std::uint32_t slot) const;
+  const N& rational(std::uint32_t index) const { return rationals_[index]; }
+  const Tape& tape() const { return *tape_; }
+
+ private:
+  void step(const Instruction& in, std::uint32_t slot, std::size_t p);
+
+  const Tape* tape_;
+  std::size_t stride_;
+  std::vector<N> data_;
+  std::vector<N> rationals_;
+};
+
+extern template class Machine<double>;
+extern template class Machine<long double>;
+extern template class Machine<Multi>;
+
+// Values of parameters in any number type.
+template <Number N>
+std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values);
+
+}  // namespace anholon

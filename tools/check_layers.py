@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""Checks that includes point downwards, and that each outside library stays in its place.
+
+usage: check_layers.py [--root DIR] [--self-test]
+
+The table below is the one of ARCHITECTURE.md.
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+import tempfile
+
+LEVEL = {
+    "base": 0, "numeric": 1, "expr": 2, "tape": 3, "model": 4, "spec": 5, "mechanics": 5,
+    "formulation": 6, "system": 7, "structure": 8, "proof": 8, "program": 9, "jit": 10,
+    "integrate": 10, "result": 11, "run": 12, "report": 13, "cli": 14, "python": 14,
+}  # fmt: skip
+
+# Layers that may see less than everything below them.
+ONLY = {
+    "result": {"base", "numeric"},
+}
+NOT = {
+    "formulation": {"spec"},
+    "structure": {"spec"},
+    "proof": {"spec"},
+    "program": {"spec", "proof"},
+    "report": {"jit", "integrate"},
+}
+
+# The checker of certificates must not trust the simplifier: it sees numbers and the format only.
+VERIFY = re.compile(r"^proof/verify\w*\.(h|cpp)$")
+VERIFY_MAY = re.compile(r"^(base/|numeric/|proof/certificate|proof/verify)")
+
+# header pattern, what we call it, layers that may include it, number of files that may
+OUTSIDE = [
+    (r"(flint/|arb|acb|arf|arith|mag\.h|ca\.h|ca_|calcium|antic|nf\.h|nf_|fmp[qz]|qqbar)", "FLINT/Arb", {"expr", "numeric"}, None),
+    (r"(gmp|gmpxx|mpfr|mpf2mpfr|mpc)\.h$", "GMP/MPFR", {"expr", "numeric"}, None),
+    (r"toml\+\+/", "toml++", {"spec"}, 1),
+    (r"CLI/", "CLI11", {"cli"}, 1),
+    (r"(llvm|llvm-c)/", "LLVM", {"jit"}, None),
+    (r"sleef", "SLEEF", {"jit"}, None),
+    (r"mpi\.h$", "MPI", {"run"}, 1),
+    (r"(hdf5|H5\w*)(_hl)?\.h$", "HDF5", {"result"}, 1),
+    (r"sqlite3\.h$", "SQLite", {"result"}, 1),
+    (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate"}, None),
+    (r"pybind11/", "pybind11", {"python"}, None),
+    (r"(gtest|gmock|benchmark|nlohmann)/", "a test library", set(), None),
+]  # fmt: skip
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+SOURCES = {".h", ".hpp", ".cpp", ".c", ".def", ".inc"}
+
+
+def may_include(layer):
+    below = {name for name, level in LEVEL.items() if level < LEVEL[layer]}
+    return (ONLY.get(layer, below) - NOT.get(layer, set())) | {layer}
+
+
+def includes(path):
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if match:
+            yield number, match[1], match[2]
+
+
+def check(root):
+    problems = []
+    users = {}
+    src = root / "src"
+    for path in sorted(p for p in src.rglob("*") if p.is_file() and p.suffix in SOURCES):
+        inside = path.relative_to(src)
+        layer = inside.parts[0]
+        if len(inside.parts) == 1 or layer not in LEVEL:
+            problems.append(f"src/{inside}: '{layer}' is not a layer of tools/check_layers.py")
+            continue
+        allowed = may_include(layer)
+        for number, quote, header in includes(path):
+            where = f"src/{inside}:{number}"
+            if quote == '"':
+                target = header.split("/")[0]
+                if VERIFY.match(str(inside)) and not VERIFY_MAY.match(header):
+                    problems.append(f'{where}: the certificate checker may not include "{header}"')
+                elif target == "anholon":
+                    pass
+                elif "/" not in header or target not in LEVEL:
+                    problems.append(f'{where}: "{header}" does not begin with a layer (write "layer/file.h")')
+                elif target not in allowed:
+                    way = "across" if LEVEL[target] == LEVEL[layer] else "upward" if LEVEL[target] > LEVEL[layer] else "where it may not look"
+                    problems.append(f'{where}: {layer} includes "{header}": {way}')
+            for pattern, name, layers, _ in OUTSIDE:
+                if re.match(pattern, header) and not (quote == '"' and header.split("/")[0] in LEVEL):
+                    users.setdefault(name, set()).add(str(inside))
+                    if layer not in layers:
+                        place = " and ".join(f"{x}/" for x in sorted(layers)) or "test/"
+                        problems.append(f"{where}: {name} belongs into {place} only")
+    for _, name, _, limit in OUTSIDE:
+        files = sorted(users.get(name, ()))
+        if limit is not None and len(files) > limit:
+            problems.append(f"{name} is included by {len(files)} files, {limit} is allowed: {', '.join(files)}")
+
+    public = root / "include"
+    for path in sorted(p for p in public.rglob("*") if p.is_file() and p.suffix in SOURCES):
+        for number, quote, header in includes(path):
+            ours = quote == '"' and header.startswith("anholon/")
+            standard = quote == "<" and re.fullmatch(r"[a-z_0-9]+", header)
+            if not ours and not standard:
+                problems.append(f"{path.relative_to(root)}:{number}: a public header includes {header}; standard library only")
+    return problems
+
+
+GOOD = {
+    "src/base/text.h": "#include <string>\n",
+    "src/expr/graph.cpp": '#include <flint/flint.h>\n#include "base/text.h"\n#include "expr/graph.h"\n',
+    "src/expr/graph.h": '// #include "cli/main.h"\n',
+    "src/spec/read.cpp": '#include <toml++/toml.h>\n#include "model/model.h"\n',
+    "src/report/html.cpp": '#include "result/columns.h"\n#include "program/program.h"\n',
+    "src/proof/verify.cpp": '#include "numeric/ball.h"\n#include "proof/certificate.h"\n',
+    "src/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "run/run.h"\n',
+    "include/anholon/api.h": "#include <vector>\n",
+}
+MUTANTS = {
+    "upward": ("src/expr/bad.cpp", '#include "model/model.h"\n'),
+    "across": ("src/mechanics/bad.cpp", '#include "spec/read.h"\n'),
+    "across, below": ("src/formulation/forms/bad.cpp", '  #  include "spec/read.h"\n'),
+    "result sees numbers only": ("src/result/bad.cpp", '#include "model/model.h"\n'),
+    "report does not integrate": ("src/report/bad.cpp", '#include "integrate/taylor.h"\n'),
+    "program does not prove": ("src/program/bad.cpp", '#include "proof/certificate.h"\n'),
+    "verify trusts the simplifier": ("src/proof/verify.cpp", '#include "expr/graph.h"\n'),
+    "unknown layer": ("src/util/bad.h", "\n"),
+    "no layer in the path": ("src/expr/bad.cpp", '#include "graph.h"\n'),
+    "FLINT too high": ("src/model/bad.h", "#include <flint/fmpq.h>\n"),
+    "GMP too high": ("src/tape/bad.h", "#include <gmpxx.h>\n"),
+    "MPFR too low": ("src/base/bad.h", "#include <mpfr.h>\n"),
+    "toml++ twice": ("src/spec/again.cpp", "#include <toml++/toml.h>\n"),
+    "toml++ elsewhere": ("src/cli/bad.cpp", "#include <toml++/toml.hpp>\n"),
+    "CLI11 twice": ("src/cli/again.cpp", "#include <CLI/App.hpp>\n"),
+    "LLVM outside jit": ("src/run/bad.cpp", "#include <llvm/IR/Module.h>\n"),
+    "test library in src": ("src/base/bad.cpp", "#include <gtest/gtest.h>\n"),
+    "public header": ("include/anholon/bad.h", '#include "expr/graph.h"\n'),
+}
+
+
+def write(root, files):
+    for name, text in files.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+
+def self_test():
+    failures = 0
+    with tempfile.TemporaryDirectory() as scratch:
+        root = pathlib.Path(scratch) / "good"
+        write(root, GOOD)
+        for problem in check(root):
+            print(f"a good tree was refused: {problem}")
+            failures += 1
+    for title, (name, text) in MUTANTS.items():
+        with tempfile.TemporaryDirectory() as scratch:
+            root = pathlib.Path(scratch)
+            write(root, GOOD | {name: text})
+            if not check(root):
+                print(f"mutant not refused: {title}")
+                failures += 1
+    print(f"{len(MUTANTS)} mutants, {failures} mistakes")
+    return 1 if failures else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
+    parser.add_argument("--self-test", action="store_true")
+    args = parser.parse_args()
+    if args.self_test:
+        return self_test()
+    problems = check(args.root)
+    for problem in problems:
+        print(problem)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,345 @@
+#!/usr/bin/env python3
+"""Runs transcripts: Markdown files that hold a model, commands and their exact output.
+
+usage: golden.py --program PROGRAM [--bless] [CASE.md ...]     (default: all of test/golden)
+
+A fenced block whose info has two words, as in ```toml disc.toml, is written to that file in a
+scratch folder. In ```console blocks a line `$ command` is run there by bash (a command that ends
+in \\ goes on in the next line), and what follows it is its exact output, stdout and stderr merged,
+trailing blank lines aside; a last line `[exit 2]` is the exit code where it is not 0. `models` in the
+scratch folder is the folder of shipped models, `anholon` the program under test.
+
+In an expected line … stands for any text; a line that is only … stands for any number of lines.
+"""
+
+import argparse
+import difflib
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+WILD = "…"
+TIMEOUT = 600
+EXIT = re.compile(r"\[exit \d+\]|\[still running after \d+ s\]")
+FENCE = re.compile(r"^(`{3,})\s*(.*?)\s*$")
+
+
+class CaseError(Exception):
+    pass
+
+
+class Step:
+    """One command of a console block: lines[start:end] of the file hold its expected output."""
+
+    def __init__(self, number, command, start):
+        self.number, self.command, self.start, self.end = number, command, start, start
+
+
+def parse(lines):
+    """-> [(name, text) to write] , [Step]"""
+    files, steps = [], []
+    at = 0
+    while at < len(lines):
+        fence = FENCE.match(lines[at])
+        at += 1
+        if not fence:
+            continue
+        begin = at
+        while at < len(lines) and lines[at].rstrip() != fence[1]:
+            at += 1
+        if at == len(lines):
+            raise CaseError(f"line {begin}: the block is never closed")
+        info = fence[2].split()
+        if info == ["console"]:
+            steps += parse_console(lines, begin, at)
+        elif len(info) == 2:
+            name = pathlib.PurePosixPath(info[1])
+            if name.is_absolute() or ".." in name.parts or name.parts[0] in ("models", "build", "bin"):
+                raise CaseError(f"line {begin}: '{name}' cannot be a file name in the scratch folder")
+            files.append((str(name), "".join(line + "\n" for line in lines[begin:at])))
+        at += 1
+    return files, steps
+
+
+def parse_console(lines, begin, end):
+    steps = []
+    at = begin
+    while at < end:
+        if lines[at].startswith("$ "):
+            number, command = at + 1, lines[at][2:]
+            while command.endswith("\\") and at + 1 < end:
+                at += 1
+                command = command[:-1] + lines[at].removeprefix("> ")
+            at += 1
+            steps.append(Step(number, command.strip(), at))
+        elif not steps:
+            raise CaseError(f"line {at + 1}: a console block begins with a line `$ command`")
+        else:
+            at += 1
+        steps[-1].end = at
+    return steps
+
+
+def strip_end(lines):
+    lines = list(lines)
+    while lines and not lines[-1].strip():
+        lines.pop()
+    return lines
+
+
+class Scratch:
+    """A folder in which the commands of one case run, one after the other."""
+
+    def __init__(self, program, files):
+        self.temporary = tempfile.TemporaryDirectory(prefix="anholon-")
+        self.folder = pathlib.Path(self.temporary.name).resolve()
+        work = self.work = self.folder / "work"
+        for name in ("bin", "home", "work/build"):
+            (self.folder / name).mkdir(parents=True)
+        program = pathlib.Path(program).resolve()
+        (self.folder / "bin" / "anholon").symlink_to(program)
+        (work / "build" / "anholon").symlink_to(program)
+        if (ROOT / "models").is_dir():
+            (work / "models").symlink_to(ROOT / "models")
+        for name, text in files:
+            (work / name).parent.mkdir(parents=True, exist_ok=True)
+            (work / name).write_text(text, encoding="utf-8")
+        keep = {k: v for k, v in os.environ.items() if not k.startswith(("LC_", "LANG", "XDG_"))}
+        self.environment = keep | {
+            "PATH": f"{self.folder / 'bin'}:{os.environ.get('PATH', '/usr/bin:/bin')}",
+            "HOME": str(self.folder / "home"), "TMPDIR": str(self.folder / "home"),
+            "LC_ALL": "C.UTF-8", "TERM": "dumb", "NO_COLOR": "1", "COLUMNS": "100",
+            "ANHOLON_MODELS": "models",
+        }  # fmt: skip
+
+    def run(self, command):
+        """-> output lines, with a last [exit N] where the command failed"""
+        try:
+            done = subprocess.run(
+                ["bash", "-o", "pipefail", "-c", command], cwd=self.work, env=self.environment,
+                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=TIMEOUT,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return [f"[still running after {TIMEOUT} s]"]
+        text = done.stdout.decode("utf-8", errors="backslashreplace")
+        text = text.replace(str(self.work), "<scratch>").replace(str(ROOT), "<root>")
+        # Not splitlines(): that also cuts at form feeds and the like.
+        lines = strip_end(text.split("\n"))
+        if done.returncode != 0:
+            lines.append(f"[exit {done.returncode}]")
+        return lines
+
+    def outputs(self):
+        """The files the commands left, by name."""
+        found = {}
+        for path in sorted(self.work.rglob("*")):
+            if path.is_file() and not path.is_symlink():
+                found[str(path.relative_to(self.work))] = path.read_bytes()
+        return found
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.temporary.cleanup()
+
+
+def line_matches(pattern, line):
+    if WILD not in pattern:
+        return pattern == line
+    return re.fullmatch(".*".join(re.escape(part) for part in pattern.split(WILD)), line) is not None
+
+
+def align(expected, actual):
+    """For each actual line the index of the expected line it answers to, or None.
+
+    The longest common subsequence, in which a line … may answer any number of lines. Returns also
+    whether every expected line is answered, a line … by none if need be.
+    """
+    rows, columns = len(expected), len(actual)
+    # Equal ends first: the table is quadratic, transcripts mostly agree.
+    low = 0
+    while low < min(rows, columns) and expected[low].strip() != WILD and line_matches(expected[low], actual[low]):
+        low += 1
+    best = [[0] * (columns + 1) for _ in range(rows + 1)]
+    for i in range(rows - 1, low - 1, -1):
+        many = expected[i].strip() == WILD
+        for j in range(columns - 1, low - 1, -1):
+            value = max(best[i + 1][j], best[i][j + 1])
+            if many:
+                # Worth less than a true match, so that a … never takes what a written line could have.
+                value = max(value, 1 + best[i][j + 1])
+            elif line_matches(expected[i], actual[j]):
+                value = max(value, 1000 + best[i + 1][j + 1])
+            best[i][j] = value
+    answer = list(range(low)) + [None] * (columns - low)
+    i = j = low
+    while i < rows and j < columns:
+        if expected[i].strip() == WILD and best[i][j] == 1 + best[i][j + 1]:
+            answer[j] = i
+            j += 1
+        elif expected[i].strip() != WILD and line_matches(expected[i], actual[j]) and best[i][j] == 1000 + best[i + 1][j + 1]:
+            answer[j] = i
+            i, j = i + 1, j + 1
+        elif best[i][j] == best[i + 1][j]:
+            i += 1
+        else:
+            j += 1
+    needed = {k for k, line in enumerate(expected) if line.strip() != WILD}
+    complete = None not in answer and needed <= set(answer)
+    return answer, complete
+
+
+def merge(expected, actual):
+    """-> (does it match, the new expected lines: the actual ones, with the wildcards that still hold)"""
+    # Apart, so that no … can answer for an exit code.
+    expected, expected_exit = split_exit(expected)
+    actual, actual_exit = split_exit(actual)
+    same, merged = merge_lines(expected, actual)
+    return same and expected_exit == actual_exit, merged + actual_exit
+
+
+def split_exit(lines):
+    if lines and EXIT.fullmatch(lines[-1]):
+        return lines[:-1], lines[-1:]
+    return lines, []
+
+
+def merge_lines(expected, actual):
+    answer, complete = align(expected, actual)
+    if complete:
+        return True, list(expected)
+    merged, previous = [], None
+    for index, line in zip(answer, actual):
+        if index is None:
+            merged.append(line)
+        elif expected[index].strip() != WILD or index != previous:
+            merged.append(expected[index])
+        previous = index
+    return False, merged
+
+
+def run_case(path, program, bless, run_step=None):
+    """-> True if all is as expected. run_step(step, expected) may say 'skip' or 'code only'."""
+    shown = os.path.relpath(path, ROOT)
+    lines = path.read_text(encoding="utf-8").split("\n")
+    files, steps = parse(lines)
+    if not steps:
+        raise CaseError("no `$ command` in a ```console block, so nothing is checked")
+    good, edits = True, []
+    with Scratch(program, files) as scratch:
+        for step in steps:
+            expected = strip_end(lines[step.start : step.end])
+            mode = run_step(step, expected) if run_step else "exact"
+            if mode == "skip":
+                continue
+            actual = scratch.run(step.command)
+            if mode == "code only":
+                actual = split_exit(actual)[1]
+            same, merged = merge(expected, actual)
+            if same:
+                continue
+            good = False
+            edits.append((step, merged))
+            print(f"{shown}:{step.number}: $ {step.command}")
+            diff = difflib.unified_diff(expected, merged, "expected", "actual", lineterm="", n=3)
+            print("\n".join(list(diff)))
+    if bless and edits:
+        for step, merged in reversed(edits):
+            if any(line.startswith(("$ ", "```")) for line in merged):
+                raise CaseError(f"line {step.number}: the output has a line that begins with '$ ' or '```' and cannot be a transcript")
+            lines[step.start : step.end] = merged
+        path.write_text("\n".join(lines), encoding="utf-8")
+        print(f"{shown}: rewritten")
+        return True
+    return good
+
+
+def run_all(paths, program, bless, run_step=None):
+    failed = 0
+    for path in paths:
+        try:
+            if not run_case(path, program, bless, run_step):
+                failed += 1
+        except CaseError as error:
+            print(f"{os.path.relpath(path, ROOT)}: {error}")
+            failed += 1
+    return failed
+
+
+def all_cases():
+    return sorted((ROOT / "test" / "golden").glob("good/*.md")) + sorted((ROOT / "test" / "golden").glob("bad/*.md"))
+
+
+def self_test():
+    """The runner must accept what is right and refuse each mutant of it."""
+    fake = '#!/bin/sh\necho "took $$ s"; cat "$1" >&2; [ -e "$1" ] || exit 2\n'
+    case = "# title\n```toml a.toml\nx = 1\n```\n```console\n$ anholon a.toml\ntook … s\nx = 1\n\n$ anholon b 2>/dev/null \\\n    && true\n…\n[exit 2]\n```\n"
+    mutants = {
+        "wrong line": case.replace("\nx = 1\n\n", "\nx = 2\n\n"),
+        "missing line": case.replace("\nx = 1\n\n", "\n\n"),
+        "extra line": case.replace("\nx = 1\n\n", "\nx = 1\ny\n\n"),
+        "wrong order": case.replace("took … s\nx = 1", "x = 1\ntook … s"),
+        "wrong exit code": case.replace("[exit 2]", "[exit 1]"),
+        "exit code forgotten": case.replace("[exit 2]\n", ""),
+        "exit code invented": case.replace("\nx = 1\n\n", "\nx = 1\n[exit 1]\n\n"),
+        "wildcard too narrow": case.replace("took … s", "took … ms"),
+        "nothing run": case.replace("$ anholon a.toml", "").replace("console", "text"),
+        "never closed": case.removesuffix("```\n"),
+        "escape": case.replace("a.toml\nx", "../a.toml\nx"),
+    }
+    failures = 0
+    with tempfile.TemporaryDirectory() as scratch:
+        program = pathlib.Path(scratch) / "program"
+        program.write_text(fake)
+        program.chmod(0o755)
+        path = pathlib.Path(scratch) / "case.md"
+
+        def verdict(text, bless=False):
+            path.write_text(text, encoding="utf-8")
+            stdout, sys.stdout = sys.stdout, open(os.devnull, "w")
+            try:
+                return run_all([path], program, bless) == 0
+            finally:
+                sys.stdout.close()
+                sys.stdout = stdout
+
+        if not verdict(case):
+            print("a good case was refused")
+            failures += 1
+        for title, text in mutants.items():
+            if verdict(text):
+                print(f"mutant not refused: {title}")
+                failures += 1
+        for title in ("wrong line", "missing line", "extra line", "wrong exit code"):
+            verdict(mutants[title], bless=True)
+            if path.read_text(encoding="utf-8").replace("\n\n$", "\n$") != case.replace("\n\n$", "\n$"):
+                print(f"blessing did not restore: {title}\n{path.read_text(encoding='utf-8')}")
+                failures += 1
+    print(f"{len(mutants)} mutants, {failures} mistakes")
+    return 1 if failures else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=pathlib.Path)
+    parser.add_argument("--bless", action="store_true")
+    parser.add_argument("--self-test", action="store_true")
+    parser.add_argument("cases", nargs="*", type=pathlib.Path)
+    args = parser.parse_args()
+    if args.self_test:
+        return self_test()
+    if args.program is None or not args.program.exists():
+        parser.error("--program must name the program under test")
+    cases = [path.resolve() for path in args.cases] or all_cases()
+    failed = run_all(cases, args.program, args.bless)
+    print(f"{len(cases)} cases, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

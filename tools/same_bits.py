@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Runs the same transcripts with programs by two compilers; every bit printed or written must agree.
+
+usage: same_bits.py PROGRAM OTHER
+
+Cases: test/golden/good/*.md and test/determinism/*.md (the latter need no expected output). Lines
+that a … of the case answers for, such as timings, are not compared. Exit code 77: OTHER is not built.
+"""
+
+import difflib
+import os
+import pathlib
+import sys
+
+import golden
+
+
+def transcript(path, program):
+    lines = path.read_text(encoding="utf-8").split("\n")
+    files, steps = golden.parse(lines)
+    output = []
+    with golden.Scratch(program, files) as scratch:
+        for step in steps:
+            expected = golden.strip_end(lines[step.start : step.end])
+            actual = scratch.run(step.command)
+            output.append(f"$ {step.command}")
+            answer, _ = golden.align(expected, actual)
+            for index, line in zip(answer, actual):
+                wild = index is not None and golden.WILD in expected[index]
+                output.append(expected[index] if wild else line)
+        return output, scratch.outputs()
+
+
+def main(program, other):
+    if not pathlib.Path(other).exists():
+        print(f"{other} is not built; ./dev test builds it")
+        return 77
+    cases = sorted((golden.ROOT / "test").glob("golden/good/*.md"))
+    cases += sorted((golden.ROOT / "test").glob("determinism/*.md"))
+    failed = 0
+    for path in cases:
+        shown = os.path.relpath(path, golden.ROOT)
+        (text, files), (text2, files2) = transcript(path, program), transcript(path, other)
+        differences = list(difflib.unified_diff(text, text2, program, other, lineterm="", n=1))
+        differences += [
+            f"file {name} differs" for name in sorted(files.keys() | files2.keys()) if files.get(name) != files2.get(name)
+        ]
+        if differences:
+            failed += 1
+            print("\n".join([f"{shown}:", *differences]))
+    print(f"{len(cases)} cases, {failed} differ")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:3]))
