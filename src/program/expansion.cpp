@@ -31,6 +31,7 @@ Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters
   partials_.resize(program.tainted.size());
   delta_.assign(program.tape.main_end, N(0));
   r_.assign(n, N(0));
+  delta_x_ = r_;
 }
 
 template <Number N>
@@ -276,9 +277,9 @@ void Expansion<N>::add_leading(int stage) {
     if (!in.leading) continue;
     const std::size_t order = static_cast<std::size_t>(stage + tape.code[in.slot].lead);
     const std::size_t k = order + static_cast<std::size_t>(in.order);
-    const N value = x_[in.variable * stride_ + k] * (factorial_[k] / factorial_[order]);
-    machine_.series(in.slot)[order] = value;
-    delta_[in.slot] = value;
+    const N ratio = factorial_[k] / factorial_[order];
+    machine_.series(in.slot)[order] = x_[in.variable * stride_ + k] * ratio;
+    delta_[in.slot] = delta_x_[in.variable] * ratio;
   }
   for (std::size_t k = 0; k < p.tainted.size(); ++k) {
     const TaintedSlot& t = p.tainted[k];
@@ -309,19 +310,25 @@ Outcome Expansion<N>::extend() {
     for (std::size_t j = 0; j < p.unknowns(); ++j) x_[j * stride_ + static_cast<std::size_t>(p.d[j] + stage)] = N(0);
     sweep(stage);
     const std::size_t s = static_cast<std::size_t>(stage);
-    for (std::size_t i = 0; i < p.unknowns(); ++i) {
-      const std::size_t order = s + static_cast<std::size_t>(p.c[i]);
-      r_[i] = -(machine_.series(p.tape.roots[i])[order] * (factorial_[order] / factorial_[s]));
+    // The second pass is the step of iterative refinement. Its residual comes from the tape itself,
+    // not from J: where J is nearly singular (Euler angles near their singularity) the tape still
+    // knows the small difference of two rates whose squares J has rounded away.
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::size_t i = 0; i < p.unknowns(); ++i) {
+        const std::size_t order = s + static_cast<std::size_t>(p.c[i]);
+        r_[i] = -(machine_.series(p.tape.roots[i])[order] * (factorial_[order] / factorial_[s]));
+      }
+      lu_.solve_once(r_, y_);
+      for (std::size_t j = 0; j < p.unknowns(); ++j) {
+        const std::size_t order = s + static_cast<std::size_t>(p.d[j]);
+        delta_x_[j] = y_[j] * (factorial_[s] / factorial_[order]);
+        x_[j * stride_ + order] += delta_x_[j];
+        if (!is_finite(y_[j]))
+          return {OutcomeKind::not_a_number, "a derivative of the motion has no value here",
+                  "look for abs, sqrt or a norm that passes through zero"};
+      }
+      add_leading(stage);
     }
-    lu_.solve(r_, y_);
-    for (std::size_t j = 0; j < p.unknowns(); ++j) {
-      const std::size_t order = s + static_cast<std::size_t>(p.d[j]);
-      x_[j * stride_ + order] = y_[j] * (factorial_[s] / factorial_[order]);
-      if (!is_finite(y_[j]))
-        return {OutcomeKind::not_a_number, "a derivative of the motion has no value here",
-                "look for abs, sqrt or a norm that passes through zero"};
-    }
-    add_leading(stage);
   }
   if (p.quadratures > 0) {
     const std::uint32_t end = static_cast<std::uint32_t>(p.tape.code.size());

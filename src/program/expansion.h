@@ -67,7 +67,7 @@ class Expansion {
   Matrix<N> tangent_, j_;
   Lu<N> lu_;
   std::vector<typename Machine<N>::Partials> partials_;
-  std::vector<N> delta_, r_, y_, direction_;
+  std::vector<N> delta_, delta_x_, r_, y_, direction_;
   N constraint_residual_{0}, equation_residual_{0};
 };
 
