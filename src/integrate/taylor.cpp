@@ -66,7 +66,8 @@ Outcome Stepper<N>::expand(const std::vector<N>& guess) {
 template <Number N>
 N Stepper<N>::step_size() const {
   const Program& p = *program_;
-  double size = 1, last = 0, before_last = 0;
+  constexpr double kNothing = -1e300;  // the logarithm of zero
+  double size = 1, last = kNothing, before_last = kNothing;
   for (std::size_t j = 0; j < p.unknowns(); ++j)
     for (int k = 0; k < p.d[j]; ++k) {
       size = std::max(size, std::abs(to_double(expansion_.derivative(j, k))));
@@ -75,14 +76,11 @@ N Stepper<N>::step_size() const {
         for (int i = 1; i <= k; ++i) factor *= order + i;
         // Logarithms: coefficients of high order may leave the range of double.
         const N v = abs(expansion_.coefficient(j, order + k));
-        return v > N(0) ? static_cast<double>(to_double(N(log(v)))) + std::log(factor) : -1e300;
+        return v > N(0) ? static_cast<double>(to_double(N(log(v)))) + std::log(factor) : kNothing;
       };
-      const double a = coefficient(order_), b = coefficient(order_ - 1);
-      if (last == 0 || a > last) last = a;
-      if (before_last == 0 || b > before_last) before_last = b;
+      last = std::max(last, coefficient(order_));
+      before_last = std::max(before_last, coefficient(order_ - 1));
     }
-  if (last == 0) last = -1e300;
-  if (before_last == 0) before_last = -1e300;
   const double ls = std::log(size);
   const double log_rho = std::min((ls - last) / order_, (ls - before_last) / (order_ - 1));
   // e^-2 per order suits order = -ln(tol)/2 + 1; another order keeps h^p rho^-p = tol.
@@ -131,6 +129,9 @@ Outcome Stepper<N>::step(const N& end) {
   const bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
+  // The step that t can show exactly: otherwise the time loses a round-off at every step.
+  const N reached = last ? end : N(t_ + h);
+  h = reached - t_;
 
   std::vector<N> increments;
   polynomial(h, increments, leading_);
@@ -147,7 +148,7 @@ Outcome Stepper<N>::step(const N& end) {
     add_compensated(integrals_[i], integral_carry_[i], s);
   }
   before_ = t_;
-  t_ = last ? end : t_ + h;
+  t_ = reached;
   state_ = std::move(next);
   ++steps_;
   return {};
