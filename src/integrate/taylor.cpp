@@ -26,36 +26,76 @@ int taylor_order(double tolerance) {
 }
 
 template <Number N>
-Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const StepSettings& settings)
+Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
+                    const StepSettings& settings)
     : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.tolerance)),
-      expansion_(program, parameters, order_ - 1) {}
+      expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {}
 
 template <Number N>
-Outcome Stepper<N>::start(const N& t, const std::vector<N>& state, const std::vector<N>& leading) {
+Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
   t_ = before_ = t;
   state_ = state;
-  carry_.assign(state.size(), N(0));
-  integrals_.assign(program_->quadratures, N(0));
+  carry_.assign(state.size(), W(0));
+  integrals_.assign(program_->quadratures, W(0));
   integral_carry_ = integrals_;
   steps_ = 0;
   leading_ = leading;
   return expand(leading_);
 }
 
+template <Number To, Number From>
+static void convert_all(const std::vector<From>& from, std::vector<To>& to) {
+  to.resize(from.size(), To(0));
+  for (std::size_t i = 0; i < from.size(); ++i) to[i] = convert<To>(from[i]);
+}
+
 template <Number N>
-Outcome Stepper<N>::expand(const std::vector<N>& guess) {
-  expansion_.load(t_, state_, guess);
+Outcome Stepper<N>::expand(const std::vector<W>& guess) {
+  convert_all(state_, narrow_state_);
+  convert_all(guess, narrow_leading_);
+  expansion_.load(convert<N>(t_), narrow_state_, narrow_leading_);
   if (Outcome o = expansion_.prepare(); !o.ok()) return o;
-  if (Outcome o = expansion_.project(); !o.ok()) return o;
-  if (Outcome o = expansion_.solve(); !o.ok()) return o;
-  const std::vector<N> unprojected = state_;
-  expansion_.state(state_);
-  for (std::size_t i = 0; i < state_.size(); ++i)
-    if (state_[i] != unprojected[i]) carry_[i] = N(0);
-  expansion_.leading(leading_);
-  if (expansion_.constraint_residual() > worst_constraint_) worst_constraint_ = expansion_.constraint_residual();
-  if (expansion_.equation_residual() > worst_equation_) worst_equation_ = expansion_.equation_residual();
   if (N sigma = expansion_.smallest_singular_value(); sigma < smallest_sigma_) smallest_sigma_ = sigma;
+  point_.load(t_, state_, guess);
+  if constexpr (std::same_as<N, W>) {
+    if (Outcome o = expansion_.project(); !o.ok()) return o;
+    if (Outcome o = expansion_.solve(); !o.ok()) return o;
+    const std::vector<W> unprojected = state_;
+    expansion_.state(state_);
+    for (std::size_t i = 0; i < state_.size(); ++i)
+      if (state_[i] != unprojected[i]) carry_[i] = W(0);
+    expansion_.leading(leading_);
+    point_.load(t_, state_, leading_);
+    worst_constraint_ = std::max(worst_constraint_, expansion_.constraint_residual());
+    worst_equation_ = std::max(worst_equation_, expansion_.equation_residual());
+  } else {
+    const auto solver = [this](const std::vector<W>& r, std::vector<W>& y) {
+      convert_all(r, narrow_r_);
+      expansion_.lu().solve_once(narrow_r_, narrow_y_);
+      convert_all(narrow_y_, y);
+    };
+    point_.evaluate();
+    point_.adopt_jacobian(expansion_.system_jacobian());
+    if (Outcome o = point_.project(solver); !o.ok()) return o;
+    if (Outcome o = point_.solve(solver); !o.ok()) {
+      // The Jacobian moves with the leading derivatives: solve for them in N first.
+      if (o = expansion_.solve(); !o.ok()) return o;
+      expansion_.leading(narrow_leading_);
+      convert_all(narrow_leading_, leading_);
+      point_.load(t_, state_, leading_);
+      point_.evaluate();
+      if (o = point_.project(solver); !o.ok()) return o;
+      if (o = point_.solve(solver); !o.ok()) return o;
+    }
+    point_.state(state_);
+    point_.leading(leading_);
+    convert_all(state_, narrow_state_);
+    convert_all(leading_, narrow_leading_);
+    expansion_.load(convert<N>(t_), narrow_state_, narrow_leading_);
+    expansion_.evaluate();
+    worst_constraint_ = std::max(worst_constraint_, point_.constraint_residual());
+    worst_equation_ = std::max(worst_equation_, point_.equation_residual());
+  }
   if (Outcome o = expansion_.extend(); !o.ok()) return o;
   horizon_ = step_size();
   return {};
@@ -90,28 +130,30 @@ N Stepper<N>::step_size() const {
 }
 
 template <Number N>
-void Stepper<N>::polynomial(const N& h, std::vector<N>& increments, std::vector<N>& leading) const {
+void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
   const Program& p = *program_;
-  increments.assign(expansion_.state_size(), N(0));
-  leading.assign(p.unknowns(), N(0));
+  increments.assign(expansion_.state_size(), W(0));
+  leading.assign(p.unknowns(), W(0));
   for (std::size_t j = 0; j < p.unknowns(); ++j) {
-    const int top = order_ - 1 + p.d[j];
-    for (int k = 0; k <= p.d[j]; ++k) {
-      // sum_i x_(k+i) (k+i)!/i! h^i, without the term of order 0 (that is the state itself).
-      N s(0);
+    const int d = p.d[j], top = order_ - 1 + d;
+    for (int k = 0; k <= d; ++k) {
+      // sum_i x_(k+i) (k+i)!/i! h^i, without the term of order 0 (that is the state itself). What
+      // the wider point knows, coefficients up to the leading one, comes from there.
+      W s(0);
       for (int i = top - k; i >= 1; --i) {
-        N factor(1);
-        for (int f = 1; f <= k; ++f) factor = factor * N(i + f);
-        s = (s + expansion_.coefficient(j, k + i) * factor) * h;
+        W factor(1);
+        for (int f = 1; f <= k; ++f) factor = factor * W(i + f);
+        const W c = k + i <= d ? point_.coefficient(j, k + i) : convert<W>(expansion_.coefficient(j, k + i));
+        s = (s + c * factor) * h;
       }
-      if (k < p.d[j]) increments[expansion_.offset(j) + static_cast<std::size_t>(k)] = s;
-      else leading[j] = expansion_.derivative(j, k) + s;
+      if (k < d) increments[expansion_.offset(j) + static_cast<std::size_t>(k)] = s;
+      else leading[j] = point_.derivative(j, k) + s;
     }
   }
 }
 
 template <Number N>
-Outcome Stepper<N>::step(const N& end) {
+Outcome Stepper<N>::step(const W& end) {
   if (settings_.cancelled && settings_.cancelled())
     return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   if (steps_ >= settings_.most_steps)
@@ -119,10 +161,10 @@ Outcome Stepper<N>::step(const N& end) {
   // The first call expands at the start; each later one where the step before ended.
   if (steps_ > 0)
     if (Outcome o = expand(leading_); !o.ok()) return o;
-  const N left = end - t_;
-  const bool forward = left > N(0);
-  N h = horizon_;
-  const N floor = unit_roundoff<N>() * N(kCollapsedRoundoffs) * (abs(t_) > abs(left) ? abs(t_) : abs(left));
+  const W left = end - t_;
+  const bool forward = left > W(0);
+  W h = convert<W>(horizon_);
+  const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * (abs(t_) > abs(left) ? abs(t_) : abs(left));
   if (!(h > floor))
     return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
             "the motion approaches a singularity: stop before it, or look at the last good state"};
@@ -130,12 +172,12 @@ Outcome Stepper<N>::step(const N& end) {
   if (last) h = abs(left);
   if (!forward) h = -h;
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
-  const N reached = last ? end : N(t_ + h);
+  const W reached = last ? end : convert<W>(convert<N>(W(t_ + h)));
   h = reached - t_;
 
-  std::vector<N> increments;
+  std::vector<W> increments;
   polynomial(h, increments, leading_);
-  std::vector<N> next = state_;
+  std::vector<W> next = state_;
   for (std::size_t i = 0; i < next.size(); ++i) {
     add_compensated(next[i], carry_[i], increments[i]);
     if (!is_finite(next[i]) || std::abs(to_double(next[i])) > kBlowUp)
@@ -143,8 +185,8 @@ Outcome Stepper<N>::step(const N& end) {
   }
   for (std::size_t i = 0; i < integrals_.size(); ++i) {
     const N* series = expansion_.quadrature(i);
-    N s(0);
-    for (int k = order_ - 1; k >= 0; --k) s = (s + series[k] / N(k + 1)) * h;
+    W s(0);
+    for (int k = order_ - 1; k >= 0; --k) s = (s + convert<W>(series[k]) / W(k + 1)) * h;
     add_compensated(integrals_[i], integral_carry_[i], s);
   }
   before_ = t_;
@@ -155,9 +197,9 @@ Outcome Stepper<N>::step(const N& end) {
 }
 
 template <Number N>
-Outcome Stepper<N>::at(const N& t, Expansion<N>& point) const {
-  std::vector<N> state, increments, leading;
-  expansion_.state(state);
+Outcome Stepper<N>::at(const W& t, Expansion<W>& point) const {
+  std::vector<W> state, increments, leading;
+  point_.state(state);
   polynomial(t - before_, increments, leading);
   for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
   point.load(t, state, leading);

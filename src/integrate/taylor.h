@@ -17,48 +17,56 @@ struct StepSettings {
 // ceil(-ln(tolerance)/2 + 1): the order that makes the least work for the tolerance.
 int taylor_order(double tolerance);
 
+// Taylor coefficients are computed in N; the state, the projection on the constraints and the
+// leading derivatives in the wider type W, with the LU of N (mixed-precision refinement). A state
+// rounded to N at every step would be projected on the constraints of another point, which is what
+// limits the energy of a fast spinning body over many steps.
 template <Number N>
 class Stepper {
  public:
-  Stepper(const Program& program, const std::vector<N>& parameters, const StepSettings& settings);
+  using W = Wider<N>;
+
+  Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
+          const StepSettings& settings);
 
   // Starts at a consistent state; `leading` is a first guess and names the branch.
-  Outcome start(const N& t, const std::vector<N>& state, const std::vector<N>& leading = {});
-  // One step towards `end`, at most up to it. After it, `polynomial` covers [before, time()].
-  Outcome step(const N& end);
+  Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
+  // One step towards `end`, at most up to it.
+  Outcome step(const W& end);
 
-  const N& time() const { return t_; }
-  const N& before() const { return before_; }
+  const W& time() const { return t_; }
+  const W& before() const { return before_; }
   std::size_t steps() const { return steps_; }
   int order() const { return order_; }
-  N last_step() const { return t_ - before_; }
 
-  // The solution at the point reached last (before the step is taken) …
-  const Expansion<N>& expansion() const { return expansion_; }
-  // … and anywhere in the last step: projected and with its leading derivatives solved for, in an
-  // expansion of its own.
-  Outcome at(const N& t, Expansion<N>& point) const;
+  // The solution where the last step began, or at the start: projected and solved.
+  const Expansion<W>& point() const { return point_; }
+  // … and anywhere in the last step, in an expansion of the caller.
+  Outcome at(const W& t, Expansion<W>& point) const;
 
-  const std::vector<N>& state() const { return state_; }
   // Integrals of the quadratures since the start.
-  const std::vector<N>& integrals() const { return integrals_; }
-  const N& worst_constraint() const { return worst_constraint_; }
-  const N& worst_equation() const { return worst_equation_; }
+  const std::vector<W>& integrals() const { return integrals_; }
+  const W& worst_constraint() const { return worst_constraint_; }
+  const W& worst_equation() const { return worst_equation_; }
   const N& smallest_sigma() const { return smallest_sigma_; }
 
  private:
-  Outcome expand(const std::vector<N>& guess);
+  Outcome expand(const std::vector<W>& guess);
   N step_size() const;
-  void polynomial(const N& h, std::vector<N>& state, std::vector<N>& leading) const;
+  void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
   StepSettings settings_;
   int order_;
   Expansion<N> expansion_;
-  N t_{0}, before_{0}, horizon_{0};
-  std::vector<N> state_, carry_, leading_, integrals_, integral_carry_;
+  Expansion<W> point_;
+  W t_{0}, before_{0};
+  N horizon_{0};
+  std::vector<W> state_, carry_, leading_, integrals_, integral_carry_;
+  std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;
   std::size_t steps_ = 0;
-  N worst_constraint_{0}, worst_equation_{0}, smallest_sigma_{1};
+  W worst_constraint_{0}, worst_equation_{0};
+  N smallest_sigma_{1};
 };
 
 extern template class Stepper<double>;

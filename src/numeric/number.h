@@ -85,6 +85,25 @@ inline void addmul(N& acc, const N& a, const N& b) {
   }
 }
 
+// The type in which a state is kept while its Taylor coefficients are computed in N: the next wider
+// one that the machine has, else N itself.
+template <Number N>
+struct WiderType {
+  using type = N;
+};
+template <>
+struct WiderType<double> {
+  using type = long double;
+};
+template <Number N>
+using Wider = typename WiderType<N>::type;
+
+template <Number To, Number From>
+To convert(const From& x) {
+  if constexpr (std::same_as<To, From>) return x;
+  else return static_cast<To>(x);
+}
+
 // The decimal text that reads back to the same number (built-in types), or `digits` significant
 // digits (Multi, or when digits > 0).
 std::string number_text(double x, int digits = 0);

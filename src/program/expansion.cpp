@@ -201,6 +201,11 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
 
 template <Number N>
 Outcome Expansion<N>::project() {
+  return project([this](const std::vector<N>& r, std::vector<N>& y) { lu_.solve(r, y); });
+}
+
+template <Number N>
+Outcome Expansion<N>::project(const Solver& solver) {
   const Program& p = *program_;
   const N quiet = unit_roundoff<N>() * N(kQuietRoundoffs);
   constraint_residual_ = N(0);
@@ -215,7 +220,7 @@ Outcome Expansion<N>::project() {
         return {OutcomeKind::not_a_number, "a constraint has no value", "the motion leaves the region where the constraint is defined"};
       if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;
       before = worst;
-      lu_.solve(r_, y_);
+      solver(r_, y_);
       for (std::size_t j = 0; j < p.unknowns(); ++j) {
         const int order = p.d[j] - level;
         if (order < 0) continue;
@@ -231,6 +236,16 @@ Outcome Expansion<N>::project() {
 
 template <Number N>
 Outcome Expansion<N>::solve() {
+  return newton([this](const std::vector<N>& r, std::vector<N>& y) { lu_.solve(r, y); }, true);
+}
+
+template <Number N>
+Outcome Expansion<N>::solve(const Solver& solver) {
+  return newton(solver, false);
+}
+
+template <Number N>
+Outcome Expansion<N>::newton(const Solver& solver, bool own) {
   const Program& p = *program_;
   const N eps = unit_roundoff<N>();
   N last(-1);
@@ -243,7 +258,7 @@ Outcome Expansion<N>::solve() {
       return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
               "the motion leaves the region where the model is defined: stop it before, or change the formula"};
     equation_residual_ = worst;
-    lu_.solve(r_, y_);
+    solver(r_, y_);
     N step(0), size(0);
     for (std::size_t j = 0; j < p.unknowns(); ++j) {
       N& x = x_[j * stride_ + static_cast<std::size_t>(p.d[j])];
@@ -258,7 +273,7 @@ Outcome Expansion<N>::solve() {
     if (!(step > floor)) return {};
     // Round-off reached: steps no longer shrink and are small.
     if (last >= N(0) && !(step < last * N(0.5)) && step < floor * N(1000)) return {};
-    if (k >= 2 && last >= N(0) && step > last * N(0.1)) {
+    if (own && k >= 2 && last >= N(0) && step > last * N(0.1)) {
       // Slow: the Jacobian has changed with the leading derivatives.
       jacobian();
       if (!lu_.factor(j_)) return failed;

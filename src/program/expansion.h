@@ -1,8 +1,12 @@
 // The Taylor expansion of the motion at one point, in any number type.
 //
-// State: x_j^(k), k < d_j, of every unknown j, one after the other. Usage per step:
-//   load(t, state, guess) -> prepare() [values, J, LU] -> project() -> solve() -> extend(k).
+// State: x_j^(k), k < d_j, of every unknown j, one after the other. Usage:
+//   load(t, state, guess) -> prepare() [values, J, LU] -> project() -> solve() -> extend().
+// A wider expansion can project and solve with the LU of a narrower one (mixed-precision iterative
+// refinement): load -> evaluate() -> adopt_jacobian() -> project(solver) -> solve(solver).
 #pragma once
+#include <functional>
+
 #include "base/outcome.h"
 #include "numeric/linear.h"
 #include "program/program.h"
@@ -24,10 +28,22 @@ class Expansion {
   void load(const N& t, const std::vector<N>& state, const std::vector<N>& leading);
   // Values at the point and J with its LU.
   Outcome prepare();
+  // Values at the point only.
+  void evaluate() { sweep_known(0); }
+  // Solves J y = r; by default with the LU of prepare().
+  using Solver = std::function<void(const std::vector<N>& r, std::vector<N>& y)>;
   // Corrects the state by least change so that all hidden constraints hold to round-off.
   Outcome project();
+  Outcome project(const Solver& solver);
   // Newton's method for the leading derivatives.
   Outcome solve();
+  Outcome solve(const Solver& solver);
+  template <Number M>
+  void adopt_jacobian(const Matrix<M>& j) {
+    for (std::size_t k = 0; k < j.data.size(); ++k) j_.data[k] = convert<N>(j.data[k]);
+  }
+  const Matrix<N>& system_jacobian() const { return j_; }
+  const Lu<N>& lu() const { return lu_; }
   // Coefficients of all stages 1..stages().
   Outcome extend();
 
@@ -51,6 +67,7 @@ class Expansion {
   void set_inputs(int stage, std::size_t from, std::size_t to);
   void sweep(int stage);
   void sweep_known(int last_stage);
+  Outcome newton(const Solver& solver, bool own);
   void jacobian();
   N root_scale(std::size_t i, int order) const;
   bool residual(int level, std::vector<N>& r, N& worst);

@@ -9,21 +9,41 @@ namespace anholon {
 
 namespace {
 
+// The power of all forces for the energy balance. Constraints that do no work on the motion (first
+// order and homogeneous, holonomic without t) are left out: their power is zero, and its terms, which
+// are large and cancel, would only add round-off to the balance.
+Expr balance_power(const Scenario& s, const Power& p) {
+  const Mechanics& m = *s.mechanics;
+  Graph& g = m.graph();
+  Expr total = p.noncons;
+  for (std::size_t r : s.system.constraints) {
+    if (m.order[r] == 1 && s.classes[r].homogeneous) continue;
+    Expr rate = g.zero();
+    if (m.order[r] == 0) rate = -partial(m.phi[r], g.time());
+    else
+      for (std::size_t a = 0; a < m.q.size(); ++a) rate += m.Phi[r][a] * m.qd[a];
+    total += m.lambda[r] * put_masses(*s.model, rate);
+  }
+  return total;
+}
+
+// N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
 template <Number N>
 class Run {
  public:
+  using W = Wider<N>;
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
-      : s_(s), o_(o), sink_(sink), parameters_(parameter_values<N>(*s.model)), power_(anholon::power(*s.mechanics)),
-        program_(program(s.system, s.structure, std::vector<Expr>{power_.noncons + power_.constraint})),
-        stepper_(program_, parameters_, settings(o)), point_(program_, parameters_, extra_orders()),
+      : s_(s), o_(o), sink_(sink), parameters_(parameter_values<W>(*s.model)), power_(anholon::power(*s.mechanics)),
+        program_(program(s.system, s.structure, std::vector<Expr>{balance_power(s, power_)})),
+        stepper_(program_, parameter_values<N>(*s.model), parameters_, settings(o)), point_(program_, parameters_, extra_orders()),
         outputs_(s, output_expressions(), parameters_) {}
 
   SimulationReport go() {
     report_.order = stepper_.order();
     sink_.columns(column_names());
-    N t(0);
-    std::vector<N> state;
-    InitialState<N> named;
+    W t(0);
+    std::vector<W> state;
+    InitialState<W> named;
     report_.outcome = initial_state(s_, o_.state, t, state, named);
     if (report_.outcome.ok()) report_.outcome = stepper_.start(t, state);
     if (report_.outcome.ok()) {
@@ -64,13 +84,12 @@ class Run {
     return names;
   }
 
-  // N, then what the residual report needs: h, the power turned over, E, G, Phi, all constraints.
+  // N, then what the residual report needs: h, E, G, Phi.
   Column output_expressions() const {
     const Model& model = *s_.model;
     const Mechanics& m = *s_.mechanics;
     Column es = put_masses(model, m.N);
     es.push_back(power_.h);
-    es.push_back(power_.noncons + power_.constraint);
     const Column inertia = newton_left_side(m);
     const Column force = put_masses(model, m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma);
     es.insert(es.end(), inertia.begin(), inertia.end());
@@ -80,27 +99,27 @@ class Run {
     return es;
   }
 
-  void schedule(const N& t) {
+  void schedule(const W& t) {
     if (!o_.at.empty()) {
-      for (const Rational& r : o_.at) times_.push_back(from_rational<N>(r));
+      for (const Rational& r : o_.at) times_.push_back(from_rational<W>(r));
       end_ = *std::max_element(times_.begin(), times_.end());
-      if (o_.to && from_rational<N>(*o_.to) > end_) end_ = from_rational<N>(*o_.to);
+      if (o_.to && from_rational<W>(*o_.to) > end_) end_ = from_rational<W>(*o_.to);
       return;
     }
-    end_ = from_rational<N>(*o_.to);
+    end_ = from_rational<W>(*o_.to);
     if (o_.every) {
       const bool forward = end_ >= t;
       const Rational t0 = start_time(t);
       for (long k = 0;; ++k) {
         const Rational r = forward ? Rational(t0 + k * *o_.every) : Rational(t0 - k * *o_.every);
         if (forward ? r > *o_.to : r < *o_.to) break;
-        times_.push_back(from_rational<N>(r));
+        times_.push_back(from_rational<W>(r));
       }
       if (times_.empty() || times_.back() != end_) times_.push_back(end_);
     }
   }
 
-  Rational start_time(const N& t) const {
+  Rational start_time(const W& t) const {
     if (o_.state.t) return *o_.state.t;
     const Expr e = s_.model->initial.t;
     if (is_number(e)) return number_value(e);
@@ -109,7 +128,7 @@ class Run {
     return r;
   }
 
-  void run(const N& t0) {
+  void run(const W& t0) {
     const bool every_step = times_.empty();
     std::size_t next = 0;
     if (every_step) row(t0, "");
@@ -150,12 +169,12 @@ class Run {
     return label(k).empty() ? number_text(to_double(times_[k]), 12) : label(k);
   }
 
-  std::string text(const N& x) const {
+  std::string text(const W& x) const {
     if constexpr (std::same_as<N, Multi>) return number_text(x, o_.digits + 2);
-    else return number_text(x);
+    else return number_text(convert<N>(x));
   }
 
-  void row(const N& t, const std::string& label) {
+  void row(const W& t, const std::string& label) {
     if (Outcome o = stepper_.at(t, point_); !o.ok()) {
       report_.outcome = o;
       report_.outcome.message += " at t = " + number_text(to_double(t), 12);
@@ -173,7 +192,7 @@ class Run {
       for (std::size_t a = 0; a < n; ++a) values.push_back(text(point_.derivative(a, k)));
     for (std::size_t r = 0; r < s_.model->constraints.size(); ++r) {
       const auto j = s_.system.variable(s_.mechanics->lambda[r].id);
-      values.push_back(text(j ? point_.derivative(*j, 0) : N(0)));
+      values.push_back(text(j ? point_.derivative(*j, 0) : W(0)));
     }
     for (std::size_t a = 0; a < n; ++a) values.push_back(text(outputs_[a]));
     sink_.row(values);
@@ -183,47 +202,47 @@ class Run {
 
   void watch() {
     const std::size_t n = s_.system.coordinates;
-    std::vector<N> inertia(n), force(n), reaction(n);
-    Matrix<N> phi(s_.system.constraints.size(), n);
+    std::vector<W> inertia(n), force(n), reaction(n);
+    Matrix<W> phi(s_.system.constraints.size(), n);
     for (std::size_t a = 0; a < n; ++a) {
       reaction[a] = outputs_[a];
-      inertia[a] = outputs_[n + 2 + a];
-      force[a] = outputs_[2 * n + 2 + a];
+      inertia[a] = outputs_[n + 1 + a];
+      force[a] = outputs_[2 * n + 1 + a];
     }
-    for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = outputs_[3 * n + 2 + i];
-    const Certificate<N> c = certify(inertia, force, reaction, phi);
+    for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = outputs_[3 * n + 1 + i];
+    const Certificate<W> c = certify(inertia, force, reaction, phi);
     report_.newton = std::max(report_.newton, to_double(c.newton));
     report_.projected = std::max(report_.projected, to_double(c.projected));
     report_.constraints_kept = std::max(report_.constraints_kept, to_double(point_.constraint_residual()));
   }
 
-  void energy_at(const N& t, N& h) {
+  void energy_at(const W& t, W& h) {
     if (!stepper_.at(t, point_).ok()) return;
     outputs_.evaluate(point_);
     h = outputs_[s_.system.coordinates];
   }
 
   void balance() {
-    N h(0);
+    W h(0);
     energy_at(stepper_.time(), h);
-    const N work = stepper_.integrals()[0];
-    N scale(1);
-    for (const N& v : {h, h0_, work})
+    const W work = stepper_.integrals()[0];
+    W scale(1);
+    for (const W& v : {h, h0_, work})
       if (abs(v) > scale) scale = abs(v);
-    report_.power = to_double(N(abs(N(h - h0_ - work)) / scale));
+    report_.power = to_double(W(abs(W(h - h0_ - work)) / scale));
   }
 
   const Scenario& s_;
   const SimulationOptions& o_;
   RowSink& sink_;
-  std::vector<N> parameters_;
+  std::vector<W> parameters_;
   Power power_;
   Program program_;
   Stepper<N> stepper_;
-  Expansion<N> point_;
-  OutputTape<N> outputs_;
-  std::vector<N> times_;
-  N end_{0}, h0_{0};
+  Expansion<W> point_;
+  OutputTape<W> outputs_;
+  std::vector<W> times_;
+  W end_{0}, h0_{0};
   SimulationReport report_;
 };
 

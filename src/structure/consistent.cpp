@@ -57,6 +57,9 @@ class Stage {
     jacobian = Matrix<N>(size(), n_);
     mass = Matrix<N>(n_, n_);
     const std::vector<N>& x = order_ == 0 ? q : qd;
+    N largest_unknown(1);  // a residual below its round-off is none
+    for (const N& v : x)
+      if (abs(v) > largest_unknown) largest_unknown = abs(v);
     for (std::size_t i = 0; i < size(); ++i) {
       residual[i] = machine_.value(i);
       if (!is_finite(residual[i])) return false;
@@ -64,8 +67,8 @@ class Stage {
       for (std::size_t a = 0; a < n_; ++a) {
         jacobian(i, a) = machine_.value(size() + i * n_ + a);
         if (!is_finite(jacobian(i, a))) return false;
-        const N part = abs(N(jacobian(i, a) * x[a]));
-        if (part > scale[i]) scale[i] = part;
+        for (N part : {abs(N(jacobian(i, a) * x[a])), N(abs(jacobian(i, a)) * largest_unknown * unit_roundoff<N>())})
+          if (part > scale[i]) scale[i] = part;
       }
       if (!(scale[i] > N(0))) scale[i] = N(1);
     }

@@ -1,0 +1,188 @@
+// Equal expressions built in any order have the same id.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "support/random_expr.h"
+#include "support/value.h"
+
+namespace anholon {
+namespace {
+
+using test::RandomExpr;
+
+struct Symbols {
+  Graph g;
+  Expr x = g.jet(0, 0), y = g.jet(1, 0), xd = g.jet(0, 1), a = g.parameter(0), t = g.time();
+};
+
+// Joins the items in a random order and with random brackets.
+Expr joined(std::vector<Expr> items, std::mt19937& random, Expr (*join)(Expr, Expr)) {
+  std::shuffle(items.begin(), items.end(), random);
+  while (items.size() > 1) {
+    const std::size_t k = random() % (items.size() - 1);
+    items[k] = join(items[k], items[k + 1]);
+    items.erase(items.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+  }
+  return items[0];
+}
+Expr add(Expr a, Expr b) { return a + b; }
+Expr multiply(Expr a, Expr b) { return a * b; }
+
+TEST(Canonical, SumsOfUpToFortyTermsDoNotDependOnOrderAndBrackets) {
+  Symbols s;
+  std::vector<Expr> atoms = {s.x, s.y, s.xd, s.a, s.t, s.g.one()};
+  for (std::uint32_t k = 2; k < 14; ++k) atoms.push_back(s.g.jet(k, 0)), atoms.push_back(sin(s.g.jet(k, 0)) * s.g.jet(k, 1));
+  std::mt19937 random(1);
+  for (int round = 0; round < 60; ++round) {
+    RandomExpr make(s.g, 100 + static_cast<std::uint32_t>(round), atoms);
+    std::vector<Expr> terms;
+    for (int k = 2 + make.below(39); k > 0; --k) terms.push_back(make.coefficient() * make.atom());
+    const Expr at_once = sum(terms);
+    for (int order = 0; order < 10; ++order) ASSERT_EQ(joined(terms, random, add).id, at_once.id);
+    terms[0] = terms[0] + s.xd;
+    ASSERT_NE(joined(terms, random, add).id, at_once.id) << "mutant: one term changed";
+  }
+}
+
+TEST(Canonical, ProductsOfUpToTwentyFactorsDoNotDependOnOrderAndBrackets) {
+  Symbols s;
+  const std::vector<Expr> atoms = {s.x, s.y, s.a, s.t, 1 + s.x, 2 * s.x + 4 * s.y, s.g.number(Rational(-3, 2)), -s.xd, sin(s.x), s.x * s.y};
+  std::mt19937 random(2);
+  for (int round = 0; round < 60; ++round) {
+    RandomExpr make(s.g, 200 + static_cast<std::uint32_t>(round), atoms);
+    std::vector<Expr> factors;
+    for (int k = 2 + make.below(19); k > 0; --k) {
+      const int exponent = make.below(7) - 3;
+      factors.push_back(pow(make.atom(), exponent == 0 ? 1 : exponent));
+    }
+    std::vector<std::pair<Expr, Rational>> list;
+    for (Expr f : factors) list.push_back({f, 1});
+    const Expr at_once = s.g.product(list);
+    for (int order = 0; order < 10; ++order) ASSERT_EQ(joined(factors, random, multiply).id, at_once.id);
+    factors[0] = factors[0] * s.y;
+    ASSERT_NE(joined(factors, random, multiply).id, at_once.id) << "mutant: one factor changed";
+  }
+}
+
+TEST(Canonical, ProductsOfRootsDoNotDependOnOrderAndBrackets) {
+  Symbols s;
+  const std::vector<Expr> atoms = {sqrt(s.x), sqrt(s.y), sqrt(1 + s.x), pow(s.x, {1, 3}), sqrt(s.x * s.y), sqrt(1 + s.x * s.x)};
+  std::mt19937 random(3);
+  for (int round = 0; round < 60; ++round) {
+    RandomExpr make(s.g, 300 + static_cast<std::uint32_t>(round), atoms);
+    std::vector<Expr> factors;
+    for (int k = 2 + make.below(7); k > 0; --k) factors.push_back(make.atom());
+    const Expr once = joined(factors, random, multiply);
+    for (int order = 0; order < 10; ++order) ASSERT_EQ(joined(factors, random, multiply).id, once.id);
+  }
+}
+
+TEST(Canonical, ProductsOfRootsOfNumbersAndOfSumsWithAContentDoNotDependOnBrackets) {
+  Symbols s;
+  for (Expr u : {s.g.number(2), 2 * s.x + 2 * s.y}) {
+    const Expr root = sqrt(u);
+    EXPECT_EQ(((root * root) * root).id, pow(u, {3, 2}).id);
+    EXPECT_EQ((root * root).id, u.id);
+  }
+}
+
+TEST(Folding, RationalsAreExact) {
+  Symbols s;
+  const auto number = [&](int p, int q = 1) { return s.g.number(Rational(p, q)); };
+  EXPECT_EQ(number(1, 3) + number(1, 6), number(1, 2));
+  EXPECT_EQ(number(2, 3) * number(3, 2), s.g.one());
+  EXPECT_EQ(pow(number(2, 3), -2), number(9, 4));
+  EXPECT_EQ(sqrt(number(9, 4)), number(3, 2));
+  EXPECT_EQ(s.x - s.x, s.g.zero());
+  EXPECT_EQ(s.x / s.x, s.g.one());
+  EXPECT_EQ(Rational(1, 10) * s.x + Rational(2, 10) * s.x, Rational(3, 10) * s.x);
+  EXPECT_EQ(0 * s.x, s.g.zero());
+  EXPECT_EQ(pow(s.x + s.y, 0), s.g.one());
+}
+
+TEST(Folding, RootsJoin) {
+  Symbols s;
+  const Expr root = sqrt(s.g.number(2));
+  EXPECT_EQ(root * root, s.g.number(2));
+  EXPECT_EQ(sqrt(s.x) * sqrt(s.x), s.x);
+  EXPECT_EQ(sqrt(1 + s.x) * sqrt(1 + s.x), 1 + s.x);
+  EXPECT_EQ(pow(sqrt(s.x), 4), s.x * s.x);
+  EXPECT_NE(sqrt(s.x * s.x), s.x) << "sqrt(x^2) is |x|";
+  EXPECT_NE(sqrt(s.x * s.y), sqrt(s.x) * sqrt(s.y)) << "false where both are negative";
+}
+
+TEST(Folding, SpecialValuesAndParity) {
+  Symbols s;
+  EXPECT_EQ(sin(s.g.zero()), s.g.zero());
+  EXPECT_EQ(cos(s.g.pi()), s.g.number(-1));
+  EXPECT_EQ(sin(Rational(5, 6) * s.g.pi()), s.g.number(Rational(1, 2)));
+  EXPECT_EQ(cos(Rational(-7, 3) * s.g.pi()), s.g.number(Rational(1, 2)));
+  EXPECT_EQ(exp(s.g.zero()), s.g.one());
+  EXPECT_EQ(abs(s.g.number(-3)), s.g.number(3));
+  EXPECT_EQ(atan2(s.g.zero(), s.g.one()), s.g.zero());
+  for (Expr u : {s.x, s.x - s.y, s.x * s.y, Rational(2, 3) * s.x}) {
+    EXPECT_EQ(sin(-u), -sin(u));
+    EXPECT_EQ(cos(-u), cos(u));
+    EXPECT_EQ(atanh(-u), -atanh(u));
+    EXPECT_EQ(cosh(-u), cosh(u));
+    EXPECT_EQ(abs(-u), abs(u));
+    EXPECT_NE(exp(-u), exp(u));
+    EXPECT_NE(acos(-u), -acos(u));
+  }
+}
+
+TEST(Folding, EveryRationalMultipleOfPiHasTheRightSine) {
+  Symbols s;
+  const PrecisionScope precision(40);
+  for (int k = -24; k <= 24; ++k)
+    for (Expr e : {sin(Rational(k, 6) * s.g.pi()), cos(Rational(k, 6) * s.g.pi())}) {
+      const Multi angle = pi<Multi>() * Multi(k) / Multi(6);
+      const Multi v = test::value(e, test::Point());
+      const double miss = std::min(test::distance(v, sin(angle)), test::distance(v, cos(angle)));
+      EXPECT_LE(miss, 1e-38) << k << " pi/6";
+    }
+  for (int k = -24; k <= 24; ++k)
+    EXPECT_LE(test::distance(test::value(sin(Rational(k, 6) * s.g.pi()), test::Point()), sin(Multi(pi<Multi>() * Multi(k) / Multi(6)))), 1e-38);
+}
+
+// A point of a chain is the point before it and one link: x_i = x_(i-1) + l cos(q_i).
+std::size_t operations_of_a_chain(std::uint32_t links) {
+  Graph g;
+  Expr x = g.zero();
+  Column positions;
+  for (std::uint32_t i = 0; i < links; ++i) positions.push_back(x = x + g.parameter(0) * cos(g.jet(i, 0)));
+  std::size_t operands = 0;
+  for (NodeId id : reachable(positions)) operands += g.summands(id).size();
+  return operands;
+}
+
+TEST(Summands, PositionsOfAChainCostLinearWork) {
+  const std::size_t at100 = operations_of_a_chain(100), at200 = operations_of_a_chain(200), at400 = operations_of_a_chain(400);
+  EXPECT_EQ(at400 - at200, 2 * (at200 - at100)) << "linear beyond the first few links";
+  EXPECT_LE(at200, 200U * 8) << "a cosine, a product and two terms per link, not 200 terms";
+}
+
+TEST(Summands, TheShortWayHasTheValueOfTheFlatTerms) {
+  Graph g;
+  const PrecisionScope precision(40);
+  std::vector<Expr> atoms;
+  for (std::uint32_t k = 0; k < 30; ++k) atoms.push_back(g.jet(k, 0));
+  RandomExpr make(g, 4, atoms);
+  Expr e = g.one();
+  int short_ways = 0;
+  for (int k = 0; k < 200; ++k) {
+    e = make.coefficient() * e + make.coefficient() * make.atom();
+    const test::Point at(7);
+    const Multi flat = test::value(e, at);
+    Multi by_short_way(0);
+    for (const Term& t : g.summands(e.id)) by_short_way += Multi(g.rational(t.weight)) * test::value(Expr{&g, t.node}, at);
+    if (g.summands(e.id).size() < g.terms(e.id).size()) ++short_ways;
+    ASSERT_LE(test::distance(flat, by_short_way), 1e-35);
+  }
+  EXPECT_GT(short_ways, 50) << "otherwise this test shows nothing";
+}
+
+}  // namespace
+}  // namespace anholon
