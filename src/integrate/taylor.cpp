@@ -89,10 +89,7 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
     }
     point_.state(state_);
     point_.leading(leading_);
-    convert_all(state_, narrow_state_);
-    convert_all(leading_, narrow_leading_);
-    expansion_.load(convert<N>(t_), narrow_state_, narrow_leading_);
-    expansion_.evaluate();
+    expansion_.adopt_values(point_);
     worst_constraint_ = std::max(worst_constraint_, point_.constraint_residual());
     worst_equation_ = std::max(worst_equation_, point_.equation_residual());
   }
@@ -102,31 +99,36 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
 }
 
 // h = (rho / e^2) exp(-0.7/(p-1)), rho the smaller root of |x| / |x_k| for the last two orders k,
-// in the greatest norm over the state, relative to its size but at least 1 (Jorba & Zou 2005).
+// in the greatest norm, relative to the size of x but at least 1 (Jorba & Zou 2005). Positions,
+// velocities, … are measured each against their own size: an angle that has turned a thousand times
+// must not loosen the tolerance of the velocities.
 template <Number N>
 N Stepper<N>::step_size() const {
   const Program& p = *program_;
   constexpr double kNothing = -1e300;  // the logarithm of zero
-  double size = 1, last = kNothing, before_last = kNothing;
-  for (std::size_t j = 0; j < p.unknowns(); ++j)
-    for (int k = 0; k < p.d[j]; ++k) {
+  double log_rho = 300;
+  const int levels = *std::max_element(p.d.begin(), p.d.end());
+  for (int k = 0; k < levels; ++k) {
+    double size = 1, last = kNothing, before_last = kNothing;
+    for (std::size_t j = 0; j < p.unknowns(); ++j) {
+      if (k >= p.d[j]) continue;
       size = std::max(size, std::abs(to_double(expansion_.derivative(j, k))));
       const auto coefficient = [&](int order) {  // of x_j^(k)
         double factor = 1;
         for (int i = 1; i <= k; ++i) factor *= order + i;
         // Logarithms: coefficients of high order may leave the range of double.
         const N v = abs(expansion_.coefficient(j, order + k));
-        return v > N(0) ? static_cast<double>(to_double(N(log(v)))) + std::log(factor) : kNothing;
+        return v > N(0) ? to_double(N(log(v))) + std::log(factor) : kNothing;
       };
       last = std::max(last, coefficient(order_));
       before_last = std::max(before_last, coefficient(order_ - 1));
     }
-  const double ls = std::log(size);
-  const double log_rho = std::min((ls - last) / order_, (ls - before_last) / (order_ - 1));
+    const double ls = std::log(size);
+    log_rho = std::min({log_rho, (ls - last) / order_, (ls - before_last) / (order_ - 1)});
+  }
   // e^-2 per order suits order = -ln(tol)/2 + 1; another order keeps h^p rho^-p = tol.
   const double shrink = settings_.order > 0 ? -std::log(settings_.tolerance) / order_ : 2.0;
-  const double log_h = std::min(log_rho, 300.0) - shrink - 0.7 / (order_ - 1);
-  return N(std::exp(log_h));
+  return N(std::exp(log_rho - shrink - 0.7 / (order_ - 1)));
 }
 
 template <Number N>

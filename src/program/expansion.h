@@ -42,6 +42,22 @@ class Expansion {
   void adopt_jacobian(const Matrix<M>& j) {
     for (std::size_t k = 0; k < j.data.size(); ++k) j_.data[k] = convert<N>(j.data[k]);
   }
+  // Takes over the point from a wider expansion, every value correctly rounded: the coefficients of
+  // higher order then start from values without round-off of their own (an angle that has turned
+  // often has lost digits in N that its sine still needs).
+  template <Number M>
+  void adopt_values(const Expansion<M>& wide) {
+    t_ = convert<N>(wide.time());
+    for (std::size_t j = 0; j < program_->unknowns(); ++j)
+      for (int k = 0; k <= program_->d[j]; ++k)
+        x_[j * stride_ + static_cast<std::size_t>(k)] = convert<N>(wide.coefficient(j, k));
+    for (std::uint32_t s = 0; s < program_->tape.main_end; ++s) {
+      const Instruction& in = program_->tape.code[s];
+      if (in.constant) continue;
+      for (int p = 0; p <= in.lead; ++p) machine_.series(s)[p] = convert<N>(wide.machine().series(s)[p]);
+    }
+  }
+  const Machine<N>& machine() const { return machine_; }
   const Matrix<N>& system_jacobian() const { return j_; }
   const Lu<N>& lu() const { return lu_; }
   // Coefficients of all stages 1..stages().

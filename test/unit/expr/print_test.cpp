@@ -1,0 +1,98 @@
+#include "expr/print.h"
+
+#include <gtest/gtest.h>
+
+#include "support/plain_names.h"
+#include "support/random_expr.h"
+
+namespace anholon {
+namespace {
+
+using test::PlainNames;
+
+// Theorem. What the printer writes the parser reads back as the same expression.
+TEST(RoundTrip, PrintedTextParsesToTheSameExpression) {
+  PlainNames n;
+  const SymbolNames names = test::plain_symbol_names();
+  const std::vector<Expr> atoms = {n.number("x"), n.number("y'"), n.number("z''"), n.number("D(x,5)"), n.number("a"), n.number("b"),
+                                   n.number("m"), n.number("t"), n.number("pi"), n.number("f"), n.number("f'"), n.g.multiplier(0, 0),
+                                   n.g.number(2), n.g.number(Rational(-3, 4)), sqrt(n.g.number(2)), pow(n.number("x"), {-3, 2}),
+                                   pow(n.g.number(Rational(2, 3)), {1, 3}), pow(n.number("y"), -2), -n.number("x"), n.number("x - y")};
+  for (std::uint32_t k = 1; k <= 2000; ++k) {
+    const Expr e = test::RandomExpr(n.g, k, atoms).make(1 + static_cast<int>(k % 4));
+    const std::string text = print(e, names, Format::text);
+    if (text.size() > 20000) continue;
+    Expr back = n.g.zero();
+    try {
+      back = n.number(text);
+    } catch (const Failure& f) {
+      FAIL() << f.diagnostic.message << "\n" << text;
+    }
+    ASSERT_EQ(back.id, e.id) << text << "\nread back as\n" << print(back, names, Format::text);
+  }
+}
+
+TEST(RoundTrip, DefinedNamesStandForTheirExpressions) {
+  PlainNames n;
+  SymbolNames names = test::plain_symbol_names();
+  const Expr inner = n.number("sin(x) + a"), e = n.number("2*(sin(x) + a)^2");
+  names.defined[inner.id] = "h";
+  EXPECT_EQ(print(e, names, Format::text), "2*h^2");
+}
+
+TEST(Text, LooksAsAPersonWouldWriteIt) {
+  PlainNames n;
+  const SymbolNames names = test::plain_symbol_names();
+  const std::pair<const char*, const char*> samples[] = {
+      {"a*x''", "a*x''"}, {"x*a/b", "a*x/b"}, {"-x", "-x"}, {"x^2/2", "x^2/2"}, {"1/x", "1/x"}, {"sqrt(x)", "sqrt(x)"},
+      {"(x+y)^3", "(x + y)^3"}, {"sin(x)*cos(x)", "sin(x)*cos(x)"}, {"1/(a*b)", "1/(a*b)"}, {"D(x,4)", "D(x,4)"}, {"x - 3/4", "x - 3/4"}};
+  for (const auto& [text, expected] : samples) EXPECT_EQ(print(n.number(text), names, Format::text), expected);
+}
+
+TEST(Text, BeyondTheLongestPrintIsCut) {
+  PlainNames n;
+  Expr e = n.number("x");
+  for (int k = 0; k < 25; ++k) e = n.number("y") + e * sin(e);  // its text doubles at every step
+  EXPECT_LE(print(e, test::plain_symbol_names(), Format::text).size(), 3 * kLongestPrint);
+}
+
+TEST(Latex, Samples) {
+  EXPECT_EQ(latex_name("theta"), "\\theta");
+  EXPECT_EQ(latex_name("x1"), "x_{1}");
+  EXPECT_EQ(latex_name("theta12"), "\\theta_{12}");
+  EXPECT_EQ(latex_name("mass"), "\\mathrm{mass}");
+  EXPECT_EQ(latex_name("x_a"), "x_{a}");
+  EXPECT_EQ(derivative_name("x", 2, Format::latex), "\\ddot{x}");
+  EXPECT_EQ(derivative_name("x", 4, Format::latex), "x^{(4)}");
+  EXPECT_EQ(derivative_name("x", 3, Format::text), "x'''");
+  EXPECT_EQ(derivative_name("x", 4, Format::text), "D(x,4)");
+  PlainNames n;
+  SymbolNames names = test::plain_symbol_names();
+  names.coordinates = {"theta", "y", "z"};
+  const auto latex = [&](const char* text) { return print(n.number(text), names, Format::latex); };
+  EXPECT_EQ(latex("a*x'^2/2"), "\\frac{1}{2} \\, a \\, {\\dot{\\theta}}^{2}");
+  EXPECT_EQ(latex("sqrt(x)/b"), "\\frac{\\sqrt{\\theta}}{b}");
+  EXPECT_EQ(latex("sin(x'')"), "\\sin\\left(\\ddot{\\theta}\\right)");
+  EXPECT_EQ(latex("pi"), "\\pi");
+}
+
+// Every opening brace has its closing one, and \left its \right.
+TEST(Latex, IsBalancedOnRandomExpressions) {
+  PlainNames n;
+  const auto occurrences = [](const std::string& text, const std::string& part) {
+    int count = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
+    return count;
+  };
+  const std::vector<Expr> atoms = {n.number("x"), n.number("y'"), n.number("a"), n.g.number(Rational(-3, 4)), n.g.multiplier(0, 0)};
+  for (std::uint32_t k = 1; k <= 200; ++k) {
+    const std::string text = print(test::RandomExpr(n.g, k, atoms).make(3), test::plain_symbol_names(), Format::latex);
+    ASSERT_EQ(occurrences(text, "{"), occurrences(text, "}")) << text;
+    ASSERT_EQ(occurrences(text, "\\left"), occurrences(text, "\\right")) << text;
+    ASSERT_EQ(occurrences(text, "+ -"), 0) << text;
+    ASSERT_EQ(occurrences(text, "*"), 0) << text;
+  }
+}
+
+}  // namespace
+}  // namespace anholon
