@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kLongest = 4096;
 
 // A name of every kind; the formula under test is a definition, and each side of a constraint.
-constexpr const char* kModel = R"(
+constexpr const char* kModel = R"toml(
 coordinates = ["x", "y", "theta"]
 [parameters]
 m = 2
@@ -34,7 +34,7 @@ center = "P + a*blade.x"
 orientation = "blade"
 [gravity]
 field = "-here"
-)";
+)toml";
 
 // A basic string of TOML, so that the reader of escapes and places is tested too.
 std::string quoted(const std::string& text) {

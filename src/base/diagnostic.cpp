@@ -41,6 +41,20 @@ static const char* word(Severity s) {
   return "";
 }
 
+// A line of the file as it may be shown on a terminal: a control character or an invalid byte is
+// replaced by one character, so that columns still fit.
+static std::string printable(const std::string& line) {
+  std::string out;
+  for (std::size_t i = 0; i < line.size();) {
+    const std::size_t width = utf8_width(line, i);
+    const unsigned char c = static_cast<unsigned char>(line[i]);
+    if (width == 1 && (c < 0x20 || c >= 0x7f)) out += c == '\t' ? " " : "\uFFFD";
+    else out += line.substr(i, width);
+    i += width;
+  }
+  return out;
+}
+
 // A source line is shown whole up to this many characters, else the part around the caret.
 static constexpr std::size_t kShownWidth = 160;
 
@@ -51,7 +65,7 @@ std::string print(const Diagnostic& d, const SourceText& source) {
   out += std::string(": ") + word(d.severity) + ": " + d.message + "\n";
   if (d.span.line > 0) {
     const std::string number = std::to_string(d.span.line);
-    std::string line = source.line(d.span.line);
+    std::string line = printable(source.line(d.span.line));
     std::size_t column = d.span.column > 0 ? d.span.column - 1 : 0;
     if (utf8_length(line) > kShownWidth) {
       const std::size_t from = column > kShownWidth / 2 ? column - kShownWidth / 2 : 0;
@@ -83,18 +97,16 @@ std::string Diagnostics::print(const SourceText& source) const {
 }
 
 static std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
+  // Insertion, deletion, replacement and the exchange of neighbours count one each.
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i)
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
-  }
-  return row[b.size()];
+  return d[a.size()][b.size()];
 }
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) {

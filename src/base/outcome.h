@@ -11,6 +11,7 @@ enum class OutcomeKind : std::uint8_t {
   singular,          // the system Jacobian lost rank: a singular configuration
   step_collapse,     // the step size fell below what the time can resolve
   blow_up,           // a state grew without bound
+  negative_mass,     // a given mass fell below zero
   not_a_number,      // a formula left its domain (root or logarithm of a negative number, 0/0)
   no_convergence,    // Newton's iteration for the leading derivatives failed
   inconsistent,      // no initial data satisfy the constraints with the values given

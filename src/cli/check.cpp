@@ -50,15 +50,18 @@ void state_table(const Scenario& s) {
   for (std::size_t a = 0; a < x.q.size(); ++a)
     std::printf("  %-8s = %-22s %-10s %s' = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
                 name(x.q_origin[a]), s.model->coordinates[a].name.c_str(), number_text(x.qd[a]).c_str(), name(x.qd_origin[a]));
-  std::printf("  (given in the file; derived from constraints and conditions; chosen by default; corrected by less than rounding)\n");
+  std::printf("  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
 }
 
 void text(const Scenario& s, const Outcome& outcome) {
   const Model& model = *s.model;
   std::printf("%s\n", model.title.empty() ? model.source_text.name.c_str() : model.title.c_str());
   if (!model.source.empty()) std::printf("source: %s\n", model.source.c_str());
-  std::printf("\n%zu coordinates, %zu bodies and particles, %zu constraints, %zu parameters\n", model.coordinates.size(),
-              model.bodies.size(), model.constraints.size(), model.parameters.size());
+  const auto count = [](std::size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); };
+  std::printf("\n%s, %s, %s, %s\n", count(model.coordinates.size(), "coordinate", "coordinates").c_str(),
+              count(model.bodies.size(), "body or particle", "bodies and particles").c_str(),
+              count(model.constraints.size(), "constraint", "constraints").c_str(),
+              count(model.parameters.size(), "parameter", "parameters").c_str());
   for (const std::string& e : effects(model)) std::printf("  %s\n", e.c_str());
   const std::vector<std::string> external = external_forces(model);
   for (const std::string& f : external) std::printf("  external force %s (it has no 'from')\n", f.c_str());
@@ -143,13 +146,14 @@ void json(const Scenario& s, const Outcome& outcome) {
 int check(const Options& o) {
   const Reader in = read(o);
   Scenario s;
-  const Outcome outcome = make_scenario(in.model, form(o, *in.model), state_choice(o, *in.model), s);
+  Outcome outcome = make_scenario(in.model, form(o, *in.model), state_choice(o, *in.model), s);
+  if (outcome.ok() && !not_integrated(*in.model, s.classes)) outcome = regular_at_start(s);
   if (!o.show.empty()) return show(o, s);
   if (o.json) json(s, outcome);
   else text(s, outcome);
   if (outcome.ok()) return kOk;
   print_outcome(outcome);
-  return outcome.kind == OutcomeKind::inconsistent ? kBadInput : kStopped;
+  return kStopped;
 }
 
 }  // namespace anholon::cli

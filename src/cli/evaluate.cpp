@@ -115,7 +115,7 @@ int evaluate(const Options& o) {
       std::printf("%s\n", j.text().c_str());
     }
     print_outcome(outcome);
-    return outcome.kind == OutcomeKind::inconsistent ? kBadInput : kStopped;
+    return kStopped;
   }
   if (o.json) std::fputs(json(s, report).c_str(), stdout);
   else print_text(s, report, o.digits);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -32,11 +34,17 @@ static std::string first_line_value(const std::string& text, const std::string& 
   return {};
 }
 
-static bool read_file(const fs::path& path, std::string& text) {
+static bool read_file(const fs::path& path, std::string& text, std::string* why = nullptr) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return false;
+  if (fs::is_directory(path, ignored)) {
+    if (why) *why = "it is a directory";
+    return false;
+  }
   std::ifstream in(path, std::ios::binary);
-  if (!in) return false;
+  if (!in) {
+    if (why) *why = std::strerror(errno);
+    return false;
+  }
   std::ostringstream all;
   all << in.rdbuf();
   text = all.str();
@@ -106,7 +114,8 @@ static std::pair<std::string, std::string> assignment(const std::string& text, c
 Reader read(const Options& o) {
   Reader r;
   r.source.name = o.model;
-  if (!read_file(o.model, r.source.text)) {
+  std::string why;
+  if (!read_file(o.model, r.source.text, &why)) {
     bool found = false;
     std::vector<std::string> names;
     for (const ShippedModel& m : shipped_models()) {
@@ -117,7 +126,7 @@ Reader read(const Options& o) {
     }
     if (!found) {
       const std::string near = did_you_mean(o.model, names);
-      throw UsageError{"error: cannot read the model '" + o.model + "'\n" +
+      throw UsageError{"error: cannot read the model '" + o.model + "': " + why + "\n" +
                        (near.empty() ? "hint: a path to a .toml file, or a name that `anholon models` lists\n"
                                      : "hint: did you mean the shipped model '" + near + "'?\n")};
     }
@@ -125,6 +134,7 @@ Reader read(const Options& o) {
   Overrides overrides;
   for (const std::string& s : split(o.set)) {
     const auto [name, value] = assignment(s, "--set");
+    if (overrides.count(name)) throw UsageError{"error: --set gives '" + name + "' twice\n"};
     overrides[name] = value;
   }
   Diagnostics diagnostics;
@@ -181,6 +191,9 @@ StateChoice state_choice(const Options& o, const Model& model) {
                          (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
       }
       if (k > 1) throw UsageError{"error: " + std::string(option) + ": accelerations follow from the state\n"};
+      for (const StateOverride& before : c.overrides)
+        if (before.order == k && before.coordinate == static_cast<std::size_t>(it - model.names.coordinates.begin()))
+          throw UsageError{"error: " + std::string(option) + " gives '" + name + "' twice\n"};
       c.overrides.push_back({k, static_cast<std::size_t>(it - model.names.coordinates.begin()), exact(value, option)});
     }
   return c;

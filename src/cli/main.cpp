@@ -1,9 +1,12 @@
 // The program anholon: the words of the command line, nothing else.
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <functional>
 
+#include "base/diagnostic.h"
 #include "cli/input.h"
 
 using namespace anholon;
@@ -20,7 +23,33 @@ void rescue_model(Options& o) {
     }
 }
 
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "forms", "models"};
+constexpr const char* kLater[] = {"new", "compare", "prove", "verify", "sweep", "linearize", "report", "plot", "render", "convert", "fmt"};
+
+// A word that is no command gets an answer of its own.
+void check_command(const char* word) {
+  if (word[0] == '-') return;
+  std::vector<std::string> known;
+  for (const char* c : kCommands) {
+    if (std::string(c) == word) return;
+    known.emplace_back(c);
+  }
+  for (const char* c : kLater)
+    if (std::string(c) == word) throw UsageError{"error: the command '" + std::string(word) + "' is not there yet\nhint: anholon --help\n"};
+  const std::string near = did_you_mean(word, known);
+  throw UsageError{"error: there is no command '" + std::string(word) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                   "\nhint: anholon --help\n"};
+}
+
+// What was printed has reached its reader; a full disk or a closed pipe is not success.
+int finish(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::fprintf(stderr, "error: cannot write the output: %s\n", std::strerror(errno));
+  return kBadInput;
+}
+
 int run(int argc, char** argv) {
+  if (argc > 1) check_command(argv[1]);
   CLI::App app{"Anholon: the equations of nonholonomic mechanics, their motion, with a residual report."};
   app.name("anholon");
   app.set_version_flag("--version", "anholon " ANHOLON_VERSION);
@@ -94,8 +123,10 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);
-    return code == 0 ? kOk : kBadInput;
+    if (e.get_exit_code() == 0) return app.exit(e);
+    const bool known = argc > 1 && argv[1][0] != '-';
+    std::fprintf(stderr, "error: %s\nhint: anholon %s%s--help\n", e.what(), known ? argv[1] : "", known ? " " : "");
+    return kBadInput;
   }
   rescue_model(o);
   const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models"));
@@ -110,7 +141,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return finish(run(argc, argv));
   } catch (const UsageError& e) {
     std::fflush(stdout);
     std::fputs(e.text.c_str(), stderr);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 
 #include "base/json.h"
 #include "cli/input.h"
@@ -47,39 +49,55 @@ class Progress {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_ = start_;
 };
 
-SimulationOptions options(const Options& o, const Model& model) {
-  SimulationOptions s;
+// More rows than this are refused before they fill memory or disk.
+constexpr long kMostRows = 20'000'000;
+
+void times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
+  const Model& model = *scenario.model;
   const SimulationSettings& file = model.simulate;
-  s.state = state_choice(o, model);
   s.to = o.to.empty() ? file.to : std::optional<Rational>(exact(o.to, "--to"));
   s.every = o.every.empty() ? file.every : std::optional<Rational>(exact(o.every, "--every"));
-  if (!o.every.empty() && *s.every <= 0) throw UsageError{"error: --every is a positive time\n"};
-  if (!o.at.empty()) {
-    for (const std::string& t : split(o.at)) s.at_text.push_back(t);
-    std::stable_sort(s.at_text.begin(), s.at_text.end(),
-                     [](const std::string& a, const std::string& b) { return exact(a, "--at") < exact(b, "--at"); });
-    for (const std::string& t : s.at_text) s.at.push_back(exact(t, "--at"));
-    s.every.reset();
-  } else if (o.every.empty()) {
-    s.at = file.at;
-  }
+  if (s.every && *s.every <= 0) throw UsageError{"error: --every is a positive time\n"};
+  s.at_text = split(o.at);
+  if (!o.at.empty() && s.at_text.empty()) throw UsageError{"error: --at has no times\nhint: --at 0.25,0.5,1\n"};
+  std::stable_sort(s.at_text.begin(), s.at_text.end(),
+                   [](const std::string& a, const std::string& b) { return exact(a, "--at") < exact(b, "--at"); });
+  for (const std::string& t : s.at_text) s.at.push_back(exact(t, "--at"));
+  if (!s.at.empty()) s.every.reset();
+  else if (o.every.empty()) s.at = file.at;
+  std::sort(s.at.begin(), s.at.end());
+  // With --at these rows and no more; the end in the file is for runs without.
+  if (!o.at.empty() && o.to.empty()) s.to.reset();
   if (s.at.empty() && !s.to)
     throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
+  if (s.to && abs(*s.to) > Rational(mpz_class("1000000000000000000"))) throw UsageError{"error: an end time beyond 1e18\n"};
+
+  Rational start(scenario.state.t);
+  if (s.state.t) start = *s.state.t;
+  else if (is_number(model.initial.t)) start = number_value(model.initial.t);
+  if (!s.at.empty() && s.at.front() < start && s.at.back() > start)
+    throw UsageError{"error: the time " + s.at.front().get_str() + " lies before the start, t = " + start.get_str() + "\n"};
+  const Rational end = s.at.empty() ? *s.to : s.at.front() < start ? s.at.front() : s.at.back();
+  if (end < start) std::fprintf(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
+  if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
+    throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
+}
+
+void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
   s.digits = o.digits;
   if (o.digits > 16) s.precision = Precision::multi;
   else if (o.numbers == "long-double") s.precision = Precision::long_real;
-  s.tolerance = o.digits > 16 ? 0 : 1e-12;
-  if (o.digits > 16) s.tolerance = exact("1e-" + std::to_string(o.digits + 2), "--digits").get_d();
-  else if (file.tolerance) s.tolerance = file.tolerance->get_d();
-  if (!o.tolerance.empty()) s.tolerance = exact(o.tolerance, "--tolerance").get_d();
-  if (!(s.tolerance > 0) || s.tolerance >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
-  const double floor = s.precision == Precision::real ? 2e-16 : s.precision == Precision::long_real ? 1e-19 : 1e-290;
-  if (s.tolerance < floor) {
-    std::fprintf(stderr, "note: a tolerance below %.0e means %.0e in these numbers\n", floor, floor);
-    s.tolerance = floor;
+  const std::string power_of_ten = "1e-";
+  if (o.digits > 16) s.tolerance = exact(power_of_ten + std::to_string(o.digits + 2), "--digits");
+  else if (model.simulate.tolerance) s.tolerance = *model.simulate.tolerance;
+  if (!o.tolerance.empty()) s.tolerance = exact(o.tolerance, "--tolerance");
+  if (s.tolerance <= 0 || s.tolerance >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
+  if (s.precision == Precision::multi) return;
+  const std::string floor = s.precision == Precision::real ? "2e-16" : "1e-19";
+  if (s.tolerance < exact(floor, "")) {
+    std::fprintf(stderr, "note: a tolerance below %s means %s in these numbers\n", floor.c_str(), floor.c_str());
+    s.tolerance = exact(floor, "");
   }
-  s.order = o.order;
-  return s;
 }
 
 std::string small(double x) { return number_text(x, 3); }
@@ -134,7 +152,9 @@ int simulate(const Options& o) {
     throw UsageError{"error: the integrator '" + o.integrator + "' is not read yet\nhint: --integrator taylor\n"};
   if (ends_with(o.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
   const Reader in = read(o);
-  SimulationOptions options = cli::options(o, *in.model);
+  SimulationOptions options;
+  options.state = state_choice(o, *in.model);
+  options.order = o.order;
   Scenario s;
   const Outcome start = make_scenario(in.model, form(o, *in.model), options.state, s);
   form(o, *in.model, s.mechanics.get());
@@ -143,6 +163,8 @@ int simulate(const Options& o) {
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
+  times(o, s, options);
+  accuracy(o, *in.model, options);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   options.cancelled = [] { return stop_requested != 0; };
@@ -157,16 +179,16 @@ int simulate(const Options& o) {
     if (json) {
       MemorySink rows;
       std::FILE* file = o.output.empty() || o.output == "-" ? stdout : std::fopen(o.output.c_str(), "w");
-      if (!file) throw UsageError{"error: cannot write " + o.output + "\n"};
+      if (!file) throw UsageError{"error: cannot write " + o.output + ": " + std::strerror(errno) + "\n"};
       if (start.ok()) r = anholon::simulate(s, options, rows);
       else r.outcome = start, r.t = number_text(s.state.t);
       write_json(s, rows, r, file);
-      if (std::fflush(file) != 0 || std::ferror(file)) write_error = "cannot write " + (o.output.empty() ? "the output" : o.output);
+      if (std::fflush(file) != 0 || std::ferror(file)) write_error = "cannot write " + (o.output.empty() ? "the output" : o.output) + ": " + std::strerror(errno);
       if (file != stdout) std::fclose(file);
     } else {
       if (!start.ok()) {
         print_outcome(start);
-        return start.kind == OutcomeKind::inconsistent ? kBadInput : kStopped;
+        return kStopped;
       }
       CsvSink rows(o.output);
       if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
@@ -183,8 +205,7 @@ int simulate(const Options& o) {
     std::fprintf(stderr, "error: %s\n", write_error.c_str());
     return kBadInput;
   }
-  if (r.outcome.ok()) return kOk;
-  return r.outcome.kind == OutcomeKind::inconsistent ? kBadInput : kStopped;
+  return r.outcome.ok() ? kOk : kStopped;
 }
 
 }  // namespace anholon::cli

@@ -186,7 +186,7 @@ struct Arguments {
     if (Expr* e = std::get_if<Expr>(&values[i]); e && is_zero(*e)) return zero_vector(*e->graph);
     throw Failure(call.args[i].span, "argument " + std::to_string(i + 1) + " of " + call.text + " is " +
                                          type_name(values[i]) + ", not a vector",
-                  values[i].index() == 3 ? "a body is not a point: write B.center" : "");
+                  values[i].index() == 3 ? "a body is not a point: write " + call.args[i].text + ".center" : "");
   }
   long integer(std::size_t i) const {
     const Expr e = number(i);
@@ -270,6 +270,7 @@ Value call(const Syntax& s, Names& names) {
   if (const int index = find_function(f); index >= 0) {
     in.expect(1);
     const Expr x = in.number(0);
+    if (f == "tan" && is_zero(cos(x))) throw Failure(s.span, "the tangent has no value there");
     if (f == "log" && is_number(x) && number_value(x) <= 0)
       throw Failure(s.span, "logarithm of a number that is not positive");
     return g.apply(static_cast<Function>(index), x);

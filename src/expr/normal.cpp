@@ -18,6 +18,11 @@ struct TooLarge {};
 // Largest multiple of an angle that is expanded into powers of its sine and cosine.
 constexpr long kLargestMultiple = 40;
 
+// Coefficients of more bits than this end the test.
+constexpr long kLargestCoefficient = 4000;
+// Products of terms in one test.
+constexpr long kMostWork = 10'000'000;
+
 // Polynomials over Q in a fixed number of generators, lexicographic, earlier generators first.
 class Ring {
  public:
@@ -26,9 +31,13 @@ class Ring {
   Ring(const Ring&) = delete;
   Ring& operator=(const Ring&) = delete;
   const fmpq_mpoly_ctx_struct* context() const { return context_; }
+  void spend(long work) const {
+    if (work > kNormalTermLimit || (work_ += work) > kMostWork) throw TooLarge{};
+  }
 
  private:
   fmpq_mpoly_ctx_t context_;
+  mutable long work_ = 0;
 };
 
 class Poly {
@@ -85,7 +94,8 @@ class Poly {
     return r;
   }
   friend Poly operator*(const Poly& a, const Poly& b) {
-    if (a.length() * b.length() > kNormalTermLimit) throw TooLarge{};
+    a.ring_->spend(a.length() * b.length());
+    if (std::abs(fmpz_mpoly_max_bits(a.p_->zpoly)) > kLargestCoefficient) throw TooLarge{};
     Poly r(*a.ring_);
     fmpq_mpoly_mul(r.p_, a.p_, b.p_, a.ring_->context());
     return r;

@@ -21,14 +21,14 @@ void add_compensated(N& s, N& carry, const N& x) {
 
 }  // namespace
 
-int taylor_order(double tolerance) {
-  return std::max(4, static_cast<int>(std::ceil(-std::log(tolerance) / 2 + 1)));
+int taylor_order(double log_tolerance) {
+  return std::max(4, static_cast<int>(std::ceil(-log_tolerance / 2 + 1)));
 }
 
 template <Number N>
 Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
                     const StepSettings& settings)
-    : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.tolerance)),
+    : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
       expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {}
 
 template <Number N>
@@ -126,9 +126,18 @@ N Stepper<N>::step_size() const {
     const double ls = std::log(size);
     log_rho = std::min({log_rho, (ls - last) / order_, (ls - before_last) / (order_ - 1)});
   }
+  // Multipliers that are no states carry no error on, but a step must not pass a pole of theirs,
+  // where a constraint loses its hold: it stays within half of their radius of convergence.
+  double log_pole = 300;
+  for (std::size_t j = 0; j < p.unknowns(); ++j) {
+    if (p.d[j] > 0) continue;
+    const N top = abs(expansion_.coefficient(j, order_ - 1)), value = abs(expansion_.coefficient(j, 0));
+    if (!(top > N(0)) || !(value > N(0))) continue;
+    log_pole = std::min(log_pole, (std::max(0.0, to_double(N(log(value)))) - to_double(N(log(top)))) / (order_ - 1));
+  }
   // e^-2 per order suits order = -ln(tol)/2 + 1; another order keeps h^p rho^-p = tol.
-  const double shrink = settings_.order > 0 ? -std::log(settings_.tolerance) / order_ : 2.0;
-  return N(std::exp(log_rho - shrink - 0.7 / (order_ - 1)));
+  const double shrink = settings_.order > 0 ? -settings_.log_tolerance / order_ : 2.0;
+  return N(std::exp(std::min(log_rho - shrink - 0.7 / (order_ - 1), log_pole - 0.7)));
 }
 
 template <Number N>
@@ -166,7 +175,7 @@ Outcome Stepper<N>::step(const W& end) {
   const W left = end - t_;
   const bool forward = left > W(0);
   W h = convert<W>(horizon_);
-  const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * (abs(t_) > abs(left) ? abs(t_) : abs(left));
+  const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
   if (!(h > floor))
     return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
             "the motion approaches a singularity: stop before it, or look at the last good state"};
@@ -196,6 +205,14 @@ Outcome Stepper<N>::step(const W& end) {
   state_ = std::move(next);
   ++steps_;
   return {};
+}
+
+template <Number N>
+typename Stepper<N>::W Stepper<N>::quadrature(std::size_t i, const W& dt) const {
+  const N* series = expansion_.quadrature(i);
+  W s(0);
+  for (int k = order_ - 1; k >= 0; --k) s = s * dt + convert<W>(series[k]);
+  return s;
 }
 
 template <Number N>

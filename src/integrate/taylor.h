@@ -8,14 +8,14 @@
 namespace anholon {
 
 struct StepSettings {
-  double tolerance = 1e-12;
+  double log_tolerance = -27.6310211159;  // natural logarithm: 1e-400 is a tolerance too
   int order = 0;                     // of the Taylor polynomials; 0: from the tolerance
   std::size_t most_steps = 50'000'000;
   std::function<bool()> cancelled;   // asked between steps
 };
 
 // ceil(-ln(tolerance)/2 + 1): the order that makes the least work for the tolerance.
-int taylor_order(double tolerance);
+int taylor_order(double log_tolerance);
 
 // Taylor coefficients are computed in N; the state, the projection on the constraints and the
 // leading derivatives in the wider type W, with the LU of N (mixed-precision refinement). A state
@@ -44,6 +44,8 @@ class Stepper {
   // … and anywhere in the last step, in an expansion of the caller.
   Outcome at(const W& t, Expansion<W>& point) const;
 
+  // Quadrature i as a polynomial in t - before() over the last step: its value there.
+  W quadrature(std::size_t i, const W& dt) const;
   // Integrals of the quadratures since the start.
   const std::vector<W>& integrals() const { return integrals_; }
   const W& worst_constraint() const { return worst_constraint_; }

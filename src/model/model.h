@@ -39,6 +39,7 @@ struct Observer {
 // A mass or axis weight that varies with t, q, q': its frozen symbol is graph.mass(index).
 struct VaryingMass {
   std::string name;
+  bool weight = false;  // of an axis: may be negative (products of inertia)
   Expr value;
   Span span;
 };

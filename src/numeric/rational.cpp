@@ -1,6 +1,7 @@
 #include "numeric/rational.h"
 
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 
 namespace anholon {
@@ -56,6 +57,12 @@ std::optional<Rational> parse_rational(std::string_view text) {
 }
 
 std::string to_string(const Rational& r) { return r.get_str(); }
+
+double natural_logarithm(const Rational& r) {
+  long p = 0, q = 0;
+  const double num = mpz_get_d_2exp(&p, r.get_num_mpz_t()), den = mpz_get_d_2exp(&q, r.get_den_mpz_t());
+  return std::log(num / den) + static_cast<double>(p - q) * 0.693147180559945309417;
+}
 
 std::optional<Rational> exact_root(const Rational& r, unsigned long n) {
   if (r < 0 && n % 2 == 0) return std::nullopt;

@@ -17,6 +17,9 @@ std::optional<Rational> parse_rational(std::string_view text);
 // "3", "-1/4".
 std::string to_string(const Rational& r);
 
+// ln r of a positive r of any size.
+double natural_logarithm(const Rational& r);
+
 // The exact root r^(1/n), if it is rational.
 std::optional<Rational> exact_root(const Rational& r, unsigned long n);
 

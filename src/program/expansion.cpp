@@ -137,12 +137,40 @@ Outcome Expansion<N>::prepare() {
     if (!is_finite(v))
       return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
               "the motion leaves the region where the model is defined: stop it before, or change the formula"};
-  const Outcome singular{OutcomeKind::singular, "the system Jacobian is singular",
-                         "a constraint has lost its hold here (its coefficients vanish or depend on one another), or no inertia "
-                         "acts in some direction"};
-  if (!lu_.factor(j_)) return singular;
-  if (smallest_singular_value() < unit_roundoff<N>() * N(kSingularRoundoffs)) return singular;
+  if (!lu_.factor(j_) || smallest_singular_value() < unit_roundoff<N>() * N(kSingularRoundoffs)) return singular();
   return {};
+}
+
+// Which constraint has lost its hold, or which coordinate its inertia.
+template <Number N>
+Outcome Expansion<N>::singular() const {
+  const System& s = *program_->system;
+  const std::size_t n = s.coordinates, constraints = s.size() - n;
+  constexpr double kLost = 1e-10;
+  Matrix<N> phi(constraints, n);
+  for (std::size_t i = 0; i < constraints; ++i)
+    for (std::size_t a = 0; a < n; ++a) phi(i, a) = j_(n + i, a);
+  const RowChoice<N> rows = choose_rows(phi, N(kLost));
+  if (!rows.dependent.empty()) {
+    std::string names;
+    for (std::size_t i : rows.dependent) names += (names.empty() ? "'" : ", '") + s.equation_names[n + i] + "'";
+    const bool vanishes = rows.vanishing.size() == rows.dependent.size();
+    return {OutcomeKind::singular,
+            "singular configuration: the constraint " + names + " has lost its hold" +
+                (vanishes ? " (all its coefficients vanish)" : " (its coefficients depend on those of the others)"),
+            "start or stop the motion away from this configuration, or write the constraint in a form that is regular here"};
+  }
+  const RowChoice<N> all = choose_rows(j_, N(kLost));
+  std::vector<bool> used(s.size(), false);
+  for (std::size_t column : all.pivot_columns) used[column] = true;
+  std::string names;
+  for (std::size_t j = 0; j < s.size(); ++j)
+    if (!used[j]) names += (names.empty() ? "" : ", ") + s.variable_names[j];
+  return {OutcomeKind::singular,
+          "singular configuration: the equations do not determine " + (names.empty() ? std::string("the accelerations") : names) +
+              (names.find("lambda") == std::string::npos && !names.empty() ? "''" : ""),
+          "no inertia acts in some direction, a constraint has lost its hold, or angles are at their singularity (Euler angles "
+          "at theta = 0)"};
 }
 
 template <Number N>
@@ -320,7 +348,7 @@ Outcome Expansion<N>::extend() {
   const Program& p = *program_;
   // J and the partial derivatives at the leading derivatives found (they may enter nonlinearly).
   jacobian();
-  if (!lu_.factor(j_)) return {OutcomeKind::singular, "the system Jacobian is singular", "stop the motion before this configuration"};
+  if (!lu_.factor(j_)) return singular();
   for (int stage = 1; stage <= stages_; ++stage) {
     for (std::size_t j = 0; j < p.unknowns(); ++j) x_[j * stride_ + static_cast<std::size_t>(p.d[j] + stage)] = N(0);
     sweep(stage);

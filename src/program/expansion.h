@@ -84,6 +84,7 @@ class Expansion {
   void sweep(int stage);
   void sweep_known(int last_stage);
   Outcome newton(const Solver& solver, bool own);
+  Outcome singular() const;
   void jacobian();
   N root_scale(std::size_t i, int order) const;
   bool residual(int level, std::vector<N>& r, N& worst);

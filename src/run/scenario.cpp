@@ -60,6 +60,24 @@ std::optional<Diagnostic> not_integrated(const Model& model, const std::vector<C
   return std::nullopt;
 }
 
+Outcome regular_at_start(const Scenario& s) {
+  const Program p = program(s.system, s.structure);
+  double t = 0;
+  std::vector<double> state;
+  InitialState<double> named;
+  if (Outcome o = initial_state(s, {}, t, state, named); !o.ok()) return o;
+  t = s.state.t;
+  for (std::size_t a = 0; a < s.system.coordinates; ++a)
+    for (std::size_t j = 0, at = 0; j < s.system.size(); at += static_cast<std::size_t>(s.structure.d[j]), ++j)
+      if (j == a)
+        for (std::size_t k = 0; k < 2; ++k) state[at + k] = k == 0 ? s.state.q[a] : s.state.qd[a];
+  Expansion<double> point(p, parameter_values<double>(*s.model), 1);
+  point.load(t, state, {});
+  if (Outcome o = point.prepare(); !o.ok()) return o;
+  if (Outcome o = point.project(); !o.ok()) return o;
+  return point.solve();
+}
+
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                       Scenario& s) {
   s.model = model;

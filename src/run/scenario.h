@@ -40,6 +40,9 @@ std::vector<ConstraintClass> classify(const Mechanics& mechanics);
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                       Scenario& scenario);
 
+// Singular if the accelerations are not determined at the initial state.
+Outcome regular_at_start(const Scenario& scenario);
+
 // Nothing if numbers can be computed for the model, else why not.
 std::optional<Diagnostic> not_integrated(const Model& model, const std::vector<ConstraintClass>& classes);
 

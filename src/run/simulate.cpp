@@ -34,7 +34,7 @@ class Run {
   using W = Wider<N>;
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), parameters_(parameter_values<W>(*s.model)), power_(anholon::power(*s.mechanics)),
-        program_(program(s.system, s.structure, std::vector<Expr>{balance_power(s, power_)})),
+        program_(program(s.system, s.structure, quadratures(s, power_))),
         stepper_(program_, parameter_values<N>(*s.model), parameters_, settings(o)), point_(program_, parameters_, extra_orders()),
         outputs_(s, output_expressions(), parameters_) {}
 
@@ -50,7 +50,7 @@ class Run {
       schedule(t);
       run(t);
     }
-    report_.t = number_text(to_double(stepper_.time()));
+    report_.t = number_text(to_double(reached_ ? *reached_ : stepper_.time()));
     report_.steps = stepper_.steps();
     report_.constraints = to_double(stepper_.worst_constraint());
     report_.smallest_sigma = to_double(stepper_.smallest_sigma());
@@ -58,7 +58,16 @@ class Run {
   }
 
  private:
-  static StepSettings settings(const SimulationOptions& o) { return {o.tolerance, o.order, o.most_steps, o.cancelled}; }
+  static StepSettings settings(const SimulationOptions& o) {
+    return {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled};
+  }
+
+  // The energy balance first, then the masses that vary.
+  static std::vector<Expr> quadratures(const Scenario& s, const Power& p) {
+    std::vector<Expr> es = {balance_power(s, p)};
+    for (const VaryingMass& m : s.model->masses) es.push_back(m.value);
+    return es;
+  }
 
   // Derivatives beyond its own leading one, up to the highest solved for any coordinate.
   int extra_orders() const {
@@ -99,33 +108,26 @@ class Run {
     return es;
   }
 
+  // The times of the rows, in the direction of the motion, and its end.
   void schedule(const W& t) {
-    if (!o_.at.empty()) {
-      for (const Rational& r : o_.at) times_.push_back(from_rational<W>(r));
-      end_ = *std::max_element(times_.begin(), times_.end());
-      if (o_.to && from_rational<W>(*o_.to) > end_) end_ = from_rational<W>(*o_.to);
-      return;
+    for (const Rational& r : o_.at) times_.push_back(from_rational<W>(r));
+    labels_ = o_.at_text;
+    labels_.resize(times_.size());
+    end_ = o_.to && (times_.empty() || *o_.to > o_.at.back()) ? from_rational<W>(*o_.to) : times_.back();
+    if (!times_.empty() && times_.front() < t && !(times_.back() > t)) {
+      std::reverse(times_.begin(), times_.end());
+      std::reverse(labels_.begin(), labels_.end());
+      end_ = times_.back();
     }
-    end_ = from_rational<W>(*o_.to);
-    if (o_.every) {
-      const bool forward = end_ >= t;
-      const Rational t0 = start_time(t);
-      for (long k = 0;; ++k) {
-        const Rational r = forward ? Rational(t0 + k * *o_.every) : Rational(t0 - k * *o_.every);
-        if (forward ? r > *o_.to : r < *o_.to) break;
-        times_.push_back(from_rational<W>(r));
-      }
-      if (times_.empty() || times_.back() != end_) times_.push_back(end_);
+    if (!o_.every) return;
+    const Rational step = end_ < t ? Rational(-*o_.every) : *o_.every;
+    for (long k = 0;; ++k) {
+      const W next = t + from_rational<W>(Rational(k * step));
+      if (end_ < t ? next < end_ : next > end_) break;
+      times_.push_back(next);
     }
-  }
-
-  Rational start_time(const W& t) const {
-    if (o_.state.t) return *o_.state.t;
-    const Expr e = s_.model->initial.t;
-    if (is_number(e)) return number_value(e);
-    Rational r;
-    r = to_double(t);
-    return r;
+    if (times_.empty() || times_.back() != end_) times_.push_back(end_);
+    labels_.resize(times_.size());
   }
 
   void run(const W& t0) {
@@ -135,25 +137,22 @@ class Run {
     // Rows at or before the start come from the initial state itself.
     while (next < times_.size() && times_[next] == t0) row(t0, label(next)), ++next;
     energy_at(t0, h0_);
-    if (next < times_.size() && ((times_[next] < t0) == (end_ > t0)) && !(times_[next] == t0)) {
-      report_.outcome = {OutcomeKind::inconsistent, "the time " + label_or(next) + " lies before the start",
-                         "rows are wanted at times after [initial] t, in order"};
-      return;
-    }
     while (report_.outcome.ok() && !(stepper_.time() == end_)) {
       report_.outcome = stepper_.step(end_);
       if (!report_.outcome.ok()) break;
+      const W stop = masses_positive_until();
       if (o_.progress) o_.progress(to_double(stepper_.time()), stepper_.steps());
       const bool forward = end_ > t0;
       while (report_.outcome.ok() && next < times_.size() &&
-             (forward ? times_[next] <= stepper_.time() : times_[next] >= stepper_.time())) {
+             (forward ? times_[next] <= stop : times_[next] >= stop)) {
         row(times_[next], label(next));
         ++next;
       }
-      if (every_step && report_.outcome.ok()) row(stepper_.time(), "");
+      if (every_step && report_.outcome.ok()) row(stop, "");
+      if (report_.outcome.ok() && !(stop == stepper_.time())) negative_mass(stop);
     }
     if (report_.outcome.ok() && stepper_.steps() > 0) balance();
-    if (!report_.outcome.ok() && report_.outcome.message.find(" at t = ") == std::string::npos) {
+    if (!report_.outcome.ok() && report_.outcome.message.find(" t = ") == std::string::npos) {
       report_.outcome.message += " at t = " + number_text(to_double(stepper_.time()), 12);
       // The last good state is worth a row of its own.
       if (stepper_.steps() > 0 && !every_step) {
@@ -164,10 +163,32 @@ class Run {
     }
   }
 
-  std::string label(std::size_t k) const { return k < o_.at_text.size() ? o_.at_text[k] : std::string(); }
-  std::string label_or(std::size_t k) const {
-    return label(k).empty() ? number_text(to_double(times_[k]), 12) : label(k);
+  // The end of the last step, or the earlier time at which a mass passes zero.
+  W masses_positive_until() {
+    const W whole = stepper_.time() - stepper_.before();
+    W good = whole;
+    for (std::size_t i = 0; i < s_.model->masses.size(); ++i) {
+      if (s_.model->masses[i].weight || !(stepper_.quadrature(1 + i, good) < W(0))) continue;
+      W low(0), high = good;
+      for (int k = 0; k < 200 && !(low == high); ++k) {
+        const W middle = low + (high - low) * W(0.5);
+        if (middle == low || middle == high) break;
+        (stepper_.quadrature(1 + i, middle) < W(0) ? high : low) = middle;
+      }
+      good = low;
+      negative_ = i;
+    }
+    return good == whole ? stepper_.time() : stepper_.before() + good;
   }
+
+  void negative_mass(const W& t) {
+    report_.outcome = {OutcomeKind::negative_mass,
+                       "the mass of '" + s_.model->masses[negative_].name + "' is negative from t = " + number_text(to_double(t), 12) + " on",
+                       "end the motion before, or let the mass end at zero flow"};
+    reached_ = t;
+  }
+
+  const std::string& label(std::size_t k) const { return labels_[k]; }
 
   std::string text(const W& x) const {
     if constexpr (std::same_as<N, Multi>) return number_text(x, o_.digits + 2);
@@ -242,7 +263,10 @@ class Run {
   Expansion<W> point_;
   OutputTape<W> outputs_;
   std::vector<W> times_;
+  std::vector<std::string> labels_;
   W end_{0}, h0_{0};
+  std::optional<W> reached_;
+  std::size_t negative_ = 0;
   SimulationReport report_;
 };
 

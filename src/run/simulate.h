@@ -12,9 +12,9 @@ enum class Precision : std::uint8_t { real, long_real, multi };
 struct SimulationOptions {
   StateChoice state;
   std::optional<Rational> to;
-  std::vector<Rational> at;        // exactly these rows
+  std::vector<Rational> at;        // exactly these rows, ascending, on one side of the start
   std::optional<Rational> every;
-  double tolerance = 1e-12;
+  Rational tolerance{1, 1000000000000};
   int order = 0;                   // of the Taylor polynomials; 0: from the tolerance
   Precision precision = Precision::real;
   int digits = 16;                 // of the numbers written (multi: also of the computation)

@@ -105,7 +105,7 @@ Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
     return value;
   }
   const std::size_t index = model_.masses.size();
-  model_.masses.push_back({name, value, span});
+  model_.masses.push_back({name, name.find(" weight") != std::string::npos, value, span});
   model_.names.masses.push_back("mu." + name);
   return g.mass(static_cast<std::uint32_t>(index));
 }

@@ -34,6 +34,18 @@ class InitialReader {
         if (i.key == "lambda" || i.key == "lambdadot") throw Failure(i.span, "lambda is a table", "lambda = {NAME = 0.4}");
         add(out.given, i, symbol(i.key, i.key_span));
       });
+    // For constraints of order 3 and more these are initial data; below they follow from the state.
+    int highest = 0;
+    for (const Constraint& c : model_.constraints) highest = std::max(highest, c.order);
+    for (const GivenValue& v : out.given) {
+      const Node& n = model_.graph->node(v.symbol.id);
+      if (highest >= 3) continue;
+      if (n.kind == Kind::multiplier)
+        diagnostics_.error(v.span, "multipliers follow from the state: they are initial data for constraints of order 3 and more");
+      else if (n.order > 1)
+        diagnostics_.error(v.span, "accelerations follow from the state: they are initial data for constraints of order 3 and more",
+                           "give positions and velocities");
+    }
     for (std::size_t k = 0; k < out.given.size(); ++k)
       for (std::size_t j = 0; j < k; ++j)
         if (out.given[j].symbol == out.given[k].symbol)

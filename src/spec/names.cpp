@@ -5,6 +5,7 @@
 namespace anholon {
 
 static constexpr std::size_t kDeepestDefinitions = 400;
+static constexpr std::size_t kMostCalls = 100'000;
 
 Failure silent_failure() { return Failure(Span{}, ""); }
 bool is_silent(const Diagnostic& d) { return d.message.empty(); }
@@ -173,7 +174,10 @@ const Value& Scope::resolve(const std::string& name, Declaration& d, Span use) {
   } catch (const Failure& f) {
     d.state = State::failed;
     restore();
-    if (!is_silent(f.diagnostic)) failures.push_back(f.diagnostic);
+    if (!is_silent(f.diagnostic)) {
+      failures.push_back(f.diagnostic);
+      if (!d.override.empty()) failures.back().message = d.override + ": " + f.diagnostic.message;
+    }
     throw silent_failure();
   }
   restore();
@@ -207,7 +211,7 @@ Value Scope::name(const std::string& name, Span span) {
     return *here_;
   }
   if (name == "lambda")
-    throw Failure(span, "a multiplier is written lambda.NAME, in conditions only");
+    throw Failure(span, "multipliers are not read in formulas yet");
   const auto it = declarations_.find(name);
   if (it != declarations_.end()) {
     if (!it->second.arguments.empty())
@@ -319,7 +323,7 @@ std::size_t Scope::body_argument(const Value& value, const Syntax& argument) con
 static Vector point_argument(const Value& v, const Syntax& argument) {
   if (const Vector* a = std::get_if<Vector>(&v)) return *a;
   throw Failure(argument.span, std::string("a point is expected, this is ") + type_name(v),
-                v.index() == 3 ? "a body is not a point: write B.center" : "");
+                v.index() == 3 ? "a body is not a point: write " + argument.text + ".center" : "");
 }
 
 bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax& s, Value& result) {
@@ -430,6 +434,8 @@ bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax
     return true;
   }
   count(d.arguments.size(), d.arguments.size());
+  if (++calls_ > kMostCalls)
+    throw Failure(s.span, "the functions unfold into more than " + std::to_string(kMostCalls) + " calls");
   if (d.state == Declaration::State::open) throw Failure(s.span, "the function '" + f + "' is defined through itself");
   if (!d.parsed) {
     d.body = parse_formula(d.formula);

@@ -25,6 +25,7 @@ class Scope final : public Names {
     std::vector<std::string> arguments;   // of a function with arguments
     Span span;
     bool symbolic = false;                // stands for itself: coordinate, unknown function
+    std::string override;                 // "--set m=3", where the value comes from there
     enum class State : std::uint8_t { fresh, open, done, failed } state = State::fresh;
     Value value = InertialName{};
     Syntax body{};                        // of a function with arguments
@@ -62,8 +63,6 @@ class Scope final : public Names {
 
   // In potentials the name of a varying mass means its frozen symbol.
   bool freeze_masses = false;
-  // In conditions lambda.NAME means the multiplier of that constraint; elsewhere it is refused.
-  bool allow_multipliers = false;
   Vector gravity_at(const Vector& place, Span use);
   std::vector<Diagnostic> failures;  // of declarations evaluated on demand
 
@@ -92,6 +91,7 @@ class Scope final : public Names {
   std::optional<Vector> here_;
   std::vector<std::string> open_;                        // path of names being evaluated
   std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
+  std::size_t calls_ = 0;                                // of given functions, over the whole file
 };
 
 // A failure that was reported where it arose: uses of a broken definition stay silent.

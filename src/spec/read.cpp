@@ -133,6 +133,7 @@ class Reader {
           else throw Failure(value->span, "the value of a parameter is a number, a formula or a vector");
           if (const auto o = overrides_.find(i.key); o != overrides_.end()) {
             d.formula = FormulaText(o->second, Span{});
+            d.override = "--set " + o->first + "=" + o->second;
             d.item = nullptr;
             used.push_back(o->first);
           }
@@ -248,6 +249,8 @@ class Reader {
     if (order < 0) {
       if (proved_zero(phi))
         throw Failure(equation.formula.whole(), "this equation always holds: it constrains nothing");
+      if (is_number(phi))
+        throw Failure(equation.formula.whole(), "this equation never holds: its sides differ by " + to_string(number_value(phi)));
       throw Failure(equation.formula.whole(), "no coordinate or derivative occurs in this equation",
                     "a constraint relates coordinates and their derivatives");
     }
@@ -292,7 +295,7 @@ class Reader {
     if (const Vector* a = std::get_if<Vector>(&v)) return *a;
     if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
     throw Failure(s.span, std::string("one side of the equation is a vector, the other is ") + type_name(v),
-                  v.index() == 3 ? "a body is not a point: write B.center" : "0 is also the zero vector");
+                  v.index() == 3 ? "a body is not a point: write " + s.text + ".center" : v.index() == 0 ? "0 is also the zero vector" : "");
   }
 
   Rational rational(const Item& i) {
@@ -309,7 +312,7 @@ class Reader {
     if (const Item* i = s->find("to")) out.to = rational(*i);
     if (const Item* i = s->find("tolerance")) {
       out.tolerance = rational(*i);
-      if (*out.tolerance <= 0) throw Failure(i->span, "the tolerance is positive");
+      if (*out.tolerance <= 0 || *out.tolerance >= 1) throw Failure(i->span, "the tolerance lies between 0 and 1");
     }
     if (const Item* i = s->find("every")) {
       out.every = rational(*i);
@@ -319,7 +322,10 @@ class Reader {
       if (i->kind != Item::Kind::array) throw Failure(i->span, "'at' is a list of times");
       for (const Item& t : i->items) out.at.push_back(rational(t));
     }
-    if (const Item* i = s->find("form")) out.form = i->text();
+    if (const Item* i = s->find("form")) {
+      if (i->kind != Item::Kind::string) throw Failure(i->span, "a form is a name in quotes", "form = \"routh\"");
+      out.form = i->text();
+    }
     if (const Item* i = s->find("integrator"); i && i->text() != "taylor")
       throw Failure(i->span, "the integrator '" + i->text() + "' is not read yet", "integrator = \"taylor\"");
   }

@@ -30,11 +30,13 @@ class Places {
       if (text_[i] == '\n') starts_.push_back(i + 1);
   }
 
+  // Values of one line are asked for from left to right: the search goes on where it ended.
   std::size_t offset(Span s) const {
     if (s.line == 0 || s.line >= starts_.size()) return text_.size();
-    std::size_t i = starts_[s.line];
-    for (std::uint32_t c = 1; c < s.column && i < text_.size(); ++c) i += utf8_width(text_, i);
-    return i;
+    if (s.line != last_.line || s.column < last_.column) last_ = {s.line, 1, 1}, last_offset_ = starts_[s.line];
+    for (; last_.column < s.column && last_offset_ < text_.size(); ++last_.column)
+      last_offset_ += utf8_width(text_, last_offset_);
+    return last_offset_;
   }
 
   // The characters of a number as written.
@@ -84,7 +86,46 @@ class Places {
  private:
   const std::string& text_;
   std::vector<std::size_t> starts_;
+  mutable Span last_;
+  mutable std::size_t last_offset_ = 0;
 };
+
+// A key of more parts than this is refused before the parser builds (and recursively destroys) a
+// table for each.
+constexpr int kDeepestKey = 100;
+
+void check_depth(const SourceText& source) {
+  int dots = 0;
+  std::uint32_t line = 1;
+  for (const char c : source.text) {
+    if (c == '\n') ++line;
+    const bool part = std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == ' ' || c == '"' || c == '\'';
+    if (c == '.') ++dots;
+    else if (!part) dots = 0;
+    if (dots > kDeepestKey) throw Failure(Span{line, 1, 1}, "a key of more than " + std::to_string(kDeepestKey) + " parts");
+  }
+}
+
+// What the parser says, in the words of a user.
+Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
+  const Span span = span_of(e.source());
+  std::string message(e.description());
+  constexpr std::string_view prefix = "Error while parsing ";
+  if (message.rfind(prefix, 0) == 0) message = "in " + message.substr(prefix.size());
+  const std::string line = source.line(span.line), key = line.substr(0, line.find('='));
+  std::string hint;
+  if (message.find("control characters other than TAB") != std::string::npos) {
+    message = "this text is not closed in its line";
+    hint = "a text ends with the quote it began with; one over several lines stands in three quotes";
+  } else if (key.find('\'') != std::string::npos && key.find('"') == std::string::npos) {
+    hint = "a key with ' stands in quotes: \"x'\" = …";
+  } else if (line.find('=') != std::string::npos && line.find_first_not_of(" \t", line.find('=') + 1) == std::string::npos) {
+    message = "a value is missing after '='";
+  } else if (line.find('=') != std::string::npos && line.find('"') == std::string::npos) {
+    hint = "formulas stand in quotes: name = \"a*b\"";
+  }
+  return Failure(span, message, hint);
+}
 
 Item convert(const toml::node& node, const Places& places) {
   Item item;
@@ -94,8 +135,12 @@ Item convert(const toml::node& node, const Places& places) {
     item.formula = places.string(s->get(), item.span);
   } else if (node.is_integer() || node.is_floating_point()) {
     item.kind = Item::Kind::number;
-    Span start = item.span;
-    item.formula = FormulaText(places.number(item.span), start);
+    const std::string digits = places.number(item.span);
+    if (digits.size() > 1 && digits[0] == '0' && std::isalpha(static_cast<unsigned char>(digits[1])) && digits[1] != 'e')
+      throw Failure(item.span, "hexadecimal, octal and binary numbers are not read");
+    if (digits.find("nan") != std::string::npos || digits.find("inf") != std::string::npos)
+      throw Failure(item.span, "'" + digits + "' is no value");
+    item.formula = FormulaText(digits, item.span);
   } else if (const auto* b = node.as_boolean()) {
     item.kind = Item::Kind::boolean;
     item.truth = b->get();
@@ -131,17 +176,12 @@ const Item* Item::find(const std::string& name) const {
 Item read_toml(const SourceText& source) {
   if (source.text.size() > kLongestFile)
     throw Failure({}, "the file is larger than " + std::to_string(kLongestFile >> 20) + " MiB");
+  check_depth(source);
   try {
     const toml::table document = toml::parse(source.text, source.name);
     return convert(document, Places(source));
   } catch (const toml::parse_error& e) {
-    std::string message(e.description());
-    constexpr std::string_view prefix = "Error while parsing ";
-    if (message.rfind(prefix, 0) == 0) message = "in " + message.substr(prefix.size());
-    throw Failure(span_of(e.source()), message,
-                  message.find("string") != std::string::npos || message.find("saw '") != std::string::npos
-                      ? "formulas and keys with ' stand in quotes: \"x'\" = \"a*b\""
-                      : "");
+    throw syntax_error(e, source);
   }
 }
 

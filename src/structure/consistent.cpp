@@ -11,6 +11,7 @@ const char* name(Origin origin) {
     case Origin::given: return "given";
     case Origin::derived: return "derived";
     case Origin::chosen: return "chosen";
+    case Origin::guessed: return "guess";
     case Origin::corrected: return "corrected";
   }
   return "";
@@ -194,7 +195,7 @@ class Solver {
     const InitialData& in = model_.initial;
     const std::vector<N> t = values({{in.t, in.t, {}}}), guess = values(in.guess), given = values(in.given);
     state_.t = p_.t ? from_rational<N>(*p_.t) : t[0];
-    for (std::size_t i = 0; i < guess.size(); ++i) place(in.guess[i].symbol, guess[i], Origin::chosen);
+    for (std::size_t i = 0; i < guess.size(); ++i) place(in.guess[i].symbol, guess[i], Origin::guessed);
     for (std::size_t i = 0; i < given.size(); ++i) place(in.given[i].symbol, given[i], Origin::given);
     for (const StateOverride& o : p_.overrides)
       place((o.order == 0 ? m_.q : m_.qd)[o.coordinate], from_rational<N>(o.value), Origin::given);
@@ -210,7 +211,8 @@ class Solver {
     const std::vector<N> before = order == 0 ? state_.q : state_.qd;
     std::size_t worst = 0;
     if (!newton(stage, order, free)) return no_value(equations, order);
-    for (std::size_t a : free) origin[a] = moves(stage, a) ? Origin::derived : Origin::chosen;
+    for (std::size_t a : free)
+      if (moves(stage, a)) origin[a] = Origin::derived;
     N miss = worst_relative(stage, &worst);
     if (!(miss > rounding())) return {};
     if (to_double(miss) <= kRounded) {
@@ -327,9 +329,10 @@ class Solver {
     }
     const std::string at = e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "";
     return {OutcomeKind::inconsistent,
-            e.what + at + " is missed by " + number_text(to_double(residual), 3) + " with the initial data given",
-            fixed.empty() ? "it clashes with another constraint or condition, or no real solution is near: give a guess"
-                          : "leave out one of " + fixed + ": what is missing is found from the constraints"};
+            e.what + at + " is missed by " + number_text(std::abs(to_double(residual)), 3) + " with the initial data given",
+            fixed.empty() ? "it clashes with another constraint or condition, or has no real solution near the guess: [initial] guess = {…}"
+                          : "leave out " + std::string(fixed.find(',') == std::string::npos ? "" : "one of ") + fixed +
+                                " (what is missing is found from the constraints), if the equation can be satisfied at all"};
   }
 
   const InitialProblem<N>& p_;

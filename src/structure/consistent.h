@@ -14,7 +14,7 @@
 namespace anholon {
 
 // Where a value of the state came from.
-enum class Origin : std::uint8_t { given, derived, chosen, corrected };
+enum class Origin : std::uint8_t { given, derived, chosen, guessed, corrected };
 const char* name(Origin origin);
 
 template <Number N>

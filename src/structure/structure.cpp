@@ -14,7 +14,7 @@ int Structure::largest_c() const { return c.empty() ? 0 : *std::max_element(c.be
 namespace {
 
 constexpr int kProbes = 3;
-// A partial derivative below this fraction of the largest one met in its equation is no dependence.
+// A partial derivative below this fraction of the terms it is the sum of is round-off, no dependence.
 constexpr double kNoDependence = 1e-11;
 
 // Forward tangents of all equations by all inputs at one point: |dE_i / d input_k|.
@@ -38,19 +38,22 @@ class Probe {
     }
     machine_.evaluate();
     const std::size_t cols = tape_.inputs.size();
-    Matrix<double> tangent(tape_.code.size(), cols);
+    Matrix<double> tangent(tape_.code.size(), cols), terms(tape_.code.size(), cols);
     std::size_t next_input = 0;
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) {
       const Instruction& in = tape_.code[s];
-      double* row = &tangent.data[s * cols];
+      double *row = &tangent.data[s * cols], *row_terms = &terms.data[s * cols];
       const auto add = [&](std::uint32_t operand, double factor) {
-        const double* from = &tangent.data[operand * cols];
-        for (std::size_t k = 0; k < cols; ++k) row[k] += factor * from[k];
+        const double *from = &tangent.data[operand * cols], *from_terms = &terms.data[operand * cols];
+        for (std::size_t k = 0; k < cols; ++k) {
+          row[k] += factor * from[k];
+          row_terms[k] += std::abs(factor) * from_terms[k];
+        }
       };
       const auto partials = machine_.partials(s);
       switch (in.op) {
         case Op::constant: case Op::pi: case Op::parameter: break;
-        case Op::input: row[next_input++] = 1; break;
+        case Op::input: row[next_input] = row_terms[next_input] = 1, ++next_input; break;
         case Op::linear:
           for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
             add(tape_.linear_terms[k].slot, machine_.rational(tape_.linear_terms[k].coefficient));
@@ -64,9 +67,9 @@ class Probe {
     }
     for (std::size_t i = 0; i < tape_.roots.size(); ++i)
       for (std::size_t k = 0; k < cols; ++k) {
-        const double v = std::abs(tangent(tape_.roots[i], k));
+        const double v = std::abs(tangent(tape_.roots[i], k)), all = terms(tape_.roots[i], k);
         if (!std::isfinite(v)) return false;
-        largest[i][k] = std::max(largest[i][k], v);
+        if (v > kNoDependence * all) largest[i][k] = std::max(largest[i][k], v);
       }
     return true;
   }
@@ -133,6 +136,17 @@ std::string undetermined(const System& s, const std::vector<std::vector<int>>& s
   return {};
 }
 
+// Coordinates whose acceleration occurs in no equation of motion.
+std::string without_inertia(const System& s, const std::vector<std::vector<int>>& sigma) {
+  std::string list;
+  for (std::size_t j = 0; j < s.coordinates; ++j) {
+    int highest = kAbsent;
+    for (std::size_t i = 0; i < s.coordinates; ++i) highest = std::max(highest, sigma[i][j]);
+    if (highest < 2) list += (list.empty() ? "" : ", ") + s.variable_names[j];
+  }
+  return list;
+}
+
 }  // namespace
 
 Outcome analyse(const System& s, const std::vector<double>& parameters, const ProbeHints& hints, Structure& out) {
@@ -152,15 +166,17 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
 
   out.sigma.assign(n, std::vector<int>(n, kAbsent));
   for (std::size_t i = 0; i < n; ++i) {
-    const double scale = *std::max_element(largest[i].begin(), largest[i].end());
     for (std::size_t k = 0; k < probe.inputs().size(); ++k) {
       const auto j = s.variable(probe.inputs()[k].symbol);
-      if (!j || !(largest[i][k] > kNoDependence * scale)) continue;
+      if (!j || !(largest[i][k] > 0)) continue;
       out.sigma[i][*j] = std::max(out.sigma[i][*j], static_cast<int>(g.node(probe.inputs()[k].symbol).order));
     }
   }
   out.transversal = highest_transversal(out.sigma);
   if (out.transversal.empty()) {
+    if (const std::string list = without_inertia(s, out.sigma); !list.empty())
+      return {OutcomeKind::singular, "no inertia acts on " + list,
+              "a mass or a moment of inertia is zero, or no body moves with that coordinate"};
     const std::string name = undetermined(s, out.sigma);
     return {OutcomeKind::singular,
             name.empty() ? "the equations do not determine the motion: there are more constraints than they leave room for"

@@ -167,15 +167,14 @@ constexpr int kDeep = 100000;
 
 Expr deep(Graph& g, int depth) {
   Expr e = g.jet(0, 0);
-  for (int k = 0; k < depth; ++k) e = g.jet(1, 0) + Rational(1, 2) * sin(e);
+  for (int k = 0; k < depth; ++k) e = g.jet(1, 0) + sin(e);
   return e;
 }
 
-TEST(Depth, DerivativesAndSubstitutionDoNotOverflow) {
+TEST(Depth, TotalDerivativeAndSubstitutionDoNotOverflow) {
   Graph g;
   const Expr e = deep(g, kDeep);
   EXPECT_FALSE(is_zero(total_derivative(e)));
-  EXPECT_FALSE(is_zero(partial(e, g.jet(0, 0))));
   const Expr put = substitute({&e, 1}, [&](NodeId id) { return id == g.jet(0, 0).id ? g.jet(2, 0) : Expr{}; })[0];
   EXPECT_EQ(symbols({&put, 1}), (std::vector<NodeId>{g.jet(1, 0).id, g.jet(2, 0).id}));
   EXPECT_EQ(jet_order(e), 0);
@@ -209,7 +208,7 @@ std::size_t operands(Expr e) {
   return n;
 }
 
-TEST(Depth, TheDerivativeOfNestedFunctionsIsLinearInTheDepth) {
+TEST(Depth, TheGradientOfNestedFunctionsIsLinearInTheDepth) {
   const auto size = [](int depth) {
     Graph g;
     Expr e = g.jet(0, 0);

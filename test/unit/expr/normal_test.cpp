@@ -75,7 +75,8 @@ TEST(ProvedZero, NeverHoldsForWhatIsNumericallyNotZero) {
   for (std::uint32_t k = 1; k <= 200; ++k) {
     test::RandomExpr make(n.g, 500 + k, atoms);
     const Expr e = make.make(3) - make.make(3);
-    if (proved_zero(e)) ASSERT_LE(to_double(abs(test::value(e, test::Point(k)))), 1e-40) << print(e, {}, Format::text);
+    if (!proved_zero(e)) continue;
+    ASSERT_LE(to_double(abs(test::value(e, test::Point(k)))), 1e-40) << print(e, {}, Format::text);
   }
 }
 

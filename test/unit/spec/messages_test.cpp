@@ -1,0 +1,173 @@
+// What the reader of model files says, where, and that it reports all errors at once.
+#include <gtest/gtest.h>
+
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+const std::string kGood = R"(coordinates = ["x", "theta"]
+[parameters]
+m = 2
+g = 9.81
+[[particle]]
+name = "bob"
+mass = "m"
+position = ["x", "sin(theta)", "0"]
+[gravity]
+field = "-g*ey"
+[[constraint]]
+name = "slide"
+equation = "x' = 0"
+[initial]
+x = 1
+)";
+
+std::vector<Diagnostic> diagnostics_of(const std::string& text, const Overrides& overrides = {}) {
+  Diagnostics d;
+  read_model(SourceText{"test.toml", text}, d, overrides);
+  return d.list();
+}
+
+struct Mistake {
+  const char* from;
+  const char* to;
+  unsigned line, column;
+  const char* message;
+};
+
+TEST(Messages, TypicalMistakesHaveTheirPlaceAndTheirWords) {
+  ASSERT_TRUE(diagnostics_of(kGood).empty());
+  const Mistake mistakes[] = {
+      {"sin(theta)", "sin(tetha)", 8, 23, "unknown name 'tetha'; did you mean 'theta'?"},
+      {"mass = \"m\"", "mas = \"m\"", 7, 1, "unknown key 'mas' in particle 'bob'; did you mean 'mass'?"},
+      {"m = 2", "m = -2", 7, 8, "the mass is -2: a mass is not negative"},
+      {"x' = 0", "x'", 13, 13, "an equation needs '='"},
+      {"x' = 0", "x' = x'", 13, 13, "this equation always holds: it constrains nothing"},
+      {"x' = 0", "m = 2", 13, 13, "no coordinate or derivative occurs in this equation"},
+      {"x = 1", "y = 1", 15, 1, "there is no coordinate 'y'"},
+      {"x = 1", "x = \"theta\"", 15, 5, "an initial value is a number or a formula of parameters"},
+      {"\"x\", \"theta\"", "\"x\", \"x\"", 1, 22, "'x' is already declared in line 1"},
+      {"[\"x\", \"theta\"]", "[]", 1, 15, "coordinates is a list of names"},
+      {"position = [\"x\", \"sin(theta)\", \"0\"]", "position = [\"x\", \"y'\"]", 8, 12, "a vector has three components, 2 are given"},
+      {"[\"x\", \"sin(theta)\", \"0\"]", "[\"x'\", \"0\", \"0\"]", 8, 12, "the position of particle 'bob' depends on a velocity (x')"},
+      {"g = 9.81", "g = \"2*h\"\nh = \"g\"", 5, 6, "'g' is defined through itself: g -> h -> g"},
+      {"m = 2", "m = \"2*t\"", 3, 1, "the parameter 'm' is not constant"},
+      {"name = \"bob\"", "name = \"t\"", 6, 9, "the name 't' is reserved"},
+      {"-g*ey", "-g*", 10, 13, "the formula ends where a number, a name or '(' should follow"},
+      {"-g*ey", "-g", 10, 11, "a vector is expected, this is a number"},
+  };
+  for (const Mistake& m : mistakes) {
+    const std::vector<Diagnostic> list = diagnostics_of(test::replaced(kGood, m.from, m.to));
+    const auto found = std::find_if(list.begin(), list.end(), [&](const Diagnostic& d) { return d.message == m.message; });
+    if (found == list.end()) {
+      ADD_FAILURE() << "expected: " << m.message << "\nfound: " << (list.empty() ? "nothing" : list[0].message);
+      continue;
+    }
+    EXPECT_EQ(found->span.line, m.line) << m.message;
+    EXPECT_EQ(found->span.column, m.column) << m.message;
+  }
+}
+
+TEST(Messages, AllErrorsAreReportedAtOnceInOrder) {
+  std::string text = test::replaced(kGood, "sin(theta)", "sin(tetha)");
+  text = test::replaced(text, "x' = 0", "x' = z");
+  text = test::replaced(text, "x = 1", "w = 1");
+  const SourceText source{"test.toml", text};
+  Diagnostics d;
+  EXPECT_FALSE(read_model(source, d));
+  EXPECT_EQ(d.list().size(), 3U);
+  const std::string printed = d.print(source);
+  const std::size_t a = printed.find("test.toml:8:"), b = printed.find("test.toml:13:"), c = printed.find("test.toml:15:");
+  ASSERT_NE(c, std::string::npos);
+  EXPECT_TRUE(a < b && b < c);
+  EXPECT_NE(printed.find("^~~~~"), std::string::npos) << "the place is underlined";
+}
+
+TEST(Messages, ABrokenDefinitionIsReportedOnceNotAtEveryUse) {
+  const std::string text = "coordinates = [\"x\"]\n[define]\nh = \"q + 1\"\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"h\", \"h\", \"h\"]\n";
+  const std::vector<Diagnostic> list = diagnostics_of(text);
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].message, "unknown name 'q'");
+}
+
+TEST(Messages, ASyntaxErrorOfTomlHasItsPlace) {
+  const std::vector<Diagnostic> list = diagnostics_of("coordinates = [\"x\"]\nmass = = 2\n");
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].span.line, 2U);
+}
+
+// The language holds more than this version reads: whoever uses the rest is told so, and nothing is skipped in silence.
+TEST(NotReadYet, EveryLaterSectionSaysSo) {
+  for (const std::string section : {"base", "index", "table", "state", "mode", "event", "input", "output", "quasi", "case", "dissipation",
+                                    "monitor", "view", "notation"})
+    for (const std::string& form : {"[" + section + "]\n", "[[" + section + "]]\n"}) {
+      const std::vector<Diagnostic> list = diagnostics_of(kGood + form);
+      ASSERT_EQ(list.size(), 1U) << form;
+      EXPECT_EQ(list[0].message, "'" + section + "' in the model file is not read yet");
+      EXPECT_EQ(list[0].span.line, 16U);
+    }
+}
+
+TEST(NotReadYet, LaterKeysAndFormulasSaySo) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"mass = \"m\"", "mass = \"piecewise(x)\""},
+      {"[[constraint]]", "[[constraint]]\nalong = \"x\""},
+      {"[[constraint]]", "[[constraint]]\nby = \"x\""},
+      {"field = \"-g*ey\"", "field = \"-g*ey\"\ngradient = 1"},
+      {"\"theta\"]", "\"theta\", \"a[1..3]\"]"},
+      {"x = 1", "x = 1\nbranch = \"upper\""},
+      {"m = 2", "m = {value = 2, unit = \"kg\"}"},
+      {"m = 2", "m = \"2 kg\""},
+  };
+  for (const auto& [from, to] : cases) {
+    const std::vector<Diagnostic> list = diagnostics_of(test::replaced(kGood, from, to));
+    ASSERT_FALSE(list.empty()) << to;
+    EXPECT_NE(list[0].message.find("not read yet"), std::string::npos) << to << ": " << list[0].message;
+  }
+}
+
+TEST(Overrides, ReplaceParametersExactlyAndKnowTheirNames) {
+  const auto model = test::model_of(kGood, {{"m", "1/3"}});
+  EXPECT_EQ(number_value(model->parameters[0].value), Rational(1, 3));
+  const std::vector<Diagnostic> list = diagnostics_of(kGood, {{"mm", "1"}});
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].message, "--set: there is no parameter 'mm'; did you mean 'm'?");
+  EXPECT_FALSE(diagnostics_of(kGood, {{"m", "1 +"}}).empty());
+}
+
+// ---- the reader never takes a user's mistake for a fault of its own ------------------------------------------------------
+
+int read_and_leave(const std::string& text) {
+  const std::vector<Diagnostic> list = diagnostics_of(text);
+  std::_Exit(list.empty() ? 0 : 10);
+}
+
+TEST(Robust, DivisionByAParameterThatIsZeroIsTheUsersError) {
+  EXPECT_EXIT(read_and_leave(test::replaced(kGood, "m = 2", "z = 0\nm = \"1/z\"")), testing::ExitedWithCode(10), "");
+}
+
+TEST(Robust, AnInertiaOverAParameterThatIsZeroIsTheUsersError) {
+  EXPECT_EXIT(read_and_leave(test::replaced(kGood, "mass = \"m\"", "mass = \"1/(m - 2)\"")), testing::ExitedWithCode(10), "");
+}
+
+// (x''^2 + x'')/x'' - x'' is 1: the constraint has order 1, and finding that out must not divide by zero.
+TEST(Robust, AHighestDerivativeThatCancelsUnderAFraction) {
+  const std::string text = test::replaced(kGood, "x' = 0", "(x''^2 + x'')/x'' - x'' + x' = 1");
+  EXPECT_EXIT(read_and_leave(text), testing::ExitedWithCode(0), "");
+}
+
+TEST(Robust, AFunctionAtAnArgumentThatDividesByZeroIsTheUsersError) {
+  const std::string text = test::replaced(kGood, "[[particle]]", "[functions]\nf = \"1/t\"\n[define]\nd = \"f(0)\"\n[[particle]]");
+  EXPECT_EXIT(read_and_leave(text), testing::ExitedWithCode(10), "");
+}
+
+TEST(Robust, AFractionalPowerOfANegativeNumberIsTheUsersErrorOrNotANumber) {
+  for (const char* mass : {"(-2)^(1/2)", "(0)^(-1/2)", "0^0", "log(-1)", "1/0"})
+    EXPECT_EXIT(read_and_leave(test::replaced(kGood, "mass = \"m\"", std::string("mass = \"") + mass + "\"")),
+                [](int status) { return WIFEXITED(status) && WEXITSTATUS(status) != 3; }, "")
+        << mass;
+}
+
+}  // namespace
+}  // namespace anholon
