@@ -15,7 +15,11 @@ std::vector<std::string> effects(const Model& model) {
   if (!is_zero(model.observer.spin)) list.push_back("the observer turns (Coriolis, centrifugal and Euler forces)");
   if (!is_zero(model.observer.origin_acceleration)) list.push_back("the observer's origin accelerates");
   for (const VaryingMass& m : model.masses)
-    list.push_back("the mass of '" + m.name + "' varies: " + print(m.value, model.names, Format::text));
+  {
+    SymbolNames names = model.names;
+    names.defined.erase(m.value.id);
+    list.push_back("the " + std::string(m.weight ? "second moment" : "mass") + " of '" + m.name + "' varies: " + print(m.value, names, Format::text));
+  }
   for (const Body& b : model.bodies)
     if (b.expelled_velocity) list.push_back("'" + b.name + "' expels or collects matter");
   return list;

@@ -41,7 +41,7 @@ int derive(const Options& o) {
   const Equations e = f.equations(m);
   SymbolNames names = model.names;
   for (std::size_t i = 0; i < model.masses.size(); ++i) {
-    // After the last differentiation a mass stands under its own name again.
+    // After the last differentiation a mass stands under its own name again, if it has one.
     const auto named = names.defined.find(model.masses[i].value.id);
     if (named == names.defined.end()) names.masses[i] = "m_" + model.masses[i].name;
     else names.masses[i] = named->second;

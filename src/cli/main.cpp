@@ -98,7 +98,7 @@ int run(int argc, char** argv) {
   derive_command->add_option("--expand", o.expand, "auto (the shorter), none or full")->type_name("HOW");
 
   CLI::App* evaluate_command = model_command("evaluate", "all forces, accelerations, multipliers, reactions at one state", cli::evaluate,
-                                             "Example: anholon evaluate disc --q theta=1 --qdot psi=0.3,phi=5 --json");
+                                             "Example: anholon evaluate disc --q theta=1 --qdot theta=0.1 --json");
   parameters(evaluate_command), state(evaluate_command), form_option(evaluate_command);
   evaluate_command->add_option("--digits", o.digits, "more than 16: multiprecision")->type_name("N")->check(CLI::Range(1, 2000));
 

@@ -4,7 +4,7 @@
 // The total derivative is
 //   D f = f_,t + sum_{a,k} f_,q_a^(k) q_a^(k+1) + (the same for lambda and given functions),
 // with frozen masses mu constant: before masses are put in for their symbols it is the frozen
-// derivative D/Dt of the papers, afterwards the ordinary d/dt  [theory: derivatives].
+// derivative D/Dt of the papers, afterwards the ordinary d/dt  (theory: derivatives).
 #pragma once
 #include <functional>
 #include <span>

@@ -31,12 +31,13 @@ Vector transpose_times(const Rotation& r, const Vector& a) {
   return {dot(r[0], a), dot(r[1], a), dot(r[2], a)};
 }
 Rotation operator*(const Rotation& a, const Rotation& b) {
-  return {{a * b[0], a * b[1], a * b[2]}, a.rate + a * b.rate, transpose_times(b, a.own_rate) + b.own_rate};
+  return {{a * b[0], a * b[1], a * b[2]}, a.rate + a * b.rate, transpose_times(b, a.own_rate) + b.own_rate,
+          a.by_turns && b.by_turns};
 }
 Rotation identity_rotation(Graph& g) {
   const Vector zero = zero_vector(g);
   return {{{g.one(), g.zero(), g.zero()}, {g.zero(), g.one(), g.zero()}, {g.zero(), g.zero(), g.one()}},
-          zero, zero};
+          zero, zero, true};
 }
 
 Rotation turn(int axis, Expr angle) {
@@ -65,7 +66,7 @@ Rotation turn(const Vector& a, Expr angle) {
 
 Rotation rotation_from_axes(const Vector& x, const Vector& y, const Vector& z) {
   Graph& g = *x.x.graph;
-  Rotation r{{x, y, z}, zero_vector(g), zero_vector(g)};
+  Rotation r{{x, y, z}, zero_vector(g), zero_vector(g), false};
   for (const Vector& u : r.columns) r.rate = r.rate + cross(u, total_derivative(u));
   r.rate = g.number(Rational(1, 2)) * r.rate;
   r.own_rate = transpose_times(r, r.rate);

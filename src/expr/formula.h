@@ -77,6 +77,7 @@ struct Rotation {
   Vector columns[3];  // the new axes in the observer's axes
   Vector rate;        // angular velocity, components along the observer's axes
   Vector own_rate;    // the same vector, components along the new axes
+  bool by_turns = true;  // orthonormal identically (a quaternion is so only on its unit sphere)
   const Vector& operator[](int k) const { return columns[k]; }
 };
 
@@ -94,7 +95,7 @@ Rotation operator*(const Rotation& a, const Rotation& b);
 Rotation identity_rotation(Graph& g);
 Rotation turn(int axis, Expr angle);                   // rotx, roty, rotz: axis 0, 1, 2
 Rotation turn(const Vector& unit_axis, Expr angle);
-// The rotation with the given axes; its rate is 1/2 sum_k u_k x u_k' (theory.md section 1).
+// The rotation with the given axes; its rate is 1/2 sum_k u_k x u_k' (theory: weighted-points).
 Rotation rotation_from_axes(const Vector& x, const Vector& y, const Vector& z);
 
 // A body named in a formula: not a point and not a number, only `B.center`, `B.x`, vel(B, P), ….

@@ -128,7 +128,9 @@ using Angle = std::vector<std::pair<NodeId, Rational>>;
 
 class Normalizer {
  public:
-  explicit Normalizer(Expr root) : g_(*root.graph), root_(root), ids_(reachable({&root, 1})) {
+  // `split_given`: also expand the sine of a sum that depends on t and parameters only (a proof needs
+  // that, a reader does not).
+  Normalizer(Expr root, bool split_given) : g_(*root.graph), root_(root), ids_(reachable({&root, 1})), split_given_(split_given) {
     collect();
     ring_ = std::make_unique<Ring>(std::max<long>(1, generators_));
   }
@@ -179,7 +181,8 @@ class Normalizer {
 
   Angle angle(NodeId x) const {
     Angle a;
-    if (g_.node(x).kind == Kind::sum)
+    const Expr e{&g_, x};
+    if (g_.node(x).kind == Kind::sum && (split_given_ || jet_order(e) >= 0))
       for (const Term& t : g_.terms(x)) a.push_back({t.node, g_.rational(t.weight)});
     else
       a.push_back({x, 1});
@@ -317,6 +320,7 @@ class Normalizer {
   Graph& g_;
   Expr root_;
   std::vector<NodeId> ids_;
+  bool split_given_;
   long generators_ = 0;
   std::map<std::pair<NodeId, unsigned long>, long> root_generator_;
   std::map<NodeId, mpz_class> denominator_;
@@ -334,7 +338,7 @@ bool proved_zero(Expr e) {
   if (is_zero(e)) return true;
   if (is_number(e)) return false;
   try {
-    return Normalizer(e).zero();
+    return Normalizer(e, true).zero();
   } catch (const TooLarge&) {
     return false;
   }
@@ -342,7 +346,7 @@ bool proved_zero(Expr e) {
 
 std::optional<Expr> expanded(Expr e) {
   try {
-    return Normalizer(e).expand();
+    return Normalizer(e, false).expand();
   } catch (const TooLarge&) {
     return std::nullopt;
   }

@@ -59,7 +59,7 @@ class Pull {
   Column outputs_, seeds_;
 };
 
-// Forces at mass centres work through rho_C,q; torques through dOmega/dq' (theory.md section 1).
+// Forces at mass centres work through rho_C,q; torques through dOmega/dq' (theory: weighted-points).
 Column generalized_forces(const Mechanics& m, const std::vector<Load>& loads) {
   Pull positions, rates;
   for (std::size_t b = 0; b < loads.size(); ++b) {

@@ -1,4 +1,4 @@
-// Kinetic quantities and generalized forces of a model, by weighted points (theory.md sections 1-3).
+// Kinetic quantities and generalized forces of a model, by weighted points (theory: weighted-points, forces).
 //
 // Masses stand as frozen symbols mu in everything here: a total derivative of T, S, V is the frozen
 // derivative D/Dt of the papers. After the last differentiation put_masses puts m(t, q, q') in.
@@ -54,10 +54,10 @@ std::vector<Load> given_loads(const Model& model);
 std::vector<Load> reactive_loads(const Model& model);
 
 // The total constraint reaction on each body: m a - F - mdot u - fictitious forces, and its torque
-// about the mass centre (theory.md section 6). Masses put in.
+// about the mass centre (theory: certificate). Masses put in.
 std::vector<Load> reactions(const Mechanics& m);
 
-// Energy and its rate (theory.md section 7). Masses put in.
+// Energy and its rate (theory: certificate). Masses put in.
 struct Power {
   Expr h;                // q' dT/dq' - T
   Expr noncons;          // right side of the power identity without the constraints

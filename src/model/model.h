@@ -1,7 +1,7 @@
 // The checked model: what the user wrote, with every name resolved and every element keeping its
 // place in the source. Immutable once built; the graph that holds its expressions goes with it.
 //
-// All vectors are components along the observer's axes (theory.md section 1). Masses and weights
+// All vectors are components along the observer's axes (theory: weighted-points). Masses and weights
 // that vary stand as frozen symbols mu_i; `masses` says what each one is.
 #pragma once
 #include <memory>
@@ -44,12 +44,12 @@ struct VaryingMass {
   Span span;
 };
 
-// A second-moment axis vector u with weight e (theory.md section 1): moves like a mass point but
+// A second-moment axis vector u with weight e (theory: weighted-points): moves like a mass point but
 // feels no uniform field. `frame_axis` k >= 0: u is axis k of the body's orientation.
 struct Axis {
   Expr weight;  // frozen form
   Vector vector;
-  std::vector<Expr> own;  // components along the body's own axes, if the body has an orientation
+  std::vector<Expr> own;  // components along the body's own axes, where these are orthonormal identically
 };
 
 struct Body {

@@ -25,7 +25,7 @@ struct StateReport {
 // digits <= 16: computed in long double and rounded to double; else multiprecision.
 Outcome evaluate(const Scenario& scenario, const StateChoice& choice, int digits, StateReport& report);
 
-// Residuals C1 and C2 of theory.md section 6 from E - G and Phi at a state.
+// Residuals C1 and C2 (theory: certificate) from E - G and Phi at a state.
 template <Number N>
 struct Certificate {
   N newton{0};     // |E - G - N| by the points themselves, in relation to the largest of the three

@@ -40,13 +40,13 @@ class Run {
 
   SimulationReport go() {
     report_.order = stepper_.order();
-    sink_.columns(column_names());
     W t(0);
     std::vector<W> state;
     InitialState<W> named;
     report_.outcome = initial_state(s_, o_.state, t, state, named);
     if (report_.outcome.ok()) report_.outcome = stepper_.start(t, state);
     if (report_.outcome.ok()) {
+      sink_.columns(column_names());
       schedule(t);
       run(t);
     }
@@ -154,6 +154,7 @@ class Run {
     if (report_.outcome.ok() && stepper_.steps() > 0) balance();
     if (!report_.outcome.ok() && report_.outcome.message.find(" t = ") == std::string::npos) {
       report_.outcome.message += " at t = " + number_text(to_double(stepper_.time()), 12);
+      if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular) suspect();
       // The last good state is worth a row of its own.
       if (stepper_.steps() > 0 && !every_step) {
         const Outcome why = report_.outcome;
@@ -179,6 +180,19 @@ class Run {
       negative_ = i;
     }
     return good == whole ? stepper_.time() : stepper_.before() + good;
+  }
+
+  // What the motion runs into: a mass that vanishes, a multiplier that grows without bound.
+  void suspect() {
+    constexpr double kVanished = 1e-9, kUnbounded = 1e9;
+    std::string& message = report_.outcome.message;
+    for (std::size_t i = 0; i < s_.model->masses.size(); ++i)
+      if (std::abs(to_double(stepper_.quadrature(1 + i, W(0)))) < kVanished)
+        message += "; the mass of '" + s_.model->masses[i].name + "' vanishes there";
+    for (std::size_t k = 0; k < s_.system.constraints.size(); ++k)
+      if (std::abs(to_double(stepper_.point().derivative(s_.system.coordinates + k, 0))) > kUnbounded)
+        message += "; the multiplier of '" + s_.system.equation_names[s_.system.coordinates + k] +
+                   "' grows without bound: the constraint loses its hold there";
   }
 
   void negative_mass(const W& t) {

@@ -219,7 +219,7 @@ void BodyReader::read_axes(Body& body, const Item& item, const Item* inertia, co
     Axis axis;
     axis.weight = frozen(weight, body.name + " weight " + tag, inertia->span);
     axis.vector = r * Vector{own[0], own[1], own[2]};
-    axis.own = own;
+    if (r.by_turns) axis.own = own;
     body.axes.push_back(axis);
   };
   if (inertia->kind != Item::Kind::array) {  // plane: about the z axis, e1 + e2 = J

@@ -104,14 +104,14 @@ Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
       [[fallthrough]];
     case Role::define: case Role::parameter: {
       Value v = d.item ? Value(vector(*d.item)) : evaluate(parse_formula(d.formula), *this);
-      if (d.role == Role::define) {
+      if (d.role != Role::parameter) {
         if (Expr* e = std::get_if<Expr>(&v)) {
           const Kind k = g.node(e->id).kind;
           if (k == Kind::sum || k == Kind::product || k == Kind::function || k == Kind::atan2)
             model_.names.defined.emplace(e->id, name);
         }
-        return v;
       }
+      if (d.role == Role::define) return v;
       if (d.role == Role::function) {
         Expr* e = std::get_if<Expr>(&v);
         if (e && jet_order(*e) >= 0)
@@ -255,14 +255,27 @@ Value Scope::member(const Value& object, const Syntax& s) {
   throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'");
 }
 
+namespace {
+// Marks a definition as being evaluated, whatever way its evaluation ends.
+class Opened {
+ public:
+  explicit Opened(bool& flag) : flag_(flag) { flag_ = true; }
+  ~Opened() { flag_ = false; }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+
+ private:
+  bool& flag_;
+};
+}  // namespace
+
 Vector Scope::center(std::size_t body, Span use) {
   BodyParts& p = parts_[body];
   if (p.center_value) return *p.center_value;
   if (!p.center) throw silent_failure();
   if (p.center_open) throw Failure(use, "the centre of '" + body_names_[body] + "' is defined through itself");
-  p.center_open = true;
+  const Opened opened(p.center_open);
   p.center_value = vector(*p.center);
-  p.center_open = false;
   return *p.center_value;
 }
 
@@ -273,9 +286,8 @@ const Rotation& Scope::orientation(std::size_t body, Span use) {
     throw Failure(use, "the body '" + body_names_[body] + "' has no orientation",
                   "give it orientation = \"…\", or angle = \"…\" in the plane");
   if (p.orientation_open) throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
-  p.orientation_open = true;
+  const Opened opened(p.orientation_open);
   p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle));
-  p.orientation_open = false;
   return *p.orientation_value;
 }
 

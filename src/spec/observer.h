@@ -1,5 +1,5 @@
 // [observer]: every accepted way of giving the moving frame, reduced to its spin omega and the
-// inertial acceleration a0 of its origin, both in moving components (theory.md section 1).
+// inertial acceleration a0 of its origin, both in moving components (theory: forces).
 #pragma once
 #include <optional>
 

@@ -231,7 +231,7 @@ class Solver {
       }
       miss = worst_relative(stage, &worst);
     }
-    return clash(equations[worst], stage.residual[worst], order);
+    return clash(equations[worst], stage, worst, order);
   }
 
   N rounding() const { return unit_roundoff<N>() * N(200); }
@@ -318,13 +318,12 @@ class Solver {
             "give a guess near the wanted configuration: [initial] guess = {…}"};
   }
 
-  Outcome clash(const Equation& e, const N& residual, unsigned order) {
+  Outcome clash(const Equation& e, const Stage<N>& stage, std::size_t row, unsigned order) {
+    const N& residual = stage.residual[row];
     std::string fixed;
     const std::vector<Origin>& origin = order == 0 ? state_.q_origin : state_.qd_origin;
-    const auto occurs = symbols({&e.residual, 1});
     for (std::size_t a = 0; a < origin.size(); ++a) {
-      const NodeId id = (order == 0 ? m_.q : m_.qd)[a].id;
-      if (origin[a] == Origin::given && std::find(occurs.begin(), occurs.end(), id) != occurs.end())
+      if (origin[a] == Origin::given && abs(stage.jacobian(row, a)) > N(0))
         fixed += (fixed.empty() ? "" : ", ") + derivative_name(model_.coordinates[a].name, order, Format::text);
     }
     const std::string at = e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "";

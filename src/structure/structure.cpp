@@ -211,25 +211,32 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
 }
 
 std::string print(const System& s, const Structure& t) {
-  std::string out = "signature matrix (rows: equations, columns: unknowns; * on the transversal)\n";
-  std::size_t width = 4;
-  for (const std::string& v : s.variable_names) width = std::max(width, v.size() + 2);
-  const auto cell = [&](std::string text) { return std::string(width > text.size() ? width - text.size() : 0, ' ') + text; };
-  out += cell("");
-  for (const std::string& v : s.variable_names) out += cell(v);
-  out += cell("c") + "\n";
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    out += cell(s.equation_names[i]);
-    for (std::size_t j = 0; j < s.size(); ++j) {
-      std::string entry = t.sigma[i][j] == kAbsent ? "-" : std::to_string(t.sigma[i][j]);
-      if (t.transversal[i] == static_cast<int>(j)) entry += "*";
-      out += cell(entry);
-    }
-    out += cell(std::to_string(t.c[i])) + "\n";
+  const std::size_t n = s.size();
+  std::vector<std::vector<std::string>> cells(n + 2, std::vector<std::string>(n + 2));
+  for (std::size_t j = 0; j < n; ++j) {
+    cells[0][j + 1] = s.variable_names[j];
+    cells[n + 1][j + 1] = std::to_string(t.d[j]);
   }
-  out += cell("d");
-  for (int d : t.d) out += cell(std::to_string(d));
-  return out + "\n";
+  cells[0][n + 1] = "c";
+  cells[n + 1][0] = "d";
+  for (std::size_t i = 0; i < n; ++i) {
+    cells[i + 1][0] = s.equation_names[i];
+    cells[i + 1][n + 1] = std::to_string(t.c[i]);
+    for (std::size_t j = 0; j < n; ++j)
+      cells[i + 1][j + 1] = (t.sigma[i][j] == kAbsent ? "-" : std::to_string(t.sigma[i][j])) +
+                            (t.transversal[i] == static_cast<int>(j) ? "*" : " ");
+  }
+  std::string out = "signature matrix (rows: equations, columns: unknowns; * on the transversal)\n";
+  std::vector<std::size_t> width(n + 2, 1);
+  for (const auto& row : cells)
+    for (std::size_t j = 0; j < row.size(); ++j) width[j] = std::max(width[j], row[j].size());
+  for (const auto& row : cells) {
+    for (std::size_t j = 0; j < row.size(); ++j)
+      out += (j ? "  " : "") + std::string(width[j] - row[j].size(), ' ') + row[j];
+    while (out.back() == ' ') out.pop_back();
+    out += "\n";
+  }
+  return out;
 }
 
 }  // namespace anholon

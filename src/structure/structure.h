@@ -5,10 +5,10 @@
 //   J_ij      = dE_i / dx_j^(d_j - c_i), the system Jacobian
 // If J is regular at a consistent point, Val = sum d - sum c is the dimension of the state: equation
 // i is differentiated c_i times, x_j^(d_j) is solved for, and E_i^(k) = 0 (k < c_i) are the hidden
-// constraints [theory: the DAE view].
+// constraints (theory: dae-view).
 //
 // "Truly" is decided by numbers, not by symbols: a derivative counts if the partial derivative by it
-// is not zero at random points (theory.md section 4.3, the jet trap).
+// is not zero at random points (theory: dae-view, the jet trap).
 #pragma once
 #include <string>
 #include <vector>

@@ -6,7 +6,7 @@
 namespace anholon {
 namespace {
 
-const std::string kGood = R"(coordinates = ["x", "theta"]
+const std::string kGood = R"toml(coordinates = ["x", "theta"]
 [parameters]
 m = 2
 g = 9.81
@@ -21,7 +21,7 @@ name = "slide"
 equation = "x' = 0"
 [initial]
 x = 1
-)";
+)toml";
 
 std::vector<Diagnostic> diagnostics_of(const std::string& text, const Overrides& overrides = {}) {
   Diagnostics d;

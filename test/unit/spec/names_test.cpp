@@ -9,14 +9,14 @@ namespace {
 
 // Two definitions under test are the two sides of a constraint; its phi must vanish identically.
 Expr difference(const std::string& left, const std::string& right, const std::string& more = {}) {
-  const auto model = test::model_of(R"(coordinates = ["x", "y", "th", "q"]
+  const auto model = test::model_of(R"toml(coordinates = ["x", "y", "th", "q"]
 [parameters]
 R = 0.5
 w = 2
 [functions]
 m = "1 + t^2"
 "sq(s)" = "s^2"
-)" + more + R"([observer]
+)toml" + more + R"toml([observer]
 spin = "w*ez"
 origin_velocity = ["t", "0", "1"]
 [frame]
@@ -31,7 +31,7 @@ center = "P + R*ez"
 orientation = "e1*roty(q)"
 [[constraint]]
 name = "c"
-equation = "x''' + ()" + left + ") - (" + right + ") = x'''\"\n");
+equation = "x''' + ()toml" + left + ") - (" + right + ") = x'''\"\n");
   Expr phi = model->constraints.at(0).phi;
   static std::vector<std::shared_ptr<const Model>> kept;  // the graph lives as long as the expression is looked at
   kept.push_back(model);
