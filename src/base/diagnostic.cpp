@@ -112,7 +112,7 @@ static std::size_t edit_distance(const std::string& a, const std::string& b) {
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
-  if (name.size() > 64) return best;
+  if (name.size() > 64 || name.size() < 2) return best;
   for (const std::string& c : candidates) {
     if (c == name || c.size() > 64) continue;
     const std::size_t distance = edit_distance(name, c);

@@ -121,8 +121,16 @@ Value divide(Value a, Value b, Span at) {
   mismatch("quotient", a, b, at);
 }
 
+// A product of more different factors is refused: its derivative has as many terms, each as long.
+constexpr std::uint32_t kMostFactors = 500;
+
 Value multiply(Value a, Value b, Syntax::Op sign, Span at) {
-  if (number(a) && number(b)) return *number(a) * *number(b);
+  if (number(a) && number(b)) {
+    const Expr product = *number(a) * *number(b);
+    if (product.graph->node(product.id).count > kMostFactors && product.graph->node(product.id).kind == Kind::product)
+      throw Failure(at, "a product of more than " + std::to_string(kMostFactors) + " different factors");
+    return product;
+  }
   if (number(a) && vector(b)) return *number(a) * *vector(b);
   if (vector(a) && number(b)) return *number(b) * *vector(a);
   if (vector(a) && vector(b)) {
@@ -189,11 +197,11 @@ struct Arguments {
                                          type_name(values[i]) + ", not a vector",
                   values[i].index() == 3 ? "a body is not a point: write " + call.args[i].text + ".center" : "");
   }
-  long integer(std::size_t i) const {
+  long integer(std::size_t i, long most) const {
     const Expr e = number(i);
-    if (!is_number(e) || number_value(e).get_den() != 1 || number_value(e) < 0 || number_value(e) > 1000)
+    if (!is_number(e) || number_value(e).get_den() != 1 || number_value(e) < 0 || number_value(e) > most)
       throw Failure(call.args[i].span, "argument " + std::to_string(i + 1) + " of " + call.text +
-                                           " is not a whole number between 0 and 1000");
+                                           " is not a whole number between 0 and " + std::to_string(most));
     return number_value(e).get_num().get_si();
   }
 };
@@ -300,7 +308,7 @@ Value call(const Syntax& s, Names& names) {
   }
   if (f == "D") {
     in.expect(2);
-    return differentiate(values[0], static_cast<int>(in.integer(1)), s.span);
+    return differentiate(values[0], static_cast<int>(in.integer(1, kHighestDerivative)), s.span);
   }
   if (f == "rotx" || f == "roty" || f == "rotz") return in.expect(1), turn(f[3] - 'x', in.number(0));
   if (f == "rot") return in.expect(2), turn(in.vector(0), in.number(1));
@@ -395,7 +403,8 @@ Vector evaluate_vector(const Syntax& s, Names& names) {
   if (Vector* a = vector(v)) return *a;
   if (Expr* e = number(v); e && is_zero(*e)) return zero_vector(names.graph());
   throw Failure(s.span, std::string("a vector is expected, this is ") + type_name(v),
-                v.index() == 3 ? "a body is not a point: write B.center" : "");
+                v.index() == 3 ? "a body is not a point: write " + s.text + ".center"
+                : v.index() == 0 ? "along the first axis: x*ex, or [\"x\", \"0\", \"0\"]" : "");
 }
 
 Rotation evaluate_rotation(const Syntax& s, Names& names) {

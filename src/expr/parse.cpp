@@ -326,7 +326,9 @@ class Parser {
           before.offset + before.length < at.offset)
         fail(at, "units ('" + at.text + "') are not read yet", "give the bare number in SI units");
       fail(at, "an operator is missing before '" + at.text + "'",
-           before.token == Token::name || before.token == Token::number
+           before.token == Token::prime && at_ > 1
+               ? "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product"
+           : before.token == Token::name || before.token == Token::number
                ? "write " + before.text + "*" + at.text + (at.token == Token::open ? "…)" : "") + " for a product"
                : "a product is written with '*'");
     }

@@ -25,6 +25,12 @@ bool is_greek(const std::string& s) {
   return std::find(kGreekNames.begin(), kGreekNames.end(), s) != kGreekNames.end();
 }
 
+std::string latex_escape(const std::string& name) {
+  std::string escaped;
+  for (char c : name) escaped += c == '_' ? "\\_" : std::string(1, c);
+  return escaped;
+}
+
 class Printer {
  public:
   Printer(Graph& g, const SymbolNames& names, Format format) : g_(g), names_(names), format_(format) {}
@@ -96,7 +102,7 @@ class Printer {
       case Kind::given: return {symbol(names_.given, n, "f")};
       case Kind::multiplier: {
         const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
-        return {derivative_name(latex() ? "\\lambda_{\\mathrm{" + base + "}}" : "lambda." + base, n.order, format_)};
+        return {derivative_name(latex() ? "\\lambda_{\\mathrm{" + latex_escape(base) + "}}" : "lambda." + base, n.order, format_)};
       }
       case Kind::function: {
         const FunctionInfo& f = info(static_cast<Function>(n.index));
@@ -217,9 +223,7 @@ std::string latex_name(const std::string& name) {
     return latex_name(name.substr(0, digits)) + "_{" + name.substr(digits) + "}";
   if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
     return latex_name(name.substr(0, underscore)) + "_{" + latex_name(name.substr(underscore + 1)) + "}";
-  std::string escaped;
-  for (char c : name) escaped += c == '_' ? "\\_" : std::string(1, c);
-  return "\\mathrm{" + escaped + "}";
+  return "\\mathrm{" + latex_escape(name) + "}";
 }
 
 std::string derivative_name(const std::string& name, unsigned order, Format format) {

@@ -9,6 +9,10 @@ namespace anholon {
 
 namespace {
 
+// A redundant constraint missed by more than this of the size of the state no longer follows from
+// the others.
+constexpr double kRedundantMiss = 1e-7;
+
 // The power of all forces for the energy balance. Constraints that do no work on the motion (first
 // order and homogeneous, holonomic without t) are left out: their power is zero, and its terms, which
 // are large and cancel, would only add round-off to the balance.
@@ -93,7 +97,7 @@ class Run {
     return names;
   }
 
-  // N, then what the residual report needs: h, E, G, Phi.
+  // N, then what the residual report needs: h, E, G, Phi, the redundant constraints.
   Column output_expressions() const {
     const Model& model = *s_.model;
     const Mechanics& m = *s_.mechanics;
@@ -105,6 +109,7 @@ class Run {
     es.insert(es.end(), force.begin(), force.end());
     for (std::size_t k : s_.system.constraints)
       for (Expr e : m.Phi[k]) es.push_back(put_masses(model, e));
+    for (std::size_t k : s_.redundant) es.push_back(put_masses(model, m.phi[k]));
     return es;
   }
 
@@ -186,6 +191,15 @@ class Run {
   void suspect() {
     constexpr double kVanished = 1e-9, kUnbounded = 1e9;
     std::string& message = report_.outcome.message;
+    for (std::size_t a = 0; a < s_.system.coordinates; ++a)
+      for (int k = 0; k < 2; ++k)
+        if (std::abs(to_double(stepper_.point().derivative(a, k))) > kUnbounded * kUnbounded) {
+          report_.outcome.kind = OutcomeKind::blow_up;
+          message += "; " + derivative_name(s_.system.variable_names[a], static_cast<unsigned>(k), Format::text) + " grows without bound";
+          report_.outcome.hint = "look at the last good state: end the motion before";
+          return;
+        }
+    if (const std::string root = vanishing_root(); !root.empty()) message += "; " + root + " is at the edge of where it has a value";
     for (std::size_t i = 0; i < s_.model->masses.size(); ++i)
       if (std::abs(to_double(stepper_.quadrature(1 + i, W(0)))) < kVanished)
         message += "; the mass of '" + s_.model->masses[i].name + "' vanishes there";
@@ -193,6 +207,19 @@ class Run {
       if (std::abs(to_double(stepper_.point().derivative(s_.system.coordinates + k, 0))) > kUnbounded)
         message += "; the multiplier of '" + s_.system.equation_names[s_.system.coordinates + k] +
                    "' grows without bound: the constraint loses its hold there";
+  }
+
+  // A root or logarithm in the equations whose argument has come to zero.
+  std::string vanishing_root() const {
+    const Tape& tape = program_.tape;
+    for (std::uint32_t k = 0; k < tape.main_end; ++k) {
+      const Instruction& in = tape.code[k];
+      const bool root = in.op == Op::power && tape.rationals[in.index].get_den() != 1;
+      const bool logarithm = in.op == Op::function && in.index == static_cast<std::uint32_t>(Function::log);
+      if ((root || logarithm) && std::abs(to_double(stepper_.point().machine().series(in.a)[0])) < 1e-9)
+        return root ? "the root of a quantity that reaches zero" : "the logarithm of a quantity that reaches zero";
+    }
+    return {};
   }
 
   void negative_mass(const W& t) {
@@ -249,6 +276,19 @@ class Run {
     report_.newton = std::max(report_.newton, to_double(c.newton));
     report_.projected = std::max(report_.projected, to_double(c.projected));
     report_.constraints_kept = std::max(report_.constraints_kept, to_double(point_.constraint_residual()));
+    // A constraint that was left out because it followed from the others must go on to do so.
+    W size(1);
+    for (std::size_t a = 0; a < n; ++a)
+      for (int k = 0; k < 2; ++k)
+        if (W v = abs(point_.derivative(a, k)); v > size) size = v;
+    for (std::size_t i = 0; i < s_.redundant.size(); ++i) {
+      const double miss = to_double(W(abs(outputs_[3 * n + 1 + phi.data.size() + i]) / size));
+      report_.constraints_kept = std::max(report_.constraints_kept, miss);
+      if (miss > kRedundantMiss)
+        report_.outcome = {OutcomeKind::singular,
+                           "the constraint '" + s_.model->constraints[s_.redundant[i]].name + "' no longer follows from the others",
+                           "it was redundant at the start only: start elsewhere, or leave out one of the constraints"};
+    }
   }
 
   void energy_at(const W& t, W& h) {

@@ -34,7 +34,8 @@ void Scope::declare_body(const std::string& name, Span span) {
   if (name.find('[') != std::string::npos)
     throw Failure(span, "families of elements (names with [ ]) are not read yet",
                   "write the members out under names of their own");
-  if (!is_identifier(name)) throw Failure(span, "'" + name.substr(0, 40) + "' is not a name");
+  if (!is_identifier(name))
+    throw Failure(span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
   if (reserved().count(name)) throw Failure(span, "the name '" + name + "' is reserved");
   for (std::size_t i = 0; i + 1 < body_names_.size(); ++i)
     if (body_names_[i] == name)
@@ -193,7 +194,9 @@ void Scope::resolve_all() {
     Declaration& d = declarations_.at(name);
     try {
       if (d.arguments.empty()) resolve(name, d, d.span);
-    } catch (const Failure&) {
+      else if (!d.parsed) parse_formula(d.formula);
+    } catch (const Failure& f) {
+      if (!is_silent(f.diagnostic)) failures.push_back(f.diagnostic);
     }
   }
 }

@@ -33,7 +33,8 @@ class Reader {
     Item root;
     if (!guard([&] { root = read_toml(model_.source_text); })) return std::nullopt;
     sections(root);
-    guard([&] { coordinates(root); });
+    // Without coordinates every formula would fail after this one error.
+    if (!guard([&] { coordinates(root); })) return std::nullopt;
     parameters(root);
     functions(root);
     named(root, "define", Scope::Role::define);
@@ -250,7 +251,7 @@ class Reader {
       if (proved_zero(phi))
         throw Failure(equation.formula.whole(), "this equation always holds: it constrains nothing");
       if (is_number(phi))
-        throw Failure(equation.formula.whole(), "this equation never holds: its sides differ by " + to_string(number_value(phi)));
+        throw Failure(equation.formula.whole(), "this equation never holds: its sides differ by " + to_string(Rational(abs(number_value(phi)))));
       throw Failure(equation.formula.whole(), "no coordinate or derivative occurs in this equation",
                     "a constraint relates coordinates and their derivatives");
     }

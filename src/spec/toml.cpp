@@ -106,6 +106,41 @@ void check_depth(const SourceText& source) {
   }
 }
 
+// A character outside ASCII may stand in quotes and comments only (a bare Greek key is the likeliest
+// slip, and toml++ 3.3 does not survive it).
+void check_ascii(const SourceText& source) {
+  const std::string& s = source.text;
+  std::uint32_t line = 1, column = 1;
+  std::string quote;  // the quotes that close the text we are in
+  for (std::size_t i = 0; i < s.size();) {
+    const std::size_t width = utf8_width(s, i);
+    std::size_t step = width;
+    if (s[i] == '\n') {
+      ++line, column = 1, ++i;
+      if (quote.size() == 1) quote.clear();
+      continue;
+    }
+    if (!quote.empty()) {
+      if (quote[0] == '"' && s[i] == '\\' && i + 1 < s.size() && s[i + 1] != '\n') step = 2;
+      else if (s.compare(i, quote.size(), quote) == 0) step = quote.size(), quote.clear();
+    } else if (s[i] == '#') {
+      while (i < s.size() && s[i] != '\n') ++i;
+      continue;
+    } else if (s[i] == '"' || s[i] == '\'') {
+      const std::string three(3, s[i]);
+      quote = s.compare(i, 3, three) == 0 ? three : std::string(1, s[i]);
+      step = quote.size();
+    } else if (static_cast<unsigned char>(s[i]) >= 0x80) {
+      const std::string c = s.substr(i, width);
+      if (width == 1) throw Failure(Span{line, column, 1}, "this byte is no text");
+      if (!(i == 0 && c == "\xEF\xBB\xBF"))
+        throw Failure(Span{line, column, 1}, "'" + c + "' outside quotes", "a key with letters beyond A-Z stands in quotes: \"" + c + "\" = …");
+    }
+    column += static_cast<std::uint32_t>(step == width ? 1 : step);
+    i += step;
+  }
+}
+
 // What the parser says, in the words of a user.
 Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
   const Span span = span_of(e.source());
@@ -121,7 +156,7 @@ Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
     hint = "a key with ' stands in quotes: \"x'\" = …";
   } else if (line.find('=') != std::string::npos && line.find_first_not_of(" \t", line.find('=') + 1) == std::string::npos) {
     message = "a value is missing after '='";
-  } else if (line.find('=') != std::string::npos && line.find('"') == std::string::npos) {
+  } else if (message.find("in value") == 0 && message.find("array") == std::string::npos && line.find('"') == std::string::npos) {
     hint = "formulas stand in quotes: name = \"a*b\"";
   }
   return Failure(span, message, hint);
@@ -177,6 +212,7 @@ Item read_toml(const SourceText& source) {
   if (source.text.size() > kLongestFile)
     throw Failure({}, "the file is larger than " + std::to_string(kLongestFile >> 20) + " MiB");
   check_depth(source);
+  check_ascii(source);
   try {
     const toml::table document = toml::parse(source.text, source.name);
     return convert(document, Places(source));

@@ -208,14 +208,6 @@ TEST(Depth, TheGradientOfADeepFormulaTakesMemoryInProportion) {
               }),
               testing::ExitedWithCode(0), "");
 }
-
-TEST(Depth, TheGradientOfADeepFormulaTakesMemoryInProportion) {
-  EXPECT_EXIT(within_memory([] {
-                Graph g;
-                if (is_zero(partial(deep(g, kDeep / 2), g.jet(0, 0)))) std::_Exit(2);
-              }),
-              testing::ExitedWithCode(0), "");
-}
 #endif
 
 }  // namespace

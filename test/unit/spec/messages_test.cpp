@@ -39,7 +39,7 @@ struct Mistake {
 TEST(Messages, TypicalMistakesHaveTheirPlaceAndTheirWords) {
   ASSERT_TRUE(diagnostics_of(kGood).empty());
   const Mistake mistakes[] = {
-      {"sin(theta)", "sin(tetha)", 8, 23, "unknown name 'tetha'; did you mean 'theta'?"},
+      {"sin(theta)", "sin(theata)", 8, 23, "unknown name 'theata'; did you mean 'theta'?"},
       {"mass = \"m\"", "mas = \"m\"", 7, 1, "unknown key 'mas' in particle 'bob'; did you mean 'mass'?"},
       {"m = 2", "m = -2", 7, 8, "the mass is -2: a mass is not negative"},
       {"x' = 0", "x'", 13, 13, "an equation needs '='"},
@@ -55,7 +55,7 @@ TEST(Messages, TypicalMistakesHaveTheirPlaceAndTheirWords) {
       {"m = 2", "m = \"2*t\"", 3, 1, "the parameter 'm' is not constant"},
       {"name = \"bob\"", "name = \"t\"", 6, 9, "the name 't' is reserved"},
       {"-g*ey", "-g*", 10, 13, "the formula ends where a number, a name or '(' should follow"},
-      {"-g*ey", "-g", 10, 11, "a vector is expected, this is a number"},
+      {"-g*ey", "-g", 10, 10, "a vector is expected, this is a number"},
   };
   for (const Mistake& m : mistakes) {
     const std::vector<Diagnostic> list = diagnostics_of(test::replaced(kGood, m.from, m.to));
