@@ -20,7 +20,7 @@ bool known_fault(const std::string& text) {
     std::size_t i = std::min(text.find_first_not_of(" \t", line), end);
     if (i < end && text[i] == '[') {
       i = text.find_first_not_of(" \t[", i);
-      if (i < end && !std::isalnum(static_cast<unsigned char>(text[i])) && !std::strchr("_-\"']", text[i])) return true;
+      if (i >= end || (!std::isalnum(static_cast<unsigned char>(text[i])) && !std::strchr("_-\"']", text[i]))) return true;
     }
     line = end + 1;
   }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/assert.h"
+#include "base/diagnostic.h"
 
 namespace anholon {
 
@@ -22,6 +23,10 @@ constexpr std::array kParity = {
 #include "expr/elementary.def"
 #undef ROW
 };
+
+// A product of more factors than this is one factor of a larger product: what a deep chain of functions
+// makes of its derivative stays linear in size. Products up to here are flat and so canonical.
+constexpr std::uint32_t kOpenedFactors = 64;
 
 // A sum of more terms than this is computed through the partial sum it grew from.
 constexpr std::size_t kShortWayFrom = 8;
@@ -156,6 +161,12 @@ Expr Graph::scaled(const Rational& factor, NodeId id) {
   return sum(one_term);
 }
 
+static Rational floor(const Rational& r) {
+  mpz_class q;
+  mpz_fdiv_q(q.get_mpz_t(), r.get_num_mpz_t(), r.get_den_mpz_t());
+  return q;
+}
+
 // The rational content of a sum, with the sign that makes its first coefficient positive.
 static Rational content(const Graph& g, NodeId id) {
   mpz_class num = 0, den = 1;
@@ -191,7 +202,7 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
       const Rational& v = value(p.node);
       if (v == 1) continue;
       if (v == 0) {
-        ANHOLON_ASSERT(p.exponent > 0);
+        if (p.exponent < 0) throw Failure(Span{}, "division by zero");
         return zero();
       }
       std::optional<Rational> power;
@@ -201,19 +212,29 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
         if (auto root = exact_root(v, p.exponent.get_den().get_ui()))
           power = exact_power(*root, p.exponent.get_num().get_si());
       }
-      if (power) coefficient *= *power;
-      else parts.push_back(std::move(p));
-    } else if (n.kind == Kind::sum && integer) {
-      const Rational c = n.count == 1 ? rational(terms_[n.first].weight) : content(*this, p.node);
-      std::optional<Rational> power = c == 1 ? std::optional<Rational>(1)
-                                             : exact_power(c, p.exponent.get_num().get_si());
-      if (c == 1 || !power) {
+      if (power) {
+        coefficient *= *power;
+      } else if (const Rational whole = floor(p.exponent); !integer && whole != 0) {
+        pending.push_back({p.node, whole});  // 2^(3/2) = 2 * 2^(1/2)
+        parts.push_back({p.node, p.exponent - whole});
+      } else {
         parts.push_back(std::move(p));
-        continue;
       }
-      coefficient *= *power;
-      pending.push_back({scaled(1 / c, p.node).id, p.exponent});
-    } else if (n.kind == Kind::product && (integer || n.count == 1)) {
+    } else if (n.kind == Kind::sum) {
+      // A positive content comes out of any power, a sign out of a whole one.
+      const Rational c = n.count == 1 ? rational(terms_[n.first].weight) : content(*this, p.node);
+      const Rational out = integer ? c : Rational(abs(c));
+      const bool whole_out = integer && exact_power(c, p.exponent.get_num().get_si());
+      if (out != 1 && (whole_out || !integer)) {
+        pending.push_back({number(out).id, p.exponent});
+        pending.push_back({scaled(1 / out, p.node).id, p.exponent});
+      } else if (const Rational whole = floor(p.exponent); c < 0 && !integer && whole != 0) {
+        pending.push_back({p.node, whole});
+        parts.push_back({p.node, p.exponent - whole});
+      } else {
+        parts.push_back(std::move(p));
+      }
+    } else if (n.kind == Kind::product && n.count <= kOpenedFactors && (integer || n.count == 1)) {
       // (x^r)^n = x^(rn) for integer n; (x^r)^s = x^(rs) only where x^r keeps the sign of x.
       const std::span<const Term> inner = terms(p.node);
       if (!integer && rational(inner[0].weight).get_den() == 1) {
@@ -230,31 +251,30 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Part& a, const Part& b) { return a.node < b.node; });
   std::vector<Part> merged;
-  bool again = false;
+  bool joined = false;
   for (Part& p : parts) {
     if (!merged.empty() && merged.back().node == p.node) {
       merged.back().exponent += p.exponent;
-      // A number or sum whose exponents joined to an integer opens up: sqrt(2)*sqrt(2) = 2.
-      const Kind k = nodes_[p.node].kind;
-      if (merged.back().exponent.get_den() == 1 && k != Kind::jet && k != Kind::parameter) again = true;
+      joined = true;
     } else {
       merged.push_back(std::move(p));
     }
   }
   std::erase_if(merged, [](const Part& p) { return p.exponent == 0; });
-  if (again) {
-    bool opens = false;
-    for (const Part& p : merged) {
-      const Node& n = nodes_[p.node];
-      if (p.exponent.get_den() != 1) continue;
-      if (n.kind == Kind::number || n.kind == Kind::product) opens = true;
-      if (n.kind == Kind::sum && (n.count == 1 || content(*this, p.node) != 1)) opens = true;
-    }
-    if (opens) {
-      std::vector<std::pair<Expr, Rational>> factors;
-      for (const Part& p : merged) factors.push_back({Expr{this, p.node}, p.exponent});
-      return scaled(coefficient, product(factors).id);
-    }
+  // A number, negative sum or product whose exponents joined may open up: sqrt(2)*sqrt(2) = 2.
+  const auto opens = [&](const Part& p) {
+    const Node& n = nodes_[p.node];
+    const bool integer = p.exponent.get_den() == 1, proper = p.exponent > 0 && p.exponent < 1;
+    if (n.kind == Kind::number) return integer || !proper;
+    if (n.kind == Kind::product) return integer && n.count <= kOpenedFactors;
+    if (n.kind != Kind::sum) return false;
+    const Rational c = n.count == 1 ? rational(terms_[n.first].weight) : content(*this, p.node);
+    return c < 0 && (integer || !proper);
+  };
+  if (joined && std::any_of(merged.begin(), merged.end(), opens)) {
+    std::vector<std::pair<Expr, Rational>> factors;
+    for (const Part& p : merged) factors.push_back({Expr{this, p.node}, p.exponent});
+    return scaled(coefficient, product(factors).id);
   }
   if (merged.empty()) return number(coefficient);
   NodeId id = merged[0].node;
@@ -357,7 +377,6 @@ Expr operator*(Expr a, Expr b) {
   return a.graph->product(factors);
 }
 Expr operator/(Expr a, Expr b) {
-  ANHOLON_ASSERT(!is_zero(b));
   const std::pair<Expr, Rational> factors[] = {{a, 1}, {b, -1}};
   return a.graph->product(factors);
 }
@@ -367,7 +386,6 @@ Expr operator-(Expr a, int c) { return linear(1, a, -c, a.graph->one()); }
 Expr& operator+=(Expr& a, Expr b) { return a = a + b; }
 
 Expr pow(Expr base, const Exponent& exponent) {
-  ANHOLON_ASSERT(!(is_zero(base) && exponent.value < 0));
   const std::pair<Expr, Rational> factors[] = {{base, exponent.value}};
   return base.graph->product(factors);
 }

@@ -151,14 +151,14 @@ Expr operator+(Expr a, Expr b);
 Expr operator-(Expr a, Expr b);
 Expr operator-(Expr a);
 Expr operator*(Expr a, Expr b);
-Expr operator/(Expr a, Expr b);  // REQUIRES: b is not the node 0
+Expr operator/(Expr a, Expr b);  // throws Failure if b is the node 0
 Expr operator*(const Rational& c, Expr a);
 Expr operator+(int c, Expr a);
 Expr operator-(int c, Expr a);
 Expr operator-(Expr a, int c);
 inline Expr operator*(int c, Expr a) { return Rational(c) * a; }
 Expr& operator+=(Expr& a, Expr b);
-Expr pow(Expr base, const Exponent& exponent);  // REQUIRES: not 0^negative
+Expr pow(Expr base, const Exponent& exponent);  // throws Failure for 0^negative
 inline Expr sqrt(Expr a) { return pow(a, {1, 2}); }
 Expr sum(std::span<const Expr> terms);  // all at once
 

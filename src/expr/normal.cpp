@@ -152,11 +152,13 @@ class Normalizer {
 
   Expr expression(const Poly& p) {
     if (p.length() > kPrintedTerms) throw TooLarge{};
+    std::vector<std::pair<NodeId, unsigned long>> roots;
     std::vector<Expr> meaning(static_cast<std::size_t>(std::max<long>(1, generators_)), g_.one());
     const auto at = [&](long k) -> Expr& { return meaning[static_cast<std::size_t>(k)]; };
     for (const auto& [root, k] : root_generator_) {
       Rational e(1, root.second);
       at(k) = pow(Expr{&g_, root.first}, e);
+      roots.push_back(root);
     }
     for (const auto& [node, q] : denominator_) {
       const Expr angle = Rational(1, q) * Expr{&g_, node};
@@ -164,6 +166,14 @@ class Normalizer {
       at(cosine_.at(node)) = cos(angle);
     }
     for (const auto& [node, k] : generator_) at(k) = Expr{&g_, node};
+    // The generator of x^(1/k) with x = n/d stands for d x^(1/k). Roots may hold earlier roots in d.
+    std::sort(roots.begin(), roots.end());
+    for (const auto& root : roots) at(root_generator_.at(root)) = at(root_generator_.at(root)) * monomials(fractions_.at(root.first).den, meaning);
+    return monomials(p, meaning);
+  }
+
+  Expr monomials(const Poly& p, const std::vector<Expr>& meaning) {
+    if (p.length() > kPrintedTerms) throw TooLarge{};
     std::vector<std::pair<Rational, Expr>> sum;
     for (const auto& [c, exponents] : p.terms(static_cast<long>(meaning.size()))) {
       std::vector<std::pair<Expr, Rational>> factors;

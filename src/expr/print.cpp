@@ -46,7 +46,17 @@ class Printer {
         if (!seen[t.node]) seen[t.node] = true, ids.push_back(t.node);
     }
     std::sort(ids.begin(), ids.end());
-    for (NodeId id : ids) done_[id] = node(id);
+    for (Expr e : es) ++uses_[e.id];
+    for (NodeId id : ids)
+      if (!names_.defined.count(id))
+        for (const Term& t : g_.terms(id)) ++uses_[t.node];
+    for (NodeId id : ids) {
+      done_[id] = node(id);
+      if (names_.defined.count(id)) continue;
+      // The text of an operand goes with its last use: a deep formula needs no more than its length.
+      for (const Term& t : g_.terms(id))
+        if (--uses_[t.node] == 0) done_.erase(t.node);
+    }
     std::vector<std::string> out;
     for (Expr e : es) out.push_back(done_[e.id].text);
     return out;
@@ -208,6 +218,7 @@ class Printer {
   const SymbolNames& names_;
   Format format_;
   std::unordered_map<NodeId, Printed> done_;
+  std::unordered_map<NodeId, std::size_t> uses_;
   std::unordered_map<NodeId, Rank> rank_;
 };
 

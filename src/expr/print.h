@@ -14,7 +14,7 @@ namespace anholon {
 
 enum class Format : std::uint8_t { text, latex };
 
-inline constexpr std::size_t kLongestPrint = 1 << 20;
+inline constexpr std::size_t kLongestPrint = 1 << 18;
 
 // The names of symbols; each returns the base name, derivative marks are added by the printer.
 struct SymbolNames {

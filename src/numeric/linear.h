@@ -109,10 +109,14 @@ class Lu {
 
   // An estimate of the smallest singular value of A with rows divided by their largest entry, by
   // `sweeps` of inverse iteration from `direction`, which is kept for the next call.
-  N smallest_singular_value(std::vector<N>& direction, int sweeps = 2) const {
+  N smallest_singular_value(std::vector<N>& direction, int sweeps = 3) const {
     const std::size_t n = size();
     if (n == 0) return N(1);
-    if (direction.size() != n) direction.assign(n, N(1));
+    if (direction.size() != n) {
+      // Uneven on purpose: no kernel of a mechanical system is orthogonal to it by symmetry.
+      direction.assign(n, N(1));
+      for (std::size_t i = 0; i < n; ++i) direction[i] += N(static_cast<int>((i * 37 + 11) % 17)) / N(23);
+    }
     std::vector<N> y, scaled(n);
     N sigma(0);
     for (int k = 0; k < sweeps; ++k) {

@@ -31,6 +31,7 @@ static std::optional<Rational> parse_decimal(std::string_view text) {
   if (!any) return std::nullopt;
   if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
     const std::string exponent(text.substr(i + 1));
+    if (exponent.find_first_not_of("+-0123456789") != std::string::npos) return std::nullopt;
     char* end = nullptr;
     const long e = std::strtol(exponent.c_str(), &end, 10);
     if (end == exponent.c_str() || *end != 0) return std::nullopt;

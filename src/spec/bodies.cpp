@@ -42,7 +42,7 @@ std::optional<double> constant_value(const Model& model, Expr e) {
       const Node& n = g.node(id);
       return n.kind == Kind::parameter ? values[n.index] : Expr{};
     })[0];
-  if (!symbols({&e, 1}).empty()) return std::nullopt;
+  if (!symbols({&e, 1}).empty()) return std::nullopt;  // (a division by zero is thrown as Failure)
   const Tape tape = compile({&e, 1});
   Machine<double> machine(tape, 0, {});
   machine.evaluate();

@@ -2,7 +2,17 @@
 
 #include <algorithm>
 #include <sstream>
+#include <stdexcept>
+
+// The parser states its own invariants on input it has not yet judged: a broken one is a syntax error.
+#define TOML_ASSERT(condition) \
+  do {                         \
+    if (!(condition)) throw std::invalid_argument("a syntax that is not TOML"); \
+  } while (false)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wterminate"
 #include <toml++/toml.h>
+#pragma GCC diagnostic pop
 
 #include "base/utf8.h"
 
@@ -218,6 +228,8 @@ Item read_toml(const SourceText& source) {
     return convert(document, Places(source));
   } catch (const toml::parse_error& e) {
     throw syntax_error(e, source);
+  } catch (const std::invalid_argument& e) {
+    throw Failure(Span{}, e.what());
   }
 }
 

@@ -31,7 +31,7 @@ TEST_P(Determinism, TheSameModelSimulatedTwice) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Model, Determinism, testing::ValuesIn(test::shipped_models()),
-                         [](const auto& info) { return test::test_name(info.param); });
+                         [](const auto& p) { return test::test_name(p.param); });
 
 TEST(DeterminismOf, MultiprecisionAndAfterAnotherPrecision) {
   const auto model = test::shipped("zoo/chaplygin-sleigh");

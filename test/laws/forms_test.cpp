@@ -85,7 +85,7 @@ TEST_P(Forms, EnergyIdentity) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Model, Forms, testing::ValuesIn(test::shipped_models()),
-                         [](const auto& info) { return test::test_name(info.param); });
+                         [](const auto& p) { return test::test_name(p.param); });
 
 // ---- mutants: the same checks must refute the mistakes of theory.md section 9 -----------------------------------------------
 

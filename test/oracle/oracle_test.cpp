@@ -195,14 +195,14 @@ TEST_P(Oracle, TrajectoryInDouble) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Model, Oracle, testing::ValuesIn(paired_models()),
-                         [](const auto& info) { return test::test_name(info.param.model); });
+                         [](const auto& p) { return test::test_name(p.param.model); });
 
 class UnstableOracle : public Oracle {};
 TEST_P(UnstableOracle, TrajectoryInLongDouble) {
   EXPECT_TRUE(simulate_all(Precision::long_real, 1e-18, 19).within(kSimulate));
 }
 INSTANTIATE_TEST_SUITE_P(Model, UnstableOracle, testing::Values(Pair{"zoo/rattleback", kUnstableSystem}),
-                         [](const auto& info) { return test::test_name(info.param.model); });
+                         [](const auto& p) { return test::test_name(p.param.model); });
 
 // The quick systems in multiprecision; all of them under ANHOLON_LONG=1.
 std::vector<Pair> quick_models() {
@@ -219,9 +219,9 @@ class OracleInManyDigits : public Oracle {};
 TEST_P(OracleInManyDigits, TermsAtStates) { EXPECT_TRUE(evaluate_all(30).within(kManyDigits)); }
 TEST_P(OracleInManyDigits, Trajectory) { EXPECT_TRUE(simulate_all(Precision::multi, 1e-32, 30).within(kManyDigits)); }
 INSTANTIATE_TEST_SUITE_P(Model, OracleInManyDigits, testing::ValuesIn(quick_models()),
-                         [](const auto& info) { return test::test_name(info.param.model); });
+                         [](const auto& p) { return test::test_name(p.param.model); });
 
-// Mutants: a change of a parameter in the 14th digit, and the data of another system, must be seen by the comparison.
+// Mutant: a change of the mass in the 11th digit must be seen by the comparison.
 class OracleMutant : public Oracle {};
 TEST_P(OracleMutant, IsRefuted) {
   EXPECT_TRUE(evaluate_all(16).within(kEvaluate));
@@ -230,7 +230,7 @@ TEST_P(OracleMutant, IsRefuted) {
   EXPECT_FALSE(simulate_all(Precision::real, 1e-15, 16).within(kSimulate));
 }
 INSTANTIATE_TEST_SUITE_P(Model, OracleMutant, testing::Values(Pair{"zoo/second-order-linear", "s12b_second_order_linear"}),
-                         [](const auto& info) { return test::test_name(info.param.model); });
+                         [](const auto& p) { return test::test_name(p.param.model); });
 
 TEST(OracleData, EveryPairIsFound) { EXPECT_GE(paired_models().size(), 20U); }
 

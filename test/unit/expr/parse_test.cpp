@@ -96,7 +96,7 @@ TEST(Mistakes, HaveTheirColumnAndSayWhatIsWrong) {
       {"1e9999", 1, "the number 1e9999 is out of all proportion"},
       {"[1, 2]", 1, "a vector has three components"},
       {"x²² + γ", 7, "unknown name 'gamma'"},
-      {"D(x, 21)", 1, "a derivative of order 21; at most 20 are read"},
+      {"D(x, 21)", 6, "argument 2 of D is not a whole number between 0 and 20"},
       {"sum(x)", 1, "sum(…) is not read yet"},
       {"q[3]", 1, "families of elements (names with [ ]) are not read yet"},
   };

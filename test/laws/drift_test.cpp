@@ -1,0 +1,73 @@
+// Over many steps the constraints stay at round-off and the rolling coin keeps its energy.
+// `./dev test` runs 10^4 steps, `./dev long` (ANHOLON_LONG=1) all 10^5.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "run/simulate.h"
+#include "support/models.h"
+
+namespace anholon::test {
+namespace {
+
+// Residuals of constraints, relative to their terms: round-off of the wider numbers the state is kept
+// in, and the bound the project promises.
+constexpr double kConstraintBound = 1e-13;
+constexpr double kEnergyBound = 1e-12;
+
+std::size_t wanted_steps() { return std::getenv("ANHOLON_LONG") ? 100'000 : 10'000; }
+
+struct Motion {
+  SimulationReport report;
+  MemorySink rows;
+  Scenario scenario;
+};
+
+void run(const std::string& model, double seconds_per_step, Motion& m) {
+  ASSERT_TRUE(make_scenario(shipped(model), *find_formulation("routh"), {}, m.scenario).ok());
+  SimulationOptions o;
+  o.tolerance = Rational(1, mpz_class("1000000000000000"));
+  const long end = static_cast<long>(std::ceil(seconds_per_step * static_cast<double>(wanted_steps())));
+  for (long k = 1; k <= 20; ++k) o.at.push_back(Rational(k * end, 20));
+  for (Rational& t : o.at) t.canonicalize();
+  m.report = simulate(m.scenario, o, m.rows);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  ASSERT_GE(m.report.steps, wanted_steps());
+}
+
+TEST(Drift, TheDrivenSnakeboardStaysOnItsConstraints) {
+  Motion m;
+  ASSERT_NO_FATAL_FAILURE(run("zoo/snakeboard", 0.125, m));
+  EXPECT_LT(m.report.constraints, kConstraintBound);
+  EXPECT_LT(m.report.constraints_kept, kConstraintBound);
+}
+
+TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
+  Motion m;
+  ASSERT_NO_FATAL_FAILURE(run("zoo/rolling-coin", 0.0185, m));
+  EXPECT_LT(m.report.constraints, kConstraintBound);
+  EXPECT_LT(m.report.constraints_kept, kConstraintBound);
+
+  // T + m g R sin(th) at each row, from the columns alone.
+  const Model& model = *m.scenario.model;
+  const Tape tape = compile(std::vector<Expr>{put_masses(model, m.scenario.mechanics->T)});
+  Machine<long double> machine(tape, 0, parameter_values<long double>(model));
+  const auto energy = [&](const std::vector<std::string>& row) {
+    const std::size_t n = model.coordinates.size();
+    const auto column = [&](std::size_t k) { return std::strtold(row[k].c_str(), nullptr); };
+    for (const Input& in : tape.inputs) {
+      const Node& node = model.graph->node(in.symbol);
+      machine.series(in.slot)[0] = column(1 + node.order * n + node.index);
+    }
+    machine.evaluate();
+    return machine.value(0) + 9.81L / 2 * std::sin(column(1 + 3));  // m = 1, R = 1/2, g = 9.81
+  };
+  const long double first = energy(m.rows.rows().front());
+  long double worst = 0;
+  for (const auto& row : m.rows.rows()) worst = std::max(worst, std::abs(energy(row) / first - 1));
+  EXPECT_LT(static_cast<double>(worst), kEnergyBound);
+}
+
+}  // namespace
+}  // namespace anholon::test

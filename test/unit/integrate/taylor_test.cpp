@@ -1,0 +1,264 @@
+#include "integrate/taylor.h"
+
+#include <gtest/gtest.h>
+
+#include "structure/consistent.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+// One model from text to stepper; the parts stay together, for each refers to the one before.
+struct Motion {
+  std::shared_ptr<const Model> model;
+  Mechanics m;
+  System system;
+  Structure structure;
+  Program stepping;
+
+  explicit Motion(const std::string& text) : model(test::model_of(text)), m(mechanics(*model)) {
+    std::vector<std::size_t> all;
+    for (std::size_t r = 0; r < model->constraints.size(); ++r) all.push_back(r);
+    system = implicit_system(model, m, *find_formulation("routh"), all);
+    const Outcome o = analyse(system, parameters_in<double>(), {}, structure);
+    if (!o.ok()) throw std::runtime_error(o.message);
+    stepping = program(system, structure);
+  }
+  template <class N>
+  std::vector<N> parameters_in() const {
+    Column values;
+    for (const Parameter& p : model->parameters) values.push_back(p.value);
+    return evaluate_parameters<N>(*model->graph, values);
+  }
+  // x_1, x_1', x_2, … from the model's initial data.
+  template <class N>
+  std::vector<N> start() const {
+    InitialState<N> named;
+    const Outcome o = consistent_state(InitialProblem<N>{&m, parameters_in<N>(), {}, std::nullopt}, named);
+    if (!o.ok()) throw std::runtime_error(o.message);
+    std::vector<N> state;
+    for (std::size_t a = 0; a < named.q.size(); ++a) state.push_back(named.q[a]), state.push_back(named.qd[a]);
+    return state;
+  }
+};
+
+std::string line(const std::string& force, const std::string& initial) {
+  return "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"(" + force +
+         ")*ex\"\n[initial]\n" + initial;
+}
+
+template <class N>
+Stepper<N> stepper(const Motion& motion, double tolerance, int order = 0) {
+  StepSettings settings;
+  settings.log_tolerance = std::log(tolerance);
+  settings.order = order;
+  return Stepper<N>(motion.stepping, motion.parameters_in<N>(), motion.parameters_in<Wider<N>>(), settings);
+}
+
+template <class N>
+void go(Stepper<N>& s, const Wider<N>& end) {
+  while (!(s.time() == end)) {
+    const Outcome o = s.step(end);
+    if (!o.ok()) throw std::runtime_error(o.message);
+  }
+}
+
+template <class N>
+std::vector<Wider<N>> state_at(const Motion& motion, const Stepper<N>& s, const Wider<N>& t) {
+  Expansion<Wider<N>> point(motion.stepping, motion.parameters_in<Wider<N>>(), 1);
+  const Outcome o = s.at(t, point);
+  if (!o.ok()) throw std::runtime_error(o.message);
+  std::vector<Wider<N>> state;
+  point.state(state);
+  return state;
+}
+
+// The state at `end` of the motion that has `state` at `begin`.
+using State = std::vector<long double>;
+State moved(const Motion& motion, long double begin, const State& state, long double end, double tolerance = 1e-15) {
+  Stepper<double> s = stepper<double>(motion, tolerance);
+  const Outcome o = s.start(begin, state);
+  if (!o.ok()) throw std::runtime_error(o.message);
+  go(s, end);
+  return state_at(motion, s, end);
+}
+
+// |x - cos t| at t = 1 after 1/h steps of equal size h.
+double oscillator_error(const Motion& motion, int order, int steps) {
+  Stepper<Multi> s = stepper<Multi>(motion, 0.5, order);  // its own step size is larger than all of these
+  if (!s.start(Multi(0), {Multi(1), Multi(0)}).ok()) throw std::runtime_error("start");
+  for (int k = 1; k <= steps; ++k) {
+    const std::size_t before = s.steps();
+    go(s, Multi(Multi(k) / Multi(steps)));
+    EXPECT_EQ(s.steps(), before + 1) << "the step must be the one given";
+  }
+  return to_double(abs(Multi(state_at(motion, s, Multi(1))[0] - cos(Multi(1)))));
+}
+
+TEST(Stepper, MeasuredOrderIsTheStatedOne) {
+  const PrecisionScope precision(50);
+  const Motion motion(line("-x", "x = 1\n\"x'\" = 0\n"));
+  for (int order : {4, 5, 8, 12}) {
+    const double coarse = oscillator_error(motion, order, 16), fine = oscillator_error(motion, order, 32);
+    const double measured = std::log2(coarse / fine);
+    // One more power of h may be gained for positions; never one less.
+    EXPECT_GT(measured, order - 0.2);
+    EXPECT_LT(measured, order + 1.2);
+  }
+}
+
+TEST(Stepper, OrderFollowsFromTheTolerance) {
+  EXPECT_EQ(taylor_order(std::log(1e-15)), 19);  // ceil(15 ln(10)/2 + 1) = ceil(18.27)
+  EXPECT_GT(taylor_order(-400 * std::log(10.0)), 450);
+  EXPECT_GE(taylor_order(std::log(0.5)), 4);
+}
+
+TEST(Stepper, KeepsItsToleranceOnAPendulumOfKnownEnergy) {
+  const Motion motion(line("-sin(x)", "x = 2\n\"x'\" = 0\n"));
+  for (double tolerance : {1e-6, 1e-9, 1e-12}) {
+    const State end = moved(motion, 0, motion.start<long double>(), 20, tolerance);
+    const long double energy = end[1] * end[1] / 2 - std::cos(end[0]);
+    EXPECT_LE(std::abs(energy + std::cos(2.0L)), 100 * tolerance);
+  }
+}
+
+// x'' = 0, x' = 1/3: after 10^5 steps the position is the exact one to a round-off. Plain summation misses by many. In long
+// double, where the state is kept in the type of the coefficients.
+TEST(Stepper, CompensatedSumsDoNotGatherRoundOffs) {
+  const int steps = 100000;
+  const Motion motion(line("0", "x = 0\n\"x'\" = \"1/3\"\n"));
+  Stepper<long double> s = stepper<long double>(motion, 1e-12, 4);
+  ASSERT_TRUE(s.start(0, motion.start<long double>()).ok());
+  long double plain = 0, before = 0;
+  for (int k = 1; k <= steps; ++k) {
+    const long double t = k * 0.1L;
+    go(s, t);
+    plain += (t - before) * (1.0L / 3);
+    before = t;
+  }
+  const PrecisionScope precision(40);
+  const long double exact = (Multi(before) * Multi(1.0L / 3)).to_long_double(), ulp = std::nextafter(exact, 1e9L) - exact;
+  EXPECT_LE(std::abs(state_at(motion, s, before)[0] - exact), 2 * ulp);
+  EXPECT_GT(std::abs(plain - exact), 10 * ulp) << "the mutant";
+}
+
+const char* const kModels[] = {"zoo/chaplygin-sleigh", "zoo/fourbar", "zoo/rolling-coin", "papers/luo-zhao-example-2-plane-frame"};
+
+// d = 2 for coordinates and 0 for multipliers in these models: the state of the expansion is (q, q') one after the other.
+TEST(Stepper, DenseOutputIsTheMotionThere) {
+  for (const char* name : kModels) {
+    const Motion motion(test::shipped_text(name));
+    const State start = motion.start<long double>();
+    Stepper<double> s = stepper<double>(motion, 1e-15);
+    ASSERT_TRUE(s.start(0, start).ok());
+    ASSERT_TRUE(s.step(1).ok());
+    ASSERT_TRUE(s.step(1).ok());
+    const long double t = s.before() + 0.37L * (s.time() - s.before());
+    const State inside = state_at(motion, s, t), there = moved(motion, 0, start, t);
+    long double gap = 0, way = 0;
+    for (std::size_t i = 0; i < start.size(); ++i)
+      gap = std::max(gap, std::abs(inside[i] - there[i])), way = std::max(way, std::abs(inside[i] - start[i]));
+    EXPECT_LE(gap, 2e-14) << name;  // states of size ten, tolerance 1e-15
+    EXPECT_GT(way, 1e-3) << name;
+  }
+}
+
+TEST(Stepper, BackwardsItReturnsToTheStart) {
+  for (const char* name : kModels) {
+    const Motion motion(test::shipped_text(name));
+    const State start = motion.start<long double>(), back = moved(motion, 0.5, moved(motion, 0, start, 0.5), 0);
+    for (std::size_t i = 0; i < start.size(); ++i) EXPECT_NEAR(back[i], start[i], 1e-13) << name;
+  }
+}
+
+// A scleronomic system under forces of position: turned velocities lead back along the same path.
+TEST(Stepper, TimeReversal) {
+  for (const char* name : {"zoo/chaplygin-sleigh", "zoo/rolling-coin"}) {
+    const Motion motion(test::shipped_text(name));
+    const State start = motion.start<long double>();
+    State turned = moved(motion, 0, start, 0.5);
+    for (std::size_t i = 1; i < turned.size(); i += 2) turned[i] = -turned[i];
+    const State back = moved(motion, 0, turned, 0.5);
+    long double without = 0;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      EXPECT_NEAR(back[i], i % 2 ? -start[i] : start[i], 1e-13) << name;
+      without = std::max(without, std::abs(back[i] - start[i]));
+    }
+    EXPECT_GT(without, 0.1L) << "the mutant: the velocities are turned at the end as well";
+  }
+}
+
+TEST(Stepper, ConstraintsHoldToRoundOffAlongTheWay) {
+  const Motion motion(test::shipped_text("zoo/fourbar"));
+  Stepper<double> s = stepper<double>(motion, 1e-12);
+  ASSERT_TRUE(s.start(0, motion.start<long double>()).ok());
+  go(s, 0.8L);
+  EXPECT_LE(s.worst_constraint(), 1e-11L) << "before projection: the tolerance of a step";
+  EXPECT_LE(s.point().constraint_residual(), 1e-17L) << "a few round-offs of the wider numbers";
+}
+
+// ---- what cannot be integrated has a name -----------------------------------------------------------------------------------
+
+Outcome fate(const Motion& motion, double end, double& reached, std::size_t most_steps = 20000, bool cancelled = false) {
+  StepSettings settings;
+  settings.most_steps = most_steps;
+  settings.cancelled = [=] { return cancelled; };
+  Stepper<double> s(motion.stepping, motion.parameters_in<double>(), motion.parameters_in<long double>(), settings);
+  Outcome o = s.start(0, motion.start<long double>());
+  while (o.ok() && s.time() < end) o = s.step(end);
+  reached = static_cast<double>(s.time());
+  return o;
+}
+
+// x'' = 2 x^3 with x = 1, x' = 1 is x = 1/(1 - t).
+TEST(Outcome, AMotionThatGrowsWithoutBoundBeforeItsPole) {
+  double reached = 0;
+  const Outcome o = fate(Motion(line("2*x^3", "x = 1\n\"x'\" = 1\n")), 2, reached);
+  EXPECT_TRUE(o.kind == OutcomeKind::step_collapse || o.kind == OutcomeKind::blow_up) << name(o.kind);
+  EXPECT_NEAR(reached, 1, 1e-10);
+  EXPECT_FALSE(o.message.empty());
+  EXPECT_FALSE(o.hint.empty());
+}
+
+TEST(Outcome, ExponentialGrowthIsABlowUp) {
+  double reached = 0;
+  const Outcome o = fate(Motion(line("x", "x = 1\n\"x'\" = 1\n")), 1000, reached);
+  EXPECT_EQ(o.kind, OutcomeKind::blow_up);
+  EXPECT_NEAR(reached, 230.26, 3);  // exp(t) = 1e100
+}
+
+// A weight thrown upward reaches the apex z' = 0, where the constraint says nothing, after t = z'(0)(1 + k^2)/g = 0.2469.
+TEST(Outcome, TheApexOfTheAppellHamelMachine) {
+  std::string text = test::replaced(test::shipped_text("zoo/appell-hamel"), "\"-sqrt(5)/3\"", "\"sqrt(5)/3\"");
+  double reached = 0;
+  const Outcome o = fate(Motion(text), 2, reached);
+  EXPECT_TRUE(o.kind == OutcomeKind::singular || o.kind == OutcomeKind::step_collapse) << name(o.kind) << ": " << o.message << " at " << reached;
+  EXPECT_NEAR(reached, std::sqrt(5.0) / 3 * 3.25 / 9.81, 1e-6);
+}
+
+TEST(Outcome, AFormulaThatLeavesItsDomain) {
+  double reached = 0;
+  const Outcome o = fate(Motion(line("-sqrt(x)", "x = 1\n\"x'\" = -1\n")), 5, reached);
+  EXPECT_FALSE(o.ok());
+  EXPECT_TRUE(o.kind == OutcomeKind::not_a_number || o.kind == OutcomeKind::step_collapse) << name(o.kind);
+}
+
+TEST(Outcome, StepsCanBeLimitedAndCancelled) {
+  double reached = 0;
+  const Motion motion(line("-x", "x = 1\n\"x'\" = 0\n"));
+  EXPECT_EQ(fate(motion, 1000, reached, 10).kind, OutcomeKind::interrupted);
+  EXPECT_EQ(fate(motion, 1000, reached, 10, true).kind, OutcomeKind::interrupted);
+  EXPECT_EQ(reached, 0);
+}
+
+TEST(Outcome, EveryKindHasANameOfItsOwn) {
+  std::vector<std::string> names;
+  for (OutcomeKind k : {OutcomeKind::finished, OutcomeKind::singular, OutcomeKind::step_collapse, OutcomeKind::blow_up, OutcomeKind::not_a_number,
+                        OutcomeKind::no_convergence, OutcomeKind::inconsistent, OutcomeKind::interrupted})
+    names.push_back(name(k));
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(std::unique(names.begin(), names.end()), names.end());
+}
+
+}  // namespace
+}  // namespace anholon

@@ -1,0 +1,39 @@
+// The stepping program of an n-link chain grows linearly: common parts exist once, and no matrix is ever inverted symbolically.
+#include <gtest/gtest.h>
+
+#include "program/program.h"
+#include "support/chain.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+ProgramSize size_of_chain(int n) {
+  const auto model = test::model_of(test::chain_text(n));
+  const Mechanics m = mechanics(*model);
+  const System system = implicit_system(model, m, *find_formulation("routh"), {});
+  Column values;
+  for (const Parameter& p : model->parameters) values.push_back(p.value);
+  Structure structure;
+  const Outcome o = analyse(system, evaluate_parameters<double>(*model->graph, values), {}, structure);
+  if (!o.ok()) throw std::runtime_error(o.message);
+  EXPECT_EQ(structure.state_dimension, 2 * n);
+  return size(program(system, structure));
+}
+
+TEST(ProgramSize, OfAChainIsLinearInItsLinks) {
+  // The line through 16 and 32 links must hold at 64: below, sums are so short that they are written out.
+  const ProgramSize at16 = size_of_chain(16), at32 = size_of_chain(32), at64 = size_of_chain(64);
+  const auto expect_line = [](const char* what, std::size_t a, std::size_t b, std::size_t c) {
+    EXPECT_GT(b, a) << what;
+    EXPECT_LE(c, b + 2 * (b - a)) << what << ": " << a << ", " << b << ", " << c;
+  };
+  expect_line("slots", at16.slots, at32.slots, at64.slots);
+  expect_line("products", at16.products, at32.products, at64.products);
+  expect_line("functions", at16.functions, at32.functions, at64.functions);
+  expect_line("tainted", at16.tainted, at32.tainted, at64.tainted);
+  EXPECT_LE(at64.slots, 64U * 60) << "sixty operations per link and its equation are plenty";
+}
+
+}  // namespace
+}  // namespace anholon

@@ -1,0 +1,135 @@
+// Consistent initial data: given values hold, missing ones follow by least change, rounded ones are corrected, clashes are named.
+#include "structure/consistent.h"
+
+#include <gtest/gtest.h>
+
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+// A particle of mass m in the plane and one of mass M on a line.
+std::string text(const std::string& constraints, const std::string& initial) {
+  return "coordinates = [\"x\", \"y\"]\n[parameters]\nmx = 1\nmy = 4\n[[particle]]\nname = \"a\"\nmass = \"mx\"\nposition = \"x*ex\"\n[[particle]]\nname = "
+         "\"b\"\nmass = \"my\"\nposition = \"y*ey\"\n" + constraints + "[initial]\n" + initial;
+}
+std::string constraint(const std::string& equation) { return "[[constraint]]\nname = \"c\"\nequation = \"" + equation + "\"\n"; }
+
+template <class N = double>
+Outcome solve(const std::string& model_text, InitialState<N>& state, std::vector<StateOverride> overrides = {}) {
+  const auto model = test::model_of(model_text);
+  const Mechanics m = mechanics(*model);
+  Column values;
+  for (const Parameter& p : model->parameters) values.push_back(p.value);
+  const InitialProblem<N> problem{&m, evaluate_parameters<N>(*model->graph, values), std::move(overrides), std::nullopt};
+  return consistent_state(problem, state);
+}
+
+constexpr double kRoundoff = 1e-15;  // coordinates of size one
+
+TEST(ConsistentState, MissingVelocitiesFollowFromTheConstraint) {
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x' = 3*y' + 1"), "x = 0\ny = 0\n\"y'\" = 2\n"), s).ok());
+  EXPECT_NEAR(s.qd[0], 7, 7 * kRoundoff);
+  EXPECT_EQ(s.qd[1], 2);
+  EXPECT_EQ(s.qd_origin[0], Origin::derived);
+  EXPECT_EQ(s.qd_origin[1], Origin::given);
+}
+
+TEST(ConsistentState, WhatIsFreeChangesLeastInTheMassNorm) {
+  // min x'^2 + 4 y'^2 with x' + y' = 5: x' = 4, y' = 1.
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x' + y' = 5"), "x = 0\ny = 0\n"), s).ok());
+  EXPECT_NEAR(s.qd[0], 4, 1e-11);  // the metric is regularised by 1e-12
+  EXPECT_NEAR(s.qd[1], 1, 1e-11);
+  // The mutant, least change in the Euclidean norm, is (2.5, 2.5); and from a guess the change is measured from there.
+  ASSERT_TRUE(solve(text(constraint("x' + y' = 5"), "x = 0\ny = 0\nguess = {\"x'\" = 10, \"y'\" = 0}\n"), s).ok());
+  EXPECT_NEAR(s.qd[0], 6, 1e-11);
+  EXPECT_NEAR(s.qd[1], -1, 1e-11);
+}
+
+TEST(ConsistentState, PositionsComeFirstThenTheDerivedConstraint) {
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x^2 + y^2 = 25"), "x = 3\nguess = {y = 1}\n\"x'\" = 4\n"), s).ok());
+  EXPECT_NEAR(s.q[1], 4, 4 * kRoundoff);
+  EXPECT_NEAR(s.qd[1], -3, 8 * kRoundoff);  // x x' + y y' = 0
+}
+
+TEST(ConsistentState, TheGuessNamesTheBranch) {
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x^2 + y^2 = 25"), "x = 3\nguess = {y = -1}\n\"x'\" = 0\n"), s).ok());
+  EXPECT_NEAR(s.q[1], -4, 4 * kRoundoff);
+}
+
+TEST(ConsistentState, AFlatGuessIsLeft) {
+  InitialState<double> s;
+  const Outcome o = solve(text(constraint("x^2 + y^2 = 25"), ""), s);
+  ASSERT_TRUE(o.ok()) << "the centre of the circle is no dead end: " << o.message << "; reached " << s.q[0] << ", " << s.q[1];
+  EXPECT_NEAR(s.q[0] * s.q[0] + s.q[1] * s.q[1], 25, 25 * 4 * kRoundoff);
+}
+
+TEST(ConsistentState, RoundedNumbersAreCorrected) {
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x^2 + y^2 = 1"), "x = 0.6000000001\ny = 0.8\n\"x'\" = 0\n\"y'\" = 0\n"), s).ok());
+  EXPECT_NEAR(s.q[0] * s.q[0] + s.q[1] * s.q[1], 1, 4 * kRoundoff);
+  EXPECT_EQ(s.q_origin[0], Origin::corrected);
+  EXPECT_GT(s.largest_correction, 1e-12);
+  EXPECT_LT(s.largest_correction, 2e-10);
+}
+
+TEST(ConsistentState, ExactlyGivenValuesStayAsTheyAre) {
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x^2 + y^2 = 1"), "x = 0.6\ny = 0.8\n\"x'\" = 0\n\"y'\" = 0\n"), s).ok());
+  EXPECT_EQ(s.q[0], 0.6);
+  EXPECT_EQ(s.q[1], 0.8);
+  EXPECT_EQ(s.q_origin[0], Origin::given);
+}
+
+TEST(ConsistentState, ValuesThatClashAreNamed) {
+  InitialState<double> s;
+  const Outcome o = solve(text(constraint("x^2 + y^2 = 1"), "x = 0.6\ny = 0.9\n"), s);
+  EXPECT_EQ(o.kind, OutcomeKind::inconsistent);
+  EXPECT_NE(o.message.find("constraint 'c'"), std::string::npos) << o.message;
+  EXPECT_NE(o.hint.find("x, y"), std::string::npos) << o.hint;
+}
+
+TEST(ConsistentState, ConditionsAreMet) {
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x' = y'"), "x = 0\nconditions = [\"y^2 = 2\", \"x' + y' = 6\"]\nguess = {y = 1}\n"), s).ok());
+  EXPECT_NEAR(s.q[1], std::sqrt(2.0), 4 * kRoundoff);
+  EXPECT_NEAR(s.qd[0], 3, 1e-14);
+}
+
+TEST(ConsistentState, NoRealSolutionIsInconsistent) {
+  InitialState<double> s;
+  EXPECT_EQ(solve(text(constraint("x^2 + y^2 = -1"), ""), s).kind, OutcomeKind::inconsistent);
+  EXPECT_EQ(solve(text(constraint("sqrt(x - 5) = 1"), "x = 0\n"), s).kind, OutcomeKind::inconsistent);
+}
+
+TEST(ConsistentState, OverridesReplaceTheModelsValues) {
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x' = 3*y'"), "x = 1\n\"y'\" = 1\n"), s, {{1, 1, Rational(2)}, {0, 0, Rational(7, 2)}}).ok());
+  EXPECT_EQ(s.q[0], 3.5);
+  EXPECT_NEAR(s.qd[0], 6, 6 * kRoundoff);
+}
+
+TEST(ConsistentState, HoldsInAnyPrecision) {
+  const PrecisionScope precision(50);
+  InitialState<Multi> s;
+  ASSERT_TRUE(solve<Multi>(text(constraint("x^2 + y^2 = 5"), "x = 1\nguess = {y = 1.9}\n\"x'\" = 0.1\n"), s).ok());
+  EXPECT_LE(to_double(abs(Multi(s.q[1] - Multi(2)))), 1e-47);
+  EXPECT_LE(to_double(abs(Multi(s.qd[1] + Multi(Rational(1, 20))))), 1e-47);
+}
+
+TEST(IndependentConstraints, LeaveOutWhatFollowsFromTheOthers) {
+  const auto model = test::model_of(text(constraint("x' = 3*y'") + "[[constraint]]\nname = \"again\"\nequation = \"2*x' = 6*y'\"\n", "x = 0\n\"y'\" = 1\n"));
+  const Mechanics m = mechanics(*model);
+  InitialState<double> s;
+  ASSERT_TRUE(consistent_state(InitialProblem<double>{&m, {1, 4}, {}, std::nullopt}, s).ok());
+  const RowChoice<double> rows = independent_constraints(m, {1, 4}, s);
+  EXPECT_EQ(rows.independent.size(), 1U);
+  EXPECT_EQ(rows.dependent.size(), 1U);
+}
+
+}  // namespace
+}  // namespace anholon
