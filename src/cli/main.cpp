@@ -43,7 +43,8 @@ void check_command(const char* word) {
 
 // What was printed has reached its reader; a full disk or a closed pipe is not success.
 int finish(int code) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || code != kOk) return code;  // what went wrong before was said already
   std::fprintf(stderr, "error: cannot write the output: %s\n", std::strerror(errno));
   return kBadInput;
 }

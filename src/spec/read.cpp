@@ -251,8 +251,8 @@ class Reader {
     if (order < 0) {
       if (proved_zero(phi))
         throw Failure(equation.formula.whole(), "this equation always holds: it constrains nothing");
-      if (is_number(phi))
-        throw Failure(equation.formula.whole(), "this equation never holds: its sides differ by " + to_string(Rational(abs(number_value(phi)))));
+      if (const auto constant = expanded(phi); constant && is_number(*constant))
+        throw Failure(equation.formula.whole(), "this equation never holds: its sides differ by " + to_string(Rational(abs(number_value(*constant)))));
       throw Failure(equation.formula.whole(), "no coordinate or derivative occurs in this equation",
                     "a constraint relates coordinates and their derivatives");
     }

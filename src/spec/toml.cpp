@@ -166,7 +166,7 @@ Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
     hint = "a key with ' stands in quotes: \"x'\" = …";
   } else if (line.find('=') != std::string::npos && line.find_first_not_of(" \t", line.find('=') + 1) == std::string::npos) {
     message = "a value is missing after '='";
-  } else if (message.find("in value") == 0 && message.find("array") == std::string::npos && line.find('"') == std::string::npos) {
+  } else if (message.find("could not determine value type") != std::string::npos && line.find('"') == std::string::npos) {
     hint = "formulas stand in quotes: name = \"a*b\"";
   }
   return Failure(span, message, hint);

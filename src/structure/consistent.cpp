@@ -285,7 +285,15 @@ class Solver {
       for (std::size_t i = 0; i < free.size(); ++i)
         for (std::size_t j = 0; j < free.size(); ++j) mass(i, j) = s.mass(free[i], free[j]);
       if (!least_change(mass, ar, b, y)) return true;
-      const N now = worst_relative(s);
+      // Progress is measured against the scales where the step begins: those at its end grow with it.
+      const std::vector<N> scale = s.scale;
+      const auto merit = [&] {
+        N worst(0);
+        for (std::size_t i = 0; i < s.size(); ++i)
+          if (N v = abs(s.residual[i]) / scale[i]; v > worst) worst = v;
+        return worst;
+      };
+      const N now = merit();
       const std::vector<N> old = x;
       N fraction(1), step(0), size(0);
       bool better = false;
@@ -293,7 +301,7 @@ class Solver {
         for (std::size_t j = 0; j < free.size(); ++j)
           x[free[j]] = old[free[j]] + fraction * (guess[free[j]] + y[j] - old[free[j]]);
         if (!evaluate(s)) continue;
-        if (worst_relative(s) <= now * N(0.9) + rounding() * N(4) || halvings == 11) {
+        if (merit() <= now * N(0.9) + rounding() * N(4) || halvings == 11) {
           better = true;
           break;
         }
