@@ -1,7 +1,4 @@
 // The reader of models on any bytes.
-#include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <string>
 
 #include "spec/read.h"
