@@ -244,9 +244,11 @@ static Column combine(const Column& a, const Column& b, int sign) {
 
 Column operator+(const Column& a, const Column& b) { return combine(a, b, 1); }
 Column operator-(const Column& a, const Column& b) { return combine(a, b, -1); }
-Column operator-(const Column& a) {
+Column operator-(const Column& a) { return Rational(-1) * a; }
+
+Column operator*(const Rational& c, const Column& a) {
   Column r;
-  for (Expr e : a) r.push_back(-e);
+  for (Expr e : a) r.push_back(c * e);
   return r;
 }
 

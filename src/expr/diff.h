@@ -45,5 +45,6 @@ int jet_order(Expr e);
 Column operator+(const Column& a, const Column& b);
 Column operator-(const Column& a, const Column& b);
 Column operator-(const Column& a);
+Column operator*(const Rational& c, const Column& a);
 
 }  // namespace anholon

@@ -10,7 +10,9 @@
     if (!(condition)) throw std::invalid_argument("a syntax that is not TOML"); \
   } while (false)
 #pragma GCC diagnostic push
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wterminate"
+#endif
 #include <toml++/toml.h>
 #pragma GCC diagnostic pop
 

@@ -9,8 +9,7 @@
 namespace anholon::forms {
 
 static Equations equations(const Mechanics& M) {
-  return {total_derivative(gradient(M.T, M.qd)) - gradient(M.T, M.q),
-          M.Q + M.QR + M.Qomega + M.minus_dVO + M.minus_dVomega + M.Gamma + M.N};
+  return {total_derivative(gradient(M.T, M.qd)) - gradient(M.T, M.q), right_side(M)};
 }
 
 static std::string obstacle(const Mechanics&) { return {}; }

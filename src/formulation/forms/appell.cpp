@@ -1,0 +1,19 @@
+// Appell's equations with multipliers [L 3.18']:
+//
+//   dS/dq'' = Q + QR + Qomega - d(V_O + V_omega)/dq + Gamma + sum lambda dphi/dq^(m)
+//
+// S = sum 1/2 m |a|^2 with relative accelerations and frozen masses; always the partial derivative by
+// q'', whatever the order of the constraints.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M) { return {gradient(M.S, M.qdd), right_side(M)}; }
+
+static std::string obstacle(const Mechanics&) { return {}; }
+
+extern const Formulation appell;
+const Formulation appell{"appell", "Appell's equations with multipliers", "(3.18')",
+                         "Luo & Zhao, variable-mass systems with constraints of arbitrary order", obstacle, equations};
+
+}  // namespace anholon::forms

@@ -1,0 +1,18 @@
+// The Mangeron-Deleanu equations with multipliers [N 5.1]:
+//
+//   1/m [dT^(m)/dq^(m) - (m+1) dT/dq] = Q + QR + … + Gamma + sum lambda dphi/dq^(m)
+//
+// m is the highest order of the constraints (1 at least); T^(m) = D^m T/Dt^m with frozen masses.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M) { return {mangeron_deleanu_operator(M, highest_order(M)), right_side(M)}; }
+
+static std::string obstacle(const Mechanics&) { return {}; }
+
+extern const Formulation mangeron_deleanu;
+const Formulation mangeron_deleanu{"mangeron-deleanu", "Mangeron–Deleanu equations with multipliers", "(5.1)",
+                                   "third paper on Mišević–Rusov equations of higher-order systems", obstacle, equations};
+
+}  // namespace anholon::forms

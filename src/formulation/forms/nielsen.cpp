@@ -1,0 +1,21 @@
+// Nielsen's equations, classical, with multipliers (Mangeron-Deleanu and Misevic-Rusov for m = 1):
+//
+//   dT'/dq' - 2 dT/dq = Q + QR + Qomega - d(V_O + V_omega)/dq + Gamma + sum lambda dphi/dq^(m)
+//
+// T' = DT/Dt with frozen masses.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M) {
+  const Expr T1 = total_derivative(M.T);
+  return {gradient(T1, M.qd) - Rational(2) * gradient(M.T, M.q), right_side(M)};
+}
+
+static std::string obstacle(const Mechanics&) { return {}; }
+
+extern const Formulation nielsen;
+const Formulation nielsen{"nielsen", "Nielsen's equations with multipliers", "(5.1), m = 1",
+                          "Nielsen; third paper on Mišević–Rusov equations", obstacle, equations};
+
+}  // namespace anholon::forms
