@@ -29,6 +29,7 @@ struct Equation {
   Expr residual;
   std::string what;  // "constraint 'blade'"
   Span span;
+  bool condition = false;  // of the file's initial data, not a law of the system
 };
 
 // Equations in the unknowns of one stage (positions or velocities) and their partial derivatives.
@@ -164,8 +165,7 @@ class Solver {
     for (const Condition& c : model_.initial.conditions) {
       const Expr residual = put_masses(model_, c.residual);
       const std::string what = "condition \"" + c.text + "\"";
-      if (jet_order(residual) == 0) positions.push_back({residual, what, c.span});
-      else velocities.push_back({residual, what, c.span});
+      (jet_order(residual) == 0 ? positions : velocities).push_back({residual, what, c.span, true});
     }
     if (Outcome o = solve(positions, 0); !o.ok()) return o;
     return solve(velocities, 1);
@@ -201,7 +201,35 @@ class Solver {
       place((o.order == 0 ? m_.q : m_.qd)[o.coordinate], from_rational<N>(o.value), Origin::given);
   }
 
+  // As the data say; where overrides clash with values or conditions of the file, the overrides hold
+  // and the file's values are only where the least change starts from.
   Outcome solve(const std::vector<Equation>& equations, unsigned order) {
+    const InitialState<N> before = state_;
+    const Outcome o = attempt(equations, order);
+    if (o.ok() || p_.overrides.empty()) return o;
+    const InitialState<N> failed = std::exchange(state_, before);
+    const auto overridden = [&](std::size_t a) {
+      return std::any_of(p_.overrides.begin(), p_.overrides.end(),
+                         [&](const StateOverride& v) { return v.order == order && v.coordinate == a; });
+    };
+    std::vector<Origin>& origin = order == 0 ? state_.q_origin : state_.qd_origin;
+    for (std::size_t a = 0; a < origin.size(); ++a)
+      if (origin[a] == Origin::given && !overridden(a)) origin[a] = Origin::guessed;
+    std::vector<Equation> kept;
+    for (const Equation& e : equations) {
+      bool open = !e.condition;  // a condition stays while it says something about what is still open
+      for (NodeId id : symbols({&e.residual, 1})) {
+        const Node& n = m_.graph().node(id);
+        open = open || (n.kind == Kind::jet && n.order == order && !overridden(n.index));
+      }
+      if (open) kept.push_back(e);
+    }
+    if (attempt(kept, order).ok()) return {};
+    state_ = failed;
+    return o;
+  }
+
+  Outcome attempt(const std::vector<Equation>& equations, unsigned order) {
     if (equations.empty()) return {};
     std::vector<Origin>& origin = order == 0 ? state_.q_origin : state_.qd_origin;
     Stage<N> stage(m_, equations, order, p_.parameters);
