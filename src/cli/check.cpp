@@ -52,8 +52,8 @@ void state_table(const Scenario& s) {
   const InitialState<double>& x = s.state;
   std::printf("initial state at t = %s\n", number_text(x.t).c_str());
   for (std::size_t a = 0; a < x.q.size(); ++a)
-    std::printf("  %-8s = %-22s %-10s %s' = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
-                name(x.q_origin[a]), s.model->coordinates[a].name.c_str(), number_text(x.qd[a]).c_str(), name(x.qd_origin[a]));
+    std::printf("  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
+                name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(), number_text(x.qd[a]).c_str(), name(x.qd_origin[a]));
   std::printf("  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
 }
 

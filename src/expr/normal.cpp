@@ -185,8 +185,9 @@ class Normalizer {
   }
 
   bool trigonometric(const Node& n) const {
-    return n.kind == Kind::function && (n.index == static_cast<std::uint32_t>(Function::sin) ||
-                                        n.index == static_cast<std::uint32_t>(Function::cos));
+    if (n.kind != Kind::function) return false;
+    const Function f = static_cast<Function>(n.index);
+    return f == Function::sin || f == Function::cos || f == Function::tan;
   }
 
   Angle angle(NodeId x) const {
@@ -317,7 +318,11 @@ class Normalizer {
       case Kind::function:
         if (trigonometric(n)) {
           const auto [s, c] = sine_cosine(g_.terms(id)[0].node);
-          return plain(n.index == static_cast<std::uint32_t>(Function::sin) ? s : c);
+          switch (static_cast<Function>(n.index)) {
+            case Function::sin: return plain(s);
+            case Function::cos: return plain(c);
+            default: return {s, c};  // tan
+          }
         }
         return plain(generator(generator_.at(id)));
       case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass:

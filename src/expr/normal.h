@@ -1,5 +1,5 @@
 // The exact zero test: an expression is brought to a fraction of polynomials over Q in
-//   symbols, sin and cos of independent angles, roots, exponentials and other functions,
+//   symbols, sin and cos (tan = sin/cos) of independent angles, roots, exponentials and other functions,
 // reduced by sin^2 + cos^2 = 1 and root^2 = radicand. Angle sums and multiples are expanded.
 //
 // "Zero" is a proof: each step is an identity wherever all parts of the expression are defined.

@@ -199,8 +199,17 @@ std::vector<Load> reactions(const Mechanics& m) {
   return total;
 }
 
-// The partial derivative by explicit time, everything else held.
-static Expr by_time(Expr e) { return partial(e, e.graph->time()); }
+// The partial derivative by explicit time, coordinates, velocities and masses held; an unknown given
+// function f(t) is explicit time, too.
+static Expr by_time(Expr e) {
+  Graph& g = *e.graph;
+  Expr rate = partial(e, g.time());
+  for (NodeId id : symbols({&e, 1})) {
+    const Node n = g.node(id);
+    if (n.kind == Kind::given) rate += g.given(n.index, n.order + 1U) * partial(e, Expr{&g, id});
+  }
+  return rate;
+}
 
 Power power(const Mechanics& m) {
   const Model& model = *m.model;
