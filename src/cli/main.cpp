@@ -64,12 +64,10 @@ int run(int argc, char** argv) {
   Options o;
   std::function<int(const Options&)> command;
 
-  const auto model_command = [&](const char* name, const char* what, int (*f)(const Options&), const char* footer, bool required = true) {
+  const auto model_command = [&](const char* name, const char* what, int (*f)(const Options&), const char* footer) {
     CLI::App* c = app.add_subcommand(name, what);
     c->footer(footer);
-    auto* m = c->add_option("MODEL", o.model, "a model file, or the name of a shipped model");
-    (void)m;
-    (void)required;
+    c->add_option("MODEL", o.model, "a model file, or the name of a shipped model");
     c->add_flag("--json", o.json, "JSON on the standard output");
     c->add_flag("--quiet", o.quiet, "no progress, no report on stderr");
     c->callback([&command, f] { command = f; });
@@ -117,9 +115,9 @@ int run(int argc, char** argv) {
   simulate_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
 
   CLI::App* forms_command = model_command("forms", "the catalogue of forms, and which apply to a model", cli::forms,
-                                          "Example: anholon forms disc", false);
+                                          "Example: anholon forms disc");
   parameters(forms_command);
-  model_command("models", "the shipped models; with a name, the text of one", cli::models, "Example: anholon models disc", false);
+  model_command("models", "the shipped models; with a name, the text of one", cli::models, "Example: anholon models disc");
 
   try {
     app.parse(argc, argv);

@@ -242,12 +242,12 @@ class Parser {
       case Token::number: return make(Syntax::Op::number, at);
       case Token::name: {
         if (peek().token == Token::open) {
-          Syntax s = make(Syntax::Op::call, at, arguments(Token::open, Token::close, ")"));
+          Syntax s = make(Syntax::Op::call, at, arguments(Token::close, ")"));
           s.end = lexemes_[at_ - 1].offset + 1;
           return s;
         }
         if (peek().token == Token::left) {
-          Syntax s = make(Syntax::Op::index, at, arguments(Token::left, Token::right, "]"));
+          Syntax s = make(Syntax::Op::index, at, arguments(Token::right, "]"));
           s.end = lexemes_[at_ - 1].offset + 1;
           return s;
         }
@@ -264,7 +264,7 @@ class Parser {
       }
       case Token::left: {
         --at_;
-        Syntax s = make(Syntax::Op::array, at, arguments(Token::left, Token::right, "]"));
+        Syntax s = make(Syntax::Op::array, at, arguments(Token::right, "]"));
         s.end = lexemes_[at_ - 1].offset + 1;
         return s;
       }
@@ -275,10 +275,9 @@ class Parser {
     }
   }
 
-  std::vector<Syntax> arguments(Token open, Token close, const char* closer) {
+  std::vector<Syntax> arguments(Token close, const char* closer) {
     std::vector<Syntax> args;
     const Lexeme opened = next();
-    (void)open;
     if (peek().token == close) {
       next();
       return args;

@@ -79,7 +79,6 @@ ProgramSize size(const Program& p) {
 static std::string line(const Program& p, std::uint32_t s) {
   const Instruction& in = p.tape.code[s];
   const auto slot = [](std::uint32_t k) { return "s" + std::to_string(k); };
-  const Graph& g = *p.system->model->graph;
   switch (in.op) {
     case Op::constant: return p.tape.rationals[in.index].get_str();
     case Op::pi: return "pi";
@@ -102,7 +101,6 @@ static std::string line(const Program& p, std::uint32_t s) {
     case Op::function: return std::string(info(static_cast<Function>(in.index)).name) + "(" + slot(in.a) + ")";
     case Op::arctan2: return "atan2(" + slot(in.a) + ", " + slot(in.b) + ")";
   }
-  (void)g;
   return {};
 }
 

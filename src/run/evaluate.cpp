@@ -8,7 +8,7 @@ template <Number N>
 Certificate<N> certify(const std::vector<N>& inertia, const std::vector<N>& force, const std::vector<N>& reaction,
                        const Matrix<N>& phi) {
   Certificate<N> c;
-  const std::size_t n = inertia.size(), s = phi.rows;
+  const std::size_t n = inertia.size();
   N scale(1);
   std::vector<N> a(n, N(0));
   for (std::size_t i = 0; i < n; ++i) {
@@ -26,7 +26,6 @@ Certificate<N> certify(const std::vector<N>& inertia, const std::vector<N>& forc
       for (std::size_t k = 0; k < n; ++k) addmul(normal(i, j), phi(rows[i], k), phi(rows[j], k));
     for (std::size_t k = 0; k < n; ++k) addmul(rhs[i], phi(rows[i], k), a[k]);
   }
-  (void)s;
   Lu<N> lu;
   if (!rows.empty()) {
     if (!lu.factor(normal)) return c;

@@ -164,7 +164,7 @@ void BodyReader::read_body(const Entry& e) {
     body.orientation = scope_.orientation(e.index, source.span);
     for (int k = 0; k < 3; ++k) check_position(model_, (*body.orientation)[k], source, "the orientation of " + what);
   }
-  if (inertia || axes) read_axes(body, item, inertia, axes);
+  if (inertia || axes) read_axes(body, inertia, axes);
 
   body.exit_point = body.center;
   if (const Item* u = item.find("expelled_velocity")) {
@@ -192,7 +192,7 @@ void BodyReader::read_body(const Entry& e) {
 // The second moments as weighted axes. For J about the body axes, E = 1/2 tr(J) 1 - J; a principal
 // E gives the weights of the three axes. Products of inertia are put in exactly and without division
 // by E_kl (x_k x_l^T + x_l x_k^T) = E_kl [(x_k + x_l)(x_k + x_l)^T - x_k x_k^T - x_l x_l^T].
-void BodyReader::read_axes(Body& body, const Item& item, const Item* inertia, const Item* axes) {
+void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
   Graph& g = *model_.graph;
   if (inertia && axes) throw Failure(axes->key_span, "the body has both 'inertia' and 'axes'");
   if (axes) {
@@ -265,7 +265,6 @@ void BodyReader::read_axes(Body& body, const Item& item, const Item* inertia, co
       add(e, both, std::string(1, "xyz"[k]) + "xyz"[l]);
     }
   for (int k = 0; k < 3; ++k) add(weight[k], unit[k], std::string(1, "xyz"[k]));
-  (void)item;
 }
 
 // E = 1/2 tr(J) 1 - J must not have a negative eigenvalue (for principal axes: each moment is at

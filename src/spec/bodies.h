@@ -28,7 +28,7 @@ class BodyReader {
     std::size_t index;
   };
   void read_body(const Entry& entry);
-  void read_axes(Body& body, const Item& item, const Item* inertia, const Item* axes);
+  void read_axes(Body& body, const Item* inertia, const Item* axes);
   void read_force(const Item& item, std::size_t number);
   Expr frozen(Expr value, const std::string& name, Span span);
   Force::Place place(const Item& item);

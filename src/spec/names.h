@@ -79,7 +79,7 @@ class Scope final : public Names {
   Value evaluate_declaration(const std::string& name, Declaration& d);
   [[noreturn]] void unknown(const std::string& name, Span span) const;
   Vector material_velocity(std::size_t body, const Vector& place, Span use);
-  Vector inertial_rate(const Vector& v, Span use);
+  Vector inertial_rate(const Vector& v);
   std::size_t body_argument(const Value& value, const Syntax& argument) const;
 
   Model& model_;
