@@ -18,7 +18,7 @@ bool proved_zero(Expr e);
 // one); nothing if that leads beyond the term limit. Equal to e wherever e is defined.
 std::optional<Expr> expanded(Expr e);
 
-// How often a product of polynomials may have so many terms before the test gives up.
+// A product of polynomials with more terms than this ends the test without a result.
 inline constexpr long kNormalTermLimit = 2'000'000;
 
 }  // namespace anholon

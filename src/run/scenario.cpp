@@ -60,19 +60,23 @@ std::optional<Diagnostic> not_integrated(const Model& model, const std::vector<C
   return std::nullopt;
 }
 
+// Positions and velocities in the order of an Expansion's state.
+template <Number N>
+static std::vector<N> state_vector(const Scenario& s, const InitialState<N>& named) {
+  std::vector<N> state;
+  for (std::size_t j = 0; j < s.system.size(); ++j)
+    for (int k = 0; k < s.structure.d[j]; ++k) {
+      const bool coordinate = j < s.system.coordinates;
+      state.push_back(coordinate && k == 0 ? named.q[j] : coordinate && k == 1 ? named.qd[j] : N(0));
+    }
+  return state;
+}
+
 Outcome regular_at_start(const Scenario& s) {
   const Program p = program(s.system, s.structure);
-  double t = 0;
-  std::vector<double> state;
-  InitialState<double> named;
-  if (Outcome o = initial_state(s, {}, t, state, named); !o.ok()) return o;
-  t = s.state.t;
-  for (std::size_t a = 0; a < s.system.coordinates; ++a)
-    for (std::size_t j = 0, at = 0; j < s.system.size(); at += static_cast<std::size_t>(s.structure.d[j]), ++j)
-      if (j == a)
-        for (std::size_t k = 0; k < 2; ++k) state[at + k] = k == 0 ? s.state.q[a] : s.state.qd[a];
+  const std::vector<double> state = state_vector(s, s.state);
   Expansion<double> point(p, parameter_values<double>(*s.model), 1);
-  point.load(t, state, {});
+  point.load(s.state.t, state, {});
   if (Outcome o = point.prepare(); !o.ok()) return o;
   if (Outcome o = point.project(); !o.ok()) return o;
   return point.solve();
@@ -119,12 +123,7 @@ Outcome initial_state(const Scenario& s, const StateChoice& choice, N& t, std::v
   const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t};
   if (Outcome o = consistent_state(problem, named); !o.ok()) return o;
   t = named.t;
-  state.clear();
-  for (std::size_t j = 0; j < s.system.size(); ++j)
-    for (int k = 0; k < s.structure.d[j]; ++k) {
-      const bool coordinate = j < s.system.coordinates;
-      state.push_back(coordinate && k == 0 ? named.q[j] : coordinate && k == 1 ? named.qd[j] : N(0));
-    }
+  state = state_vector(s, named);
   return {};
 }
 

@@ -38,6 +38,15 @@ static Vector point_argument(const Value& v, const Syntax& argument) {
                 v.index() == 3 ? "a body is not a point: write " + argument.text + ".center" : "");
 }
 
+// The three numbers of B(a, b, c): components along the axes of B.
+static Vector components(const std::vector<Value>& a, const Syntax& s) {
+  const auto number = [&](std::size_t i) {
+    if (const Expr* e = std::get_if<Expr>(&a[i])) return *e;
+    throw Failure(s.args[i].span, "a number is expected here");
+  };
+  return {number(0), number(1), number(2)};
+}
+
 bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax& s, Value& result) {
   Graph& g = *model_.graph;
   const auto is_body = [&](std::size_t i) {
@@ -106,27 +115,13 @@ bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax
     const auto b = std::find(body_names_.begin(), body_names_.end(), f);
     if (b == body_names_.end()) return false;
     count(3, 3);
-    const Rotation& r = orientation(static_cast<std::size_t>(b - body_names_.begin()), s.span);
-    Vector own = zero_vector(g);
-    for (int i = 0; i < 3; ++i) {
-      const Expr* e = std::get_if<Expr>(&a[static_cast<std::size_t>(i)]);
-      if (!e) throw Failure(s.args[static_cast<std::size_t>(i)].span, "a number is expected here");
-      own[i] = *e;
-    }
-    result = r * own;
+    result = orientation(static_cast<std::size_t>(b - body_names_.begin()), s.span) * components(a, s);
     return true;
   }
   Declaration& d = it->second;
   if (d.role == Role::frame) {
     count(3, 3);
-    const Rotation r = std::get<Rotation>(resolve(f, d, s.span));
-    Vector own = zero_vector(g);
-    for (int i = 0; i < 3; ++i) {
-      const Expr* e = std::get_if<Expr>(&a[static_cast<std::size_t>(i)]);
-      if (!e) throw Failure(s.args[static_cast<std::size_t>(i)].span, "a number is expected here");
-      own[i] = *e;
-    }
-    result = r * own;
+    result = std::get<Rotation>(resolve(f, d, s.span)) * components(a, s);
     return true;
   }
   if (d.role != Role::function) return false;
