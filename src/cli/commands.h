@@ -17,7 +17,7 @@ struct Options {
   std::string output;
   std::string numbers = "double";
   std::string integrator = "taylor";
-  std::vector<std::string> set, q, qdot, at;
+  std::vector<std::string> set, q, qdot, at, eliminate;
   std::string t, to, every, tolerance;
   int digits = 16;
   int order = 0;

@@ -35,11 +35,15 @@ int derive(const Options& o) {
   const Formulation& f = form(o, model, &m);
   if (!o.show.empty()) {
     Scenario s;
-    make_scenario(in.model, f, state_choice(o, model), s);
+    ready(in, f, state_choice(o, model), s);
     return show(o, s);
   }
-  const Equations e = f.equations(m);
+  const Elimination elim = elimination(in, m, f, state_choice(o, model));
+  const Equations e = f.equations(m, elim);
   SymbolNames names = model.names;
+  if (elim.quasi) names.quasi = elim.names;
+  std::vector<std::string> labels = elim.names;
+  if (e.left.size() == model.coordinates.size()) labels = model.names.coordinates;
   for (std::size_t i = 0; i < model.masses.size(); ++i) {
     // After the last differentiation a mass stands under its own name again, if it has one.
     const auto named = names.defined.find(model.masses[i].value.id);
@@ -54,17 +58,16 @@ int derive(const Options& o) {
     j.open_object();
     j.key("model").string(model.title).key("form").string(f.name).key("title").string(f.title);
     j.key("equation").string(f.equation).key("source").string(f.source);
-    const auto list = [&](const char* key, const Column& l, const Column& r, const std::vector<std::string>& labels) {
+    const auto list = [&](const char* key, const Column& l, const Column& r, const std::vector<std::string>& of) {
       const auto lt = texts(l, Format::text), rt = texts(r, Format::text), ll = texts(l, Format::latex), rl = texts(r, Format::latex);
       j.key(key).open_array();
-      for (std::size_t i = 0; i < labels.size(); ++i)
-        j.open_object().key("name").string(labels[i]).key("left").string(lt[i]).key("right").string(rt[i]).key("latex").string(ll[i] + " = " + rl[i]).close();
+      for (std::size_t i = 0; i < of.size(); ++i)
+        j.open_object().key("name").string(of[i]).key("left").string(lt[i]).key("right").string(rt[i]).key("latex").string(ll[i] + " = " + rl[i]).close();
       j.close();
     };
-    std::vector<std::string> coordinates, constraints;
-    for (const Coordinate& c : model.coordinates) coordinates.push_back(c.name);
+    std::vector<std::string> constraints;
     for (const Constraint& c : model.constraints) constraints.push_back(c.name);
-    list("equations", left, right, coordinates);
+    list("equations", left, right, labels);
     list("constraints", phi, Column(phi.size(), m.graph().zero()), constraints);
     j.key("masses").open_object();
     for (std::size_t i = 0; i < model.masses.size(); ++i) j.key(names.masses[i]).string(print(model.masses[i].value, model.names, Format::text));
@@ -82,7 +85,7 @@ int derive(const Options& o) {
     return kOk;
   }
   std::printf("%s\n%s, %s of %s\n\n", model.title.c_str(), f.title, f.equation, f.source);
-  for (std::size_t a = 0; a < l.size(); ++a) std::printf("%s:  %s = %s\n", model.coordinates[a].name.c_str(), l[a].c_str(), r[a].c_str());
+  for (std::size_t a = 0; a < l.size(); ++a) std::printf("%s:  %s = %s\n", labels[a].c_str(), l[a].c_str(), r[a].c_str());
   for (std::size_t k = 0; k < c.size(); ++k) std::printf("%s:  %s = 0\n", model.constraints[k].name.c_str(), c[k].c_str());
   if (!model.masses.empty()) std::printf("\nwith\n");
   for (std::size_t i = 0; i < model.masses.size(); ++i) {

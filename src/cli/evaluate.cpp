@@ -98,7 +98,7 @@ int evaluate(const Options& o) {
   const Reader in = read(o);
   const StateChoice choice = state_choice(o, *in.model);
   Scenario s;
-  Outcome outcome = make_scenario(in.model, form(o, *in.model), choice, s);
+  Outcome outcome = ready(in, form(o, *in.model), choice, s);
   form(o, *in.model, s.mechanics.get());
   if (const auto d = not_integrated(*in.model, s.classes)) {
     print_diagnostic(*d, in.source);

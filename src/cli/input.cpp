@@ -175,8 +175,34 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
   return *f;
 }
 
+Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice, Scenario& s) {
+  try {
+    return make_scenario(in.model, f, choice, s);
+  } catch (const Failure& e) {
+    throw UsageError{print(e.diagnostic, in.source)};
+  }
+}
+
+Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& f, const StateChoice& choice) {
+  try {
+    return elimination_for(m, f, choice.overrides, choice.eliminate);
+  } catch (const Failure& e) {
+    throw UsageError{print(e.diagnostic, in.source)};
+  }
+}
+
 StateChoice state_choice(const Options& o, const Model& model) {
   StateChoice c;
+  for (const std::string& word : split(o.eliminate)) {
+    const std::string name = normal_name(word);
+    const auto& names = model.names.coordinates;
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it == names.end()) {
+      const std::string near = did_you_mean(name, names);
+      throw UsageError{"error: --eliminate: there is no coordinate '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
+    }
+    c.eliminate.push_back(static_cast<std::size_t>(it - names.begin()));
+  }
   if (!o.t.empty()) c.t = exact(o.t, "--t");
   for (const auto& [list, order, option] : {std::tuple{&o.q, 0U, "--q"}, std::tuple{&o.qdot, 1U, "--qdot"}})
     for (const std::string& s : split(*list)) {

@@ -26,6 +26,12 @@ Rational exact(const std::string& text, const std::string& option);
 // "a,b,c" and repeated words alike.
 std::vector<std::string> split(const std::vector<std::string>& words);
 
+// The scenario of the model in the form asked for; throws what the user must correct.
+Outcome ready(const Reader& in, const Formulation& form, const StateChoice& choice, Scenario& scenario);
+
+// Its elimination alone, for printing equations.
+Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& form, const StateChoice& choice);
+
 void print_diagnostic(const Diagnostic& d, const SourceText& source);
 void print_outcome(const Outcome& o);
 

@@ -83,6 +83,7 @@ int run(int argc, char** argv) {
   };
   const auto form_option = [&](CLI::App* c) {
     c->add_option("--form", o.form, "form of the equations (see `anholon forms`)")->type_name("NAME")->each([&o](const std::string&) { o.form_given = true; });
+    c->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers: y,z (default: chosen)")->type_name("NAME,…");
     c->add_option("--show", o.show, "print one stage instead: mechanics, system, structure, program")->type_name("STAGE");
   };
 

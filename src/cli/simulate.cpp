@@ -156,7 +156,7 @@ int simulate(const Options& o) {
   options.state = state_choice(o, *in.model);
   options.order = o.order;
   Scenario s;
-  const Outcome start = make_scenario(in.model, form(o, *in.model), options.state, s);
+  const Outcome start = ready(in, form(o, *in.model), options.state, s);
   form(o, *in.model, s.mechanics.get());
   if (const auto d = not_integrated(*in.model, s.classes)) {
     print_diagnostic(*d, in.source);

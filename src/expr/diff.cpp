@@ -9,7 +9,7 @@ namespace anholon {
 static bool is_symbol(Kind k) {
   switch (k) {
     case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass:
-    case Kind::multiplier: case Kind::given:
+    case Kind::multiplier: case Kind::given: case Kind::quasi:
       return true;
     case Kind::number: case Kind::pi: case Kind::sum: case Kind::product: case Kind::function:
     case Kind::atan2:
@@ -58,7 +58,7 @@ static void local_partials(Graph& g, NodeId id, Column& out) {
       return;
     }
     case Kind::number: case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter:
-    case Kind::mass: case Kind::multiplier: case Kind::given:
+    case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi:
       return;
   }
 }
@@ -69,6 +69,7 @@ static Expr rate_of_symbol(Graph& g, const Node& n) {
     case Kind::jet: return g.jet(n.index, n.order + 1U);
     case Kind::multiplier: return g.multiplier(n.index, n.order + 1U);
     case Kind::given: return g.given(n.index, n.order + 1U);
+    case Kind::quasi: return g.quasi(n.index, n.order + 1U);
     case Kind::number: case Kind::pi: case Kind::parameter: case Kind::mass: case Kind::sum:
     case Kind::product: case Kind::function: case Kind::atan2:
       return g.zero();
@@ -210,7 +211,7 @@ Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& r
         image[id] = g.arctangent2(image[terms[0].node], image[terms[1].node]);
         break;
       case Kind::number: case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter:
-      case Kind::mass: case Kind::multiplier: case Kind::given:
+      case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi:
         break;
     }
   }
@@ -236,6 +237,8 @@ int jet_order(Expr e) {
 }
 
 static Column combine(const Column& a, const Column& b, int sign) {
+  if (b.empty()) return a;
+  if (a.empty()) return sign > 0 ? b : -b;
   ANHOLON_ASSERT(a.size() == b.size());
   Column r;
   for (std::size_t i = 0; i < a.size(); ++i) r.push_back(sign > 0 ? a[i] + b[i] : a[i] - b[i]);

@@ -41,7 +41,8 @@ std::vector<NodeId> symbols(std::span<const Expr> es);
 // Highest order k of a jet q_a^(k) that occurs; -1 if none does.
 int jet_order(Expr e);
 
-// Operators on columns, so that a formulation reads like the paper's equation.
+// Operators on columns, so that a formulation reads like the paper's equation. An empty column is an
+// empty sum and counts as zero.
 Column operator+(const Column& a, const Column& b);
 Column operator-(const Column& a, const Column& b);
 Column operator-(const Column& a);

@@ -99,6 +99,7 @@ Expr Graph::number(const Rational& r) { return leaf(Kind::number, rational_index
 Expr Graph::jet(std::uint32_t c, std::uint32_t order) { return leaf(Kind::jet, c, order); }
 Expr Graph::multiplier(std::uint32_t c, std::uint32_t order) { return leaf(Kind::multiplier, c, order); }
 Expr Graph::given(std::uint32_t f, std::uint32_t order) { return leaf(Kind::given, f, order); }
+Expr Graph::quasi(std::uint32_t u, std::uint32_t order) { return leaf(Kind::quasi, u, order); }
 
 Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
   struct Part {

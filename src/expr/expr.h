@@ -5,7 +5,7 @@
 //   sums      c0 + c1 x1 + c2 x2 + …   exact rational coefficients, flattened, sorted by id
 //   products  x1^r1 x2^r2 …            exact rational exponents, flattened, sorted by id
 //   f(x)                               one of elementary.def; atan2(y, x)
-//   leaves    number, pi, and symbols  t, q_a^(k), parameters, frozen masses mu_i, lambda_r^(k)
+//   leaves    number, pi, and symbols  t, q_a^(k), parameters, frozen masses mu_i, lambda_r^(k), u_a^(k)
 //
 // Invariants
 //   (1) Operands of a node have smaller ids: a loop over ascending ids is a topological order, so
@@ -39,6 +39,7 @@ enum class Kind : std::uint8_t {
   mass,        // frozen mass symbol mu_index: a constant for every differentiation
   multiplier,  // lambda_index^(order)
   given,       // an unknown given function of time f_index^(order)
+  quasi,       // a quasi-velocity u_index^(order)
   sum,
   product,
   function,    // elementary function `index` of one operand
@@ -108,6 +109,7 @@ class Graph {
   Expr mass(std::uint32_t index) { return leaf(Kind::mass, index, 0); }
   Expr multiplier(std::uint32_t constraint, std::uint32_t order);
   Expr given(std::uint32_t function, std::uint32_t order);
+  Expr quasi(std::uint32_t index, std::uint32_t order);
 
   // Canonical constructors.
   Expr sum(std::span<const std::pair<Rational, Expr>> terms);

@@ -100,6 +100,15 @@ class Poly {
     fmpq_mpoly_mul(r.p_, a.p_, b.p_, a.ring_->context());
     return r;
   }
+  // Divides both by their greatest common divisor, where it is found.
+  static void cancel(Poly& a, Poly& b) {
+    Poly d(*a.ring_), qa(*a.ring_), qb(*a.ring_);
+    if (fmpq_mpoly_gcd(d.p_, a.p_, b.p_, a.ring_->context()) == 0 || d.one()) return;
+    if (fmpq_mpoly_divides(qa.p_, a.p_, d.p_, a.ring_->context()) == 0) return;
+    if (fmpq_mpoly_divides(qb.p_, b.p_, d.p_, a.ring_->context()) == 0) return;
+    a = qa;
+    b = qb;
+  }
   // The remainder after division by all of `relations`.
   Poly reduced(const std::vector<Poly>& relations) const {
     if (relations.empty()) return *this;
@@ -142,7 +151,8 @@ class Normalizer {
 
   Expr expand() {
     if (zero()) return g_.zero();
-    const Fraction& f = fractions_.at(root_.id);
+    Fraction f = fractions_.at(root_.id);
+    if (!f.den.one()) Poly::cancel(f.num, f.den);
     const Expr top = expression(f.num);
     return f.den.one() ? top : top / expression(f.den);
   }
@@ -326,7 +336,7 @@ class Normalizer {
         }
         return plain(generator(generator_.at(id)));
       case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass:
-      case Kind::multiplier: case Kind::given: case Kind::atan2:
+      case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::atan2:
         return plain(generator(generator_.at(id)));
     }
     return plain(constant(0));

@@ -79,6 +79,7 @@ class Printer {
       case Kind::parameter: r.kind = 1; break;
       case Kind::mass: r.kind = 2; break;
       case Kind::multiplier: r.kind = 3; break;
+      case Kind::quasi: r = {5, static_cast<int>(n.order) + 1}; break;
       case Kind::given: case Kind::time: r.kind = 4; break;
       case Kind::jet: r = {5, n.order}; break;
       case Kind::function: case Kind::atan2: r.kind = 6; break;
@@ -110,6 +111,7 @@ class Printer {
       case Kind::parameter: return {symbol(names_.parameters, n, "p")};
       case Kind::mass: return {symbol(names_.masses, n, "mu")};
       case Kind::given: return {symbol(names_.given, n, "f")};
+      case Kind::quasi: return {symbol(names_.quasi, n, "u")};
       case Kind::multiplier: {
         const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
         return {derivative_name(latex() ? "\\lambda_{\\mathrm{" + latex_escape(base) + "}}" : "lambda." + base, n.order, format_)};

@@ -4,9 +4,9 @@
 
 namespace anholon {
 
-Column right_side(const Mechanics& M) {
-  return M.Q + M.QR + M.Qomega + M.minus_dVO + M.minus_dVomega + M.Gamma + M.N;
-}
+Column forces(const Mechanics& M) { return M.Q + M.QR + M.Qomega + M.minus_dVO + M.minus_dVomega + M.Gamma; }
+
+Column right_side(const Mechanics& M) { return forces(M) + M.N; }
 
 unsigned highest_order(const Mechanics& M) {
   int m = 1;
@@ -14,9 +14,31 @@ unsigned highest_order(const Mechanics& M) {
   return static_cast<unsigned>(m);
 }
 
+Expr T(const Mechanics& M, unsigned k) { return total_derivative(M.T, k); }
+
+Column lagrange_operator(const Mechanics& M) { return total_derivative(gradient(M.T, M.qd)) - gradient(M.T, M.q); }
+
+Column nielsen_operator(const Mechanics& M, unsigned m) {
+  const Expr T_before = T(M, m - 1);
+  return Rational(m) * total_derivative(gradient(T_before, jets(*M.model, m))) - gradient(T_before, jets(*M.model, m - 1));
+}
+
+Column misevic_rusov_operator(const Mechanics& M, unsigned m) {
+  return gradient(T(M, m), jets(*M.model, m)) - gradient(T(M, m - 1), jets(*M.model, m - 1)) - gradient(M.T, M.q);
+}
+
 Column mangeron_deleanu_operator(const Mechanics& M, unsigned m) {
-  const Expr T_m = total_derivative(M.T, m);
-  return Rational(1, m) * (gradient(T_m, jets(*M.model, m)) - Rational(m + 1) * gradient(M.T, M.q));
+  return Rational(1, m) * (gradient(T(M, m), jets(*M.model, m)) - Rational(m + 1) * gradient(M.T, M.q));
+}
+
+std::string no_obstacle(const Mechanics&) { return {}; }
+
+std::string first_order_only(const Mechanics& M) {
+  for (std::size_t r = 0; r < M.order.size(); ++r)
+    if (M.order[r] > 1)
+      return "the constraint '" + M.model->constraints[r].name + "' is of order " + std::to_string(M.order[r]) +
+             "; this form is for constraints of order 1 (and 0)";
+  return {};
 }
 
 const Formulation* find_formulation(const std::string& name) {

@@ -1,12 +1,12 @@
 // A formulation: one classical form of the equations of motion, as one file in forms/.
 //
-// A form maps Mechanics to its equations, left side = right side, with masses frozen. Adding a file
-// forms/NAME.cpp adds the form; no other file is touched.
+// A form maps Mechanics (and, where it has eliminated the multipliers, an Elimination) to its equations, left side = right
+// side, with masses frozen. Adding a file forms/NAME.cpp adds the form; no other file is touched.
 #pragma once
 #include <string>
 #include <vector>
 
-#include "mechanics/mechanics.h"
+#include "mechanics/elimination.h"
 
 namespace anholon {
 
@@ -14,25 +14,56 @@ struct Equations {
   Column left, right;
 };
 
+// What a form's equations stand in, and how many there are.
+enum class Unknowns : std::uint8_t {
+  multipliers,        // n equations in q and lambda
+  coordinates,        // n - s equations, dependent coordinates eliminated; or n without lambda
+  quasi_velocities,   // n - s equations in quasi-velocities
+  variational,        // n equations in q and multipliers of another mechanics
+};
+
 struct Formulation {
   const char* name;      // as --form accepts it
   const char* title;
   const char* equation;  // number in its source
   const char* source;
+  Unknowns unknowns;
   // Empty if the form applies to the model, else the reason why it does not.
   std::string (*obstacle)(const Mechanics&);
-  Equations (*equations)(const Mechanics&);
+  Equations (*equations)(const Mechanics&, const Elimination&);
+
+  bool eliminates() const { return unknowns == Unknowns::coordinates || unknowns == Unknowns::quasi_velocities; }
 };
 
-// What the multiplier forms have in common.
+// Names of the seed papers, as every form gives its source.
+inline constexpr const char* kLuoZhao = "Luo & Zhao, variable-mass systems with constraints of arbitrary order";
+inline constexpr const char* kQiu = "Qiu, Mac-Millan equations in a noninertial frame";
+inline constexpr const char* kMisevicRusov = "third paper on Mišević–Rusov equations of higher-order systems";
+
+// What the forms have in common.
 //
-// Q + QR + Qomega - d(V_O + V_omega)/dq + Gamma + sum lambda dphi/dq^(m)  [L 2.7], right side
-Column right_side(const Mechanics& m);
+// Q + QR + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces
+Column forces(const Mechanics& M);
+// The same and the reactions sum lambda dphi/dq^(m)  [L 2.7], right side
+Column right_side(const Mechanics& M);
 // The highest order of the constraints, at least 1: the m of the forms of order m. A constraint of
 // lower order may be lifted to it without a change of N.
-unsigned highest_order(const Mechanics& m);
+unsigned highest_order(const Mechanics& M);
+// T^(k) = D^k T/Dt^k
+Expr T(const Mechanics& M, unsigned k);
+// D/Dt dT/dq' - dT/dq, of Lagrange
+Column lagrange_operator(const Mechanics& M);
+// m D/Dt dT^(m-1)/dq^(m) - dT^(m-1)/dq^(m-1), of Nielsen  [L 3.10]
+Column nielsen_operator(const Mechanics& M, unsigned m);
+// dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq, of Misevic and Rusov  [N 3.1]
+Column misevic_rusov_operator(const Mechanics& M, unsigned m);
 // 1/m [dT^(m)/dq^(m) - (m+1) dT/dq]  [N 5.1], left side
 Column mangeron_deleanu_operator(const Mechanics& M, unsigned m);
+
+// Obstacles that several forms share.
+std::string no_obstacle(const Mechanics&);
+// For the forms of first order: holonomic constraints are lifted to it, higher ones cannot be.
+std::string first_order_only(const Mechanics& M);
 
 // All forms, sorted by name; made by the build from the files in forms/.
 const std::vector<const Formulation*>& formulations();

@@ -96,6 +96,14 @@ struct Constraint {
   Span span;
 };
 
+// A quasi-velocity u(q, q', …, t); its order is the highest derivative in it.
+struct QuasiVelocity {
+  std::string name;
+  Expr value;
+  int order = 1;
+  Span span;
+};
+
 struct GivenValue {
   Expr symbol;  // q_a^(k) or lambda_r^(k)
   Expr value;   // exact
@@ -133,6 +141,8 @@ struct Model {
   std::vector<Force> forces;
   std::vector<Potential> potentials;
   std::vector<Constraint> constraints;
+  std::vector<QuasiVelocity> quasi;
+  std::vector<std::size_t> dependent;  // coordinates that the user wants eliminated
   InitialData initial;
   SimulationSettings simulate;
   SymbolNames names;

@@ -108,11 +108,17 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   } else {
     for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);
   }
-  s.system = implicit_system(model, *s.mechanics, form, s.independent);
+  s.elimination = Elimination();
+  if (form.eliminates()) {
+    const auto at = std::make_shared<PointValues>(values_near(*model, parameters, s.state));
+    s.elimination = Elimination(*s.mechanics, choose_elimination(*s.mechanics, s.independent, form.unknowns, choice.eliminate, *at), at);
+  }
+  s.system = implicit_system(model, *s.mechanics, form, s.independent, s.elimination);
   ProbeHints hints;
   hints.t = s.state.t;
   hints.derivatives = {s.state.q, s.state.qd};
   const Outcome structured = analyse(s.system, parameters, hints, s.structure);
+  if (structured.ok()) drop_absent(s.system, s.structure);
   if (!initial.ok()) return initial;
   return structured;
 }

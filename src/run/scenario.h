@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "integrate/taylor.h"
+#include "run/eliminate.h"
 #include "spec/read.h"
 #include "structure/consistent.h"
 
@@ -19,6 +20,7 @@ struct ConstraintClass {
 struct StateChoice {
   std::vector<StateOverride> overrides;
   std::optional<Rational> t;
+  std::vector<std::size_t> eliminate;  // coordinates to eliminate; empty: chosen
 };
 
 struct Scenario {
@@ -27,6 +29,7 @@ struct Scenario {
   std::vector<ConstraintClass> classes;
   InitialState<double> state;  // consistent, in double
   std::vector<std::size_t> independent, redundant;
+  Elimination elimination;  // of forms without multipliers
   System system;
   Structure structure;
   std::vector<std::string> notes;

@@ -40,6 +40,7 @@ class Reader {
     named(root, "define", Scope::Role::define);
     named(root, "frame", Scope::Role::frame);
     named(root, "point", Scope::Role::point);
+    named(root, "quasi", Scope::Role::define);
     // Bodies are declared before anything is evaluated, their parts read when the masses are.
     BodyReader bodies(scope_, model_, diagnostics_);
     bodies.declare(root);
@@ -50,6 +51,7 @@ class Reader {
     bodies.read_forces(root);
     potentials(root);
     constraints(root);
+    quasi(root);
     scope_.resolve_all();
     read_initial(root, scope_, model_, diagnostics_);
     guard([&] { simulate(root); });
@@ -67,8 +69,8 @@ class Reader {
     check_keys(root, "the model file",
                {"title", "source", "coordinates", "dependent", "parameters", "functions", "define", "frame",
                 "point", "observer", "body", "particle", "force", "gravity", "potential", "constraint",
-                "initial", "simulate"},
-               {"base", "index", "table", "state", "mode", "event", "input", "output", "quasi", "case",
+                "initial", "simulate", "quasi"},
+               {"base", "index", "table", "state", "mode", "event", "input", "output", "case",
                 "dissipation", "monitor", "view", "notation"},
                diagnostics_);
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
@@ -107,8 +109,39 @@ class Reader {
         model_.coordinates.push_back({name, d.span});
         model_.names.coordinates.push_back(name);
       });
-    if (const Item* d = root.find("dependent"); d && d->kind != Item::Kind::array)
-      diagnostics_.error(d->span, "dependent is a list of coordinates");
+    dependent(root);
+  }
+
+  void dependent(const Item& root) {
+    const Item* list = root.find("dependent");
+    if (!list) return;
+    if (list->kind != Item::Kind::array) throw Failure(list->span, "dependent is a list of coordinates", "dependent = [\"y\"]");
+    for (const Item& i : list->items)
+      guard([&] {
+        const std::string name = i.kind == Item::Kind::string ? normal_name(i.text()) : std::string();
+        const auto& names = model_.names.coordinates;
+        const auto it = std::find(names.begin(), names.end(), name);
+        if (it == names.end()) throw Failure(i.span, "dependent is a list of coordinates, and '" + name + "' is none", did_you_mean(name, names));
+        const std::size_t a = static_cast<std::size_t>(it - names.begin());
+        if (std::find(model_.dependent.begin(), model_.dependent.end(), a) != model_.dependent.end())
+          throw Failure(i.span, "'" + name + "' is listed twice");
+        model_.dependent.push_back(a);
+      });
+  }
+
+  void quasi(const Item& root) {
+    const Item* section = table(root, "quasi");
+    if (!section) return;
+    for (const Item& i : section->items)
+      guard([&] {
+        const Value v = scope_.name(normal_name(i.key), i.key_span);
+        if (!std::holds_alternative<Expr>(v)) throw Failure(i.span, "a quasi-velocity is a number, this is " + std::string(type_name(v)));
+        const Expr u = put_masses(model_, std::get<Expr>(v));
+        const int order = jet_order(u);
+        if (order < 1) throw Failure(i.span, "the quasi-velocity '" + i.key + "' depends on no velocity", "u = \"x'*cos(theta) + y'*sin(theta)\"");
+        model_.quasi.push_back({normal_name(i.key), u, order, i.span});
+        model_.names.quasi.push_back(normal_name(i.key));
+      });
   }
 
   void parameters(const Item& root) {

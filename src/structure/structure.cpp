@@ -210,6 +210,15 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
   return {};
 }
 
+void drop_absent(System& s, const Structure& t) {
+  Graph& g = *s.model->graph;
+  for (std::size_t i = 0; i < s.size(); ++i)
+    s.equations[i] = substitute({&s.equations[i], 1}, [&](NodeId id) {
+      const auto j = s.variable(id);
+      return j && static_cast<int>(g.node(id).order) > t.sigma[i][*j] ? g.zero() : Expr{};
+    })[0];
+}
+
 std::string print(const System& s, const Structure& t) {
   const std::size_t n = s.size();
   std::vector<std::vector<std::string>> cells(n + 2, std::vector<std::string>(n + 2));

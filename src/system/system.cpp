@@ -19,20 +19,38 @@ std::optional<std::size_t> System::variable(NodeId symbol) const {
   return coordinates + static_cast<std::size_t>(it - constraints.begin());
 }
 
+// The equations of motion with their names: those of the form, then those of the multipliers.
+static void equations_of_motion(System& s, const Mechanics& m, const Elimination& e) {
+  const Equations form = s.form->equations(m, e);
+  Column residual = form.left - form.right;
+  if (!s.form->eliminates()) {
+    s.equations = put_masses(*s.model, residual);
+    s.of_motion = s.equations.size();
+    for (const Coordinate& c : s.model->coordinates) s.equation_names.push_back(c.name);
+    return;
+  }
+  // n equations without multipliers count along the constraints; across them the constraints themselves hold.
+  if (residual.size() == m.q.size() && !e.constraints.empty()) residual = e.contract(residual);
+  s.equations = put_masses(*s.model, e.in_coordinates(residual));
+  s.of_motion = s.equations.size();
+  s.equation_names = e.names;
+  const Column a = put_masses(*s.model, e.D(lagrange_operator(m) - right_side(m)));
+  for (std::size_t b = 0; b < a.size(); ++b) {
+    s.equations.push_back(a[b]);
+    s.equation_names.push_back(s.model->coordinates[e.dependent[b]].name);
+  }
+}
+
 System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, const Formulation& form,
-                       const std::vector<std::size_t>& constraints) {
+                       const std::vector<std::size_t>& constraints, const Elimination& elimination) {
   System s;
   Graph& g = *model->graph;
   s.model = model;
   s.form = &form;
   s.coordinates = model->coordinates.size();
   s.constraints = constraints;
-  const Equations e = form.equations(m);
-  s.equations = put_masses(*model, e.left - e.right);
-  for (const Coordinate& c : model->coordinates) {
-    s.equation_names.push_back(c.name);
-    s.variable_names.push_back(c.name);
-  }
+  equations_of_motion(s, m, elimination);
+  for (const Coordinate& c : model->coordinates) s.variable_names.push_back(c.name);
   for (std::size_t r : constraints) {
     s.equations.push_back(put_masses(*model, m.phi[r]));
     s.equation_names.push_back(model->constraints[r].name);

@@ -1,5 +1,9 @@
 // The implicit system F(t, x, x', …) = 0: n equations of motion and s constraints in the unknown
 // functions q_1..q_n, lambda_1..lambda_s. Masses are put in; no form is ever solved symbolically.
+//
+// A form without multipliers gives n - s equations, which determine the motion together with the
+// constraints. Routh's equations of the dependent coordinates, Phi_D^T lambda = a_D [L 3.4], are added
+// for the multipliers: they take no part in the motion.
 #pragma once
 #include <memory>
 
@@ -13,6 +17,7 @@ struct System {
   std::size_t coordinates = 0;            // n
   std::vector<std::size_t> constraints;   // indices of the model's constraints that take part
   Column equations;                       // n of motion, then one per constraint that takes part
+  std::size_t of_motion = 0;              // how many of the n belong to the form; the others give lambda
   std::vector<std::string> equation_names;
   std::vector<std::string> variable_names;  // q_a, then lambda.NAME
 
@@ -24,7 +29,8 @@ struct System {
 };
 
 // Constraints that are left out (redundant ones) have their multipliers set to zero.
-System implicit_system(std::shared_ptr<const Model> model, const Mechanics& mechanics,
-                       const Formulation& form, const std::vector<std::size_t>& constraints);
+// `elimination` is of these constraints, and is not looked at by forms with multipliers.
+System implicit_system(std::shared_ptr<const Model> model, const Mechanics& mechanics, const Formulation& form,
+                       const std::vector<std::size_t>& constraints, const Elimination& elimination);
 
 }  // namespace anholon

@@ -158,7 +158,7 @@ class Compiler {
         tape_.inputs.push_back({id, slot_[id]});
         return;
       }
-      case Kind::mass: case Kind::given:
+      case Kind::mass: case Kind::given: case Kind::quasi:
         ANHOLON_ASSERT(!"a frozen mass or unknown function in a tape");
         return;
       case Kind::sum: {

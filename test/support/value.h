@@ -66,7 +66,7 @@ inline std::vector<Multi> values(std::span<const Expr> es, const Point& at) {
     switch (n.kind) {
       case Kind::number: v = Multi(g.value(id)); break;
       case Kind::pi: v = pi<Multi>(); break;
-      case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given:
+      case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi:
         v = at(g, id);
         break;
       case Kind::sum:

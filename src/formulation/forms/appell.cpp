@@ -8,12 +8,12 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M) { return {gradient(M.S, M.qdd), right_side(M)}; }
-
-static std::string obstacle(const Mechanics&) { return {}; }
+static Equations equations(const Mechanics& M, const Elimination&) {
+  return {gradient(M.S, M.qdd), right_side(M)};
+}
 
 extern const Formulation appell;
 const Formulation appell{"appell", "Appell's equations with multipliers", "(3.18')",
-                         "Luo & Zhao, variable-mass systems with constraints of arbitrary order", obstacle, equations};
+                         kLuoZhao, Unknowns::multipliers, no_obstacle, equations};
 
 }  // namespace anholon::forms

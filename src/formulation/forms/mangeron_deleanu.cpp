@@ -7,12 +7,12 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M) { return {mangeron_deleanu_operator(M, highest_order(M)), right_side(M)}; }
-
-static std::string obstacle(const Mechanics&) { return {}; }
+static Equations equations(const Mechanics& M, const Elimination&) {
+  return {mangeron_deleanu_operator(M, highest_order(M)), right_side(M)};
+}
 
 extern const Formulation mangeron_deleanu;
 const Formulation mangeron_deleanu{"mangeron-deleanu", "Mangeron–Deleanu equations with multipliers", "(5.1)",
-                                   "third paper on Mišević–Rusov equations of higher-order systems", obstacle, equations};
+                                   kMisevicRusov, Unknowns::multipliers, no_obstacle, equations};
 
 }  // namespace anholon::forms

@@ -8,17 +8,12 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M) {
-  const unsigned m = highest_order(M);
-  const Expr T_before = total_derivative(M.T, m - 1), T_m = total_derivative(T_before);
-  const Column inertia = gradient(T_m, jets(*M.model, m)) - gradient(T_before, jets(*M.model, m - 1)) - gradient(M.T, M.q);
-  return {inertia, right_side(M)};
+static Equations equations(const Mechanics& M, const Elimination&) {
+  return {misevic_rusov_operator(M, highest_order(M)), right_side(M)};
 }
-
-static std::string obstacle(const Mechanics&) { return {}; }
 
 extern const Formulation misevic_rusov;
 const Formulation misevic_rusov{"misevic-rusov", "Mišević–Rusov equations with multipliers", "(3.1), (3.4)",
-                                "third paper on Mišević–Rusov equations of higher-order systems", obstacle, equations};
+                                kMisevicRusov, Unknowns::multipliers, no_obstacle, equations};
 
 }  // namespace anholon::forms

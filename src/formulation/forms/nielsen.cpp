@@ -7,15 +7,12 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M) {
-  const Expr T1 = total_derivative(M.T);
-  return {gradient(T1, M.qd) - Rational(2) * gradient(M.T, M.q), right_side(M)};
+static Equations equations(const Mechanics& M, const Elimination&) {
+  return {gradient(T(M, 1), M.qd) - Rational(2) * gradient(M.T, M.q), right_side(M)};
 }
-
-static std::string obstacle(const Mechanics&) { return {}; }
 
 extern const Formulation nielsen;
 const Formulation nielsen{"nielsen", "Nielsen's equations with multipliers", "(5.1), m = 1",
-                          "Nielsen; third paper on Mišević–Rusov equations", obstacle, equations};
+                          "Nielsen; third paper on Mišević–Rusov equations", Unknowns::multipliers, no_obstacle, equations};
 
 }  // namespace anholon::forms

@@ -8,18 +8,12 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M) {
-  const unsigned m = highest_order(M);
-  const Expr T_before = total_derivative(M.T, m - 1);
-  const Column inertia = Rational(m) * total_derivative(gradient(T_before, jets(*M.model, m))) -
-                         gradient(T_before, jets(*M.model, m - 1));
-  return {inertia, right_side(M)};
+static Equations equations(const Mechanics& M, const Elimination&) {
+  return {nielsen_operator(M, highest_order(M)), right_side(M)};
 }
-
-static std::string obstacle(const Mechanics&) { return {}; }
 
 extern const Formulation nielsen_order_m;
 const Formulation nielsen_order_m{"nielsen-order-m", "Nielsen's equations of order m with multipliers", "from (3.10)",
-                                  "Luo & Zhao, variable-mass systems with constraints of arbitrary order", obstacle, equations};
+                                  kLuoZhao, Unknowns::multipliers, no_obstacle, equations};
 
 }  // namespace anholon::forms

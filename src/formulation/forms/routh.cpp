@@ -8,14 +8,12 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M) {
-  return {total_derivative(gradient(M.T, M.qd)) - gradient(M.T, M.q), right_side(M)};
+static Equations equations(const Mechanics& M, const Elimination&) {
+  return {lagrange_operator(M), right_side(M)};
 }
-
-static std::string obstacle(const Mechanics&) { return {}; }
 
 extern const Formulation routh;
 const Formulation routh{"routh", "Routh's equations with multipliers", "(2.7)",
-                        "Luo & Zhao, variable-mass systems with constraints of arbitrary order", obstacle, equations};
+                        kLuoZhao, Unknowns::multipliers, no_obstacle, equations};
 
 }  // namespace anholon::forms

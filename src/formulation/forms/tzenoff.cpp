@@ -7,12 +7,12 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M) { return {mangeron_deleanu_operator(M, 2), right_side(M)}; }
-
-static std::string obstacle(const Mechanics&) { return {}; }
+static Equations equations(const Mechanics& M, const Elimination&) {
+  return {mangeron_deleanu_operator(M, 2), right_side(M)};
+}
 
 extern const Formulation tzenoff;
 const Formulation tzenoff{"tzenoff", "Tzénoff's equations with multipliers", "(5.1), m = 2",
-                          "Tzénoff; third paper on Mišević–Rusov equations", obstacle, equations};
+                          "Tzénoff; third paper on Mišević–Rusov equations", Unknowns::multipliers, no_obstacle, equations};
 
 }  // namespace anholon::forms

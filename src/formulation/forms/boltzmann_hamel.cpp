@@ -1,0 +1,27 @@
+// The Boltzmann-Hamel equations (theory: classics), for constraints of order 1, with n quasi-velocities u_k(q, q', t), nonlinear
+// ones too, of which the last s are the constraints. q' = chi(q, u, t), beta = dchi/du, T* = T with q' = chi:
+//
+//   D/Dt dT*/du_a - sum_s dT*/dq_s beta_sa + sum_k dT*/du_k sum_s (d/dt du_k/dq_s' - du_k/dq_s) beta_sa = sum_s G_s beta_sa
+//
+// for the n - s free ones; k runs over all n, and only then are the last s put to zero.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  const Column p = gradient(M.T, M.qd), p_u = p * E.chi_by_u;  // dT*/du_k = sum_s dT/dq_s' dchi_s/du_k
+  Rows u_by_q, turned;                                          // du_k/dq_s;  d/dt du_k/dq_s' - du_k/dq_s
+  for (Expr u : E.w) {
+    u_by_q.push_back(gradient(u, M.q));
+    turned.push_back(total_derivative(gradient(u, M.qd)) - u_by_q.back());
+  }
+  const Column T_by_q = gradient(M.T, M.q) - p_u * u_by_q;     // at fixed u: dchi/dq = -beta du/dq
+  const Column momentum(p_u.begin(), p_u.begin() + static_cast<std::ptrdiff_t>(E.u.size()));
+  return {E.rate(momentum) - E.contract(T_by_q) + E.contract(p_u * turned), E.contract(forces(M))};
+}
+
+extern const Formulation boltzmann_hamel;
+const Formulation boltzmann_hamel{"boltzmann-hamel", "Boltzmann–Hamel equations", "all n quasi-velocities",
+                                  "Boltzmann 1902, Hamel 1904", Unknowns::quasi_velocities, first_order_only, equations};
+
+}  // namespace anholon::forms

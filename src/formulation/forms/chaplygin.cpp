@@ -1,0 +1,25 @@
+// Chaplygin's equations, generalized to constraints of order m [L 3.13]. With T~ = T^(m-1) where q_D^(m) = f is put in before
+// the partial derivatives are taken [L 3.12]:
+//
+//   m D/Dt dT~/dq_nu^(m) - dT~/dq_nu^(m-1) - sum_b dT^(m-1)/dq_b^(m) (m d/dt df_b/dq_nu^(m) - df_b/dq_nu^(m-1))
+//     - sum_b dT^(m-1)/dq_b^(m-1) df_b/dq_nu^(m)  =  G_nu + sum_b G_b df_b/dq_nu^(m)
+//
+// In the sums T is not reduced. f may depend on everything up to q^(m-1), dependent coordinates included.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  const Rational m(E.m);
+  const Expr T_before = T(M, E.m - 1), T_tilde = E.on(T_before);
+  const Column p = E.on(E.D(gradient(T_before, jets(*M.model, E.m))));            // dT^(m-1)/dq_b^(m)
+  const Column r = E.on(E.D(gradient(T_before, jets(*M.model, E.m - 1))));        // dT^(m-1)/dq_b^(m-1)
+  return {m * E.rate(E.by_u(T_tilde)) - E.I(E.by(E.m - 1, T_tilde)) - p * (m * E.rate(E.f_by_u()) - E.f_by(E.m - 1)) - r * E.f_by_u(),
+          E.contract(forces(M))};
+}
+
+extern const Formulation chaplygin;
+const Formulation chaplygin{"chaplygin", "Chaplygin's equations, generalized to order m", "(3.13)",
+                            kLuoZhao, Unknowns::coordinates, no_obstacle, equations};
+
+}  // namespace anholon::forms

@@ -1,0 +1,28 @@
+// Gauss' principle of least compulsion (theory: classics): among the accelerations that the constraints allow, the true ones make
+//
+//   Z = S - sum_a G_a q_a''     (the compulsion sum 1/2 m |a - F/m|^2 up to terms without q'')
+//
+// stationary: dZ/dq''_nu along the constraints is zero. They are taken at the level of accelerations: order 1 once, order 0
+// twice differentiated, order 2 as it is. Of order 3 and more the principle would be another mechanics.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static std::string up_to_accelerations(const Mechanics& M) {
+  for (std::size_t r = 0; r < M.order.size(); ++r)
+    if (M.order[r] > 2)
+      return "the constraint '" + M.model->constraints[r].name + "' is of order " + std::to_string(M.order[r]) +
+             ": beyond accelerations the principle says something else";
+  return {};
+}
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  const Column compulsion = E.m == 1 ? E.by_u_rate(M.S) : E.by_u(M.S);
+  return {compulsion, E.contract(forces(M))};
+}
+
+extern const Formulation gauss;
+const Formulation gauss{"gauss", "Gauss' principle of least compulsion", "stationarity",
+                        "Gauss 1829", Unknowns::coordinates, up_to_accelerations, equations};
+
+}  // namespace anholon::forms

@@ -1,0 +1,30 @@
+// The Mac-Millan equations in a noninertial frame [Q 13], for constraints of order 1:
+//
+//   D/Dt dT_/dq_nu' - dT_/dq_nu = Q_nu + (Q_nu)_t + (Q_nu)_c + sum_i m_i (v_i) . (d/dt d(v_i)/dq_nu' - d(v_i)/dq_nu)
+//
+// (v_i) is the relative velocity of point i with q_D' = f put in, T_ = sum 1/2 m |(v)|^2; every force is Q_nu + sum_b Q_b df_b/dq_nu',
+// (Q)_t = Qomega - d(V_O + V_omega)/dq the transport, (Q)_c = Gamma the Coriolis force. Beyond the paper: variable masses
+// (frozen derivatives, QR among the forces) and bodies (their axes are points of the sum). Without nonholonomic constraints
+// the sum vanishes; with an observer at rest it is the equation in an inertial frame.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  const Expr T_bar = E.on(M.T);
+  Column bracket(E.u.size(), M.graph().zero());
+  for (const WeightedPoint& point : M.points) {
+    const Vector v = total_derivative(point.place);
+    for (int i = 0; i < 3; ++i) {
+      const Column turned = E.rate(E.by_u(v[i])) - E.I(E.by(0, v[i]));
+      for (std::size_t a = 0; a < bracket.size(); ++a) bracket[a] += point.weight * E.on(v[i]) * turned[a];
+    }
+  }
+  return {E.rate(E.by_u(T_bar)) - E.I(E.by(0, T_bar)), E.contract(forces(M)) + bracket};
+}
+
+extern const Formulation mac_millan;
+const Formulation mac_millan{"mac-millan", "Mac-Millan equations in a noninertial frame", "(13)",
+                             kQiu, Unknowns::coordinates, first_order_only, equations};
+
+}  // namespace anholon::forms

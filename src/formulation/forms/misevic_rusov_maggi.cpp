@@ -1,0 +1,17 @@
+// The Misevic-Rusov equations of Maggi's type [N 3.7]:
+//
+//   E_nu + sum_b E_b df_b/dq_nu^(m) = G_nu + sum_b G_b df_b/dq_nu^(m),
+//   E = dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  return {E.contract(misevic_rusov_operator(M, E.m)), E.contract(forces(M))};
+}
+
+extern const Formulation misevic_rusov_maggi;
+const Formulation misevic_rusov_maggi{"misevic-rusov-maggi", "Mišević–Rusov equations of Maggi's type", "(3.7)",
+                                      kMisevicRusov, Unknowns::coordinates, no_obstacle, equations};
+
+}  // namespace anholon::forms

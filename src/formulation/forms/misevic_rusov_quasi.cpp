@@ -1,0 +1,18 @@
+// The Misevic-Rusov equations in quasi-coordinates [N 4.5]:
+//
+//   sum_s (dT^(m)/dq_s^(m) - dT^(m-1)/dq_s^(m-1) - dT/dq_s - G_s) B_sa = 0
+//
+// B_sa = dg_s/du_a, where q^(m) = g(q, …, q^(m-1), u, t) are the constraints and the quasi-velocities u solved [N 4.2, 4.3].
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  return {E.contract(misevic_rusov_operator(M, E.m)), E.contract(forces(M))};
+}
+
+extern const Formulation misevic_rusov_quasi;
+const Formulation misevic_rusov_quasi{"misevic-rusov-quasi", "Mišević–Rusov equations in quasi-coordinates", "(4.5)",
+                                      kMisevicRusov, Unknowns::quasi_velocities, no_obstacle, equations};
+
+}  // namespace anholon::forms

@@ -1,0 +1,24 @@
+// The Misevic-Rusov equations in quasi-coordinates, reduced [N 4.11]. T*^(k) is T^(k) with q^(m) = g, q^(m+1) = g' = dg/dt put
+// in [N 4.9, 4.10]:
+//
+//   dT*^(m)/du_a - dT*^(m-1)/dpi_a^(m-1) - dT/dpi_a - sum_s dT^(m-1)/dq_s^(m) (dg'_s/du_a - dg_s/dpi_a^(m-1)) = sum_s G_s B_sa
+//
+// d/dpi_a := sum_s d/dq_s B_sa and d/dpi_a^(m-1) := sum_s d/dq_s^(m-1) B_sa are definitions, no partial derivatives [N 4.7, 4.8].
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  const Expr T_before = T(M, E.m - 1);
+  const Column p = E.on(gradient(T_before, jets(*M.model, E.m)));  // dT^(m-1)/dq_s^(m)
+  Rows g_by_pi;                                                     // dg_s/dpi_a^(m-1)
+  for (const Column& row : E.g_by(E.m - 1)) g_by_pi.push_back(E.contract(row));
+  return {E.by_u(T(M, E.m)) - E.contract(E.by(E.m - 1, T_before)) - E.contract(gradient(M.T, M.q)) - p * (E.g_rate_by_u() - g_by_pi),
+          E.contract(forces(M))};
+}
+
+extern const Formulation misevic_rusov_quasi_reduced;
+const Formulation misevic_rusov_quasi_reduced{"misevic-rusov-quasi-reduced", "Mišević–Rusov equations in quasi-coordinates, reduced", "(4.11)",
+                                              kMisevicRusov, Unknowns::quasi_velocities, no_obstacle, equations};
+
+}  // namespace anholon::forms

@@ -1,0 +1,26 @@
+// Nielsen's equations, generalized to order m, in reduced kinetic energies [L 3.15]. T~^(k) is T^(k) with q_D^(m) = f and
+// q_D^(m+1) = df/dt put in before the partial derivatives are taken [L 3.14]:
+//
+//   m dT~^(m)/dq_nu^(m) - (m+1) dT~^(m-1)/dq_nu^(m-1) - (m+1) sum_b dT^(m-1)/dq_b^(m-1) df_b/dq_nu^(m)
+//     - sum_b dT^(m-1)/dq_b^(m) (m d(df_b/dt)/dq_nu^(m) - (m+1) df_b/dq_nu^(m-1))  =  G_nu + sum_b G_b df_b/dq_nu^(m)
+//
+// In the sums T is not reduced.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  const Rational m(E.m), m1(E.m + 1);
+  const Expr T_before = T(M, E.m - 1);
+  const Column p = E.on(E.D(gradient(T_before, jets(*M.model, E.m))));            // dT^(m-1)/dq_b^(m)
+  const Column r = E.on(E.D(gradient(T_before, jets(*M.model, E.m - 1))));        // dT^(m-1)/dq_b^(m-1)
+  return {m * E.by_u(T(M, E.m)) - m1 * E.I(E.by(E.m - 1, T_before)) - m1 * (r * E.f_by_u()) -
+              p * (m * E.f_rate_by_u() - m1 * E.f_by(E.m - 1)),
+          E.contract(forces(M))};
+}
+
+extern const Formulation nielsen_reduced;
+const Formulation nielsen_reduced{"nielsen-reduced", "Nielsen's equations in reduced energies, generalized to order m", "(3.15)",
+                                  kLuoZhao, Unknowns::coordinates, no_obstacle, equations};
+
+}  // namespace anholon::forms

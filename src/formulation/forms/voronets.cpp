@@ -1,0 +1,24 @@
+// Voronets' equations (theory: classics), for constraints of order 1, q_D' = f(q, q_I', t) of any shape. With Theta = T where
+// q_D' = f is put in, theta_b = dT/dq_b':
+//
+//   D/Dt dTheta/dq_nu' - dTheta/dq_nu - sum_b dTheta/dq_b df_b/dq_nu'
+//     - sum_b theta_b (d/dt df_b/dq_nu' - df_b/dq_nu - sum_c df_b/dq_c df_c/dq_nu')  =  G_nu + sum_b G_b df_b/dq_nu'
+//
+// Chaplygin's own case: no dependent coordinate occurs anywhere.
+#include "formulation/formulation.h"
+
+namespace anholon::forms {
+
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  const Expr Theta = E.on(M.T);
+  const Column theta = E.on(E.D(gradient(M.T, M.qd)));
+  Rows along;  // df_b/dq_nu + sum_c df_b/dq_c df_c/dq_nu'
+  for (std::size_t b : E.dependent) along.push_back(E.contract(E.g_by(0)[b]));
+  return {E.rate(E.by_u(Theta)) - E.contract(E.by(0, Theta)) - theta * (E.rate(E.f_by_u()) - along), E.contract(forces(M))};
+}
+
+extern const Formulation voronets;
+const Formulation voronets{"voronets", "Voronets' equations", "general f",
+                           "Voronets 1901", Unknowns::coordinates, first_order_only, equations};
+
+}  // namespace anholon::forms

@@ -1,0 +1,111 @@
+// The constraints solved for highest derivatives (theory: elimination).
+//
+// All constraints are lifted to one order m (N does not change). On their manifold the highest derivatives are functions of
+// the lower ones and of n - s free quantities u:
+//
+//   q^(m) = g(q, …, q^(m-1), u, t)
+//
+// where u are the highest derivatives of the independent coordinates, u = q_I^(m), so that g_b = f_b of [L 3.8] for the
+// dependent ones, or quasi-velocities u = pi^(m) as in [N 4.2].
+//
+// Constraints that can be solved are: then `on` puts g in for q^(m) and its derivative for q^(m+1). The others are not solved:
+// q^(m) stands for its own value on the manifold, `on` changes nothing, and derivatives along the manifold follow from the
+// implicit function theorem, dg/dy = -W^-1 dw/dy with w = (u, phi) and W = dw/dq^(m). One or the other, a formulation writes
+// the same: it differentiates along the manifold with the operators below.
+#pragma once
+#include <memory>
+
+#include "mechanics/mechanics.h"
+#include "tape/point.h"
+
+namespace anholon {
+
+using Rows = std::vector<Column>;
+
+// A^-1 by elimination on the graph, each entry in the shorter of its forms; pivots are entries that are not small at the point.
+Rows inverse(const Rows& A, PointValues& at);
+
+// What is eliminated and which free quantities are used instead.
+struct EliminationChoice {
+  std::vector<std::size_t> constraints;  // those that take part: independent ones
+  std::vector<std::size_t> dependent;    // as many coordinates, dphi/dq_D^(m) regular
+  std::vector<QuasiVelocity> quasi;      // n - s of them, or none: u = q_I^(m)
+};
+
+class Elimination {
+ public:
+  Elimination() = default;  // of nothing
+  // `at`: values near the state, by which pivots are chosen.
+  Elimination(const Mechanics& mechanics, const EliminationChoice& choice, std::shared_ptr<PointValues> at);
+
+  unsigned m = 1;                         // common order of the lifted constraints, at least 1
+  std::vector<std::size_t> constraints, dependent, independent;
+  Column phi;                             // lifted constraints, masses put in
+  Rows Phi_D, Phi_D_inverse;              // dphi/dq_D^(m), s x s
+  std::vector<std::string> names;         // of u
+  bool solved = false;                    // g is known as a formula
+  bool quasi = false;
+
+  Column u;  // as symbols where solved, else as functions of q, …, q^(m)
+  Column g;  // n; where not solved, q^(m) itself
+
+  // X on the manifold.
+  Expr on(Expr X) const;
+  Column on(const Column& X) const;
+  Rows on(const Rows& X) const;
+  // d/dt along the manifold (frozen masses stay frozen).
+  Column rate(const Column& X) const { return on(total_derivative(X)); }
+  Rows rate(const Rows& X) const;
+  // Partial derivatives of X, on the manifold and with the other free quantities held, by
+  Column by_u(Expr X) const;                  // u                    (n - s)
+  Column by_u_rate(Expr X) const;             // u'                   (n - s)
+  Column by(unsigned k, Expr X) const;        // q^(k), k < m         (n)
+  // The same of g and of its derivative g' = dg/dt: row s is the gradient of g_s.
+  const Rows& g_by_u() const { return B_; }   // B of [N 4.3], n x (n - s)
+  const Rows& g_by(unsigned k) const;         // n x n
+  const Rows& g_rate_by_u() const { return g_rate_by_u_; }
+  // f_b,nu and the like: the rows of the dependent coordinates, the columns of the independent ones.
+  Rows f_by_u() const;
+  Rows f_by(unsigned k) const;
+  Rows f_rate_by_u() const;
+
+  // C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
+  Rows C() const;
+  // A^-1, with pivots that are not small near the state.
+  Rows inverted(const Rows& A) const { return inverse(A, *at_); }
+  // sum_s X_s B_sa: X_nu + sum_b X_b f_b,nu.
+  Column contract(const Column& X) const;
+  // The entries of the independent and of the dependent coordinates.
+  Column I(const Column& X) const { return pick(X, independent); }
+  Column D(const Column& X) const { return pick(X, dependent); }
+
+  // All n quasi-velocities (the last s are the constraints) and dq/du of all of them [N 4.2]; quasi only.
+  Column w;
+  Rows chi_by_u;  // n x n
+
+  // Quasi-velocities written out in coordinates again.
+  Column in_coordinates(const Column& X) const;
+
+ private:
+  static Column pick(const Column& X, const std::vector<std::size_t>& which);
+  void by_coordinates();
+  void by_quasi_velocities(const std::vector<QuasiVelocity>& list);
+  void finish();
+
+  const Mechanics* mechanics_ = nullptr;
+  std::shared_ptr<PointValues> at_;
+  Column top_, next_;          // q^(m), q^(m+1)
+  Column u_rate_, g_rate_;
+  Column u_value_, u_rate_value_;  // in coordinates
+  Rows W_inverse_;             // not solved: n x n
+  Rows B_, g_rate_by_u_;
+  mutable std::vector<Rows> g_by_;
+};
+
+// sum_b X_b Y_b,a: the sums over dependent coordinates of [L 3.13] and its kin.
+Column operator*(const Column& X, const Rows& Y);
+Rows operator-(const Rows& a, const Rows& b);
+Rows operator+(const Rows& a, const Rows& b);
+Rows operator*(const Rational& c, const Rows& a);
+
+}  // namespace anholon
