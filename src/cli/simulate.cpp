@@ -125,6 +125,7 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   j.close();
   j.key("steps").integer(static_cast<long long>(r.steps));
   j.key("order").integer(r.order);
+  if (s.system.form->eliminates()) j.key("eliminations").integer(static_cast<long long>(r.eliminations));
   j.key("t").number(r.t);
   j.key("outcome").string(name(r.outcome.kind));
   if (!r.outcome.ok()) j.key("message").string(r.outcome.message).key("hint").string(r.outcome.hint);

@@ -43,6 +43,21 @@ Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::ve
   return expand(leading_);
 }
 
+template <Number N>
+Outcome Stepper<N>::take_over(const Stepper& other) {
+  t_ = before_ = other.t_;
+  state_ = other.state_;
+  carry_ = other.carry_;
+  leading_ = other.leading_;
+  integrals_ = other.integrals_;
+  integral_carry_ = other.integral_carry_;
+  steps_ = other.steps_;
+  worst_constraint_ = other.worst_constraint_;
+  worst_equation_ = other.worst_equation_;
+  smallest_sigma_ = other.smallest_sigma_;
+  return expand(leading_);
+}
+
 template <Number To, Number From>
 static void convert_all(const std::vector<From>& from, std::vector<To>& to) {
   to.resize(from.size(), To(0));
@@ -95,6 +110,7 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
   }
   if (Outcome o = expansion_.extend(); !o.ok()) return o;
   horizon_ = step_size();
+  expanded_ = true;
   return {};
 }
 
@@ -169,8 +185,7 @@ Outcome Stepper<N>::step(const W& end) {
     return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   if (steps_ >= settings_.most_steps)
     return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
-  // The first call expands at the start; each later one where the step before ended.
-  if (steps_ > 0)
+  if (!expanded_)
     if (Outcome o = expand(leading_); !o.ok()) return o;
   const W left = end - t_;
   const bool forward = left > W(0);
@@ -202,6 +217,7 @@ Outcome Stepper<N>::step(const W& end) {
   }
   before_ = t_;
   t_ = reached;
+  expanded_ = false;
   state_ = std::move(next);
   ++steps_;
   return {};

@@ -31,6 +31,8 @@ class Stepper {
 
   // Starts at a consistent state; `leading` is a first guess and names the branch.
   Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
+  // Goes on where another stepper for the same unknowns is, with its sums and counts.
+  Outcome take_over(const Stepper& other);
   // One step towards `end`, at most up to it.
   Outcome step(const W& end);
 
@@ -67,6 +69,7 @@ class Stepper {
   std::vector<W> state_, carry_, leading_, integrals_, integral_carry_;
   std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;
   std::size_t steps_ = 0;
+  bool expanded_ = false;  // at t_
   W worst_constraint_{0}, worst_equation_{0};
   N smallest_sigma_{1};
 };

@@ -79,7 +79,7 @@ Rows operator*(const Rational& c, const Rows& a) {
   return r;
 }
 
-Rows inverse(const Rows& A, PointValues& at) {
+Rows inverse(const Rows& A, PointValues& at, Column& pivots) {
   const std::size_t n = A.size();
   if (n == 0) return {};
   Graph& g = *A[0][0].graph;
@@ -105,6 +105,7 @@ Rows inverse(const Rows& A, PointValues& at) {
     used[row] = column_used[column] = true;
     row_of[column] = row;
     const Expr pivot = left[row][column];
+    if (!is_number(pivot)) pivots.push_back(pivot);
     for (std::size_t j = 0; j < n; ++j) {
       if (!is_zero(left[row][j])) left[row][j] = shorter(left[row][j] / pivot, longest);
       if (!is_zero(right[row][j])) right[row][j] = shorter(right[row][j] / pivot, longest);

@@ -23,7 +23,8 @@ namespace anholon {
 using Rows = std::vector<Column>;
 
 // A^-1 by elimination on the graph, each entry in the shorter of its forms; pivots are entries that are not small at the point.
-Rows inverse(const Rows& A, PointValues& at);
+// Those that can vanish elsewhere are added to `pivots`.
+Rows inverse(const Rows& A, PointValues& at, Column& pivots);
 
 // What is eliminated and which free quantities are used instead.
 struct EliminationChoice {
@@ -72,7 +73,9 @@ class Elimination {
   // C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
   Rows C() const;
   // A^-1, with pivots that are not small near the state.
-  Rows inverted(const Rows& A) const { return inverse(A, *at_); }
+  Rows inverted(const Rows& A) const { return inverse(A, *at_, pivots_); }
+  // What was divided by: near a zero of one of them another elimination serves better.
+  const Column& pivots() const { return pivots_; }
   // sum_s X_s B_sa: X_nu + sum_b X_b f_b,nu.
   Column contract(const Column& X) const;
   // The entries of the independent and of the dependent coordinates.
@@ -100,6 +103,7 @@ class Elimination {
   Rows W_inverse_;             // not solved: n x n
   Rows B_, g_rate_by_u_;
   mutable std::vector<Rows> g_by_;
+  mutable Column pivots_;
 };
 
 // sum_b X_b Y_b,a: the sums over dependent coordinates of [L 3.13] and its kin.

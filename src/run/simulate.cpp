@@ -38,30 +38,42 @@ class Run {
   using W = Wider<N>;
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), parameters_(parameter_values<W>(*s.model)), power_(anholon::power(*s.mechanics)),
-        program_(program(s.system, s.structure, quadratures(s, power_))),
-        stepper_(program_, parameter_values<N>(*s.model), parameters_, settings(o)), point_(program_, parameters_, extra_orders()),
-        outputs_(s, output_expressions(), parameters_) {}
+        leg_(std::make_unique<Leg>(*this, s.system, s.structure)), outputs_(s, output_expressions(), parameters_) {
+    watch_pivots(s.elimination);
+  }
 
   SimulationReport go() {
-    report_.order = stepper_.order();
+    report_.order = leg_->stepper.order();
     W t(0);
     std::vector<W> state;
     InitialState<W> named;
     report_.outcome = initial_state(s_, o_.state, t, state, named);
-    if (report_.outcome.ok()) report_.outcome = stepper_.start(t, state);
+    if (report_.outcome.ok()) report_.outcome = leg_->stepper.start(t, state);
     if (report_.outcome.ok()) {
       sink_.columns(column_names());
       schedule(t);
       run(t);
     }
-    report_.t = number_text(to_double(reached_ ? *reached_ : stepper_.time()));
-    report_.steps = stepper_.steps();
-    report_.constraints = to_double(stepper_.worst_constraint());
-    report_.smallest_sigma = to_double(stepper_.smallest_sigma());
+    report_.t = number_text(to_double(reached_ ? *reached_ : leg_->stepper.time()));
+    report_.steps = leg_->stepper.steps();
+    report_.constraints = to_double(leg_->stepper.worst_constraint());
+    report_.smallest_sigma = to_double(leg_->stepper.smallest_sigma());
     return report_;
   }
 
  private:
+  // A stretch of the motion with one elimination: its system and what steps through it.
+  struct Leg {
+    Leg(const Run& run, System of, Structure structured)
+        : system(std::move(of)), structure(std::move(structured)), program(anholon::program(system, structure, quadratures(run.s_, run.power_))),
+          stepper(program, parameter_values<N>(*run.s_.model), run.parameters_, settings(run.o_)), point(program, run.parameters_, extra_orders(run.s_, structure)) {}
+    System system;
+    Structure structure;
+    Program program;
+    Stepper<N> stepper;
+    Expansion<W> point;
+  };
+
   static StepSettings settings(const SimulationOptions& o) {
     return {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled};
   }
@@ -74,17 +86,17 @@ class Run {
   }
 
   // Derivatives beyond its own leading one, up to the highest solved for any coordinate.
-  int extra_orders() const {
-    const auto end = program_.d.begin() + static_cast<std::ptrdiff_t>(s_.system.coordinates);
-    return std::max(1, *std::max_element(program_.d.begin(), end) - *std::min_element(program_.d.begin(), end));
+  static int extra_orders(const Scenario& s, const Structure& structure) {
+    const auto end = structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates);
+    return std::max(1, *std::max_element(structure.d.begin(), end) - *std::min_element(structure.d.begin(), end));
   }
   int highest() const {
-    const auto end = program_.d.begin() + static_cast<std::ptrdiff_t>(s_.system.coordinates);
-    return *std::max_element(program_.d.begin(), end);
+    const auto end = leg_->program.d.begin() + static_cast<std::ptrdiff_t>(s_.system.coordinates);
+    return *std::max_element(leg_->program.d.begin(), end);
   }
   bool mixed() const {
-    const auto end = program_.d.begin() + static_cast<std::ptrdiff_t>(s_.system.coordinates);
-    return *std::min_element(program_.d.begin(), end) < highest();
+    const auto end = leg_->program.d.begin() + static_cast<std::ptrdiff_t>(s_.system.coordinates);
+    return *std::min_element(leg_->program.d.begin(), end) < highest();
   }
 
   std::vector<std::string> column_names() const {
@@ -142,11 +154,13 @@ class Run {
     // Rows at or before the start come from the initial state itself.
     while (next < times_.size() && times_[next] == t0) row(t0, label(next)), ++next;
     energy_at(t0, h0_);
-    while (report_.outcome.ok() && !(stepper_.time() == end_)) {
-      report_.outcome = stepper_.step(end_);
+    while (report_.outcome.ok() && !(leg_->stepper.time() == end_)) {
+      report_.outcome = leg_->stepper.step(end_);
+      // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
+      if (!report_.outcome.ok() && pivots_ && can_go_on(report_.outcome.kind) && eliminate_again()) report_.outcome = leg_->stepper.step(end_);
       if (!report_.outcome.ok()) break;
       const W stop = masses_positive_until();
-      if (o_.progress) o_.progress(to_double(stepper_.time()), stepper_.steps());
+      if (o_.progress) o_.progress(to_double(leg_->stepper.time()), leg_->stepper.steps());
       const bool forward = end_ > t0;
       while (report_.outcome.ok() && next < times_.size() &&
              (forward ? times_[next] <= stop : times_[next] >= stop)) {
@@ -154,37 +168,97 @@ class Run {
         ++next;
       }
       if (every_step && report_.outcome.ok()) row(stop, "");
-      if (report_.outcome.ok() && !(stop == stepper_.time())) negative_mass(stop);
+      if (report_.outcome.ok() && !(stop == leg_->stepper.time())) negative_mass(stop);
+      if (report_.outcome.ok() && !(leg_->stepper.time() == end_) && pivot_is_small()) eliminate_again();
     }
-    if (report_.outcome.ok() && stepper_.steps() > 0) balance();
+    if (report_.outcome.ok() && leg_->stepper.steps() > 0) balance();
     if (!report_.outcome.ok() && report_.outcome.message.find(" t = ") == std::string::npos) {
-      report_.outcome.message += " at t = " + number_text(to_double(stepper_.time()), 12);
+      report_.outcome.message += " at t = " + number_text(to_double(leg_->stepper.time()), 12);
       if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular) suspect();
       // The last good state is worth a row of its own.
-      if (stepper_.steps() > 0 && !every_step) {
+      if (leg_->stepper.steps() > 0 && !every_step) {
         const Outcome why = report_.outcome;
-        row(stepper_.before(), "");
+        row(leg_->stepper.before(), "");
         report_.outcome = why;
       }
     }
   }
 
+  static bool can_go_on(OutcomeKind kind) {
+    return kind == OutcomeKind::singular || kind == OutcomeKind::step_collapse || kind == OutcomeKind::not_a_number;
+  }
+
+  // Keeps an eye on what the elimination divides by.
+  void watch_pivots(const Elimination& e) {
+    elimination_ = e;
+    pivots_.reset();
+    chosen_.clear();
+    if (!e.pivots().empty()) pivots_ = std::make_unique<OutputTape<W>>(s_, put_masses(*s_.model, e.in_coordinates(e.on(e.pivots()))), parameters_);
+  }
+
+  bool pivot_is_small() {
+    constexpr double kSmall = 0.2;
+    if (!pivots_) return false;
+    pivots_->evaluate(leg_->stepper.point());
+    bool small = false;
+    const bool first = chosen_.empty();
+    for (std::size_t i = 0; i < elimination_.pivots().size(); ++i) {
+      const double v = std::abs(to_double((*pivots_)[i]));
+      if (first) chosen_.push_back(v);
+      small = small || v < kSmall * chosen_[i];
+    }
+    return small;
+  }
+
+  // Another choice of dependent coordinates at the point where the last step began; false if it is the same and its pivots too.
+  bool eliminate_again() {
+    InitialState<double> here;
+    const Expansion<W>& point = leg_->stepper.point();
+    here.t = to_double(point.time());
+    for (std::size_t a = 0; a < s_.system.coordinates; ++a) {
+      here.q.push_back(to_double(point.derivative(a, 0)));
+      here.qd.push_back(to_double(point.derivative(a, 1)));
+    }
+    const Model& model = *s_.model;
+    try {
+      const auto at = std::make_shared<PointValues>(values_near(model, parameter_values<double>(model), here));
+      const Elimination e(*s_.mechanics, choose_elimination(*s_.mechanics, s_.independent, s_.system.form->unknowns, {}, *at), at);
+      System system = implicit_system(s_.model, *s_.mechanics, *s_.system.form, s_.independent, e);
+      Structure structure;
+      ProbeHints hints;
+      hints.t = here.t;
+      hints.derivatives = {here.q, here.qd};
+      if (!analyse(system, parameter_values<double>(model), hints, structure).ok() || structure.d != leg_->structure.d) return false;
+      drop_absent(system, structure);
+      const bool same = e.dependent == elimination_.dependent && e.pivots() == elimination_.pivots();
+      watch_pivots(e);
+      if (same) return false;
+      auto next = std::make_unique<Leg>(*this, std::move(system), std::move(structure));
+      if (!next->stepper.take_over(leg_->stepper).ok()) return false;
+      leg_ = std::move(next);
+      ++report_.eliminations;
+      return true;
+    } catch (const Failure&) {
+      return false;  // the present elimination goes on as far as it can
+    }
+  }
+
   // The end of the last step, or the earlier time at which a mass passes zero.
   W masses_positive_until() {
-    const W whole = stepper_.time() - stepper_.before();
+    const W whole = leg_->stepper.time() - leg_->stepper.before();
     W good = whole;
     for (std::size_t i = 0; i < s_.model->masses.size(); ++i) {
-      if (s_.model->masses[i].weight || !(stepper_.quadrature(1 + i, good) < W(0))) continue;
+      if (s_.model->masses[i].weight || !(leg_->stepper.quadrature(1 + i, good) < W(0))) continue;
       W low(0), high = good;
       for (int k = 0; k < 200 && !(low == high); ++k) {
         const W middle = low + (high - low) * W(0.5);
         if (middle == low || middle == high) break;
-        (stepper_.quadrature(1 + i, middle) < W(0) ? high : low) = middle;
+        (leg_->stepper.quadrature(1 + i, middle) < W(0) ? high : low) = middle;
       }
       good = low;
       negative_ = i;
     }
-    return good == whole ? stepper_.time() : stepper_.before() + good;
+    return good == whole ? leg_->stepper.time() : leg_->stepper.before() + good;
   }
 
   // What the motion runs into: a mass that vanishes, a multiplier that grows without bound.
@@ -193,7 +267,7 @@ class Run {
     std::string& message = report_.outcome.message;
     for (std::size_t a = 0; a < s_.system.coordinates; ++a)
       for (int k = 0; k < 2; ++k)
-        if (std::abs(to_double(stepper_.point().derivative(a, k))) > kUnbounded * kUnbounded) {
+        if (std::abs(to_double(leg_->stepper.point().derivative(a, k))) > kUnbounded * kUnbounded) {
           report_.outcome.kind = OutcomeKind::blow_up;
           message += "; " + derivative_name(s_.system.variable_names[a], static_cast<unsigned>(k), Format::text) + " grows without bound";
           report_.outcome.hint = "look at the last good state: end the motion before";
@@ -201,22 +275,22 @@ class Run {
         }
     if (const std::string root = vanishing_root(); !root.empty()) message += "; " + root + " is at the edge of where it has a value";
     for (std::size_t i = 0; i < s_.model->masses.size(); ++i)
-      if (std::abs(to_double(stepper_.quadrature(1 + i, W(0)))) < kVanished)
+      if (std::abs(to_double(leg_->stepper.quadrature(1 + i, W(0)))) < kVanished)
         message += "; the mass of '" + s_.model->masses[i].name + "' vanishes there";
     for (std::size_t k = 0; k < s_.system.constraints.size(); ++k)
-      if (std::abs(to_double(stepper_.point().derivative(s_.system.coordinates + k, 0))) > kUnbounded)
+      if (std::abs(to_double(leg_->stepper.point().derivative(s_.system.coordinates + k, 0))) > kUnbounded)
         message += "; the multiplier of '" + s_.system.equation_names[s_.system.coordinates + k] +
                    "' grows without bound: the constraint loses its hold there";
   }
 
   // A root or logarithm in the equations whose argument has come to zero.
   std::string vanishing_root() const {
-    const Tape& tape = program_.tape;
+    const Tape& tape = leg_->program.tape;
     for (std::uint32_t k = 0; k < tape.main_end; ++k) {
       const Instruction& in = tape.code[k];
       const bool root = in.op == Op::power && tape.rationals[in.index].get_den() != 1;
       const bool logarithm = in.op == Op::function && in.index == static_cast<std::uint32_t>(Function::log);
-      if ((root || logarithm) && std::abs(to_double(stepper_.point().machine().series(in.a)[0])) < 1e-9)
+      if ((root || logarithm) && std::abs(to_double(leg_->stepper.point().machine().series(in.a)[0])) < 1e-9)
         return root ? "the root of a quantity that reaches zero" : "the logarithm of a quantity that reaches zero";
     }
     return {};
@@ -237,24 +311,24 @@ class Run {
   }
 
   void row(const W& t, const std::string& label) {
-    if (Outcome o = stepper_.at(t, point_); !o.ok()) {
+    if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
       report_.outcome = o;
       report_.outcome.message += " at t = " + number_text(to_double(t), 12);
       return;
     }
     if (mixed())
-      if (Outcome o = point_.extend(); !o.ok()) {
+      if (Outcome o = leg_->point.extend(); !o.ok()) {
         report_.outcome = o;
         return;
       }
-    outputs_.evaluate(point_);
+    outputs_.evaluate(leg_->point);
     const std::size_t n = s_.system.coordinates;
     std::vector<std::string> values = {label.empty() ? text(t) : label};
     for (int k = 0; k <= highest(); ++k)
-      for (std::size_t a = 0; a < n; ++a) values.push_back(text(point_.derivative(a, k)));
+      for (std::size_t a = 0; a < n; ++a) values.push_back(text(leg_->point.derivative(a, k)));
     for (std::size_t r = 0; r < s_.model->constraints.size(); ++r) {
       const auto j = s_.system.variable(s_.mechanics->lambda[r].id);
-      values.push_back(text(j ? point_.derivative(*j, 0) : W(0)));
+      values.push_back(text(j ? leg_->point.derivative(*j, 0) : W(0)));
     }
     for (std::size_t a = 0; a < n; ++a) values.push_back(text(outputs_[a]));
     sink_.row(values);
@@ -275,12 +349,12 @@ class Run {
     const Certificate<W> c = certify(inertia, force, reaction, phi);
     report_.newton = std::max(report_.newton, to_double(c.newton));
     report_.projected = std::max(report_.projected, to_double(c.projected));
-    report_.constraints_kept = std::max(report_.constraints_kept, to_double(point_.constraint_residual()));
+    report_.constraints_kept = std::max(report_.constraints_kept, to_double(leg_->point.constraint_residual()));
     // A constraint that was left out because it followed from the others must go on to do so.
     W size(1);
     for (std::size_t a = 0; a < n; ++a)
       for (int k = 0; k < 2; ++k)
-        if (W v = abs(point_.derivative(a, k)); v > size) size = v;
+        if (W v = abs(leg_->point.derivative(a, k)); v > size) size = v;
     for (std::size_t i = 0; i < s_.redundant.size(); ++i) {
       const double miss = to_double(W(abs(outputs_[3 * n + 1 + phi.data.size() + i]) / size));
       report_.constraints_kept = std::max(report_.constraints_kept, miss);
@@ -292,15 +366,15 @@ class Run {
   }
 
   void energy_at(const W& t, W& h) {
-    if (!stepper_.at(t, point_).ok()) return;
-    outputs_.evaluate(point_);
+    if (!leg_->stepper.at(t, leg_->point).ok()) return;
+    outputs_.evaluate(leg_->point);
     h = outputs_[s_.system.coordinates];
   }
 
   void balance() {
     W h(0);
-    energy_at(stepper_.time(), h);
-    const W work = stepper_.integrals()[0];
+    energy_at(leg_->stepper.time(), h);
+    const W work = leg_->stepper.integrals()[0];
     W scale(1);
     for (const W& v : {h, h0_, work})
       if (abs(v) > scale) scale = abs(v);
@@ -312,10 +386,11 @@ class Run {
   RowSink& sink_;
   std::vector<W> parameters_;
   Power power_;
-  Program program_;
-  Stepper<N> stepper_;
-  Expansion<W> point_;
+  std::unique_ptr<Leg> leg_;
   OutputTape<W> outputs_;
+  Elimination elimination_;                 // the present one
+  std::unique_ptr<OutputTape<W>> pivots_;   // its pivots, and what they were when it was chosen
+  std::vector<double> chosen_;
   std::vector<W> times_;
   std::vector<std::string> labels_;
   W end_{0}, h0_{0};

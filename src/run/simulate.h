@@ -36,6 +36,7 @@ struct SimulationReport {
   double constraints_kept = 0;   // C3 at the rows, after projection
   double power = 0;              // |h - h0 - work| in relation to the energies turned over
   double smallest_sigma = 1;     // scaled, of the system Jacobian
+  std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
 };
 
 SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink);

@@ -215,7 +215,7 @@ void drop_absent(System& s, const Structure& t) {
   for (std::size_t i = 0; i < s.size(); ++i)
     s.equations[i] = substitute({&s.equations[i], 1}, [&](NodeId id) {
       const auto j = s.variable(id);
-      return j && static_cast<int>(g.node(id).order) > t.sigma[i][*j] ? g.zero() : Expr{};
+      return j && static_cast<int>(g.node(id).order) + t.c[i] > t.d[*j] ? g.zero() : Expr{};
     })[0];
 }
 

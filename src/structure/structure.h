@@ -41,8 +41,8 @@ struct ProbeHints {
 Outcome analyse(const System& system, const std::vector<double>& parameters, const ProbeHints& hints,
                 Structure& structure);
 
-// Puts zero for derivatives that stand in an equation but do not truly occur in it: they cancel, and
-// a stepper could not know their values.
+// Puts zero for derivatives that stand in an equation but cannot truly occur in it, being higher than
+// those solved for: they cancel, and a stepper could not know their values.
 void drop_absent(System& system, const Structure& structure);
 
 std::string print(const System& system, const Structure& structure);

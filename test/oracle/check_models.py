@@ -139,12 +139,12 @@ def compare_state(worst, answer, reference, model, coordinates, where):
         worst.compare(value, stored, abs(Decimal(stored)), f"{key} {where}")
 
 
-def evaluate(program, path, model, data, digits):
+def evaluate(program, path, model, data, digits, form):
     worst = Worst()
     coordinates = data["coords"]
     for index, reference in enumerate(data["states"]):
         state = reference["state"]
-        arguments = ["evaluate", str(path), "--json", "--t", reference["t"]]
+        arguments = ["evaluate", str(path), "--json", "--form", form, "--t", reference["t"]]
         arguments += ["--q", ",".join(f"{c}={state[c]}" for c in coordinates)]
         arguments += ["--qdot", ",".join(f"{c}={state[c + '_1']}" for c in coordinates)]
         arguments += ["--digits", str(digits)] if digits else []
@@ -153,11 +153,11 @@ def evaluate(program, path, model, data, digits):
     return worst
 
 
-def simulate(program, path, model, data, digits):
+def simulate(program, path, model, data, digits, form):
     worst = Worst()
     coordinates = data["coords"]
     trajectory = data["trajectory"]
-    arguments = ["simulate", str(path), "--json", "--at", ",".join(trajectory["times"])]
+    arguments = ["simulate", str(path), "--json", "--form", form, "--at", ",".join(trajectory["times"])]
     arguments += ["--digits", str(digits)] if digits else ["--tolerance", "1e-15"]
     answer = ask(program, arguments)
     if answer["outcome"] != "finished":
@@ -183,7 +183,7 @@ def paired_models(folder):
             yield path, found[1]
 
 
-def check(program, path, name, folder, digits):
+def check(program, path, name, folder, digits, form):
     """One line of the table and whether the model passes."""
     label = f"{name:32} {path.stem:34}"
     evaluate_tolerance = DIGITS_TOLERANCE if digits else EVALUATE_TOLERANCE
@@ -198,7 +198,7 @@ def check(program, path, name, folder, digits):
         return f"{label} FAIL {error}", False
     for step, tolerance in ((evaluate, evaluate_tolerance), (simulate, simulate_tolerance)):
         try:
-            worst = step(program, path, model, data, digits)
+            worst = step(program, path, model, data, digits, form)
             ok = worst.passes(tolerance)
             line += f" {float(worst.error):8.1e} {worst.where:38.38}"
         except Failure as failure:
@@ -216,6 +216,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", help="the anholon program")
     parser.add_argument("--digits", type=int, default=0, help="multiprecision run with so many digits")
+    parser.add_argument("--form", default="routh", help="form of the equations")
     parser.add_argument("--only", default="", help="only models whose path contains this")
     parser.add_argument("--models", type=Path, default=HERE.parents[1] / "models")
     parser.add_argument("--data", type=Path, default=HERE / "data")
@@ -232,7 +233,7 @@ def main():
     print(f"{'system':32} {'model':34} {'evaluate: worst error':47}      simulate: worst error")
     failed = 0
     with ThreadPoolExecutor(options.jobs) as pool:
-        jobs = [pool.submit(check, program, path, name, options.data, options.digits) for path, name in pairs]
+        jobs = [pool.submit(check, program, path, name, options.data, options.digits, options.form) for path, name in pairs]
         for job in jobs:
             line, passed = job.result()
             failed += not passed
