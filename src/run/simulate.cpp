@@ -197,7 +197,7 @@ class Run {
   }
 
   bool pivot_is_small() {
-    constexpr double kSmall = 0.2;
+    constexpr double kSmall = 0.4;
     if (!pivots_) return false;
     pivots_->evaluate(leg_->stepper.point());
     bool small = false;
