@@ -25,14 +25,14 @@ Column arranged(const Column& es, const SymbolNames& names, const std::string& e
 }
 
 // The motion as a program in C or Python.
-int write_program(const Options& o, const Reader& in, const Formulation& f) {
+int write_program(const Options& o, const Reader& in, const Mechanics& m, const Formulation& f) {
   if (o.json) throw UsageError{"error: --format " + o.format + " is not JSON\nhint: leave one of --json and --format out\n"};
-  Scenario s;
-  const Outcome outcome = make_scenario(in.model, f, state_choice(o, *in.model), s);
-  if (const auto d = not_integrated(*in.model, s.classes)) {
+  if (const auto d = not_integrated(*in.model, classify(m))) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }
+  Scenario s;
+  const Outcome outcome = make_scenario(in.model, f, state_choice(o, *in.model), s);
   if (!outcome.ok()) {
     print_outcome(outcome);
     return kStopped;
@@ -67,7 +67,7 @@ int derive(const Options& o) {
     make_scenario(in.model, f, state_choice(o, model), s);
     return show(o, s);
   }
-  if (o.format == "c" || o.format == "python") return write_program(o, in, f);
+  if (o.format == "c" || o.format == "python") return write_program(o, in, m, f);
   const Equations e = f.equations(m);
   SymbolNames names = model.names;
   for (std::size_t i = 0; i < model.masses.size(); ++i) {
