@@ -12,6 +12,7 @@ Needs a C compiler, cc; NumPy for the half that is about Python.
 """
 
 import argparse
+import contextlib
 import ctypes
 import json
 import os
@@ -29,7 +30,7 @@ except ImportError:
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = ["disc", "luo-zhao-example-2", "snakeboard", "rheonomic-order-1", "second-order-linear", "fourbar",
-           "mass-depends-on-velocity", "falling-chain"]  # fmt: skip
+           "mass-depends-on-velocity", "falling-chain", "appell-hamel"]  # fmt: skip
 FLAGS = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"]
 SAME = 1e-10  # relative, of two ways to compute the same
 MOTION = 1e-8  # of the Runge-Kutta method with its step, against the Taylor series
@@ -112,6 +113,21 @@ equation = "2*y' = 2*x"
 [initial]
 x = 1
 "x'" = 1
+''',
+    # Newton's method has to iterate.
+    "nonlinear": '''
+coordinates = ["x", "y"]
+[[particle]]
+name = "a"
+mass = "2"
+position = ["x", "y", "0"]
+[[force]]
+name = "f"
+on = "a"
+vector = ["-x - 0.1*x''^3 - y''", "1 - 0.2*sinh(x'' + y'')", "0"]
+[initial]
+x = 3
+"y'" = 1
 ''',
     # Every elementary function, roots and powers, large and small numbers.
     "functions": '''
@@ -301,6 +317,22 @@ def check_set(c, program, name, path):
     same(c.solved("leading", len(lead), point.t, point[c.state_names]), lead, f"C with another {name}")
 
 
+def check_refusal(c, module, state, status):
+    """Where there is no answer, C says why, and Python raises or gives nan."""
+    got = c.call("leading", 0.0, c.array(state), c.p, c.array([0.0] * len(c.lead_names)))
+    if got != status:
+        raise Failure(f"leading at {state} returns {got}, not {status}")
+    if module is None:
+        return
+    try:
+        with numpy.errstate(all="ignore"):
+            refused = numpy.isnan(module.leading(0.0, state)).all() and status == 3
+    except numpy.linalg.LinAlgError:
+        refused = status == 1
+    if not refused:
+        raise Failure(f"Python leading at {state} gives an answer")
+
+
 def flipped(text):
     """The last sum of the residual, where nothing cancels any more, with a sign turned."""
     c = "#include" in text
@@ -325,18 +357,25 @@ def check(program, form, name, path, folder):
     c = Compiled(text, name, folder, 0)
     check_c(c, points, hidden)
     check_motion(c, points, STEPS.get(name, 100))
+    module = None
     mutants = [lambda: check_c(Compiled(flipped(text), name, folder, 1), points, hidden)]
     if numpy:
         source = run([program, "derive", path, "--format", "python", "--form", form])
         with numpy.errstate(all="raise"):
-            check_python(module_of(source), c, points, hidden)
+            module = module_of(source)
+            check_python(module, c, points, hidden)
         mutants.append(lambda: check_python(module_of(flipped(source)), c, points, hidden))
     for mutant in mutants:
         try:
-            mutant()
+            with numpy.errstate(all="ignore") if numpy else contextlib.nullcontext():
+                mutant()
         except Failure:
             continue
         raise Failure("a flipped sign in the residual was not noticed")
+    if name == "appell-hamel":  # its constraint has no hold on a body at rest
+        check_refusal(c, module, [0, 0, 10, 0, 0, 0], 1)
+    if name == "functions":  # the logarithm of a negative number
+        check_refusal(c, module, [0.4, -10, 0.2, 0.3, -0.5, -0.2], 3)
     if name == "names":
         check_set(c, program, "np", path)
     return f"{name:32} {len(c.state_names):3} states, {len(c.lead_names):3} unknowns, {len(text):7} characters"
