@@ -1,9 +1,11 @@
 #include <cstdio>
+#include <filesystem>
 
 #include "base/json.h"
 #include "cli/input.h"
 #include "cli/show.h"
 #include "expr/normal.h"
+#include "program/emit.h"
 
 namespace anholon::cli {
 
@@ -22,13 +24,40 @@ Column arranged(const Column& es, const SymbolNames& names, const std::string& e
   return out;
 }
 
+// The motion as a program in C or Python.
+int write_program(const Options& o, const Reader& in, const Mechanics& m, const Formulation& f) {
+  if (o.json) throw UsageError{"error: --format " + o.format + " is not JSON\nhint: leave one of --json and --format out\n"};
+  if (const auto d = not_integrated(*in.model, classify(m))) {
+    print_diagnostic(*d, in.source);
+    return kBadInput;
+  }
+  Scenario s;
+  const Outcome outcome = ready(in, f, state_choice(o, *in.model), s);
+  if (!outcome.ok()) {
+    print_outcome(outcome);
+    return kStopped;
+  }
+  EmitOptions options;
+  options.name = std::filesystem::path(o.model).stem().string();
+  options.made_by = "anholon derive " + o.model + " --format " + o.format + (o.form_given ? " --form " + o.form : "");
+  for (const std::string& set : o.set) options.made_by += " --set " + set;
+  options.start = {s.state.t, s.state.q, s.state.qd};
+  try {
+    std::fputs((o.format == "c" ? emit_c : emit_python)(s.system, s.structure, options).c_str(), stdout);
+  } catch (const Failure& failure) {
+    print_diagnostic(failure.diagnostic, in.source);
+    return kBadInput;
+  }
+  return kOk;
+}
+
 }  // namespace
 
 int derive(const Options& o) {
   const Reader in = read(o);
   const Model& model = *in.model;
-  if (o.format != "text" && o.format != "latex")
-    throw UsageError{"error: --format: '" + o.format + "' is not written yet\nhint: text or latex; --json for both\n"};
+  if (o.format != "text" && o.format != "latex" && o.format != "c" && o.format != "python")
+    throw UsageError{"error: --format: '" + o.format + "' is not written yet\nhint: text or latex, --json for both; c or python\n"};
   if (o.expand != "auto" && o.expand != "none" && o.expand != "full")
     throw UsageError{"error: --expand: '" + o.expand + "'\nhint: auto, none or full\n"};
   const Mechanics m = mechanics(model);
@@ -38,6 +67,7 @@ int derive(const Options& o) {
     ready(in, f, state_choice(o, model), s);
     return show(o, s);
   }
+  if (o.format == "c" || o.format == "python") return write_program(o, in, m, f);
   const Elimination elim = elimination(in, m, f, state_choice(o, model));
   const Equations e = f.equations(m, elim);
   SymbolNames names = model.names;

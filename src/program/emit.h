@@ -1,0 +1,33 @@
+// The motion as source text: a C99 file, or a Python module, that computes the right side of
+// x' = f(t, x) and stands alone (math.h; NumPy).
+//
+// Equation i is differentiated c_i times, by symbols this time; the result is linear in the leading
+// derivatives x_j^(d_j), or solved for them by Newton's method, with the system Jacobian
+//   J_ij = dE_i^(c_i) / dx_j^(d_j) = dE_i / dx_j^(d_j - c_i)    (theory: dae-view).
+// The state is x_j^(k), k < d_j, all of order 0 first; the hidden constraints E_i^(k), k < c_i, are a
+// function of their own, so that an integrator that does not know them can be watched.
+//
+// A derivative that occurs and yet does not count (structure.h: "truly") is set to zero.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "structure/structure.h"
+
+namespace anholon {
+
+struct EmitOptions {
+  std::string name = "motion";  // begins the name of everything in C
+  std::string made_by;          // how the text was made, for its head
+  struct Start {
+    double t = 0;
+    std::vector<double> q, qd;  // by coordinate
+  };
+  std::optional<Start> start;   // a state to begin with
+};
+
+// Throw Failure for what has no text: an unknown function of time, a number beyond double.
+std::string emit_c(const System& system, const Structure& structure, const EmitOptions& options);
+std::string emit_python(const System& system, const Structure& structure, const EmitOptions& options);
+
+}  // namespace anholon

@@ -1,0 +1,244 @@
+// Expressions as statements: one sweep upwards, no recursion, so depth does not matter.
+#include <algorithm>
+
+#include "base/assert.h"
+#include "program/emit_text.h"
+
+namespace anholon::emit {
+
+namespace {
+
+// A node used once is written where it is used, up to this length.
+constexpr std::size_t kLongestInline = 72;
+// Longer sums and products are computed in parts: compilers recurse over their terms.
+constexpr std::size_t kMostPieces = 24;
+constexpr std::size_t kLineWidth = 100;
+// Whole powers up to this one are products.
+constexpr int kLargestProduct = 4;
+constexpr int kSum = 1, kProduct = 2, kPower = 3, kAtom = 4;
+
+const char* function_name(Function f, Language language) {
+  const bool c = language == Language::c;
+  switch (f) {
+    case Function::sin: return c ? "sin" : "np.sin";
+    case Function::cos: return c ? "cos" : "np.cos";
+    case Function::tan: return c ? "tan" : "np.tan";
+    case Function::asin: return c ? "asin" : "np.arcsin";
+    case Function::acos: return c ? "acos" : "np.arccos";
+    case Function::atan: return c ? "atan" : "np.arctan";
+    case Function::sinh: return c ? "sinh" : "np.sinh";
+    case Function::cosh: return c ? "cosh" : "np.cosh";
+    case Function::tanh: return c ? "tanh" : "np.tanh";
+    case Function::asinh: return c ? "asinh" : "np.arcsinh";
+    case Function::acosh: return c ? "acosh" : "np.arccosh";
+    case Function::atanh: return c ? "atanh" : "np.arctanh";
+    case Function::exp: return c ? "exp" : "np.exp";
+    case Function::log: return c ? "log" : "np.log";
+    case Function::abs: return c ? "fabs" : "np.abs";
+    case Function::sign: return c ? "$_sign" : "np.sign";
+  }
+  return "";
+}
+
+// How often the text of a power holds its base.
+std::size_t bases(const Rational& exponent) {
+  const Rational r = abs(exponent);
+  if (r.get_den() == 1 && r <= kLargestProduct) return r.get_num().get_ui();
+  return r == Rational(3, 2) ? 2 : 1;
+}
+
+}  // namespace
+
+Writer::Writer(const System& system, const Structure& structure, const Motion& motion, const LocalNames& names, Language language)
+    : g_(*system.model->graph), system_(system), structure_(structure), motion_(motion), names_(names), language_(language) {}
+
+std::string Writer::wrapped(const Text& t, int strength) { return t.strength >= strength ? t.s : "(" + t.s + ")"; }
+
+std::string Writer::fresh() {
+  std::string name;
+  do name = "w" + std::to_string(++next_);
+  while (names_.taken(name));
+  return name;
+}
+
+Writer::Text Writer::power(NodeId base, const Rational& exponent) const {
+  const Text& x = text_.at(base);
+  if (exponent == 1) return x;
+  const Text root{std::string(language_ == Language::c ? "sqrt(" : "np.sqrt(") + x.s + ")", kAtom};
+  if (exponent == Rational(1, 2)) return root;
+  if (exponent == Rational(3, 2)) return {wrapped(x, kAtom) + "*" + root.s, kProduct};
+  if (exponent.get_den() == 1 && exponent <= kLargestProduct) {
+    std::string out = wrapped(x, kAtom);
+    for (long k = exponent.get_num().get_si(); k > 1; --k) out += "*" + wrapped(x, kAtom);
+    return {out, kProduct};
+  }
+  const std::string e = number(exponent);
+  if (language_ == Language::c) return {"pow(" + x.s + ", " + e + ")", kAtom};
+  return {wrapped(x, kAtom) + "**" + (e.find('/') == std::string::npos ? e : "(" + e + ")"), kPower};
+}
+
+std::vector<Writer::Piece> Writer::product(NodeId id) {
+  std::vector<Text> bottom;
+  std::vector<Piece> out;
+  // x*x may stand among other factors as it is, a quotient of numbers not.
+  const auto factor = [](const Text& x) { return x.s.find('/') == std::string::npos ? wrapped(x, kProduct) : wrapped(x, kPower); };
+  for (const Term& t : g_.terms(id)) {
+    const Rational& e = g_.rational(t.weight);
+    if (e < 0) bottom.push_back(power(t.node, -e));
+    else out.push_back({'*', factor(power(t.node, e))});
+  }
+  if (bottom.size() > 1 && bottom.size() <= kMostPieces) {
+    std::string all;
+    for (const Text& x : bottom) all += (all.empty() ? "" : "*") + factor(x);
+    out.push_back({'/', "(" + all + ")"});
+  } else {
+    for (const Text& x : bottom) out.push_back({'/', wrapped(x, kPower)});
+  }
+  return out;
+}
+
+std::vector<Writer::Piece> Writer::sum(NodeId id) {
+  std::vector<Piece> out;
+  for (const Term& t : g_.summands(id)) {
+    Rational c = g_.rational(t.weight);
+    if (g_.is_number(t.node)) {
+      c *= g_.value(t.node);
+      out.push_back({c < 0 ? '-' : '+', number(abs(c))});
+      continue;
+    }
+    const Text& x = text_.at(t.node);
+    const char op = c < 0 ? '-' : '+';
+    c = abs(c);
+    if (c == 1) out.push_back({op, wrapped(x, kProduct)});
+    else if (x.strength == kProduct && x.s.compare(0, 4, "1.0/") == 0) out.push_back({op, number(c) + x.s.substr(3)});
+    else out.push_back({op, number(c) + "*" + wrapped(x, kProduct)});
+  }
+  return out;
+}
+
+std::string Writer::call(NodeId id) {
+  const Node& n = g_.node(id);
+  if (n.kind == Kind::atan2)
+    return std::string(language_ == Language::c ? "atan2(" : "np.arctan2(") + text_.at(g_.terms(id)[0].node).s + ", " +
+           text_.at(g_.terms(id)[1].node).s + ")";
+  const Function f = static_cast<Function>(n.index);
+  used_sign_ = used_sign_ || f == Function::sign;
+  return std::string(function_name(f, language_)) + "(" + text_.at(g_.terms(id)[0].node).s + ")";
+}
+
+static std::string joined(char op, const std::string& s, bool first) {
+  switch (op) {
+    case '+': return first ? s : " + " + s;
+    case '-': return first ? "-" + s : " - " + s;
+    case '*': return first ? s : "*" + s;
+    default: return first ? "1.0/" + s : "/" + s;
+  }
+}
+
+std::string Writer::assign(const std::string& name, const std::vector<Piece>& all, bool declare) const {
+  const bool c = language_ == Language::c;
+  std::string out;
+  for (std::size_t from = 0; from < all.size(); from += kMostPieces) {
+    const std::size_t to = std::min(all.size(), from + kMostPieces);
+    std::string begin = c ? "  " : "    ";
+    if (c && declare && from == 0) begin += to < all.size() ? "double " : "const double ";
+    begin += name + " = ";
+    if (from > 0) begin += name;
+    std::string line, text;
+    bool broken = false;
+    const std::string indent(c ? 6 : 8, ' ');
+    for (std::size_t i = from; i < to; ++i) {
+      const std::string piece = joined(all[i].op, all[i].s, i == 0);
+      const std::size_t before = broken ? indent.size() : begin.size() + 1;
+      if (!line.empty() && before + line.size() + piece.size() + 2 > kLineWidth) {
+        text += line + "\n" + indent;
+        broken = true;
+        line = piece[0] == ' ' ? piece.substr(1) : piece;
+      } else {
+        line += piece;
+      }
+    }
+    text += line;
+    // What a line break would end in Python, brackets hold together.
+    if (!c && broken) {
+      if (from > 0) out += begin.substr(0, begin.size() - name.size()) + "(" + name + text + ")\n";
+      else out += begin + "(" + text + ")\n";
+    } else {
+      out += begin + text + (c ? ";\n" : "\n");
+    }
+  }
+  return out;
+}
+
+void Writer::write(NodeId id, Statements& body) {
+  const Node& n = g_.node(id);
+  std::vector<Piece> pieces;
+  int strength = kAtom;
+  switch (n.kind) {
+    case Kind::number: {
+      const std::string s = number(g_.value(id));
+      text_[id] = {s, s[0] == '-' ? kSum : s.find('/') != std::string::npos ? kProduct : kAtom};
+      return;
+    }
+    case Kind::pi: text_[id] = {language_ == Language::c ? "3.14159265358979323846" : "np.pi", kAtom}; return;
+    case Kind::time: case Kind::jet: case Kind::parameter: case Kind::multiplier:
+      text_[id] = {names_.symbol(id), kAtom};
+      return;
+    case Kind::mass: case Kind::given: ANHOLON_ASSERT(!"a frozen mass or unknown function in a program"); return;
+    case Kind::sum: pieces = sum(id), strength = kSum; break;
+    case Kind::product: pieces = product(id), strength = kProduct; break;
+    case Kind::function: case Kind::atan2: pieces = {{'*', call(id)}}; break;
+  }
+  std::size_t length = 0;
+  for (const Piece& p : pieces) length += p.s.size() + 3;
+  if (uses_[id] <= 1 && length <= kLongestInline) {
+    std::string s;
+    for (std::size_t i = 0; i < pieces.size(); ++i) s += joined(pieces[i].op, pieces[i].s, i == 0);
+    text_[id] = {s, strength};
+    return;
+  }
+  const std::string name = fresh();
+  body.text += assign(name, pieces, true);
+  text_[id] = {name, kAtom};
+}
+
+void Writer::load(const std::vector<NodeId>& ids, Statements& body) {
+  std::vector<std::pair<std::size_t, NodeId>> state, lead, parameters;
+  for (NodeId id : ids) {
+    const Node& n = g_.node(id);
+    if (n.kind == Kind::time) body.time = true;
+    if (n.kind == Kind::parameter) parameters.push_back({n.index, id});
+    const auto j = system_.variable(id);
+    if (!j) continue;
+    if (static_cast<int>(n.order) < structure_.d[*j]) state.push_back({motion_.place(*j, n.order), id});
+    else lead.push_back({*j, id});
+  }
+  const auto read = [&](std::vector<std::pair<std::size_t, NodeId>>& list, const char* array) {
+    std::sort(list.begin(), list.end());
+    for (const auto& [index, id] : list)
+      body.text += assign(names_.symbol(id), {{'+', std::string(array) + "[" + std::to_string(index) + "]"}}, true);
+    return !list.empty();
+  };
+  body.state = read(state, "state");
+  body.lead = read(lead, "lead");
+  body.parameters = read(parameters, "p");
+}
+
+Statements Writer::body(const Column& es, const std::vector<std::string>& targets, bool sparse) {
+  Statements body;
+  text_.clear();
+  uses_.clear();
+  next_ = 0;
+  const std::vector<NodeId> ids = reachable(es);
+  for (Expr e : es) ++uses_[e.id];
+  for (NodeId id : ids)
+    for (const Term& t : g_.summands(id))
+      uses_[t.node] += g_.node(id).kind == Kind::product ? bases(g_.rational(t.weight)) : 1;
+  load(ids, body);
+  for (NodeId id : ids) write(id, body);
+  for (std::size_t i = 0; i < es.size(); ++i)
+    if (!sparse || !is_zero(es[i])) body.text += assign(targets[i], {{'+', text_.at(es[i].id).s}}, false);
+  return body;
+}
+
+}  // namespace anholon::emit

@@ -1,0 +1,417 @@
+#!/usr/bin/env python3
+"""Compiles and runs the C and Python that `anholon derive --format c|python` writes, and compares them with the program.
+
+    check_generated.py path/to/anholon                some shipped models, and models made to be awkward
+    check_generated.py path/to/anholon --only disc    models whose name contains `disc`
+    check_generated.py path/to/anholon --form appell  from the equations of another form
+
+At the initial state the leading derivatives must be those of `anholon evaluate`, the hidden constraints must vanish, the
+jacobian must be the change of the residual; both languages must agree anywhere; and a Runge-Kutta method must follow
+`anholon simulate`. A sign flipped in the generated text must be noticed. With ANHOLON_LONG=1: all shipped models.
+Needs a C compiler, cc; NumPy for the half that is about Python.
+"""
+
+import argparse
+import contextlib
+import ctypes
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import types
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+ROOT = Path(__file__).resolve().parents[2]
+SHIPPED = ["disc", "luo-zhao-example-2", "snakeboard", "rheonomic-order-1", "second-order-linear", "fourbar",
+           "mass-depends-on-velocity", "falling-chain", "appell-hamel"]  # fmt: skip
+FLAGS = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"]
+SAME = 1e-10  # relative, of two ways to compute the same
+MOTION = 1e-8  # of the Runge-Kutta method with its step, against the Taylor series
+STEPS = {"rattleback": 800}  # its Euler angles turn fast
+DOUBLE = ctypes.POINTER(ctypes.c_double)
+
+AWKWARD = {
+    # What C, Python and the generated text use themselves, as names; a title that would end a comment.
+    "names": r'''
+title = "*/ /* \"\"\" \\ ??/ $x$ \u2028 \u202e end"
+coordinates = ["x", "x_1", "int", "p", "state", "w1", "w2"]
+[parameters]
+np = 1.5
+D = 2
+i = 0.5
+lead = "np + D^2/3"
+out = "lead*i"
+EOF = 3
+_m = { value = "out + pi", doc = "*/ said of a \"mass\"" }
+def = 1
+double = "sqrt(2)"
+exp_ = 0.3
+[[particle]]
+name = "a"
+mass = "np"
+position = ["x", "x_1", "int"]
+[[particle]]
+name = "b"
+mass = "_m"
+position = ["p + i*sin(w2)", "state*exp_", "w1"]
+[[particle]]
+name = "c"
+mass = "def*double"
+position = ["w2", "D*w1 + EOF*cos(w2)", "x*p"]
+[[constraint]]
+name = "lambda"
+equation = "x' = sin(w1)*x_1'"
+[[constraint]]
+name = "while"
+equation = "ex*(p' + lead*w1') + ey*(state' - int') = 0*ez"
+[initial]
+x = 1
+x_1 = 0.3
+int = 0.2
+p = 2
+state = 0.1
+w1 = 0.7
+w2 = 0.4
+"w1'" = 0.3
+"w2'" = 0.2
+"x_1'" = 1
+''',
+    "free": '''
+coordinates = ["x"]
+[[particle]]
+name = "a"
+mass = "2"
+position = ["x", "0", "0"]
+[[force]]
+name = "f"
+on = "a"
+vector = ["-x^3", "0", "0"]
+[initial]
+x = 1
+''',
+    "redundant": '''
+coordinates = ["x", "y"]
+[parameters]
+m = 2
+[[particle]]
+name = "bead"
+mass = "m"
+position = ["x", "y", "0"]
+[[constraint]]
+name = "edge"
+equation = "y' = x"
+[[constraint]]
+name = "twice"
+equation = "2*y' = 2*x"
+[initial]
+x = 1
+"x'" = 1
+''',
+    # Newton's method has to iterate.
+    "nonlinear": '''
+coordinates = ["x", "y"]
+[[particle]]
+name = "a"
+mass = "2"
+position = ["x", "y", "0"]
+[[force]]
+name = "f"
+on = "a"
+vector = ["-x - 0.1*x''^3 - y''", "1 - 0.2*sinh(x'' + y'')", "0"]
+[initial]
+x = 3
+"y'" = 1
+''',
+    # Every elementary function, roots and powers, large and small numbers.
+    "functions": '''
+coordinates = ["x", "y", "z"]
+[parameters]
+m = 1
+large = 1e30
+small = 1.25e-20
+third = "1/3"
+[[particle]]
+name = "a"
+mass = "m + 0.1*cosh(x)^2"
+position = ["x", "y*(1 + tan(x/5))", "z + exp(-y)"]
+[[force]]
+name = "f"
+on = "a"
+vector = ["abs(x) + sign(y)*asin(x/4) + acos(x/5) + atan(y) + sinh(z/7) + atanh(x/9)",
+          "tanh(y) + asinh(z) + acosh(2 + x) + log(3 + y) + atan2(y - 2, x - 3) + pi*(1 + x^2)^(1/3)",
+          "(2 + y)^(-5/2) + (1 + x^2)^(3/2) + (1 + z^2)^(-1/2) + x^7/(1 + y^2)^6 + large*x/(large + third) + (small*z^2 + 2/7)^third - 12345678/1000003*t/(1 + x^4)"]
+[[constraint]]
+name = "roll"
+equation = "z' = x*y' + abs(y)*t"
+[initial]
+x = 0.4
+y = -0.3
+z = 0.2
+"x'" = 0.3
+"y'" = -0.5
+''',
+}  # fmt: skip
+
+
+class Failure(Exception):
+    pass
+
+
+def run(arguments, **more):
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=600, cwd=ROOT, **more)
+    if done.returncode != 0:
+        raise Failure(f"{' '.join(map(str, arguments))}: exit {done.returncode}: {(done.stderr or done.stdout)[:600]}")
+    return done.stdout
+
+
+def same(values, reference, what, tolerance=SAME, floor=1e-3):
+    values, reference = [float(v) for v in values], [float(v) for v in reference]
+    scale = max([floor, *map(abs, reference)])
+    for i, (v, r) in enumerate(zip(values, reference, strict=True)):
+        if not abs(v - r) <= tolerance * scale:
+            raise Failure(f"{what}[{i}] is {v!r}, not {r!r}")
+
+
+class Compiled:
+    """The generated C, called by the names of its functions."""
+
+    def __init__(self, text, name, folder, number):
+        source = folder / f"{name}{number}.c"
+        source.write_text(text, encoding="utf-8")
+        run(["cc", *FLAGS, "-shared", "-fPIC", "-o", source.with_suffix(".so"), source, "-lm"])
+        self.library = ctypes.CDLL(str(source.with_suffix(".so")))
+        self.prefix = "".join(c if c.isalnum() else "_" for c in name)
+        self.state_names, self.lead_names = self.names("state_names"), self.names("lead_names")
+        self.parameter_names = self.names("parameter_names")
+        self.p = (ctypes.c_double * (len(self.parameter_names) + 1))()
+        self.call("defaults", None, self.p)
+
+    def names(self, table):
+        listed = ctypes.cast(getattr(self.library, f"{self.prefix}_{table}"), ctypes.POINTER(ctypes.c_char_p))
+        names = []
+        while listed[len(names)] is not None:
+            names.append(listed[len(names)].decode())
+        return names
+
+    def call(self, function, t, *arrays):
+        f = getattr(self.library, f"{self.prefix}_{function}")
+        arrays = [ctypes.cast(a, DOUBLE) for a in arrays]
+        return f(*arrays) if t is None else f(ctypes.c_double(t), *arrays)
+
+    @staticmethod
+    def array(values):
+        return (ctypes.c_double * max(1, len(values)))(*values)
+
+    def out(self, function, size, t, *arrays):
+        result = self.array([0.0] * size)
+        self.call(function, t, *map(self.array, arrays), self.p, result)
+        return list(result)[:size]
+
+    def solved(self, function, size, t, state):
+        result = self.array([0.0] * size)
+        status = self.call(function, t, self.array(state), self.p, result)
+        if status != 0:
+            raise Failure(f"{function} returns {status}")
+        return list(result)[:size]
+
+
+class Point:
+    """A state of the motion with its leading derivatives, from `evaluate` or from a row of `simulate`."""
+
+    def __init__(self, t, known):
+        self.t, self.known = t, known
+
+    @classmethod
+    def evaluated(cls, program, path, *options):
+        answer = json.loads(run([program, "evaluate", path, "--json", *options]))
+        multipliers = {f"lambda.{name}": value for name, value in answer["lambda"].items()}
+        return cls(answer["t"], answer["state"] | answer["derivatives"] | multipliers)
+
+    @classmethod
+    def later(cls, program, path, t):
+        motion = json.loads(run([program, "simulate", path, "--json", "--quiet", "--tolerance", "1e-15", "--at", repr(t)]))
+        row = dict(zip(motion["columns"], motion["rows"][0]))
+        return cls(row["t"], row)
+
+    def __getitem__(self, names):
+        return [self.known[name] for name in names]
+
+
+def off(values, by):
+    """Another state nearby, the same in every run."""
+    return [v + by * (((7 * i) % 5) - 2) / 3 for i, v in enumerate(values)]
+
+
+def check_c(c, points, hidden_count):
+    for point in points:
+        t, state, lead = point.t, point[c.state_names], point[c.lead_names]
+        n = len(lead)
+        same(c.solved("leading", n, t, state), lead, f"C leading at {t}")
+        same(c.out("hidden", hidden_count, t, state), [0] * hidden_count, f"C hidden at {t}", SAME, floor=1)
+    # The jacobian, against differences of the residual at a state that satisfies nothing.
+    state, lead = off(state, 0.01), off(lead, 0.1)
+    jacobian = c.out("jacobian", n * n, t, state, lead)
+    for j in range(n):
+        up, down = list(lead), list(lead)
+        up[j] += 1e-4
+        down[j] -= 1e-4
+        plus, minus = c.out("residual", n, t, state, up), c.out("residual", n, t, state, down)
+        difference = [(a - b) / 2e-4 for a, b in zip(plus, minus)]
+        same(jacobian[j::n], difference, f"C jacobian column {j}", 1e-6)
+    rate = c.solved("rhs", len(state), t, state)
+    solution = dict(zip(c.state_names, state)) | dict(zip(c.lead_names, c.solved("leading", n, t, state)))
+    same(rate, [solution[k + "'"] for k in c.state_names], "C rhs", 0)
+
+
+def check_python(module, c, points, hidden_count):
+    for point in reversed(points):
+        t, state, lead = point.t, point[module.STATE], point[module.LEAD]
+        n = len(lead)
+        same(module.leading(t, state), lead, f"Python leading at {t}")
+        same(module.hidden(t, state), [0] * hidden_count, f"Python hidden at {t}", SAME, floor=1)
+    same([module.T0, *module.START], [t, *state], "Python START", 1e-15)
+    states = numpy.array([state, off(state, 0.01), off(state, -0.02)]).T
+    leads = numpy.array([lead, off(lead, 0.1), off(lead, -0.3)]).T
+    times = numpy.array([t, t + 0.1, t - 0.2])
+    many = [module.residual(times, states, leads), module.jacobian(times, states, leads), module.hidden(times, states)]
+    for k in range(3):
+        at = times[k], states[:, k], leads[:, k]
+        one = [module.residual(*at), module.jacobian(*at), module.hidden(*at[:2])]
+        for a, b, what in zip(one, many, ("residual", "jacobian", "hidden")):
+            same(a.ravel(), b[..., k].ravel(), f"Python {what} of many", 1e-14, floor=1)
+        same(one[0], c.out("residual", n, *at), "residual in Python and C", 1e-13, floor=1)
+        same(one[1].ravel(), c.out("jacobian", n * n, *at), "jacobian in Python and C", 1e-13)
+        same(one[2], c.out("hidden", hidden_count, *at[:2]), "hidden in Python and C", 1e-13, floor=1)
+    same(module.rhs(t, state), c.solved("rhs", len(state), t, state), "rhs in Python and C")
+    same(module.DEFAULTS, list(c.p)[:-1], "DEFAULTS in Python and C", 1e-15)
+
+
+def check_motion(c, points, steps):
+    """Runge and Kutta with the generated right side, from the first point to the second."""
+    t, y, h = points[0].t, points[0][c.state_names], (points[1].t - points[0].t) / steps
+    f = lambda t, y: c.solved("rhs", len(y), t, y)  # noqa: E731
+    for k in range(steps):
+        s = t + k * h
+        k1 = f(s, y)
+        k2 = f(s + h / 2, [a + h / 2 * b for a, b in zip(y, k1)])
+        k3 = f(s + h / 2, [a + h / 2 * b for a, b in zip(y, k2)])
+        k4 = f(s + h, [a + h * b for a, b in zip(y, k3)])
+        y = [a + h / 6 * (b1 + 2 * b2 + 2 * b3 + b4) for a, b1, b2, b3, b4 in zip(y, k1, k2, k3, k4)]
+    same(y, points[1][c.state_names], "motion", MOTION)
+
+
+def check_set(c, program, name, path):
+    """A parameter changed in p, and those that depend on it, are as with --set."""
+    c.p[c.parameter_names.index(name)] *= 1.25
+    changed = c.p[c.parameter_names.index(name)]
+    c.call("derived", None, c.p)
+    point = Point.evaluated(program, path, "--set", f"{name}={changed!r}")
+    lead = point[c.lead_names]
+    same(c.solved("leading", len(lead), point.t, point[c.state_names]), lead, f"C with another {name}")
+
+
+def check_refusal(c, module, state, status):
+    """Where there is no answer, C says why, and Python raises or gives nan."""
+    got = c.call("leading", 0.0, c.array(state), c.p, c.array([0.0] * len(c.lead_names)))
+    if got != status:
+        raise Failure(f"leading at {state} returns {got}, not {status}")
+    if module is None:
+        return
+    try:
+        with numpy.errstate(all="ignore"):
+            refused = numpy.isnan(module.leading(0.0, state)).all() and status == 3
+    except numpy.linalg.LinAlgError:
+        refused = status == 1
+    if not refused:
+        raise Failure(f"Python leading at {state} gives an answer")
+
+
+def flipped(text):
+    """The last sum of the residual, where nothing cancels any more, with a sign turned."""
+    c = "#include" in text
+    begin = text.rindex("_residual(double t") if c else text.index("def residual")
+    end = text.index("\n}\n" if c else "return out", begin)
+    at = max(text.rfind(" + ", begin, end), text.rfind(" - ", begin, end))
+    return text[:at] + (" - " if text[at + 1] == "+" else " + ") + text[at + 3 :]
+
+
+def module_of(text):
+    module = types.ModuleType("generated")
+    exec(compile(text, "generated.py", "exec"), module.__dict__)
+    return module
+
+
+def check(program, form, name, path, folder):
+    points = [Point.evaluated(program, path)]
+    points.append(Point.later(program, path, points[0].t + 0.0625))
+    text = run([program, "derive", path, "--format", "c", "--form", form])
+    prefix = name.replace("-", "_")
+    hidden = int(text.split(f"{prefix}_HIDDEN = ")[1].split(",")[0])
+    c = Compiled(text, name, folder, 0)
+    check_c(c, points, hidden)
+    check_motion(c, points, STEPS.get(name, 100))
+    module = None
+    mutants = [lambda: check_c(Compiled(flipped(text), name, folder, 1), points, hidden)]
+    if numpy:
+        source = run([program, "derive", path, "--format", "python", "--form", form])
+        with numpy.errstate(all="raise"):
+            module = module_of(source)
+            check_python(module, c, points, hidden)
+        mutants.append(lambda: check_python(module_of(flipped(source)), c, points, hidden))
+    for mutant in mutants:
+        try:
+            with numpy.errstate(all="ignore") if numpy else contextlib.nullcontext():
+                mutant()
+        except Failure:
+            continue
+        raise Failure("a flipped sign in the residual was not noticed")
+    if name == "appell-hamel":  # its constraint has no hold on a body at rest
+        check_refusal(c, module, [0, 0, 10, 0, 0, 0], 1)
+    if name == "functions":  # the logarithm of a negative number
+        check_refusal(c, module, [0.4, -10, 0.2, 0.3, -0.5, -0.2], 3)
+    if name == "names":
+        check_set(c, program, "np", path)
+    return f"{name:32} {len(c.state_names):3} states, {len(c.lead_names):3} unknowns, {len(text):7} characters"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--only", default="")
+    parser.add_argument("--form", default="routh")
+    arguments = parser.parse_args()
+    program = os.path.abspath(arguments.program)
+    if numpy is None:
+        print("NumPy is not there: the generated Python is NOT checked (Debian: python3-numpy)")
+    shipped = {path.stem: path for path in sorted((ROOT / "models").rglob("*.toml"))}
+    names = list(shipped) if os.environ.get("ANHOLON_LONG") == "1" else SHIPPED
+    failed = 0
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        cases = [(name, shipped[name]) for name in names]
+        for name, text in AWKWARD.items():
+            path = folder / f"{name}.toml"
+            path.write_text(text, encoding="utf-8")
+            cases.append((name, path))
+        cases = [case for case in cases if arguments.only in case[0]]
+        with ThreadPoolExecutor(min(4, os.cpu_count() or 1)) as pool:
+            jobs = [(name, pool.submit(check, program, arguments.form, name, path, folder)) for name, path in cases]
+            for name, job in jobs:
+                try:
+                    print(job.result(), "ok", flush=True)
+                except (Failure, KeyError, ValueError, ArithmeticError, SyntaxError) as error:
+                    failed += 1
+                    print(f"{name:32} FAIL {type(error).__name__}: {error}", flush=True)
+    print(f"{len(cases) - failed} of {len(cases)} models pass")
+    return 1 if failed or not cases else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
