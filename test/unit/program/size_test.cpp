@@ -1,4 +1,5 @@
-// The stepping program of an n-link chain grows linearly: common parts exist once, and no matrix is ever inverted symbolically.
+// Equations and stepping program of an n-link chain grow linearly: common parts exist once, and no matrix is ever inverted
+// symbolically.
 #include <gtest/gtest.h>
 
 #include "program/program.h"
@@ -33,6 +34,23 @@ TEST(ProgramSize, OfAChainIsLinearInItsLinks) {
   expect_line("functions", at16.functions, at32.functions, at64.functions);
   expect_line("tainted", at16.tainted, at32.tainted, at64.tainted);
   EXPECT_LE(at64.slots, 64U * 60) << "sixty operations per link and its equation are plenty";
+}
+
+std::size_t nodes_of_chain(int n) {
+  const auto model = test::model_of(test::chain_text(n));
+  const Equations e = find_formulation("routh")->equations(mechanics(*model));
+  Column both = e.left;
+  both.insert(both.end(), e.right.begin(), e.right.end());
+  return reachable(both).size();
+}
+
+TEST(EquationSize, OfAChainIsLinearInItsLinks) {
+  const std::size_t at8 = nodes_of_chain(8), at16 = nodes_of_chain(16), at32 = nodes_of_chain(32), at64 = nodes_of_chain(64);
+  // The shortest sums are written out: the first increment is a little smaller than the line.
+  const double first = static_cast<double>(at16 - at8), second = static_cast<double>(at32 - at16), third = static_cast<double>(at64 - at32);
+  EXPECT_NEAR(second / first, 2, 0.15) << at8 << ", " << at16 << ", " << at32;
+  EXPECT_NEAR(third / second, 2, 0.05) << at16 << ", " << at32 << ", " << at64;
+  EXPECT_LE(at64, 64U * 32) << "some thirty nodes per link and its equation are plenty";
 }
 
 }  // namespace
