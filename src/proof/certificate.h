@@ -18,7 +18,7 @@
 //               [4, "product", [2, "2"], [3, "-1/2"]], node, exponent
 //               [5, "sin", 4],                         any function of Certificate::functions()
 //               [6, "atan2", 4, 5]],                   y, x
-//     "claims": [{"kind": "agree", "a": "routh", "b": "nielsen", "component": "x",
+//     "claims": [{"kind": "differ", "a": "routh", "b": "nielsen", "component": "x",
 //                 "left": 5, "right": [[3, 4]],
 //                 "witness": {"values": [[0, "1/3"]], "enclosed": [[1, "1/2", "1/1000"]], "equations": [6]}}] }
 #pragma once
