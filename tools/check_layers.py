@@ -30,9 +30,9 @@ NOT = {
     "report": {"jit", "integrate"},
 }
 
-# The checker of certificates must not trust the simplifier: it sees numbers and the format only.
-VERIFY = re.compile(r"^proof/verify\w*\.(h|cpp)$")
-VERIFY_MAY = re.compile(r"^(base/|numeric/|proof/certificate|proof/verify)")
+# The checker of certificates must not trust the simplifier: it and the format see numbers only.
+VERIFY = re.compile(r"^proof/(verify|certificate)\w*\.(h|cpp)$")
+VERIFY_MAY = re.compile(r"^(base/|numeric/|proof/(certificate|verify)\w*\.h$)")
 
 # header pattern, what we call it, layers that may include it, number of files that may
 OUTSIDE = [
@@ -47,7 +47,8 @@ OUTSIDE = [
     (r"sqlite3\.h$", "SQLite", {"result"}, 1),
     (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate"}, None),
     (r"pybind11/", "pybind11", {"python"}, None),
-    (r"(gtest|gmock|benchmark|nlohmann)/", "a test library", set(), None),
+    (r"nlohmann/", "nlohmann-json", {"proof"}, 1),
+    (r"(gtest|gmock|benchmark)/", "a test library", set(), None),
 ]  # fmt: skip
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -118,6 +119,7 @@ GOOD = {
     "src/spec/read.cpp": '#include <toml++/toml.h>\n#include "model/model.h"\n',
     "src/report/html.cpp": '#include "result/columns.h"\n#include "program/program.h"\n',
     "src/proof/verify.cpp": '#include "numeric/ball.h"\n#include "proof/certificate.h"\n',
+    "src/proof/certificate.cpp": '#include <nlohmann/json.hpp>\n#include "base/json.h"\n',
     "src/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "run/run.h"\n',
     "include/anholon/api.h": "#include <vector>\n",
 }
@@ -129,6 +131,10 @@ MUTANTS = {
     "report does not integrate": ("src/report/bad.cpp", '#include "integrate/taylor.h"\n'),
     "program does not prove": ("src/program/bad.cpp", '#include "proof/certificate.h"\n'),
     "verify trusts the simplifier": ("src/proof/verify.cpp", '#include "expr/graph.h"\n'),
+    "verify trusts the prover": ("src/proof/verify_zero.cpp", '#include "proof/prove.h"\n'),
+    "the format trusts the simplifier": ("src/proof/certificate.h", '#include "expr/expr.h"\n'),
+    "nlohmann-json twice": ("src/proof/again.cpp", "#include <nlohmann/json.hpp>\n"),
+    "nlohmann-json elsewhere": ("src/cli/bad.cpp", "#include <nlohmann/json.hpp>\n"),
     "unknown layer": ("src/util/bad.h", "\n"),
     "no layer in the path": ("src/expr/bad.cpp", '#include "graph.h"\n'),
     "FLINT too high": ("src/model/bad.h", "#include <flint/fmpq.h>\n"),

@@ -35,8 +35,9 @@ void JsonWriter::separate() {
   if (!first_) out_ += ',';
   first_ = false;
   // Arrays of numbers stay on one line; objects get a line per entry.
-  if (open_.back() == '{') out_ += "\n" + std::string(2 * open_.size(), ' ');
+  if (open_.back() == '{' || new_line_) out_ += "\n" + std::string(2 * open_.size(), ' ');
   else if (out_.back() == ',') out_ += ' ';
+  new_line_ = false;
 }
 
 JsonWriter& JsonWriter::open(char bracket) {

@@ -17,6 +17,7 @@ class JsonWriter {
   JsonWriter& integer(long long value) { return raw(std::to_string(value)); }
   JsonWriter& boolean(bool value) { return raw(value ? "true" : "false"); }
   JsonWriter& null() { return raw("null"); }
+  JsonWriter& new_line() { new_line_ = true; return *this; }  // before the next element of an array
   const std::string& text() const { return out_; }
 
  private:
@@ -25,7 +26,7 @@ class JsonWriter {
   void separate();
   std::string out_;
   std::vector<char> open_;
-  bool first_ = true, after_key_ = false;
+  bool first_ = true, after_key_ = false, new_line_ = false;
 };
 
 std::string json_escape(std::string_view s);

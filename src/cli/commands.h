@@ -21,6 +21,8 @@ struct Options {
   std::string t, to, every, tolerance;
   int digits = 16;
   int order = 0;
+  int points = 6;
+  unsigned long long seed = 0;
   bool json = false, quiet = false;
 };
 
@@ -30,5 +32,6 @@ int evaluate(const Options& o);
 int simulate(const Options& o);
 int forms(const Options& o);
 int models(const Options& o);
+int verify(const Options& o);
 
 }  // namespace anholon::cli

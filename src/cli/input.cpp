@@ -34,7 +34,7 @@ static std::string first_line_value(const std::string& text, const std::string& 
   return {};
 }
 
-static bool read_file(const fs::path& path, std::string& text, std::string* why = nullptr) {
+bool read_file(const fs::path& path, std::string& text, std::string* why) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     if (why) *why = "it is a directory";

@@ -1,5 +1,6 @@
 // From the words of a command line to a model, a state and exact numbers.
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -17,6 +18,8 @@ struct Reader {
   std::shared_ptr<const Model> model;
   SourceText source;
 };
+// The bytes of a file; false, and why, if it cannot be read.
+bool read_file(const std::filesystem::path& path, std::string& text, std::string* why = nullptr);
 // Reads the model named by the options (a path, or the name of a shipped model) with --set applied.
 Reader read(const Options& o);
 // The form asked for: --form, else [simulate] form, else Routh's; throws if it does not apply.

@@ -23,8 +23,8 @@ void rescue_model(Options& o) {
     }
 }
 
-constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "forms", "models"};
-constexpr const char* kLater[] = {"new", "compare", "prove", "verify", "sweep", "linearize", "report", "plot", "render", "convert", "fmt"};
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "forms", "models", "verify"};
+constexpr const char* kLater[] = {"new", "compare", "prove", "sweep", "linearize", "report", "plot", "render", "convert", "fmt"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {
@@ -118,6 +118,15 @@ int run(int argc, char** argv) {
   CLI::App* forms_command = model_command("forms", "the catalogue of forms, and which apply to a model", cli::forms,
                                           "Example: anholon forms disc");
   parameters(forms_command);
+  CLI::App* verify_command = app.add_subcommand("verify", "check a certificate, independently of what wrote it");
+  verify_command->footer("Exit status: 0 all claims confirmed, 1 one is contradicted or could not be checked, 2 not a certificate.\n"
+                         "Example: anholon verify disc.json");
+  verify_command->add_option("CERTIFICATE", o.model, "a certificate file")->required();
+  verify_command->add_flag("--json", o.json, "JSON on the standard output");
+  verify_command->add_flag("--quiet", o.quiet, "the exit status only");
+  verify_command->add_option("--points", o.points, "random points modulo each of two primes (default 6)")->type_name("N")->check(CLI::Range(1, 1000));
+  verify_command->add_option("--seed", o.seed, "another choice of points (default 0)")->type_name("N");
+  verify_command->callback([&command] { command = cli::verify; });
   model_command("models", "the shipped models; with a name, the text of one", cli::models, "Example: anholon models disc");
 
   try {
@@ -129,7 +138,7 @@ int run(int argc, char** argv) {
     return kBadInput;
   }
   rescue_model(o);
-  const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models"));
+  const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models") || verify_command->parsed());
   if (needs_model && o.model.empty()) {
     std::fputs("error: no model is named\nhint: a path to a .toml file, or a name that `anholon models` lists\n", stderr);
     return kBadInput;

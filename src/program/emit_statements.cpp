@@ -184,7 +184,9 @@ void Writer::write(NodeId id, Statements& body) {
     case Kind::time: case Kind::jet: case Kind::parameter: case Kind::multiplier:
       text_[id] = {names_.symbol(id), kAtom};
       return;
-    case Kind::mass: case Kind::given: ANHOLON_ASSERT(!"a frozen mass or unknown function in a program"); return;
+    case Kind::mass: case Kind::given: case Kind::quasi:
+      ANHOLON_ASSERT(!"a frozen mass, unknown function or quasi-velocity in a program");
+      return;
     case Kind::sum: pieces = sum(id), strength = kSum; break;
     case Kind::product: pieces = product(id), strength = kProduct; break;
     case Kind::function: case Kind::atan2: pieces = {{'*', call(id)}}; break;

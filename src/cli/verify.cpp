@@ -1,0 +1,126 @@
+// anholon verify: a certificate is read and checked by src/proof/verify.h, and nothing else of the house.
+#include "proof/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "base/json.h"
+#include "cli/input.h"
+
+namespace anholon::cli {
+
+namespace {
+
+using Claim = Certificate::Claim;
+
+struct Count {
+  int all = 0, confirmed = 0;
+  double log2_chance = -INFINITY;  // of the weakest claim
+};
+
+// "8.7e-19" from its binary logarithm, which may be far below what a double holds; rounded upwards.
+std::string chance_text(double log2_chance) {
+  if (!std::isfinite(log2_chance)) return "0";
+  const double decimal = log2_chance * 0.30102999566398120;
+  double exponent = std::floor(decimal), mantissa = std::ceil(std::pow(10, decimal - exponent) * 10) / 10;
+  if (mantissa >= 10) mantissa /= 10, exponent += 1;
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.1fe%.0f", mantissa, exponent);
+  return buffer;
+}
+
+std::string describe(const Claim& c) {
+  switch (c.kind) {
+    case Certificate::ClaimKind::agree: return c.a + " and " + c.b + " agree";
+    case Certificate::ClaimKind::differ: return c.a + " and " + c.b + " differ";
+    case Certificate::ClaimKind::kernel: return "kernel of the constraints";
+    case Certificate::ClaimKind::pivot: return "pivots";
+  }
+  return "";
+}
+
+void text(const Certificate& c, const Verification& v) {
+  std::printf("certificate of %s, written by %s\n", c.model.c_str(), c.program.c_str());
+  if (!c.source_hash.empty()) std::printf("source: %s\n", c.source_hash.c_str());
+  if (!c.hypotheses.empty()) std::printf("\nhypotheses\n");
+  for (const std::string& h : c.hypotheses) std::printf("  %s\n", h.c_str());
+  if (!c.meaning.empty()) std::printf("\nmeaning\n  %s\n", c.meaning.c_str());
+
+  // In the order of the certificate.
+  std::vector<std::pair<std::string, Count>> table;
+  std::map<std::string, std::size_t> row;
+  double weakest = -INFINITY;
+  std::size_t longest = 0;
+  for (std::size_t k = 0; k < c.claims.size(); ++k) {
+    const std::string what = describe(c.claims[k]);
+    const auto [it, is_new] = row.emplace(what, table.size());
+    if (is_new) table.push_back({what, {}});
+    Count& count = table[it->second].second;
+    ++count.all;
+    longest = std::max(longest, what.size());
+    const ClaimFinding& f = v.claims[k];
+    if (f.finding != Finding::confirmed) continue;
+    ++count.confirmed;
+    if (!f.proved) weakest = std::max(weakest, f.log2_chance);
+  }
+  std::printf("\nclaims\n");
+  for (const auto& [what, count] : table)
+    std::printf("  %-*s  %d of %d confirmed\n", static_cast<int>(longest), what.c_str(), count.confirmed, count.all);
+  for (std::size_t k = 0; k < c.claims.size(); ++k) {
+    const ClaimFinding& f = v.claims[k];
+    if (f.finding == Finding::confirmed) continue;
+    std::printf("%s: %s, component %s: %s\n", name(f.finding), describe(c.claims[k]).c_str(), c.claims[k].component.c_str(), f.detail.c_str());
+  }
+  std::printf("\n");
+  if (c.claims.empty()) std::printf("nothing is claimed\n");
+  else if (!v.all_confirmed()) std::printf("NOT verified\n");
+  else if (!std::isfinite(weakest)) std::printf("verified\n");
+  else std::printf("verified; the chance that a false claim passed is below %s for each\n", chance_text(weakest).c_str());
+  if (v.all_confirmed()) std::printf("The forms agree given the same energy, forces and constraints; the model itself is not proved.\n");
+}
+
+void json(const Certificate& c, const Verification& v) {
+  JsonWriter j;
+  j.open_object().key("model").string(c.model).key("program").string(c.program).key("source_hash").string(c.source_hash);
+  j.key("hypotheses").open_array();
+  for (const std::string& h : c.hypotheses) j.string(h);
+  j.close().key("meaning").string(c.meaning).key("verified").boolean(v.all_confirmed());
+  j.key("claims").open_array();
+  for (std::size_t k = 0; k < c.claims.size(); ++k) {
+    const Claim& claim = c.claims[k];
+    const ClaimFinding& f = v.claims[k];
+    j.open_object().key("kind").string(name(claim.kind)).key("a").string(claim.a).key("b").string(claim.b);
+    j.key("component").string(claim.component).key("finding").string(name(f.finding));
+    if (f.finding == Finding::confirmed) j.key("chance").number(f.proved ? "0" : chance_text(f.log2_chance));
+    if (!f.detail.empty()) j.key("detail").string(f.detail);
+    j.close();
+  }
+  j.close().close();
+  std::printf("%s\n", j.text().c_str());
+}
+
+}  // namespace
+
+int verify(const Options& o) {
+  SourceText source{o.model, {}};
+  std::string why;
+  if (!read_file(o.model, source.text, &why))
+    throw UsageError{"error: cannot read the certificate '" + o.model + "': " + why + "\nhint: `anholon prove MODEL -o FILE` writes one\n"};
+  Certificate certificate;
+  try {
+    certificate = read_certificate(source.text);
+  } catch (const Failure& f) {
+    throw UsageError{"error: " + o.model + ": " + f.what() + "\n"};
+  }
+  VerifyOptions options;
+  options.points = o.points;
+  options.seed = o.seed;
+  const Verification v = anholon::verify(certificate, options);
+  if (o.json) json(certificate, v);
+  else if (!o.quiet) text(certificate, v);
+  return v.all_confirmed() ? kOk : kStopped;
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,165 @@
+#include "numeric/ball.h"
+
+#include <limits>
+
+namespace anholon {
+
+slong& Ball::working_bits() {
+  thread_local slong bits = 128;
+  return bits;
+}
+
+namespace {
+
+// GMP's fractions as FLINT's.
+struct Fraction {
+  fmpq_t v;
+  explicit Fraction(const Rational& r) { fmpq_init(v), fmpq_set_mpq(v, r.get_mpq_t()); }
+  ~Fraction() { fmpq_clear(v); }
+  Fraction(const Fraction&) = delete;
+  Fraction& operator=(const Fraction&) = delete;
+};
+
+// A dyadic number of an exponent within this many bits is written out.
+constexpr slong kLargestExponent = 1 << 20;
+
+std::optional<Rational> exactly(const arf_t x) {
+  if (!arf_is_finite(x)) return std::nullopt;
+  if (arf_is_zero(x)) return Rational(0);
+  if (arf_cmpabs_2exp_si(x, kLargestExponent) > 0 || arf_cmpabs_2exp_si(x, -kLargestExponent) < 0) return std::nullopt;
+  fmpq_t q;
+  fmpq_init(q);
+  arf_get_fmpq(q, x);
+  Rational r;
+  fmpq_get_mpq(r.get_mpq_t(), q);
+  fmpq_clear(q);
+  return r;
+}
+
+}  // namespace
+
+Ball::Ball(const Multi& x) {
+  arb_init(v_);
+  arf_set_mpfr(arb_midref(v_), x.raw());
+  if (!arf_is_finite(arb_midref(v_))) arb_indeterminate(v_);
+}
+
+Ball::Ball(long double x) {
+  mpfr_t exact;
+  mpfr_init2(exact, std::numeric_limits<long double>::digits);
+  mpfr_set_ld(exact, x, MPFR_RNDN);
+  arb_init(v_);
+  arf_set_mpfr(arb_midref(v_), exact);
+  mpfr_clear(exact);
+  if (!arf_is_finite(arb_midref(v_))) arb_indeterminate(v_);
+}
+
+Ball::Ball(const Rational& r) {
+  arb_init(v_);
+  arb_set_fmpq(v_, Fraction(r).v, working_bits());
+}
+
+Ball::Ball(const Rational& midpoint, const Rational& radius) : Ball(midpoint) {
+  const Ball r(::abs(radius));
+  arb_add_error(v_, r.v_);
+}
+
+Ball Ball::pi() {
+  Ball r;
+  arb_const_pi(r.v_, working_bits());
+  return r;
+}
+
+Ball Ball::unknown() {
+  Ball r;
+  arb_indeterminate(r.v_);
+  return r;
+}
+
+bool Ball::contains(const Rational& r) const { return arb_contains_fmpq(v_, Fraction(r).v) != 0; }
+
+Ball Ball::center() const {
+  Ball r;
+  arb_get_mid_arb(r.v_, v_);
+  return r;
+}
+
+Ball Ball::spread() const {
+  Ball r;
+  mag_set(arb_radref(r.v_), arb_radref(v_));
+  return r;
+}
+
+std::optional<Rational> Ball::midpoint() const { return exactly(arb_midref(v_)); }
+
+std::optional<Rational> Ball::radius() const {
+  arf_t r;
+  arf_init_set_mag_shallow(r, arb_radref(v_));
+  return exactly(r);
+}
+
+Multi Ball::midpoint_multi() const {
+  Multi r;
+  arf_get_mpfr(r.raw(), arb_midref(v_), MPFR_RNDN);
+  return r;
+}
+
+std::string Ball::midpoint_text(int digits) const {
+  char* text = arf_get_str(arb_midref(v_), digits);
+  std::string r(text);
+  flint_free(text);
+  return r;
+}
+
+std::string Ball::radius_text() const {
+  if (mag_is_zero(arb_radref(v_))) return "0";
+  mpfr_t r;
+  mpfr_init2(r, 64);
+  arf_t exact;
+  arf_init_set_mag_shallow(exact, arb_radref(v_));
+  arf_get_mpfr(r, exact, MPFR_RNDU);
+  char* text = nullptr;
+  mpfr_asprintf(&text, "%.2RUe", r);
+  std::string s(text);
+  mpfr_free_str(text);
+  mpfr_clear(r);
+  return s;
+}
+
+Ball& Ball::settle() {
+  if (COEFF_IS_MPZ(ARF_EXP(arb_midref(v_))) && !arf_is_special(arb_midref(v_))) arb_indeterminate(v_);
+  if (COEFF_IS_MPZ(MAG_EXP(arb_radref(v_))) && !mag_is_special(arb_radref(v_))) arb_indeterminate(v_);
+  return *this;
+}
+
+Ball abs(const Ball& x) {
+  Ball r;
+  arb_abs(r.raw(), x.raw());
+  if (!arb_contains_zero(x.raw())) return r;
+  // arb_abs of a ball around 0 reaches below 0.
+  arb_nonnegative_part(r.raw(), r.raw());
+  return r;
+}
+
+Ball sign(const Ball& x) {
+  if (!x.is_finite()) return Ball::unknown();
+  Ball r;
+  arb_sgn(r.raw(), x.raw());
+  return r;
+}
+
+Ball pow(const Ball& x, const Rational& exponent) {
+  Ball r;
+  arb_pow_fmpq(r.raw(), x.raw(), Fraction(exponent).v, Ball::working_bits());
+  return std::move(r.settle());
+}
+
+Ball atan2(const Ball& y, const Ball& x) {
+  // Not defined at the origin, where Arb says 0.
+  if (y.contains_zero() && x.contains_zero()) return Ball::unknown();
+  Ball r;
+  arb_atan2(r.raw(), y.raw(), x.raw(), Ball::working_bits());
+  return std::move(r.settle());
+}
+
+}  // namespace anholon

@@ -1,0 +1,113 @@
+// A real number known to lie in a ball: midpoint and radius (Arb), with the operators of a built-in
+// number. Whatever lies in the operands, the result of the exact operation lies in the result.
+//
+// Every operation works with the precision of its thread, set by BallScope. Where an operation is not
+// defined on the whole ball the result is not finite; comparisons are therefore questions
+// (contains_zero), never operators.
+#pragma once
+#include <arb.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "numeric/multi.h"
+#include "numeric/rational.h"
+
+namespace anholon {
+
+class Ball {
+ public:
+  static slong& working_bits();
+
+  Ball() { arb_init(v_); }
+  Ball(int i) { arb_init(v_); arb_set_si(v_, i); }
+  explicit Ball(long double x);      // exactly x
+  explicit Ball(const Multi& x);     // exactly x
+  explicit Ball(const Rational& r);  // encloses r; exactly r if the precision allows
+  Ball(const Rational& midpoint, const Rational& radius);  // encloses [midpoint - radius, midpoint + radius]
+  Ball(const Ball& o) { arb_init(v_); arb_set(v_, o.v_); }
+  Ball(Ball&& o) noexcept { arb_init(v_); arb_swap(v_, o.v_); }
+  Ball& operator=(const Ball& o) { arb_set(v_, o.v_); return *this; }
+  Ball& operator=(Ball&& o) noexcept { arb_swap(v_, o.v_); return *this; }
+  ~Ball() { arb_clear(v_); }
+
+  Ball& operator+=(const Ball& o) { arb_add(v_, v_, o.v_, working_bits()); return settle(); }
+  Ball& operator-=(const Ball& o) { arb_sub(v_, v_, o.v_, working_bits()); return settle(); }
+  Ball& operator*=(const Ball& o) { arb_mul(v_, v_, o.v_, working_bits()); return settle(); }
+  Ball& operator/=(const Ball& o) { arb_div(v_, v_, o.v_, working_bits()); return settle(); }
+  friend Ball operator+(Ball a, const Ball& b) { return std::move(a += b); }
+  friend Ball operator-(Ball a, const Ball& b) { return std::move(a -= b); }
+  friend Ball operator*(Ball a, const Ball& b) { return std::move(a *= b); }
+  friend Ball operator/(Ball a, const Ball& b) { return std::move(a /= b); }
+  friend Ball operator-(Ball a) { arb_neg(a.v_, a.v_); return a; }
+
+  static Ball pi();
+  // Everything: what is known of a value that is not defined.
+  static Ball unknown();
+
+  bool is_finite() const { return arb_is_finite(v_) != 0; }
+  bool is_zero() const { return arb_is_zero(v_) != 0; }  // exactly the number 0
+  bool contains_zero() const { return arb_contains_zero(v_) != 0; }
+  bool is_positive() const { return arb_is_positive(v_) != 0; }
+  bool contains(const Rational& r) const;
+  bool contains_inside(const Ball& o) const { return arb_contains_interior(v_, o.v_) != 0; }  // o in the open ball
+  bool overlaps(const Ball& o) const { return arb_overlaps(v_, o.v_) != 0; }
+
+  // The midpoint as a ball of radius 0, and the ball around 0 of the same radius.
+  Ball center() const;
+  Ball spread() const;
+  // Exactly, as dyadic numbers; nothing if not finite or of an absurd exponent.
+  std::optional<Rational> midpoint() const;
+  std::optional<Rational> radius() const;
+  Multi midpoint_multi() const;  // rounded to Multi's precision
+  // "0.3333", "1.2e-30"; the radius is rounded upwards.
+  std::string midpoint_text(int digits = 16) const;
+  std::string radius_text() const;
+
+  // Balls whose exponent outgrows a machine word become unknown, so that no chain of operations can
+  // exhaust the memory.
+  Ball& settle();
+  arb_ptr raw() { return v_; }
+  arb_srcptr raw() const { return v_; }
+
+ private:
+  arb_t v_;
+};
+
+// Sets the working precision of balls in the current thread for its lifetime.
+class BallScope {
+ public:
+  explicit BallScope(slong bits) : before_(std::exchange(Ball::working_bits(), bits)) {}
+  ~BallScope() { Ball::working_bits() = before_; }
+  BallScope(const BallScope&) = delete;
+  BallScope& operator=(const BallScope&) = delete;
+
+ private:
+  slong before_;
+};
+
+#define ANHOLON_BALL_FUNCTION(name, arb_name) \
+  inline Ball name(const Ball& x) { Ball r; arb_name(r.raw(), x.raw(), Ball::working_bits()); return std::move(r.settle()); }
+ANHOLON_BALL_FUNCTION(sin, arb_sin)
+ANHOLON_BALL_FUNCTION(cos, arb_cos)
+ANHOLON_BALL_FUNCTION(tan, arb_tan)
+ANHOLON_BALL_FUNCTION(asin, arb_asin)
+ANHOLON_BALL_FUNCTION(acos, arb_acos)
+ANHOLON_BALL_FUNCTION(atan, arb_atan)
+ANHOLON_BALL_FUNCTION(sinh, arb_sinh)
+ANHOLON_BALL_FUNCTION(cosh, arb_cosh)
+ANHOLON_BALL_FUNCTION(tanh, arb_tanh)
+ANHOLON_BALL_FUNCTION(asinh, arb_asinh)
+ANHOLON_BALL_FUNCTION(acosh, arb_acosh)
+ANHOLON_BALL_FUNCTION(atanh, arb_atanh)
+ANHOLON_BALL_FUNCTION(exp, arb_exp)
+ANHOLON_BALL_FUNCTION(log, arb_log)
+ANHOLON_BALL_FUNCTION(sqrt, arb_sqrt)
+#undef ANHOLON_BALL_FUNCTION
+Ball abs(const Ball& x);
+Ball sign(const Ball& x);                      // -1, 0, 1, or a ball that holds what is possible
+Ball pow(const Ball& x, const Rational& exponent);  // of a negative number: integer exponents only
+Ball atan2(const Ball& y, const Ball& x);      // in (-pi, pi]
+
+}  // namespace anholon

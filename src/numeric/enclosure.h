@@ -1,0 +1,38 @@
+// Proof that a square system f(x) = 0 has exactly one root in a box: the interval Newton operator of
+// Krawczyk,
+//
+//     K(X) = m − Y f(m) + (I − Y f'(X)) (X − m),      m the center of X, Y near f'(m)^-1.
+//
+// Every root in X lies in K(X), and if K(X) lies in the interior of X there is exactly one. A double
+// root is never proved.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "numeric/ball.h"
+#include "numeric/linear.h"
+#include "numeric/number.h"
+
+namespace anholon {
+
+using Box = std::vector<Ball>;
+
+struct SquareSystem {
+  std::size_t size = 0;
+  std::function<std::vector<Ball>(const Box&)> value;     // `size` values
+  std::function<std::vector<Ball>(const Box&)> jacobian;  // row-major, encloses all derivatives on the box
+};
+
+// K(X), or nothing where the derivatives are not defined on all of X, or no inverse is at hand.
+std::optional<Box> krawczyk(const SquareSystem& f, const Box& box);
+
+// If there is exactly one root in the box: a box around it, as small as the precision allows.
+std::optional<Box> prove_root(const SquareSystem& f, const Box& box);
+
+// A box that is proved to hold exactly one root, near an approximate one.
+std::optional<Box> enclose_root(const SquareSystem& f, const std::vector<Multi>& approximate);
+std::optional<Box> enclose_root(const SquareSystem& f, const std::vector<long double>& approximate);
+
+}  // namespace anholon

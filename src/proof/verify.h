@@ -1,0 +1,45 @@
+// The checker of certificates. It sees numbers and the format only: no expression is simplified, and
+// nothing of the program that wrote the certificate is used.
+//
+// What a verified certificate means: the forms named in it are equivalent, given the same kinetic
+// energy, forces and constraints. Each equation of one form is that combination of the equations of the
+// other, as an identity in all symbols. It does not prove that the model describes the machine, nor that
+// its energy, forces, constraints and the postulate on reactions were put into the nodes correctly.
+//
+// "zero" is tested modulo primes at random points (verify_modular.h), with a bound on the chance that a
+// false claim passes; the points depend on the text of the certificate, so none can be made to fit
+// them, and on the seed. At some real points the difference is enclosed as well: a claim is called
+// contradicted only if a real point shows it. "not zero" is a proof: at a rational point, or at the
+// one root, shown to exist, of the witness's equations.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "proof/certificate.h"
+
+namespace anholon {
+
+struct VerifyOptions {
+  int points = 6;  // modulo each of two primes; more where signs have to be tried
+  std::uint64_t seed = 0;
+};
+
+enum class Finding : std::uint8_t { confirmed, contradicted, unchecked };
+const char* name(Finding f);
+
+struct ClaimFinding {
+  Finding finding = Finding::unchecked;
+  bool proved = false;     // confirmed without any chance
+  double log2_chance = 0;  // confirmed: log2 of a bound on the chance that it is false all the same
+  std::string detail;      // contradicted: the point and the value; unchecked: why
+};
+
+struct Verification {
+  std::vector<ClaimFinding> claims;  // as in the certificate
+  bool all_confirmed() const;        // and there is something to confirm
+};
+
+Verification verify(const Certificate& c, const VerifyOptions& options = {});
+
+}  // namespace anholon

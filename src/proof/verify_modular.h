@@ -1,0 +1,83 @@
+// Is an expression identically zero? Asked of a finite field: the nodes are evaluated modulo a prime
+// at random points, where a polynomial of degree d that is not zero vanishes with chance d/p at most.
+//
+// The primes are p = 2r + 1 with r prime, near 2^61, and all primes up to 47 are squares modulo p:
+//   - half the field are squares, −1 is none, and every square has one root that is itself a square.
+//     Taken as the square root, it is multiplicative, as the positive root is: √a √b = √(ab), √36 = 6.
+//     Odd roots are unique.
+//   - points (cos, sin) of the circle group stand for angles. Angles are flattened into Σ c·atom; each
+//     atom gets a random point for atom/q, q the common denominator, and the rest are powers and
+//     products, which is the addition theorem. Multiples of π/12 are exact. exp goes the same way,
+//     with a random square that is not 0 for each atom.
+//   - of log, asin, atan, … only this is used: equal arguments have equal values, the value of −u is
+//     that of an odd function, acos u = π/2 − asin u. sign and abs follow whether u is a square.
+// Every rule is true of the real functions, so what is identically zero only by the rules is zero, and
+// what is not zero is found out by chance 1 − d/p, except for branches: √(x²) is x at half of the
+// points, as for real x. Where roots may hide squares (no point was seen at which the radicand was
+// none), and for sign and abs, so many points are taken that each choice of signs has its turn.
+//
+// What is zero by no such rule (log(ab) = log a + log b) is called nonzero here; the caller asks real
+// numbers before he believes it.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "proof/certificate.h"
+
+namespace anholon::verification {
+
+// The operations left to a verification: a hostile certificate must not run for ever.
+class Work {
+ public:
+  bool spend(std::uint64_t n) { return (left_ -= n < left_ ? n : left_) > 0; }
+  bool done() const { return left_ == 0; }
+
+ private:
+  std::uint64_t left_ = 20'000'000'000;
+};
+
+inline constexpr std::array<std::uint64_t, 16> kPrimes = {
+    2305843009213057079, 2305843009178326439, 2305843009101690119, 2305843009045133879, 2305843009005485759, 2305843008934483079,
+    2305843008908132399, 2305843008817757639, 2305843008811413959, 2305843008787237079, 2305843008727893599, 2305843008716181359,
+    2305843008639951959, 2305843008563423159, 2305843008485267039, 2305843008405113999};
+
+// The field of p elements, 2^61 − 2^30 < p < 2^61.
+class Field {
+ public:
+  using Word = std::uint64_t;
+  explicit Field(Word p) : p_(p), c_((Word{1} << 61) - p) {}
+  Word prime() const { return p_; }
+  Word add(Word a, Word b) const { const Word s = a + b; return s >= p_ ? s - p_ : s; }
+  Word subtract(Word a, Word b) const { return a >= b ? a - b : a + p_ - b; }
+  Word negate(Word a) const { return a == 0 ? 0 : p_ - a; }
+  Word multiply(Word a, Word b) const {
+    const unsigned __int128 x = static_cast<unsigned __int128>(a) * b;
+    const unsigned __int128 y = static_cast<unsigned __int128>(static_cast<Word>(x >> 61)) * c_ + (static_cast<Word>(x) & kMask);
+    Word z = static_cast<Word>(y >> 61) * c_ + (static_cast<Word>(y) & kMask);
+    while (z >= p_) z -= p_;
+    return z;
+  }
+  Word power(Word a, Word exponent) const;
+  Word inverse(Word a) const { return power(a, p_ - 2); }  // of a ≠ 0
+  bool is_square(Word a) const { return a == 0 || power(a, (p_ - 1) / 2) == 1; }
+  std::optional<Word> from(const Rational& r) const;  // nothing if p divides the denominator
+
+ private:
+  static constexpr Word kMask = (Word{1} << 61) - 1;
+  Word p_, c_;
+};
+
+struct ModularFinding {
+  enum class Is : std::uint8_t { zero, nonzero, unknown } is = Is::unknown;
+  double log2_chance = 0;  // zero: log2 of a bound on the chance that it is not
+  std::string detail;      // unknown: why
+};
+
+// For each claim that says zero; `unknown` for the others.
+std::vector<ModularFinding> test_zero(const Certificate& c, const HashKey& key, int points, Work& work);
+
+}  // namespace anholon::verification

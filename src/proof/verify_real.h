@@ -1,0 +1,39 @@
+// The nodes of a certificate as real functions: enclosed by balls, with their derivatives.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "numeric/ball.h"
+#include "numeric/enclosure.h"
+#include "proof/certificate.h"
+
+namespace anholon::verification {
+
+// What some claims and equations need, in order.
+class RealProgram {
+ public:
+  using Index = Certificate::Index;
+  RealProgram(const Certificate& c, const std::vector<const Certificate::Claim*>& claims, const std::vector<Index>& others = {});
+
+  // Values of symbols by their index, those of nodes by number of node. A node that is not defined on
+  // all of the balls is not finite.
+  void evaluate(const std::vector<Ball>& symbols);
+  const Ball& value(Index node) const { return value_[local_[node]]; }
+  Ball difference(const Certificate::Claim& claim) const;
+
+  // The derivatives of `nodes` with respect to some symbols, row by row, after evaluate.
+  std::vector<Ball> jacobian(const std::vector<Index>& nodes, const std::vector<Index>& symbols) const;
+
+  const std::vector<Index>& symbols() const { return symbols_; }  // those that occur, ascending
+  std::size_t size() const { return nodes_.size(); }
+
+ private:
+  void add(Index node);
+  const Certificate& c_;
+  std::vector<std::uint32_t> local_;
+  std::vector<Index> nodes_, symbols_;
+  std::vector<Ball> value_;
+};
+
+}  // namespace anholon::verification
