@@ -1,0 +1,15 @@
+// Values of expressions as balls, and verified points on the manifold of the constraints.
+#pragma once
+#include <unordered_map>
+
+#include "numeric/enclosure.h"
+#include "expr/diff.h"
+
+namespace anholon {
+
+using BallPoint = std::unordered_map<NodeId, Ball>;  // symbol -> value
+
+// A value that is not defined on all of the balls is not finite. Every symbol of the expressions is in `at`.
+std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at);
+
+}  // namespace anholon

@@ -1,0 +1,142 @@
+#include "proof/prove.h"
+
+#include <algorithm>
+
+#include "expr/normal.h"
+#include "proof/witness.h"
+
+namespace anholon {
+
+const char* name(Verdict v) {
+  switch (v) {
+    case Verdict::proved: return "proved";
+    case Verdict::refuted: return "refuted";
+    case Verdict::unknown: return "unknown";
+  }
+  return "";
+}
+
+Expr Difference::expression() const {
+  std::vector<Expr> terms = {left};
+  for (const auto& [coefficient, term] : right) terms.push_back(-(coefficient * term));
+  return sum(terms);
+}
+
+namespace {
+
+// Zero by algebra, or not zero at a point; the point is looked for first where it is likely.
+void decide(Difference& d, const Elimination& e, const Model& model) {
+  const Expr x = d.expression();
+  if (proved_zero(x)) {
+    d.verdict = Verdict::proved;
+    return;
+  }
+  WitnessSearch search = find_witness(x, e, model);
+  d.detail = search.detail;
+  if (!search.witness) return;
+  d.witness = std::move(search.witness);
+  d.verdict = Verdict::refuted;
+}
+
+Verdict of_all(const std::vector<Difference>& list) {
+  Verdict v = Verdict::proved;
+  for (const Difference& d : list) {
+    if (d.verdict == Verdict::refuted) return Verdict::refuted;
+    if (d.verdict == Verdict::unknown) v = Verdict::unknown;
+  }
+  return v;
+}
+
+// Phi B = 0 on the manifold, and the solved constraints satisfied.
+void kernel_claims(const Mechanics& M, const Elimination& e, std::vector<Difference>& out) {
+  Graph& g = M.graph();
+  const Model& model = *M.model;
+  for (std::size_t k = 0; k < e.constraints.size(); ++k) {
+    const std::string& name = model.constraints[e.constraints[k]].name;
+    if (e.solved) {
+      out.push_back({name + " solved", e.on(e.phi[k]), {}, {}, {}, {}});
+      decide(out.back(), e, model);
+    }
+    const Column row = e.on(put_masses(model, M.Phi[e.constraints[k]]));
+    for (std::size_t a = 0; a < e.names.size(); ++a) {
+      Difference d{name + ", " + e.names[a], g.zero(), {}, {}, {}, {}};
+      for (std::size_t s = 0; s < row.size(); ++s)
+        if (!is_zero(row[s]) && !is_zero(e.g_by_u()[s][a])) d.right.push_back({-row[s], e.g_by_u()[s][a]});
+      decide(d, e, model);
+      out.push_back(std::move(d));
+    }
+  }
+}
+
+void pivot_claims(const Mechanics& M, const Elimination& e, std::vector<Difference>& out) {
+  for (Expr pivot : e.pivots()) {
+    const Expr p = e.on(pivot);
+    if (std::any_of(out.begin(), out.end(), [&](const Difference& d) { return d.left == p; })) continue;
+    Difference d{"pivot " + std::to_string(out.size() + 1), p, {}, {}, {}, {}};
+    WitnessSearch search = find_witness(p, e, *M.model);
+    d.witness = std::move(search.witness);
+    d.verdict = d.witness ? Verdict::proved : Verdict::unknown;
+    d.detail = search.detail;
+    out.push_back(std::move(d));
+  }
+}
+
+}  // namespace
+
+FormProof prove_form(const Mechanics& M, const Formulation& form, const Equations& equations, const Eliminations& eliminations) {
+  FormProof proof{&form, Verdict::unknown, {}};
+  const Model& model = *M.model;
+  const Column residual = equations.left - equations.right;
+  if (form.unknowns == Unknowns::multipliers) {
+    const Column routh = lagrange_operator(M) - right_side(M);
+    for (std::size_t a = 0; a < residual.size(); ++a) {
+      Difference d{model.coordinates[a].name, residual[a], {{M.graph().one(), routh[a]}}, {}, {}, {}};
+      decide(d, eliminations.coordinates, model);
+      proof.differences.push_back(std::move(d));
+    }
+  } else {
+    const Elimination& e = form.unknowns == Unknowns::quasi_velocities ? eliminations.quasi : eliminations.coordinates;
+    const Column a = e.on(lagrange_operator(M) - forces(M));
+    const bool along = residual.size() == M.q.size() && !e.constraints.empty();  // n equations: what they say along the constraints
+    const Column contracted = along ? e.contract(residual) : residual;
+    for (std::size_t nu = 0; nu < contracted.size(); ++nu) {
+      Difference d{e.names[nu], contracted[nu], {}, {}, {}, {}};
+      for (std::size_t s = 0; s < a.size(); ++s)
+        if (!is_zero(e.g_by_u()[s][nu])) d.right.push_back({e.g_by_u()[s][nu], a[s]});
+      decide(d, e, model);
+      proof.differences.push_back(std::move(d));
+    }
+  }
+  proof.verdict = of_all(proof.differences);
+  return proof;
+}
+
+Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const Eliminations& eliminations, const ProofOptions& options) {
+  Proof proof;
+  bool quasi = false;
+  for (const Formulation* form : forms) {
+    if (options.progress) options.progress(*form);
+    const bool by_quasi = form->unknowns == Unknowns::quasi_velocities;
+    quasi = quasi || by_quasi;
+    proof.forms.push_back(prove_form(M, *form, form->equations(M, by_quasi ? eliminations.quasi : eliminations.coordinates), eliminations));
+  }
+  for (const Elimination* e : {&eliminations.coordinates, &eliminations.quasi}) {
+    if (e->quasi && !quasi) continue;
+    kernel_claims(M, *e, proof.kernel);
+    pivot_claims(M, *e, proof.pivots);
+  }
+  return proof;
+}
+
+Verdict Proof::between(std::size_t a, std::size_t b) const {
+  const Verdict va = forms[a].verdict, vb = forms[b].verdict;
+  const bool tangents = of_all(kernel) == Verdict::proved;
+  const auto rests_on_tangents = [&](std::size_t i) { return forms[i].form->unknowns != Unknowns::multipliers; };
+  if (!tangents && (rests_on_tangents(a) || rests_on_tangents(b))) return Verdict::unknown;
+  if (va == Verdict::proved && vb == Verdict::proved) return Verdict::proved;
+  if (va == Verdict::refuted && vb == Verdict::proved) return Verdict::refuted;
+  if (va == Verdict::proved && vb == Verdict::refuted) return Verdict::refuted;
+  return Verdict::unknown;
+}
+
+}  // namespace anholon

@@ -1,0 +1,82 @@
+// Proofs that forms of the equations of motion agree, and that others do not (theory: proof).
+//
+// Every form is compared with Routh's equations a = E - G - N [L 2.7]:
+//   with multipliers      each residual is that of Routh's equations, identically in all derivatives;
+//   without               each residual is sum_s B_s,nu a_s, where B spans the kernel of dphi/dq^(m) on the manifold of the
+//                         constraints. N drops out, and B^T a = 0 says that a is a combination of constraint rows: the
+//                         multipliers exist, and the form has the solutions of Routh's equations.
+// Two forms that agree with Routh's agree with each other; if one does and the other does not, they differ.
+//
+// proved   the difference is zero in the exact algebra (expr/normal.h): for all values of all symbols
+// refuted  a point of the manifold with rational free coordinates, where a ball that holds the difference excludes zero
+// unknown  neither was found within the limits; with the size of the difference at some points
+//
+// What is proved: the forms follow from each other given the same T, forces and constraints. Nothing is said about whether
+// these describe the machine.
+#pragma once
+#include <functional>
+#include <optional>
+
+#include "formulation/formulation.h"
+#include "proof/certificate.h"
+
+namespace anholon {
+
+enum class Verdict : std::uint8_t { proved, refuted, unknown };
+const char* name(Verdict v);
+
+// A point of the manifold: rational values of the free symbols, and boxes proved to hold the one root of the equations.
+struct WitnessPoint {
+  std::vector<std::pair<Expr, Rational>> values;
+  struct Enclosed {
+    Expr symbol;
+    Rational midpoint, radius;
+  };
+  std::vector<Enclosed> enclosed;
+  Column equations;
+};
+
+// left - sum coefficient * term, of which zero is claimed, or the contrary.
+struct Difference {
+  std::string component;
+  Expr left;
+  std::vector<std::pair<Expr, Expr>> right;
+  Verdict verdict = Verdict::unknown;
+  std::optional<WitnessPoint> witness;  // refuted
+  std::string detail;                   // the value at the witness; the bound that was reached
+
+  Expr expression() const;
+};
+
+
+struct FormProof {
+  const Formulation* form = nullptr;
+  Verdict verdict = Verdict::unknown;
+  std::vector<Difference> differences;
+};
+
+struct Proof {
+  std::vector<FormProof> forms;      // against Routh's equations
+  std::vector<Difference> kernel;    // that B spans the kernel, and that the solved constraints satisfy the constraints
+  std::vector<Difference> pivots;    // that what was divided by is not zero identically
+  Verdict between(std::size_t a, std::size_t b) const;
+};
+
+struct Eliminations {
+  Elimination coordinates, quasi;
+};
+
+struct ProofOptions {
+  std::function<void(const Formulation&)> progress;
+};
+
+// One form's equations, given as such, against Routh's.
+FormProof prove_form(const Mechanics& M, const Formulation& form, const Equations& equations, const Eliminations& eliminations);
+Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const Eliminations& eliminations,
+            const ProofOptions& options = {});
+
+// Everything that was found, for a checker that trusts nobody.
+Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations, const std::string& program,
+                        const std::string& source_hash);
+
+}  // namespace anholon

@@ -1,0 +1,205 @@
+#include "proof/witness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proof/enclose.h"
+#include "tape/point.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr int kPoints = 12;          // tried before the search ends
+constexpr slong kFirstBits = 64, kMostBits = 1024;
+constexpr int kNewtonSteps = 60;
+
+// A rational in (1/5, 8/5) that depends on the symbol and the attempt.
+Rational arbitrary(const Node& n, int attempt) {
+  std::uint64_t h = static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order + static_cast<std::uint64_t>(attempt) * 7919;
+  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
+  const unsigned long step = (h >> 40) % 89;
+  Rational r(13 + step, 64);
+  r.canonicalize();
+  return n.kind == Kind::jet && n.order > 0 && (h & 1) ? Rational(-r) : r;
+}
+
+// Parameters of the model that have a rational value.
+std::vector<std::optional<Rational>> rational_parameters(const Model& model) {
+  Graph& g = *model.graph;
+  std::vector<std::optional<Rational>> values;
+  for (const Parameter& p : model.parameters) {
+    // A value may refer to parameters before or after it: put in what is known until nothing changes.
+    Expr e = p.value;
+    for (std::size_t k = 0; k <= model.parameters.size() && !is_number(e) && !symbols({&e, 1}).empty(); ++k)
+      e = substitute({&e, 1}, [&](NodeId id) {
+        const Node& n = g.node(id);
+        return n.kind == Kind::parameter ? model.parameters[n.index].value : Expr{};
+      })[0];
+    values.push_back(is_number(e) ? std::optional<Rational>(number_value(e)) : std::nullopt);
+  }
+  return values;
+}
+
+class Search {
+ public:
+  Search(Expr e, const Elimination& elimination, const Model& model)
+      : e_(e), g_(*e.graph), parameters_(rational_parameters(model)) {
+    if (elimination.solved || elimination.phi.empty()) return;
+    // The unsolved constraints, and their derivatives where q^(m+1) occurs.
+    equations_ = elimination.phi;
+    unknowns_ = elimination.D(jets(model, elimination.m));
+    const Column next = elimination.D(jets(model, elimination.m + 1));
+    bool higher = false;
+    for (NodeId id : symbols({&e, 1}))
+      for (Expr s : next) higher = higher || s.id == id;
+    if (!higher) return;
+    const Column rates = total_derivative(elimination.phi);
+    equations_.insert(equations_.end(), rates.begin(), rates.end());
+    unknowns_.insert(unknowns_.end(), next.begin(), next.end());
+  }
+
+  WitnessSearch run() {
+    WitnessSearch out;
+    std::string largest;
+    int tried = 0;
+    for (int attempt = 0; attempt < kPoints; ++attempt) {
+      WitnessPoint w;
+      if (!place(attempt, w)) continue;
+      std::string value;
+      const int found = excludes_zero(w, value);
+      if (found < 0) continue;
+      ++tried;
+      if (found > 0) {
+        out.detail = value;
+        out.witness = std::move(w);
+        return out;
+      }
+      largest = value;
+    }
+    out.detail = tried == 0 ? "no point of the manifold was found" : "zero to " + largest + " at " + std::to_string(tried) + " points";
+    return out;
+  }
+
+ private:
+  bool is_unknown(NodeId id) const {
+    return std::any_of(unknowns_.begin(), unknowns_.end(), [&](Expr u) { return u.id == id; });
+  }
+
+  // Values of the free symbols, and a verified root for the others.
+  bool place(int attempt, WitnessPoint& w) {
+    Column all = equations_;
+    all.push_back(e_);
+    std::unordered_map<NodeId, Rational> value;
+    for (NodeId id : symbols(all)) {
+      if (is_unknown(id)) continue;
+      const Node& n = g_.node(id);
+      const bool given = n.kind == Kind::parameter && n.index < parameters_.size() && parameters_[n.index];
+      const Rational r = given ? *parameters_[n.index] : arbitrary(n, attempt);
+      value.emplace(id, r);
+      w.values.push_back({Expr{&g_, id}, r});
+    }
+    if (unknowns_.empty()) return true;
+    std::vector<long double> root;
+    if (!approximate(value, attempt, root)) return false;
+    SquareSystem system;
+    system.size = unknowns_.size();
+    const auto at = [&](const Box& box) {
+      BallPoint point;
+      for (const auto& [id, r] : value) point.emplace(id, Ball(r));
+      for (std::size_t i = 0; i < unknowns_.size(); ++i) point.emplace(unknowns_[i].id, box[i]);
+      return point;
+    };
+    Column derivatives;
+    for (Expr f : equations_) {
+      const Column row = gradient(f, unknowns_);
+      derivatives.insert(derivatives.end(), row.begin(), row.end());
+    }
+    system.value = [&](const Box& box) { return enclose(equations_, at(box)); };
+    system.jacobian = [&](const Box& box) { return enclose(derivatives, at(box)); };
+    const BallScope precision(256);
+    const std::optional<Box> box = enclose_root(system, root);
+    if (!box) return false;
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+      const auto middle = (*box)[i].midpoint(), radius = (*box)[i].radius();
+      if (!middle || !radius) return false;
+      w.enclosed.push_back({unknowns_[i], *middle, *radius > 0 ? *radius : Rational(1, mpz_class(1) << 200)});
+    }
+    w.equations = equations_;
+    return true;
+  }
+
+  bool approximate(const std::unordered_map<NodeId, Rational>& value, int attempt, std::vector<long double>& root) {
+    std::vector<double> x;
+    for (Expr u : unknowns_) x.push_back(arbitrary(g_.node(u.id), attempt).get_d());
+    Rows jacobian;
+    for (Expr f : equations_) jacobian.push_back(gradient(f, unknowns_));
+    for (int k = 0; k < kNewtonSteps; ++k) {
+      PointValues at([&](const Node& n) {
+        for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+          const Node& u = g_.node(unknowns_[i].id);
+          if (u.kind == n.kind && u.index == n.index && u.order == n.order) return x[i];
+        }
+        for (const auto& [id, r] : value) {
+          const Node& s = g_.node(id);
+          if (s.kind == n.kind && s.index == n.index && s.order == n.order) return r.get_d();
+        }
+        return 0.0;
+      });
+      Matrix<double> j(x.size(), x.size());
+      std::vector<double> f, step;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        f.push_back(at(equations_[i]));
+        for (std::size_t c = 0; c < x.size(); ++c) j(i, c) = at(jacobian[i][c]);
+      }
+      Lu<double> lu;
+      if (!lu.factor(j)) return false;
+      lu.solve(f, step);
+      double largest = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        x[i] -= step[i];
+        largest = std::max(largest, std::abs(step[i]) / (1 + std::abs(x[i])));
+      }
+      if (!(largest < 1e8)) return false;
+      if (largest < 1e-14) {
+        root.assign(x.begin(), x.end());
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // 1 if a ball around e excludes zero, 0 if not at any precision, -1 if e has no value there.
+  int excludes_zero(const WitnessPoint& w, std::string& value) {
+    for (slong bits = kFirstBits; bits <= kMostBits; bits *= 4) {
+      const BallScope precision(bits);
+      BallPoint at;
+      for (const auto& [symbol, r] : w.values) at.emplace(symbol.id, Ball(r));
+      for (const WitnessPoint::Enclosed& x : w.enclosed) at.emplace(x.symbol.id, Ball(x.midpoint, x.radius));
+      const Ball b = enclose({&e_, 1}, at)[0];
+      if (!b.is_finite()) {
+        if (bits * 4 > kMostBits) return -1;
+        continue;
+      }
+      if (!b.contains_zero()) {
+        value = b.midpoint_text(6);
+        return 1;
+      }
+      value = b.radius_text();
+    }
+    return 0;
+  }
+
+  Expr e_;
+  Graph& g_;
+  std::vector<std::optional<Rational>> parameters_;
+  Column equations_, unknowns_;
+};
+
+}  // namespace
+
+WitnessSearch find_witness(Expr e, const Elimination& elimination, const Model& model) {
+  return Search(e, elimination, model).run();
+}
+
+}  // namespace anholon

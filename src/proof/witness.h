@@ -1,0 +1,16 @@
+// A point of the manifold of the constraints at which an expression is not zero.
+#pragma once
+#include "proof/prove.h"
+
+namespace anholon {
+
+struct WitnessSearch {
+  std::optional<WitnessPoint> witness;
+  std::string detail;  // the value there; or how small the expression is at the points that were tried
+};
+
+// Free symbols get pseudo-random rational values, parameters those of the model where these are rational. Constraints that the
+// elimination has not solved are satisfied by a verified root in the dependent derivatives.
+WitnessSearch find_witness(Expr e, const Elimination& elimination, const Model& model);
+
+}  // namespace anholon
