@@ -41,12 +41,19 @@ std::string describe(const Claim& c) {
   return "";
 }
 
+// The words of a stranger, without what would steer the terminal.
+std::string plain(std::string s) {
+  for (char& ch : s)
+    if (static_cast<unsigned char>(ch) < 0x20 || ch == 0x7f) ch = '?';
+  return s;
+}
+
 void text(const Certificate& c, const Verification& v) {
-  std::printf("certificate of %s, written by %s\n", c.model.c_str(), c.program.c_str());
-  if (!c.source_hash.empty()) std::printf("source: %s\n", c.source_hash.c_str());
+  std::printf("certificate of %s, written by %s\n", plain(c.model).c_str(), plain(c.program).c_str());
+  if (!c.source_hash.empty()) std::printf("source: %s\n", plain(c.source_hash).c_str());
   if (!c.hypotheses.empty()) std::printf("\nhypotheses\n");
-  for (const std::string& h : c.hypotheses) std::printf("  %s\n", h.c_str());
-  if (!c.meaning.empty()) std::printf("\nmeaning\n  %s\n", c.meaning.c_str());
+  for (const std::string& h : c.hypotheses) std::printf("  %s\n", plain(h).c_str());
+  if (!c.meaning.empty()) std::printf("\nmeaning\n  %s\n", plain(c.meaning).c_str());
 
   // In the order of the certificate.
   std::vector<std::pair<std::string, Count>> table;
@@ -54,7 +61,7 @@ void text(const Certificate& c, const Verification& v) {
   double weakest = -INFINITY;
   std::size_t longest = 0;
   for (std::size_t k = 0; k < c.claims.size(); ++k) {
-    const std::string what = describe(c.claims[k]);
+    const std::string what = plain(describe(c.claims[k]));
     const auto [it, is_new] = row.emplace(what, table.size());
     if (is_new) table.push_back({what, {}});
     Count& count = table[it->second].second;
@@ -71,7 +78,7 @@ void text(const Certificate& c, const Verification& v) {
   for (std::size_t k = 0; k < c.claims.size(); ++k) {
     const ClaimFinding& f = v.claims[k];
     if (f.finding == Finding::confirmed) continue;
-    std::printf("%s: %s, component %s: %s\n", name(f.finding), describe(c.claims[k]).c_str(), c.claims[k].component.c_str(), f.detail.c_str());
+    std::printf("%s\n", plain(std::string(name(f.finding)) + ": " + describe(c.claims[k]) + ", component " + c.claims[k].component + ": " + f.detail).c_str());
   }
   std::printf("\n");
   if (c.claims.empty()) std::printf("nothing is claimed\n");

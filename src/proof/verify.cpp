@@ -23,7 +23,11 @@ constexpr int kRealAttempts = 64;   // to find them, or one that contradicts
 constexpr std::array<slong, 2> kRealBits = {128, 512};
 constexpr std::size_t kMostEnclosed = 64;
 
-std::string text(const Ball& b) { return b.midpoint_text(8) + " ± " + b.radius_text(); }
+std::string text(const Ball& b) {
+  // A radius that the digits shown do not resolve is left out.
+  const bool negligible = !(b.center() + Ball(1 << 30) * b.spread()).contains_zero();
+  return b.midpoint_text(8) + (negligible || b.radius() == Rational(0) ? "" : " ± " + b.radius_text());
+}
 
 std::string text(const Certificate& c, const std::vector<Index>& symbols, const std::vector<Rational>& values) {
   std::string s;

@@ -565,10 +565,10 @@ Program::Drawn Program::draw(const Field& f, const Reduced& r, const HashKey& ke
           if (name == "tanh" && twice_cosh == 0) return Drawn::undefined;
           value = name == "exp" ? e : name == "sinh" ? f.multiply(half, twice_sinh) : name == "cosh" ? f.multiply(half, twice_cosh)
                                                                                                      : f.multiply(twice_sinh, f.inverse(twice_cosh));
-        } else if (name == "abs") {
-          value = f.multiply(u, sign(u));
-        } else if (name == "sign") {
-          value = sign(u);
+        } else if (name == "abs" || name == "sign") {
+          const Certificate::Node& of = *steps_[s.operands[0]].node;
+          const Word plus = of.operation != Operation::number ? sign(u) : of.value == 0 ? Word{0} : of.value > 0 ? Word{1} : f.prime() - 1;
+          value = name == "abs" ? f.multiply(u, plus) : plus;
         } else if (is_odd(name) || name == "acos") {
           static const auto& all = Certificate::functions();
           static const auto asin_name = static_cast<std::uint64_t>(std::find(all.begin(), all.end(), "asin") - all.begin());

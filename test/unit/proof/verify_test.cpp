@@ -169,6 +169,9 @@ const std::vector<Law>& laws() {
       {"tanh of exp",
        [](Expr x, Expr, Expr) { return tanh(x) - (exp(Rational(2) * x) - 1) / (exp(Rational(2) * x) + 1); },
        [](Expr x, Expr, Expr) { return tanh(x) - (exp(x) - 1) / (exp(x) + 1); }},
+      {"signs of numbers",
+       [](Expr x, Expr, Expr) { return abs(x.b->number(-53)) - 53 + (sign(x.b->number(Rational(-59, 61))) + 1); },
+       [](Expr x, Expr, Expr) { return abs(x.b->number(-53)) + 53; }},
       {"functions of equal arguments",
        [](Expr x, Expr y, Expr) { return log(pow(x + y, 2)) - log(pow(x, 2) + pow(y, 2) + Rational(2) * (x * y)); },
        [](Expr x, Expr y, Expr) { return log(pow(x + y, 2)) - log(pow(x, 2) + pow(y, 2) + x * y); }},
@@ -339,7 +342,7 @@ TEST(Verify, HostileCertificatesEnd) {
   for (const int kind : {0, 1, 2, 3}) {
     Builder b;
     Expr x = b.symbol("x");
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < 400; ++i) {
       if (kind == 0) x = pow(x, 1'000'000'000);
       if (kind == 1) x = x + sin(Rational(1, 1'000'003 + i) * x);
       if (kind == 2 && i < 40) x = sqrt(x + 1);
