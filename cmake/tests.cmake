@@ -87,6 +87,7 @@ anholon_script_test(golden_selftest tools/golden.py --self-test)
 
 if(TARGET anholon)
   anholon_script_test(readme tools/readme.py --program $<TARGET_FILE:anholon>)
+  anholon_script_test(mathml tools/check_mathml.py --program $<TARGET_FILE:anholon>)
 
   file(GLOB cases CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/test/golden"
     "${PROJECT_SOURCE_DIR}/test/golden/good/*.md" "${PROJECT_SOURCE_DIR}/test/golden/bad/*.md")

@@ -53,11 +53,10 @@ class Normalizer {
     NormalForm out;
     out.generators = meanings();
     for (const auto& [node, k] : sine_) out.angles.push_back({static_cast<std::size_t>(k), static_cast<std::size_t>(cosine_.at(node))});
-    if (f.den.one()) {
+    if (f.den.one() || f.num.length() > kDividedTerms || f.den.length() > kDividedTerms) {
       out.numerator = printed(f.num);
       out.denominator = printed(f.den);
     } else {
-      printed(f.num), printed(f.den);  // no divisor of polynomials that nobody will read
       const Poly divisor = common(f.num, f.den);
       out.numerator = quotient(f.num, divisor).terms();
       out.denominator = quotient(f.den, divisor).terms();
@@ -67,6 +66,7 @@ class Normalizer {
 
  private:
   static constexpr long kPrintedTerms = 2000;
+  static constexpr long kDividedTerms = 300;  // longer fractions are not brought to lowest terms
 
   static Monomials printed(const Poly& p) {
     if (p.length() > kPrintedTerms) throw TooLarge{};

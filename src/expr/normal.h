@@ -28,7 +28,7 @@ using Monomials = std::vector<Monomial>;
 struct NormalForm {
   std::vector<Expr> generators;                              // what each stands for
   std::vector<std::pair<std::size_t, std::size_t>> angles;   // generators that are sine and cosine of one angle
-  Monomials numerator, denominator;                          // in lowest terms
+  Monomials numerator, denominator;                          // in lowest terms, if short
 };
 
 // What is left as the user wrote it: sines of sums (and tangents), denominators, named subexpressions.
