@@ -89,6 +89,7 @@ if(TARGET anholon)
   anholon_script_test(readme tools/readme.py --program $<TARGET_FILE:anholon>)
   anholon_script_test(generated test/backends/check_generated.py $<TARGET_FILE:anholon>)
   set_tests_properties(script.generated PROPERTIES LABELS "script;long")
+  anholon_script_test(mathml tools/check_mathml.py --program $<TARGET_FILE:anholon>)
 
   file(GLOB cases CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/test/golden"
     "${PROJECT_SOURCE_DIR}/test/golden/good/*.md" "${PROJECT_SOURCE_DIR}/test/golden/bad/*.md")

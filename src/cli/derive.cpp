@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "cli/input.h"
 #include "cli/show.h"
+#include "expr/arrange.h"
 #include "expr/normal.h"
 #include "program/emit.h"
 
@@ -11,16 +12,11 @@ namespace anholon::cli {
 
 namespace {
 
-// The expression or its expanded form, as asked for; by default the shorter one in print.
+// As the user wrote it (none), written out (full), or as a person would write it: never longer than these.
 Column arranged(const Column& es, const SymbolNames& names, const std::string& expand) {
   if (expand == "none") return es;
   Column out;
-  for (Expr e : es) {
-    const std::optional<Expr> full = expanded(e);
-    if (!full) out.push_back(e);
-    else if (expand == "full") out.push_back(*full);
-    else out.push_back(print(*full, names, Format::text).size() <= print(e, names, Format::text).size() ? *full : e);
-  }
+  for (Expr e : es) out.push_back(expand == "full" ? expanded(e).value_or(e) : anholon::arranged(e, names));
   return out;
 }
 
@@ -56,10 +52,10 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
 int derive(const Options& o) {
   const Reader in = read(o);
   const Model& model = *in.model;
-  if (o.format != "text" && o.format != "latex" && o.format != "c" && o.format != "python")
-    throw UsageError{"error: --format: '" + o.format + "' is not written yet\nhint: text or latex, --json for both; c or python\n"};
-  if (o.expand != "auto" && o.expand != "none" && o.expand != "full")
-    throw UsageError{"error: --expand: '" + o.expand + "'\nhint: auto, none or full\n"};
+  if (o.format != "text" && o.format != "latex" && o.format != "mathml" && o.format != "c" && o.format != "python")
+    throw UsageError{"error: --format: '" + o.format + "' is not written yet\nhint: text, latex or mathml, --json for text and latex; c or python\n"};
+  if (o.expand != "auto" && o.expand != "none" && o.expand != "paper" && o.expand != "full")
+    throw UsageError{"error: --expand: '" + o.expand + "'\nhint: auto, none, paper or full\n"};
   const Mechanics m = mechanics(model);
   const Formulation& f = form(o, model, &m);
   if (!o.show.empty()) {
@@ -105,13 +101,23 @@ int derive(const Options& o) {
     std::printf("%s\n", j.text().c_str());
     return kOk;
   }
-  const Format format = o.format == "latex" ? Format::latex : Format::text;
+  const Format format = o.format == "latex" ? Format::latex : o.format == "mathml" ? Format::mathml : Format::text;
   const auto l = texts(left, format), r = texts(right, format), c = texts(phi, format);
   if (format == Format::latex) {
     std::printf("%% %s: %s, %s\n\\begin{align}\n", model.title.c_str(), f.title, f.equation);
     for (std::size_t a = 0; a < l.size(); ++a) std::printf("%s &= %s%s\n", l[a].c_str(), r[a].c_str(), a + 1 < l.size() + c.size() ? " \\\\" : "");
     for (std::size_t k = 0; k < c.size(); ++k) std::printf("%s &= 0%s\n", c[k].c_str(), k + 1 < c.size() ? " \\\\" : "");
     std::printf("\\end{align}\n");
+    return kOk;
+  }
+  if (format == Format::mathml) {
+    const auto write = [](const std::string& left_side, const std::string& right_side) {
+      std::printf("<mtr><mtd>%s</mtd><mtd><mo>=</mo></mtd><mtd>%s</mtd></mtr>\n", left_side.c_str(), right_side.c_str());
+    };
+    std::printf("<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" columnalign=\"right center left\">\n");
+    for (std::size_t a = 0; a < l.size(); ++a) write(l[a], r[a]);
+    for (const std::string& phi_k : c) write(phi_k, "<mn>0</mn>");
+    std::printf("</mtable>\n</math>\n");
     return kOk;
   }
   std::printf("%s\n%s, %s of %s\n\n", model.title.c_str(), f.title, f.equation, f.source);

@@ -94,8 +94,8 @@ int run(int argc, char** argv) {
   CLI::App* derive_command = model_command("derive", "print the equations of motion", cli::derive,
                                            "Example: anholon derive disc --format latex");
   parameters(derive_command), form_option(derive_command);
-  derive_command->add_option("--format", o.format, "text or latex; c (C99) or python (NumPy): a program that computes the motion's right side")->type_name("FORMAT");
-  derive_command->add_option("--expand", o.expand, "auto (the shorter), none or full")->type_name("HOW");
+  derive_command->add_option("--format", o.format, "text, latex or mathml; c (C99) or python (NumPy): a program that computes the motion's right side")->type_name("FORMAT");
+  derive_command->add_option("--expand", o.expand, "auto or paper (grouped), none, full (written out)")->type_name("HOW");
 
   CLI::App* evaluate_command = model_command("evaluate", "all forces, accelerations, multipliers, reactions at one state", cli::evaluate,
                                              "Example: anholon evaluate disc --q theta=1 --qdot theta=0.1 --json");

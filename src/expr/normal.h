@@ -18,6 +18,30 @@ bool proved_zero(Expr e);
 // one); nothing if that leads beyond the term limit. Equal to e wherever e is defined.
 std::optional<Expr> expanded(Expr e);
 
+// A sum of monomials c g1^e1 g2^e2 … in generators (symbols, functions, roots).
+struct Monomial {
+  Rational coefficient;
+  std::vector<unsigned long> exponents;
+};
+using Monomials = std::vector<Monomial>;
+
+struct NormalForm {
+  std::vector<Expr> generators;                              // what each stands for
+  std::vector<std::pair<std::size_t, std::size_t>> angles;   // generators that are sine and cosine of one angle
+  Monomials numerator, denominator;                          // in lowest terms, if short
+};
+
+// What is left as the user wrote it: sines of sums (and tangents), denominators, named subexpressions.
+struct Whole {
+  bool angles = false, fractions = false;
+  const std::unordered_map<NodeId, std::string>* names = nullptr;
+};
+
+// The expression as a fraction; nothing if that takes more than `most_work` products of terms.
+std::optional<NormalForm> normal_form(Expr e, const Whole& whole, long most_work);
+
+Expr expression(const Monomials& terms, const std::vector<Expr>& generators);
+
 // A product of polynomials with more terms than this ends the test without a result.
 inline constexpr long kNormalTermLimit = 2'000'000;
 

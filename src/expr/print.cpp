@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 
 namespace anholon {
 
@@ -13,13 +14,18 @@ enum Strength : int { kSum = 1, kProduct = 2, kPower = 3, kAtom = 4 };
 struct Printed {
   std::string text;
   int strength = kAtom;
-  bool negative = false;  // starts with a minus sign
+  std::string opposite = {};  // of -e, where the text starts with a minus sign
+  int opposite_strength = kAtom;
 };
 
 const std::array kGreekNames = {
     "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda",
     "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma",
     "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Phi", "Psi", "Omega"};
+
+const std::array<const char*, kGreekNames.size()> kGreekLetters = {
+    "α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "ι", "κ", "λ", "μ", "ν", "ξ", "π", "ρ", "σ", "τ", "υ", "φ", "χ", "ψ", "ω", "Γ",
+    "Δ", "Θ", "Λ", "Ξ", "Π", "Σ", "Φ", "Ψ", "Ω"};
 
 bool is_greek(const std::string& s) {
   return std::find(kGreekNames.begin(), kGreekNames.end(), s) != kGreekNames.end();
@@ -31,9 +37,38 @@ std::string latex_escape(const std::string& name) {
   return escaped;
 }
 
+// "\\sin" -> "sin", "\\operatorname{sgn}" -> "sgn".
+std::string function_name(const std::string& latex) {
+  const std::size_t brace = latex.find('{');
+  return brace == std::string::npos ? latex.substr(1) : latex.substr(brace + 1, latex.size() - brace - 2);
+}
+
+std::string xml_escape(const std::string& text) {
+  std::string escaped;
+  for (char c : text) escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return escaped;
+}
+
+std::string row(const std::string& mathml) { return "<mrow>" + mathml + "</mrow>"; }
+
+std::string written_name(const std::string& name, Format format) {
+  switch (format) {
+    case Format::text: return name;
+    case Format::latex: return latex_name(name);
+    case Format::mathml: return mathml_name(name);
+  }
+  return name;
+}
+
 class Printer {
  public:
-  Printer(Graph& g, const SymbolNames& names, Format format) : g_(g), names_(names), format_(format) {}
+  Printer(Graph& g, const SymbolNames& names, Format format) : g_(g), names_(names), format_(format) {
+    for (const auto& [id, name] : names.defined) {
+      const std::span<const Term> terms = g.terms(id);
+      if (g.node(id).kind == Kind::product && terms.size() == 1 && g.rational(terms[0].weight).get_num() == 1)
+        roots_.emplace(std::pair{terms[0].node, g.rational(terms[0].weight).get_den()}, name);
+    }
+  }
 
   std::vector<std::string> run(std::span<const Expr> es) {
     std::vector<NodeId> ids;
@@ -64,10 +99,13 @@ class Printer {
 
  private:
   bool latex() const { return format_ == Format::latex; }
+  bool mathml() const { return format_ == Format::mathml; }
 
   // The place of a node among its neighbours.
   struct Rank {
-    int kind, order;
+    int kind, order;       // highest derivative
+    bool inside = false;   // it stands within brackets
+    bool constant = true;  // parameters and masses only
   };
   Rank rank(NodeId id) {
     const auto it = rank_.find(id);
@@ -78,35 +116,44 @@ class Printer {
       case Kind::number: case Kind::pi: r.kind = 0; break;
       case Kind::parameter: r.kind = 1; break;
       case Kind::mass: r.kind = 2; break;
-      case Kind::multiplier: r.kind = 3; break;
-      case Kind::quasi: r = {5, static_cast<int>(n.order) + 1}; break;
-      case Kind::given: case Kind::time: r.kind = 4; break;
-      case Kind::jet: r = {5, n.order}; break;
-      case Kind::function: case Kind::atan2: r.kind = 6; break;
-      case Kind::sum: case Kind::product: r.kind = 7; break;
+      case Kind::multiplier: r.kind = 4; break;
+      case Kind::given: case Kind::time: r.kind = 5; break;
+      case Kind::jet: r = {6, n.order}; break;
+      case Kind::quasi: r = {6, static_cast<int>(n.order) + 1}; break;
+      case Kind::function: case Kind::atan2: r.kind = 7; break;
+      case Kind::sum: case Kind::product: r.kind = 8; break;
     }
+    r.constant = r.kind <= 2 || r.kind >= 7;
     // Operands were ranked before (ids ascend), so this does not go deep.
     for (const Term& t : g_.terms(id))
-      if (const auto o = rank_.find(t.node); o != rank_.end()) r.order = std::max(r.order, o->second.order);
+      if (const auto o = rank_.find(t.node); o != rank_.end()) {
+        if (o->second.order > r.order) r.order = o->second.order, r.inside = true;
+        if (o->second.order == r.order) r.inside &= o->second.inside;
+        r.constant &= o->second.constant;
+      }
+    if (n.kind == Kind::sum || n.kind == Kind::function || n.kind == Kind::atan2) r.inside = true;
+    if (n.kind == Kind::sum && r.constant) r.kind = 3;
     return rank_[id] = r;
   }
 
-  std::string cut(std::string s) const { return s.size() > kLongestPrint ? "…" : std::move(s); }
+  std::string cut(std::string s) const {
+    if (s.size() <= kLongestPrint) return s;
+    return mathml() ? "<mtext>…</mtext>" : "…";
+  }
 
   std::string symbol(const std::vector<std::string>& list, const Node& n, const char* prefix) const {
-    std::string base = n.index < list.size() ? list[n.index] : prefix + std::to_string(n.index);
-    return derivative_name(latex() ? latex_name(base) : base, n.order, format_);
+    const std::string base = n.index < list.size() ? list[n.index] : prefix + std::to_string(n.index);
+    return derivative_name(written_name(base, format_), n.order, format_);
   }
 
   Printed node(NodeId id) {
     rank(id);
-    if (const auto it = names_.defined.find(id); it != names_.defined.end())
-      return {latex() ? latex_name(it->second) : it->second};
+    if (const auto it = names_.defined.find(id); it != names_.defined.end()) return {written_name(it->second, format_)};
     const Node& n = g_.node(id);
     switch (n.kind) {
       case Kind::number: return number(g_.value(id));
-      case Kind::pi: return {latex() ? "\\pi" : "pi"};
-      case Kind::time: return {"t"};
+      case Kind::pi: return {written_name("pi", format_)};
+      case Kind::time: return {written_name("t", format_)};
       case Kind::jet: return {symbol(names_.coordinates, n, "q")};
       case Kind::parameter: return {symbol(names_.parameters, n, "p")};
       case Kind::mass: return {symbol(names_.masses, n, "mu")};
@@ -114,16 +161,18 @@ class Printer {
       case Kind::quasi: return {symbol(names_.quasi, n, "u")};
       case Kind::multiplier: {
         const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
-        return {derivative_name(latex() ? "\\lambda_{\\mathrm{" + latex_escape(base) + "}}" : "lambda." + base, n.order, format_)};
+        const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(base) + "}}"
+                                 : mathml() ? "<msub><mi>λ</mi><mtext>" + xml_escape(base) + "</mtext></msub>"
+                                            : "lambda." + base;
+        return {derivative_name(name, n.order, format_)};
       }
       case Kind::function: {
         const FunctionInfo& f = info(static_cast<Function>(n.index));
-        const std::string& u = done_[g_.terms(id)[0].node].text;
-        return {cut(latex() ? std::string(f.latex) + "\\left(" + u + "\\right)" : std::string(f.name) + "(" + u + ")")};
+        return {call(f.name, f.latex, done_[g_.terms(id)[0].node].text)};
       }
       case Kind::atan2: {
         const std::string &y = done_[g_.terms(id)[0].node].text, &x = done_[g_.terms(id)[1].node].text;
-        return {cut(latex() ? "\\operatorname{atan2}\\left(" + y + ", " + x + "\\right)" : "atan2(" + y + ", " + x + ")")};
+        return {call("atan2", "\\operatorname{atan2}", y + (mathml() ? "<mo>,</mo>" : ", ") + x)};
       }
       case Kind::sum: return sum(id);
       case Kind::product: return product(id);
@@ -131,62 +180,104 @@ class Printer {
     return {};
   }
 
-  Printed number(const Rational& r) const {
-    const bool negative = r < 0;
-    if (r.get_den() == 1) return {r.get_str(), negative ? kSum : kAtom, negative};
-    const Rational a = abs(r);
-    std::string s = latex() ? "\\frac{" + a.get_num().get_str() + "}{" + a.get_den().get_str() + "}" : a.get_str();
-    if (negative) s = "-" + s;
-    return {std::move(s), negative ? kSum : kProduct, negative};
+  std::string brackets(const std::string& s) const {
+    if (mathml()) return row("<mo>(</mo>" + s + "<mo>)</mo>");
+    return latex() ? "\\left(" + s + "\\right)" : "(" + s + ")";
   }
 
-  std::string wrap(const Printed& p, int strength) const {
-    if (p.strength >= strength) return p.text;
-    return latex() ? "\\left(" + p.text + "\\right)" : "(" + p.text + ")";
+  std::string call(const char* name, const char* latex_text, const std::string& arguments) const {
+    if (mathml()) return cut("<mi>" + function_name(latex_text) + "</mi><mo>&#x2061;</mo>" + brackets(arguments));
+    return cut((latex() ? latex_text : name) + brackets(arguments));
   }
+
+  std::string fraction(const std::string& top, const std::string& bottom) const {
+    if (mathml()) return "<mfrac>" + row(top) + row(bottom) + "</mfrac>";
+    return latex() ? "\\frac{" + top + "}{" + bottom + "}" : top + "/" + bottom;
+  }
+
+  std::string whole(const mpz_class& n) const { return mathml() ? "<mn>" + n.get_str() + "</mn>" : n.get_str(); }
+  std::string minus() const { return mathml() ? "<mo>−</mo>" : "-"; }
+
+  Printed negated(Printed p) const { return {minus() + p.text, kSum, std::move(p.text), p.strength}; }
+
+  Printed number(const Rational& r) const {
+    if (r < 0) return negated(number(-r));
+    if (r.get_den() == 1) return {whole(r.get_num())};
+    return {fraction(whole(r.get_num()), whole(r.get_den())), kProduct};
+  }
+
+  std::string wrap(const std::string& text, int its_strength, int strength) const {
+    return its_strength >= strength ? text : brackets(text);
+  }
+  std::string wrap(const Printed& p, int strength) const { return wrap(p.text, p.strength, strength); }
 
   std::string join(const std::string& a, const std::string& b) const {
-    return a.empty() ? b : b.empty() ? a : a + (latex() ? " \\, " : "*") + b;
+    return a.empty() ? b : b.empty() ? a : a + (mathml() ? "<mo>&#x2062;</mo>" : latex() ? " \\, " : "*") + b;
   }
 
-  // |coefficient| * term, without sign.
-  std::string weighted(const Rational& coefficient, NodeId id) {
-    const Rational c = abs(coefficient);
+  // c * term without its sign.
+  std::string weighted(const Rational& c, NodeId id) const {
     if (g_.is_number(id) && g_.value(id) == 1) return number(c).text;
-    if (c == 1) return wrap(done_[id], kProduct);
-    const std::string body = wrap(done_[id], kProduct);
-    if (c.get_den() == 1) return join(c.get_num().get_str(), body);
-    if (latex()) return join(number(c).text, body);
-    const std::string top = c.get_num() == 1 ? body : join(c.get_num().get_str(), body);
+    const Printed& p = done_.at(id);
+    const std::string body = p.opposite.empty() ? wrap(p, kProduct) : wrap(p.opposite, p.opposite_strength, kProduct);
+    if (c == 1) return body;
+    if (c.get_den() == 1) return join(whole(c.get_num()), body);
+    if (format_ != Format::text) return join(number(c).text, body);
+    const std::string top = c.get_num() == 1 ? body : join(whole(c.get_num()), body);
     return top + "/" + c.get_den().get_str();
   }
 
   Printed sum(NodeId id) {
     std::vector<Term> terms(g_.terms(id).begin(), g_.terms(id).end());
+    // Highest derivatives first; of accelerations those that stand alone before those in brackets.
     std::stable_sort(terms.begin(), terms.end(), [&](const Term& a, const Term& b) {
       const Rank ra = rank(a.node), rb = rank(b.node);
-      return ra.order > rb.order;
+      if (ra.order != rb.order) return ra.order > rb.order;
+      return ra.order >= 2 && !ra.inside && rb.inside;
     });
-    std::string out;
+    // Of the first terms, alike in that, a positive one leads where there is one.
+    const auto below_zero = [&](const Term& t) {
+      const Printed& p = done_.at(t.node);
+      return (g_.rational(t.weight) < 0) == p.opposite.empty();
+    };
+    const auto alike = [&](const Term& t) {
+      const Rank first = rank(terms[0].node), other = rank(t.node);
+      return first.order == other.order && (first.order < 2 || first.inside == other.inside);
+    };
+    std::size_t positive = 0;
+    while (positive < terms.size() && alike(terms[positive]) && below_zero(terms[positive])) ++positive;
+    if (positive < terms.size() && alike(terms[positive]))
+      std::rotate(terms.begin(), terms.begin() + static_cast<std::ptrdiff_t>(positive), terms.begin() + static_cast<std::ptrdiff_t>(positive) + 1);
+
+    const std::string plus_sign = mathml() ? "<mo>+</mo>" : " + ", minus_sign = mathml() ? minus() : " - ";
+    Printed out;
     bool negative = false;
     for (const Term& t : terms) {
-      const Rational& c = g_.rational(t.weight);
-      if (out.empty()) {
-        negative = c < 0;
-        out = (negative ? "-" : "") + weighted(c, t.node);
+      const bool minus_here = below_zero(t);
+      const std::string body = weighted(abs(g_.rational(t.weight)), t.node);
+      if (out.text.empty()) {
+        negative = minus_here;
+        out.text = (negative ? minus() : "") + body;
+        if (negative) out.opposite = body;
       } else {
-        out += (c < 0 ? " - " : " + ") + weighted(c, t.node);
+        out.text += (minus_here ? minus_sign : plus_sign) + body;
+        if (negative) out.opposite += (minus_here ? plus_sign : minus_sign) + body;
       }
-      if (out.size() > kLongestPrint) return {"…"};
+      if (out.text.size() > kLongestPrint) return {cut(out.text)};
     }
-    return {std::move(out), terms.size() == 1 && !negative ? kProduct : kSum, negative};
+    out.opposite_strength = terms.size() == 1 ? kProduct : kSum;
+    out.strength = negative ? kSum : out.opposite_strength;
+    return out;
   }
 
-  Printed power(NodeId base, const Rational& exponent) {
-    if (exponent == 1) return done_[base];
-    if (exponent == Rational(1, 2))
-      return {latex() ? "\\sqrt{" + done_[base].text + "}" : "sqrt(" + done_[base].text + ")"};
-    const std::string b = wrap(done_[base], kAtom);
+  Printed power(const Printed& base, const Rational& exponent) const {
+    if (exponent == 1) return base;
+    if (exponent == Rational(1, 2)) {
+      if (mathml()) return {"<msqrt>" + base.text + "</msqrt>"};
+      return {latex() ? "\\sqrt{" + base.text + "}" : "sqrt(" + base.text + ")"};
+    }
+    const std::string b = wrap(base, kAtom);
+    if (mathml()) return {"<msup>" + row(b) + row(number(exponent).text) + "</msup>", kPower};
     if (latex()) return {"{" + b + "}^{" + exponent.get_str() + "}", kPower};
     const bool plain = exponent.get_den() == 1 && exponent > 0;
     return {b + "^" + (plain ? exponent.get_str() : "(" + exponent.get_str() + ")"), kPower};
@@ -194,31 +285,44 @@ class Printer {
 
   Printed product(NodeId id) {
     std::vector<Term> terms(g_.terms(id).begin(), g_.terms(id).end());
-    std::stable_sort(terms.begin(), terms.end(), [&](const Term& a, const Term& b) {
-      const Rank ra = rank(a.node), rb = rank(b.node);
-      return ra.kind != rb.kind ? ra.kind < rb.kind : false;
-    });
+    std::stable_sort(terms.begin(), terms.end(), [&](const Term& a, const Term& b) { return rank(a.node).kind < rank(b.node).kind; });
     std::string top, bottom;
-    int below = 0;
+    int below = 0, strength = kProduct;
+    bool negative = false;
     for (const Term& t : terms) {
-      const Rational& e = g_.rational(t.weight);
-      if (e < 0) {
-        const Printed p = power(t.node, -e);
-        bottom = join(bottom, latex() && terms.size() == 1 ? p.text : wrap(p, kProduct));
-        below += p.strength < kPower ? 2 : 1;
+      Rational e = g_.rational(t.weight);
+      Printed base;
+      if (const auto root = roots_.find({t.node, e.get_den()}); root != roots_.end()) {
+        base.text = written_name(root->second, format_);
+        e = e.get_num();
       } else {
-        top = join(top, wrap(power(t.node, e), kProduct));
+        base = done_[t.node];
+      }
+      if (!base.opposite.empty() && e.get_den() == 1) {
+        if (mpz_odd_p(e.get_num_mpz_t())) negative = !negative;
+        base = {base.opposite, base.opposite_strength};
+      }
+      const Printed p = power(base, abs(e));
+      if (e < 0) {
+        bottom = join(bottom, format_ != Format::text && terms.size() == 1 ? p.text : wrap(p, kProduct));
+        below += p.strength == kProduct ? 2 : 1;
+      } else {
+        top = join(top, wrap(p, kProduct));
+        if (terms.size() == 1) strength = p.strength < kProduct ? kAtom : p.strength;
       }
     }
-    if (bottom.empty()) return {cut(top), terms.size() == 1 ? power(terms[0].node, g_.rational(terms[0].weight)).strength : kProduct};
-    if (top.empty()) top = "1";
-    if (latex()) return {cut("\\frac{" + top + "}{" + bottom + "}"), kProduct};
-    return {cut(top + "/" + (below > 1 ? "(" + bottom + ")" : bottom)), kProduct};
+    if (!bottom.empty()) {
+      if (top.empty()) top = mathml() ? "<mn>1</mn>" : "1";
+      top = fraction(top, below > 1 && format_ == Format::text ? "(" + bottom + ")" : bottom);
+    }
+    Printed p{cut(top), strength};
+    return negative ? negated(std::move(p)) : p;
   }
 
   Graph& g_;
   const SymbolNames& names_;
   Format format_;
+  std::map<std::pair<NodeId, mpz_class>, std::string> roots_;  // defined names of x^(1/k)
   std::unordered_map<NodeId, Printed> done_;
   std::unordered_map<NodeId, std::size_t> uses_;
   std::unordered_map<NodeId, Rank> rank_;
@@ -239,15 +343,39 @@ std::string latex_name(const std::string& name) {
   return "\\mathrm{" + latex_escape(name) + "}";
 }
 
+std::string mathml_name(const std::string& name) {
+  const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
+  if (greek != kGreekNames.end()) return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
+  if (name.size() == 1) return "<mi>" + xml_escape(name) + "</mi>";
+  std::size_t digits = name.size();
+  while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
+  if (digits == 0) return "<mn>" + name + "</mn>";
+  const std::size_t underscore = name.find('_');
+  if (digits < name.size() && underscore == std::string::npos)
+    return "<msub>" + mathml_name(name.substr(0, digits)) + "<mn>" + name.substr(digits) + "</mn></msub>";
+  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
+    return "<msub>" + mathml_name(name.substr(0, underscore)) + mathml_name(name.substr(underscore + 1)) + "</msub>";
+  return "<mi mathvariant=\"normal\">" + xml_escape(name) + "</mi>";
+}
+
 std::string derivative_name(const std::string& name, unsigned order, Format format) {
   if (order == 0) return name;
-  if (format == Format::latex) {
-    static const char* const kDots[] = {"\\dot{", "\\ddot{", "\\dddot{"};
-    if (order <= 3) return kDots[order - 1] + name + "}";
-    return name + "^{(" + std::to_string(order) + ")}";
+  switch (format) {
+    case Format::text:
+      if (order <= 3) return name + std::string(order, '\'');
+      return "D(" + name + "," + std::to_string(order) + ")";
+    case Format::latex: {
+      static const char* const kDots[] = {"\\dot{", "\\ddot{", "\\dddot{"};
+      if (order <= 3) return kDots[order - 1] + name + "}";
+      return name + "^{(" + std::to_string(order) + ")}";
+    }
+    case Format::mathml: {
+      static const char* const kDots[] = {"˙", "¨", "⃛"};
+      if (order <= 3) return "<mover accent=\"true\">" + name + "<mo>" + kDots[order - 1] + "</mo></mover>";
+      return "<msup>" + name + row("<mo>(</mo><mn>" + std::to_string(order) + "</mn><mo>)</mo>") + "</msup>";
+    }
   }
-  if (order <= 3) return name + std::string(order, '\'');
-  return "D(" + name + "," + std::to_string(order) + ")";
+  return name;
 }
 
 std::vector<std::string> print(std::span<const Expr> es, const SymbolNames& names, Format format) {

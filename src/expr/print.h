@@ -1,7 +1,8 @@
-// Expressions as text (which the formula parser reads back) and as LaTeX.
+// Expressions as text (which the formula parser reads back), as LaTeX and as presentation MathML.
 //
 // The order of terms is fixed: in a sum, terms with the highest derivatives first; in a product,
-// parameters, then symbols, then functions, then sums. Printing sweeps the graph upwards, so depth
+// parameters, then symbols, then functions, then sums. A sum in brackets that would start with a minus
+// gives it to its product. Printing sweeps the graph upwards, so depth
 // does not matter; a result beyond kLongestPrint characters is cut to "…".
 #pragma once
 #include <functional>
@@ -12,7 +13,7 @@
 
 namespace anholon {
 
-enum class Format : std::uint8_t { text, latex };
+enum class Format : std::uint8_t { text, latex, mathml };
 
 inline constexpr std::size_t kLongestPrint = 1 << 18;
 
@@ -29,6 +30,8 @@ std::vector<std::string> print(std::span<const Expr> es, const SymbolNames& name
 
 // "theta" -> "\theta", "x1" -> "x_{1}", "front_wheel" -> "\mathrm{front\_wheel}".
 std::string latex_name(const std::string& name);
+// "theta" -> <mi>θ</mi>, "x1" -> <msub><mi>x</mi><mn>1</mn></msub>.
+std::string mathml_name(const std::string& name);
 // The name of the k-th derivative: "x''", "D(x,4)"; "\ddot{x}", "x^{(4)}".
 std::string derivative_name(const std::string& name, unsigned order, Format format);
 

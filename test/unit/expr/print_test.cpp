@@ -76,6 +76,36 @@ TEST(Latex, Samples) {
   EXPECT_EQ(latex("pi"), "\\pi");
 }
 
+TEST(Text, GivesTheMinusOfBracketsToTheirProduct) {
+  PlainNames n;
+  const SymbolNames names = test::plain_symbol_names();
+  const std::pair<const char*, const char*> samples[] = {
+      {"a*(y'' - x'')", "a*(y'' - x'')"},        {"a - b*(-x''*y - z'')", "b*(y*x'' + z'') + a"}, {"-a*(-x'' - y)", "a*(x'' + y)"},
+      {"a*(-x'' - y)^2", "a*(x'' + y)^2"},       {"a/(-x'' - y)", "-a/(x'' + y)"},               {"-x + y", "y - x"},
+      {"(a + m)*x''", "(a + m)*x''"},            {"1/(1 + a*t)", "1/(1 + a*t)"},                 {"a/(b*(1 + t))", "a/(b*(1 + t))"},
+      {"-x''*sin(y) + y''*cos(y)", "y''*cos(y) - x''*sin(y)"}};
+  for (const auto& [text, expected] : samples) EXPECT_EQ(print(n.number(text), names, Format::text), expected) << text;
+}
+
+TEST(Mathml, Samples) {
+  EXPECT_EQ(mathml_name("theta"), "<mi>θ</mi>");
+  EXPECT_EQ(mathml_name("x1"), "<msub><mi>x</mi><mn>1</mn></msub>");
+  EXPECT_EQ(mathml_name("phi_a"), "<msub><mi>φ</mi><mi>a</mi></msub>");
+  EXPECT_EQ(mathml_name("mass"), "<mi mathvariant=\"normal\">mass</mi>");
+  EXPECT_EQ(mathml_name("a<b&c"), "<mi mathvariant=\"normal\">a&lt;b&amp;c</mi>");
+  EXPECT_EQ(derivative_name("<mi>x</mi>", 2, Format::mathml), "<mover accent=\"true\"><mi>x</mi><mo>¨</mo></mover>");
+  PlainNames n;
+  SymbolNames names = test::plain_symbol_names();
+  names.coordinates = {"theta", "y", "z"};
+  const auto mathml = [&](const char* text) { return print(n.number(text), names, Format::mathml); };
+  EXPECT_EQ(mathml("a*y"), "<mi>a</mi><mo>&#x2062;</mo><mi>y</mi>");
+  EXPECT_EQ(mathml("y - 3/4"), "<mi>y</mi><mo>−</mo><mfrac><mrow><mn>3</mn></mrow><mrow><mn>4</mn></mrow></mfrac>");
+  EXPECT_EQ(mathml("sqrt(x)/b"), "<mfrac><mrow><msqrt><mi>θ</mi></msqrt></mrow><mrow><mi>b</mi></mrow></mfrac>");
+  EXPECT_EQ(mathml("sin(y)^2"),
+            "<msup><mrow><mi>sin</mi><mo>&#x2061;</mo><mrow><mo>(</mo><mi>y</mi><mo>)</mo></mrow></mrow><mrow><mn>2</mn></mrow></msup>");
+  EXPECT_EQ(mathml("sign(y)").substr(0, 12), "<mi>sgn</mi>");
+}
+
 // Every opening brace has its closing one, and \left its \right.
 TEST(Latex, IsBalancedOnRandomExpressions) {
   PlainNames n;

@@ -1,0 +1,159 @@
+// Polynomials over Q with exact arithmetic, on FLINT: what the normal form and the arrangement of
+// expressions for print are made of. Every product is paid for, so that no expression takes long.
+#pragma once
+#include <flint/fmpq_mpoly.h>
+#include <flint/fmpq_mpoly_factor.h>
+
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include "expr/normal.h"
+
+namespace anholon {
+
+struct TooLarge {};
+
+// Coefficients of more bits than this end the test.
+inline constexpr long kLargestCoefficient = 4000;
+// Products of terms in one test.
+inline constexpr long kMostWork = 10'000'000;
+
+// Polynomials over Q in a fixed number of generators, lexicographic, earlier generators first.
+class Ring {
+ public:
+  explicit Ring(long generators, long most_work = kMostWork) : generators_(generators), most_work_(most_work) {
+    fmpq_mpoly_ctx_init(context_, generators, ORD_LEX);
+  }
+  ~Ring() { fmpq_mpoly_ctx_clear(context_); }
+  Ring(const Ring&) = delete;
+  Ring& operator=(const Ring&) = delete;
+  const fmpq_mpoly_ctx_struct* context() const { return context_; }
+  long generators() const { return generators_; }
+  void spend(long work) const {
+    if (work > kNormalTermLimit || (work_ += work) > most_work_) throw TooLarge{};
+  }
+
+ private:
+  fmpq_mpoly_ctx_t context_;
+  long generators_, most_work_;
+  mutable long work_ = 0;
+};
+
+class Poly {
+ public:
+  explicit Poly(const Ring& ring) : ring_(&ring) { fmpq_mpoly_init(p_, ring.context()); }
+  Poly(const Poly& o) : ring_(o.ring_) {
+    fmpq_mpoly_init(p_, ring_->context());
+    fmpq_mpoly_set(p_, o.p_, ring_->context());
+  }
+  Poly& operator=(const Poly& o) { fmpq_mpoly_set(p_, o.p_, ring_->context()); return *this; }
+  ~Poly() { fmpq_mpoly_clear(p_, ring_->context()); }
+  static Poly constant(const Ring& ring, const Rational& r) {
+    Poly p(ring);
+    fmpq_t c;
+    fmpq_init(c);
+    fmpq_set_mpq(c, r.get_mpq_t());
+    fmpq_mpoly_set_fmpq(p.p_, c, ring.context());
+    fmpq_clear(c);
+    return p;
+  }
+  static Poly generator(const Ring& ring, long k) {
+    Poly p(ring);
+    fmpq_mpoly_gen(p.p_, k, ring.context());
+    return p;
+  }
+  bool zero() const { return fmpq_mpoly_is_zero(p_, ring_->context()) != 0; }
+  bool one() const { return fmpq_mpoly_is_one(p_, ring_->context()) != 0; }
+  bool same(const Poly& o) const { return fmpq_mpoly_equal(p_, o.p_, ring_->context()) != 0; }
+  Monomials terms() const {
+    Monomials out;
+    fmpq_t c;
+    fmpq_init(c);
+    for (long k = 0; k < length(); ++k) {
+      fmpq_mpoly_get_term_coeff_fmpq(c, p_, k, ring_->context());
+      Monomial m;
+      fmpq_get_mpq(m.coefficient.get_mpq_t(), c);
+      m.exponents.resize(static_cast<std::size_t>(ring_->generators()));
+      fmpq_mpoly_get_term_exp_ui(m.exponents.data(), p_, k, ring_->context());
+      out.push_back(std::move(m));
+    }
+    fmpq_clear(c);
+    return out;
+  }
+  static Poly of(const Ring& ring, const Monomials& terms) {
+    Poly p(ring);
+    fmpq_t c;
+    fmpq_init(c);
+    for (const Monomial& m : terms) {
+      fmpq_set_mpq(c, m.coefficient.get_mpq_t());
+      fmpq_mpoly_push_term_fmpq_ui(p.p_, c, m.exponents.data(), ring.context());
+    }
+    fmpq_clear(c);
+    fmpq_mpoly_sort_terms(p.p_, ring.context());
+    fmpq_mpoly_combine_like_terms(p.p_, ring.context());
+    return p;
+  }
+  long length() const { return fmpq_mpoly_length(p_, ring_->context()); }
+  friend Poly operator+(const Poly& a, const Poly& b) {
+    Poly r(*a.ring_);
+    fmpq_mpoly_add(r.p_, a.p_, b.p_, a.ring_->context());
+    return r;
+  }
+  friend Poly operator-(const Poly& a, const Poly& b) {
+    Poly r(*a.ring_);
+    fmpq_mpoly_sub(r.p_, a.p_, b.p_, a.ring_->context());
+    return r;
+  }
+  friend Poly operator*(const Poly& a, const Poly& b) {
+    a.ring_->spend(a.length() * b.length());
+    if (std::abs(fmpz_mpoly_max_bits(a.p_->zpoly)) > kLargestCoefficient) throw TooLarge{};
+    Poly r(*a.ring_);
+    fmpq_mpoly_mul(r.p_, a.p_, b.p_, a.ring_->context());
+    return r;
+  }
+  // The remainder after division by all of `relations`.
+  Poly reduced(const std::vector<Poly>& relations) const {
+    if (relations.empty()) return *this;
+    std::vector<Poly> quotients(relations.size(), Poly(*ring_));
+    std::vector<fmpq_mpoly_struct*> q, d;
+    for (std::size_t i = 0; i < relations.size(); ++i) {
+      q.push_back(quotients[i].p_);
+      d.push_back(const_cast<fmpq_mpoly_struct*>(relations[i].p_));
+    }
+    Poly r(*ring_);
+    fmpq_mpoly_divrem_ideal(q.data(), r.p_, p_, d.data(), static_cast<slong>(d.size()), ring_->context());
+    return r;
+  }
+  // The greatest common divisor (1 if FLINT finds none), and the quotient by a divisor.
+  friend Poly common(const Poly& a, const Poly& b) {
+    Poly r(*a.ring_);
+    if (!fmpq_mpoly_gcd(r.p_, a.p_, b.p_, a.ring_->context())) return constant(*a.ring_, 1);
+    return r;
+  }
+  friend Poly quotient(const Poly& a, const Poly& divisor) {
+    Poly r(*a.ring_);
+    if (!fmpq_mpoly_divides(r.p_, a.p_, divisor.p_, a.ring_->context())) throw TooLarge{};
+    return r;
+  }
+  // Irreducible factors with their exponents; their product is this up to a rational factor.
+  std::vector<std::pair<Poly, unsigned long>> factors() const {
+    std::vector<std::pair<Poly, unsigned long>> out;
+    fmpq_mpoly_factor_t f;
+    fmpq_mpoly_factor_init(f, ring_->context());
+    if (fmpq_mpoly_factor(f, p_, ring_->context()))
+      for (long k = 0; k < fmpq_mpoly_factor_length(f, ring_->context()); ++k) {
+        Poly base(*ring_);
+        fmpq_mpoly_factor_get_base(base.p_, f, k, ring_->context());
+        out.emplace_back(std::move(base), static_cast<unsigned long>(fmpq_mpoly_factor_get_exp_si(f, k, ring_->context())));
+      }
+    fmpq_mpoly_factor_clear(f, ring_->context());
+    return out;
+  }
+
+ private:
+  const Ring* ring_;
+  fmpq_mpoly_t p_;
+};
+
+}  // namespace anholon

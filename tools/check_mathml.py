@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Checks that `derive --format mathml` writes well-formed presentation MathML for every shipped model.
+
+usage: check_mathml.py --program PROGRAM
+"""
+
+import argparse
+import pathlib
+import subprocess
+import sys
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SPACE = "{http://www.w3.org/1998/Math/MathML}"
+# Children of each element; None: any number.
+CHILDREN = {
+    "math": 1, "mtable": None, "mtr": 3, "mtd": None, "mrow": None, "msqrt": None, "mfrac": 2, "msup": 2, "msub": 2,
+    "mover": 2, "mi": 0, "mn": 0, "mo": 0, "mtext": 0,
+}  # fmt: skip
+
+
+def problems(text):
+    """-> what is wrong with it, as sentences"""
+    try:
+        root = xml.etree.ElementTree.fromstring(text)
+    except xml.etree.ElementTree.ParseError as error:
+        return [f"not well-formed: {error}"]
+    found = []
+    for element in root.iter():
+        name = element.tag.removeprefix(SPACE)
+        if name not in CHILDREN or not element.tag.startswith(SPACE):
+            found.append(f"<{element.tag}> is not expected")
+        elif CHILDREN[name] is not None and len(element) != CHILDREN[name]:
+            found.append(f"<{name}> has {len(element)} children")
+        elif CHILDREN[name] == 0 and not element.text:
+            found.append(f"<{name}> is empty")
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=pathlib.Path, required=True)
+    program = parser.parse_args().program
+    if not problems("<math xmlns='http://www.w3.org/1998/Math/MathML'><mfrac><mn>1</mn></mfrac></math>"):
+        print("the check accepts a fraction without denominator")
+        return 1
+    failed = 0
+    models = sorted((ROOT / "models").glob("*/*.toml"))
+    for model in models:
+        done = subprocess.run([program, "derive", model, "--format", "mathml", "--quiet"], stdout=subprocess.PIPE, timeout=60, check=False)
+        found = problems(done.stdout) + ([f"exit code {done.returncode}"] if done.returncode else [])
+        for problem in found:
+            print(f"{model.relative_to(ROOT)}: {problem}")
+        failed += bool(found)
+    print(f"{len(models)} models, {failed} failed")
+    return 1 if failed or not models else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
