@@ -17,7 +17,7 @@ struct Options {
   std::string output;
   std::string numbers = "double";
   std::string integrator = "taylor";
-  std::vector<std::string> set, q, qdot, at, eliminate;
+  std::vector<std::string> set, q, qdot, at, eliminate, forms;
   std::string t, to, every, tolerance;
   int digits = 16;
   int order = 0;
@@ -32,6 +32,7 @@ int evaluate(const Options& o);
 int simulate(const Options& o);
 int forms(const Options& o);
 int models(const Options& o);
+int prove(const Options& o);
 int verify(const Options& o);
 
 }  // namespace anholon::cli

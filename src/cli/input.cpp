@@ -185,7 +185,16 @@ Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice,
 
 Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& f, const StateChoice& choice) {
   try {
-    return elimination_for(m, f, choice.overrides, choice.eliminate);
+    return elimination_for(m, f.unknowns, choice.overrides, choice.eliminate);
+  } catch (const Failure& e) {
+    throw UsageError{print(e.diagnostic, in.source)};
+  }
+}
+
+Eliminations eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice) {
+  try {
+    return {elimination_for(m, Unknowns::coordinates, choice.overrides, choice.eliminate),
+            elimination_for(m, Unknowns::quasi_velocities, choice.overrides, choice.eliminate)};
   } catch (const Failure& e) {
     throw UsageError{print(e.diagnostic, in.source)};
   }

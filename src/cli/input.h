@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "proof/prove.h"
 #include "run/scenario.h"
 
 namespace anholon::cli {
@@ -34,6 +35,8 @@ Outcome ready(const Reader& in, const Formulation& form, const StateChoice& choi
 
 // Its elimination alone, for printing equations.
 Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& form, const StateChoice& choice);
+
+Eliminations eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice);
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source);
 void print_outcome(const Outcome& o);

@@ -23,8 +23,8 @@ void rescue_model(Options& o) {
     }
 }
 
-constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "forms", "models", "verify"};
-constexpr const char* kLater[] = {"new", "compare", "prove", "sweep", "linearize", "report", "plot", "render", "convert", "fmt"};
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "forms", "models", "prove", "verify"};
+constexpr const char* kLater[] = {"new", "compare", "sweep", "linearize", "report", "plot", "render", "convert", "fmt"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {
@@ -83,7 +83,7 @@ int run(int argc, char** argv) {
   };
   const auto form_option = [&](CLI::App* c) {
     c->add_option("--form", o.form, "form of the equations (see `anholon forms`)")->type_name("NAME")->each([&o](const std::string&) { o.form_given = true; });
-    c->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers: y,z (default: chosen)")->type_name("NAME,…");
+    c->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers: y,z (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
     c->add_option("--show", o.show, "print one stage instead: mechanics, system, structure, program")->type_name("STAGE");
   };
 
@@ -118,6 +118,12 @@ int run(int argc, char** argv) {
   CLI::App* forms_command = model_command("forms", "the catalogue of forms, and which apply to a model", cli::forms,
                                           "Example: anholon forms disc");
   parameters(forms_command);
+  CLI::App* prove_command = model_command("prove", "prove that the forms of the equations agree, and show which do not", cli::prove,
+                                          "Exit status: 0 every pair is decided, 1 one stays unknown, 2 bad input.\n"
+                                          "Example: anholon prove luo-zhao-example-2 -o proof.json && anholon verify proof.json");
+  prove_command->add_option("--forms", o.forms, "only these forms: routh,chaplygin (default: all that apply)")->type_name("NAME,…")->allow_extra_args(false);
+  prove_command->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
+  prove_command->add_option("-o,--output", o.output, "write a certificate")->type_name("FILE");
   CLI::App* verify_command = app.add_subcommand("verify", "check a certificate, independently of what wrote it");
   verify_command->footer("Exit status: 0 all claims confirmed, 1 one is contradicted or could not be checked, 2 not a certificate.\n"
                          "Example: anholon verify disc.json");

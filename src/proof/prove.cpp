@@ -26,12 +26,11 @@ namespace {
 
 // Zero by algebra, or not zero at a point; the point is looked for first where it is likely.
 void decide(Difference& d, const Elimination& e, const Model& model) {
-  const Expr x = d.expression();
-  if (proved_zero(x)) {
+  if (proved_zero(d.expression())) {
     d.verdict = Verdict::proved;
     return;
   }
-  WitnessSearch search = find_witness(x, e, model);
+  WitnessSearch search = find_witness(d, e, model);
   d.detail = search.detail;
   if (!search.witness) return;
   d.witness = std::move(search.witness);
@@ -73,7 +72,7 @@ void pivot_claims(const Mechanics& M, const Elimination& e, std::vector<Differen
     const Expr p = e.on(pivot);
     if (std::any_of(out.begin(), out.end(), [&](const Difference& d) { return d.left == p; })) continue;
     Difference d{"pivot " + std::to_string(out.size() + 1), p, {}, {}, {}, {}};
-    WitnessSearch search = find_witness(p, e, *M.model);
+    WitnessSearch search = find_witness(d, e, *M.model);
     d.witness = std::move(search.witness);
     d.verdict = d.witness ? Verdict::proved : Verdict::unknown;
     d.detail = search.detail;

@@ -43,15 +43,16 @@ std::vector<std::optional<Rational>> rational_parameters(const Model& model) {
 
 class Search {
  public:
-  Search(Expr e, const Elimination& elimination, const Model& model)
-      : e_(e), g_(*e.graph), parameters_(rational_parameters(model)) {
+  Search(const Difference& d, const Elimination& elimination, const Model& model)
+      : e_(d.expression()), g_(*e_.graph), parameters_(rational_parameters(model)), parts_{d.left} {
+    for (const auto& [coefficient, term] : d.right) parts_.insert(parts_.end(), {coefficient, term});
     if (elimination.solved || elimination.phi.empty()) return;
     // The unsolved constraints, and their derivatives where q^(m+1) occurs.
     equations_ = elimination.phi;
     unknowns_ = elimination.D(jets(model, elimination.m));
     const Column next = elimination.D(jets(model, elimination.m + 1));
     bool higher = false;
-    for (NodeId id : symbols({&e, 1}))
+    for (NodeId id : symbols(parts_))
       for (Expr s : next) higher = higher || s.id == id;
     if (!higher) return;
     const Column rates = total_derivative(elimination.phi);
@@ -89,7 +90,7 @@ class Search {
   // Values of the free symbols, and a verified root for the others.
   bool place(int attempt, WitnessPoint& w) {
     Column all = equations_;
-    all.push_back(e_);
+    all.insert(all.end(), parts_.begin(), parts_.end());  // what cancels in the difference has its value too
     std::unordered_map<NodeId, Rational> value;
     for (NodeId id : symbols(all)) {
       if (is_unknown(id)) continue;
@@ -193,13 +194,13 @@ class Search {
   Expr e_;
   Graph& g_;
   std::vector<std::optional<Rational>> parameters_;
-  Column equations_, unknowns_;
+  Column parts_, equations_, unknowns_;
 };
 
 }  // namespace
 
-WitnessSearch find_witness(Expr e, const Elimination& elimination, const Model& model) {
-  return Search(e, elimination, model).run();
+WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model) {
+  return Search(d, elimination, model).run();
 }
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// A point of the manifold of the constraints at which an expression is not zero.
+// A point of the manifold of the constraints at which a difference is not zero.
 #pragma once
 #include "proof/prove.h"
 
@@ -11,6 +11,6 @@ struct WitnessSearch {
 
 // Free symbols get pseudo-random rational values, parameters those of the model where these are rational. Constraints that the
 // elimination has not solved are satisfied by a verified root in the dependent derivatives.
-WitnessSearch find_witness(Expr e, const Elimination& elimination, const Model& model);
+WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model);
 
 }  // namespace anholon

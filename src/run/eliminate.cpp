@@ -148,9 +148,9 @@ EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::
   return choice;
 }
 
-Elimination elimination_for(const Mechanics& m, const Formulation& form, const std::vector<StateOverride>& overrides,
+Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::vector<StateOverride>& overrides,
                             const std::vector<std::size_t>& wanted) {
-  if (!form.eliminates()) return {};
+  if (unknowns != Unknowns::coordinates && unknowns != Unknowns::quasi_velocities) return {};
   const Model& model = *m.model;
   Column es;
   for (const Parameter& p : model.parameters) es.push_back(p.value);
@@ -167,7 +167,7 @@ Elimination elimination_for(const Mechanics& m, const Formulation& form, const s
     PointValues elsewhere(arbitrary);
     rows = choose_rows(constraint_matrix(m, all, elsewhere), kSingular).independent;
   }
-  return Elimination(m, choose_elimination(m, rows, form.unknowns, wanted, *at), at);
+  return Elimination(m, choose_elimination(m, rows, unknowns, wanted, *at), at);
 }
 
 }  // namespace anholon

@@ -16,7 +16,7 @@ EliminationChoice choose_elimination(const Mechanics& mechanics, const std::vect
                                      const std::vector<std::size_t>& wanted, PointValues& at);
 
 // The elimination that a form wants, for its equations alone: it does not need a consistent state, and nothing is computed.
-Elimination elimination_for(const Mechanics& mechanics, const Formulation& form, const std::vector<StateOverride>& overrides,
+Elimination elimination_for(const Mechanics& mechanics, Unknowns unknowns, const std::vector<StateOverride>& overrides,
                             const std::vector<std::size_t>& wanted);
 
 }  // namespace anholon

@@ -5,9 +5,9 @@
 namespace anholon {
 
 template <Number N>
-Certificate<N> certify(const std::vector<N>& inertia, const std::vector<N>& force, const std::vector<N>& reaction,
+NewtonResidual<N> certify(const std::vector<N>& inertia, const std::vector<N>& force, const std::vector<N>& reaction,
                        const Matrix<N>& phi) {
-  Certificate<N> c;
+  NewtonResidual<N> c;
   const std::size_t n = inertia.size();
   N scale(1);
   std::vector<N> a(n, N(0));
@@ -144,7 +144,7 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
     for (std::size_t a = 0; a < n; ++a) force[a] += columns[f][a];
   Matrix<N> phi(s.system.constraints.size(), n);
   for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = out[phi_first + i];
-  const Certificate<N> c = certify(columns[6], force, columns[7], phi);
+  const NewtonResidual<N> c = certify(columns[6], force, columns[7], phi);
   N scale(1);
   for (const N* v : {&dh, &rate})
     if (abs(*v) > scale) scale = abs(*v);
@@ -164,8 +164,8 @@ Outcome evaluate(const Scenario& s, const StateChoice& choice, int digits, State
   return evaluate_in<Multi>(s, choice, digits, report);
 }
 
-template Certificate<double> certify(const std::vector<double>&, const std::vector<double>&, const std::vector<double>&, const Matrix<double>&);
-template Certificate<long double> certify(const std::vector<long double>&, const std::vector<long double>&, const std::vector<long double>&, const Matrix<long double>&);
-template Certificate<Multi> certify(const std::vector<Multi>&, const std::vector<Multi>&, const std::vector<Multi>&, const Matrix<Multi>&);
+template NewtonResidual<double> certify(const std::vector<double>&, const std::vector<double>&, const std::vector<double>&, const Matrix<double>&);
+template NewtonResidual<long double> certify(const std::vector<long double>&, const std::vector<long double>&, const std::vector<long double>&, const Matrix<long double>&);
+template NewtonResidual<Multi> certify(const std::vector<Multi>&, const std::vector<Multi>&, const std::vector<Multi>&, const Matrix<Multi>&);
 
 }  // namespace anholon

@@ -346,7 +346,7 @@ class Run {
       force[a] = outputs_[2 * n + 1 + a];
     }
     for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = outputs_[3 * n + 1 + i];
-    const Certificate<W> c = certify(inertia, force, reaction, phi);
+    const NewtonResidual<W> c = certify(inertia, force, reaction, phi);
     report_.newton = std::max(report_.newton, to_double(c.newton));
     report_.projected = std::max(report_.projected, to_double(c.projected));
     report_.constraints_kept = std::max(report_.constraints_kept, to_double(leg_->point.constraint_residual()));

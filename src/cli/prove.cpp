@@ -1,0 +1,143 @@
+#include "proof/prove.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+
+#include "base/hash.h"
+#include "base/json.h"
+#include "cli/input.h"
+
+namespace anholon::cli {
+
+namespace {
+
+std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& m) {
+  std::vector<const Formulation*> forms;
+  if (o.forms.empty()) {
+    for (const Formulation* f : formulations())
+      if (f->obstacle(m).empty()) forms.push_back(f);
+    return forms;
+  }
+  for (const std::string& name : split(o.forms)) {
+    Options one = o;
+    one.form = name;
+    one.form_given = true;
+    forms.push_back(&form(one, *m.model, &m));
+  }
+  return forms;
+}
+
+// One line of cells: = proved, X refuted, ? unknown.
+void print_matrix(const Proof& p) {
+  std::size_t width = 0;
+  for (const FormProof& f : p.forms) width = std::max(width, std::strlen(f.form->name));
+  for (std::size_t i = 0; i < p.forms.size(); ++i) {
+    std::printf("%3zu  %-*s ", i + 1, static_cast<int>(width), p.forms[i].form->name);
+    for (std::size_t j = 0; j < p.forms.size(); ++j) {
+      const Verdict v = i == j ? Verdict::proved : p.between(i, j);
+      std::printf(" %s", i == j ? "." : v == Verdict::proved ? "=" : v == Verdict::refuted ? "X" : "?");
+    }
+    std::printf("  %s\n", p.forms[i].form->equation);
+  }
+  std::printf("\n=  proved equal    X  shown different    ?  unknown\n");
+}
+
+std::string point_text(const WitnessPoint& w, const SymbolNames& names) {
+  std::string out;
+  for (const auto& [symbol, value] : w.values) out += (out.empty() ? "" : ", ") + print(symbol, names, Format::text) + " = " + value.get_str();
+  for (const WitnessPoint::Enclosed& e : w.enclosed)
+    out += ", " + print(e.symbol, names, Format::text) + " = " + number_text(e.midpoint.get_d(), 6) + "…";
+  return out;
+}
+
+void print_differences(const Proof& p, const SymbolNames& names) {
+  for (const FormProof& f : p.forms)
+    for (const Difference& d : f.differences) {
+      if (d.verdict == Verdict::proved) continue;
+      std::printf("%s differs from routh in the equation of %s%s: %s\n", f.form->name, d.component.c_str(),
+                  d.verdict == Verdict::unknown ? " (perhaps)" : "", d.detail.c_str());
+      if (d.witness) std::printf("  at %s\n", point_text(*d.witness, names).c_str());
+      if (d.verdict == Verdict::refuted) break;  // one point is enough
+    }
+  for (const Difference& d : p.kernel)
+    if (d.verdict != Verdict::proved) std::printf("not shown: the tangents of the constraints, %s: %s\n", d.component.c_str(), d.detail.c_str());
+}
+
+std::string json(const Model& model, const Proof& p, const Certificate& c, const SymbolNames& names, double seconds) {
+  JsonWriter j;
+  j.open_object().key("model").string(model.title);
+  j.key("meaning").string(c.meaning);
+  j.key("hypotheses").open_array();
+  for (const std::string& h : c.hypotheses) j.string(h);
+  j.close();
+  j.key("forms").open_array();
+  for (const FormProof& f : p.forms) {
+    j.open_object().key("name").string(f.form->name).key("against").string("routh").key("verdict").string(name(f.verdict));
+    for (const Difference& d : f.differences) {
+      if (d.verdict == Verdict::proved) continue;
+      j.key("component").string(d.component).key("detail").string(d.detail);
+      if (d.witness) j.key("point").string(point_text(*d.witness, names));
+      break;
+    }
+    j.close();
+  }
+  j.close();
+  j.key("pairs").open_array();
+  for (std::size_t a = 0; a < p.forms.size(); ++a)
+    for (std::size_t b = a + 1; b < p.forms.size(); ++b)
+      j.open_object().key("a").string(p.forms[a].form->name).key("b").string(p.forms[b].form->name).key("verdict").string(name(p.between(a, b))).close();
+  j.close();
+  j.key("seconds").number(number_text(seconds, 3)).close();
+  return j.text();
+}
+
+void write(const std::string& path, const std::string& text) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  const bool good = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  if (!file || (std::fclose(file) != 0) || !good)
+    throw UsageError{"error: cannot write '" + path + "': " + std::strerror(errno) + "\n"};
+}
+
+}  // namespace
+
+int prove(const Options& o) {
+  const auto start = std::chrono::steady_clock::now();
+  const Reader in = read(o);
+  const Model& model = *in.model;
+  const Mechanics m = mechanics(model);
+  const std::vector<const Formulation*> forms = wanted_forms(o, m);
+  const Eliminations eliminations = eliminations_of(in, m, state_choice(o, model));
+  ProofOptions options;
+  const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
+  std::size_t done = 0;
+  if (terminal)
+    options.progress = [&](const Formulation& f) { std::fprintf(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name); };
+  const Proof p = anholon::prove(m, forms, eliminations, options);
+  if (terminal) std::fprintf(stderr, "\r\033[K");
+  const Certificate c = certificate(m, p, eliminations, "anholon " ANHOLON_VERSION, sha256_text(in.source.text));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  SymbolNames names = model.names;
+  if (eliminations.quasi.quasi) names.quasi = eliminations.quasi.names;
+  if (!o.output.empty()) write(o.output, to_json(c) + "\n");
+  if (o.json) {
+    std::printf("%s\n", json(model, p, c, names, seconds).c_str());
+  } else {
+    std::printf("%s\n\n", model.title.c_str());
+    print_matrix(p);
+    std::printf("\n");
+    print_differences(p, names);
+    for (const std::string& h : c.hypotheses) std::printf("given: %s\n", h.c_str());
+    std::printf("%s\n", c.meaning.c_str());
+    if (!o.output.empty()) std::printf("certificate: %s (anholon verify %s)\n", o.output.c_str(), o.output.c_str());
+  }
+  bool unknown = false;
+  for (std::size_t a = 0; a < p.forms.size(); ++a)
+    for (std::size_t b = a + 1; b < p.forms.size(); ++b) unknown = unknown || p.between(a, b) == Verdict::unknown;
+  return unknown ? kStopped : kOk;
+}
+
+}  // namespace anholon::cli
