@@ -22,7 +22,7 @@
 
 namespace anholon {
 
-enum class Verdict : std::uint8_t { proved, refuted, unknown };
+enum class Verdict : std::uint8_t { unknown, proved, refuted };  // nothing said means unknown
 const char* name(Verdict v);
 
 // A point of the manifold: rational values of the free symbols, and boxes proved to hold the one root of the equations.

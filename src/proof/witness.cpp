@@ -10,7 +10,8 @@ namespace anholon {
 
 namespace {
 
-constexpr int kPoints = 12;          // tried before the search ends
+constexpr int kPoints = 40;          // tried before the search ends
+constexpr int kSizes = 4;            // of the free derivatives: 1, 1/2, 1/4, …
 constexpr slong kFirstBits = 64, kMostBits = 1024;
 constexpr int kNewtonSteps = 60;
 
@@ -20,6 +21,7 @@ Rational arbitrary(const Node& n, int attempt) {
   for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
   const unsigned long step = (h >> 40) % 89;
   Rational r(13 + step, 64);
+  if (n.kind == Kind::jet && n.order > 0) r /= 1 << (attempt % kSizes);
   r.canonicalize();
   return n.kind == Kind::jet && n.order > 0 && (h & 1) ? Rational(-r) : r;
 }
@@ -46,18 +48,25 @@ class Search {
   Search(const Difference& d, const Elimination& elimination, const Model& model)
       : e_(d.expression()), g_(*e_.graph), parameters_(rational_parameters(model)), parts_{d.left} {
     for (const auto& [coefficient, term] : d.right) parts_.insert(parts_.end(), {coefficient, term});
-    if (elimination.solved || elimination.phi.empty()) return;
-    // The unsolved constraints, and their derivatives where q^(m+1) occurs.
-    equations_ = elimination.phi;
-    unknowns_ = elimination.D(jets(model, elimination.m));
-    const Column next = elimination.D(jets(model, elimination.m + 1));
-    bool higher = false;
-    for (NodeId id : symbols(parts_))
-      for (Expr s : next) higher = higher || s.id == id;
-    if (!higher) return;
-    const Column rates = total_derivative(elimination.phi);
-    equations_.insert(equations_.end(), rates.begin(), rates.end());
-    unknowns_.insert(unknowns_.end(), next.begin(), next.end());
+    if (elimination.phi.empty()) return;
+    // The constraints that are not solved, and their derivatives as far as the dependent derivatives occur.
+    Graph& g = *e_.graph;
+    unsigned highest = 0;
+    for (NodeId id : symbols(parts_)) {
+      const Node& n = g.node(id);
+      const auto& D = elimination.dependent;
+      if (n.kind == Kind::jet && std::find(D.begin(), D.end(), n.index) != D.end()) highest = std::max(highest, static_cast<unsigned>(n.order));
+    }
+    Column phi = elimination.phi;
+    for (unsigned k = elimination.m; k <= highest; ++k) {
+      // `on` has put in the first two.
+      if (!elimination.solved || k > elimination.m + 1) {
+        const Column level = elimination.on(phi), unknown = elimination.D(jets(model, k));
+        equations_.insert(equations_.end(), level.begin(), level.end());
+        unknowns_.insert(unknowns_.end(), unknown.begin(), unknown.end());
+      }
+      phi = total_derivative(phi);
+    }
   }
 
   WitnessSearch run() {
