@@ -173,14 +173,15 @@ Column gradient(Expr e, std::span<const Expr> wanted) {
 
 Expr partial(Expr e, Expr symbol) { return gradient(e, {&symbol, 1})[0]; }
 
-Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement) {
+// `replacement(id)` of any node: a handle with graph == nullptr keeps it.
+static Column rebuild(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement) {
   if (es.empty()) return {};
   Graph& g = *es[0].graph;
   std::unordered_map<NodeId, Expr> image;
   for (NodeId id : reachable(es)) {
     const Node n = g.node(id);
-    if (n.view_count == 0) {
-      const Expr r = is_symbol(n.kind) ? replacement(id) : Expr{};
+    const Expr r = replacement(id);
+    if (r.graph || n.view_count == 0) {
       image[id] = r.graph ? r : Expr{&g, id};
       continue;
     }
@@ -218,6 +219,19 @@ Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& r
   Column result;
   for (Expr e : es) result.push_back(image[e.id]);
   return result;
+}
+
+Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement) {
+  if (es.empty()) return {};
+  const Graph& g = *es[0].graph;
+  return rebuild(es, [&](NodeId id) { return is_symbol(g.node(id).kind) ? replacement(id) : Expr{}; });
+}
+
+Column replace_nodes(std::span<const Expr> es, const std::unordered_map<NodeId, Expr>& replacement) {
+  return rebuild(es, [&](NodeId id) {
+    const auto it = replacement.find(id);
+    return it == replacement.end() ? Expr{} : it->second;
+  });
 }
 
 std::vector<NodeId> symbols(std::span<const Expr> es) {

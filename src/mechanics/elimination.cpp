@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/assert.h"
+#include "expr/arrange.h"
 #include "expr/normal.h"
 
 namespace anholon {
@@ -23,6 +24,14 @@ Expr shorter(Expr e, std::size_t longest = kShortEnough) {
   if (size <= 3 || size > longest) return e;
   const std::optional<Expr> full = expanded(e);
   return full && nodes(*full) < size ? *full : e;
+}
+
+// e as short as a person would write it: common factors of fractions cancelled, also those that sin^2 + cos^2 = 1 hides.
+Expr shortest(Expr e) {
+  const std::size_t size = nodes(e);
+  if (size <= 3 || size > kShortEnough) return e;
+  const Expr short_one = arranged(e, {});
+  return nodes(short_one) < size ? short_one : e;
 }
 
 // Replaces the symbols `from` by `to`.
@@ -121,6 +130,9 @@ Rows inverse(const Rows& A, PointValues& at, Column& pivots) {
   }
   Rows out;
   for (std::size_t j = 0; j < n; ++j) out.push_back(right[row_of[j]]);
+  if (n < kLarge)
+    for (Column& row : out)
+      for (Expr& e : row) e = shortest(e);
   return out;
 }
 
@@ -170,7 +182,7 @@ void Elimination::by_coordinates() {
       std::vector<Expr> terms;
       for (std::size_t r = 0; r < s; ++r)
         if (!is_zero(Phi_D_inverse[b][r])) terms.push_back(-(Phi_D_inverse[b][r] * rest[r]));
-      g[dependent[b]] = shorter(sum(terms));
+      g[dependent[b]] = shortest(sum(terms));
     }
     return;
   }
@@ -217,7 +229,7 @@ void Elimination::by_quasi_velocities(const std::vector<QuasiVelocity>& list) {
         if (i < u.size()) terms.push_back(row[i] * u[i]);
         terms.push_back(-(row[i] * rest[i]));
       }
-      g.push_back(shorter(sum(terms)));
+      g.push_back(shortest(sum(terms)));
     }
   } else {
     u = u_value_;

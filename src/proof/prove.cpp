@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "expr/normal.h"
+#include "proof/generalize.h"
 #include "proof/witness.h"
 
 namespace anholon {
@@ -24,9 +25,17 @@ Expr Difference::expression() const {
 
 namespace {
 
-// Zero by algebra, or not zero at a point; the point is looked for first where it is likely.
+// Zero by algebra: a long expression in its general form first, which is far shorter.
+bool shown_zero(Expr e) {
+  constexpr std::size_t kLong = 60;  // nodes
+  if (reachable({&e, 1}).size() > kLong)
+    if (const Expr general = generalized(e); !(general == e) && proved_zero(general)) return true;
+  return proved_zero(e);
+}
+
+// Zero by algebra, or not zero at a point.
 void decide(Difference& d, const Elimination& e, const Model& model) {
-  if (proved_zero(d.expression())) {
+  if (shown_zero(d.expression())) {
     d.verdict = Verdict::proved;
     return;
   }
