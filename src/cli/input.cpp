@@ -191,10 +191,13 @@ Elimination elimination(const Reader& in, const Mechanics& m, const Formulation&
   }
 }
 
-Eliminations eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice) {
+std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice) {
   try {
-    return {elimination_for(m, Unknowns::coordinates, choice.overrides, choice.eliminate),
-            elimination_for(m, Unknowns::quasi_velocities, choice.overrides, choice.eliminate)};
+    std::vector<Eliminations> list;
+    for (const bool solve : {true, false})
+      list.push_back({elimination_for(m, Unknowns::coordinates, choice.overrides, choice.eliminate, solve),
+                      elimination_for(m, Unknowns::quasi_velocities, choice.overrides, choice.eliminate, solve)});
+    return list;
   } catch (const Failure& e) {
     throw UsageError{print(e.diagnostic, in.source)};
   }

@@ -36,7 +36,8 @@ Outcome ready(const Reader& in, const Formulation& form, const StateChoice& choi
 // Its elimination alone, for printing equations.
 Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& form, const StateChoice& choice);
 
-Eliminations eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice);
+// Those on which forms are compared: constraints solved where they can be, and not solved.
+std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice);
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source);
 void print_outcome(const Outcome& o);

@@ -110,7 +110,7 @@ int prove(const Options& o) {
   const Model& model = *in.model;
   const Mechanics m = mechanics(model);
   const std::vector<const Formulation*> forms = wanted_forms(o, m);
-  const Eliminations eliminations = eliminations_of(in, m, state_choice(o, model));
+  const std::vector<Eliminations> eliminations = eliminations_of(in, m, state_choice(o, model));
   ProofOptions options;
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   std::size_t done = 0;
@@ -118,10 +118,10 @@ int prove(const Options& o) {
     options.progress = [&](const Formulation& f) { std::fprintf(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name); };
   const Proof p = anholon::prove(m, forms, eliminations, options);
   if (terminal) std::fprintf(stderr, "\r\033[K");
-  const Certificate c = certificate(m, p, eliminations, "anholon " ANHOLON_VERSION, sha256_text(in.source.text));
+  const Certificate c = certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, sha256_text(in.source.text));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SymbolNames names = model.names;
-  if (eliminations.quasi.quasi) names.quasi = eliminations.quasi.names;
+  if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.names;
   if (!o.output.empty()) write(o.output, to_json(c) + "\n");
   if (o.json) {
     std::printf("%s\n", json(model, p, c, names, seconds).c_str());

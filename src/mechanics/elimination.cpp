@@ -157,12 +157,12 @@ Elimination::Elimination(const Mechanics& M, const EliminationChoice& choice, st
     Phi_D.push_back(D(put_masses(model, M.Phi[r])));
   }
   Phi_D_inverse = inverted(Phi_D);
-  if (choice.quasi.empty()) by_coordinates();
-  else by_quasi_velocities(choice.quasi);
+  if (choice.quasi.empty()) by_coordinates(choice.solve);
+  else by_quasi_velocities(choice.quasi, choice.solve);
   finish();
 }
 
-void Elimination::by_coordinates() {
+void Elimination::by_coordinates(bool solve) {
   Graph& gr = mechanics_->graph();
   const std::size_t n = top_.size(), s = dependent.size();
   u = u_value_ = I(top_);
@@ -171,7 +171,7 @@ void Elimination::by_coordinates() {
     names.push_back(mechanics_->model->coordinates[a].name);
   g = top_;
   // Linear in q_D^(m): the coefficients do not hold it.
-  solved = true;
+  solved = solve;
   const Column top_D = D(top_);
   for (const Column& row : Phi_D)
     for (Expr e : row)
@@ -197,7 +197,7 @@ void Elimination::by_coordinates() {
     }
 }
 
-void Elimination::by_quasi_velocities(const std::vector<QuasiVelocity>& list) {
+void Elimination::by_quasi_velocities(const std::vector<QuasiVelocity>& list, bool solve) {
   Graph& gr = mechanics_->graph();
   quasi = true;
   Column symbols, symbol_rates;
@@ -215,7 +215,7 @@ void Elimination::by_quasi_velocities(const std::vector<QuasiVelocity>& list) {
   Rows W;
   for (Expr e : w) W.push_back(gradient(e, top_));
   chi_by_u = inverted(W);
-  solved = true;
+  solved = solve;
   for (const Column& row : W)
     if (depends(row, top_)) solved = false;
   if (solved) {

@@ -31,6 +31,7 @@ struct EliminationChoice {
   std::vector<std::size_t> constraints;  // those that take part: independent ones
   std::vector<std::size_t> dependent;    // as many coordinates, dphi/dq_D^(m) regular
   std::vector<QuasiVelocity> quasi;      // n - s of them, or none: u = q_I^(m)
+  bool solve = true;                     // where the constraints can be solved
 };
 
 class Elimination {
@@ -91,8 +92,8 @@ class Elimination {
 
  private:
   static Column pick(const Column& X, const std::vector<std::size_t>& which);
-  void by_coordinates();
-  void by_quasi_velocities(const std::vector<QuasiVelocity>& list);
+  void by_coordinates(bool solve);
+  void by_quasi_velocities(const std::vector<QuasiVelocity>& list, bool solve);
   void finish();
 
   const Mechanics* mechanics_ = nullptr;

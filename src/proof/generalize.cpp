@@ -94,6 +94,8 @@ class Values {
 
 }  // namespace
 
+bool seems_zero(Expr e) { return Values(e).vanishes(); }
+
 Expr generalized(Expr e, std::uint32_t first) {
   Graph& g = *e.graph;
   Values values(e);

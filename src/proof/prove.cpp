@@ -25,20 +25,26 @@ Expr Difference::expression() const {
 
 namespace {
 
-// Zero by algebra: a long expression in its general form first, which is far shorter.
-bool shown_zero(Expr e) {
+// How much is tried: a long expression in its general form only, which is far shorter; or all there is.
+enum class Effort : std::uint8_t { brief, full };
+
+bool shown_zero(Expr e, Effort effort) {
   constexpr std::size_t kLong = 60;  // nodes
-  if (reachable({&e, 1}).size() > kLong)
+  const bool is_long = reachable({&e, 1}).size() > kLong;
+  if (is_long)
     if (const Expr general = generalized(e); !(general == e) && proved_zero(general)) return true;
-  return proved_zero(e);
+  return (!is_long || effort == Effort::full) && proved_zero(e);
 }
 
 // Zero by algebra, or not zero at a point.
-void decide(Difference& d, const Elimination& e, const Model& model) {
-  if (shown_zero(d.expression())) {
+void decide(Difference& d, const Elimination& e, const Model& model, Effort effort) {
+  const Expr x = d.expression();
+  const bool likely = seems_zero(x);
+  if ((likely || effort == Effort::full) && shown_zero(x, effort)) {
     d.verdict = Verdict::proved;
     return;
   }
+  if (likely && effort == Effort::brief) return;
   WitnessSearch search = find_witness(d, e, model);
   d.detail = search.detail;
   if (!search.witness) return;
@@ -57,20 +63,21 @@ Verdict of_all(const std::vector<Difference>& list) {
 
 // Phi B = 0 on the manifold, and the solved constraints satisfied.
 void kernel_claims(const Mechanics& M, const Elimination& e, std::vector<Difference>& out) {
+
   Graph& g = M.graph();
   const Model& model = *M.model;
   for (std::size_t k = 0; k < e.constraints.size(); ++k) {
     const std::string& name = model.constraints[e.constraints[k]].name;
     if (e.solved) {
       out.push_back({name + " solved", e.on(e.phi[k]), {}, {}, {}, {}});
-      decide(out.back(), e, model);
+      decide(out.back(), e, model, Effort::full);
     }
     const Column row = e.on(put_masses(model, M.Phi[e.constraints[k]]));
     for (std::size_t a = 0; a < e.names.size(); ++a) {
       Difference d{name + ", " + e.names[a], g.zero(), {}, {}, {}, {}};
       for (std::size_t s = 0; s < row.size(); ++s)
         if (!is_zero(row[s]) && !is_zero(e.g_by_u()[s][a])) d.right.push_back({-row[s], e.g_by_u()[s][a]});
-      decide(d, e, model);
+      decide(d, e, model, Effort::full);
       out.push_back(std::move(d));
     }
   }
@@ -89,9 +96,7 @@ void pivot_claims(const Mechanics& M, const Elimination& e, std::vector<Differen
   }
 }
 
-}  // namespace
-
-FormProof prove_form(const Mechanics& M, const Formulation& form, const Equations& equations, const Eliminations& eliminations) {
+FormProof against_routh(const Mechanics& M, const Formulation& form, const Equations& equations, const Elimination& e, Effort effort) {
   FormProof proof{&form, Verdict::unknown, {}};
   const Model& model = *M.model;
   const Column residual = equations.left - equations.right;
@@ -99,11 +104,10 @@ FormProof prove_form(const Mechanics& M, const Formulation& form, const Equation
     const Column routh = lagrange_operator(M) - right_side(M);
     for (std::size_t a = 0; a < residual.size(); ++a) {
       Difference d{model.coordinates[a].name, residual[a], {{M.graph().one(), routh[a]}}, {}, {}, {}};
-      decide(d, eliminations.coordinates, model);
+      decide(d, e, model, effort);
       proof.differences.push_back(std::move(d));
     }
   } else {
-    const Elimination& e = form.unknowns == Unknowns::quasi_velocities ? eliminations.quasi : eliminations.coordinates;
     const Column a = e.on(lagrange_operator(M) - forces(M));
     const bool along = residual.size() == M.q.size() && !e.constraints.empty();  // n equations: what they say along the constraints
     const Column contracted = along ? e.contract(residual) : residual;
@@ -111,7 +115,7 @@ FormProof prove_form(const Mechanics& M, const Formulation& form, const Equation
       Difference d{e.names[nu], contracted[nu], {}, {}, {}, {}};
       for (std::size_t s = 0; s < a.size(); ++s)
         if (!is_zero(e.g_by_u()[s][nu])) d.right.push_back({e.g_by_u()[s][nu], a[s]});
-      decide(d, e, model);
+      decide(d, e, model, effort);
       proof.differences.push_back(std::move(d));
     }
   }
@@ -119,17 +123,34 @@ FormProof prove_form(const Mechanics& M, const Formulation& form, const Equation
   return proof;
 }
 
-Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const Eliminations& eliminations, const ProofOptions& options) {
+}  // namespace
+
+const Elimination& Eliminations::of(const Formulation& form) const {
+  return form.unknowns == Unknowns::quasi_velocities ? quasi : coordinates;
+}
+
+FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations, const std::vector<Eliminations>& eliminations) {
+  FormProof proof;
+  for (const Effort effort : {Effort::brief, Effort::full})
+    for (std::size_t k = 0; k < eliminations.size(); ++k) {
+      const Elimination& e = eliminations[k].of(form);
+      proof = against_routh(M, form, equations(M, e), e, effort);
+      proof.elimination = k;
+      if (proof.verdict != Verdict::unknown) return proof;
+    }
+  return proof;
+}
+
+Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const std::vector<Eliminations>& eliminations, const ProofOptions& options) {
   Proof proof;
-  bool quasi = false;
+  std::vector<const Elimination*> used;
   for (const Formulation* form : forms) {
     if (options.progress) options.progress(*form);
-    const bool by_quasi = form->unknowns == Unknowns::quasi_velocities;
-    quasi = quasi || by_quasi;
-    proof.forms.push_back(prove_form(M, *form, form->equations(M, by_quasi ? eliminations.quasi : eliminations.coordinates), eliminations));
+    proof.forms.push_back(prove_form(M, *form, form->equations, eliminations));
+    const Elimination* e = &eliminations[proof.forms.back().elimination].of(*form);
+    if (form->unknowns != Unknowns::multipliers && std::find(used.begin(), used.end(), e) == used.end()) used.push_back(e);
   }
-  for (const Elimination* e : {&eliminations.coordinates, &eliminations.quasi}) {
-    if (e->quasi && !quasi) continue;
+  for (const Elimination* e : used) {
     kernel_claims(M, *e, proof.kernel);
     pivot_claims(M, *e, proof.pivots);
   }

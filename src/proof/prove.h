@@ -53,6 +53,7 @@ struct FormProof {
   const Formulation* form = nullptr;
   Verdict verdict = Verdict::unknown;
   std::vector<Difference> differences;
+  std::size_t elimination = 0;  // which of those offered served
 };
 
 struct Proof {
@@ -64,15 +65,18 @@ struct Proof {
 
 struct Eliminations {
   Elimination coordinates, quasi;
+  const Elimination& of(const Formulation& form) const;
 };
 
 struct ProofOptions {
   std::function<void(const Formulation&)> progress;
 };
 
-// One form's equations, given as such, against Routh's.
-FormProof prove_form(const Mechanics& M, const Formulation& form, const Equations& equations, const Eliminations& eliminations);
-Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const Eliminations& eliminations,
+// One form's equations against Routh's. Several eliminations may be offered, which say the same in other words (constraints
+// solved or not): a form is proved with the first that serves.
+using EquationsOf = std::function<Equations(const Mechanics&, const Elimination&)>;
+FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations, const std::vector<Eliminations>& eliminations);
+Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const std::vector<Eliminations>& eliminations,
             const ProofOptions& options = {});
 
 // Everything that was found, for a checker that trusts nobody.

@@ -149,7 +149,7 @@ EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::
 }
 
 Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::vector<StateOverride>& overrides,
-                            const std::vector<std::size_t>& wanted) {
+                            const std::vector<std::size_t>& wanted, bool solve) {
   if (unknowns != Unknowns::coordinates && unknowns != Unknowns::quasi_velocities) return {};
   const Model& model = *m.model;
   Column es;
@@ -167,7 +167,9 @@ Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::ve
     PointValues elsewhere(arbitrary);
     rows = choose_rows(constraint_matrix(m, all, elsewhere), kSingular).independent;
   }
-  return Elimination(m, choose_elimination(m, rows, unknowns, wanted, *at), at);
+  EliminationChoice choice = choose_elimination(m, rows, unknowns, wanted, *at);
+  choice.solve = solve;
+  return Elimination(m, choice, at);
 }
 
 }  // namespace anholon

@@ -17,6 +17,6 @@ EliminationChoice choose_elimination(const Mechanics& mechanics, const std::vect
 
 // The elimination that a form wants, for its equations alone: it does not need a consistent state, and nothing is computed.
 Elimination elimination_for(const Mechanics& mechanics, Unknowns unknowns, const std::vector<StateOverride>& overrides,
-                            const std::vector<std::size_t>& wanted);
+                            const std::vector<std::size_t>& wanted, bool solve = true);
 
 }  // namespace anholon
