@@ -169,7 +169,7 @@ Derivation derivation(const Mechanics& m, const Formulation& form, const Elimina
 std::string as_text(const std::vector<Derivation>& list) {
   std::string out = list[0].model->title + "\n";
   for (const Derivation& d : list) {
-    out += (list.size() > 1 ? "\n" : "") + std::string(d.form->title) + ", " + d.form->equation + " of " + d.form->source + "\n\n";
+    out += (list.size() > 1 ? "\n" : "") + std::string(d.form->title) + ", " + citation(*d.form) + "\n\n";
     for (const auto& [heading, lines] : d.steps) {
       out += heading + "\n";
       for (const Line& l : lines) out += "  " + l.name + " = " + printed(d, l.right, Format::text) + "\n";
@@ -193,7 +193,7 @@ std::string as_latex(const std::vector<Derivation>& list) {
     out += "\\end{align}\n";
   };
   for (const Derivation& d : list) {
-    out += "% " + d.model->title + ": " + d.form->title + ", " + d.form->equation + "\n";
+    out += "% " + d.model->title + ": " + d.form->title + ", " + citation(*d.form) + "\n";
     for (const auto& [heading, lines] : d.steps) {
       out += "% " + heading + "\n";
       std::vector<std::string> rows;

@@ -90,9 +90,11 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   s.notes = model->notes;
   const std::vector<double> parameters = parameter_values<double>(*model);
   const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t};
-  const Outcome initial = consistent_state(problem, s.state);
+  // Without formulas for all given functions there are no numbers, but there is a structure.
+  const bool numbers = model->unknown_functions.empty();
+  const Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
   s.independent.clear();
-  if (initial.ok() && model->unknown_functions.empty()) {
+  if (initial.ok() && numbers) {
     const RowChoice<double> rows = independent_constraints(*s.mechanics, parameters, s.state);
     s.independent = rows.independent;
     // Rows that vanish are a lost hold, not a redundancy: they stay in, and the Jacobian will tell.
@@ -114,6 +116,11 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
     s.elimination = Elimination(*s.mechanics, choose_elimination(*s.mechanics, s.independent, form.unknowns, choice.eliminate, *at), at);
   }
   s.system = implicit_system(model, *s.mechanics, form, s.independent, s.elimination);
+  if (!numbers)
+    s.system.equations = substitute(s.system.equations, [&](NodeId id) {
+      const Node& n = model->graph->node(id);
+      return n.kind == Kind::given ? model->graph->number(Rational(17 + 3 * static_cast<int>(n.index) + static_cast<int>(n.order), 19)) : Expr{};
+    });
   ProbeHints hints;
   hints.t = s.state.t;
   hints.derivatives = {s.state.q, s.state.qd};

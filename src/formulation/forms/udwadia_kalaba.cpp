@@ -59,7 +59,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation udwadia_kalaba;
-const Formulation udwadia_kalaba{"udwadia-kalaba", "Udwadia–Kalaba equations", "fundamental equation",
+const Formulation udwadia_kalaba{"udwadia-kalaba", "Udwadia–Kalaba equations", "",
                                  "Udwadia & Kalaba 1992", Unknowns::coordinates, linear_accelerations, equations};
 
 }  // namespace anholon::forms
