@@ -151,7 +151,7 @@ int check(const Options& o) {
   const Reader in = read(o);
   Scenario s;
   Outcome outcome = ready(in, form(o, *in.model), state_choice(o, *in.model), s);
-  if (outcome.ok() && !not_integrated(*in.model, s.classes)) outcome = regular_at_start(s);
+  if (outcome.ok() && !not_integrated(*in.model)) outcome = regular_at_start(s);
   if (!o.show.empty()) return show(o, s);
   if (o.json) json(s, outcome);
   else text(s, outcome);
