@@ -73,7 +73,10 @@ int orders_beyond(const Scenario& s, const std::vector<int>& d) {
 template <Number N>
 static Start<N> start_of(const Scenario& s, const InitialState<N>& named) {
   const Graph& g = *s.model->graph;
+  // The multipliers of a variational principle are not those of the reactions.
+  const bool reactions = s.system.form->unknowns != Unknowns::variational;
   const auto value = [&](std::size_t j, int k) {
+    if (j >= s.system.coordinates && !reactions) return N(0);
     const N* known = named.value(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
     return known ? *known : N(0);
   };

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "run/evaluate.h"
+#include "structure/branch.h"
 
 namespace anholon {
 
@@ -161,7 +162,9 @@ class Run {
     if (report_.outcome.ok() && leg_->stepper.steps() > 0) balance();
     if (!report_.outcome.ok() && report_.outcome.message.find(" t = ") == std::string::npos) {
       report_.outcome.message += " at t = " + number_text(to_double(leg_->stepper.time()), 12);
-      if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular) suspect();
+      if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
+          report_.outcome.kind == OutcomeKind::no_convergence)
+        suspect();
       // The last good state is worth a row of its own.
       if (leg_->stepper.steps() > 0 && !every_step) {
         const Outcome why = report_.outcome;
@@ -255,7 +258,7 @@ class Run {
 
   // What the motion runs into: a mass that vanishes, a multiplier that grows without bound.
   void suspect() {
-    constexpr double kVanished = 1e-9, kUnbounded = 1e9;
+    constexpr double kVanished = 1e-9, kUnbounded = 1e9, kMeet = 1e-6, kFaint = 1e-3;
     std::string& message = report_.outcome.message;
     for (std::size_t a = 0; a < s_.system.coordinates; ++a)
       for (int k = 0; k < 2; ++k)
@@ -265,6 +268,20 @@ class Run {
           report_.outcome.hint = "look at the last good state: end the motion before";
           return;
         }
+    for (std::size_t k = 0; k < s_.system.constraints.size(); ++k) {
+      const std::size_t r = s_.system.constraints[k];
+      if (!may_branch(*s_.mechanics, s_.system, r)) continue;
+      const double now = to_double(leg_->stepper.point().derivative(s_.system.coordinates + k, 0)), start = s_.state.multipliers[0].value[r];
+      const bool vanishes = s_.mechanics->order[r] > 2 && std::abs(now) < kFaint * std::abs(start);
+      if (vanishes || to_double(leg_->stepper.smallest_sigma()) < kMeet) {
+        report_.outcome.kind = OutcomeKind::singular;
+        message = "singular configuration: " + (vanishes ? "the multiplier of the constraint '" + s_.model->constraints[r].name + "' goes to 0"
+                                                         : "two solutions for the constraint '" + s_.model->constraints[r].name + "' meet") +
+                  " at t = " + number_text(to_double(leg_->stepper.time()), 12) + ", and the equations no longer determine the motion there";
+        report_.outcome.hint = "end the motion before; the other branch, [initial] branch = {…}, may go on";
+        return;
+      }
+    }
     if (const std::string root = vanishing_root(); !root.empty()) message += "; " + root + " is at the edge of where it has a value";
     for (std::size_t i = 0; i < s_.model->masses.size(); ++i)
       if (std::abs(to_double(leg_->stepper.quadrature(1 + i, W(0)))) < kVanished)

@@ -74,17 +74,19 @@ class Solver {
     make_room(s, t);
     start_values(is_higher);
     std::vector<StageEquation> late;  // hold leading derivatives
+    start_with_free_accelerations(s);
     const int deepest = *std::max_element(t.d.begin(), t.d.end());
     for (int level = deepest; level >= 1; --level)
       if (Outcome o = stage(s, t, level); !o.ok()) return o;
     for (const StageEquation& e : conditions())
       if (holds_higher(e.residual) && level_of(e.residual, s, t) <= 0) late.push_back(e);
-    given_beyond_the_state(s, t, late);
+    if (Outcome o = given_beyond_the_state(s, t, late); !o.ok()) return o;
     if (Outcome o = leading(s, t); !o.ok()) return o;
     if (!late.empty())
       if (Outcome o = together(s, t, late); !o.ok()) return o;
     for (std::size_t j = 0; j < s.size(); ++j)
       *state_.origin(node(s.symbol(j, static_cast<unsigned>(t.d[j])))) = Origin::derived;
+    say_choices(s, t);
     return {};
   }
 
@@ -243,12 +245,44 @@ class Solver {
       if (holds_higher(e.residual) && level_of(e.residual, s, t) == level) equations.push_back(e);
     if (!laws.empty()) start_unconstrained(laws, unknowns, metric);
     if (Outcome o = solve(equations, unknowns, metric); !o.ok()) return o;
-    say_choices(equations, unknowns, metric);
+    mark_choices(equations, unknowns, metric);
     return {};
   }
 
-  // Where constraints of order 3 and more leave their multipliers free, the motion starts without their reaction: the guess
-  // for the other entries is what follows from that.
+  // Where linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the guess
+  // is the acceleration without them. (A nonlinear one must have a reaction; there 0 is as good as any.)
+  void start_with_free_accelerations(const System& s) {
+    Equations laws;
+    Column unknowns = m_.qdd;
+    bool higher = false;
+    for (std::size_t i = 0; i < s.coordinates; ++i) {
+      if (jet_order(s.equations[i]) > 2) return;
+      laws.push_back({s.equations[i], "the equation of motion of '" + s.equation_names[i] + "'", {}});
+    }
+    for (std::size_t k = 0; k < s.constraints.size(); ++k) {
+      const std::size_t r = s.constraints[k];
+      higher = higher || m_.order[r] > 2;
+      if (may_branch(m_, s, r)) return;
+      if (m_.order[r] > 2) continue;
+      laws.push_back({total_derivative(s.equations[s.coordinates + k], static_cast<unsigned>(2 - m_.order[r])), "constraint '" + model_.constraints[r].name + "'", {}});
+      unknowns.push_back(m_.lambda[r]);
+    }
+    if (!higher) return;
+    const InitialState<N> before = state_;
+    Stage<N> stage(m_, laws, unknowns, 1U << 2, p_.parameters);
+    std::vector<std::size_t> every;
+    for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
+    if (!find_by_least_change(stage, state_, every)) state_ = before;
+    keep_said(before, unknowns);
+  }
+
+  // Values given or guessed stay what they were.
+  void keep_said(const InitialState<N>& before, const Column& unknowns) {
+    for (Expr u : unknowns)
+      if (const Node& n = node(u); *before.origin(n) == Origin::given || *before.origin(n) == Origin::guessed) *state_.value(n) = *before.value(n);
+  }
+
+  // The same for rates of multipliers and what goes with them: the guess for the other entries is what follows from none.
   void start_unconstrained(const Equations& laws, const Column& unknowns, unsigned metric) {
     if (std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return free_multiplier(node(u)); })) return;
     const InitialState<N> before = state_;
@@ -260,16 +294,15 @@ class Solver {
       state_ = before;
       return;
     }
-    for (Expr u : unknowns)
-      if (const Node& n = node(u); *before.origin(n) == Origin::given || *before.origin(n) == Origin::guessed) *state_.value(n) = *before.value(n);
+    keep_said(before, unknowns);
   }
 
   std::string entry_name(const Node& n) const {
     return derivative_name(n.kind == Kind::multiplier ? "lambda." + model_.constraints[n.index].name : model_.coordinates[n.index].name, n.order, Format::text);
   }
 
-  // What no equation determines is a choice, and said.
-  void say_choices(const Equations& equations, const Column& unknowns, unsigned metric) {
+  // What no equation determines is a choice.
+  void mark_choices(const Equations& equations, const Column& unknowns, unsigned metric) {
     std::vector<std::size_t> free;
     for (std::size_t j = 0; j < unknowns.size(); ++j)
       if (const Origin o = *state_.origin(node(unknowns[j])); o == Origin::derived || o == Origin::chosen) free.push_back(j);
@@ -289,33 +322,43 @@ class Solver {
     if (choices.empty())
       for (std::size_t j : free)
         if (*state_.origin(node(unknowns[j])) == Origin::chosen) choices.push_back(j);
-    std::string list;
-    for (std::size_t j : choices) {
-      const Node& n = node(unknowns[j]);
-      *state_.origin(n) = Origin::chosen;
-      list += (list.empty() ? "" : ", ") + entry_name(n) + " = " + number_text(to_double(*state_.value(n)), 6);
+    for (std::size_t j : choices) *state_.origin(node(unknowns[j])) = Origin::chosen;
+  }
+
+  void say_choices(const System& s, const Structure& t) {
+    for (const bool multipliers : {true, false}) {
+      std::string list;
+      for (std::size_t j = 0; j < s.size(); ++j)
+        for (int k = 0; k < t.d[j]; ++k) {
+          const Node& n = node(s.symbol(j, static_cast<unsigned>(k)));
+          if (!is_higher(n) || (n.kind == Kind::multiplier) != multipliers || *state_.origin(n) != Origin::chosen) continue;
+          list += (list.empty() ? "" : ", ") + entry_name(n) + " = " + number_text(to_double(*state_.value(n)), 6);
+        }
+      if (list.empty()) continue;
+      state_.notes.push_back("a choice: " + list + " at the start" +
+                             (multipliers ? ", which no equation determines: the motion starts as it would without the constraint; other values in [initial] lambda = {…}, or accelerations"
+                                          : ", which no equation determines: other values in [initial] qddot = {…}"));
     }
-    if (list.empty()) return;
-    const bool multipliers = node(unknowns[choices[0]]).kind == Kind::multiplier;
-    state_.notes.push_back(multipliers ? "a choice: " + list + " at the start (the constraint reacts from there on); other values are as good: [initial] lambda = {…}, or accelerations"
-                                       : "a choice: " + list + " at the start; no equation determines " + (choices.size() > 1 ? "them" : "it") + ": [initial] qddot = {…}");
   }
 
   // Values given for derivatives that the state does not hold are conditions on it.
-  void given_beyond_the_state(const System& s, const Structure& t, Equations& late) {
+  Outcome given_beyond_the_state(const System& s, const Structure& t, Equations& late) {
+    Outcome refused;
     const auto beyond = [&](Expr x) {
       const auto j = s.variable(x.id);
       return is_higher(node(x)) && j && static_cast<int>(node(x).order) >= t.d[*j];
     };
     const auto add = [&](Expr x, Expr value, Span span) {
       const auto j = s.variable(x.id);
-      if (static_cast<int>(node(x).order) > t.d[*j]) return;
-      late.push_back({x - value, "the value given for " + entry_name(node(x)), span, true});
+      if (static_cast<int>(node(x).order) > t.d[*j])
+        refused = {OutcomeKind::inconsistent, entry_name(node(x)) + " is given, but follows from the state", "leave it out"};
+      late.push_back({x - value, "the value given for " + entry_name(node(x)), span, !overridden(node(x))});
     };
     for (const GivenValue& v : model_.initial.given)
       if (beyond(v.symbol) && !overridden(node(v.symbol))) add(v.symbol, v.value, v.span);
     for (const StateOverride& o : p_.overrides)
       if (beyond(symbol(o))) add(symbol(o), m_.graph().number(o.value), {});
+    return refused;
   }
 
   bool branch_holds(const std::vector<N>& x, const System& s) const {
