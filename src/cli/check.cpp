@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "base/json.h"
@@ -48,12 +49,49 @@ std::string work(const ConstraintClass& c, int order) {
   return "may do work";
 }
 
+// An entry of the state beyond positions and velocities.
+struct Entry {
+  std::string name;
+  double value;
+  Origin origin;
+};
+
+std::vector<Entry> higher_state(const Scenario& s) {
+  std::vector<Entry> list;
+  if (!s.routh) return list;
+  const Graph& g = *s.model->graph;
+  for (int k = 0; k < *std::max_element(s.routh_structure.d.begin(), s.routh_structure.d.end()); ++k)
+    for (std::size_t j = 0; j < s.routh->size(); ++j) {
+      if (k >= s.routh_structure.d[j] || (j < s.routh->coordinates && k < 2)) continue;
+      const Node& n = g.node(s.routh->symbol(j, static_cast<unsigned>(k)).id);
+      list.push_back({derivative_name(s.routh->variable_names[j], static_cast<unsigned>(k), Format::text), *s.state.value(n), *s.state.origin(n)});
+    }
+  // Coordinates first, by order.
+  std::stable_partition(list.begin(), list.end(), [](const Entry& e) { return e.name.rfind("lambda.", 0) != 0; });
+  return list;
+}
+
+// What initial data the structure asks for, where it is not positions and velocities alone.
+std::string data_needed(const Scenario& s, const std::vector<Entry>& higher) {
+  std::string list, choices;
+  for (const Entry& e : higher) {
+    list += ", " + e.name;
+    if (e.origin == Origin::chosen) choices += (choices.empty() ? "" : ", ") + e.name;
+  }
+  if (list.empty()) return {};
+  return "initial data: " + std::to_string(s.structure.state_dimension) + " numbers, among positions, velocities" + list + "; " +
+         (choices.empty() ? "all of these are given or derived" : "nobody gave " + choices + ": a choice");
+}
+
 void state_table(const Scenario& s) {
   const InitialState<double>& x = s.state;
+  const std::vector<Entry> higher = higher_state(s);
+  if (const std::string needed = data_needed(s, higher); !needed.empty()) std::printf("%s\n", needed.c_str());
   std::printf("initial state at t = %s\n", number_text(x.t).c_str());
   for (std::size_t a = 0; a < x.q.size(); ++a)
     std::printf("  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
                 name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(), number_text(x.qd[a]).c_str(), name(x.qd_origin[a]));
+  for (const Entry& e : higher) std::printf("  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
   std::printf("  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
 }
 
@@ -136,6 +174,7 @@ void json(const Scenario& s, const Outcome& outcome) {
         j.key("value").number(number_text(k ? s.state.qd[a] : s.state.q[a]));
         j.key("origin").string(name(k ? s.state.qd_origin[a] : s.state.q_origin[a])).close();
       }
+    for (const Entry& e : higher_state(s)) j.key(e.name).open_object().key("value").number(number_text(e.value)).key("origin").string(name(e.origin)).close();
     j.close();
   }
   strings("notes", s.notes);
@@ -151,7 +190,7 @@ int check(const Options& o) {
   const Reader in = read(o);
   Scenario s;
   Outcome outcome = ready(in, form(o, *in.model), state_choice(o, *in.model), s);
-  if (outcome.ok() && !not_integrated(*in.model, s.classes)) outcome = regular_at_start(s);
+  if (outcome.ok() && !not_integrated(*in.model)) outcome = regular_at_start(s);
   if (!o.show.empty()) return show(o, s);
   if (o.json) json(s, outcome);
   else text(s, outcome);

@@ -17,7 +17,7 @@ struct Options {
   std::string output;
   std::string numbers = "double";
   std::string integrator = "taylor";
-  std::vector<std::string> set, q, qdot, at, eliminate, forms;
+  std::vector<std::string> set, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance;
   int digits = 16;
   int order = 0;

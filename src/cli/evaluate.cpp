@@ -100,7 +100,7 @@ int evaluate(const Options& o) {
   Scenario s;
   Outcome outcome = ready(in, form(o, *in.model), choice, s);
   form(o, *in.model, s.mechanics.get());
-  if (const auto d = not_integrated(*in.model, s.classes)) {
+  if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }

@@ -224,23 +224,43 @@ StateChoice state_choice(const Options& o, const Model& model) {
     c.eliminate.push_back(static_cast<std::size_t>(it - names.begin()));
   }
   if (!o.t.empty()) c.t = exact(o.t, "--t");
-  for (const auto& [list, order, option] : {std::tuple{&o.q, 0U, "--q"}, std::tuple{&o.qdot, 1U, "--qdot"}})
+  unsigned highest = 2;  // derivatives of this order follow from the state
+  for (const Constraint& m : model.constraints) highest = std::max(highest, static_cast<unsigned>(m.order));
+  for (const auto& [list, order, option] : {std::tuple{&o.q, 0U, "--q"}, std::tuple{&o.qdot, 1U, "--qdot"}, std::tuple{&o.qddot, 2U, "--qddot"},
+                                            std::tuple{&o.qdddot, 3U, "--qdddot"}})
     for (const std::string& s : split(*list)) {
       auto [name, value] = assignment(s, option);
-      unsigned k = order;
-      while (!name.empty() && name.back() == '\'') name.pop_back(), ++k;
-      if (order == 1 && k > 1) k = 1;  // --qdot "x'=2" means x' too
+      unsigned primes = 0;
+      while (!name.empty() && name.back() == '\'') name.pop_back(), ++primes;
+      const unsigned k = order == 0 ? primes : order;  // --qdot "x'=2" means x' too
       const auto it = std::find(model.names.coordinates.begin(), model.names.coordinates.end(), name);
       if (it == model.names.coordinates.end()) {
         const std::string near = did_you_mean(name, model.names.coordinates);
         throw UsageError{"error: " + std::string(option) + ": there is no coordinate '" + name + "'" +
                          (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
       }
-      if (k > 1) throw UsageError{"error: " + std::string(option) + ": accelerations follow from the state\n"};
+      if (k >= highest)
+        throw UsageError{"error: " + std::string(option) + ": " + (highest == 2 ? "accelerations follow" : "derivatives of order " + std::to_string(k) + " follow") +
+                         " from the state\n"};
       for (const StateOverride& before : c.overrides)
         if (before.order == k && before.coordinate == static_cast<std::size_t>(it - model.names.coordinates.begin()))
           throw UsageError{"error: " + std::string(option) + " gives '" + name + "' twice\n"};
       c.overrides.push_back({k, static_cast<std::size_t>(it - model.names.coordinates.begin()), exact(value, option)});
+    }
+  for (const auto& [list, order, option] : {std::tuple{&o.lambda, 0U, "--lambda"}, std::tuple{&o.lambdadot, 1U, "--lambdadot"}})
+    for (const std::string& s : split(*list)) {
+      const auto [name, value] = assignment(s, option);
+      const auto& names = model.names.multipliers;
+      const auto it = std::find(names.begin(), names.end(), name);
+      if (it == names.end()) {
+        const std::string near = did_you_mean(name, names);
+        throw UsageError{"error: " + std::string(option) + ": there is no constraint '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
+      }
+      if (order + 2 >= highest) throw UsageError{"error: " + std::string(option) + ": multipliers follow from the state\nhint: they are initial data for constraints of order 3 and more\n"};
+      const auto k = static_cast<std::size_t>(it - names.begin());
+      for (const StateOverride& before : c.overrides)
+        if (before.multiplier && before.order == order && before.coordinate == k) throw UsageError{"error: " + std::string(option) + " gives '" + name + "' twice\n"};
+      c.overrides.push_back({order, k, exact(value, option), true});
     }
   return c;
 }

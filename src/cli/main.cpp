@@ -16,7 +16,7 @@ namespace {
 
 // --q x=1 y=2 MODEL: a word without '=' that slipped into a list of assignments is the model.
 void rescue_model(Options& o) {
-  for (std::vector<std::string>* list : {&o.q, &o.qdot, &o.set})
+  for (std::vector<std::string>* list : {&o.q, &o.qdot, &o.qddot, &o.qdddot, &o.lambda, &o.lambdadot, &o.set})
     for (auto it = list->begin(); it != list->end();) {
       if (o.model.empty() && it->find('=') == std::string::npos) o.model = *it, it = list->erase(it);
       else ++it;
@@ -80,6 +80,10 @@ int run(int argc, char** argv) {
     c->add_option("--t", o.t, "initial time")->type_name("T");
     c->add_option("--q", o.q, "initial positions x=0.2,y=1 (exact decimals); others from the file")->type_name("NAME=VALUE");
     c->add_option("--qdot", o.qdot, "initial velocities x=0.2,y=1")->type_name("NAME=VALUE");
+    c->add_option("--qddot", o.qddot, "initial accelerations, where constraints of order 3 and more leave them free")->type_name("NAME=VALUE");
+    c->add_option("--qdddot", o.qdddot, "initial third derivatives, likewise (order 4 and more)")->type_name("NAME=VALUE");
+    c->add_option("--lambda", o.lambda, "initial multipliers blade=0.4, likewise (order 3 and more)")->type_name("NAME=VALUE");
+    c->add_option("--lambdadot", o.lambdadot, "initial rates of multipliers (order 4 and more)")->type_name("NAME=VALUE");
   };
   const auto form_option = [&](CLI::App* c) {
     c->add_option("--form", o.form, "form of the equations (see `anholon forms`; derive: also all)")->type_name("NAME")->each([&o](const std::string&) { o.form_given = true; });

@@ -159,7 +159,7 @@ int simulate(const Options& o) {
   Scenario s;
   const Outcome start = ready(in, form(o, *in.model), options.state, s);
   form(o, *in.model, s.mechanics.get());
-  if (const auto d = not_integrated(*in.model, s.classes)) {
+  if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }

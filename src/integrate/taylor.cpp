@@ -29,7 +29,9 @@ template <Number N>
 Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
                     const StepSettings& settings)
     : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
-      expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {}
+      expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {
+  if (program.nonlinear) ahead_ = std::make_unique<Expansion<N>>(program, parameters, 1);
+}
 
 template <Number N>
 Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
@@ -179,6 +181,49 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
   }
 }
 
+// Where leading derivatives enter nonlinearly, solutions of the equations may meet where J is singular, and the Taylor polynomial
+// would go straight on from one to another. With A = J0^-1 (J - J0) of spectral radius below 1, J is regular: so a step ends
+// where the radius, estimated by the norm of A^8, reaches 1/2, and steps shrink towards a singular point (theory: taylor).
+template <Number N>
+bool Stepper<N>::near_in_branch(const W& h) {
+  constexpr double kNear = 0.5;
+  const std::size_t n = program_->unknowns();
+  std::vector<W> increments, leading, state;
+  polynomial(h, increments, leading);
+  point_.state(state);
+  std::vector<N> narrow_state, narrow_leading;
+  for (std::size_t i = 0; i < state.size(); ++i) narrow_state.push_back(convert<N>(W(state[i] + increments[i])));
+  for (const W& x : leading) narrow_leading.push_back(convert<N>(x));
+  ahead_->load(convert<N>(W(t_ + h)), narrow_state, narrow_leading);
+  if (!ahead_->prepare().ok()) return false;
+  Matrix<N> a(n, n);
+  std::vector<N> column(n), y;
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < n; ++i) column[i] = ahead_->system_jacobian()(i, j) - expansion_.system_jacobian()(i, j);
+    expansion_.lu().solve_once(column, y);
+    for (std::size_t i = 0; i < n; ++i) a(i, j) = y[i];
+  }
+  for (int doubling = 0; doubling < 3; ++doubling) {
+    Matrix<N> square(n, n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t j = 0; j < n; ++j) addmul(square(i, j), a(i, k), a(k, j));
+    a = std::move(square);
+  }
+  double norm2 = 0;
+  for (const N& v : a.data) norm2 += to_double(v) * to_double(v);
+  return norm2 <= std::pow(kNear, 16);  // false for what is not a number
+}
+
+template <Number N>
+typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
+  constexpr int kMostHalvings = 200;
+  if (branch_step_ > W(0) && abs(h) > branch_step_ * W(4)) h = h > W(0) ? branch_step_ * W(4) : branch_step_ * W(-4);
+  for (int k = 0; k < kMostHalvings && !(near_in_branch(h) && near_in_branch(h * W(0.5))); ++k) h = h * W(0.5);
+  branch_step_ = abs(h);
+  return h;
+}
+
 template <Number N>
 Outcome Stepper<N>::step(const W& end) {
   if (settings_.cancelled && settings_.cancelled())
@@ -190,6 +235,10 @@ Outcome Stepper<N>::step(const W& end) {
   const W left = end - t_;
   const bool forward = left > W(0);
   W h = convert<W>(horizon_);
+  if (ahead_) {
+    h = abs(left) < h ? abs(left) : h;
+    h = abs(on_the_branch(forward ? h : W(-h)));
+  }
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
   if (!(h > floor))
     return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",

@@ -2,6 +2,7 @@
 // all hidden constraints at every step, compensated update of the state, dense output.
 #pragma once
 #include <functional>
+#include <memory>
 
 #include "program/expansion.h"
 
@@ -57,6 +58,8 @@ class Stepper {
  private:
   Outcome expand(const std::vector<W>& guess);
   N step_size() const;
+  W on_the_branch(W h);
+  bool near_in_branch(const W& h);
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
@@ -64,6 +67,8 @@ class Stepper {
   int order_;
   Expansion<N> expansion_;
   Expansion<W> point_;
+  std::unique_ptr<Expansion<N>> ahead_;  // where leading derivatives enter nonlinearly
+  W branch_step_{0};
   W t_{0}, before_{0};
   N horizon_{0};
   std::vector<W> state_, carry_, leading_, integrals_, integral_carry_;

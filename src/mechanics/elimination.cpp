@@ -58,7 +58,7 @@ bool depends(std::span<const Expr> es, const Column& on) {
 
 Column operator*(const Column& X, const Rows& Y) {
   ANHOLON_ASSERT(X.size() == Y.size());
-  if (Y.empty()) return {};
+  if (Y.empty() || Y[0].empty()) return {};
   Graph& g = *Y[0][0].graph;
   Column out;
   for (std::size_t a = 0; a < Y[0].size(); ++a) {

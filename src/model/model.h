@@ -116,10 +116,18 @@ struct Condition {
   Span span;
 };
 
+// Which solution is meant where a constraint that is nonlinear in its highest derivatives has several.
+struct BranchChoice {
+  std::size_t constraint = 0;
+  bool positive = true;  // lambda > 0
+  Span span;
+};
+
 struct InitialData {
   Expr t;
   std::vector<GivenValue> given, guess;
   std::vector<Condition> conditions;
+  std::vector<BranchChoice> branches;
 };
 
 struct SimulationSettings {

@@ -9,6 +9,9 @@ namespace anholon {
 namespace {
 constexpr int kMostNewton = 30;
 constexpr int kMostProjections = 4;
+// Newton steps that no longer shrink are round-off below this many round-offs of the unknowns; more where J depends on them, as
+// it may be small there (the multiplier of a nonlinear constraint goes to zero).
+constexpr double kStalled = 1e3, kStalledNonlinear = 1e8;
 // A hidden constraint is left alone while its residual is below this many round-offs of its terms.
 constexpr int kQuietRoundoffs = 6;
 // An LU whose smallest scaled singular value is below this many round-offs is singular.
@@ -165,10 +168,9 @@ Outcome Expansion<N>::singular() const {
   for (std::size_t column : all.pivot_columns) used[column] = true;
   std::string names;
   for (std::size_t j = 0; j < s.size(); ++j)
-    if (!used[j]) names += (names.empty() ? "" : ", ") + s.variable_names[j];
+    if (!used[j]) names += (names.empty() ? "" : ", ") + derivative_name(s.variable_names[j], static_cast<unsigned>(program_->d[j]), Format::text);
   return {OutcomeKind::singular,
-          "singular configuration: the equations do not determine " + (names.empty() ? std::string("the accelerations") : names) +
-              (names.find("lambda") == std::string::npos && !names.empty() ? "''" : ""),
+          "singular configuration: the equations do not determine " + (names.empty() ? std::string("the accelerations") : names),
           "no inertia acts in some direction, a constraint has lost its hold, or angles are at their singularity (Euler angles "
           "at theta = 0)"};
 }
@@ -300,7 +302,7 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     const N floor = eps * N(4) * (size > N(1) ? size : N(1));
     if (!(step > floor)) return {};
     // Round-off reached: steps no longer shrink and are small.
-    if (last >= N(0) && !(step < last * N(0.5)) && step < floor * N(1000)) return {};
+    if (last >= N(0) && !(step < last * N(0.5)) && step < floor * N(p.nonlinear ? kStalledNonlinear : kStalled)) return {};
     if (own && k >= 2 && last >= N(0) && step > last * N(0.1)) {
       // Slow: the Jacobian has changed with the leading derivatives.
       jacobian();

@@ -55,6 +55,9 @@ Program program(const System& system, const Structure& structure, std::span<cons
       case Op::square: case Op::power: case Op::function: t.a = tainted(in.a, in.lead); break;
     }
     if (!t.a && !t.b) continue;
+    // At higher orders of the series (leads above 0) they enter linearly whatever the operation.
+    const bool product = in.op == Op::multiply || in.op == Op::scale;
+    if (in.lead == 0 && in.op != Op::linear && (product ? t.a && t.b : in.op != Op::divide || t.b)) p.nonlinear = true;
     t.row = static_cast<std::uint32_t>(p.tangent_rows++);
     p.tangent_row[s] = t.row;
     p.tainted.push_back(t);

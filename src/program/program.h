@@ -33,6 +33,7 @@ struct Program {
   std::vector<std::uint32_t> tangent_row;        // slot -> row, or kUntainted
   std::size_t tangent_rows = 0;
   std::size_t quadratures = 0;                   // roots after the equations
+  bool nonlinear = false;                        // leading derivatives enter nonlinearly: J depends on them
 
   static constexpr std::uint32_t kUntainted = 0xffffffffU;
   std::size_t unknowns() const { return d.size(); }

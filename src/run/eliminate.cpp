@@ -135,8 +135,7 @@ PointValues values_near(const Model& model, const std::vector<double>& parameter
   return PointValues([parameters, state, known](const Node& n) {
     if (n.kind == Kind::parameter && n.index < parameters.size()) return parameters[n.index];
     if (known && n.kind == Kind::time) return state.t;
-    if (known && n.kind == Kind::jet && n.order == 0) return state.q[n.index];
-    if (known && n.kind == Kind::jet && n.order == 1) return state.qd[n.index];
+    if (const double* value = n.kind == Kind::jet ? state.value(n) : nullptr) return *value;
     return arbitrary(n);
   });
 }

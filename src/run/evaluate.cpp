@@ -56,18 +56,15 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
   const std::size_t n = m.q.size();
   const std::vector<N> parameters = parameter_values<N>(model);
   const Program prog = program(s.system, s.structure);
-  const int largest_d = *std::max_element(prog.d.begin(), prog.d.begin() + static_cast<std::ptrdiff_t>(n));
-  const int smallest_d = *std::min_element(prog.d.begin(), prog.d.begin() + static_cast<std::ptrdiff_t>(n));
-  Expansion<N> point(prog, parameters, std::max(1, largest_d - smallest_d));
-  N t(0);
-  std::vector<N> state;
-  InitialState<N> named;
-  if (Outcome o = initial_state(s, choice, t, state, named); !o.ok()) return o;
-  point.load(t, state, {});
+  const int largest_d = largest_order(s, prog.d), beyond = orders_beyond(s, prog.d);
+  Expansion<N> point(prog, parameters, std::max(1, beyond));
+  Start<N> start;
+  if (Outcome o = initial_state(s, choice, start); !o.ok()) return o;
+  point.load(start.t, start.state, start.leading);
   if (Outcome o = point.prepare(); !o.ok()) return o;
   if (Outcome o = point.project(); !o.ok()) return o;
   if (Outcome o = point.solve(); !o.ok()) return o;
-  if (largest_d > smallest_d)
+  if (beyond > 0)
     if (Outcome o = point.extend(); !o.ok()) return o;
 
   const auto put = [&](const Column& c) { return put_masses(model, c); };
@@ -95,7 +92,7 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
   OutputTape<N> out(s, es, parameters);
   out.evaluate(point);
 
-  r.t = text(t, digits);
+  r.t = text(start.t, digits);
   for (std::size_t a = 0; a < n; ++a) {
     r.q.push_back({model.coordinates[a].name, text(point.derivative(a, 0), digits)});
     r.qdot.push_back({model.coordinates[a].name, text(point.derivative(a, 1), digits)});
@@ -116,7 +113,9 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
                                text(point.derivative(a, k), digits)});
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const auto j = s.system.variable(m.lambda[k].id);
-    r.lambda.push_back({model.constraints[k].name, text(j ? point.derivative(*j, 0) : N(0), digits)});
+    for (int order = 0; order <= multiplier_orders(s); ++order)
+      r.lambda.push_back({derivative_name(model.constraints[k].name, static_cast<unsigned>(order), Format::text),
+                          text(j ? point.derivative(*j, order) : N(0), digits)});
   }
   N dh(0), rate(0);
   for (const auto& [name, e] : numbers) {

@@ -45,41 +45,105 @@ std::vector<ConstraintClass> classify(const Mechanics& m) {
   return classes;
 }
 
-std::optional<Diagnostic> not_integrated(const Model& model, const std::vector<ConstraintClass>& classes) {
+std::optional<Diagnostic> not_integrated(const Model& model) {
   if (!model.unknown_functions.empty())
     return Diagnostic{Severity::error, {}, "the given function '" + model.unknown_functions[0] + "' has no formula",
                       "numbers need one: [functions] " + model.unknown_functions[0] + " = \"…\""};
-  for (std::size_t r = 0; r < model.constraints.size(); ++r) {
-    const Constraint& c = model.constraints[r];
-    if (c.order > 2 || (c.order == 2 && classes[r].kind == "nonlinear"))
-      return Diagnostic{Severity::error, c.span,
-                        "the constraint '" + c.name + "' of order " + std::to_string(c.order) + " (" + classes[r].kind +
-                            ") is derived and checked, but not integrated yet",
-                        "orders 0 and 1, and 2 where it is linear in the accelerations, are integrated"};
-  }
   return std::nullopt;
 }
 
-// Positions and velocities in the order of an Expansion's state.
+int multiplier_orders(const Scenario& s) {
+  if (!s.routh) return 0;
+  return *std::max_element(s.routh_structure.d.begin() + static_cast<std::ptrdiff_t>(s.routh->coordinates), s.routh_structure.d.end());
+}
+
+int largest_order(const Scenario& s, const std::vector<int>& d) {
+  return *std::max_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates));
+}
+
+int orders_beyond(const Scenario& s, const std::vector<int>& d) {
+  int beyond = 0;
+  const int coordinates = largest_order(s, d), multipliers = multiplier_orders(s);
+  for (std::size_t j = 0; j < d.size(); ++j)
+    beyond = std::max(beyond, (j < s.system.coordinates ? coordinates : multipliers) - d[j]);
+  return beyond;
+}
+
+// What the system's form asks for, out of the named values.
 template <Number N>
-static std::vector<N> state_vector(const Scenario& s, const InitialState<N>& named) {
-  std::vector<N> state;
-  for (std::size_t j = 0; j < s.system.size(); ++j)
-    for (int k = 0; k < s.structure.d[j]; ++k) {
-      const bool coordinate = j < s.system.coordinates;
-      state.push_back(coordinate && k == 0 ? named.q[j] : coordinate && k == 1 ? named.qd[j] : N(0));
-    }
-  return state;
+static Start<N> start_of(const Scenario& s, const InitialState<N>& named) {
+  const Graph& g = *s.model->graph;
+  // The multipliers of a variational principle are not those of the reactions.
+  const bool reactions = s.system.form->unknowns != Unknowns::variational;
+  const auto value = [&](std::size_t j, int k) {
+    if (j >= s.system.coordinates && !reactions) return N(0);
+    const N* known = named.value(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
+    return known ? *known : N(0);
+  };
+  Start<N> start;
+  start.t = named.t;
+  for (std::size_t j = 0; j < s.system.size(); ++j) {
+    for (int k = 0; k < s.structure.d[j]; ++k) start.state.push_back(value(j, k));
+    if (s.routh) start.leading.push_back(value(j, s.structure.d[j]));
+  }
+  return start;
 }
 
 Outcome regular_at_start(const Scenario& s) {
   const Program p = program(s.system, s.structure);
-  const std::vector<double> state = state_vector(s, s.state);
+  const Start<double> start = start_of(s, s.state);
   Expansion<double> point(p, parameter_values<double>(*s.model), 1);
-  point.load(s.state.t, state, {});
+  point.load(start.t, start.state, start.leading);
   if (Outcome o = point.prepare(); !o.ok()) return o;
   if (Outcome o = point.project(); !o.ok()) return o;
   return point.solve();
+}
+
+static ProbeHints hints_at(const InitialState<double>& state) {
+  ProbeHints hints;
+  hints.t = state.t;
+  hints.derivatives = {state.q, state.qd};
+  for (const Level<double>& level : state.higher) hints.derivatives.push_back(level.value);
+  return hints;
+}
+
+// Independent constraints at the state; those that follow from them are left out, with a note.
+static void choose_constraints(const Model& model, const std::vector<double>& parameters, Scenario& s) {
+  const RowChoice<double> rows = independent_constraints(*s.mechanics, parameters, s.state);
+  s.independent = rows.independent;
+  // Rows that vanish are a lost hold, not a redundancy: they stay in, and the Jacobian will tell.
+  for (std::size_t r : rows.dependent)
+    (std::find(rows.vanishing.begin(), rows.vanishing.end(), r) == rows.vanishing.end() ? s.redundant : s.independent)
+        .push_back(r);
+  std::sort(s.independent.begin(), s.independent.end());
+  for (std::size_t r : s.redundant) {
+    s.classes[r].redundant = true;
+    s.notes.push_back("constraint '" + model.constraints[r].name +
+                      "' follows from the others at the initial state: it is left out, and watched");
+  }
+}
+
+// Routh's equations know all multipliers: the state is completed with them, whatever the form.
+static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
+  auto routh = std::make_shared<System>(implicit_system(s.model, *s.mechanics, *find_formulation("routh"), s.independent, {}));
+  Structure structure;
+  if (Outcome o = analyse(*routh, problem.parameters, hints_at(s.state), structure); !o.ok()) return o;
+  drop_absent(*routh, structure);
+  if (!needs_completion(*s.mechanics, *routh, structure)) return {};
+  s.routh = std::move(routh);
+  s.routh_structure = std::move(structure);
+  return complete_state(problem, *s.routh, s.routh_structure, s.state);
+}
+
+// Constraints on accelerations, and conditions on them, ask for more than positions and velocities.
+static bool may_need_completion(const Model& model) {
+  const auto high = [](Expr e) {
+    for (NodeId id : symbols({&e, 1}))
+      if (const Node& n = e.graph->node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1)) return true;
+    return false;
+  };
+  return std::any_of(model.constraints.begin(), model.constraints.end(), [](const Constraint& c) { return c.order >= 2; }) ||
+         std::any_of(model.initial.conditions.begin(), model.initial.conditions.end(), [&](const Condition& c) { return high(c.residual); });
 }
 
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
@@ -92,24 +156,12 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t};
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
-  const Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
+  Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
   s.independent.clear();
-  if (initial.ok() && numbers) {
-    const RowChoice<double> rows = independent_constraints(*s.mechanics, parameters, s.state);
-    s.independent = rows.independent;
-    // Rows that vanish are a lost hold, not a redundancy: they stay in, and the Jacobian will tell.
-    for (std::size_t r : rows.dependent)
-      (std::find(rows.vanishing.begin(), rows.vanishing.end(), r) == rows.vanishing.end() ? s.redundant : s.independent)
-          .push_back(r);
-    std::sort(s.independent.begin(), s.independent.end());
-    for (std::size_t r : s.redundant) {
-      s.classes[r].redundant = true;
-      s.notes.push_back("constraint '" + model->constraints[r].name +
-                        "' follows from the others at the initial state: it is left out, and watched");
-    }
-  } else {
+  if (initial.ok() && numbers) choose_constraints(*model, parameters, s);
+  else
     for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);
-  }
+  if (initial.ok() && numbers && may_need_completion(*model)) initial = complete(problem, s);
   s.elimination = Elimination();
   if (form.eliminates()) {
     const auto at = std::make_shared<PointValues>(values_near(*model, parameters, s.state));
@@ -121,27 +173,30 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
       const Node& n = model->graph->node(id);
       return n.kind == Kind::given ? model->graph->number(Rational(17 + 3 * static_cast<int>(n.index) + static_cast<int>(n.order), 19)) : Expr{};
     });
-  ProbeHints hints;
-  hints.t = s.state.t;
-  hints.derivatives = {s.state.q, s.state.qd};
-  const Outcome structured = analyse(s.system, parameters, hints, s.structure);
+  const Outcome structured = analyse(s.system, parameters, hints_at(s.state), s.structure);
   if (structured.ok()) drop_absent(s.system, s.structure);
   if (!initial.ok()) return initial;
-  return structured;
+  if (!structured.ok()) return structured;
+  // Masses and forces that depend on accelerations may ask for more, too.
+  const bool beyond = std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates), [](int d) { return d > 2; });
+  if (beyond && !s.routh) initial = complete(problem, s);
+  s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());
+  return initial;
 }
 
 template <Number N>
-Outcome initial_state(const Scenario& s, const StateChoice& choice, N& t, std::vector<N>& state,
-                      InitialState<N>& named) {
+Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start) {
   const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t};
+  InitialState<N> named;
   if (Outcome o = consistent_state(problem, named); !o.ok()) return o;
-  t = named.t;
-  state = state_vector(s, named);
+  if (s.routh)
+    if (Outcome o = complete_state(problem, *s.routh, s.routh_structure, named); !o.ok()) return o;
+  start = start_of(s, named);
   return {};
 }
 
-template Outcome initial_state<double>(const Scenario&, const StateChoice&, double&, std::vector<double>&, InitialState<double>&);
-template Outcome initial_state<long double>(const Scenario&, const StateChoice&, long double&, std::vector<long double>&, InitialState<long double>&);
-template Outcome initial_state<Multi>(const Scenario&, const StateChoice&, Multi&, std::vector<Multi>&, InitialState<Multi>&);
+template Outcome initial_state<double>(const Scenario&, const StateChoice&, Start<double>&);
+template Outcome initial_state<long double>(const Scenario&, const StateChoice&, Start<long double>&);
+template Outcome initial_state<Multi>(const Scenario&, const StateChoice&, Start<Multi>&);
 
 }  // namespace anholon

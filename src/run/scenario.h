@@ -32,27 +32,44 @@ struct Scenario {
   Elimination elimination;  // of forms without multipliers
   System system;
   Structure structure;
+  // Routh's system, where the initial state holds more than positions and velocities, or the equations several solutions:
+  // it is completed there, whatever the form.
+  std::shared_ptr<const System> routh;
+  Structure routh_structure;
   std::vector<std::string> notes;
 };
 
 // Classes of the constraints, by exact tests on their partial derivatives.
 std::vector<ConstraintClass> classify(const Mechanics& mechanics);
 
-// Diagnostics: what this model lacks for numbers (unknown functions, orders not integrated yet).
+// Diagnostics: what this model lacks for numbers (unknown functions).
 // The outcome tells of numbers: inconsistent data, a singular start.
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                       Scenario& scenario);
+
+// Derivatives of the multipliers that belong to the state or are solved for, in forms with multipliers.
+int multiplier_orders(const Scenario& scenario);
+
+// The highest derivative that is solved for of any coordinate, d being of the system in the scenario's form; how many more than
+// their own are to be computed of the others, and of the multipliers.
+int largest_order(const Scenario& scenario, const std::vector<int>& d);
+int orders_beyond(const Scenario& scenario, const std::vector<int>& d);
 
 // Singular if the accelerations are not determined at the initial state.
 Outcome regular_at_start(const Scenario& scenario);
 
 // Nothing if numbers can be computed for the model, else why not.
-std::optional<Diagnostic> not_integrated(const Model& model, const std::vector<ConstraintClass>& classes);
+std::optional<Diagnostic> not_integrated(const Model& model);
 
-// The consistent state in the number type N, in the order of an Expansion's state, with its time.
+// The state in the order of an Expansion's, its time, and the leading derivatives (empty: they follow without a guess).
 template <Number N>
-Outcome initial_state(const Scenario& s, const StateChoice& choice, N& t, std::vector<N>& state,
-                      InitialState<N>& named);
+struct Start {
+  N t{0};
+  std::vector<N> state, leading;
+};
+// The consistent state in the number type N.
+template <Number N>
+Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start);
 
 template <Number N>
 std::vector<N> parameter_values(const Model& model) {

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "run/evaluate.h"
+#include "structure/branch.h"
 
 namespace anholon {
 
@@ -44,15 +45,13 @@ class Run {
 
   SimulationReport go() {
     report_.order = leg_->stepper.order();
-    W t(0);
-    std::vector<W> state;
-    InitialState<W> named;
-    report_.outcome = initial_state(s_, o_.state, t, state, named);
-    if (report_.outcome.ok()) report_.outcome = leg_->stepper.start(t, state);
+    Start<W> start;
+    report_.outcome = initial_state(s_, o_.state, start);
+    if (report_.outcome.ok()) report_.outcome = leg_->stepper.start(start.t, start.state, start.leading);
     if (report_.outcome.ok()) {
       sink_.columns(column_names());
-      schedule(t);
-      run(t);
+      schedule(start.t);
+      run(start.t);
     }
     report_.t = number_text(to_double(reached_ ? *reached_ : leg_->stepper.time()));
     report_.steps = leg_->stepper.steps();
@@ -66,7 +65,7 @@ class Run {
   struct Leg {
     Leg(const Run& run, System of, Structure structured)
         : system(std::move(of)), structure(std::move(structured)), program(anholon::program(system, structure, quadratures(run.s_, run.power_))),
-          stepper(program, parameter_values<N>(*run.s_.model), run.parameters_, settings(run.o_)), point(program, run.parameters_, extra_orders(run.s_, structure)) {}
+          stepper(program, parameter_values<N>(*run.s_.model), run.parameters_, settings(run.o_)), point(program, run.parameters_, std::max(1, orders_beyond(run.s_, structure.d))) {}
     System system;
     Structure structure;
     Program program;
@@ -85,26 +84,15 @@ class Run {
     return es;
   }
 
-  // Derivatives beyond its own leading one, up to the highest solved for any coordinate.
-  static int extra_orders(const Scenario& s, const Structure& structure) {
-    const auto end = structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates);
-    return std::max(1, *std::max_element(structure.d.begin(), end) - *std::min_element(structure.d.begin(), end));
-  }
-  int highest() const {
-    const auto end = leg_->program.d.begin() + static_cast<std::ptrdiff_t>(s_.system.coordinates);
-    return *std::max_element(leg_->program.d.begin(), end);
-  }
-  bool mixed() const {
-    const auto end = leg_->program.d.begin() + static_cast<std::ptrdiff_t>(s_.system.coordinates);
-    return *std::min_element(leg_->program.d.begin(), end) < highest();
-  }
+  int highest() const { return largest_order(s_, leg_->program.d); }
 
   std::vector<std::string> column_names() const {
     std::vector<std::string> names = {"t"};
     const Model& model = *s_.model;
     for (int k = 0; k <= highest(); ++k)
       for (const Coordinate& c : model.coordinates) names.push_back(derivative_name(c.name, static_cast<unsigned>(k), Format::text));
-    for (const Constraint& c : model.constraints) names.push_back("lambda." + c.name);
+    for (int k = 0; k <= multiplier_orders(s_); ++k)
+      for (const Constraint& c : model.constraints) names.push_back(derivative_name("lambda." + c.name, static_cast<unsigned>(k), Format::text));
     for (const Coordinate& c : model.coordinates) names.push_back("N." + c.name);
     return names;
   }
@@ -174,7 +162,9 @@ class Run {
     if (report_.outcome.ok() && leg_->stepper.steps() > 0) balance();
     if (!report_.outcome.ok() && report_.outcome.message.find(" t = ") == std::string::npos) {
       report_.outcome.message += " at t = " + number_text(to_double(leg_->stepper.time()), 12);
-      if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular) suspect();
+      if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
+          report_.outcome.kind == OutcomeKind::no_convergence)
+        suspect();
       // The last good state is worth a row of its own.
       if (leg_->stepper.steps() > 0 && !every_step) {
         const Outcome why = report_.outcome;
@@ -215,10 +205,14 @@ class Run {
     InitialState<double> here;
     const Expansion<W>& point = leg_->stepper.point();
     here.t = to_double(point.time());
-    for (std::size_t a = 0; a < s_.system.coordinates; ++a) {
-      here.q.push_back(to_double(point.derivative(a, 0)));
-      here.qd.push_back(to_double(point.derivative(a, 1)));
-    }
+    const auto level = [&](int k) {
+      std::vector<double> values;
+      for (std::size_t a = 0; a < s_.system.coordinates; ++a) values.push_back(k <= leg_->program.d[a] ? to_double(point.derivative(a, k)) : 0.0);
+      return values;
+    };
+    here.q = level(0);
+    here.qd = level(1);
+    for (int k = 2; s_.routh && k <= highest(); ++k) here.higher.push_back({level(k), {}});
     const Model& model = *s_.model;
     try {
       const auto at = std::make_shared<PointValues>(values_near(model, parameter_values<double>(model), here));
@@ -228,6 +222,7 @@ class Run {
       ProbeHints hints;
       hints.t = here.t;
       hints.derivatives = {here.q, here.qd};
+      for (const Level<double>& k : here.higher) hints.derivatives.push_back(k.value);
       if (!analyse(system, parameter_values<double>(model), hints, structure).ok() || structure.d != leg_->structure.d) return false;
       drop_absent(system, structure);
       const bool same = e.dependent == elimination_.dependent && e.pivots() == elimination_.pivots();
@@ -263,7 +258,7 @@ class Run {
 
   // What the motion runs into: a mass that vanishes, a multiplier that grows without bound.
   void suspect() {
-    constexpr double kVanished = 1e-9, kUnbounded = 1e9;
+    constexpr double kVanished = 1e-9, kUnbounded = 1e9, kMeet = 1e-6, kFaint = 1e-3;
     std::string& message = report_.outcome.message;
     for (std::size_t a = 0; a < s_.system.coordinates; ++a)
       for (int k = 0; k < 2; ++k)
@@ -273,6 +268,20 @@ class Run {
           report_.outcome.hint = "look at the last good state: end the motion before";
           return;
         }
+    for (std::size_t k = 0; k < s_.system.constraints.size(); ++k) {
+      const std::size_t r = s_.system.constraints[k];
+      if (!may_branch(*s_.mechanics, s_.system, r)) continue;
+      const double now = to_double(leg_->stepper.point().derivative(s_.system.coordinates + k, 0)), start = s_.state.multipliers[0].value[r];
+      const bool vanishes = s_.mechanics->order[r] > 2 && std::abs(now) < kFaint * std::abs(start);
+      if (vanishes || to_double(leg_->stepper.smallest_sigma()) < kMeet) {
+        report_.outcome.kind = OutcomeKind::singular;
+        message = "singular configuration: " + (vanishes ? "the multiplier of the constraint '" + s_.model->constraints[r].name + "' goes to 0"
+                                                         : "two solutions for the constraint '" + s_.model->constraints[r].name + "' meet") +
+                  " at t = " + number_text(to_double(leg_->stepper.time()), 12) + ", and the equations no longer determine the motion there";
+        report_.outcome.hint = "end the motion before; the other branch, [initial] branch = {…}, may go on";
+        return;
+      }
+    }
     if (const std::string root = vanishing_root(); !root.empty()) message += "; " + root + " is at the edge of where it has a value";
     for (std::size_t i = 0; i < s_.model->masses.size(); ++i)
       if (std::abs(to_double(leg_->stepper.quadrature(1 + i, W(0)))) < kVanished)
@@ -316,7 +325,7 @@ class Run {
       report_.outcome.message += " at t = " + number_text(to_double(t), 12);
       return;
     }
-    if (mixed())
+    if (orders_beyond(s_, leg_->program.d) > 0)
       if (Outcome o = leg_->point.extend(); !o.ok()) {
         report_.outcome = o;
         return;
@@ -326,10 +335,11 @@ class Run {
     std::vector<std::string> values = {label.empty() ? text(t) : label};
     for (int k = 0; k <= highest(); ++k)
       for (std::size_t a = 0; a < n; ++a) values.push_back(text(leg_->point.derivative(a, k)));
-    for (std::size_t r = 0; r < s_.model->constraints.size(); ++r) {
-      const auto j = s_.system.variable(s_.mechanics->lambda[r].id);
-      values.push_back(text(j ? leg_->point.derivative(*j, 0) : W(0)));
-    }
+    for (int k = 0; k <= multiplier_orders(s_); ++k)
+      for (std::size_t r = 0; r < s_.model->constraints.size(); ++r) {
+        const auto j = s_.system.variable(s_.mechanics->lambda[r].id);
+        values.push_back(text(j ? leg_->point.derivative(*j, k) : W(0)));
+      }
     for (std::size_t a = 0; a < n; ++a) values.push_back(text(outputs_[a]));
     sink_.row(values);
     ++report_.rows;

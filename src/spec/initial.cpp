@@ -9,6 +9,46 @@ namespace anholon {
 
 namespace {
 
+// In conditions lambda.NAME is a multiplier, and lambda.NAME' its rate; everything else means what it does elsewhere.
+class WithMultipliers final : public Names {
+ public:
+  WithMultipliers(Scope& scope, const Model& model) : scope_(scope), model_(model) {}
+
+  Graph& graph() override { return scope_.graph(); }
+  Value name(const std::string& name, Span span) override {
+    if (name == "lambda") return InertialName{};  // means something with a member only
+    return scope_.name(name, span);
+  }
+  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax, Value& result) override {
+    return scope_.call(function, arguments, syntax, result);
+  }
+  Value member(const Value& object, const Syntax& s) override {
+    const std::string path = multiplier(s);
+    if (path.empty()) return scope_.member(object, s);
+    const std::vector<std::string>& names = model_.names.multipliers;
+    if (const auto it = std::find(names.begin(), names.end(), path); it != names.end())
+      return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
+    for (const std::string& n : names)
+      if (n.rfind(path + ".", 0) == 0) return InertialName{};  // of a vector equation: a component follows
+    const std::string near = did_you_mean(path, names);
+    throw Failure(s.span, "there is no constraint '" + path + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+  std::vector<std::string> functions() const override { return scope_.functions(); }
+
+ private:
+  // "rolling.x" of lambda.rolling.x; empty for other members.
+  static std::string multiplier(const Syntax& s) {
+    const Syntax& object = s.args[0];
+    if (object.op == Syntax::Op::name) return object.text == "lambda" ? s.text : "";
+    if (object.op != Syntax::Op::member) return "";
+    const std::string inner = multiplier(object);
+    return inner.empty() ? "" : inner + "." + s.text;
+  }
+
+  Scope& scope_;
+  const Model& model_;
+};
+
 class InitialReader {
  public:
   InitialReader(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics)
@@ -26,11 +66,14 @@ class InitialReader {
         if (i.key == "guess") {
           if (i.kind != Item::Kind::table) throw Failure(i.span, "guess is a table", "guess = {theta = 0.3}");
           for (const Item& v : i.items)
-            collect(diagnostics_, [&] { add(out.guess, v, symbol(v.key, v.key_span)); });
+            collect(diagnostics_, [&] {
+              if (v.kind == Item::Kind::table) group(v, out.guess);
+              else add(out.guess, v, symbol(v.key, v.key_span));
+            });
           return;
         }
-        if (i.key == "branch") throw Failure(i.key_span, "'branch' in [initial] is not read yet");
-        if (i.kind == Item::Kind::table) return group(i);
+        if (i.key == "branch") return branch(i, "");
+        if (i.kind == Item::Kind::table) return group(i, out.given);
         if (i.key == "lambda" || i.key == "lambdadot") throw Failure(i.span, "lambda is a table", "lambda = {NAME = 0.4}");
         add(out.given, i, symbol(i.key, i.key_span));
       });
@@ -39,12 +82,15 @@ class InitialReader {
     for (const Constraint& c : model_.constraints) highest = std::max(highest, c.order);
     for (const GivenValue& v : out.given) {
       const Node& n = model_.graph->node(v.symbol.id);
-      if (highest >= 3) continue;
-      if (n.kind == Kind::multiplier)
-        diagnostics_.error(v.span, "multipliers follow from the state: they are initial data for constraints of order 3 and more");
-      else if (n.order > 1)
+      if (highest < 3 && n.kind == Kind::multiplier)
+        diagnostics_.error(v.span, "multipliers follow from the state: they are initial data for constraints of order 3 and more",
+                           "velocities that lead to a multiplier: conditions = [\"lambda.NAME = 0.4\"]");
+      else if (highest < 3 && n.order > 1)
         diagnostics_.error(v.span, "accelerations follow from the state: they are initial data for constraints of order 3 and more",
-                           "give positions and velocities");
+                           "give positions and velocities; velocities that lead to an acceleration: conditions = [\"x'' = 1\"]; to name one of "
+                           "several solutions: guess = {…}");
+      else if (highest >= 3 && (n.kind == Kind::multiplier ? n.order + 2 : n.order) >= highest)
+        diagnostics_.error(v.span, "derivatives of this order follow from the state", "give those of order " + std::to_string(highest - 1) + " and less");
     }
     for (std::size_t k = 0; k < out.given.size(); ++k)
       for (std::size_t j = 0; j < k; ++j)
@@ -91,27 +137,42 @@ class InitialReader {
     return model_.graph->jet(static_cast<std::uint32_t>(index(model_.names.coordinates, key, span, "coordinate")), order);
   }
 
-  void group(const Item& i) {
-    InitialData& out = model_.initial;
+  void group(const Item& i, std::vector<GivenValue>& list) {
     for (const auto& [key, order] : {std::pair{"q", 0U}, {"qdot", 1U}, {"qddot", 2U}, {"qdddot", 3U}})
       if (i.key == key) {
         for (const Item& v : i.items)
           collect(diagnostics_, [&] {
-            add(out.given, v, model_.graph->jet(static_cast<std::uint32_t>(index(model_.names.coordinates, v.key, v.key_span, "coordinate")), order));
+            add(list, v, model_.graph->jet(static_cast<std::uint32_t>(index(model_.names.coordinates, v.key, v.key_span, "coordinate")), order));
           });
         return;
       }
     for (const auto& [key, order] : {std::pair{"lambda", 0U}, {"lambdadot", 1U}})
-      if (i.key == key) return multipliers(i, "", order);
+      if (i.key == key) return multipliers(i, "", order, list);
     throw Failure(i.key_span, "unknown key '" + i.key + "' in [initial]", "q, qdot, qddot, qdddot, lambda, lambdadot are tables");
   }
 
-  void multipliers(const Item& i, const std::string& prefix, unsigned order) {
+  void multipliers(const Item& i, const std::string& prefix, unsigned order, std::vector<GivenValue>& list) {
     for (const Item& v : i.items)
       collect(diagnostics_, [&] {
-        if (v.kind == Item::Kind::table) return multipliers(v, prefix + v.key + ".", order);
+        if (v.kind == Item::Kind::table) return multipliers(v, prefix + v.key + ".", order, list);
         const std::size_t k = index(model_.names.multipliers, prefix + v.key, v.key_span, "constraint");
-        add(model_.initial.given, v, model_.graph->multiplier(static_cast<std::uint32_t>(k), order));
+        add(list, v, model_.graph->multiplier(static_cast<std::uint32_t>(k), order));
+      });
+  }
+
+  // branch = {rolling = "lambda > 0"}
+  void branch(const Item& i, const std::string& prefix) {
+    if (i.kind != Item::Kind::table) throw Failure(i.span, "branch is a table", "branch = {NAME = \"lambda > 0\"}");
+    for (const Item& v : i.items)
+      collect(diagnostics_, [&] {
+        if (v.kind == Item::Kind::table) return branch(v, prefix + v.key + ".");
+        const std::size_t k = index(model_.names.multipliers, prefix + v.key, v.key_span, "constraint");
+        std::string text;
+        for (char c : v.text())
+          if (c != ' ') text += c;
+        if (text != "lambda>0" && text != "lambda<0")
+          throw Failure(v.span, "a branch is named by the sign of the multiplier", "\"lambda > 0\" or \"lambda < 0\"");
+        model_.initial.branches.push_back({k, text == "lambda>0", v.key_span});
       });
   }
 
@@ -120,14 +181,16 @@ class InitialReader {
     for (const Item& c : list.items)
       collect(diagnostics_, [&] {
         const std::vector<Syntax> sides = scope_.equation(c);
-        const Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
+        WithMultipliers names(scope_, model_);
+        const Value left = evaluate(sides[0], names), right = evaluate(sides[1], names);
         const auto push = [&](Expr residual, const std::string& suffix) {
           if (is_zero(residual)) return;
-          const int order = jet_order(residual);
-          if (order < 0) throw Failure(c.formula.whole(), "no unknown occurs in this condition");
-          if (order > 1)
-            throw Failure(c.formula.whole(), "conditions on accelerations are not read yet",
-                          "give positions and velocities");
+          const std::vector<NodeId> all = symbols({&residual, 1});
+          const bool unknown = std::any_of(all.begin(), all.end(), [&](NodeId id) {
+            const Kind kind = model_.graph->node(id).kind;
+            return kind == Kind::jet || kind == Kind::multiplier;
+          });
+          if (!unknown) throw Failure(c.formula.whole(), "no unknown occurs in this condition");
           model_.initial.conditions.push_back({residual, c.text() + suffix, c.formula.whole()});
         };
         if (left.index() == 0 && right.index() == 0) return push(std::get<Expr>(left) - std::get<Expr>(right), "");

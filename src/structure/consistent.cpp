@@ -1,8 +1,10 @@
 #include "structure/consistent.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "base/assert.h"
+#include "structure/branch.h"
 
 namespace anholon {
 
@@ -19,137 +21,37 @@ const char* name(Origin origin) {
 
 namespace {
 
-constexpr int kMostIterations = 60;
 // Given values may miss a constraint by this much of its scale: they are rounded numbers.
 constexpr double kRounded = 1e-8;
-// Rows of a constraint Jacobian count as dependent below this fraction of their size.
-constexpr double kDependent = 1e-9;
 
-struct Equation {
-  Expr residual;
-  std::string what;  // "constraint 'blade'"
-  Span span;
-  bool condition = false;  // of the file's initial data, not a law of the system
-};
+using Equations = std::vector<StageEquation>;
 
-// Equations in the unknowns of one stage (positions or velocities) and their partial derivatives.
-template <Number N>
-class Stage {
- public:
-  Stage(const Mechanics& m, const std::vector<Equation>& equations, unsigned order, const std::vector<N>& parameters)
-      : m_(m), equations_(equations), unknowns_(order == 0 ? m.q : m.qd), order_(order),
-        n_(m.q.size()), tape_(build()), machine_(tape_, 0, parameters) {}
+// q_a^(k) with k >= 2, or a multiplier: what positions and velocities do not hold.
+bool is_higher(const Node& n) { return n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1); }
 
-  std::size_t size() const { return equations_.size(); }
-
-  // Values, scales and partial derivatives at a state; false if a formula has no value there.
-  bool evaluate(const N& t, const std::vector<N>& q, const std::vector<N>& qd) {
-    const Graph& g = m_.graph();
-    for (const Input& in : tape_.inputs) {
-      const Node& n = g.node(in.symbol);
-      N value(0);
-      if (n.kind == Kind::time) value = t;
-      else if (n.kind == Kind::jet && n.order == 0) value = q[n.index];
-      else if (n.kind == Kind::jet && n.order == 1) value = qd[n.index];
-      machine_.series(in.slot)[0] = value;
-    }
-    machine_.evaluate();
-    residual.assign(size(), N(0));
-    scale.assign(size(), N(0));
-    jacobian = Matrix<N>(size(), n_);
-    mass = Matrix<N>(n_, n_);
-    const std::vector<N>& x = order_ == 0 ? q : qd;
-    N largest_unknown(1);  // a residual below its round-off is none
-    for (const N& v : x)
-      if (abs(v) > largest_unknown) largest_unknown = abs(v);
-    for (std::size_t i = 0; i < size(); ++i) {
-      residual[i] = machine_.value(i);
-      if (!is_finite(residual[i])) return false;
-      scale[i] = term_scale(i);
-      for (std::size_t a = 0; a < n_; ++a) {
-        jacobian(i, a) = machine_.value(size() + i * n_ + a);
-        if (!is_finite(jacobian(i, a))) return false;
-        for (N part : {abs(N(jacobian(i, a) * x[a])), N(abs(jacobian(i, a)) * largest_unknown * unit_roundoff<N>())})
-          if (part > scale[i]) scale[i] = part;
-      }
-      if (!(scale[i] > N(0))) scale[i] = N(1);
-    }
-    const std::size_t first = size() * (n_ + 1);
-    N largest(0);
-    for (std::size_t a = 0; a < n_; ++a)
-      for (std::size_t b = 0; b < n_; ++b) {
-        mass(a, b) = machine_.value(first + a * n_ + b);
-        if (!is_finite(mass(a, b))) return false;
-        if (a == b && abs(mass(a, b)) > largest) largest = abs(mass(a, b));
-      }
-    // A coordinate without inertia still has a least change.
-    if (!(largest > N(0))) largest = N(1);
-    for (std::size_t a = 0; a < n_; ++a) mass(a, a) += largest * N(1e-12);
-    return true;
-  }
-
-  std::vector<N> residual, scale;
-  Matrix<N> jacobian, mass;
-
- private:
-  Tape build() {
-    Column es;
-    for (const Equation& e : equations_) es.push_back(e.residual);
-    for (const Equation& e : equations_) {
-      const Column d = gradient(e.residual, unknowns_);
-      es.insert(es.end(), d.begin(), d.end());
-    }
-    for (const Column& row : mass_matrix(m_)) es.insert(es.end(), row.begin(), row.end());
-    return compile(es);
-  }
-
-  // The sum of the absolute values of the terms of an equation.
-  N term_scale(std::size_t i) const {
-    const Instruction& alias = tape_.code[tape_.roots[i]];
-    const std::uint32_t slot = tape_.linear_terms[alias.first].slot;
-    const Instruction& in = tape_.code[slot];
-    if (in.op != Op::linear) return abs(machine_.series(slot)[0]);
-    N s(0);
-    for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
-      const LinearTerm& t = tape_.linear_terms[k];
-      s += abs(N(machine_.rational(t.coefficient) * machine_.series(t.slot)[0]));
-    }
-    return s;
-  }
-
-  const Mechanics& m_;
-  const std::vector<Equation>& equations_;
-  Column unknowns_;
-  unsigned order_;
-  std::size_t n_;
-  Tape tape_;
-  Machine<N> machine_;
-};
-
-template <Number N>
-N worst_relative(const Stage<N>& s, std::size_t* which = nullptr) {
-  N worst(0);
-  for (std::size_t i = 0; i < s.size(); ++i)
-    if (N v = abs(s.residual[i]) / s.scale[i]; v > worst) {
-      worst = v;
-      if (which) *which = i;
-    }
-  return worst;
+bool holds_higher(Expr e) {
+  for (NodeId id : symbols({&e, 1}))
+    if (is_higher(e.graph->node(id))) return true;
+  return false;
 }
+
+// A value that depends on the symbol alone, for what a rank must not depend on.
+double arbitrary(const Node& n) { return 0.7 + 0.13 * static_cast<double>((n.index * 7 + n.order * 3) % 11); }
 
 template <Number N>
 class Solver {
  public:
   Solver(const InitialProblem<N>& p, InitialState<N>& state) : p_(p), m_(*p.mechanics), model_(*m_.model), state_(state) {}
 
-  Outcome run() {
+  Outcome positions_and_velocities() {
     const std::size_t n = m_.q.size();
+    state_ = {};
     state_.q.assign(n, N(0));
     state_.qd.assign(n, N(0));
     state_.q_origin.assign(n, Origin::chosen);
     state_.qd_origin.assign(n, Origin::chosen);
-    start_values();
-    std::vector<Equation> positions, velocities;
+    start_values([](const Node& s) { return !is_higher(s); });
+    Equations positions, velocities;
     for (std::size_t r = 0; r < model_.constraints.size(); ++r) {
       const Constraint& c = model_.constraints[r];
       if (c.order > 1) continue;
@@ -162,16 +64,35 @@ class Solver {
         velocities.push_back({phi, what, c.span});
       }
     }
-    for (const Condition& c : model_.initial.conditions) {
-      const Expr residual = put_masses(model_, c.residual);
-      const std::string what = "condition \"" + c.text + "\"";
-      (jet_order(residual) == 0 ? positions : velocities).push_back({residual, what, c.span, true});
-    }
-    if (Outcome o = solve(positions, 0); !o.ok()) return o;
-    return solve(velocities, 1);
+    for (const StageEquation& e : conditions())
+      if (!holds_higher(e.residual)) (jet_order(e.residual) == 0 ? positions : velocities).push_back(e);
+    if (Outcome o = solve(positions, m_.q, 1U); !o.ok()) return o;
+    return solve(velocities, m_.qd, 2U);
+  }
+
+  Outcome complete(const System& s, const Structure& t) {
+    make_room(s, t);
+    start_values(is_higher);
+    std::vector<StageEquation> late;  // hold leading derivatives
+    start_with_free_accelerations(s);
+    const int deepest = *std::max_element(t.d.begin(), t.d.end());
+    for (int level = deepest; level >= 1; --level)
+      if (Outcome o = stage(s, t, level); !o.ok()) return o;
+    for (const StageEquation& e : conditions())
+      if (holds_higher(e.residual) && level_of(e.residual, s, t) <= 0) late.push_back(e);
+    if (Outcome o = given_beyond_the_state(s, t, late); !o.ok()) return o;
+    if (Outcome o = leading(s, t); !o.ok()) return o;
+    if (!late.empty())
+      if (Outcome o = together(s, t, late); !o.ok()) return o;
+    for (std::size_t j = 0; j < s.size(); ++j)
+      *state_.origin(node(s.symbol(j, static_cast<unsigned>(t.d[j])))) = Origin::derived;
+    say_choices(s, t);
+    return {};
   }
 
  private:
+  const Node& node(Expr e) const { return m_.graph().node(e.id); }
+
   std::vector<N> values(const std::vector<GivenValue>& list) {
     Column es;
     for (const GivenValue& v : list) es.push_back(v.value);
@@ -184,187 +105,393 @@ class Solver {
     return out;
   }
 
-  void place(Expr symbol, const N& value, Origin origin) {
-    const Node& n = m_.graph().node(symbol.id);
-    if (n.kind != Kind::jet || n.order > 1) return;
-    (n.order == 0 ? state_.q : state_.qd)[n.index] = value;
-    (n.order == 0 ? state_.q_origin : state_.qd_origin)[n.index] = origin;
+  Expr symbol(const StateOverride& o) const {
+    Graph& g = m_.graph();
+    const auto index = static_cast<std::uint32_t>(o.coordinate);
+    return o.multiplier ? g.multiplier(index, o.order) : g.jet(index, o.order);
   }
 
-  void start_values() {
+  // Guesses, then values of the file, then those that override them.
+  void start_values(const std::function<bool(const Node&)>& wanted) {
     const InitialData& in = model_.initial;
     const std::vector<N> t = values({{in.t, in.t, {}}}), guess = values(in.guess), given = values(in.given);
     state_.t = p_.t ? from_rational<N>(*p_.t) : t[0];
+    const auto place = [&](Expr symbol, const N& value, Origin origin) {
+      const Node& n = node(symbol);
+      if (!wanted(n) || !state_.value(n)) return;
+      *state_.value(n) = value;
+      *state_.origin(n) = origin;
+    };
     for (std::size_t i = 0; i < guess.size(); ++i) place(in.guess[i].symbol, guess[i], Origin::guessed);
     for (std::size_t i = 0; i < given.size(); ++i) place(in.given[i].symbol, given[i], Origin::given);
-    for (const StateOverride& o : p_.overrides)
-      place((o.order == 0 ? m_.q : m_.qd)[o.coordinate], from_rational<N>(o.value), Origin::given);
+    for (const StateOverride& o : p_.overrides) place(symbol(o), from_rational<N>(o.value), Origin::given);
+  }
+
+  Equations conditions() const {
+    Equations list;
+    for (const Condition& c : model_.initial.conditions)
+      list.push_back({put_masses(model_, c.residual), "condition \"" + c.text + "\"", c.span, true});
+    return list;
+  }
+
+  bool overridden(const Node& n) const {
+    return std::any_of(p_.overrides.begin(), p_.overrides.end(), [&](const StateOverride& v) {
+      return v.multiplier == (n.kind == Kind::multiplier) && v.order == n.order && v.coordinate == n.index;
+    });
   }
 
   // As the data say; where overrides clash with values or conditions of the file, the overrides hold
   // and the file's values are only where the least change starts from.
-  Outcome solve(const std::vector<Equation>& equations, unsigned order) {
+  Outcome solve(const Equations& equations, const Column& unknowns, unsigned metric) {
     const InitialState<N> before = state_;
-    const Outcome o = attempt(equations, order);
+    const Outcome o = attempt(equations, unknowns, metric);
     if (o.ok() || p_.overrides.empty()) return o;
     const InitialState<N> failed = std::exchange(state_, before);
-    const auto overridden = [&](std::size_t a) {
-      return std::any_of(p_.overrides.begin(), p_.overrides.end(),
-                         [&](const StateOverride& v) { return v.order == order && v.coordinate == a; });
-    };
-    std::vector<Origin>& origin = order == 0 ? state_.q_origin : state_.qd_origin;
-    for (std::size_t a = 0; a < origin.size(); ++a)
-      if (origin[a] == Origin::given && !overridden(a)) origin[a] = Origin::guessed;
-    std::vector<Equation> kept;
-    for (const Equation& e : equations) {
+    for (Expr u : unknowns)
+      if (Origin& origin = *state_.origin(node(u)); origin == Origin::given && !overridden(node(u))) origin = Origin::guessed;
+    Equations kept;
+    for (const StageEquation& e : equations) {
       bool open = !e.condition;  // a condition stays while it says something about what is still open
       for (NodeId id : symbols({&e.residual, 1})) {
-        const Node& n = m_.graph().node(id);
-        open = open || (n.kind == Kind::jet && n.order == order && !overridden(n.index));
+        const Expr symbol{&m_.graph(), id};
+        open = open || (std::find(unknowns.begin(), unknowns.end(), symbol) != unknowns.end() && !overridden(node(symbol)));
       }
       if (open) kept.push_back(e);
     }
-    if (attempt(kept, order).ok()) return {};
+    if (attempt(kept, unknowns, metric).ok()) return {};
     state_ = failed;
     return o;
   }
 
-  Outcome attempt(const std::vector<Equation>& equations, unsigned order) {
+  Outcome attempt(const Equations& equations, const Column& unknowns, unsigned metric) {
     if (equations.empty()) return {};
-    std::vector<Origin>& origin = order == 0 ? state_.q_origin : state_.qd_origin;
-    Stage<N> stage(m_, equations, order, p_.parameters);
-    std::vector<std::size_t> free;
-    for (std::size_t a = 0; a < origin.size(); ++a)
-      if (origin[a] != Origin::given) free.push_back(a);
-    const std::vector<N> before = order == 0 ? state_.q : state_.qd;
+    Stage<N> stage(m_, equations, unknowns, metric, p_.parameters);
+    std::vector<std::size_t> free, all;
+    std::vector<N> before;
+    for (std::size_t j = 0; j < unknowns.size(); ++j) {
+      all.push_back(j);
+      before.push_back(stage.x(state_, j));
+      if (*state_.origin(stage.unknown(j)) != Origin::given) free.push_back(j);
+    }
     std::size_t worst = 0;
-    if (!newton(stage, order, free)) return no_value(equations, order);
-    for (std::size_t a : free)
-      if (moves(stage, a)) origin[a] = Origin::derived;
-    N miss = worst_relative(stage, &worst);
-    if (!(miss > rounding())) return {};
+    if (!find_by_least_change(stage, state_, free)) return no_value(stage);
+    for (std::size_t j : free)
+      if (stage.moves(j)) *state_.origin(stage.unknown(j)) = Origin::derived;
+    N miss = stage.worst(&worst);
+    if (!(miss > stage_rounding<N>())) return {};
     if (to_double(miss) <= kRounded) {
       // Rounded numbers: all may move a little.
-      std::vector<std::size_t> all;
-      for (std::size_t a = 0; a < origin.size(); ++a) all.push_back(a);
-      if (newton(stage, order, all) && !(worst_relative(stage, &worst) > rounding())) {
-        const std::vector<N>& now = order == 0 ? state_.q : state_.qd;
-        for (std::size_t a = 0; a < now.size(); ++a)
-          if (origin[a] == Origin::given)
-            if (N change = abs(N(now[a] - before[a])); change > N(0)) {
-              origin[a] = Origin::corrected;
+      if (find_by_least_change(stage, state_, all) && !(stage.worst(&worst) > stage_rounding<N>())) {
+        for (std::size_t j : all)
+          if (Origin& origin = *state_.origin(stage.unknown(j)); origin == Origin::given)
+            if (N change = abs(N(stage.x(state_, j) - before[j])); change > N(0)) {
+              origin = Origin::corrected;
               if (change > state_.largest_correction) state_.largest_correction = change;
             }
         return {};
       }
-      miss = worst_relative(stage, &worst);
+      miss = stage.worst(&worst);
     }
-    return clash(equations[worst], stage, worst, order);
+    return clash(stage, worst);
   }
 
-  N rounding() const { return unit_roundoff<N>() * N(200); }
+  // ---- beyond velocities -------------------------------------------------------------------------
 
-  // True if the equations say anything about unknown a.
-  bool moves(const Stage<N>& s, std::size_t a) const {
-    for (std::size_t i = 0; i < s.size(); ++i)
-      if (abs(s.jacobian(i, a)) > N(0)) return true;
-    return false;
+  void make_room(const System& s, const Structure& t) {
+    int coordinates = 2, multipliers = 0;
+    for (std::size_t j = 0; j < s.size(); ++j) (j < s.coordinates ? coordinates : multipliers) = std::max(j < s.coordinates ? coordinates : multipliers, t.d[j]);
+    const auto level = [](std::size_t n) { return Level<N>{std::vector<N>(n, N(0)), std::vector<Origin>(n, Origin::chosen)}; };
+    state_.higher.assign(static_cast<std::size_t>(coordinates) - 1, level(m_.q.size()));
+    state_.multipliers.assign(static_cast<std::size_t>(multipliers) + 1, level(m_.phi.size()));
   }
 
-  bool evaluate(Stage<N>& s) { return s.evaluate(state_.t, state_.q, state_.qd); }
+  // How far below the leading derivatives the highest entry of e lies; 0: e holds leading ones.
+  int level_of(Expr e, const System& s, const Structure& t) const {
+    int level = 1000;
+    for (NodeId id : symbols({&e, 1})) {
+      const Node& n = m_.graph().node(id);
+      if (!is_higher(n)) continue;
+      if (const auto j = s.variable(id)) level = std::min(level, t.d[*j] - static_cast<int>(n.order));
+    }
+    return level == 1000 ? 0 : level;
+  }
 
-  // min |x - guess|_M over the free unknowns subject to the equations, by Newton's method with a
-  // line search; ends at the least change reachable, the caller looks at what is left.
-  bool newton(Stage<N>& s, unsigned order, const std::vector<std::size_t>& free) {
-    std::vector<N>& x = order == 0 ? state_.q : state_.qd;
-    const std::vector<N> guess = x;
-    if (!evaluate(s)) return false;
-    N last_step(-1);
-    bool nudged = false;
-    for (int k = 0; k < kMostIterations && !free.empty(); ++k) {
-      Matrix<N> a(s.size(), free.size());
-      for (std::size_t i = 0; i < s.size(); ++i)
-        for (std::size_t j = 0; j < free.size(); ++j) a(i, j) = s.jacobian(i, free[j]);
-      const RowChoice<N> rows = choose_rows(a, N(kDependent));
-      if (rows.dependent.size() && !nudged && worst_relative(s) > rounding() && k == 0) {
-        // The guess may be a place where a constraint is flat (the centre of a circle): leave it.
-        nudged = true;
-        bool flat = false;
-        for (std::size_t i : rows.dependent)
-          if (abs(s.residual[i]) > rounding() * s.scale[i]) flat = true;
-        if (flat) {
-          for (std::size_t j = 0; j < free.size(); ++j)
-            x[free[j]] += N(0.1) + N(0.037) * N(static_cast<int>(j % 7));
-          if (!evaluate(s)) return false;
-          continue;
+  bool free_multiplier(const Node& n) const { return n.kind == Kind::multiplier && m_.order[n.index] >= 3; }
+
+  // Entries x_j^(d_j - level) from the equations E_i^(c_i - level), by least change.
+  Outcome stage(const System& s, const Structure& t, int level) {
+    Column unknowns;
+    unsigned metric = 0;
+    for (std::size_t j = 0; j < s.size(); ++j) {
+      const int k = t.d[j] - level;
+      if (k < 0) continue;
+      const Expr x = s.symbol(j, static_cast<unsigned>(k));
+      if (!is_higher(node(x))) continue;
+      unknowns.push_back(x);
+      if (node(x).kind == Kind::jet) metric |= 1U << k;
+    }
+    if (unknowns.empty()) return {};
+    Equations laws;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const int k = t.c[i] - level;
+      if (k < 0) continue;
+      const Expr e = total_derivative(s.equations[i], static_cast<unsigned>(k));
+      if (!holds_higher(e)) continue;  // a matter of positions and velocities
+      if (i < s.coordinates) laws.push_back({e, "the equation of motion of '" + s.equation_names[i] + "'", {}});
+      else laws.push_back({e, (k ? "a derivative of constraint '" : "constraint '") + s.equation_names[i] + "'", model_.constraints[s.constraints[i - s.coordinates]].span});
+    }
+    Equations equations = laws;
+    for (const StageEquation& e : conditions())
+      if (holds_higher(e.residual) && level_of(e.residual, s, t) == level) equations.push_back(e);
+    if (!laws.empty()) start_unconstrained(laws, unknowns, metric);
+    if (Outcome o = solve(equations, unknowns, metric); !o.ok()) return o;
+    mark_choices(equations, unknowns, metric);
+    return {};
+  }
+
+  // Where linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the guess
+  // is the acceleration without them. (A nonlinear one must have a reaction; there 0 is as good as any.)
+  void start_with_free_accelerations(const System& s) {
+    Equations laws;
+    Column unknowns = m_.qdd;
+    bool higher = false;
+    for (std::size_t i = 0; i < s.coordinates; ++i) {
+      if (jet_order(s.equations[i]) > 2) return;
+      laws.push_back({s.equations[i], "the equation of motion of '" + s.equation_names[i] + "'", {}});
+    }
+    for (std::size_t k = 0; k < s.constraints.size(); ++k) {
+      const std::size_t r = s.constraints[k];
+      higher = higher || m_.order[r] > 2;
+      if (may_branch(m_, s, r)) return;
+      if (m_.order[r] > 2) continue;
+      laws.push_back({total_derivative(s.equations[s.coordinates + k], static_cast<unsigned>(2 - m_.order[r])), "constraint '" + model_.constraints[r].name + "'", {}});
+      unknowns.push_back(m_.lambda[r]);
+    }
+    if (!higher) return;
+    const InitialState<N> before = state_;
+    Stage<N> stage(m_, laws, unknowns, 1U << 2, p_.parameters);
+    std::vector<std::size_t> every;
+    for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
+    if (!find_by_least_change(stage, state_, every)) state_ = before;
+    keep_said(before, unknowns);
+  }
+
+  // Values given or guessed stay what they were.
+  void keep_said(const InitialState<N>& before, const Column& unknowns) {
+    for (Expr u : unknowns)
+      if (const Node& n = node(u); *before.origin(n) == Origin::given || *before.origin(n) == Origin::guessed) *state_.value(n) = *before.value(n);
+  }
+
+  // The same for rates of multipliers and what goes with them: the guess for the other entries is what follows from none.
+  void start_unconstrained(const Equations& laws, const Column& unknowns, unsigned metric) {
+    if (std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return free_multiplier(node(u)); })) return;
+    const InitialState<N> before = state_;
+    Stage<N> stage(m_, laws, unknowns, metric, p_.parameters);
+    std::vector<std::size_t> free;
+    for (std::size_t j = 0; j < unknowns.size(); ++j)
+      if (!free_multiplier(stage.unknown(j))) free.push_back(j);
+    if (!find_by_least_change(stage, state_, free)) {
+      state_ = before;
+      return;
+    }
+    keep_said(before, unknowns);
+  }
+
+  std::string entry_name(const Node& n) const {
+    return derivative_name(n.kind == Kind::multiplier ? "lambda." + model_.constraints[n.index].name : model_.coordinates[n.index].name, n.order, Format::text);
+  }
+
+  // What no equation determines is a choice.
+  void mark_choices(const Equations& equations, const Column& unknowns, unsigned metric) {
+    std::vector<std::size_t> free;
+    for (std::size_t j = 0; j < unknowns.size(); ++j)
+      if (const Origin o = *state_.origin(node(unknowns[j])); o == Origin::derived || o == Origin::chosen) free.push_back(j);
+    std::size_t rank = 0;
+    if (!equations.empty() && !free.empty()) {
+      Stage<N> stage(m_, equations, unknowns, metric, p_.parameters);
+      if (!stage.evaluate(state_)) return;
+      Matrix<N> a(stage.size(), free.size());
+      for (std::size_t i = 0; i < stage.size(); ++i)
+        for (std::size_t j = 0; j < free.size(); ++j) a(i, j) = stage.jacobian(i, free[j]);
+      rank = choose_rows(a, N(kDependent)).independent.size();
+    }
+    if (rank >= free.size()) return;
+    std::vector<std::size_t> choices;
+    for (std::size_t j : free)
+      if (free_multiplier(node(unknowns[j]))) choices.push_back(j);
+    if (choices.empty())
+      for (std::size_t j : free)
+        if (*state_.origin(node(unknowns[j])) == Origin::chosen) choices.push_back(j);
+    for (std::size_t j : choices) *state_.origin(node(unknowns[j])) = Origin::chosen;
+  }
+
+  void say_choices(const System& s, const Structure& t) {
+    for (const bool multipliers : {true, false}) {
+      std::string list;
+      for (std::size_t j = 0; j < s.size(); ++j)
+        for (int k = 0; k < t.d[j]; ++k) {
+          const Node& n = node(s.symbol(j, static_cast<unsigned>(k)));
+          if (!is_higher(n) || (n.kind == Kind::multiplier) != multipliers || *state_.origin(n) != Origin::chosen) continue;
+          list += (list.empty() ? "" : ", ") + entry_name(n) + " = " + number_text(to_double(*state_.value(n)), 6);
         }
-      }
-      const std::size_t r = rows.independent.size();
-      if (r == 0) break;
-      Matrix<N> ar(r, free.size()), mass(free.size(), free.size());
-      std::vector<N> b(r, N(0)), y;
-      for (std::size_t i = 0; i < r; ++i) {
-        b[i] = -s.residual[rows.independent[i]];
-        for (std::size_t j = 0; j < free.size(); ++j) {
-          ar(i, j) = a(rows.independent[i], j);
-          b[i] += ar(i, j) * (x[free[j]] - guess[free[j]]);
-        }
-      }
-      for (std::size_t i = 0; i < free.size(); ++i)
-        for (std::size_t j = 0; j < free.size(); ++j) mass(i, j) = s.mass(free[i], free[j]);
-      if (!least_change(mass, ar, b, y)) return true;
-      // Progress is measured against the scales where the step begins: those at its end grow with it.
-      const std::vector<N> scale = s.scale;
-      const auto merit = [&] {
-        N worst(0);
-        for (std::size_t i = 0; i < s.size(); ++i)
-          if (N v = abs(s.residual[i]) / scale[i]; v > worst) worst = v;
-        return worst;
-      };
-      const N now = merit();
-      const std::vector<N> old = x;
-      N fraction(1), step(0), size(0);
-      bool better = false;
-      for (int halvings = 0; halvings < 12; ++halvings, fraction = fraction * N(0.5)) {
-        for (std::size_t j = 0; j < free.size(); ++j)
-          x[free[j]] = old[free[j]] + fraction * (guess[free[j]] + y[j] - old[free[j]]);
-        if (!evaluate(s)) continue;
-        if (merit() <= now * N(0.9) + rounding() * N(4) || halvings == 11) {
-          better = true;
-          break;
-        }
-      }
-      if (!better && !evaluate(s)) return false;
-      for (std::size_t j = 0; j < free.size(); ++j) {
-        if (N v = abs(N(x[free[j]] - old[free[j]])); v > step) step = v;
-        if (N v = abs(x[free[j]]); v > size) size = v;
-      }
-      const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
-      const bool settled = !(step > floor) || (last_step >= N(0) && !(step < last_step) && step < floor * N(100));
-      last_step = step;
-      if (settled) break;
+      if (list.empty()) continue;
+      state_.notes.push_back("a choice: " + list + " at the start" +
+                             (multipliers ? ", which no equation determines: the motion starts as it would without the constraint; other values in [initial] lambda = {…}, or accelerations"
+                                          : ", which no equation determines: other values in [initial] qddot = {…}"));
+    }
+  }
+
+  // Values given for derivatives that the state does not hold are conditions on it.
+  Outcome given_beyond_the_state(const System& s, const Structure& t, Equations& late) {
+    Outcome refused;
+    const auto beyond = [&](Expr x) {
+      const auto j = s.variable(x.id);
+      return is_higher(node(x)) && j && static_cast<int>(node(x).order) >= t.d[*j];
+    };
+    const auto add = [&](Expr x, Expr value, Span span) {
+      const auto j = s.variable(x.id);
+      if (static_cast<int>(node(x).order) > t.d[*j])
+        refused = {OutcomeKind::inconsistent, entry_name(node(x)) + " is given, but follows from the state", "leave it out"};
+      late.push_back({x - value, "the value given for " + entry_name(node(x)), span, !overridden(node(x))});
+    };
+    for (const GivenValue& v : model_.initial.given)
+      if (beyond(v.symbol) && !overridden(node(v.symbol))) add(v.symbol, v.value, v.span);
+    for (const StateOverride& o : p_.overrides)
+      if (beyond(symbol(o))) add(symbol(o), m_.graph().number(o.value), {});
+    return refused;
+  }
+
+  bool branch_holds(const std::vector<N>& x, const System& s) const {
+    for (const BranchChoice& b : model_.initial.branches) {
+      const auto j = s.variable(m_.lambda[b.constraint].id);
+      if (j && !(b.positive ? x[*j] > N(0) : x[*j] < N(0))) return false;
     }
     return true;
   }
 
-  Outcome no_value(const std::vector<Equation>& equations, unsigned order) {
+  // The multipliers tell solutions apart.
+  std::string solution_text(const std::vector<N>& x, const System& s) const {
+    std::string list;
+    for (std::size_t j = s.coordinates; j < s.size(); ++j)
+      if (may_branch(m_, s, s.constraints[j - s.coordinates]))
+        list += (list.empty() ? "" : ", ") + s.variable_names[j] + " = " + number_text(to_double(x[j]), 6);
+    return list;
+  }
+
+  bool branch_was_named(const System& s, const Structure& t) const {
+    const auto leading_guess = [&](const GivenValue& v) {
+      const auto j = s.variable(v.symbol.id);
+      return j && is_higher(node(v.symbol)) && static_cast<int>(node(v.symbol).order) == t.d[*j];
+    };
+    return !model_.initial.branches.empty() || std::any_of(model_.initial.guess.begin(), model_.initial.guess.end(), leading_guess);
+  }
+
+  // The leading derivatives: one linear system, or the solution nearest to the guess.
+  Outcome leading(const System& s, const Structure& t) {
+    const Column unknowns = leading_unknowns(s, t);
+    if (!may_branch(m_, s)) {
+      Stage<N> all(m_, leading_equations(s, t), unknowns, 0, p_.parameters);
+      std::vector<std::size_t> every;
+      for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
+      if (!find_by_least_change(all, state_, every)) return no_value(all);
+      return {};
+    }
+    const LeadingSolutions<N> solutions = leading_solutions(m_, s, t, p_.parameters, state_);
+    const std::vector<N>* taken = nullptr;
+    std::string others;
+    for (const std::vector<N>& x : solutions.found) {
+      if (!taken && branch_holds(x, s)) taken = &x;
+      else others += (others.empty() ? "" : "; ") + solution_text(x, s);
+    }
+    if (!taken) return no_leading(s, solutions, others);
+    for (std::size_t j = 0; j < unknowns.size(); ++j) *state_.value(node(unknowns[j])) = (*taken)[j];
+    if (!others.empty() && !branch_was_named(s, t))
+      state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s) + " is taken, there is also " + others +
+                             "; name one by [initial] branch = {…} or guess = {…}");
+    return {};
+  }
+
+  Outcome no_leading(const System& s, const LeadingSolutions<N>& solutions, const std::string& others) const {
+    std::string which;
+    for (std::size_t r : s.constraints)
+      if (may_branch(m_, s, r)) which += (which.empty() ? "'" : ", '") + model_.constraints[r].name + "'";
+    if (!others.empty())
+      return {OutcomeKind::inconsistent, "no solution lies on the branch asked for; there is " + others, "another [initial] branch, or other initial data"};
+    if (solutions.singular)
+      return {OutcomeKind::singular,
+              "singular configuration: the multiplier of the constraint " + which + " is 0 at the start, and the equations do not determine the motion there",
+              "give initial data at which the constraint has a reaction: other accelerations, [initial] qddot = {…}"};
+    return {OutcomeKind::no_convergence, "no derivatives were found at the start that satisfy the constraint " + which + " and the equations of motion",
+            "there may be no real solution; a guess helps where there is one: [initial] guess = {…}"};
+  }
+
+  // Conditions on leading derivatives, with all laws: velocities move first, positions only if they must.
+  Outcome together(const System& s, const Structure& t, const Equations& late) {
+    Equations equations;
+    for (std::size_t i = 0; i < s.size(); ++i)
+      for (int k = 0; k <= t.c[i]; ++k)
+        equations.push_back({total_derivative(s.equations[i], static_cast<unsigned>(k)),
+                             i < s.coordinates ? "the equation of motion of '" + s.equation_names[i] + "'" : "constraint '" + s.equation_names[i] + "'",
+                             i < s.coordinates ? Span{} : model_.constraints[s.constraints[i - s.coordinates]].span});
+    for (const StageEquation& e : conditions())
+      if (!holds_higher(e.residual) || level_of(e.residual, s, t) > 0) equations.push_back(e);
+    equations.insert(equations.end(), late.begin(), late.end());
+    {  // They may hold already: a value that follows from the others was given too.
+      Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters);
+      if (!said.evaluate(state_)) return no_value(said);
+      if (to_double(said.worst()) <= kRounded && all_given(s, t)) return {};
+      if (!(said.worst() > stage_rounding<N>())) return {};
+    }
+    const InitialState<N> before = state_;
+    Outcome first;
+    for (int lowest : {1, 0}) {
+      state_ = before;
+      Column unknowns;
+      unsigned metric = 0;
+      for (std::size_t j = 0; j < s.size(); ++j)
+        for (int k = j < s.coordinates ? lowest : 0; k <= t.d[j]; ++k) {
+          unknowns.push_back(s.symbol(j, static_cast<unsigned>(k)));
+          if (j < s.coordinates && k < t.d[j]) metric |= 1U << k;
+        }
+      for (Expr u : unknowns)  // values that followed may follow anew
+        if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j]) *state_.origin(node(u)) = Origin::derived;
+      const Outcome o = solve(equations, unknowns, metric);
+      if (o.ok()) return {};
+      if (lowest == 1) first = o;
+    }
+    return first;
+  }
+
+  bool all_given(const System& s, const Structure& t) const {
+    for (std::size_t j = 0; j < s.size(); ++j)
+      for (int k = 0; k < t.d[j]; ++k)
+        if (const Origin o = *state_.origin(node(s.symbol(j, static_cast<unsigned>(k)))); o == Origin::chosen || o == Origin::guessed) return false;
+    return true;
+  }
+
+  // ---- what went wrong ---------------------------------------------------------------------------
+
+  std::string kind(const Stage<N>& stage) const {
+    const Node& n = stage.unknown(0);
+    return n.kind != Kind::jet || n.order > 1 ? "higher derivatives" : n.order == 0 ? "positions" : "velocities";
+  }
+
+  Outcome no_value(const Stage<N>& stage) {
     return {OutcomeKind::inconsistent,
-            std::string("the ") + (order == 0 ? "positions" : "velocities") + " cannot be found: " + equations[0].what +
-                " or its neighbours have no value at the initial data",
+            "the " + kind(stage) + " cannot be found: " + stage.equation(0).what + " or its neighbours have no value at the initial data",
             "give a guess near the wanted configuration: [initial] guess = {…}"};
   }
 
-  Outcome clash(const Equation& e, const Stage<N>& stage, std::size_t row, unsigned order) {
-    const N& residual = stage.residual[row];
+  Outcome clash(const Stage<N>& stage, std::size_t row) {
+    const StageEquation& e = stage.equation(row);
     std::string fixed;
-    const std::vector<Origin>& origin = order == 0 ? state_.q_origin : state_.qd_origin;
-    for (std::size_t a = 0; a < origin.size(); ++a) {
-      if (origin[a] == Origin::given && abs(stage.jacobian(row, a)) > N(0))
-        fixed += (fixed.empty() ? "" : ", ") + derivative_name(model_.coordinates[a].name, order, Format::text);
+    for (std::size_t j = 0; j < stage.unknowns(); ++j) {
+      const Node& n = stage.unknown(j);
+      if (*state_.origin(n) == Origin::given && abs(stage.jacobian(row, j)) > N(0)) fixed += (fixed.empty() ? "" : ", ") + entry_name(n);
     }
     const std::string at = e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "";
     return {OutcomeKind::inconsistent,
-            e.what + at + " is missed by " + number_text(std::abs(to_double(residual)), 3) + " with the initial data given",
+            e.what + at + " is missed by " + number_text(std::abs(to_double(stage.residual[row])), 3) + " with the initial data given",
             fixed.empty() ? "it clashes with another constraint or condition, or has no real solution near the guess: [initial] guess = {…}"
                           : "leave out " + std::string(fixed.find(',') == std::string::npos ? "" : "one of ") + fixed +
                                 " (what is missing is found from the constraints), if the equation can be satisfied at all"};
@@ -380,7 +507,19 @@ class Solver {
 
 template <Number N>
 Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& state) {
-  return Solver<N>(problem, state).run();
+  return Solver<N>(problem, state).positions_and_velocities();
+}
+
+bool needs_completion(const Mechanics& m, const System& s, const Structure& t) {
+  for (std::size_t j = 0; j < s.size(); ++j)
+    if (t.d[j] > (j < s.coordinates ? 2 : 0)) return true;
+  const auto high = [](const Condition& c) { return holds_higher(c.residual); };
+  return may_branch(m, s) || std::any_of(m.model->initial.conditions.begin(), m.model->initial.conditions.end(), high);
+}
+
+template <Number N>
+Outcome complete_state(const InitialProblem<N>& problem, const System& s, const Structure& t, InitialState<N>& state) {
+  return Solver<N>(problem, state).complete(s, t);
 }
 
 template <Number N>
@@ -396,11 +535,8 @@ RowChoice<N> independent_constraints(const Mechanics& m, const std::vector<N>& p
   const Graph& g = m.graph();
   for (const Input& in : tape.inputs) {
     const Node& node = g.node(in.symbol);
-    N value(0);
-    if (node.kind == Kind::time) value = state.t;
-    else if (node.kind == Kind::jet && node.order == 0) value = state.q[node.index];
-    else if (node.kind == Kind::jet && node.order == 1) value = state.qd[node.index];
-    machine.series(in.slot)[0] = value;
+    const N* known = state.value(node);
+    machine.series(in.slot)[0] = node.kind == Kind::time ? state.t : known ? *known : N(arbitrary(node));
   }
   machine.evaluate();
   Matrix<N> phi(s, n);
@@ -412,6 +548,9 @@ RowChoice<N> independent_constraints(const Mechanics& m, const std::vector<N>& p
 template Outcome consistent_state<double>(const InitialProblem<double>&, InitialState<double>&);
 template Outcome consistent_state<long double>(const InitialProblem<long double>&, InitialState<long double>&);
 template Outcome consistent_state<Multi>(const InitialProblem<Multi>&, InitialState<Multi>&);
+template Outcome complete_state<double>(const InitialProblem<double>&, const System&, const Structure&, InitialState<double>&);
+template Outcome complete_state<long double>(const InitialProblem<long double>&, const System&, const Structure&, InitialState<long double>&);
+template Outcome complete_state<Multi>(const InitialProblem<Multi>&, const System&, const Structure&, InitialState<Multi>&);
 template RowChoice<double> independent_constraints<double>(const Mechanics&, const std::vector<double>&, const InitialState<double>&);
 template RowChoice<long double> independent_constraints<long double>(const Mechanics&, const std::vector<long double>&, const InitialState<long double>&);
 template RowChoice<Multi> independent_constraints<Multi>(const Mechanics&, const std::vector<Multi>&, const InitialState<Multi>&);

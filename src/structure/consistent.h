@@ -1,4 +1,4 @@
-// Consistent initial data in stages: positions first, then velocities.
+// Consistent initial data in stages: positions first, then velocities, then what the structure asks for beyond them.
 //
 // What the user gave holds as given; what is missing is found from the constraints and the conditions
 // by least change from the guess (0 where there is none) in the mass norm. Where the given values
@@ -6,30 +6,22 @@
 // corrected by least change; by more, it is an error that names the constraint.
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "base/outcome.h"
-#include "mechanics/mechanics.h"
+#include "numeric/linear.h"
+#include "structure/state.h"
+#include "structure/structure.h"
 #include "tape/tape.h"
 
 namespace anholon {
 
-// Where a value of the state came from.
-enum class Origin : std::uint8_t { given, derived, chosen, guessed, corrected };
-const char* name(Origin origin);
-
-template <Number N>
-struct InitialState {
-  N t{0};
-  std::vector<N> q, qd;
-  std::vector<Origin> q_origin, qd_origin;
-  N largest_correction{0};  // of values that were given
-};
-
-// Values that override those of the model: (order 0 or 1, coordinate) -> exact value.
+// Values that override those of the model: q_a^(k), or lambda_r^(k).
 struct StateOverride {
   unsigned order;
-  std::size_t coordinate;
+  std::size_t coordinate;    // or constraint
   Rational value;
+  bool multiplier = false;
 };
 
 template <Number N>
@@ -40,8 +32,18 @@ struct InitialProblem {
   std::optional<Rational> t;
 };
 
+// Positions and velocities, from the constraints of orders 0 and 1 and the conditions on them.
 template <Number N>
 Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& state);
+
+// True if the state holds more than positions and velocities, or if there are conditions that hold accelerations or
+// multipliers, or if the equations may have several solutions: complete_state is then needed.
+bool needs_completion(const Mechanics& m, const System& s, const Structure& t);
+
+// Completes a state of positions and velocities by all that the structure of `s`, a system with multipliers, asks for, and by
+// the leading derivatives; conditions on accelerations and multipliers are solved with the equations of motion.
+template <Number N>
+Outcome complete_state(const InitialProblem<N>& problem, const System& s, const Structure& t, InitialState<N>& state);
 
 // The constraints that are independent at the state, and those that follow from them there.
 template <Number N>

@@ -102,11 +102,12 @@ def multiplier_names(model, known):
 
 
 def multiplier(names, symbol):
-    """lam2 -> key of the second multiplier."""
-    index = int(symbol.removeprefix("lam")) - 1
+    """lam2 -> key of the second multiplier; lam2_1 -> that of its rate."""
+    number, _, order = symbol.removeprefix("lam").partition("_")
+    index = int(number) - 1
     if index >= len(names):
         raise Failure(f"no multiplier for {symbol}; the program knows {names}")
-    return names[index]
+    return names[index] + "'" * int(order or 0)
 
 
 def compare_state(worst, answer, reference, model, coordinates, where):

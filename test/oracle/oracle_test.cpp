@@ -64,11 +64,6 @@ class Oracle : public testing::TestWithParam<Pair> {
   json data = test::oracle_data(GetParam().oracle);
   std::vector<std::string> coordinates = data["coords"].get<std::vector<std::string>>();
 
-  // What cannot be integrated yet is skipped; terms_test.cpp compares it nevertheless.
-  void SetUp() override {
-    if (const auto d = not_integrated(*model, classify(mechanics(*model)))) GTEST_SKIP() << d->message;
-  }
-
   // x_2 of the data -> x''; lam2 -> the second multiplier.
   std::string jet_name(const std::string& symbol) const {
     const std::size_t at = symbol.rfind('_');
@@ -77,18 +72,25 @@ class Oracle : public testing::TestWithParam<Pair> {
     return symbol;
   }
   bool is_multiplier(const std::string& symbol) const {
-    return symbol.rfind("lam", 0) == 0 && std::find(coordinates.begin(), coordinates.end(), symbol) == coordinates.end();
+    return symbol.rfind("lam", 0) == 0 && std::find(coordinates.begin(), coordinates.end(), test::split_order(symbol).first) == coordinates.end();
   }
-  std::string multiplier(const std::string& symbol) const { return model->constraints.at(std::stoul(symbol.substr(3)) - 1).name; }
+  std::size_t multiplier_index(const std::string& symbol) const { return std::stoul(test::split_order(symbol).first.substr(3)) - 1; }
+  std::string multiplier(const std::string& symbol) const {
+    return derivative_name(model->constraints.at(multiplier_index(symbol)).name, test::split_order(symbol).second, Format::text);
+  }
 
   StateChoice choice(const json& state) const {
     StateChoice c;
     c.t = exact(text(state["t"]));
     for (const auto& [symbol, value] : state["state"].items()) {
+      if (is_multiplier(symbol)) {
+        c.overrides.push_back({test::split_order(symbol).second, multiplier_index(symbol), exact(text(value)), true});
+        continue;
+      }
       const bool whole = std::find(coordinates.begin(), coordinates.end(), symbol) != coordinates.end();
       const auto [name, order] = whole ? std::pair(symbol, 0U) : test::split_order(symbol);
       const auto at = std::find(coordinates.begin(), coordinates.end(), name);
-      if (at == coordinates.end()) throw std::runtime_error("this test cannot prescribe " + symbol + " yet");
+      if (at == coordinates.end()) throw std::runtime_error("this test cannot prescribe " + symbol);
       c.overrides.push_back({order, static_cast<std::size_t>(at - coordinates.begin()), exact(text(value))});
     }
     return c;
@@ -203,7 +205,8 @@ std::vector<Pair> quick_models() {
   std::vector<Pair> quick;
   for (const Pair& p : test::oracle_pairs())
     for (const char* name : {"zoo/chaplygin-sleigh", "zoo/appell-hamel", "zoo/rocket", "zoo/falling-chain", "zoo/vertical-disc",
-                             "papers/luo-zhao-example-1", "papers/luo-zhao-example-2-plane-frame", "zoo/second-order-linear"})
+                             "papers/luo-zhao-example-1", "papers/luo-zhao-example-2-plane-frame", "zoo/second-order-linear",
+                             "zoo/constant-acceleration", "zoo/third-order-linear", "zoo/constant-jerk-central"})
       if (p.model == name) quick.push_back(p);
   return quick;
 }

@@ -1,0 +1,263 @@
+#include "structure/branch.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+bool may_branch(const Mechanics& m, const System& s, std::size_t r) {
+  const Graph& g = m.graph();
+  if (m.order[r] < 2) return false;
+  for (NodeId id : symbols(m.Phi[r])) {
+    const Node& n = g.node(id);
+    if (n.kind == Kind::jet && static_cast<int>(n.order) == m.order[r]) return std::find(s.constraints.begin(), s.constraints.end(), r) != s.constraints.end();
+  }
+  return false;
+}
+
+bool may_branch(const Mechanics& m, const System& s) {
+  return std::any_of(s.constraints.begin(), s.constraints.end(), [&](std::size_t r) { return may_branch(m, s, r); });
+}
+
+std::vector<StageEquation> leading_equations(const System& s, const Structure& t) {
+  std::vector<StageEquation> list;
+  for (std::size_t i = 0; i < s.size(); ++i)
+    list.push_back({total_derivative(s.equations[i], static_cast<unsigned>(t.c[i])),
+                    i < s.coordinates ? "the equation of motion of '" + s.equation_names[i] + "'" : "constraint '" + s.equation_names[i] + "'",
+                    i < s.coordinates ? Span{} : s.model->constraints[s.constraints[i - s.coordinates]].span});
+  return list;
+}
+
+Column leading_unknowns(const System& s, const Structure& t) {
+  Column list;
+  for (std::size_t j = 0; j < s.size(); ++j) list.push_back(s.symbol(j, static_cast<unsigned>(t.d[j])));
+  return list;
+}
+
+namespace {
+
+constexpr int kMostNewton = 60, kRandomStarts = 8;
+constexpr std::size_t kFlipsUpTo = 8;      // coordinates whose signs are flipped one by one
+constexpr double kSame = 1e-6;             // solutions nearer than this are one
+constexpr double kSingular = 1e-9;         // smallest scaled singular value
+
+unsigned orders(const System& s, const Structure& t) {
+  unsigned bits = 0;
+  for (std::size_t j = 0; j < s.coordinates; ++j) bits |= 1U << t.d[j];
+  return bits;
+}
+
+template <class T>
+std::vector<T> part(const std::vector<T>& all, std::size_t from, std::size_t to) {
+  return {all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(to)};
+}
+
+template <Number N>
+class Search {
+ public:
+  Search(const Mechanics& m, const System& s, const Structure& t, const std::vector<N>& parameters, InitialState<N> state)
+      : m_(m), s_(s), parameters_(parameters), n_(s.coordinates), equations_(leading_equations(s, t)), unknowns_(leading_unknowns(s, t)),
+        all_(m, equations_, unknowns_, 0, parameters), metric_(orders(s, t)),
+        constraints_(m, part(equations_, n_, s.size()), part(unknowns_, 0, n_), metric_, parameters),
+        motion_(m, part(equations_, 0, n_), part(unknowns_, n_, s.size()), 0, parameters), state_(std::move(state)) {}
+
+  LeadingSolutions<N> run() {
+    without_nonlinear_constraints();
+    guess_ = jets();
+    try_from(guess_);
+    const N size = length();
+    if (!out_.found.empty()) {
+      const std::vector<N> first = part(out_.found[0], 0, n_);
+      std::vector<N> mirrored = first, opposite = first;
+      for (std::size_t a = 0; a < n_; ++a) mirrored[a] = N(2) * guess_[a] - first[a], opposite[a] = -first[a];
+      try_from(mirrored);
+      try_from(opposite);
+      for (std::size_t a = 0; a < n_ && n_ <= kFlipsUpTo; ++a) {
+        std::vector<N> flipped = first;
+        flipped[a] = -flipped[a];
+        try_from(flipped);
+      }
+    }
+    along_the_reaction(size);
+    for (int k = 0; k < kRandomStarts; ++k) {
+      std::vector<N> x = guess_;
+      for (std::size_t a = 0; a < n_; ++a) x[a] += size * N(static_cast<int>((static_cast<unsigned>(k + 1) * 2654435761U + static_cast<unsigned>(a) * 40503U) % 2001U) - 1000) / N(700);
+      try_from(x);
+    }
+    sort();
+    return out_;
+  }
+
+ private:
+  std::vector<N> jets() {
+    std::vector<N> x;
+    for (std::size_t a = 0; a < n_; ++a) x.push_back(constraints_.x(state_, a));
+    return x;
+  }
+  bool guessed() {
+    for (std::size_t a = 0; a < n_; ++a)
+      if (*state_.origin(constraints_.unknown(a)) == Origin::guessed) return true;
+    return false;
+  }
+  N length() {
+    N size(1);
+    for (const std::vector<N>& x : out_.found)
+      for (std::size_t a = 0; a < n_; ++a)
+        if (abs(x[a]) > size) size = abs(x[a]);
+    return size;
+  }
+
+  // Accelerations with the multipliers of the nonlinear constraints zero: Gauss measures from there.
+  void without_nonlinear_constraints() {
+    if (metric_ != 1U << 2 || guessed()) return;
+    std::vector<StageEquation> rows = part(equations_, 0, n_);
+    Column unknowns = part(unknowns_, 0, n_);
+    for (std::size_t i = n_; i < s_.size(); ++i)
+      if (!may_branch(m_, s_, s_.constraints[i - n_])) rows.push_back(equations_[i]), unknowns.push_back(unknowns_[i]);
+    Stage<N> free(m_, rows, unknowns, metric_, parameters_);
+    const InitialState<N> before = state_;
+    std::vector<std::size_t> every;
+    for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
+    if (!find_by_least_change(free, state_, every)) state_ = before;
+  }
+
+  // Onto the constraints by least change, the best multipliers there, and Newton's method from there.
+  void try_from(const std::vector<N>& start) {
+    const InitialState<N> before = state_;
+    std::vector<std::size_t> every;
+    for (std::size_t a = 0; a < n_; ++a) constraints_.x(state_, a) = start[a], every.push_back(a);
+    for (std::size_t j = 0; j < motion_.unknowns(); ++j) motion_.x(state_, j) = N(0);
+    if (find_by_least_change(constraints_, state_, every) && multipliers()) newton();
+    state_ = before;
+  }
+
+  bool multipliers() {
+    if (!motion_.evaluate(state_)) return false;
+    const std::size_t s = motion_.unknowns();
+    Matrix<N> normal(s, s);
+    std::vector<N> rhs(s, N(0)), y;
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t j = 0; j < s; ++j) {
+        for (std::size_t k = 0; k < s; ++k) addmul(normal(j, k), motion_.jacobian(i, j), motion_.jacobian(i, k));
+        addmul(rhs[j], N(-motion_.jacobian(i, j)), motion_.residual[i]);
+      }
+    Lu<N> lu;
+    if (!lu.factor(normal)) return true;  // Newton may know better
+    lu.solve(rhs, y);
+    for (std::size_t j = 0; j < s; ++j) motion_.x(state_, j) += y[j];
+    return true;
+  }
+
+  void newton() {
+    const std::size_t n = all_.unknowns();
+    if (!all_.evaluate(state_)) return;
+    Lu<N> lu;
+    std::vector<N> y, direction;
+    for (int k = 0; k < kMostNewton; ++k) {
+      const std::vector<N> scale = all_.scale;
+      const auto merit = [&] {
+        N worst(0);
+        for (std::size_t i = 0; i < n; ++i)
+          if (N v = abs(all_.residual[i]) / scale[i]; v > worst) worst = v;
+        return worst;
+      };
+      const N now = merit();
+      const bool solved = !(now > stage_rounding<N>());
+      if (!lu.factor(all_.jacobian) || lu.smallest_singular_value(direction) < N(kSingular)) {
+        if (to_double(now) < kSame) out_.singular = true;
+        return;
+      }
+      if (solved) return keep();
+      std::vector<N> rhs, old;
+      for (std::size_t i = 0; i < n; ++i) rhs.push_back(-all_.residual[i]), old.push_back(all_.x(state_, i));
+      lu.solve(rhs, y);
+      N fraction(1);
+      bool better = false;
+      for (int halvings = 0; halvings < 10 && !better; ++halvings, fraction = fraction * N(0.5)) {
+        for (std::size_t i = 0; i < n; ++i) all_.x(state_, i) = old[i] + fraction * y[i];
+        better = all_.evaluate(state_) && merit() <= now * (N(1) - fraction * N(0.1));
+      }
+      if (!better) return;
+    }
+  }
+
+  void keep() {
+    std::vector<N> x;
+    for (std::size_t j = 0; j < all_.unknowns(); ++j) x.push_back(all_.x(state_, j));
+    for (const std::vector<N>& other : out_.found) {
+      bool same = true;
+      for (std::size_t j = 0; j < x.size(); ++j) {
+        const N size = abs(x[j]) > N(1) ? abs(x[j]) : N(1);
+        same = same && abs(N(x[j] - other[j])) < N(kSame) * size;
+      }
+      if (same) return;
+    }
+    out_.found.push_back(x);
+  }
+
+  // q^(m) along and against the reaction E - G, as in [theory: initial-data].
+  void along_the_reaction(const N& size) {
+    const InitialState<N> before = state_;
+    for (std::size_t j = 0; j < motion_.unknowns(); ++j) motion_.x(state_, j) = N(0);
+    if (!motion_.evaluate(state_) || !constraints_.evaluate(state_)) return;
+    const std::vector<N> reaction = motion_.residual;
+    state_ = before;
+    N largest(0);
+    for (const N& v : reaction)
+      if (abs(v) > largest) largest = abs(v);
+    if (!(largest > N(0))) return;
+    for (int sign : {1, -1}) {
+      std::vector<N> x = guess_;
+      for (std::size_t a = 0; a < n_; ++a) x[a] += N(sign) * size * reaction[a] / largest;
+      try_from(x);
+    }
+  }
+
+  void sort() {
+    for (std::size_t a = 0; a < n_; ++a) constraints_.x(state_, a) = guess_[a];
+    if (!constraints_.evaluate(state_)) return;
+    const auto distance = [&](const std::vector<N>& x) {
+      N sum(0);
+      for (std::size_t a = 0; a < n_; ++a)
+        for (std::size_t b = 0; b < n_; ++b) sum += (x[a] - guess_[a]) * constraints_.metric(a, b) * (x[b] - guess_[b]);
+      return to_double(sum);
+    };
+    const auto pushes = [&](const std::vector<N>& x) {
+      double sum = 0;
+      for (std::size_t j = n_; j < x.size(); ++j) sum += to_double(x[j]);
+      return sum;
+    };
+    std::stable_sort(out_.found.begin(), out_.found.end(), [&](const std::vector<N>& x, const std::vector<N>& y) { return distance(x) < distance(y); });
+    // Of those equally near, the one that pushes.
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < out_.found.size() && distance(out_.found[k]) <= distance(out_.found[0]) * (1 + kSame); ++k)
+      if (pushes(out_.found[k]) > pushes(out_.found[best])) best = k;
+    if (best > 0) std::rotate(out_.found.begin(), out_.found.begin() + static_cast<std::ptrdiff_t>(best), out_.found.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+  }
+
+  const Mechanics& m_;
+  const System& s_;
+  const std::vector<N>& parameters_;
+  std::size_t n_;
+  std::vector<StageEquation> equations_;
+  Column unknowns_;
+  Stage<N> all_;
+  unsigned metric_;
+  Stage<N> constraints_, motion_;
+  InitialState<N> state_;
+  std::vector<N> guess_;
+  LeadingSolutions<N> out_;
+};
+
+}  // namespace
+
+template <Number N>
+LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const Structure& t, const std::vector<N>& parameters,
+                                      InitialState<N> state) {
+  return Search<N>(m, s, t, parameters, std::move(state)).run();
+}
+
+template LeadingSolutions<double> leading_solutions<double>(const Mechanics&, const System&, const Structure&, const std::vector<double>&, InitialState<double>);
+template LeadingSolutions<long double> leading_solutions<long double>(const Mechanics&, const System&, const Structure&, const std::vector<long double>&, InitialState<long double>);
+template LeadingSolutions<Multi> leading_solutions<Multi>(const Mechanics&, const System&, const Structure&, const std::vector<Multi>&, InitialState<Multi>);
+
+}  // namespace anholon

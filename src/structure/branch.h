@@ -1,0 +1,30 @@
+// The leading derivatives at a state where they enter nonlinearly: all solutions that several starts lead to.
+#pragma once
+#include "structure/stage.h"
+#include "structure/structure.h"
+
+namespace anholon {
+
+// True if a constraint of order 2 or more is nonlinear in its highest derivatives: its equations may have several solutions.
+bool may_branch(const Mechanics& m, const System& s, std::size_t constraint);
+bool may_branch(const Mechanics& m, const System& s);
+
+template <Number N>
+struct LeadingSolutions {
+  // x_j^(d_j) in the order of the system's variables; those nearest to the guess in the mass norm come first, of two that are
+  // equally near the one with the larger multipliers.
+  std::vector<std::vector<N>> found;
+  bool singular = false;  // one was met at which the equations do not determine the motion
+};
+
+// Equations of motion and constraints, each differentiated as often as the structure says, and what they are solved for.
+std::vector<StageEquation> leading_equations(const System& s, const Structure& t);
+Column leading_unknowns(const System& s, const Structure& t);
+
+// `state` holds the state and, where the leading derivatives belong, the guess: that of the user, or zeros, which are replaced
+// by the accelerations without the nonlinear constraints where these are of order 2.
+template <Number N>
+LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const Structure& t, const std::vector<N>& parameters,
+                                      InitialState<N> state);
+
+}  // namespace anholon

@@ -1,0 +1,70 @@
+// One stage of consistent initial data: equations in some entries of the state, and how these are found by least change.
+#pragma once
+#include "base/diagnostic.h"
+#include "mechanics/mechanics.h"
+#include "structure/state.h"
+#include "tape/tape.h"
+
+namespace anholon {
+
+struct StageEquation {
+  Expr residual;
+  std::string what;        // "constraint 'blade'"
+  Span span;
+  bool condition = false;  // of the file's initial data, not a law of the system
+};
+
+// Rows of a constraint Jacobian count as dependent below this fraction of their size.
+inline constexpr double kDependent = 1e-9;
+
+// Equations in chosen unknowns and their partial derivatives. The metric of least change is the mass matrix at each order of
+// the coordinates in `metric` (bit k: order k); the other unknowns are found, not measured.
+template <Number N>
+class Stage {
+ public:
+  Stage(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric, const std::vector<N>& parameters);
+
+  std::size_t size() const { return equations_.size(); }
+  std::size_t unknowns() const { return unknowns_.size(); }
+  const StageEquation& equation(std::size_t i) const { return equations_[i]; }
+  const Node& unknown(std::size_t j) const { return m_.graph().node(unknowns_[j].id); }
+  N& x(InitialState<N>& s, std::size_t j) const { return *s.value(unknown(j)); }
+
+  // Values, scales and partial derivatives at a state; false if a formula has no value there.
+  bool evaluate(const InitialState<N>& s);
+  // True if the equations say anything about unknown j.
+  bool moves(std::size_t j) const {
+    for (std::size_t i = 0; i < size(); ++i)
+      if (abs(jacobian(i, j)) > N(0)) return true;
+    return false;
+  }
+  // The largest residual in relation to its scale, and where it is.
+  N worst(std::size_t* which = nullptr) const;
+
+  std::vector<N> residual, scale;
+  Matrix<N> jacobian, metric;
+
+ private:
+  Tape build();
+  N term_scale(std::size_t i) const;
+
+  const Mechanics& m_;
+  std::vector<StageEquation> equations_;
+  Column unknowns_;
+  unsigned measured_;
+  Tape tape_;
+  Machine<N> machine_;
+};
+
+// Residuals below this part of their scale are round-off.
+template <Number N>
+N stage_rounding() {
+  return unit_roundoff<N>() * N(200);
+}
+
+// min |x - x0| over the free unknowns subject to the equations, x0 being the values that the state has, by Newton's method with
+// a line search; ends at the least change reachable, and the caller looks at what is left. False: no value there.
+template <Number N>
+bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free);
+
+}  // namespace anholon

@@ -1,0 +1,54 @@
+// The initial state as it is being found: every value with where it came from.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "expr/expr.h"
+#include "numeric/number.h"
+
+namespace anholon {
+
+// Where a value of the state came from.
+enum class Origin : std::uint8_t { given, derived, chosen, guessed, corrected };
+const char* name(Origin origin);
+
+// The derivatives of one order, of all coordinates or of all multipliers.
+template <Number N>
+struct Level {
+  std::vector<N> value;
+  std::vector<Origin> origin;
+};
+
+template <Number N>
+struct InitialState {
+  N t{0};
+  std::vector<N> q, qd;
+  std::vector<Origin> q_origin, qd_origin;
+  std::vector<Level<N>> higher;       // q^(k), k = 2, 3, …: the state and the leading derivatives, where they were needed
+  std::vector<Level<N>> multipliers;  // lambda^(k), k = 0, 1, … of all constraints of the model, likewise
+  N largest_correction{0};            // of values that were given
+  std::vector<std::string> notes;     // choices that were made
+
+  // q_a^(k) or lambda_r^(k); null where the state does not go so far, and for other symbols.
+  N* value(const Node& n) { return entry(*this, n); }
+  const N* value(const Node& n) const { return entry(*this, n); }
+  Origin* origin(const Node& n) {
+    if (!entry(*this, n)) return nullptr;
+    if (n.kind == Kind::multiplier) return &multipliers[n.order].origin[n.index];
+    return n.order == 0 ? &q_origin[n.index] : n.order == 1 ? &qd_origin[n.index] : &higher[n.order - 2U].origin[n.index];
+  }
+  const Origin* origin(const Node& n) const { return const_cast<InitialState*>(this)->origin(n); }
+
+ private:
+  template <class State>
+  static auto entry(State& s, const Node& n) -> decltype(&s.q[0]) {
+    if (n.kind == Kind::multiplier) return n.order < s.multipliers.size() ? &s.multipliers[n.order].value[n.index] : nullptr;
+    if (n.kind != Kind::jet) return nullptr;
+    if (n.order == 0) return n.index < s.q.size() ? &s.q[n.index] : nullptr;
+    if (n.order == 1) return n.index < s.qd.size() ? &s.qd[n.index] : nullptr;
+    return n.order - 2U < s.higher.size() ? &s.higher[n.order - 2U].value[n.index] : nullptr;
+  }
+};
+
+}  // namespace anholon
