@@ -3,6 +3,8 @@
 // but in the last part.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "run/evaluate.h"
 #include "support/generic_system.h"
 #include "support/manifold.h"
@@ -92,7 +94,8 @@ struct Change {
 // Names are for gtest's output.
 void PrintTo(const Change& c, std::ostream* out) { *out << c.name; }
 
-// The model with its coordinates defined by other ones. What it says of initial values is left out.
+// The model with its coordinates defined by other ones. What it says of initial values is left out; the first of the new ones
+// starts at 1, since r = 0 is no place for polar coordinates.
 std::string changed_text(const Change& c) {
   std::string text = test::shipped_text(c.model), defines;
   text = text.substr(0, text.find("\n[initial]") + 1);
@@ -100,7 +103,8 @@ std::string changed_text(const Change& c) {
   text.replace(list, text.find('\n', list) - list, "coordinates = [" + c.coordinates + "]");
   for (const auto& [name, value] : c.old_ones) defines += name + " = \"" + value + "\"\n";
   const std::size_t at = text.find("\n[define]\n");
-  return at == std::string::npos ? text + "[define]\n" + defines : text.insert(at + 10, defines);
+  text = at == std::string::npos ? text + "[define]\n" + defines : text.insert(at + 10, defines);
+  return text + "[initial]\n" + c.coordinates[1] + " = 1\n";
 }
 
 std::vector<Change> changes() {
@@ -118,62 +122,66 @@ std::vector<Change> changes() {
 class OtherCoordinates : public testing::TestWithParam<Change> {
  protected:
   System old_system{test::shipped(GetParam().model)}, new_system{changed_text(GetParam())};
+  std::shared_ptr<const Model> probe = test::model_of(text_of_places());
   Column places = find_places();
 
-  // The old coordinates as functions of the new: read from a model whose potentials they are.
-  Column find_places() const {
+  // The old coordinates as functions of the new: what the reader makes of them in constraints of a model of their own.
+  std::string text_of_places() const {
     std::string text = changed_text(GetParam());
-    for (std::size_t i = 0; i < GetParam().old_ones.size(); ++i)
-      text += "[[constraint]]\nname = \"place" + std::to_string(i) + "\"\nequation = \"" + GetParam().old_ones[i].first + " = 0\"\n";
-    const auto with = test::model_of(text);
+    text = text.substr(0, text.find("[initial]"));
+    for (const auto& [name, value] : GetParam().old_ones) text += "[[constraint]]\nname = \"place_" + name + "\"\nequation = \"" + name + " = 0\"\n";
+    return text;
+  }
+  Column find_places() const {
     Column out;
-    for (std::size_t i = with->constraints.size() - GetParam().old_ones.size(); i < with->constraints.size(); ++i) out.push_back(with->constraints[i].phi);
-    keep = with;
+    for (std::size_t i = probe->constraints.size() - GetParam().old_ones.size(); i < probe->constraints.size(); ++i) out.push_back(probe->constraints[i].phi);
     return out;
   }
-  mutable std::shared_ptr<const Model> keep;
-
+  // Time, coordinates, multipliers and their derivatives of one model carried to the same symbols of another.
+  static void carry(const Model& from, const test::Point& at, const Model& to, test::Point& there) {
+    there.set(to.graph->time(), test::value(from.graph->time(), at));
+    for (std::uint32_t a = 0; a < from.coordinates.size(); ++a)
+      for (unsigned k = 0; k <= kJets; ++k) there.set(to.graph->jet(a, k), test::value(from.graph->jet(a, k), at));
+    for (std::uint32_t r = 0; r < from.constraints.size(); ++r)
+      for (unsigned k = 0; k <= kJets; ++k) there.set(to.graph->multiplier(r, k), test::value(from.graph->multiplier(r, k), at));
+  }
+  test::Point probe_point(const test::Point& at) const {
+    test::Point there = test::random_point(*probe, 1);
+    carry(*new_system.model, at, *probe, there);
+    return there;
+  }
   // The same motion in the old coordinates.
-  test::Point old_point(const test::Point& at, std::uint64_t seed) const {
-    test::Point p = test::random_point(*old_system.model, seed);
-    Graph &from = *new_system.model->graph, &to = *old_system.model->graph;
-    // `places` belongs to a graph of its own, with the same symbols.
-    test::Point there = test::random_point(*keep, seed);
-    const auto copy = [&](Expr symbol, Expr image) { there.set(image, test::value(symbol, at)); };
-    copy(from.time(), keep->graph->time());
-    p.set(to.time(), test::value(from.time(), at));
-    for (std::uint32_t a = 0; a < new_system.m.q.size(); ++a)
-      for (unsigned k = 0; k <= kJets; ++k) copy(from.jet(a, k), keep->graph->jet(a, k));
+  test::Point old_point(const test::Point& at) const {
+    test::Point p = test::random_point(*old_system.model, 1);
+    const test::Point there = probe_point(at);
+    carry(*new_system.model, at, *old_system.model, p);
     Column c = places;
     for (unsigned k = 0; k <= kJets; ++k) {
       const std::vector<Multi> v = test::values(c, there);
-      for (std::uint32_t a = 0; a < v.size(); ++a) p.set(to.jet(a, k), v[a]);
+      for (std::uint32_t a = 0; a < v.size(); ++a) p.set(old_system.model->graph->jet(a, k), v[a]);
       if (k < kJets) c = total_derivative(c);
     }
-    for (std::uint32_t r = 0; r < new_system.m.phi.size(); ++r)
-      for (unsigned k = 0; k <= kJets; ++k) p.set(to.multiplier(r, k), test::value(from.multiplier(r, k), at));
     return p;
   }
   // d old/d new
   Matrix<Multi> jacobian(const test::Point& at) const {
-    test::Point there = test::random_point(*keep, 1);
-    there.set(keep->graph->time(), test::value(new_system.model->graph->time(), at));
-    for (std::uint32_t a = 0; a < new_system.m.q.size(); ++a) there.set(keep->graph->jet(a, 0), test::value(new_system.model->graph->jet(a, 0), at));
     Rows rows;
-    for (Expr c : places) rows.push_back(gradient(c, jets(*keep, 0)));
-    return test::values_of(rows, there);
+    for (Expr c : places) rows.push_back(gradient(c, jets(*probe, 0)));
+    return test::values_of(rows, probe_point(at));
   }
 
-  double largest_miss(const Formulation& form, bool solve, Rule rule) const {
+  // By rule.
+  std::map<Rule, double> misses(const Formulation& form, bool solve) const {
     const PrecisionScope precision(40);
     const Derived old_one(old_system, form, {}, solve), new_one(new_system, form, {}, solve);
-    double worst = 0;
+    std::map<Rule, double> worst;
     for (std::uint64_t seed = 1; seed <= kPoints; ++seed) {
       const std::optional<test::Point> at = test::manifold_point(*new_system.model, new_one.e, seed);
-      if (!at) return 1e300;
-      const test::Point old_at = old_point(*at, seed);
+      if (!at) return {{Rule::covector, 1e300}};
+      const test::Point old_at = old_point(*at);
       const Matrix<Multi> X = old_one.rows(old_at) * (jacobian(*at) * new_one.directions(*at));
-      worst = std::max(worst, miss(test::values(new_one.residual, *at), test::values(old_one.residual, old_at), X, rule));
+      const std::vector<Multi> r_new = test::values(new_one.residual, *at), r = test::values(old_one.residual, old_at);
+      for (const Rule rule : {Rule::covector, Rule::transposed, Rule::unchanged}) worst[rule] = std::max(worst[rule], miss(r_new, r, X, rule));
     }
     return worst;
   }
@@ -183,14 +191,20 @@ TEST_P(OtherCoordinates, ResidualsAreCovectors) {
   int compared = 0, refuted = 0;
   for (const Formulation* form : formulations()) {
     if (!form->obstacle(old_system.m).empty()) continue;
+    const bool by_inverses = std::string(form->name) == "udwadia-kalaba";
+    if (by_inverses && std::string(GetParam().name).find("Sleigh") == std::string::npos) continue;  // takes seconds
     ++compared;
-    EXPECT_LE(largest_miss(*form, true, Rule::covector), kExact) << form->name;
-    for (const Rule wrong : {Rule::transposed, Rule::unchanged}) refuted += largest_miss(*form, true, wrong) > kRefuted;
-    if (!form->eliminates()) continue;
-    EXPECT_LE(largest_miss(*form, false, Rule::covector), kExact) << form->name << ", unsolved";
+    const std::map<Rule, double> solved = misses(*form, true);
+    EXPECT_LE(solved.at(Rule::covector), kExact) << form->name;
+    refuted += solved.at(Rule::unchanged) > kRefuted && solved.at(Rule::transposed) > kRefuted;
+    if (form->eliminates() && !by_inverses) {
+      EXPECT_LE(misses(*form, false).at(Rule::covector), kExact) << form->name << ", unsolved";
+    }
   }
   EXPECT_GE(compared, 19);
-  EXPECT_EQ(refuted, 2 * compared);
+  // Where the sleigh's frame only turns, the matrix between two pairs of independent coordinates may be symmetric.
+  if (std::string(GetParam().name) == "TurningSleigh") EXPECT_GE(refuted, 9);
+  else EXPECT_EQ(refuted, compared);
 }
 
 INSTANTIATE_TEST_SUITE_P(Change, OtherCoordinates, testing::ValuesIn(changes()), [](const auto& p) { return p.param.name; });
@@ -209,37 +223,43 @@ std::vector<std::vector<std::size_t>> subsets(std::size_t n, std::size_t k) {
 }
 
 // B' = B X, and the residuals of one are X^T those of the other.
-double miss_between(const Derived& a, const Derived& b, Rule rule) {
+std::map<Rule, double> misses_between(const Derived& a, const Derived& b) {
   const PrecisionScope precision(40);
-  double worst = 0;
+  std::map<Rule, double> worst;
   for (std::uint64_t seed = 1; seed <= kPoints; ++seed) {
     const std::optional<test::Point> at = test::manifold_point(*a.s.model, a.e, seed);
-    if (!at) return 1e300;
+    if (!at) return {{Rule::covector, 1e300}};
     const Matrix<Multi> X = a.rows(*at) * b.directions(*at);
-    worst = std::max(worst, miss(test::values(b.residual, *at), test::values(a.residual, *at), X, rule));
+    const std::vector<Multi> r_new = test::values(b.residual, *at), r = test::values(a.residual, *at);
+    for (const Rule rule : {Rule::covector, Rule::transposed, Rule::unchanged}) worst[rule] = std::max(worst[rule], miss(r_new, r, X, rule));
   }
   return worst;
 }
 
 struct Choices {
   const char* name;
-  std::string text;
-  std::size_t admissible;  // choices of dependent coordinates
+  std::string text, initial;  // a state at which all that can be eliminated can be
+  std::size_t admissible;     // choices of dependent coordinates
 };
 void PrintTo(const Choices& c, std::ostream* out) { *out << c.name; }
 
 std::vector<Choices> choices() {
-  return {{"Sleigh", test::shipped_text("zoo/chaplygin-sleigh"), 2},
-          {"VerticalDisc", test::shipped_text("zoo/vertical-disc"), 3},
-          {"RheonomicOrder1", test::shipped_text("zoo/rheonomic-order-1"), 3},
-          {"RheonomicOrder2", test::shipped_text("zoo/rheonomic-order-2"), 3},
-          {"GenericOrder1", test::generic_system(1, test::Shape::linear), 6},
-          {"AffineOrder2", test::generic_system(2, test::Shape::affine), 6}};
+  const std::string generic = "t = 0.5\nx = 0.7\ny = -0.4\nz = 0.6\nw = 0.9\n\"x'\" = 0.3\n\"y'\" = 0.5\n";
+  return {{"Sleigh", test::shipped_text("zoo/chaplygin-sleigh"), "th = 0.5\n", 2},
+          {"VerticalDisc", test::shipped_text("zoo/vertical-disc"), "", 3},
+          {"RheonomicOrder1", test::shipped_text("zoo/rheonomic-order-1"), "t = 0.5\nx = 0.5\ny = -0.25\nw = 0.2\n\"x'\" = 0.2\n\"y'\" = 0.5\n", 3},
+          {"RheonomicOrder2", test::shipped_text("zoo/rheonomic-order-2"), "", 3},
+          {"GenericOrder1", test::generic_system(1, test::Shape::linear), generic, 6},
+          {"AffineOrder2", test::generic_system(2, test::Shape::affine), generic + "\"z'\" = -0.7\n\"w'\" = 0.6\n", 6}};
 }
 
 class OtherDependents : public testing::TestWithParam<Choices> {
  protected:
-  System s{GetParam().text};
+  System s{text()};
+  static std::string text() {
+    const Choices& c = GetParam();
+    return c.initial.empty() ? c.text : c.text.substr(0, c.text.find("\n[initial]")) + "\n[initial]\n" + c.initial;
+  }
   std::vector<std::vector<std::size_t>> admissible() const {
     std::vector<std::vector<std::size_t>> out;
     for (const auto& which : subsets(s.m.q.size(), s.m.phi.size())) {
@@ -257,6 +277,7 @@ TEST_P(OtherDependents, TurnResidualsByARegularMatrix) {
   const auto all = admissible();
   EXPECT_EQ(all.size(), GetParam().admissible);
   ASSERT_GE(all.size(), 2U);
+  const bool diagonal = std::string(GetParam().name) == "Sleigh";  // x for y, and th as before: X is its own transpose
   int compared = 0, refuted = 0;
   for (const Formulation* form : formulations()) {
     if (form->unknowns != Unknowns::coordinates || !form->obstacle(s.m).empty() || std::string(form->name) == "udwadia-kalaba") continue;
@@ -264,8 +285,9 @@ TEST_P(OtherDependents, TurnResidualsByARegularMatrix) {
     for (std::size_t k = 1; k < all.size(); ++k) {
       const Derived other(s, *form, all[k], k % 2 == 0);
       ++compared;
-      EXPECT_LE(miss_between(first, other, Rule::covector), kExact) << form->name << ", choice " << k;
-      refuted += miss_between(first, other, Rule::transposed) > kRefuted;
+      const std::map<Rule, double> found = misses_between(first, other);
+      EXPECT_LE(found.at(Rule::covector), kExact) << form->name << ", choice " << k;
+      refuted += found.at(Rule::unchanged) > kRefuted && (diagonal || found.at(Rule::transposed) > kRefuted);
     }
   }
   EXPECT_GE(compared, 10);
@@ -318,6 +340,14 @@ TEST(OtherQuasiVelocities, OfTheSleigh) {
   std::string text = test::shipped_text("zoo/chaplygin-sleigh");
   text = text.substr(0, text.find("\n[initial]") + 1);
   compare_quasi(text, "v = \"x'*cos(th) + y'*sin(th)\"\nomega = \"th'\"\n", "v1 = \"x' + th'\"\nv2 = \"th'*(2 + x^2) - y'/2\"\n");
+}
+
+// At r = 0, p = s = 0 the blade's constraint has the row 0, and no velocity is independent of it: the
+// list of quasi-velocities stays empty, and the forms that want n of them end in an internal fault.
+TEST(OtherQuasiVelocities, DISABLED_AreCompletedAtASingularState) {
+  const System s(test::replaced(changed_text(changes()[0]), "r = 1", "r = 0"));
+  const Elimination e = elimination_for(s.m, Unknowns::quasi_velocities, {}, {});
+  EXPECT_EQ(e.w.size(), s.m.q.size());
 }
 
 // ---- other ways to write a constraint -----------------------------------------------------------------------------------------
