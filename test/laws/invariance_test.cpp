@@ -325,15 +325,14 @@ void compare_quasi(const std::string& text, const std::string& one, const std::s
 }
 
 TEST(OtherQuasiVelocities, TurnResidualsByARegularMatrix) {
-  for (const test::Shape shape : {test::Shape::affine, test::Shape::linear})
-    for (int m = 1; m <= 2; ++m) {
-      const auto top = [m](const char* q) { return test::primes(q, m); };
-      const std::string one = "u = \"" + top("x") + "*(2 + z) + " + top("w") + "/3\"\nv = \"" + top("y") + " + t*" + top("x") + "/4\"\n";
-      const std::string another = "u = \"" + top("y") + " - x*" + top("x") + "/5\"\nv = \"(3 + t)*" + top("x") + " + y*" + top("z") + "/3\"\n";
-      const std::string crooked = "u = \"" + top("y") + "^2/3 + 2*" + top("x") + "\"\nv = \"" + top("y") + " + " + top("w") + "*" + top("x") + "/4\"\n";
-      compare_quasi(test::generic_system(m, shape), one, another);
-      compare_quasi(test::generic_system(m, shape), one, crooked);
-    }
+  for (const auto& [shape, m] : {std::pair(test::Shape::affine, 1), std::pair(test::Shape::linear, 2)}) {
+    const auto top = [order = m](const char* q) { return test::primes(q, order); };
+    const std::string one = "u = \"" + top("x") + "*(2 + z) + " + top("w") + "/3\"\nv = \"" + top("y") + " + t*" + top("x") + "/4\"\n";
+    const std::string another = "u = \"" + top("y") + " - x*" + top("x") + "/5\"\nv = \"(3 + t)*" + top("x") + " + y*" + top("z") + "/3\"\n";
+    const std::string crooked = "u = \"" + top("y") + "^2/3 + 2*" + top("x") + "\"\nv = \"" + top("y") + " + " + top("w") + "*" + top("x") + "/4\"\n";
+    compare_quasi(test::generic_system(m, shape), one, another);
+    compare_quasi(test::generic_system(m, shape), one, crooked);
+  }
 }
 
 TEST(OtherQuasiVelocities, OfTheSleigh) {
