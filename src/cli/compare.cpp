@@ -13,7 +13,8 @@ namespace anholon::cli {
 
 namespace {
 
-constexpr std::size_t kListed = 5;  // changes that are shown of many
+constexpr std::size_t kListed = 5;     // changes that are shown of many
+constexpr std::size_t kShown = 400;    // characters of a difference
 
 SourceText read_equation_text(const Options& o) {
   SourceText source{o.equations, {}};
@@ -67,12 +68,17 @@ std::string point_text(const WitnessPoint& w, const SymbolNames& names) {
   return out;
 }
 
+std::string shortened(std::string text) {
+  if (text.size() > kShown) text = text.substr(0, kShown) + " …";
+  return text;
+}
+
 void print_text(const PublishedEquation& e, const Comparison& c, std::size_t width, const SourceText& source, const SymbolNames& names) {
   const std::string indent(width + 10, ' ');
   std::printf("%-*s  %-7s %s\n", static_cast<int>(width), e.label.c_str(), word(c.verdict),
               c.verdict == Verdict::proved ? c.what.c_str() : c.verdict == Verdict::unknown ? c.detail.c_str() : ("nearest: " + c.what).c_str());
   if (c.verdict != Verdict::refuted) return;
-  if (c.difference) std::printf("%sleft - right differs from it by %s\n", indent.c_str(), print(*c.difference, names, Format::text).c_str());
+  if (c.difference) std::printf("%sleft - right differs from it by %s\n", indent.c_str(), shortened(print(*c.difference, names, Format::text)).c_str());
   std::printf("%sleft - right = %s at a point of the motion\n", indent.c_str(), c.detail.c_str());
   const auto show = [&](const Change& k) {
     std::printf("%s%s:%u:%u: %s: %s should be %s%s\n", indent.c_str(), source.name.c_str(), k.span.line, k.span.column, place(k).c_str(), k.from.c_str(), k.to.c_str(),

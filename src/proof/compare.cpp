@@ -26,13 +26,27 @@ bool vanishes(Expr e, std::vector<PointValues>& points) {
 bool is_not_zero(Expr e, PointValues& at) { return std::abs(at(e)) > 1e-9 * (1e-6 + size_at(e, at)); }
 
 // How long an expression is in print.
-std::size_t monomials(Expr e) {
+std::size_t monomials(Expr e, const SymbolNames& names) {
   if (is_zero(e)) return 0;
-  Whole whole;
-  whole.fractions = true;
+  const Whole whole{true, true, &names.defined};
   const auto form = normal_form(e, whole, kWorkOfCount);
   if (!form) return 1000 + nodes(e);
   return form->numerator.size() * (form->denominator.size() > 1 ? 2 : 1);
+}
+
+// The number that two expressions have as their ratio at all points, if it is a short fraction.
+std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>& points) {
+  constexpr int kLongest = 720;
+  const double ratio = points[0](a) / points[0](b);
+  for (PointValues& at : points)
+    if (!(std::abs(at(a) - ratio * at(b)) <= 1e-10 * std::abs(at(a)))) return std::nullopt;
+  for (int d = 1; d <= kLongest; ++d)
+    if (const double n = ratio * d; std::abs(n) < 1e6 && std::abs(n - std::round(n)) < 1e-9 * std::abs(n)) {
+      Rational r(static_cast<long>(std::round(n)), d);
+      r.canonicalize();
+      return r;
+    }
+  return std::nullopt;
 }
 
 const char* times_in_words(unsigned k) {
@@ -112,7 +126,8 @@ bool Comparer::directly(Expr P, const DerivedEquation& e, Motion& motion, Compar
   Expr factor = p[best] / f[best];
   const Expr rest = P - factor * e.residual;
   if (!vanishes(rest, points)) return false;
-  factor = tidy(factor);
+  const auto constant = constant_ratio(p[best], f[best], points);
+  factor = constant ? M_.graph().number(*constant) : tidy(factor);
   const Expr short_rest = P - factor * e.residual;
   if (!shown_zero(short_rest, Effort::full)) return false;
   out.verdict = Verdict::proved;
@@ -252,8 +267,9 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
   std::vector<PointValues>& points = motion.anywhere();
   if (points.empty()) return;
   std::size_t best = SIZE_MAX;
-  const auto offer = [&](Expr difference, const std::string& what) {
-    const std::size_t length = monomials(difference);
+  // What says less counts as longer: a combination, a constraint beside an equation of motion.
+  const auto offer = [&](Expr difference, const std::string& what, std::size_t weight) {
+    const std::size_t length = weight * monomials(difference, names_);
     if (length >= best) return;
     best = length;
     out.difference = difference;
@@ -262,15 +278,31 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
   std::vector<DerivedEquation> candidates = motion.rows;
   candidates.insert(candidates.begin(), motion.lower.begin(), motion.lower.end());
   const Expr one = M_.graph().one();
-  for (const DerivedEquation& e : candidates) {
+  // Where all accelerations are lost, parameters show the factor.
+  Column by = motion.top;
+  const Column p_top = gradient(P, motion.top);
+  if (std::all_of(p_top.begin(), p_top.end(), [](Expr x) { return is_zero(x); }))
+    for (std::size_t k = 0; k < M_.model->parameters.size(); ++k) by.push_back(M_.graph().parameter(static_cast<std::uint32_t>(k)));
+  const Column p = gradient(P, by);
+  const auto factors_of = [&](Expr residual) {
     Column factors = {one, -one};
-    const Column symbols = leading(e, motion), p = gradient(P, symbols), f = gradient(e.residual, symbols);
-    for (std::size_t j = 0; j < symbols.size(); ++j) {
+    const Column f = gradient(residual, by);
+    for (std::size_t j = 0; j < by.size(); ++j) {
       if (is_zero(p[j]) || is_zero(f[j]) || !is_not_zero(f[j], points[0]) || !is_not_zero(p[j], points[0])) continue;
-      const Expr factor = tidy(p[j] / f[j]);
+      const auto constant = constant_ratio(p[j], f[j], points);
+      const Expr factor = constant ? M_.graph().number(*constant) : tidy(p[j] / f[j]);
       if (std::none_of(factors.begin(), factors.end(), [&](Expr before) { return before == factor; })) factors.push_back(factor);
     }
-    for (Expr factor : factors) offer(P - factor * e.residual, name(e) + times(factor));
+    return factors;
+  };
+  for (const DerivedEquation& e : candidates) {
+    if (e.constraint) {
+      // In its own leading derivatives.
+      const Column symbols = leading(e, motion), q = gradient(P, symbols), f = gradient(e.residual, symbols);
+      for (std::size_t j = 0; j < symbols.size(); ++j)
+        if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0])) offer(P - tidy(q[j] / f[j]) * e.residual, name(e) + times(tidy(q[j] / f[j])), 6);
+    }
+    for (Expr factor : e.constraint ? Column{one, -one} : factors_of(e.residual)) offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : 2);
   }
   if (!elimination_.dependent.empty() && !elimination_.quasi) {
     // Along the directions that the constraints leave free.
@@ -278,20 +310,15 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
     for (const DerivedEquation& e : motion.rows)
       if (!e.constraint && e.times == 0) routh.push_back(e.residual);
     if (routh.size() == M_.q.size()) {
-      const Column p = gradient(P, motion.top);
       for (std::size_t nu = 0; nu < elimination_.independent.size(); ++nu) {
         Column parts;
         for (std::size_t s = 0; s < routh.size(); ++s)
           if (!is_zero(elimination_.g_by_u()[s][nu])) parts.push_back(elimination_.g_by_u()[s][nu] * routh[s]);
         const Expr row = sum(parts);
-        const Column f = gradient(row, motion.top);
-        Column factors = {one, -one};
-        for (std::size_t j = 0; j < p.size(); ++j)
-          if (!is_zero(p[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0]) && is_not_zero(p[j], points[0])) factors.push_back(tidy(p[j] / f[j]));
-        for (Expr factor : factors) {
+        for (Expr factor : factors_of(row)) {
           const std::string what = "the equation of " + M_.model->coordinates[elimination_.independent[nu]].name + " without multipliers" + times(factor);
-          offer(P - factor * row, what);
-          if (const auto on = motion.reduced(P - factor * row)) offer(*on, what + ", on the constraints");
+          offer(P - factor * row, what, 3);
+          if (const auto on = motion.reduced(P - factor * row)) offer(*on, what + ", on the constraints", 3);
         }
       }
     }
@@ -300,8 +327,8 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
   if (const auto rest = combination(P, motion, terms); rest && !terms.empty()) {
     std::string what;
     for (const auto& [i, c] : terms) what += (what.empty() ? "" : " and ") + name(motion.rows[i]) + times(c);
-    offer(*rest, what);
-    if (const auto on = motion.reduced(*rest)) offer(*on, what + ", on the constraints");
+    offer(*rest, what, 4);
+    if (const auto on = motion.reduced(*rest)) offer(*on, what + ", on the constraints", 4);
   }
   if (out.difference) out.difference = arranged(*out.difference, names_);
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kVanishes = 1e-9;
 constexpr std::size_t kMostJudged = 24;     // survivors that are proved or refuted
-constexpr std::size_t kMostPairs = 60'000;  // pairs of edits that are tried
+constexpr std::size_t kMostPairs = 20'000;  // pairs of edits that are tried
 
 using Path = std::vector<std::size_t>;
 
@@ -292,6 +292,8 @@ class Repair {
       for (const Edit& e : Edits(t.syntax, names_, alphabet_, true).list) try_edit(t, e);
     judge();
     if (!changes_.empty()) return changes_;
+    // Short terms first: the number of pairs is bounded.
+    std::stable_sort(terms_.begin(), terms_.end(), [](const TopTerm& a, const TopTerm& b) { return print(a.syntax).size() < print(b.syntax).size(); });
     std::size_t tried = 0;
     for (const TopTerm& t : terms_)
       for (const Edit& first : Edits(t.syntax, names_, alphabet_, false).list) {
