@@ -143,7 +143,12 @@ std::optional<Expr> Comparer::combination(Expr P, Motion& motion, std::vector<st
   if (points.empty()) return std::nullopt;
   const Column p = gradient(P, motion.top);
   Rows K;
-  for (const DerivedEquation& e : motion.rows) K.push_back(gradient(e.residual, motion.top));
+  for (const DerivedEquation& e : motion.rows) {
+    K.push_back(gradient(e.residual, motion.top));
+    // What cancels is not to be taken for a pivot.
+    for (Expr& entry : K.back())
+      if (!is_zero(entry) && vanishes(entry, points)) entry = M_.graph().zero();
+  }
   std::vector<bool> occurs(n, false);
   for (PointValues& at : points) {
     Matrix<double> k(n, motion.top.size());
