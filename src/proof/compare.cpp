@@ -49,6 +49,24 @@ std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>&
   return std::nullopt;
 }
 
+// Zero by algebra; where the whole is too much, its coefficients by the symbols in which it is affine.
+bool zero_by_parts(Expr e, const Column& symbols) {
+  if (shown_zero(e, Effort::brief)) return true;
+  Graph& g = *e.graph;
+  const Column slopes = gradient(e, symbols);
+  const auto at_zero = [&](Expr x) {
+    return substitute({&x, 1}, [&](NodeId id) { return std::any_of(symbols.begin(), symbols.end(), [&](Expr s) { return s.id == id; }) ? g.zero() : Expr{}; })[0];
+  };
+  for (Expr slope : slopes)
+    for (Expr curve : gradient(slope, symbols))
+      if (!is_zero(curve)) return shown_zero(e, Effort::full);
+  try {
+    return std::all_of(slopes.begin(), slopes.end(), [](Expr x) { return is_zero(x) || shown_zero(x, Effort::full); }) && shown_zero(at_zero(e), Effort::full);
+  } catch (const Failure&) {
+    return false;
+  }
+}
+
 const char* times_in_words(unsigned k) {
   return k == 1 ? ", differentiated once" : k == 2 ? ", differentiated twice" : ", differentiated three times";
 }
@@ -129,7 +147,7 @@ bool Comparer::directly(Expr P, const DerivedEquation& e, Motion& motion, Compar
   const auto constant = constant_ratio(p[best], f[best], points);
   factor = constant ? M_.graph().number(*constant) : tidy(factor);
   const Expr short_rest = P - factor * e.residual;
-  if (!shown_zero(short_rest, Effort::full)) return false;
+  if (!zero_by_parts(short_rest, motion.top)) return false;
   out.verdict = Verdict::proved;
   out.what = name(e) + times(factor);
   out.of_constraints = e.constraint;
@@ -221,9 +239,9 @@ bool Comparer::combined(Expr P, Motion& motion, Comparison& out) {
   const std::optional<Expr> rest = combination(P, motion, terms);
   if (!rest) return false;
   bool constrained = false;
-  if (!vanishes(*rest, motion.anywhere()) || !shown_zero(*rest, Effort::full)) {
+  if (!vanishes(*rest, motion.anywhere()) || !zero_by_parts(*rest, motion.top)) {
     const std::optional<Expr> on = motion.reduced(*rest);
-    if (!on || !shown_zero(*on, Effort::full)) return false;
+    if (!on || !zero_by_parts(*on, motion.top)) return false;
     constrained = true;
   }
   out.verdict = Verdict::proved;
@@ -255,9 +273,10 @@ bool Comparer::combined(Expr P, Motion& motion, Comparison& out) {
     for (std::size_t k = 0; k < of_motion.size(); ++k) {
       const auto& [i, c] = of_motion[k];
       std::string factor = print(c, names_, Format::text);
-      bool minus = false;
-      if (factor.rfind('-', 0) == 0 && M_.graph().node(c.id).kind != Kind::sum) minus = true, factor.erase(0, 1);
-      if (M_.graph().node(c.id).kind == Kind::sum) factor = "(" + factor + ")";
+      const bool is_sum = M_.graph().node(c.id).kind == Kind::sum && M_.graph().terms(c.id).size() > 1;
+      const bool minus = !is_sum && factor.rfind('-', 0) == 0;
+      if (minus) factor.erase(0, 1);
+      if (is_sum) factor = "(" + factor + ")";
       out.what += k == 0 ? (minus ? "-" : "") : minus ? " - " : " + ";
       if (factor != "1") out.what += factor + " times ";
       out.what += name(motion.rows[i]);

@@ -52,6 +52,11 @@ Syntax opposite(const Syntax& s) {
     out.args[0] = s.args[0].args[0];
     return out;
   }
+  if (s.op == Syntax::Op::multiply) {
+    Syntax out = s;
+    out.args[0] = with(Syntax::Op::negate, {s.args[0]});
+    return out;
+  }
   return with(Syntax::Op::negate, {s});
 }
 
@@ -130,9 +135,17 @@ class Edits {
     if (term && s.op != Syntax::Op::add && s.op != Syntax::Op::array) {
       coefficients_.push_back({path, scaled(s, true)});
       coefficients_.push_back({path, scaled(s, false)});
+      for (const std::vector<std::string>* group : {&alphabet_.coordinates, &alphabet_.others})
+        for (const std::string& n : *group) replaced_.push_back({path, times(n, s)});  // a factor is lost
     }
     switch (s.op) {
-      case Syntax::Op::number: return;
+      case Syntax::Op::number: {
+        long n = 0;
+        if (!is_whole(s, n)) return;
+        for (long k : {n - 1, n + 1})
+          if (k > 0) coefficients_.push_back({path, number(std::to_string(k))});
+        return;
+      }
       case Syntax::Op::prime: case Syntax::Op::name: case Syntax::Op::member: {
         derivatives(s, path);
         squared(s, path);
@@ -191,6 +204,17 @@ class Edits {
       case Syntax::Op::negate: visit(s.args[0], extended(path, 0), false); return;
       default: below(s, path); return;
     }
+  }
+
+  static Syntax times(const std::string& name, const Syntax& s) {
+    const Syntax factor{Syntax::Op::name, name, {}, s.span, s.offset, s.end, {}};
+    if (s.op != Syntax::Op::multiply) return with(Syntax::Op::multiply, {factor, s}, {{Syntax::Op::multiply, {}}});
+    Syntax out = s;
+    const std::ptrdiff_t at = s.args[0].op == Syntax::Op::number ? 1 : 0;
+    if (at == 1 && s.operators[0].op == Syntax::Op::divide) return with(Syntax::Op::multiply, {factor, s}, {{Syntax::Op::multiply, {}}});
+    out.args.insert(out.args.begin() + at, factor);
+    out.operators.insert(out.operators.begin(), {Syntax::Op::multiply, {}});
+    return out;
   }
 
   void below(const Syntax& s, const Path& path) {
@@ -351,9 +375,16 @@ class Repair {
       if (!(std::abs(all) <= kVanishes * (size_[k] + std::abs(now)))) return;
     }
     const Expr whole = whole_ + sign * (value - t.value);
-    if (std::any_of(survivors_.begin(), survivors_.end(), [&](const Survivor& s) { return same(s.whole, whole); })) return;
     if (to.empty()) to = print(edited.syntax);
-    survivors_.push_back({whole, {t.side, t.index, std::move(from), std::move(to), equation_.source.span(place.offset, place.end - place.offset), {}, false}});
+    Change change{t.side, t.index, std::move(from), std::move(to), equation_.source.span(place.offset, place.end - place.offset), {}, false};
+    for (Survivor& s : survivors_)
+      if (same(s.whole, whole)) {
+        // Of an equation with two terms either may be changed: the shorter way, else the right side.
+        const auto added = [](const Change& c) { return static_cast<long>(c.to.size()) - static_cast<long>(c.from.size()); };
+        if (added(change) < added(s.change) || (added(change) == added(s.change) && change.side > s.change.side)) s = {whole, std::move(change)};
+        return;
+      }
+    survivors_.push_back({whole, std::move(change)});
   }
 
   // Equal up to a number.
