@@ -13,8 +13,9 @@ namespace anholon {
 namespace {
 
 constexpr double kVanishes = 1e-8;  // in relation to the size of the terms
-constexpr double kDiffers = 1e-6;
 constexpr long kWorkOfCount = 200'000;
+constexpr std::size_t kLongestCounted = 800;  // nodes
+constexpr std::size_t kLongestFactor = 40;    // nodes
 constexpr std::size_t kMostCombined = 6;  // equations in a combination that is written out
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
@@ -28,10 +29,13 @@ bool is_not_zero(Expr e, PointValues& at) { return std::abs(at(e)) > 1e-9 * (1e-
 // How long an expression is in print.
 std::size_t monomials(Expr e, const SymbolNames& names) {
   if (is_zero(e)) return 0;
-  const Whole whole{true, true, &names.defined};
-  const auto form = normal_form(e, whole, kWorkOfCount);
-  if (!form) return 1000 + nodes(e);
-  return form->numerator.size() * (form->denominator.size() > 1 ? 2 : 1);
+  std::size_t least = 1000 + nodes(e);
+  if (least > 1000 + kLongestCounted) return least;
+  // Sines of sums and tangents as they stand, or written out.
+  for (const bool angles : {true, false})
+    if (const auto form = normal_form(e, Whole{angles, angles, &names.defined}, kWorkOfCount))
+      least = std::min(least, form->numerator.size() * (form->denominator.size() > 1 ? 2 : 1));
+  return least;
 }
 
 // The number that two expressions have as their ratio at all points, if it is a short fraction.
@@ -315,6 +319,7 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
       if (is_zero(p[j]) || is_zero(f[j]) || !is_not_zero(f[j], points[0]) || !is_not_zero(p[j], points[0])) continue;
       const auto constant = constant_ratio(p[j], f[j], points);
       const Expr factor = constant ? M_.graph().number(*constant) : tidy(p[j] / f[j]);
+      if (nodes(factor) > kLongestFactor) continue;
       if (std::none_of(factors.begin(), factors.end(), [&](Expr before) { return before == factor; })) factors.push_back(factor);
     }
     return factors;
