@@ -347,7 +347,7 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
         for (Expr factor : factors_of(row)) {
           const std::string what = "the equation of " + M_.model->coordinates[elimination_.independent[nu]].name + " without multipliers" + times(factor);
           offer(P - factor * row, what, 3);
-          if (const auto on = motion.reduced(P - factor * row)) offer(*on, what + ", on the constraints", 3);
+          if (const auto on = motion.reduced(P - factor * row)) offer(*on, what + ", on the constraints", 4);
         }
       }
     }
@@ -357,7 +357,7 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
     std::string what;
     for (const auto& [i, c] : terms) what += (what.empty() ? "" : " and ") + name(motion.rows[i]) + times(c);
     offer(*rest, what, 4);
-    if (const auto on = motion.reduced(*rest)) offer(*on, what + ", on the constraints", 4);
+    if (const auto on = motion.reduced(*rest)) offer(*on, what + ", on the constraints", 5);
   }
   if (out.difference) out.difference = arranged(*out.difference, names_);
 }
