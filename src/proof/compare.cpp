@@ -16,6 +16,7 @@ constexpr double kVanishes = 1e-8;  // in relation to the size of the terms
 constexpr long kWorkOfCount = 200'000;
 constexpr std::size_t kLongestCounted = 800;  // nodes
 constexpr std::size_t kLongestFactor = 40;    // nodes
+constexpr std::size_t kPrinted = 5;          // differences that are arranged for a choice
 constexpr std::size_t kMostCombined = 6;  // equations in a combination that is written out
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
@@ -294,14 +295,16 @@ bool Comparer::combined(Expr P, Motion& motion, Comparison& out) {
 void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
   std::vector<PointValues>& points = motion.anywhere();
   if (points.empty()) return;
-  std::size_t best = SIZE_MAX;
+  struct Offer {
+    std::size_t length, weight, of;
+    Expr difference;
+    std::string what;
+  };
+  std::vector<Offer> offers;
+  std::size_t of = 0;  // the derived equation whose multiples are offered
   // What says less counts as longer: a combination, a constraint beside an equation of motion.
   const auto offer = [&](Expr difference, const std::string& what, std::size_t weight) {
-    const std::size_t length = weight * monomials(difference, names_);
-    if (length >= best) return;
-    best = length;
-    out.difference = difference;
-    out.what = what;
+    offers.push_back({weight * monomials(difference, names_), weight, of, difference, what});
   };
   std::vector<DerivedEquation> candidates = motion.rows;
   candidates.insert(candidates.begin(), motion.lower.begin(), motion.lower.end());
@@ -325,13 +328,14 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
     return factors;
   };
   for (const DerivedEquation& e : candidates) {
+    ++of;
     if (e.constraint) {
       // In its own leading derivatives.
       const Column symbols = leading(e, motion), q = gradient(P, symbols), f = gradient(e.residual, symbols);
       for (std::size_t j = 0; j < symbols.size(); ++j)
         if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0])) offer(P - tidy(q[j] / f[j]) * e.residual, name(e) + times(tidy(q[j] / f[j])), 6);
     }
-    for (Expr factor : e.constraint ? Column{one, -one} : factors_of(e.residual)) offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : 2);
+    for (Expr factor : e.constraint ? Column{one, -one} : factors_of(e.residual)) offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : is_number(factor) ? 2 : 3);
   }
   if (!elimination_.dependent.empty() && !elimination_.quasi) {
     // Along the directions that the constraints leave free.
@@ -344,6 +348,7 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
         for (std::size_t s = 0; s < routh.size(); ++s)
           if (!is_zero(elimination_.g_by_u()[s][nu])) parts.push_back(elimination_.g_by_u()[s][nu] * routh[s]);
         const Expr row = sum(parts);
+        ++of;
         for (Expr factor : factors_of(row)) {
           const std::string what = "the equation of " + M_.model->coordinates[elimination_.independent[nu]].name + " without multipliers" + times(factor);
           offer(P - factor * row, what, 3);
@@ -352,6 +357,7 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
       }
     }
   }
+  ++of;
   std::vector<std::pair<std::size_t, Expr>> terms;
   if (const auto rest = combination(P, motion, terms); rest && !terms.empty()) {
     std::string what;
@@ -359,7 +365,18 @@ void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
     offer(*rest, what, 4);
     if (const auto on = motion.reduced(*rest)) offer(*on, what + ", on the constraints", 5);
   }
-  if (out.difference) out.difference = arranged(*out.difference, names_);
+  // Of the best few the shortest in print.
+  std::stable_sort(offers.begin(), offers.end(), [](const Offer& x, const Offer& y) { return x.length < y.length; });
+  std::size_t shortest = SIZE_MAX;
+  std::vector<std::size_t> seen;
+  for (std::size_t k = 0; k < offers.size() && seen.size() < kPrinted; ++k) {
+    if (std::find(seen.begin(), seen.end(), offers[k].of) != seen.end()) continue;
+    seen.push_back(offers[k].of);
+    const Expr difference = arranged(offers[k].difference, names_);
+    const std::size_t length = offers[k].weight * print(difference, names_, Format::text).size();
+    if (length < shortest) shortest = length, out.difference = difference, out.what = offers[k].what;
+    if (nodes(offers[k].difference) > kLongestCounted) break;
+  }
 }
 
 Comparison Comparer::judge(Expr P) {
