@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the ```console blocks of README.md with the rules of golden.py.
+"""Runs the ```console blocks of README.md and doc/papers.md with the rules of golden.py.
 
 usage: readme.py --program PROGRAM [--bless]
 
@@ -42,11 +42,8 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--bless", action="store_true")
     args = parser.parse_args()
-    readme = golden.ROOT / "README.md"
-    if not readme.exists():
-        print("no README.md yet")
-        return 0
-    return 1 if golden.run_all([readme], args.program, args.bless, step_mode) else 0
+    pages = [page for page in (golden.ROOT / "README.md", golden.ROOT / "doc" / "papers.md") if page.exists()]
+    return 1 if golden.run_all(pages, args.program, args.bless, step_mode) else 0
 
 
 if __name__ == "__main__":

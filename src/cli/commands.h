@@ -9,6 +9,7 @@ enum ExitCode : int { kOk = 0, kStopped = 1, kBadInput = 2, kFault = 3 };
 
 struct Options {
   std::string model;
+  std::string equations;
   std::string form = "routh";
   bool form_given = false;
   std::string format = "text";
@@ -33,6 +34,7 @@ int simulate(const Options& o);
 int forms(const Options& o);
 int models(const Options& o);
 int prove(const Options& o);
+int compare(const Options& o);
 int verify(const Options& o);
 
 }  // namespace anholon::cli

@@ -51,13 +51,13 @@ bool read_file(const fs::path& path, std::string& text, std::string* why) {
   return !in.bad();
 }
 
-std::vector<ShippedModel> shipped_models() {
+static std::vector<ShippedModel> shipped(const char* extension) {
   std::vector<ShippedModel> list;
   for (const fs::path& folder : model_folders()) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) continue;
     for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
-      if (e.path().extension() != ".toml") continue;
+      if (e.path().extension() != extension) continue;
       std::string text;
       read_file(e.path(), text);
       list.push_back({e.path().stem().string(), e.path().string(), first_line_value(text, "title")});
@@ -67,6 +67,9 @@ std::vector<ShippedModel> shipped_models() {
   std::sort(list.begin(), list.end(), [](const ShippedModel& a, const ShippedModel& b) { return a.path < b.path; });
   return list;
 }
+
+std::vector<ShippedModel> shipped_models() { return shipped(".toml"); }
+std::vector<ShippedModel> shipped_equations() { return shipped(".eq"); }
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source) {
   std::fflush(stdout);
@@ -138,7 +141,7 @@ Reader read(const Options& o) {
     overrides[name] = value;
   }
   Diagnostics diagnostics;
-  auto model = read_model(r.source, diagnostics, overrides);
+  auto model = open_model(r.source, diagnostics, overrides);
   std::fflush(stdout);
   if (!model) {
     const std::size_t n = static_cast<std::size_t>(std::count_if(
@@ -146,7 +149,8 @@ Reader read(const Options& o) {
     throw UsageError{diagnostics.print(r.source) + std::to_string(n) + (n == 1 ? " error\n" : " errors\n")};
   }
   std::fputs(diagnostics.print(r.source).c_str(), stderr);
-  r.model = std::make_shared<const Model>(std::move(*model));
+  r.model = model->model;
+  r.names = model->names;
   return r;
 }
 

@@ -17,6 +17,7 @@ struct UsageError {
 
 struct Reader {
   std::shared_ptr<const Model> model;
+  std::shared_ptr<Names> names;
   SourceText source;
 };
 // The bytes of a file; false, and why, if it cannot be read.
@@ -46,5 +47,6 @@ struct ShippedModel {
   std::string name, path, title;
 };
 std::vector<ShippedModel> shipped_models();
+std::vector<ShippedModel> shipped_equations();  // published ones, *.eq
 
 }  // namespace anholon::cli

@@ -23,8 +23,8 @@ void rescue_model(Options& o) {
     }
 }
 
-constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "forms", "models", "prove", "verify"};
-constexpr const char* kLater[] = {"new", "compare", "sweep", "linearize", "report", "plot", "render", "convert", "fmt"};
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "forms", "models", "prove", "compare", "verify"};
+constexpr const char* kLater[] = {"new", "sweep", "linearize", "report", "plot", "render", "convert", "fmt"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {
@@ -130,6 +130,14 @@ int run(int argc, char** argv) {
   prove_command->add_option("--forms", o.forms, "only these forms: routh,chaplygin (default: all that apply)")->type_name("NAME,…")->allow_extra_args(false);
   prove_command->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
   prove_command->add_option("-o,--output", o.output, "write a certificate")->type_name("FILE");
+  CLI::App* compare_command = model_command("compare", "published equations against the derived ones: proved, refuted, or unknown", cli::compare,
+                                            "EQUATIONS holds one equation per line, LABEL: left = right, in the names of the model, lambda and lambda.NAME.\n"
+                                            "Where one change makes a false equation true, it is named.\n"
+                                            "Exit status: 0 all are true, 1 one is false or stays unknown, 2 bad input.\n"
+                                            "Example: anholon compare luo-zhao-example-1 luo-zhao-example-1.as-printed");
+  compare_command->add_option("EQUATIONS", o.equations, "a file of equations, or the name of a shipped one");
+  parameters(compare_command);
+  compare_command->add_option("--eliminate", o.eliminate, "coordinates for which the constraints are solved (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
   CLI::App* verify_command = app.add_subcommand("verify", "check a certificate, independently of what wrote it");
   verify_command->footer("Exit status: 0 all claims confirmed, 1 one is contradicted or could not be checked, 2 not a certificate.\n"
                          "Example: anholon verify disc.json");

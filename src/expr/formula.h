@@ -59,6 +59,9 @@ struct Syntax {
 Syntax parse_formula(const FormulaText& text);
 std::vector<Syntax> parse_equation(const FormulaText& text);  // one side or two
 
+// The formula again, with brackets where they are needed.
+std::string print(const Syntax& s);
+
 // The spelling under which a name is known: Greek letters become their names.
 std::string normal_name(std::string_view name);
 bool is_identifier(std::string_view name);  // after normal_name

@@ -23,11 +23,6 @@ Expr Difference::expression() const {
   return sum(terms);
 }
 
-namespace {
-
-// How much is tried: a long expression in its general form only, which is far shorter; or all there is.
-enum class Effort : std::uint8_t { brief, full };
-
 bool shown_zero(Expr e, Effort effort) {
   constexpr std::size_t kLong = 60;  // nodes
   const bool is_long = reachable({&e, 1}).size() > kLong;
@@ -35,6 +30,8 @@ bool shown_zero(Expr e, Effort effort) {
     if (const Expr general = generalized(e); !(general == e) && proved_zero(general)) return true;
   return (!is_long || effort == Effort::full) && proved_zero(e);
 }
+
+namespace {
 
 // Zero by algebra, or not zero at a point.
 void decide(Difference& d, const Elimination& e, const Model& model, Effort effort) {

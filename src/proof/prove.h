@@ -25,6 +25,11 @@ namespace anholon {
 enum class Verdict : std::uint8_t { unknown, proved, refuted };  // nothing said means unknown
 const char* name(Verdict v);
 
+// How much is tried: a long expression in its general form only, which is far shorter; or all there is.
+enum class Effort : std::uint8_t { brief, full };
+// Zero by algebra (expr/normal.h), of the general statement behind it or of e itself.
+bool shown_zero(Expr e, Effort effort);
+
 // A point of the manifold: rational values of the free symbols, and boxes proved to hold the one root of the equations.
 struct WitnessPoint {
   std::vector<std::pair<Expr, Rational>> values;

@@ -45,9 +45,13 @@ std::vector<std::optional<Rational>> rational_parameters(const Model& model) {
 
 class Search {
  public:
-  Search(const Difference& d, const Elimination& elimination, const Model& model)
-      : e_(d.expression()), g_(*e_.graph), parameters_(rational_parameters(model)), parts_{d.left} {
+  // Parameters have the values of the model, or any.
+  Search(const Difference& d, const Column& equations, const Column& unknowns, const Model& model, bool of_the_model)
+      : e_(d.expression()), g_(*e_.graph), parts_{d.left}, equations_(equations), unknowns_(unknowns) {
+    if (of_the_model) parameters_ = rational_parameters(model);
     for (const auto& [coefficient, term] : d.right) parts_.insert(parts_.end(), {coefficient, term});
+  }
+  Search(const Difference& d, const Elimination& elimination, const Model& model) : Search(d, {}, {}, model, true) {
     if (elimination.phi.empty()) return;
     // The constraints that are not solved, and their derivatives as far as the dependent derivatives occur.
     Graph& g = *e_.graph;
@@ -210,6 +214,15 @@ class Search {
 
 WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model) {
   return Search(d, elimination, model).run();
+}
+
+WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model) {
+  WitnessSearch search;
+  for (const bool of_the_model : {true, false}) {
+    search = Search(d, equations, unknowns, model, of_the_model).run();
+    if (search.witness) break;
+  }
+  return search;
 }
 
 }  // namespace anholon

@@ -13,4 +13,7 @@ struct WitnessSearch {
 // elimination has not solved are satisfied by a verified root in the dependent derivatives.
 WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model);
 
+// The same at a root of other equations, as many as unknowns.
+WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model);
+
 }  // namespace anholon

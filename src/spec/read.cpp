@@ -17,7 +17,7 @@ namespace {
 // More coordinates than this are refused: the equations would not fit in memory.
 constexpr std::size_t kMostCoordinates = 5000;
 
-class Reader {
+class Reader {  // what it refers to is asked only while it runs
  public:
   Reader(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides)
       : diagnostics_(diagnostics), overrides_(overrides), scope_(model_) {
@@ -29,12 +29,12 @@ class Reader {
     model_.initial.t = g.zero();
   }
 
-  std::optional<Model> run() {
-    Item root;
-    if (!guard([&] { root = read_toml(model_.source_text); })) return std::nullopt;
+  bool run() {
+    Item& root = root_;
+    if (!guard([&] { root = read_toml(model_.source_text); })) return false;
     sections(root);
     // Without coordinates every formula would fail after this one error.
-    if (!guard([&] { coordinates(root); })) return std::nullopt;
+    if (!guard([&] { coordinates(root); })) return false;
     parameters(root);
     functions(root);
     named(root, "define", Scope::Role::define);
@@ -58,9 +58,11 @@ class Reader {
     for (const Diagnostic& d : scope_.failures) diagnostics_.add(d);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
       diagnostics_.error({}, "the model has no body", "add [[body]] or [[particle]] with name, mass and center or position");
-    if (diagnostics_.has_errors()) return std::nullopt;
-    return std::move(model_);
+    return !diagnostics_.has_errors();
   }
+
+  Model& model() { return model_; }
+  Scope& scope() { return scope_; }
 
  private:
   bool guard(const std::function<void()>& f) { return collect(diagnostics_, f); }
@@ -367,14 +369,62 @@ class Reader {
 
   Diagnostics& diagnostics_;
   const Overrides& overrides_;
+  Item root_;  // what the scope looks up stays
   Model model_;
   Scope scope_;
+};
+
+// The names of the file, and those that belong to the derived equations.
+class DerivedNames final : public Names {
+ public:
+  explicit DerivedNames(std::shared_ptr<Reader> reader) : reader_(std::move(reader)), scope_(reader_->scope()) {}
+
+  Graph& graph() override { return scope_.graph(); }
+  Value name(const std::string& name, Span span) override {
+    const Model& model = reader_->model();
+    if (name == "lambda" || name.rfind("lambda.", 0) == 0) return multiplier(name, span);
+    if (name.rfind("m_", 0) == 0 && !scope_.declarations().count(name))
+      for (const VaryingMass& m : model.masses)
+        if (name == "m_" + m.name) return m.value;
+    return scope_.name(name, span);
+  }
+  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax, Value& result) override {
+    return scope_.call(function, arguments, syntax, result);
+  }
+  Value member(const Value& object, const Syntax& syntax) override { return scope_.member(object, syntax); }
+  std::vector<std::string> functions() const override { return scope_.functions(); }
+
+ private:
+  Value multiplier(const std::string& name, Span span) {
+    const std::vector<std::string>& known = reader_->model().names.multipliers;
+    if (known.empty()) throw Failure(span, "the model has no constraints, and so no multipliers");
+    if (name == "lambda") {
+      if (known.size() == 1) return graph().multiplier(0, 0);
+      throw Failure(span, "there are " + std::to_string(known.size()) + " multipliers", "lambda." + known[0]);
+    }
+    const std::string wanted = name.substr(7);
+    for (std::size_t r = 0; r < known.size(); ++r)
+      if (known[r] == wanted) return graph().multiplier(static_cast<std::uint32_t>(r), 0);
+    const std::string near = did_you_mean(wanted, known);
+    throw Failure(span, "there is no constraint '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "lambda." + known[0]);
+  }
+
+  std::shared_ptr<Reader> reader_;
+  Scope& scope_;
 };
 
 }  // namespace
 
 std::optional<Model> read_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides) {
-  return Reader(source, diagnostics, overrides).run();
+  Reader reader(source, diagnostics, overrides);
+  if (!reader.run()) return std::nullopt;
+  return std::move(reader.model());
+}
+
+std::optional<OpenModel> open_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides) {
+  const auto reader = std::make_shared<Reader>(source, diagnostics, overrides);
+  if (!reader->run()) return std::nullopt;
+  return OpenModel{std::shared_ptr<const Model>(reader, &reader->model()), std::make_shared<DerivedNames>(reader)};
 }
 
 }  // namespace anholon

@@ -15,4 +15,11 @@ using Overrides = std::map<std::string, std::string>;
 std::optional<Model> read_model(const SourceText& source, Diagnostics& diagnostics,
                                 const Overrides& overrides = {});
 
+// A model whose names can still be asked what they mean, for formulas beyond its file.
+struct OpenModel {
+  std::shared_ptr<const Model> model;
+  std::shared_ptr<Names> names;  // those of the file; lambda, lambda.NAME and m_NAME
+};
+std::optional<OpenModel> open_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides = {});
+
 }  // namespace anholon

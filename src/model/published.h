@@ -1,0 +1,18 @@
+// An equation that somebody published, read in the names of a model.
+#pragma once
+#include <string>
+
+#include "expr/formula.h"
+
+namespace anholon {
+
+struct PublishedEquation {
+  std::string label;
+  Span span;            // of the label
+  FormulaText source;   // both sides, with the place of each character
+  Syntax left, right;
+
+  std::string text() const { return print(left) + " = " + print(right); }
+};
+
+}  // namespace anholon

@@ -1,0 +1,424 @@
+#include "proof/compare.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "expr/arrange.h"
+#include "expr/normal.h"
+#include "numeric/linear.h"
+#include "proof/witness.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr double kVanishes = 1e-8;  // in relation to the size of the terms
+constexpr long kWorkOfCount = 200'000;
+constexpr std::size_t kLongestCounted = 800;  // nodes
+constexpr std::size_t kLongestFactor = 40;    // nodes
+constexpr std::size_t kPrinted = 5;          // differences that are arranged for a choice
+constexpr std::size_t kMostCombined = 6;  // equations in a combination that is written out
+
+std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
+
+bool vanishes(Expr e, std::vector<PointValues>& points) {
+  return std::all_of(points.begin(), points.end(), [&](PointValues& at) { return std::abs(at(e)) <= kVanishes * (1e-6 + size_at(e, at)); });
+}
+
+bool is_not_zero(Expr e, PointValues& at) { return std::abs(at(e)) > 1e-9 * (1e-6 + size_at(e, at)); }
+
+// How long an expression is in print.
+std::size_t monomials(Expr e, const SymbolNames& names) {
+  if (is_zero(e)) return 0;
+  std::size_t least = 1000 + nodes(e);
+  if (least > 1000 + kLongestCounted) return least;
+  // Sines of sums and tangents as they stand, or written out.
+  for (const bool angles : {true, false})
+    if (const auto form = normal_form(e, Whole{angles, angles, &names.defined}, kWorkOfCount))
+      least = std::min(least, form->numerator.size() * (form->denominator.size() > 1 ? 2 : 1));
+  return least;
+}
+
+// The number that two expressions have as their ratio at all points, if it is a short fraction.
+std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>& points) {
+  constexpr int kLongest = 720;
+  const double ratio = points[0](a) / points[0](b);
+  for (PointValues& at : points)
+    if (!(std::abs(at(a) - ratio * at(b)) <= 1e-10 * std::abs(at(a)))) return std::nullopt;
+  for (int d = 1; d <= kLongest; ++d)
+    if (const double n = ratio * d; std::abs(n) < 1e6 && std::abs(n - std::round(n)) < 1e-9 * std::abs(n)) {
+      Rational r(static_cast<long>(std::round(n)), d);
+      r.canonicalize();
+      return r;
+    }
+  return std::nullopt;
+}
+
+// Zero by algebra; where the whole is too much, its coefficients by the symbols in which it is affine.
+bool zero_by_parts(Expr e, const Column& symbols) {
+  if (shown_zero(e, Effort::brief)) return true;
+  Graph& g = *e.graph;
+  const Column slopes = gradient(e, symbols);
+  const auto at_zero = [&](Expr x) {
+    return substitute({&x, 1}, [&](NodeId id) { return std::any_of(symbols.begin(), symbols.end(), [&](Expr s) { return s.id == id; }) ? g.zero() : Expr{}; })[0];
+  };
+  for (Expr slope : slopes)
+    for (Expr curve : gradient(slope, symbols))
+      if (!is_zero(curve)) return shown_zero(e, Effort::full);
+  try {
+    return std::all_of(slopes.begin(), slopes.end(), [](Expr x) { return is_zero(x) || shown_zero(x, Effort::full); }) && shown_zero(at_zero(e), Effort::full);
+  } catch (const Failure&) {
+    return false;
+  }
+}
+
+const char* times_in_words(unsigned k) {
+  return k == 1 ? ", differentiated once" : k == 2 ? ", differentiated twice" : ", differentiated three times";
+}
+
+}  // namespace
+
+double size_at(Expr e, PointValues& at) {
+  const Graph& g = *e.graph;
+  if (g.node(e.id).kind == Kind::product) {
+    double size = 1;
+    for (const Term& t : g.terms(e.id)) {
+      const double power = g.rational(t.weight).get_d();
+      const bool of_sum = g.node(t.node).kind == Kind::sum && power > 0;
+      size *= std::abs(std::pow(of_sum ? size_at({e.graph, t.node}, at) : at({e.graph, t.node}), power));
+    }
+    return size;
+  }
+  if (g.node(e.id).kind != Kind::sum) return std::abs(at(e));
+  double size = 0;
+  for (const Term& t : g.summands(e.id)) size += std::abs(g.rational(t.weight).get_d() * at({e.graph, t.node}));
+  return size;
+}
+
+unsigned order_of_motion(Expr e) {
+  unsigned highest = 2;
+  for (NodeId id : symbols({&e, 1})) {
+    const Node& n = e.graph->node(id);
+    if (n.kind == Kind::jet) highest = std::max(highest, static_cast<unsigned>(n.order));
+    if (n.kind == Kind::multiplier) highest = std::max(highest, n.order + 2U);
+  }
+  return highest;
+}
+
+Comparer::Comparer(const Mechanics& M, const Elimination& elimination, SymbolNames names) : M_(M), elimination_(elimination), names_(std::move(names)) {}
+
+Motion& Comparer::motion(unsigned highest) {
+  const auto it = motions_.find(highest);
+  return it != motions_.end() ? it->second : motions_.try_emplace(highest, M_, highest, elimination_.dependent).first->second;
+}
+
+std::string Comparer::name(const DerivedEquation& e) const {
+  std::string text = e.constraint ? "the constraint " + M_.model->constraints[e.index].name : "the equation of " + M_.model->coordinates[e.index].name;
+  if (e.times > 0) text += times_in_words(e.times);
+  return text;
+}
+
+Expr Comparer::tidy(Expr e) const {
+  return is_number(e) ? e : arranged(e, names_);
+}
+
+std::string Comparer::times(Expr factor) const {
+  if (is_number(factor) && number_value(factor) == 1) return {};
+  return ", times " + print(factor, names_, Format::text);
+}
+
+// The symbols by which a derived equation is recognised.
+Column Comparer::leading(const DerivedEquation& e, Motion& motion) const {
+  if (!e.constraint) return motion.top;
+  return jets(*M_.model, static_cast<unsigned>(M_.order[e.index]) + e.times);
+}
+
+// P = f * residual, identically.
+bool Comparer::directly(Expr P, const DerivedEquation& e, Motion& motion, Comparison& out) {
+  std::vector<PointValues>& points = motion.anywhere();
+  if (points.empty()) return false;
+  Column candidates;
+  const Column symbols = leading(e, motion), p = gradient(P, symbols), f = gradient(e.residual, symbols);
+  std::size_t best = symbols.size();
+  for (std::size_t j = 0; j < symbols.size(); ++j) {
+    if (is_zero(f[j]) || !is_not_zero(f[j], points[0])) continue;
+    if (is_zero(p[j]) || !is_not_zero(p[j], points[0])) return false;
+    if (best == symbols.size() || nodes(f[j]) + nodes(p[j]) < nodes(f[best]) + nodes(p[best])) best = j;
+  }
+  if (best == symbols.size()) return false;
+  Expr factor = p[best] / f[best];
+  const Expr rest = P - factor * e.residual;
+  if (!vanishes(rest, points)) return false;
+  const auto constant = constant_ratio(p[best], f[best], points);
+  factor = constant ? M_.graph().number(*constant) : tidy(factor);
+  const Expr short_rest = P - factor * e.residual;
+  if (!zero_by_parts(short_rest, motion.top)) return false;
+  out.verdict = Verdict::proved;
+  out.what = name(e) + times(factor);
+  out.of_constraints = e.constraint;
+  return true;
+}
+
+// The coefficients of a combination of rows that has the same derivatives by q'', lambda as P, and what is then left of P.
+std::optional<Expr> Comparer::combination(Expr P, Motion& motion, std::vector<std::pair<std::size_t, Expr>>& terms) {
+  std::vector<PointValues>& points = motion.on_constraints();
+  const std::size_t n = motion.rows.size();
+  if (points.empty()) return std::nullopt;
+  const Column p = gradient(P, motion.top);
+  Rows K;
+  for (const DerivedEquation& e : motion.rows) {
+    K.push_back(gradient(e.residual, motion.top));
+    // What cancels is not to be taken for a pivot.
+    for (Expr& entry : K.back())
+      if (!is_zero(entry) && vanishes(entry, points)) entry = M_.graph().zero();
+  }
+  std::vector<bool> occurs(n, false);
+  for (PointValues& at : points) {
+    Matrix<double> k(n, motion.top.size());
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < motion.top.size(); ++j) k(i, j) = at(K[i][j]);
+    const RowChoice<double> choice = choose_rows(k, 1e-9);
+    if (choice.pivot_columns.size() < n) return std::nullopt;
+    Matrix<double> square(n, n);
+    std::vector<double> right, c;
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t i = 0; i < n; ++i) square(j, i) = k(i, choice.pivot_columns[j]);
+      right.push_back(at(p[choice.pivot_columns[j]]));
+    }
+    Lu<double> lu;
+    if (!lu.factor(square)) return std::nullopt;
+    lu.solve(right, c);
+    double largest = 0;
+    for (double v : c) largest = std::max(largest, std::abs(v));
+    for (std::size_t i = 0; i < n; ++i)
+      if (std::abs(c[i]) > 1e-9 * largest) occurs[i] = true;
+  }
+  std::vector<std::size_t> support;
+  for (std::size_t i = 0; i < n; ++i)
+    if (occurs[i]) support.push_back(i);
+  if (support.size() > kMostCombined) return std::nullopt;
+  if (support.empty()) return P;
+  // The shortest columns that determine the coefficients.
+  std::vector<std::pair<std::size_t, std::size_t>> cost;
+  for (std::size_t j = 0; j < motion.top.size(); ++j) {
+    std::size_t sum = nodes(p[j]);
+    for (std::size_t i : support) sum += nodes(K[i][j]);
+    cost.push_back({sum, j});
+  }
+  std::sort(cost.begin(), cost.end());
+  std::vector<std::size_t> columns;
+  for (const auto& [length, j] : cost) {
+    if (columns.size() == support.size()) break;
+    Matrix<double> a(columns.size() + 1, support.size());
+    for (std::size_t r = 0; r <= columns.size(); ++r)
+      for (std::size_t i = 0; i < support.size(); ++i) a(r, i) = points[0](K[support[i]][r < columns.size() ? columns[r] : j]);
+    if (choose_rows(a, 1e-7).independent.size() == columns.size() + 1) columns.push_back(j);
+  }
+  if (columns.size() < support.size()) return std::nullopt;
+  // (c, d) K = p: one unknown after the other where the columns allow it, by the inverse.
+  Rows square;
+  for (std::size_t i : support) {
+    square.emplace_back();
+    for (std::size_t j : columns) square.back().push_back(K[i][j]);
+  }
+  Column pivots;
+  Expr rest = P;
+  try {
+    const Rows inverted = inverse(square, points[0], pivots);
+    for (std::size_t i = 0; i < support.size(); ++i) {
+      std::vector<Expr> sum_of = {M_.graph().zero()};
+      for (std::size_t j = 0; j < columns.size(); ++j)
+        if (!is_zero(p[columns[j]]) && !is_zero(inverted[j][i])) sum_of.push_back(p[columns[j]] * inverted[j][i]);
+      const Expr c = tidy(sum(sum_of));
+      terms.push_back({support[i], c});
+      rest = rest - c * motion.rows[support[i]].residual;
+    }
+  } catch (const Failure&) {
+    return std::nullopt;
+  }
+  return rest;
+}
+
+bool Comparer::combined(Expr P, Motion& motion, Comparison& out) {
+  std::vector<std::pair<std::size_t, Expr>> terms;
+  const std::optional<Expr> rest = combination(P, motion, terms);
+  if (!rest) return false;
+  bool constrained = false;
+  if (!vanishes(*rest, motion.anywhere()) || !zero_by_parts(*rest, motion.top)) {
+    const std::optional<Expr> on = motion.reduced(*rest);
+    if (!on || !zero_by_parts(*on, motion.top)) return false;
+    constrained = true;
+  }
+  out.verdict = Verdict::proved;
+  std::vector<std::pair<std::size_t, Expr>> of_motion;
+  std::vector<std::string> used;
+  const auto use = [&](std::size_t r) {
+    const std::string& n = M_.model->constraints[r].name;
+    if (std::find(used.begin(), used.end(), n) == used.end()) used.push_back(n);
+  };
+  for (const auto& [i, c] : terms) {
+    if (motion.rows[i].constraint) use(motion.rows[i].index);
+    else of_motion.push_back({i, c});
+  }
+  if (constrained)
+    for (const DerivedEquation& e : motion.lower) use(e.index);
+  std::string put_in;
+  for (const std::string& n : used) put_in += (put_in.empty() ? "" : ", ") + n;
+  if (of_motion.empty()) {
+    out.of_constraints = true;
+    out.what = std::string("a consequence of the constraint") + (used.size() == 1 ? " " : "s ") + put_in + " alone";
+    return true;
+  }
+  if (of_motion.size() == 1) {
+    out.what = name(motion.rows[of_motion[0].first]) + times(of_motion[0].second);
+  } else {
+    bool multipliers = false;
+    for (NodeId id : symbols({&P, 1})) multipliers = multipliers || M_.graph().node(id).kind == Kind::multiplier;
+    out.what = !multipliers && !M_.phi.empty() ? "a combination without multipliers: " : "a combination: ";
+    for (std::size_t k = 0; k < of_motion.size(); ++k) {
+      const auto& [i, c] = of_motion[k];
+      std::string factor = print(c, names_, Format::text);
+      const bool is_sum = M_.graph().node(c.id).kind == Kind::sum && M_.graph().terms(c.id).size() > 1;
+      const bool minus = !is_sum && factor.rfind('-', 0) == 0;
+      if (minus) factor.erase(0, 1);
+      if (is_sum) factor = "(" + factor + ")";
+      out.what += k == 0 ? (minus ? "-" : "") : minus ? " - " : " + ";
+      if (factor != "1") out.what += factor + " times ";
+      out.what += name(motion.rows[i]);
+    }
+  }
+  if (!used.empty()) out.what += ", with " + put_in + " put in";
+  return true;
+}
+
+// What is left of P, less the derived equation that leaves the least.
+void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
+  std::vector<PointValues>& points = motion.anywhere();
+  if (points.empty()) return;
+  struct Offer {
+    std::size_t length, weight, of;
+    Expr difference;
+    std::string what;
+  };
+  std::vector<Offer> offers;
+  std::size_t of = 0;  // the derived equation whose multiples are offered
+  // What says less counts as longer: a combination, a constraint beside an equation of motion.
+  const auto offer = [&](Expr difference, const std::string& what, std::size_t weight) {
+    offers.push_back({weight * monomials(difference, names_), weight, of, difference, what});
+  };
+  std::vector<DerivedEquation> candidates = motion.rows;
+  candidates.insert(candidates.begin(), motion.lower.begin(), motion.lower.end());
+  const Expr one = M_.graph().one();
+  // Where all accelerations are lost, parameters show the factor.
+  Column by = motion.top;
+  const Column p_top = gradient(P, motion.top);
+  if (std::all_of(p_top.begin(), p_top.end(), [](Expr x) { return is_zero(x); }))
+    for (std::size_t k = 0; k < M_.model->parameters.size(); ++k) by.push_back(M_.graph().parameter(static_cast<std::uint32_t>(k)));
+  const Column p = gradient(P, by);
+  const auto factors_of = [&](Expr residual) {
+    Column factors = {one, -one};
+    const Column f = gradient(residual, by);
+    for (std::size_t j = 0; j < by.size(); ++j) {
+      if (is_zero(p[j]) || is_zero(f[j]) || !is_not_zero(f[j], points[0]) || !is_not_zero(p[j], points[0])) continue;
+      const auto constant = constant_ratio(p[j], f[j], points);
+      const Expr factor = constant ? M_.graph().number(*constant) : tidy(p[j] / f[j]);
+      if (nodes(factor) > kLongestFactor) continue;
+      if (std::none_of(factors.begin(), factors.end(), [&](Expr before) { return before == factor; })) factors.push_back(factor);
+    }
+    return factors;
+  };
+  for (const DerivedEquation& e : candidates) {
+    ++of;
+    if (e.constraint) {
+      // In its own leading derivatives.
+      const Column symbols = leading(e, motion), q = gradient(P, symbols), f = gradient(e.residual, symbols);
+      for (std::size_t j = 0; j < symbols.size(); ++j)
+        if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0])) offer(P - tidy(q[j] / f[j]) * e.residual, name(e) + times(tidy(q[j] / f[j])), 6);
+    }
+    for (Expr factor : e.constraint ? Column{one, -one} : factors_of(e.residual)) offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : is_number(factor) ? 2 : 3);
+  }
+  if (!elimination_.dependent.empty() && !elimination_.quasi) {
+    // Along the directions that the constraints leave free.
+    Column routh;
+    for (const DerivedEquation& e : motion.rows)
+      if (!e.constraint && e.times == 0) routh.push_back(e.residual);
+    if (routh.size() == M_.q.size()) {
+      for (std::size_t nu = 0; nu < elimination_.independent.size(); ++nu) {
+        Column parts;
+        for (std::size_t s = 0; s < routh.size(); ++s)
+          if (!is_zero(elimination_.g_by_u()[s][nu])) parts.push_back(elimination_.g_by_u()[s][nu] * routh[s]);
+        const Expr row = sum(parts);
+        ++of;
+        for (Expr factor : factors_of(row)) {
+          const std::string what = "the equation of " + M_.model->coordinates[elimination_.independent[nu]].name + " without multipliers" + times(factor);
+          offer(P - factor * row, what, 3);
+          if (const auto on = motion.reduced(P - factor * row)) offer(*on, what + ", on the constraints", 4);
+        }
+      }
+    }
+  }
+  ++of;
+  std::vector<std::pair<std::size_t, Expr>> terms;
+  if (const auto rest = combination(P, motion, terms); rest && !terms.empty()) {
+    std::string what;
+    for (const auto& [i, c] : terms) what += (what.empty() ? "" : " and ") + name(motion.rows[i]) + times(c);
+    offer(*rest, what, 4);
+    if (const auto on = motion.reduced(*rest)) offer(*on, what + ", on the constraints", 5);
+  }
+  // Of the best few the shortest in print.
+  std::stable_sort(offers.begin(), offers.end(), [](const Offer& x, const Offer& y) { return x.length < y.length; });
+  std::size_t shortest = SIZE_MAX;
+  std::vector<std::size_t> seen;
+  for (std::size_t k = 0; k < offers.size() && seen.size() < kPrinted; ++k) {
+    if (std::find(seen.begin(), seen.end(), offers[k].of) != seen.end()) continue;
+    seen.push_back(offers[k].of);
+    const Expr difference = arranged(offers[k].difference, names_);
+    const std::size_t length = offers[k].weight * print(difference, names_, Format::text).size();
+    if (length < shortest) shortest = length, out.difference = difference, out.what = offers[k].what;
+    if (nodes(offers[k].difference) > kLongestCounted) break;
+  }
+}
+
+Comparison Comparer::judge(Expr P) {
+  Comparison out;
+  if (proved_zero(P)) {
+    out.verdict = Verdict::proved;
+    out.trivial = true;
+    out.what = "an identity: it holds whatever the motion";
+    return out;
+  }
+  Motion& motion = this->motion(order_of_motion(P));
+  for (const DerivedEquation& e : motion.lower)
+    if (directly(P, e, motion, out)) return out;
+  for (const DerivedEquation& e : motion.rows)
+    if (directly(P, e, motion, out)) return out;
+  if (!motion.regular) {
+    out.detail = "the equations do not determine the accelerations and multipliers at this order";
+    return out;
+  }
+  if (!vanishes(P, motion.on_motion())) {
+    Difference d{{}, P, {}, {}, {}, {}};
+    WitnessSearch search = find_witness(d, motion.equations, motion.unknowns, *M_.model);
+    out.detail = search.detail;
+    out.witness = std::move(search.witness);
+    if (out.witness) out.verdict = Verdict::refuted;
+    nearest(P, motion, out);
+    return out;
+  }
+  if (combined(P, motion, out)) return out;
+  double largest = 0;
+  for (PointValues& at : motion.on_motion()) largest = std::max(largest, std::abs(at(P)) / (1e-6 + size_at(P, at)));
+  char bound[32];
+  std::snprintf(bound, sizeof bound, "%.0e", largest);
+  out.detail = std::string("zero to ") + bound + " at " + std::to_string(motion.on_motion().size()) + " points of the motion; no proof was found";
+  return out;
+}
+
+Comparison Comparer::compare(const PublishedEquation& equation, Names& names, const Alphabet& alphabet) {
+  const Expr P = evaluate_number(equation.left, names) - evaluate_number(equation.right, names);
+  Comparison c = judge(P);
+  if (c.verdict == Verdict::refuted) c.changes = repairs(equation, names, alphabet, *this);
+  return c;
+}
+
+}  // namespace anholon

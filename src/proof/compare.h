@@ -1,0 +1,82 @@
+// A published equation against the derived ones (theory: proof).
+//
+// P = left - right is true if it is a combination of Routh's residuals r_a and of the constraints phi_r^(k),
+//
+//   P = sum_a c_a r_a + sum_r d_r phi_r^(k),
+//
+// identically, or on the manifold of the constraints. c and d follow from dP/d(q'', lambda) = (c, d) K, where K are the same
+// derivatives of the derived equations; numbers at points of the motion say which of them are not zero, so that only a small
+// system is solved on the graph. It is false if it does not vanish at a point at which all derived equations hold.
+#pragma once
+#include <map>
+
+#include "model/published.h"
+#include "proof/motion.h"
+#include "proof/prove.h"
+
+namespace anholon {
+
+// One place of an equation that reads otherwise.
+struct Change {
+  int side = 0;           // 0 left, 1 right
+  std::size_t term = 0;   // of the side, from 0
+  std::string from, to;   // the smallest term around the place
+  Span span;
+  std::string what;       // what the equation then is
+  bool proved = false;
+};
+
+struct Comparison {
+  Verdict verdict = Verdict::unknown;
+  std::string what;                     // what a true equation is; to what a false one comes nearest
+  std::optional<Expr> difference;       // false: left - right less what it comes nearest to
+  std::optional<WitnessPoint> witness;  // false
+  std::string detail;
+  std::vector<Change> changes;          // each of them makes it true
+  bool trivial = false;                 // true of every motion of every system
+  bool of_constraints = false;          // true by the constraints alone
+};
+
+// Names that may stand for each other in a misprint.
+struct Alphabet {
+  std::vector<std::string> coordinates, others;
+};
+
+class Comparer {
+ public:
+  Comparer(const Mechanics& M, const Elimination& elimination, SymbolNames names);
+
+  // Of left - right.
+  Comparison judge(Expr published);
+  // With the changes that would make it true, if it is false.
+  Comparison compare(const PublishedEquation& equation, Names& names, const Alphabet& alphabet);
+
+  Motion& motion(unsigned highest);
+  const SymbolNames& names() const { return names_; }
+
+ private:
+  bool directly(Expr P, const DerivedEquation& e, Motion& motion, Comparison& out);
+  bool combined(Expr P, Motion& motion, Comparison& out);
+  void nearest(Expr P, Motion& motion, Comparison& out);
+  std::optional<Expr> combination(Expr P, Motion& motion, std::vector<std::pair<std::size_t, Expr>>& terms);
+  std::string name(const DerivedEquation& e) const;
+  std::string times(Expr factor) const;
+  Expr tidy(Expr e) const;
+  Column leading(const DerivedEquation& e, Motion& motion) const;
+
+  const Mechanics& M_;
+  const Elimination& elimination_;
+  SymbolNames names_;
+  std::map<unsigned, Motion> motions_;
+};
+
+// The highest derivative of which the equations of the motion must speak.
+unsigned order_of_motion(Expr e);
+
+// Size at a point: of a sum, the sum of the sizes of its terms.
+double size_at(Expr e, PointValues& at);
+
+// Every single change of a term, and every two changes within one term, that make a false equation true.
+std::vector<Change> repairs(const PublishedEquation& equation, Names& names, const Alphabet& alphabet, Comparer& comparer);
+
+}  // namespace anholon

@@ -1,0 +1,228 @@
+#include "proof/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "expr/normal.h"
+#include "numeric/linear.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr int kPoints = 3, kAttempts = 60, kNewtonSteps = 60;
+constexpr double kSingular = 1e-7;   // a pivot, in relation to its row
+constexpr double kFollows = 1e-6;    // what is left out holds up to this
+
+std::uint64_t key(const Node& n) { return (static_cast<std::uint64_t>(n.kind) << 40) | (static_cast<std::uint64_t>(n.order) << 32) | n.index; }
+
+double arbitrary(const Node& n, int attempt) {
+  std::uint64_t h = key(n) * 131 + static_cast<std::uint64_t>(attempt) * 7919 + 17;
+  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
+  const double r = 0.3 + 1.1 * static_cast<double>(h >> 40) / 16777216.0;
+  if (n.kind != Kind::jet || n.order == 0) return r;
+  // Small velocities now and then: a bounded speed leaves room for them.
+  return (h & 1 ? -r : r) / (1 << (attempt % 3));
+}
+
+// `above`: the same for accelerations, higher derivatives and multipliers.
+PointValues values_of(std::unordered_map<std::uint64_t, double> known, int attempt, int above) {
+  return PointValues([known = std::move(known), attempt, above](const Node& n) {
+    const auto it = known.find(key(n));
+    const bool is_above = n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order >= 2);
+    return it == known.end() ? arbitrary(n, is_above ? above : attempt) : it->second;
+  });
+}
+
+Matrix<double> values(const std::vector<std::vector<Expr>>& rows, const std::vector<std::size_t>& which, const std::vector<std::size_t>& columns, PointValues& at) {
+  Matrix<double> a(which.size(), columns.size());
+  for (std::size_t i = 0; i < which.size(); ++i)
+    for (std::size_t j = 0; j < columns.size(); ++j) a(i, j) = at(rows[which[i]][columns[j]]);
+  return a;
+}
+
+std::vector<std::size_t> up_to(std::size_t n) {
+  std::vector<std::size_t> all(n);
+  for (std::size_t i = 0; i < n; ++i) all[i] = i;
+  return all;
+}
+
+bool finite(const Matrix<double>& a) {
+  return std::all_of(a.data.begin(), a.data.end(), [](double v) { return std::isfinite(v); });
+}
+
+// psi = 0 solved for the symbol s in which it is affine or quadratic.
+std::optional<Expr> solved_for(Expr psi, Expr s) {
+  Graph& g = *psi.graph;
+  const auto holds_s = [&](Expr e) {
+    const std::vector<NodeId> ids = symbols({&e, 1});
+    return std::binary_search(ids.begin(), ids.end(), s.id);
+  };
+  const auto at_zero = [&](Expr e) { return substitute({&e, 1}, [&](NodeId id) { return id == s.id ? g.zero() : Expr{}; })[0]; };
+  try {
+    const Expr slope = partial(psi, s);
+    Expr curve = partial(slope, s);
+    if (const auto full = expanded(curve)) curve = *full;
+    if (holds_s(curve)) return std::nullopt;
+    const Expr c = at_zero(psi), b = at_zero(slope);
+    if (proved_zero(curve)) return proved_zero(b) ? std::nullopt : std::optional(-(c / b));
+    const Expr a = Rational(1, 2) * curve;
+    if (proved_zero(b)) return sqrt(-(c / a));
+    return (sqrt(b * b - 4 * (a * c)) - b) / (2 * a);
+  } catch (const Failure&) {
+    return std::nullopt;  // a denominator that vanishes with s
+  }
+}
+
+}  // namespace
+
+bool Motion::choose(Stage& s, const std::vector<std::size_t>& preferred, PointValues& at) const {
+  const std::vector<std::size_t> all_rows = up_to(s.rows.size()), all = up_to(s.symbols.size());
+  const Matrix<double> a = values(s.jacobian, all_rows, all, at);
+  if (!finite(a)) return false;
+  RowChoice<double> choice = choose_rows(a, kSingular);
+  s.chosen_rows = choice.independent;
+  s.dropped_rows = choice.dependent;
+  s.chosen_symbols = choice.pivot_columns;
+  if (preferred.size() == s.chosen_rows.size() && !preferred.empty() && preferred.size() < s.symbols.size() &&
+      choose_rows(values(s.jacobian, s.chosen_rows, preferred, at), kSingular).independent.size() == preferred.size())
+    s.chosen_symbols = preferred;
+  std::sort(s.chosen_symbols.begin(), s.chosen_symbols.end());
+  return true;
+}
+
+Motion::Motion(const Mechanics& M, unsigned highest_order, const std::vector<std::size_t>& preferred) : highest(std::max(2U, highest_order)) {
+  const Model& model = *M.model;
+  Graph& g = M.graph();
+  const std::size_t n = M.q.size();
+  Column routh;
+  {
+    // D/Dt dT/dq' - dT/dq - (Q + …) - N
+    const Column left = total_derivative(gradient(M.T, M.qd)) - gradient(M.T, M.q);
+    routh = put_masses(model, left - (M.Q + M.QR + M.Qomega + M.minus_dVO + M.minus_dVomega + M.Gamma) - M.N);
+  }
+  int of_routh = 2;
+  for (Expr r : routh) of_routh = std::max(of_routh, jet_order(r));
+  for (unsigned k = 0; k <= highest; ++k) {
+    Stage s;
+    for (std::size_t r = 0; r < M.phi.size(); ++r)
+      if (const int times = static_cast<int>(k) - M.order[r]; times >= 0)
+        s.rows.push_back({true, r, static_cast<unsigned>(times), total_derivative(put_masses(model, M.phi[r]), static_cast<unsigned>(times))});
+    s.symbols = jets(model, k);
+    if (k >= 2) {
+      for (std::size_t a = 0; a < n; ++a) s.rows.push_back({false, a, k - 2, total_derivative(routh[a], k - 2)});
+      for (std::size_t r = 0; r < M.phi.size(); ++r) s.symbols.push_back(g.multiplier(static_cast<std::uint32_t>(r), k - 2));
+      top.insert(top.end(), s.symbols.begin(), s.symbols.end());
+    }
+    for (const DerivedEquation& e : s.rows) s.jacobian.push_back(gradient(e.residual, s.symbols));
+    stages_.push_back(std::move(s));
+  }
+  regular = of_routh == 2;
+  for (int attempt = 0; attempt < kAttempts && on_motion_.size() < kPoints; ++attempt) {
+    if (on_motion_.empty()) {
+      PointValues at = values_of({}, attempt, attempt);
+      if (!std::all_of(stages_.begin(), stages_.end(), [&](Stage& s) { return choose(s, preferred, at); })) continue;
+    }
+    Symbols known, below;
+    if (!find_point(attempt, known, &below)) continue;
+    on_motion_.push_back(values_of(std::move(known), attempt, attempt));
+    on_constraints_.push_back(values_of(std::move(below), attempt, attempt + 1000));
+    anywhere_.push_back(values_of({}, attempt + 2000, attempt + 2000));
+  }
+  if (on_motion_.empty()) regular = false;
+  for (Stage& s : stages_) {
+    for (std::size_t i : s.chosen_rows) {
+      equations.push_back(s.rows[i].residual);
+      (&s - stages_.data() < 2 ? lower : rows).push_back(s.rows[i]);
+    }
+    for (std::size_t j : s.chosen_symbols) unknowns.push_back(s.symbols[j]);
+    if (s.chosen_symbols.size() != s.chosen_rows.size()) regular = false;
+    for (std::size_t i : s.dropped_rows)
+      for (PointValues& at : on_motion_)
+        if (!(std::abs(at(s.rows[i].residual)) < kFollows)) regular = false;
+  }
+}
+
+bool Motion::find_point(int attempt, Symbols& known, Symbols* below) {
+  for (std::size_t k = 0; k < stages_.size(); ++k) {
+    const Stage& s = stages_[k];
+    if (k == 2) *below = known;
+    if (s.chosen_rows.empty()) continue;
+    if (s.chosen_rows.size() != s.chosen_symbols.size()) return false;
+    const Graph& g = *s.symbols[0].graph;
+    for (std::size_t j : s.chosen_symbols) {
+      const Node& node = g.node(s.symbols[j].id);
+      known[key(node)] = arbitrary(node, attempt);
+    }
+    bool done = false;
+    for (int step = 0; step < kNewtonSteps && !done; ++step) {
+      PointValues at = values_of(known, attempt, attempt);
+      const Matrix<double> j = values(s.jacobian, s.chosen_rows, s.chosen_symbols, at);
+      std::vector<double> f, x;
+      for (std::size_t i : s.chosen_rows) f.push_back(at(s.rows[i].residual));
+      Lu<double> lu;
+      if (!finite(j) || !lu.factor(j)) return false;
+      lu.solve(f, x);
+      double largest = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        double& value = known[key(g.node(s.symbols[s.chosen_symbols[i]].id))];
+        value -= x[i];
+        largest = std::max(largest, std::abs(x[i]) / (1 + std::abs(value)));
+      }
+      if (!(largest < 1e6)) return false;
+      done = largest < 1e-13;
+    }
+    if (!done) return false;
+  }
+  return true;
+}
+
+void Motion::solve_lower() {
+  lower_solved_ = true;
+  const auto put = [&](Expr e) {
+    for (const auto& [symbol, value] : solution_)
+      e = substitute({&e, 1}, [&, s = symbol, v = value](NodeId id) { return id == s.id ? v : Expr{}; })[0];
+    return e;
+  };
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Stage& s = stages_[k];
+    Column open;
+    for (std::size_t j : s.chosen_symbols) open.push_back(s.symbols[j]);
+    for (std::size_t i : s.chosen_rows) {
+      const Expr psi = put(s.rows[i].residual);
+      // Affine before quadratic: a root makes everything after it longer.
+      std::size_t best = open.size();
+      std::optional<Expr> value;
+      for (std::size_t j = 0; j < open.size(); ++j) {
+        const auto v = solved_for(psi, open[j]);
+        if (!v || (value && reachable({&*value, 1}).size() <= reachable({&*v, 1}).size())) continue;
+        best = j;
+        value = v;
+      }
+      if (!value) {
+        lower_can_be_ = false;
+        return;
+      }
+      for (auto& [symbol, before] : solution_)
+        before = substitute({&before, 1}, [&](NodeId id) { return id == open[best].id ? *value : Expr{}; })[0];
+      solution_.push_back({open[best], *value});
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+  }
+}
+
+std::optional<Expr> Motion::reduced(Expr e) {
+  if (!lower_solved_) solve_lower();
+  if (!lower_can_be_ || solution_.empty()) return std::nullopt;
+  try {
+    return substitute({&e, 1}, [&](NodeId id) {
+      for (const auto& [symbol, value] : solution_)
+        if (symbol.id == id) return value;
+      return Expr{};
+    })[0];
+  } catch (const Failure&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace anholon

@@ -1,0 +1,63 @@
+// The motion as equations in one place: the constraints with their derivatives, and Routh's equations [L 2.7]; and points at
+// which all of them hold.
+//
+// What is solved at order k = 0, 1, 2, …, h: the constraints' derivatives of order k for some of the q^(k); from k = 2 on
+// Routh's equations, differentiated k - 2 times, with them for q^(k) and lambda^(k-2).
+#pragma once
+#include <unordered_map>
+
+#include "mechanics/mechanics.h"
+#include "tape/point.h"
+
+namespace anholon {
+
+// A derived equation, left side - right side, masses put in.
+struct DerivedEquation {
+  bool constraint = false;
+  std::size_t index = 0;  // coordinate, or constraint
+  unsigned times = 0;     // differentiated
+  Expr residual;
+};
+
+class Motion {
+ public:
+  // `preferred`: coordinates for which constraints are solved where they can be.
+  Motion(const Mechanics& M, unsigned highest, const std::vector<std::size_t>& preferred);
+
+  unsigned highest = 2;
+  std::vector<DerivedEquation> lower;  // constraints and their derivatives of orders 0 and 1
+  std::vector<DerivedEquation> rows;   // of orders 2 and more: independent ones
+  Column top;                          // q'', …, q^(h), lambda, …: the rows are affine in these, if the constraints are
+  // As many equations as unknowns: those of all orders.
+  Column equations, unknowns;
+  bool regular = false;                // the equations determine their unknowns, and what is left out follows from them
+
+  // Values in double: on the motion; with the constraints of orders 0 and 1 only; anywhere. As many of each, unless none
+  // was found.
+  std::vector<PointValues>& on_motion() { return on_motion_; }
+  std::vector<PointValues>& on_constraints() { return on_constraints_; }
+  std::vector<PointValues>& anywhere() { return anywhere_; }
+
+  // e with the constraints of orders 0 and 1 solved; nothing if they cannot be. Roots stand for either sign.
+  std::optional<Expr> reduced(Expr e);
+
+ private:
+  struct Stage {
+    std::vector<DerivedEquation> rows;
+    Column symbols;                       // for which they might be solved
+    std::vector<std::vector<Expr>> jacobian;
+    std::vector<std::size_t> chosen_rows, chosen_symbols, dropped_rows;
+  };
+  using Symbols = std::unordered_map<std::uint64_t, double>;
+
+  bool choose(Stage& stage, const std::vector<std::size_t>& preferred, PointValues& at) const;
+  bool find_point(int attempt, Symbols& values, Symbols* lower_values);
+  void solve_lower();
+
+  std::vector<Stage> stages_;
+  std::vector<PointValues> on_motion_, on_constraints_, anywhere_;
+  bool lower_solved_ = false, lower_can_be_ = true;
+  std::vector<std::pair<Expr, Expr>> solution_;  // symbol, value
+};
+
+}  // namespace anholon

@@ -1,0 +1,125 @@
+#include "proof/compare.h"
+
+#include <gtest/gtest.h>
+
+#include "spec/equations.h"
+
+namespace anholon {
+namespace {
+
+// A sleigh without forces, with a blade below its mass centre.
+const char* const kSleigh = R"toml(coordinates = ["x", "y", "th"]
+parameters = {m = 2, J = 3}
+[[body]]
+name = "sleigh"
+mass = "m"
+inertia = "J"
+center = ["x", "y", "0"]
+angle = "th"
+[[constraint]]
+name = "blade"
+equation = "y'*cos(th) = x'*sin(th)"
+)toml";
+const char* const kPendulum = R"toml(coordinates = ["x", "y"]
+parameters = {m = 2, l = 3, g = 9.81}
+gravity.field = "-g*ey"
+[[particle]]
+name = "bob"
+mass = "m"
+position = ["x", "y", "0"]
+[[constraint]]
+name = "rod"
+equation = "x^2 + y^2 = l^2"
+)toml";
+
+class Subject {
+ public:
+  explicit Subject(const char* text) {
+    Diagnostics diagnostics;
+    open_ = open_model({"model.toml", text}, diagnostics).value();
+    m_ = mechanics(*open_.model);
+    comparer_.emplace(m_, Elimination(), open_.model->names);
+    alphabet_.coordinates = open_.model->names.coordinates;
+    for (const Parameter& p : open_.model->parameters) alphabet_.others.push_back(p.name);
+  }
+  Comparison compare(const std::string& equation) {
+    Diagnostics diagnostics;
+    const SourceText source{"test.eq", "e: " + equation + "\n"};
+    const auto list = read_equations(source, open_, diagnostics);
+    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.print(source);
+    return comparer_->compare(list.at(0), *open_.names, alphabet_);
+  }
+  std::string what(const std::string& equation) {
+    const Comparison c = compare(equation);
+    return c.verdict == Verdict::proved ? c.what : std::string(name(c.verdict)) + " " + c.detail;
+  }
+  // "from -> to" of the only change; else how many there are.
+  std::string change(const std::string& equation) {
+    const Comparison c = compare(equation);
+    if (c.verdict != Verdict::refuted) return name(c.verdict);
+    return c.changes.size() == 1 ? c.changes[0].from + " -> " + c.changes[0].to : std::to_string(c.changes.size());
+  }
+  std::string difference(const std::string& equation) {
+    const Comparison c = compare(equation);
+    return c.difference ? print(*c.difference, open_.model->names, Format::text) : "";
+  }
+
+ private:
+  OpenModel open_;
+  Mechanics m_;
+  std::optional<Comparer> comparer_;
+  Alphabet alphabet_;
+};
+
+TEST(Compare, SaysWhatATrueEquationIs) {
+  Subject s(kSleigh);
+  EXPECT_EQ(s.what("m*x'' = -lambda*sin(th)"), "the equation of x");
+  EXPECT_EQ(s.what("lambda*sin(th)/m = -x''"), "the equation of x, times 1/m");
+  EXPECT_EQ(s.what("J*th'' = 0"), "the equation of th");
+  EXPECT_EQ(s.what("y'*cos(th) - x'*sin(th) = 0"), "the constraint blade");
+  EXPECT_EQ(s.what("y''*cos(th) - y'*th'*sin(th) = x''*sin(th) + x'*th'*cos(th)"), "the constraint blade, differentiated once");
+  EXPECT_EQ(s.what("y' = x'*tan(th)"), "the constraint blade, times 1/cos(th)");
+  EXPECT_EQ(s.what("x''*cos(th) + y''*sin(th) = 0"), "a combination without multipliers: cos(th)/m times the equation of x + sin(th)/m times the equation of y");
+  EXPECT_EQ(s.what("lambda = m*th'*(x'*cos(th) + y'*sin(th))").find("a combination: "), 0U);
+  EXPECT_EQ(s.what("x'' = -y'*th'").find("a combination without multipliers: "), 0U);
+  EXPECT_NE(s.what("x'' = -y'*th'").find("with blade put in"), std::string::npos);
+  EXPECT_EQ(s.what("x*y = y*x"), "an identity: it holds whatever the motion");
+  EXPECT_EQ(s.what("J*th''' = 0"), "the equation of th, differentiated once");
+}
+
+TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
+  Subject s(kPendulum);
+  EXPECT_EQ(s.what("m*x'' = 2*lambda*x"), "the equation of x");
+  EXPECT_EQ(s.what("x*x' = -y*y'"), "the constraint rod, differentiated once, times 1/2");
+  EXPECT_EQ(s.what("x^4 = (l^2 - y^2)^2"), "a consequence of the constraint rod alone");
+  // x x'' + y y'' + x'^2 + y'^2 = 0 with the equations of motion put in.
+  EXPECT_NE(s.what("2*lambda*l^2 = m*g*y - m*(x'^2 + y'^2)").find("with rod put in"), std::string::npos);
+}
+
+TEST(Compare, NamesTheMisprint) {
+  Subject s(kSleigh);
+  EXPECT_EQ(s.change("m*x'' = lambda*sin(th)"), "lambda*sin(th) -> -lambda*sin(th)");  // and not the left side, which is the same
+  EXPECT_EQ(s.change("m*x'' = -lambda*cos(th)"), "-lambda*cos(th) -> -lambda*sin(th)");
+  Subject p(kPendulum);
+  EXPECT_EQ(p.change("m*y'' = 2*lambda*y + m*g"), "+ m*g -> - m*g");
+  EXPECT_EQ(p.change("m*y' = 2*lambda*y - m*g"), "m*y' -> m*y''");
+  EXPECT_EQ(p.change("m*y'' = 2*lambda*x - m*g"), "2*lambda*x -> 2*lambda*y");
+  EXPECT_EQ(p.change("m*y'' = 2*lambda^2*y - m*g"), "2*lambda^2*y -> 2*lambda*y");
+  EXPECT_EQ(p.change("m*y'' = lambda*y - m*g"), "lambda*y -> 2*lambda*y");
+  EXPECT_EQ(p.change("m*y = 2*lambda*y - m*g"), "m*y -> m*y''");  // two primes in one term
+  EXPECT_EQ(p.change("m*y'' = 2*lambda*x' + m"), "0");
+  EXPECT_EQ(p.difference("m*y'' = 2*lambda*y + m*g"), "-2*m*g");
+}
+
+TEST(Compare, TheSamePlaceInTheFile) {
+  Subject p(kPendulum);
+  const Comparison c = p.compare("m*y'' = 2*lambda*y + m*g");
+  ASSERT_EQ(c.changes.size(), 1U);
+  EXPECT_EQ(c.changes[0].span.line, 1U);
+  EXPECT_EQ(c.changes[0].span.column, 25U);
+  EXPECT_EQ(c.changes[0].span.length, 3U);
+  ASSERT_TRUE(c.witness);
+}
+
+}  // namespace
+}  // namespace anholon
