@@ -18,7 +18,7 @@ std::unique_ptr<Model> read(int n) {
 }
 
 Column both_sides(const Mechanics& m) {
-  const Equations e = find_formulation("routh")->equations(m);
+  const Equations e = find_formulation("routh")->equations(m, {});
   Column all = e.left;
   all.insert(all.end(), e.right.begin(), e.right.end());
   return all;

@@ -66,13 +66,16 @@ endfunction()
 # A formulation is found by its file name: src/formulation/forms/<name>.cpp defines
 # `extern const Formulation <name>;` in namespace anholon::forms. Linking by name (and not by
 # self-registration) keeps the linker from dropping one silently.
+# EXTRA: further files, and the registry gets a name of its own: a test that adds a form.
 function(anholon_formulation_registry result)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "NAME" "EXTRA")
   set(${result} "" PARENT_SCOPE)
   file(GLOB forms CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/formulation/forms/*.cpp")
   file(GLOB header CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/formulation/formulation.h")
   if(NOT header)
     return()
   endif()
+  list(APPEND forms ${arg_EXTRA})
   list(TRANSFORM forms REPLACE ".*/([^/]+)\\.cpp$" "\\1")
   list(SORT forms)
   set(declarations "")
@@ -84,7 +87,7 @@ function(anholon_formulation_registry result)
     string(APPEND declarations "extern const Formulation ${form};\n")
     string(APPEND entries "      &forms::${form},\n")
   endforeach()
-  set(output "${CMAKE_BINARY_DIR}/generated/formulation_registry.cpp")
+  set(output "${CMAKE_BINARY_DIR}/generated/${arg_NAME}formulation_registry.cpp")
   file(CONFIGURE OUTPUT "${output}" @ONLY CONTENT [=[
 // Written by the build from the file names in src/formulation/forms.
 #include <vector>

@@ -32,6 +32,14 @@ foreach(layer IN LISTS layers)
   endif()
 endforeach()
 
+# A form added as one file: the registry of the build with that file, everything else as it is.
+
+file(GLOB new_form "${PROJECT_SOURCE_DIR}/test/house/forms/*.cpp")
+anholon_formulation_registry(registry_with_new_form NAME new_ EXTRA ${new_form})
+anholon_test_executable(test_new_form test/house/new_form_test.cpp ${new_form} ${registry_with_new_form})
+anholon_link_layers(test_new_form)
+gtest_discover_tests(test_new_form TEST_PREFIX "house." PROPERTIES LABELS unit DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+
 # test/<set>/*_test.cpp: one executable over all layers, run in shards
 # Their tests share costly derivations within a process; shards keep that and fill the cores.
 

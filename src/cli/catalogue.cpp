@@ -24,10 +24,10 @@ int forms(const Options& o) {
     return kOk;
   }
   for (const Formulation* f : formulations()) {
-    std::printf("%-18s %s\n%-18s %s of %s\n", f->name, f->title, "", f->equation, f->source);
+    std::printf("%-28s %s\n%-28s %s\n", f->name, f->title, "", citation(*f).c_str());
     if (m) {
       const std::string why = f->obstacle(*m);
-      std::printf("%-18s %s\n", "", why.empty() ? "applies" : ("does not apply: " + why).c_str());
+      std::printf("%-28s %s\n", "", why.empty() ? "applies" : ("does not apply: " + why).c_str());
     }
   }
   return kOk;

@@ -23,7 +23,7 @@ struct Options {
   int order = 0;
   int points = 6;
   unsigned long long seed = 0;
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, steps = false;
 };
 
 int check(const Options& o);

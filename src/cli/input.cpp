@@ -150,6 +150,14 @@ Reader read(const Options& o) {
   return r;
 }
 
+// Forms whose motions are computed, or all that apply.
+static std::string list_of_forms(const Mechanics& m, bool with_motions) {
+  std::string list;
+  for (const Formulation* f : formulations())
+    if (f->obstacle(m).empty() && !(with_motions && f->unknowns == Unknowns::variational)) list += (list.empty() ? "" : ", ") + std::string(f->name);
+  return list;
+}
+
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics) {
   std::string wanted = o.form;
   if (!o.form_given && model.simulate.form) wanted = *model.simulate.form;
@@ -167,15 +175,15 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
   }
   if (mechanics)
     if (const std::string why = f->obstacle(*mechanics); !why.empty()) {
-      std::string list;
-      for (const Formulation* k : formulations())
-        if (k->obstacle(*mechanics).empty()) list += (list.empty() ? "" : ", ") + std::string(k->name);
-      throw UsageError{"error: the form '" + wanted + "' does not apply: " + why + "\nhint: these do: " + list + "\n"};
+      throw UsageError{"error: the form '" + wanted + "' does not apply: " + why + "\nhint: these do: " + list_of_forms(*mechanics, false) + "\n"};
     }
   return *f;
 }
 
 Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice, Scenario& s) {
+  if (f.unknowns == Unknowns::variational)
+    throw UsageError{"error: the form '" + std::string(f.name) + "' is another mechanics: it is derived and compared, but no motion is computed with it\nhint: these give motions: " +
+                     list_of_forms(mechanics(*in.model), true) + "\n"};
   try {
     return make_scenario(in.model, f, choice, s);
   } catch (const Failure& e) {

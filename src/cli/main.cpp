@@ -86,7 +86,7 @@ int run(int argc, char** argv) {
     c->add_option("--lambdadot", o.lambdadot, "initial rates of multipliers (order 4 and more)")->type_name("NAME=VALUE");
   };
   const auto form_option = [&](CLI::App* c) {
-    c->add_option("--form", o.form, "form of the equations (see `anholon forms`)")->type_name("NAME")->each([&o](const std::string&) { o.form_given = true; });
+    c->add_option("--form", o.form, "form of the equations (see `anholon forms`; derive: also all)")->type_name("NAME")->each([&o](const std::string&) { o.form_given = true; });
     c->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers: y,z (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
     c->add_option("--show", o.show, "print one stage instead: mechanics, system, structure, program")->type_name("STAGE");
   };
@@ -98,8 +98,10 @@ int run(int argc, char** argv) {
   CLI::App* derive_command = model_command("derive", "print the equations of motion", cli::derive,
                                            "Example: anholon derive disc --format latex");
   parameters(derive_command), form_option(derive_command);
-  derive_command->add_option("--format", o.format, "text, latex or mathml; c (C99) or python (NumPy): a program that computes the motion's right side")->type_name("FORMAT");
+  derive_command->add_option("--format", o.format, "text, latex, mathml or json; c (C99) or python (NumPy): a program that computes the motion's right side")->type_name("FORMAT");
   derive_command->add_option("--expand", o.expand, "auto or paper (grouped), none, full (written out)")->type_name("HOW");
+
+  derive_command->add_flag("--steps", o.steps, "show T, S, forces, constraints and the elimination on the way");
 
   CLI::App* evaluate_command = model_command("evaluate", "all forces, accelerations, multipliers, reactions at one state", cli::evaluate,
                                              "Example: anholon evaluate disc --q theta=1 --qdot theta=0.1 --json");

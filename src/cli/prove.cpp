@@ -41,7 +41,7 @@ void print_matrix(const Proof& p) {
       const Verdict v = i == j ? Verdict::proved : p.between(i, j);
       std::printf(" %s", i == j ? "." : v == Verdict::proved ? "=" : v == Verdict::refuted ? "X" : "?");
     }
-    std::printf("  %s\n", p.forms[i].form->equation);
+    std::printf("  %s\n", p.forms[i].form->equation[0] ? p.forms[i].form->equation : p.forms[i].form->source);
   }
   std::printf("\n=  proved equal    X  shown different    ?  unknown\n");
 }

@@ -485,7 +485,10 @@ Expr arranged(Expr e, const SymbolNames& names) {
   const Graph& g = *e.graph;
   const Kind kind = g.node(e.id).kind;
   if (kind != Kind::sum && kind != Kind::product) return e;
-  const auto length = [&](Expr x) { return print(x, names, Format::text).size(); };
+  const auto length = [&](Expr x) {
+    const std::string text = print(x, names, Format::text);
+    return text.find("…") == std::string::npos ? text.size() : kLongestPrint;  // cut: as long as can be
+  };
   Expr best = e;
   std::size_t shortest = length(e);
   const std::optional<NormalForm> written_out = normal_form(e, {}, kMostWork);

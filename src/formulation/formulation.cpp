@@ -47,4 +47,6 @@ const Formulation* find_formulation(const std::string& name) {
   return nullptr;
 }
 
+std::string citation(const Formulation& f) { return f.equation[0] ? f.equation + (" of " + std::string(f.source)) : f.source; }
+
 }  // namespace anholon

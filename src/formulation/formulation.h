@@ -25,7 +25,7 @@ enum class Unknowns : std::uint8_t {
 struct Formulation {
   const char* name;      // as --form accepts it
   const char* title;
-  const char* equation;  // number in its source
+  const char* equation;  // number in its source; empty for the classics
   const char* source;
   Unknowns unknowns;
   // Empty if the form applies to the model, else the reason why it does not.
@@ -68,5 +68,7 @@ std::string first_order_only(const Mechanics& M);
 // All forms, sorted by name; made by the build from the files in forms/.
 const std::vector<const Formulation*>& formulations();
 const Formulation* find_formulation(const std::string& name);
+// "(2.7) of Luo & Zhao, …"
+std::string citation(const Formulation& form);
 
 }  // namespace anholon

@@ -88,7 +88,7 @@ Rows operator*(const Rational& c, const Rows& a) {
   return r;
 }
 
-Rows inverse(const Rows& A, PointValues& at, Column& pivots) {
+Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable) {
   const std::size_t n = A.size();
   if (n == 0) return {};
   Graph& g = *A[0][0].graph;
@@ -130,7 +130,7 @@ Rows inverse(const Rows& A, PointValues& at, Column& pivots) {
   }
   Rows out;
   for (std::size_t j = 0; j < n; ++j) out.push_back(right[row_of[j]]);
-  if (n < kLarge)
+  if (readable && n < kLarge)
     for (Column& row : out)
       for (Expr& e : row) e = shortest(e);
   return out;
@@ -156,7 +156,7 @@ Elimination::Elimination(const Mechanics& M, const EliminationChoice& choice, st
     phi.push_back(total_derivative(put_masses(model, M.phi[r]), m - static_cast<unsigned>(M.order[r])));
     Phi_D.push_back(D(put_masses(model, M.Phi[r])));
   }
-  Phi_D_inverse = inverted(Phi_D);
+  Phi_D_inverse = inverse(Phi_D, *at_, pivots_, true);
   if (choice.quasi.empty()) by_coordinates(choice.solve);
   else by_quasi_velocities(choice.quasi, choice.solve);
   finish();
@@ -214,7 +214,7 @@ void Elimination::by_quasi_velocities(const std::vector<QuasiVelocity>& list, bo
   w.insert(w.end(), phi.begin(), phi.end());
   Rows W;
   for (Expr e : w) W.push_back(gradient(e, top_));
-  chi_by_u = inverted(W);
+  chi_by_u = inverse(W, *at_, pivots_, true);
   solved = solve;
   for (const Column& row : W)
     if (depends(row, top_)) solved = false;

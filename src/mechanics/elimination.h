@@ -24,7 +24,8 @@ using Rows = std::vector<Column>;
 
 // A^-1 by elimination on the graph, each entry in the shorter of its forms; pivots are entries that are not small at the point.
 // Those that can vanish elsewhere are added to `pivots`.
-Rows inverse(const Rows& A, PointValues& at, Column& pivots);
+// `readable`: the result is to be read, and worth more work.
+Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable);
 
 // What is eliminated and which free quantities are used instead.
 struct EliminationChoice {
@@ -74,7 +75,7 @@ class Elimination {
   // C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
   Rows C() const;
   // A^-1, with pivots that are not small near the state.
-  Rows inverted(const Rows& A) const { return inverse(A, *at_, pivots_); }
+  Rows inverted(const Rows& A) const { return inverse(A, *at_, pivots_, false); }
   // What was divided by: near a zero of one of them another elimination serves better.
   const Column& pivots() const { return pivots_; }
   // sum_s X_s B_sa: X_nu + sum_b X_b f_b,nu.

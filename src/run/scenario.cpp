@@ -101,6 +101,7 @@ Outcome regular_at_start(const Scenario& s) {
 
 static ProbeHints hints_at(const InitialState<double>& state) {
   ProbeHints hints;
+  if (state.q.empty()) return hints;
   hints.t = state.t;
   hints.derivatives = {state.q, state.qd};
   for (const Level<double>& level : state.higher) hints.derivatives.push_back(level.value);
@@ -154,9 +155,10 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   s.notes = model->notes;
   const std::vector<double> parameters = parameter_values<double>(*model);
   const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t};
-  Outcome initial = consistent_state(problem, s.state);
-  s.independent.clear();
+  // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
+  Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
+  s.independent.clear();
   if (initial.ok() && numbers) choose_constraints(*model, parameters, s);
   else
     for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);
@@ -167,13 +169,18 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
     s.elimination = Elimination(*s.mechanics, choose_elimination(*s.mechanics, s.independent, form.unknowns, choice.eliminate, *at), at);
   }
   s.system = implicit_system(model, *s.mechanics, form, s.independent, s.elimination);
+  if (!numbers)
+    s.system.equations = substitute(s.system.equations, [&](NodeId id) {
+      const Node& n = model->graph->node(id);
+      return n.kind == Kind::given ? model->graph->number(Rational(17 + 3 * static_cast<int>(n.index) + static_cast<int>(n.order), 19)) : Expr{};
+    });
   const Outcome structured = analyse(s.system, parameters, hints_at(s.state), s.structure);
   if (structured.ok()) drop_absent(s.system, s.structure);
   if (!initial.ok()) return initial;
   if (!structured.ok()) return structured;
   // Masses and forces that depend on accelerations may ask for more, too.
   const bool beyond = std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates), [](int d) { return d > 2; });
-  if (beyond && !s.routh) initial = complete(problem, s);
+  if (beyond && numbers && !s.routh) initial = complete(problem, s);
   s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());
   return initial;
 }

@@ -31,6 +31,6 @@ struct System {
 // Constraints that are left out (redundant ones) have their multipliers set to zero.
 // `elimination` is of these constraints, and is not looked at by forms with multipliers.
 System implicit_system(std::shared_ptr<const Model> model, const Mechanics& mechanics, const Formulation& form,
-                       const std::vector<std::size_t>& constraints, const Elimination& elimination);
+                       const std::vector<std::size_t>& constraints, const Elimination& elimination = {});
 
 }  // namespace anholon

@@ -28,7 +28,7 @@ Verdict compare(const Model& model, Expr a, Expr b) {
 
 Column routh(const Model& model) {
   const Mechanics m = mechanics(model);
-  const Equations e = find_formulation("routh")->equations(m);
+  const Equations e = find_formulation("routh")->equations(m, {});
   Column all = e.left;
   all.insert(all.end(), e.right.begin(), e.right.end());
   all.insert(all.end(), m.phi.begin(), m.phi.end());

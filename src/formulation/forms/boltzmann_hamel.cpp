@@ -21,7 +21,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation boltzmann_hamel;
-const Formulation boltzmann_hamel{"boltzmann-hamel", "Boltzmann–Hamel equations", "all n quasi-velocities",
+const Formulation boltzmann_hamel{"boltzmann-hamel", "Boltzmann–Hamel equations", "",
                                   "Boltzmann 1902, Hamel 1904", Unknowns::quasi_velocities, first_order_only, equations};
 
 }  // namespace anholon::forms

@@ -22,7 +22,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation gauss;
-const Formulation gauss{"gauss", "Gauss' principle of least compulsion", "stationarity",
+const Formulation gauss{"gauss", "Gauss' principle of least compulsion", "",
                         "Gauss 1829", Unknowns::coordinates, up_to_accelerations, equations};
 
 }  // namespace anholon::forms

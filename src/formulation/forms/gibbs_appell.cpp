@@ -12,7 +12,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation gibbs_appell;
-const Formulation gibbs_appell{"gibbs-appell", "Gibbs–Appell equations", "dS*/du'",
+const Formulation gibbs_appell{"gibbs-appell", "Gibbs–Appell equations", "",
                                "Gibbs 1879, Appell 1899", Unknowns::quasi_velocities, first_order_only, equations};
 
 }  // namespace anholon::forms

@@ -20,7 +20,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation kane;
-const Formulation kane{"kane", "Kane's equations", "Fr + Fr* = 0",
+const Formulation kane{"kane", "Kane's equations", "",
                        "Kane & Levinson 1985", Unknowns::quasi_velocities, no_obstacle, equations};
 
 }  // namespace anholon::forms

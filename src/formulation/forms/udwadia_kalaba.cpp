@@ -35,7 +35,7 @@ static std::string linear_accelerations(const Mechanics& M) {
 
 static Equations equations(const Mechanics& M, const Elimination& E) {
   Graph& g = M.graph();
-  const Column miss = put_masses(*M.model, lagrange_operator(M) - forces(M)), none(M.q.size(), g.zero());
+  const Column miss = lagrange_operator(M) - forces(M), none(M.q.size(), g.zero());
   Rows inertia;  // M
   for (Expr e : miss) inertia.push_back(gradient(e, M.qdd));
   const Column h = at_zero(miss, M.qdd);
@@ -59,7 +59,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation udwadia_kalaba;
-const Formulation udwadia_kalaba{"udwadia-kalaba", "Udwadia–Kalaba equations", "fundamental equation",
+const Formulation udwadia_kalaba{"udwadia-kalaba", "Udwadia–Kalaba equations", "",
                                  "Udwadia & Kalaba 1992", Unknowns::coordinates, linear_accelerations, equations};
 
 }  // namespace anholon::forms

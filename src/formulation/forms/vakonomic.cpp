@@ -24,7 +24,7 @@ static Equations equations(const Mechanics& M, const Elimination&) {
 }
 
 extern const Formulation vakonomic;
-const Formulation vakonomic{"vakonomic", "vakonomic equations (another mechanics)", "variational",
+const Formulation vakonomic{"vakonomic", "vakonomic equations (another mechanics)", "",
                             "Kozlov 1983", Unknowns::variational, no_obstacle, equations};
 
 }  // namespace anholon::forms

@@ -18,7 +18,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation voronets;
-const Formulation voronets{"voronets", "Voronets' equations", "general f",
+const Formulation voronets{"voronets", "Voronets' equations", "",
                            "Voronets 1901", Unknowns::coordinates, first_order_only, equations};
 
 }  // namespace anholon::forms

@@ -38,7 +38,7 @@ TEST(ProgramSize, OfAChainIsLinearInItsLinks) {
 
 std::size_t nodes_of_chain(int n) {
   const auto model = test::model_of(test::chain_text(n));
-  const Equations e = find_formulation("routh")->equations(mechanics(*model));
+  const Equations e = find_formulation("routh")->equations(mechanics(*model), {});
   Column both = e.left;
   both.insert(both.end(), e.right.begin(), e.right.end());
   return reachable(both).size();
