@@ -157,8 +157,8 @@ Elimination::Elimination(const Mechanics& M, const EliminationChoice& choice, st
     Phi_D.push_back(D(put_masses(model, M.Phi[r])));
   }
   Phi_D_inverse = inverse(Phi_D, *at_, pivots_, true);
-  if (choice.quasi.empty()) by_coordinates(choice.solve);
-  else by_quasi_velocities(choice.quasi, choice.solve);
+  if (choice.by_quasi) by_quasi_velocities(choice.quasi, choice.solve);
+  else by_coordinates(choice.solve);
   finish();
 }
 

@@ -31,7 +31,8 @@ Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable);
 struct EliminationChoice {
   std::vector<std::size_t> constraints;  // those that take part: independent ones
   std::vector<std::size_t> dependent;    // as many coordinates, dphi/dq_D^(m) regular
-  std::vector<QuasiVelocity> quasi;      // n - s of them, or none: u = q_I^(m)
+  bool by_quasi = false;                 // u are quasi-velocities, n - s of them; else u = q_I^(m)
+  std::vector<QuasiVelocity> quasi;
   bool solve = true;                     // where the constraints can be solved
 };
 

@@ -94,7 +94,11 @@ std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vecto
   if (list.size() > n - s)
     throw Failure(list[n - s].span, std::to_string(list.size()) + " quasi-velocities; the constraints leave room for " + std::to_string(n - s),
                   "leave out " + std::to_string(list.size() - (n - s)));
+  // At a singular state the rows that are regular elsewhere serve for the equations themselves.
+  PointValues elsewhere(arbitrary);
   Matrix<double> rows = constraint_matrix(m, constraints, at);
+  const bool singular = choose_rows(rows, kSingular).independent.size() < s;
+  if (singular) rows = constraint_matrix(m, constraints, elsewhere);
   const auto with = [&](const std::vector<double>& row) {
     Matrix<double> more(rows.rows + 1, n);
     std::copy(rows.data.begin(), rows.data.end(), more.data.begin());
@@ -104,7 +108,7 @@ std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vecto
   const auto independent = [](const Matrix<double>& a) { return choose_rows(a, 1e-6).independent.size() == a.rows; };
   for (const QuasiVelocity& u : list) {
     std::vector<double> row;
-    for (Expr e : gradient(u.value, jets(model, static_cast<unsigned>(u.order)))) row.push_back(at(e));
+    for (Expr e : gradient(u.value, jets(model, static_cast<unsigned>(u.order)))) row.push_back((singular ? elsewhere : at)(e));
     const Matrix<double> more = with(row);
     if (!independent(more))
       throw Failure(u.span, "the quasi-velocity '" + u.name + "' depends on the constraints and the quasi-velocities before it",
@@ -142,8 +146,8 @@ PointValues values_near(const Model& model, const std::vector<double>& parameter
 
 EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::size_t>& constraints, Unknowns unknowns,
                                      const std::vector<std::size_t>& wanted, PointValues& at) {
-  EliminationChoice choice{constraints, dependent_coordinates(m, constraints, wanted, at), {}};
-  if (unknowns == Unknowns::quasi_velocities) choice.quasi = quasi_velocities(m, constraints, choice.dependent, at);
+  EliminationChoice choice{constraints, dependent_coordinates(m, constraints, wanted, at), unknowns == Unknowns::quasi_velocities, {}};
+  if (choice.by_quasi) choice.quasi = quasi_velocities(m, constraints, choice.dependent, at);
   return choice;
 }
 

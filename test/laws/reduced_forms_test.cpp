@@ -68,5 +68,20 @@ TEST_P(ReducedForms, AreTheContractionOfNewtonsLaw) {
 INSTANTIATE_TEST_SUITE_P(Model, ReducedForms, testing::ValuesIn(test::shipped_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
+// As many constraints as coordinates: nothing is left to be said, by no equations. Ends in a crash as long as the product of a
+// column and a matrix without columns reads an entry of it (Boltzmann-Hamel's: in an internal fault).
+TEST(FullyConstrained, LeavesNoEquations) {
+  const System s(test::model_of("coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = \"2\"\nposition = [\"x\", \"y\", \"0\"]\n"
+                                "[[constraint]]\nname = \"drive\"\nequation = \"x' = 1\"\n"
+                                "[[constraint]]\nname = \"follow\"\nequation = \"y' = x\"\n"));
+  for (const Formulation* form : formulations()) {
+    if (!form->eliminates() || std::string(form->name) == "udwadia-kalaba") continue;
+    for (const bool solve : {true, false}) {
+      const Equations q = form->equations(s.m, elimination_for(s.m, form->unknowns, {}, {}, solve));
+      EXPECT_TRUE(q.left.empty() && q.right.empty()) << form->name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace anholon
