@@ -101,6 +101,7 @@ Outcome regular_at_start(const Scenario& s) {
 
 static ProbeHints hints_at(const InitialState<double>& state) {
   ProbeHints hints;
+  if (state.q.empty()) return hints;
   hints.t = state.t;
   hints.derivatives = {state.q, state.qd};
   for (const Level<double>& level : state.higher) hints.derivatives.push_back(level.value);
@@ -179,7 +180,7 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   if (!structured.ok()) return structured;
   // Masses and forces that depend on accelerations may ask for more, too.
   const bool beyond = std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates), [](int d) { return d > 2; });
-  if (beyond && !s.routh) initial = complete(problem, s);
+  if (beyond && numbers && !s.routh) initial = complete(problem, s);
   s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());
   return initial;
 }

@@ -193,6 +193,9 @@ class InitialReader {
           if (!unknown) throw Failure(c.formula.whole(), "no unknown occurs in this condition");
           model_.initial.conditions.push_back({residual, c.text() + suffix, c.formula.whole()});
         };
+        for (const Value* side : {&left, &right})
+          if (std::holds_alternative<InertialName>(*side))
+            throw Failure(sides[side == &right].span, "this is not a number or vector", "a multiplier is lambda.NAME, NAME being the constraint");
         if (left.index() == 0 && right.index() == 0) return push(std::get<Expr>(left) - std::get<Expr>(right), "");
         const auto side = [&](const Value& v, const Syntax& s) {
           if (const Vector* a = std::get_if<Vector>(&v)) return *a;

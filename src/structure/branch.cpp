@@ -182,12 +182,19 @@ class Search {
 
   void keep() {
     std::vector<N> x;
-    for (std::size_t j = 0; j < all_.unknowns(); ++j) x.push_back(all_.x(state_, j));
+    N size(1);
+    for (std::size_t j = 0; j < all_.unknowns(); ++j) {
+      x.push_back(all_.x(state_, j));
+      if (abs(x[j]) > size) size = abs(x[j]);
+    }
+    // What the start has left in a number that is zero.
+    for (N& v : x)
+      if (abs(v) < size * unit_roundoff<N>() * N(0.001)) v = N(0);
     for (const std::vector<N>& other : out_.found) {
       bool same = true;
       for (std::size_t j = 0; j < x.size(); ++j) {
-        const N size = abs(x[j]) > N(1) ? abs(x[j]) : N(1);
-        same = same && abs(N(x[j] - other[j])) < N(kSame) * size;
+        const N scale = abs(x[j]) > N(1) ? abs(x[j]) : N(1);
+        same = same && abs(N(x[j] - other[j])) < N(kSame) * scale;
       }
       if (same) return;
     }

@@ -369,12 +369,15 @@ class Solver {
     return true;
   }
 
-  // The multipliers tell solutions apart.
-  std::string solution_text(const std::vector<N>& x, const System& s) const {
+  // The derivatives and multipliers of the nonlinear constraints.
+  std::string solution_text(const std::vector<N>& x, const System& s, const Structure& t) const {
     std::string list;
-    for (std::size_t j = s.coordinates; j < s.size(); ++j)
-      if (may_branch(m_, s, s.constraints[j - s.coordinates]))
-        list += (list.empty() ? "" : ", ") + s.variable_names[j] + " = " + number_text(to_double(x[j]), 6);
+    for (std::size_t j = 0; j < s.size(); ++j) {
+      bool named = j >= s.coordinates && may_branch(m_, s, s.constraints[j - s.coordinates]);
+      for (std::size_t r : s.constraints) named = named || (j < s.coordinates && may_branch(m_, s, r) && !is_zero(m_.Phi[r][j]));
+      if (!named) continue;
+      list += (list.empty() ? "" : ", ") + derivative_name(s.variable_names[j], static_cast<unsigned>(t.d[j]), Format::text) + " = " + number_text(to_double(x[j]), 6);
+    }
     return list;
   }
 
@@ -401,12 +404,12 @@ class Solver {
     std::string others;
     for (const std::vector<N>& x : solutions.found) {
       if (!taken && branch_holds(x, s)) taken = &x;
-      else others += (others.empty() ? "" : "; ") + solution_text(x, s);
+      else others += (others.empty() ? "" : "; ") + solution_text(x, s, t);
     }
     if (!taken) return no_leading(s, solutions, others);
     for (std::size_t j = 0; j < unknowns.size(); ++j) *state_.value(node(unknowns[j])) = (*taken)[j];
     if (!others.empty() && !branch_was_named(s, t))
-      state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s) + " is taken, there is also " + others +
+      state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s, t) + " is taken, there is also " + others +
                              "; name one by [initial] branch = {…} or guess = {…}");
     return {};
   }
@@ -443,7 +446,6 @@ class Solver {
       if (!(said.worst() > stage_rounding<N>())) return {};
     }
     const InitialState<N> before = state_;
-    Outcome first;
     for (int lowest : {1, 0}) {
       state_ = before;
       Column unknowns;
@@ -455,11 +457,18 @@ class Solver {
         }
       for (Expr u : unknowns)  // values that followed may follow anew
         if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j]) *state_.origin(node(u)) = Origin::derived;
-      const Outcome o = solve(equations, unknowns, metric);
-      if (o.ok()) return {};
-      if (lowest == 1) first = o;
+      if (solve(equations, unknowns, metric).ok()) return {};
     }
-    return first;
+    state_ = before;
+    Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters);
+    std::size_t worst = 0;
+    if (!said.evaluate(state_)) return no_value(said);
+    said.worst(&worst);
+    const StageEquation& e = said.equation(worst);
+    return {OutcomeKind::inconsistent,
+            e.what + (e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "") + " does not hold: with the other initial data it is missed by " +
+                number_text(std::abs(to_double(said.residual[worst])), 3),
+            "leave it out, or leave out velocities and positions that it could determine; a guess near the wanted motion helps: [initial] guess = {…}"};
   }
 
   bool all_given(const System& s, const Structure& t) const {

@@ -116,7 +116,6 @@ TEST(NotReadYet, LaterKeysAndFormulasSaySo) {
       {"[[constraint]]", "[[constraint]]\nby = \"x\""},
       {"field = \"-g*ey\"", "field = \"-g*ey\"\ngradient = 1"},
       {"\"theta\"]", "\"theta\", \"a[1..3]\"]"},
-      {"x = 1", "x = 1\nbranch = \"upper\""},
       {"m = 2", "m = {value = 2, unit = \"kg\"}"},
       {"m = 2", "m = \"2 kg\""},
   };
