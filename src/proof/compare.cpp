@@ -224,7 +224,7 @@ std::optional<Expr> Comparer::combination(Expr P, Motion& motion, std::vector<st
   Column pivots;
   Expr rest = P;
   try {
-    const Rows inverted = inverse(square, points[0], pivots);
+    const Rows inverted = inverse(square, points[0], pivots, false);
     for (std::size_t i = 0; i < support.size(); ++i) {
       std::vector<Expr> sum_of = {M_.graph().zero()};
       for (std::size_t j = 0; j < columns.size(); ++j)
