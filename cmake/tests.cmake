@@ -12,6 +12,8 @@ function(anholon_test_executable target)
   add_executable(${target} ${ARGN})
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/test")
   target_compile_definitions(${target} PRIVATE ANHOLON_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  # The work is done in the layers; a test itself need not be fast, but its compilation.
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1;-g0>)
   target_link_libraries(${target} PRIVATE anholon_options anholon_warnings
     nlohmann_json::nlohmann_json GTest::gtest GTest::gtest_main)
 endfunction()

@@ -18,7 +18,10 @@ Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use)
     throw Failure(use, "the body '" + body_names_[body] + "' has no orientation: it has no material point there",
                   "give it orientation = \"…\", or angle = \"…\" in the plane");
   }
-  return v + cross(orientation(body, use).rate, place - c);
+  // One after the other: nodes are numbered in the order of their making, by every compiler alike.
+  const Vector rate = orientation(body, use).rate;
+  const Vector arm = place - c;
+  return v + cross(rate, arm);
 }
 
 // The inertial rate of change of a vector given by its moving components.
