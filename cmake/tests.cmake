@@ -99,6 +99,10 @@ if(TARGET anholon)
   anholon_script_test(readme tools/readme.py --program $<TARGET_FILE:anholon>)
   anholon_script_test(generated test/backends/check_generated.py $<TARGET_FILE:anholon>)
   set_tests_properties(script.generated PROPERTIES LABELS "script;long")
+  # Evaluation and motion of every reference system by a form without multipliers; by every form: ./dev long.
+  anholon_script_test(oracle_chaplygin test/oracle/check_models.py $<TARGET_FILE:anholon> --form chaplygin --jobs 1)
+  anholon_script_test(oracle_all_forms test/oracle/check_models.py $<TARGET_FILE:anholon> --form all)
+  set_tests_properties(script.oracle_all_forms PROPERTIES LABELS long-only)
   anholon_script_test(mathml tools/check_mathml.py --program $<TARGET_FILE:anholon>)
 
   file(GLOB cases CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/test/golden"

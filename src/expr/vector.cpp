@@ -11,7 +11,12 @@ Expr dot(const Vector& a, const Vector& b) {
   return sum(parts);
 }
 Vector cross(const Vector& a, const Vector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  // Operands are made one after the other: the order in which a compiler evaluates them would number the nodes.
+  const auto difference = [](Expr p, Expr q, Expr r, Expr s) {
+    const Expr second = r * s, first = p * q;
+    return first - second;
+  };
+  return {difference(a.y, b.z, a.z, b.y), difference(a.z, b.x, a.x, b.z), difference(a.x, b.y, a.y, b.x)};
 }
 Vector zero_vector(Graph& g) { return {g.zero(), g.zero(), g.zero()}; }
 bool is_zero(const Vector& a) { return is_zero(a.x) && is_zero(a.y) && is_zero(a.z); }
@@ -21,7 +26,8 @@ Vector total_derivative(const Vector& a) {
   return {d[0], d[1], d[2]};
 }
 Vector operator*(const Rotation& r, const Vector& a) {
-  return a.x * r[0] + a.y * r[1] + a.z * r[2];
+  const Vector z = a.z * r[2], y = a.y * r[1], x = a.x * r[0];
+  return x + y + z;
 }
 Vector transpose_times(const Rotation& r, const Vector& a) {
   return {dot(r[0], a), dot(r[1], a), dot(r[2], a)};

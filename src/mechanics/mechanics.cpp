@@ -26,7 +26,8 @@ std::vector<WeightedPoint> weighted_points(const Model& model) {
         const Vector u{axis.own[0], axis.own[1], axis.own[2]}, omega = body.orientation->own_rate;
         const Vector v = cross(omega, u);
         p.speed2 = norm2(v);
-        p.acceleration2 = norm2(cross(total_derivative(omega), u) + cross(omega, v));
+        const Vector centripetal = cross(omega, v), tangential = cross(total_derivative(omega), u);
+        p.acceleration2 = norm2(tangential + centripetal);
       }
       points.push_back(p);
     }
