@@ -162,6 +162,12 @@ static std::string list_of_forms(const Mechanics& m, bool with_motions) {
   return list;
 }
 
+// Throws if the form does not apply to the model.
+static void must_apply(const Formulation& f, const Mechanics& m) {
+  if (const std::string why = f.obstacle(m); !why.empty())
+    throw UsageError{"error: the form '" + std::string(f.name) + "' does not apply: " + why + "\nhint: these do: " + list_of_forms(m, false) + "\n"};
+}
+
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics) {
   std::string wanted = o.form;
   if (!o.form_given && model.simulate.form) wanted = *model.simulate.form;
@@ -177,10 +183,7 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
     throw UsageError{"error: there is no form '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
                      "\nhint: the forms are " + list + "\n"};
   }
-  if (mechanics)
-    if (const std::string why = f->obstacle(*mechanics); !why.empty()) {
-      throw UsageError{"error: the form '" + wanted + "' does not apply: " + why + "\nhint: these do: " + list_of_forms(*mechanics, false) + "\n"};
-    }
+  if (mechanics) must_apply(*f, *mechanics);
   return *f;
 }
 
@@ -188,6 +191,7 @@ Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice,
   if (f.unknowns == Unknowns::variational)
     throw UsageError{"error: the form '" + std::string(f.name) + "' is another mechanics: it is derived and compared, but no motion is computed with it\nhint: these give motions: " +
                      list_of_forms(mechanics(*in.model), true) + "\n"};
+  if (f.obstacle != no_obstacle) must_apply(f, mechanics(*in.model));
   try {
     return make_scenario(in.model, f, choice, s);
   } catch (const Failure& e) {
