@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
              "  anholon check disc                                  what kind of system it is\n"
              "  anholon derive luo-zhao-example-2 --format latex    its equations\n"
              "  anholon simulate disc --to 10 -o disc.csv           its motion\n"
+             "  anholon prove disc -o proof.json                    a proof that all forms of the equations agree\n"
              "Exit status: 0 ok, 1 the motion stopped early (what was computed is kept), 2 bad input, 3 internal fault.");
   Options o;
   std::function<int(const Options&)> command;

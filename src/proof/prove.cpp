@@ -60,7 +60,6 @@ Verdict of_all(const std::vector<Difference>& list) {
 
 // Phi B = 0 on the manifold, and the solved constraints satisfied.
 void kernel_claims(const Mechanics& M, const Elimination& e, std::vector<Difference>& out) {
-
   Graph& g = M.graph();
   const Model& model = *M.model;
   for (std::size_t k = 0; k < e.constraints.size(); ++k) {

@@ -53,19 +53,22 @@ class Search {
   }
   Search(const Difference& d, const Elimination& elimination, const Model& model) : Search(d, {}, {}, model, true) {
     if (elimination.phi.empty()) return;
-    // The constraints that are not solved, and their derivatives as far as the dependent derivatives occur.
+    // The constraints and their derivatives, as far as the dependent derivatives occur. Of solved constraints the first two are
+    // put in already, except in differences that were never brought to the manifold: those of forms with multipliers.
     Graph& g = *e_.graph;
     unsigned highest = 0;
+    bool put_in = elimination.solved;
     for (NodeId id : symbols(parts_)) {
       const Node& n = g.node(id);
       const auto& D = elimination.dependent;
-      if (n.kind == Kind::jet && std::find(D.begin(), D.end(), n.index) != D.end()) highest = std::max(highest, static_cast<unsigned>(n.order));
+      if (n.kind != Kind::jet || std::find(D.begin(), D.end(), n.index) == D.end()) continue;
+      highest = std::max(highest, static_cast<unsigned>(n.order));
+      if (n.order == elimination.m || n.order == elimination.m + 1) put_in = false;
     }
     Column phi = elimination.phi;
     for (unsigned k = elimination.m; k <= highest; ++k) {
-      // `on` has put in the first two.
-      if (!elimination.solved || k > elimination.m + 1) {
-        const Column level = elimination.on(phi), unknown = elimination.D(jets(model, k));
+      if (!put_in || k > elimination.m + 1) {
+        const Column level = put_in ? elimination.on(phi) : phi, unknown = elimination.D(jets(model, k));
         equations_.insert(equations_.end(), level.begin(), level.end());
         unknowns_.insert(unknowns_.end(), unknown.begin(), unknown.end());
       }

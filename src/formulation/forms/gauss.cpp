@@ -17,8 +17,9 @@ static std::string up_to_accelerations(const Mechanics& M) {
 }
 
 static Equations equations(const Mechanics& M, const Elimination& E) {
-  const Column compulsion = E.m == 1 ? E.by_u_rate(M.S) : E.by_u(M.S);
-  return {compulsion, E.contract(forces(M))};
+  // dZ = dS - sum_a G_a dq_a'': the forces are held while Z is varied.
+  const Column dS = E.m == 1 ? E.by_u_rate(M.S) : E.by_u(M.S);
+  return {dS, E.contract(forces(M))};
 }
 
 extern const Formulation gauss;
