@@ -59,6 +59,7 @@ Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::ve
   integrals_.assign(program_->quadratures, W(0));
   integral_carry_ = integrals_;
   steps_ = 0;
+  smallest_sigma_t_ = t;
   leading_ = leading;
   return expand(leading_);
 }
@@ -74,8 +75,42 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
   steps_ = other.steps_;
   worst_constraint_ = other.worst_constraint_;
   worst_equation_ = other.worst_equation_;
+  first_sigma_ = other.first_sigma_;
   smallest_sigma_ = other.smallest_sigma_;
+  smallest_sigma_t_ = other.smallest_sigma_t_;
+  weakest_ = other.weakest_;
   return expand(leading_);
+}
+
+template <Number N>
+Outcome Stepper<N>::resume(const StepperState<N>& b) {
+  t_ = before_ = b.t;
+  state_ = b.state;
+  carry_ = b.carry;
+  leading_ = b.leading;
+  integrals_ = b.integrals;
+  integral_carry_ = b.integral_carry;
+  branch_step_ = b.branch_step;
+  steps_ = b.steps;
+  worst_constraint_ = b.worst_constraint;
+  worst_equation_ = b.worst_equation;
+  first_sigma_ = b.first_sigma;
+  smallest_sigma_ = b.smallest_sigma;
+  smallest_sigma_t_ = b.smallest_sigma_t;
+  weakest_ = b.weakest;
+  expansion_.set_weakest_direction(b.direction);
+  return expand(leading_);
+}
+
+template <Number N>
+void Stepper<N>::note_sigma(const N& sigma) {
+  if (first_sigma_ == N(0)) first_sigma_ = sigma;
+  if (!(sigma < smallest_sigma_)) return;
+  smallest_sigma_ = sigma;
+  smallest_sigma_t_ = t_;
+  const std::vector<N>& v = expansion_.weakest_direction();
+  for (std::size_t j = weakest_ = 0; j < v.size(); ++j)
+    if (abs(v[j]) > abs(v[weakest_])) weakest_ = j;
 }
 
 template <Number To, Number From>
@@ -86,11 +121,14 @@ static void convert_all(const std::vector<From>& from, std::vector<To>& to) {
 
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
+  begun_ = {t_, state_, carry_, guess, integrals_, integral_carry_, branch_step_, steps_, worst_constraint_, worst_equation_,
+            first_sigma_, smallest_sigma_, smallest_sigma_t_, weakest_, expansion_.weakest_direction()};
+  ++expansions_;
   convert_all(state_, narrow_state_);
   convert_all(guess, narrow_leading_);
   expansion_.load(convert<N>(t_), narrow_state_, narrow_leading_);
   if (Outcome o = expansion_.prepare(); !o.ok()) return o;
-  if (N sigma = expansion_.smallest_singular_value(); sigma < smallest_sigma_) smallest_sigma_ = sigma;
+  note_sigma(expansion_.smallest_singular_value());
   point_.load(t_, state_, guess);
   if constexpr (std::same_as<N, W>) {
     if (Outcome o = expansion_.project(); !o.ok()) return o;
