@@ -116,8 +116,8 @@ int run(int argc, char** argv) {
   simulate_command->add_option("--at", o.at, "rows at exactly these times: 0.25,0.5")->type_name("T,…");
   simulate_command->add_option("--every", o.every, "rows at this interval")->type_name("DT");
   simulate_command->add_option("--tolerance", o.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
-  simulate_command->add_option("--digits", o.digits, "more than 16: multiprecision")->type_name("N")->check(CLI::Range(1, 2000));
-  simulate_command->add_option("--numbers", o.numbers, "double or long-double")->check(CLI::IsMember({"double", "long-double"}));
+  simulate_command->add_option("--digits", o.digits, "more than 16: multiprecision, or quad if asked for")->type_name("N")->check(CLI::Range(1, 2000));
+  simulate_command->add_option("--numbers", o.numbers, "double, long-double or quad (33 digits, faster than --digits)")->check(CLI::IsMember({"double", "long-double", "quad"}));
   simulate_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
   simulate_command->add_option("--integrator", o.integrator, "taylor")->type_name("NAME");
   simulate_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");

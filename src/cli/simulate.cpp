@@ -84,16 +84,22 @@ void times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
 }
 
 void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
+  // The tolerance of quad without --digits: some digits stay for what round-off takes.
+  constexpr int kQuadTolerance = 32;
   s.digits = o.digits;
-  if (o.digits > 16) s.precision = Precision::multi;
+  if (o.numbers == "quad") s.precision = Precision::quad;
+  else if (o.digits > 16) s.precision = Precision::multi;
   else if (o.numbers == "long-double") s.precision = Precision::long_real;
-  const std::string power_of_ten = "1e-";
-  if (o.digits > 16) s.tolerance = exact(power_of_ten + std::to_string(o.digits + 2), "--digits");
+  if (s.precision == Precision::quad && o.digits > kQuadDigits)
+    throw UsageError{"error: --numbers quad holds " + std::to_string(kQuadDigits) + " digits\nhint: --digits " + std::to_string(o.digits) +
+                     " without --numbers computes in multiprecision\n"};
+  if (o.digits > 16 || s.precision == Precision::quad)
+    s.tolerance = exact("1e-" + std::to_string(o.digits > 16 ? o.digits + 2 : kQuadTolerance), "--digits");
   else if (model.simulate.tolerance) s.tolerance = *model.simulate.tolerance;
   if (!o.tolerance.empty()) s.tolerance = exact(o.tolerance, "--tolerance");
   if (s.tolerance <= 0 || s.tolerance >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
   if (s.precision == Precision::multi) return;
-  const std::string floor = s.precision == Precision::real ? "2e-16" : "1e-19";
+  const std::string floor = s.precision == Precision::real ? "2e-16" : s.precision == Precision::long_real ? "1e-19" : "2e-34";
   if (s.tolerance < exact(floor, "")) {
     std::fprintf(stderr, "note: a tolerance below %s means %s in these numbers\n", floor.c_str(), floor.c_str());
     s.tolerance = exact(floor, "");

@@ -294,6 +294,7 @@ Outcome Stepper<N>::at(const W& t, Expansion<W>& point) const {
 
 template class Stepper<double>;
 template class Stepper<long double>;
+template class Stepper<Quad>;
 template class Stepper<Multi>;
 
 }  // namespace anholon

@@ -81,6 +81,7 @@ class Stepper {
 
 extern template class Stepper<double>;
 extern template class Stepper<long double>;
+extern template class Stepper<Quad>;
 extern template class Stepper<Multi>;
 
 }  // namespace anholon

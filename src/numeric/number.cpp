@@ -23,6 +23,25 @@ std::string number_text(long double x, int digits) {
   return std::string(buffer, r.ptr);
 }
 
+std::string number_text(Quad x, int digits) {
+  if (!is_finite(x)) return x != x ? "nan" : x > 0 ? "inf" : "-inf";
+  mpfr_t v, back;
+  mpfr_inits2(kQuadBits, v, back, static_cast<mpfr_ptr>(nullptr));
+  set_mpfr(v, x);
+  std::string s;
+  // Without a wish: the fewest digits from those a Quad always holds on that read back to x.
+  for (int n = digits > 0 ? digits : kQuadDigits;; ++n) {
+    char* text = nullptr;
+    mpfr_asprintf(&text, "%.*Rg", n, v);
+    s = text;
+    mpfr_free_str(text);
+    mpfr_set_str(back, s.c_str(), 10, MPFR_RNDN);
+    if (digits > 0 || n >= kQuadTextDigits || mpfr_equal_p(back, v)) break;
+  }
+  mpfr_clears(v, back, static_cast<mpfr_ptr>(nullptr));
+  return s;
+}
+
 std::string number_text(const Multi& x, int digits) {
   if (!x.finite()) return mpfr_nan_p(x.raw()) ? "nan" : mpfr_sgn(x.raw()) > 0 ? "inf" : "-inf";
   if (digits <= 0) digits = static_cast<int>(static_cast<double>(Multi::working_bits()) / 3.3219281);

@@ -387,6 +387,7 @@ Outcome Expansion<N>::extend() {
 
 template class Expansion<double>;
 template class Expansion<long double>;
+template class Expansion<Quad>;
 template class Expansion<Multi>;
 
 }  // namespace anholon

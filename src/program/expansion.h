@@ -107,6 +107,7 @@ class Expansion {
 
 extern template class Expansion<double>;
 extern template class Expansion<long double>;
+extern template class Expansion<Quad>;
 extern template class Expansion<Multi>;
 
 }  // namespace anholon

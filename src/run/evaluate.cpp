@@ -165,6 +165,7 @@ Outcome evaluate(const Scenario& s, const StateChoice& choice, int digits, State
 
 template NewtonResidual<double> certify(const std::vector<double>&, const std::vector<double>&, const std::vector<double>&, const Matrix<double>&);
 template NewtonResidual<long double> certify(const std::vector<long double>&, const std::vector<long double>&, const std::vector<long double>&, const Matrix<long double>&);
+template NewtonResidual<Quad> certify(const std::vector<Quad>&, const std::vector<Quad>&, const std::vector<Quad>&, const Matrix<Quad>&);
 template NewtonResidual<Multi> certify(const std::vector<Multi>&, const std::vector<Multi>&, const std::vector<Multi>&, const Matrix<Multi>&);
 
 }  // namespace anholon

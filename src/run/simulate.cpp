@@ -316,6 +316,7 @@ class Run {
 
   std::string text(const W& x) const {
     if constexpr (std::same_as<N, Multi>) return number_text(x, o_.digits + 2);
+    else if constexpr (std::same_as<N, Quad>) return number_text(x, o_.digits > 16 ? std::min(o_.digits + 2, kQuadTextDigits) : 0);
     else return number_text(convert<N>(x));
   }
 
@@ -417,6 +418,7 @@ SimulationReport simulate(const Scenario& s, const SimulationOptions& o, RowSink
   switch (o.precision) {
     case Precision::real: r = Run<double>(s, o, sink).go(); break;
     case Precision::long_real: r = Run<long double>(s, o, sink).go(); break;
+    case Precision::quad: r = Run<Quad>(s, o, sink).go(); break;
     case Precision::multi: {
       const PrecisionScope precision(o.digits + 12);
       r = Run<Multi>(s, o, sink).go();

@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-enum class Precision : std::uint8_t { real, long_real, multi };
+enum class Precision : std::uint8_t { real, long_real, quad, multi };
 
 struct SimulationOptions {
   StateChoice state;
@@ -17,7 +17,7 @@ struct SimulationOptions {
   Rational tolerance{1, 1000000000000};
   int order = 0;                   // of the Taylor polynomials; 0: from the tolerance
   Precision precision = Precision::real;
-  int digits = 16;                 // of the numbers written (multi: also of the computation)
+  int digits = 16;                 // of the numbers written, where more than 16 (multi: also of the computation)
   std::vector<std::string> at_text;  // the times as written, to be printed as given
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;

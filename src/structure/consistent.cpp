@@ -556,12 +556,15 @@ RowChoice<N> independent_constraints(const Mechanics& m, const std::vector<N>& p
 
 template Outcome consistent_state<double>(const InitialProblem<double>&, InitialState<double>&);
 template Outcome consistent_state<long double>(const InitialProblem<long double>&, InitialState<long double>&);
+template Outcome consistent_state<Quad>(const InitialProblem<Quad>&, InitialState<Quad>&);
 template Outcome consistent_state<Multi>(const InitialProblem<Multi>&, InitialState<Multi>&);
 template Outcome complete_state<double>(const InitialProblem<double>&, const System&, const Structure&, InitialState<double>&);
 template Outcome complete_state<long double>(const InitialProblem<long double>&, const System&, const Structure&, InitialState<long double>&);
+template Outcome complete_state<Quad>(const InitialProblem<Quad>&, const System&, const Structure&, InitialState<Quad>&);
 template Outcome complete_state<Multi>(const InitialProblem<Multi>&, const System&, const Structure&, InitialState<Multi>&);
 template RowChoice<double> independent_constraints<double>(const Mechanics&, const std::vector<double>&, const InitialState<double>&);
 template RowChoice<long double> independent_constraints<long double>(const Mechanics&, const std::vector<long double>&, const InitialState<long double>&);
+template RowChoice<Quad> independent_constraints<Quad>(const Mechanics&, const std::vector<Quad>&, const InitialState<Quad>&);
 template RowChoice<Multi> independent_constraints<Multi>(const Mechanics&, const std::vector<Multi>&, const InitialState<Multi>&);
 
 }  // namespace anholon

@@ -177,9 +177,11 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
 
 template class Stage<double>;
 template class Stage<long double>;
+template class Stage<Quad>;
 template class Stage<Multi>;
 template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&);
 template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&, const std::vector<std::size_t>&);
+template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&);
 template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&);
 
 }  // namespace anholon

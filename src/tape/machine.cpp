@@ -186,9 +186,11 @@ std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values) {
 
 template class Machine<double>;
 template class Machine<long double>;
+template class Machine<Quad>;
 template class Machine<Multi>;
 template std::vector<double> evaluate_parameters<double>(Graph&, std::span<const Expr>);
 template std::vector<long double> evaluate_parameters<long double>(Graph&, std::span<const Expr>);
+template std::vector<Quad> evaluate_parameters<Quad>(Graph&, std::span<const Expr>);
 template std::vector<Multi> evaluate_parameters<Multi>(Graph&, std::span<const Expr>);
 
 }  // namespace anholon

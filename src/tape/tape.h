@@ -113,6 +113,7 @@ class Machine {
 
 extern template class Machine<double>;
 extern template class Machine<long double>;
+extern template class Machine<Quad>;
 extern template class Machine<Multi>;
 
 // Values of parameters in any number type.
