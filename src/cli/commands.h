@@ -19,7 +19,7 @@ struct Options {
   std::string numbers = "double";
   std::string integrator = "taylor";
   std::vector<std::string> set, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
-  std::string t, to, every, tolerance;
+  std::string t, to, every, tolerance, rigorous;
   int digits = 16;
   int order = 0;
   int points = 6;

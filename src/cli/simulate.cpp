@@ -87,12 +87,7 @@ void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
   // The tolerance of quad without --digits: some digits stay for what round-off takes.
   constexpr int kQuadTolerance = 32;
   s.digits = o.digits;
-  if (o.numbers == "quad") s.precision = Precision::quad;
-  else if (o.digits > 16) s.precision = Precision::multi;
-  else if (o.numbers == "long-double") s.precision = Precision::long_real;
-  if (s.precision == Precision::quad && o.digits > kQuadDigits)
-    throw UsageError{"error: --numbers quad holds " + std::to_string(kQuadDigits) + " digits\nhint: --digits " + std::to_string(o.digits) +
-                     " without --numbers computes in multiprecision\n"};
+  s.precision = precision(o, Precision::real);
   if (o.digits > 16 || s.precision == Precision::quad)
     s.tolerance = exact("1e-" + std::to_string(o.digits > 16 ? o.digits + 2 : kQuadTolerance), "--digits");
   else if (model.simulate.tolerance) s.tolerance = *model.simulate.tolerance;
@@ -104,6 +99,18 @@ void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
     std::fprintf(stderr, "note: a tolerance below %s means %s in these numbers\n", floor.c_str(), floor.c_str());
     s.tolerance = exact(floor, "");
   }
+}
+
+// --rigorous N or all.
+std::optional<std::size_t> rigorous(const std::string& text) {
+  constexpr long kMostTimes = 1'000'000;
+  if (text.empty()) return std::nullopt;
+  if (text == "all") return 0;
+  const std::optional<Rational> n = parse_rational(text);
+  if (!n || n->get_den() != 1 || *n < 1 || *n > kMostTimes)
+    throw UsageError{"error: --rigorous takes a number of times up to " + std::to_string(kMostTimes) + ", or the word all, not '" + text +
+                     "'\nhint: --rigorous 64\n"};
+  return n->get_num().get_ui();
 }
 
 std::string small(double x) { return number_text(x, 3); }
@@ -129,6 +136,15 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
                                     {"power", r.power}, {"smallest_sigma", r.smallest_sigma}})
     j.key(name).number(small(value));
   j.close();
+  if (r.rigorous) {
+    j.key("rigorous").open_object();
+    j.key("times");
+    if (r.rigorous->times == 0) j.string("all");
+    else j.integer(static_cast<long long>(r.rigorous->times));
+    j.key("newton").number(r.rigorous->newton).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
+    j.key("bits").integer(r.rigorous->bits);
+    j.close();
+  }
   j.key("steps").integer(static_cast<long long>(r.steps));
   j.key("order").integer(r.order);
   if (s.system.form->eliminates()) j.key("eliminations").integer(static_cast<long long>(r.eliminations));
@@ -144,6 +160,11 @@ void report(const Scenario& s, const SimulationReport& r) {
   for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
   std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (before projection %s), power balance %s\n",
                small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), small(r.constraints).c_str(), small(r.power).c_str());
+  if (r.rigorous) {
+    const RigorousReport& g = *r.rigorous;
+    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, constraints by %s, steps join within %s\n",
+                 g.times == 0 ? "for all t" : ("at " + std::to_string(g.times) + " times").c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
+  }
   std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s, %.3g s\n", r.steps, r.order,
                r.rows, small(r.smallest_sigma).c_str(), r.seconds);
 }
@@ -171,6 +192,7 @@ int simulate(const Options& o) {
   }
   if (!o.show.empty()) return show(o, s);
   times(o, s, options);
+  options.rigorous = rigorous(o.rigorous);
   accuracy(o, *in.model, options);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);

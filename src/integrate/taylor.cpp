@@ -164,16 +164,14 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
   increments.assign(expansion_.state_size(), W(0));
   leading.assign(p.unknowns(), W(0));
   for (std::size_t j = 0; j < p.unknowns(); ++j) {
-    const int d = p.d[j], top = order_ - 1 + d;
+    const int d = p.d[j], top = degree(j);
     for (int k = 0; k <= d; ++k) {
-      // sum_i x_(k+i) (k+i)!/i! h^i, without the term of order 0 (that is the state itself). What
-      // the wider point knows, coefficients up to the leading one, comes from there.
+      // sum_i x_(k+i) (k+i)!/i! h^i, without the term of order 0 (that is the state itself).
       W s(0);
       for (int i = top - k; i >= 1; --i) {
         W factor(1);
         for (int f = 1; f <= k; ++f) factor = factor * W(i + f);
-        const W c = k + i <= d ? point_.coefficient(j, k + i) : convert<W>(expansion_.coefficient(j, k + i));
-        s = (s + c * factor) * h;
+        s = (s + dense(j, k + i) * factor) * h;
       }
       if (k < d) increments[expansion_.offset(j) + static_cast<std::size_t>(k)] = s;
       else leading[j] = point_.derivative(j, k) + s;

@@ -47,6 +47,12 @@ class Stepper {
   // … and anywhere in the last step, in an expansion of the caller.
   Outcome at(const W& t, Expansion<W>& point) const;
 
+  // The dense output of the last step as it is: x_j is the sum of dense(j, k) (t - before())^k, k = 0..degree(j). Coefficients up
+  // to that of the leading derivative come from the wider point.
+  std::size_t unknowns() const { return program_->unknowns(); }
+  int degree(std::size_t j) const { return order_ - 1 + program_->d[j]; }
+  W dense(std::size_t j, int k) const { return k <= program_->d[j] ? point_.coefficient(j, k) : convert<W>(expansion_.coefficient(j, k)); }
+
   // Quadrature i as a polynomial in t - before() over the last step: its value there.
   W quadrature(std::size_t i, const W& dt) const;
   // Integrals of the quadratures since the start.

@@ -1,5 +1,6 @@
 #include "numeric/number.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 
@@ -40,6 +41,10 @@ std::string number_text(Quad x, int digits) {
   }
   mpfr_clears(v, back, static_cast<mpfr_ptr>(nullptr));
   return s;
+}
+
+std::string quad_text(Quad x, int digits) {
+  return number_text(x, digits > 16 ? std::min(digits + 2, kQuadTextDigits) : 0);
 }
 
 std::string number_text(const Multi& x, int digits) {

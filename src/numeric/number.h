@@ -131,5 +131,7 @@ std::string number_text(double x, int digits = 0);
 std::string number_text(long double x, int digits = 0);
 std::string number_text(Quad x, int digits = 0);
 std::string number_text(const Multi& x, int digits = 0);
+// As the user asked: digits and two more, as far as a Quad has them; all where no more than 16 were asked for.
+std::string quad_text(Quad x, int digits);
 
 }  // namespace anholon

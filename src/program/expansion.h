@@ -86,7 +86,6 @@ class Expansion {
   Outcome newton(const Solver& solver, bool own);
   Outcome singular() const;
   void jacobian();
-  N root_scale(std::size_t i, int order) const;
   bool residual(int level, std::vector<N>& r, N& worst);
   void add_leading(int stage);
 

@@ -60,6 +60,7 @@ void explain(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
 
 template void explain(const Scenario&, const Motion<double>&, Outcome&);
 template void explain(const Scenario&, const Motion<long double>&, Outcome&);
+template void explain(const Scenario&, const Motion<Quad>&, Outcome&);
 template void explain(const Scenario&, const Motion<Multi>&, Outcome&);
 
 }  // namespace anholon

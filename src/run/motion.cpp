@@ -109,6 +109,7 @@ bool Motion<N>::eliminate_again() {
 
 template class Motion<double>;
 template class Motion<long double>;
+template class Motion<Quad>;
 template class Motion<Multi>;
 
 }  // namespace anholon

@@ -37,6 +37,7 @@ class Run {
     report_.constraints = to_double(stepper.worst_constraint());
     report_.smallest_sigma = to_double(stepper.smallest_sigma());
     report_.eliminations = motion_.eliminations();
+    if (defect_) report_.rigorous = defect_->report();
     return report_;
   }
 
@@ -83,12 +84,14 @@ class Run {
     // Rows at or before the start come from the initial state itself.
     while (next < times_.size() && times_[next] == t0) row(t0, label(next)), ++next;
     if (motion_.at(t0).ok()) watch_.start_balance(motion_.point());
+    if (o_.rigorous) defect_.emplace(s_, *o_.rigorous, Ball(t0), Ball(end_), significand_bits<W>());
     const Stepper<N>* stepper = &motion_.stepper();
     while (report_.outcome.ok() && !(stepper->time() == end_)) {
       report_.outcome = motion_.step(end_);
       stepper = &motion_.stepper();
       if (!report_.outcome.ok()) break;
       const W stop = masses_positive_until();
+      if (defect_) defect_->step(dense_step(*stepper, stop));
       if (o_.progress) o_.progress(to_double(stepper->time()), stepper->steps());
       const bool forward = end_ > t0;
       while (report_.outcome.ok() && next < times_.size() &&
@@ -145,7 +148,7 @@ class Run {
 
   std::string text(const W& x) const {
     if constexpr (std::same_as<N, Multi>) return number_text(x, o_.digits + 2);
-    else if constexpr (std::same_as<N, Quad>) return number_text(x, o_.digits > 16 ? std::min(o_.digits + 2, kQuadTextDigits) : 0);
+    else if constexpr (std::same_as<N, Quad>) return quad_text(x, o_.digits);
     else return number_text(convert<N>(x));
   }
 
@@ -174,6 +177,7 @@ class Run {
   Power power_;
   Motion<N> motion_;
   Watch<W> watch_;
+  std::optional<Defect> defect_;
   std::vector<W> times_;
   std::vector<std::string> labels_;
   W end_{0};

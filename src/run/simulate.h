@@ -3,11 +3,10 @@
 #include <functional>
 
 #include "result/rows.h"
+#include "run/defect.h"
 #include "run/scenario.h"
 
 namespace anholon {
-
-enum class Precision : std::uint8_t { real, long_real, quad, multi };
 
 struct SimulationOptions {
   StateChoice state;
@@ -18,6 +17,7 @@ struct SimulationOptions {
   int order = 0;                   // of the Taylor polynomials; 0: from the tolerance
   Precision precision = Precision::real;
   int digits = 16;                 // of the numbers written, where more than 16 (multi: also of the computation)
+  std::optional<std::size_t> rigorous;  // the defect of the dense output, enclosed at so many times; at all times: 0
   std::vector<std::string> at_text;  // the times as written, to be printed as given
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;
@@ -36,6 +36,7 @@ struct SimulationReport {
   double constraints_kept = 0;   // C3 at the rows, after projection
   double power = 0;              // |h - h0 - work| in relation to the energies turned over
   double smallest_sigma = 1;     // scaled, of the system Jacobian
+  std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
 };
 

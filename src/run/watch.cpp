@@ -108,6 +108,7 @@ double Watch<W>::balance(const Expansion<W>& point, const W& work) {
 }
 
 template class Watch<long double>;
+template class Watch<Quad>;
 template class Watch<Multi>;
 
 }  // namespace anholon

@@ -45,7 +45,7 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   for (std::size_t i = 0; i < size(); ++i) {
     residual[i] = machine_.value(i);
     if (!is_finite(residual[i])) return false;
-    scale[i] = term_scale(i);
+    scale[i] = machine_.terms(i, 0);
     for (std::size_t j = 0; j < n; ++j) {
       jacobian(i, j) = machine_.value(size() + i * n + j);
       if (!is_finite(jacobian(i, j))) return false;
@@ -76,20 +76,6 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
 }
 
 // The sum of the absolute values of the terms of an equation.
-template <Number N>
-N Stage<N>::term_scale(std::size_t i) const {
-  const Instruction& alias = tape_.code[tape_.roots[i]];
-  const std::uint32_t slot = tape_.linear_terms[alias.first].slot;
-  const Instruction& in = tape_.code[slot];
-  if (in.op != Op::linear) return abs(machine_.series(slot)[0]);
-  N s(0);
-  for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
-    const LinearTerm& t = tape_.linear_terms[k];
-    s += abs(N(machine_.rational(t.coefficient) * machine_.series(t.slot)[0]));
-  }
-  return s;
-}
-
 template <Number N>
 N Stage<N>::worst(std::size_t* which) const {
   N most(0);

@@ -46,7 +46,6 @@ class Stage {
 
  private:
   Tape build();
-  N term_scale(std::size_t i) const;
 
   const Mechanics& m_;
   std::vector<StageEquation> equations_;
