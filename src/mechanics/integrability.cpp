@@ -1,0 +1,262 @@
+#include "mechanics/integrability.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "base/diagnostic.h"
+#include "expr/arrange.h"
+#include "mechanics/elimination.h"
+#include "mechanics/integrals.h"
+#include "mechanics/pfaff.h"
+
+namespace anholon {
+
+namespace {
+
+// Brackets may add so many nodes to the graph, and so many of them are formed, before the flag is given up.
+constexpr std::size_t kMostNodes = 300'000, kMostBrackets = 2000;
+
+struct GaveUp {
+  std::string why;
+};
+
+// The forms of a model, and a basis of their kernel.
+struct Pfaffian {
+  FormSpace space;
+  Rows forms;                        // holonomic first, then those of `constraints`
+  std::size_t holonomic = 0;
+  std::vector<std::size_t> constraints;
+  std::vector<std::size_t> pivots;   // as many columns as forms
+  Rows inverse;                      // of the pivot columns
+  Rows kernel;                       // vector fields X with w(X) = 0
+  Column phi;                        // of the holonomic ones
+
+  std::size_t s() const { return constraints.size(); }
+  Column of(std::size_t i) const { return forms[holonomic + i]; }
+};
+
+// A constraint's coefficients do not hold velocities, though their formulas may.
+Column at_rest(const Column& es) {
+  Graph& g = *es[0].graph;
+  return substitute(es, [&](NodeId id) {
+    const Node& n = g.node(id);
+    return n.kind == Kind::jet && n.order > 0 ? g.zero() : Expr{};
+  });
+}
+
+Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bool values, FormPoint& at, FormPoint& generic, bool& special) {
+  const Model& model = *m.model;
+  Graph& g = m.graph();
+  // Rows (A, b) of all constraints that matter, and phi of the holonomic ones.
+  Rows rows;
+  Column phi;
+  std::vector<std::size_t> from;
+  for (std::size_t r = 0; r < m.phi.size(); ++r)
+    if (m.order[r] == 0) phi.push_back(values ? parameters_put(model, m.phi[r]) : m.phi[r]), from.push_back(r);
+  const std::size_t holonomic = phi.size();
+  from.insert(from.end(), linear.begin(), linear.end());
+  bool time = false;
+  const auto rheonomic = [&](const Column& es) {
+    for (NodeId id : symbols(es)) time = time || g.node(id).kind == Kind::time || g.node(id).kind == Kind::given;
+  };
+  for (std::size_t r : linear) {
+    Column row = m.Phi[r];
+    row.push_back(m.phi[r]);
+    row = at_rest(put_masses(model, row));
+    if (values)
+      for (Expr& e : row) e = parameters_put(model, e);
+    time = time || !is_zero(row.back());
+    rheonomic(row);
+    rows.push_back(row);
+  }
+  rheonomic(phi);
+  Pfaffian p;
+  p.space = {m.q, time};
+  if (time) p.space.z.push_back(g.time());
+  for (Expr f : phi) p.forms.push_back(p.space.differential(f));
+  for (Column& row : rows) {
+    if (!time) row.pop_back();
+    p.forms.push_back(row);
+  }
+  // Independent ones, the holonomic first.
+  Rows kept;
+  std::vector<std::size_t> kept_from;
+  for (std::size_t i = 0; i < p.forms.size(); ++i) {
+    Rows more = kept;
+    more.push_back(p.forms[i]);
+    const bool independent = rank(values_at(more, at)) == more.size();
+    special = special || independent != (rank(values_at(more, generic)) == more.size());
+    if (!independent) continue;
+    kept = more;
+    if (i < holonomic) ++p.holonomic, p.phi.push_back(phi[i]);
+    else p.constraints.push_back(from[i]);
+  }
+  p.forms = kept;
+  // Pivots among the coordinates, constant ones before others.
+  constexpr int kConstant = 100;
+  Matrix<Multi> a = values_at(p.forms, at);
+  for (std::size_t c = 0; c < a.cols; ++c) {
+    const bool constant = std::all_of(p.forms.begin(), p.forms.end(), [&](const Column& w) { return is_number(w[c]); });
+    for (std::size_t i = 0; i < a.rows; ++i) a(i, c) *= Multi(time && c + 1 == a.cols ? 0 : constant ? kConstant : 1);
+  }
+  p.pivots = choose_rows(a, Multi(kIndependent)).pivot_columns;
+  if (p.pivots.size() < p.forms.size()) throw GaveUp{"the constraints contradict each other at a point nearby"};
+  std::sort(p.pivots.begin(), p.pivots.end());
+  Rows square;
+  for (const Column& w : p.forms) {
+    square.emplace_back();
+    for (std::size_t c : p.pivots) square.back().push_back(w[c]);
+  }
+  Column divisors;
+  PointValues rough = at.rough();
+  if (!square.empty()) p.inverse = inverse(square, rough, divisors, false);
+  // X_i = d_i - sum C_si d_s, C = A_D^-1 A_I.
+  for (std::size_t i = 0; i < p.space.z.size(); ++i) {
+    if (std::binary_search(p.pivots.begin(), p.pivots.end(), i)) continue;
+    Column X(p.space.z.size(), g.zero()), column;
+    X[i] = g.one();
+    for (const Column& w : p.forms) column.push_back(w[i]);
+    for (std::size_t k = 0; k < p.pivots.size(); ++k) X[p.pivots[k]] = shorter(-applied(p.inverse[k], column));
+    p.kernel.push_back(X);
+  }
+  return p;
+}
+
+// D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel.
+Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag, bool& special) {
+  const std::size_t s = p.s(), nodes_before = p.space.z[0].graph->size();
+  flag = {static_cast<int>(s)};
+  std::vector<VectorField> fields;
+  for (const Column& X : p.kernel) fields.emplace_back(p.space, X);
+  Rows independent, all;
+  std::size_t first_new = 0, formed = 0;
+  while (independent.size() < s) {
+    const std::size_t known = fields.size(), before = independent.size();
+    for (std::size_t j = first_new; j < known; ++j)
+      for (std::size_t i = 0; i < j && independent.size() < s; ++i) {
+        if (++formed > kMostBrackets || p.space.z[0].graph->size() - nodes_before > kMostNodes)
+          throw GaveUp{"the brackets of the admissible motions grow too long"};
+        const Column b = bracket(fields[i], fields[j]);
+        if (std::all_of(b.begin(), b.end(), [](Expr e) { return is_zero(e); })) continue;
+        all.push_back(b);
+        Rows more = independent;
+        more.push_back(b);
+        if (rank(values_at(more, at)) < more.size()) continue;
+        independent = more;
+        fields.emplace_back(p.space, b);
+      }
+    if (independent.size() == before) break;
+    flag.push_back(static_cast<int>(s - independent.size()));
+    first_new = known;
+  }
+  if (independent.size() < s && rank(values_at(all, generic)) > independent.size()) special = true;
+  return independent;
+}
+
+// A basis of the annihilator of the brackets in the span of the forms of the constraints: coefficients, row by row.
+Rows annihilator(const Pfaffian& p, const Rows& brackets, FormPoint& at) {
+  Graph& g = *p.space.z[0].graph;
+  const std::size_t s = p.s();
+  if (brackets.empty()) {
+    Rows unit(s, Column(s, g.zero()));
+    for (std::size_t r = 0; r < s; ++r) unit[r][r] = g.one();
+    return unit;
+  }
+  Rows on;  // w_r(V_k)
+  for (std::size_t r = 0; r < s; ++r) {
+    on.emplace_back();
+    for (const Column& V : brackets) on.back().push_back(shorter(applied(p.of(r), V)));
+  }
+  const std::vector<std::size_t> pivots = choose_rows(values_at(on, at), Multi(kIndependent)).independent;
+  if (pivots.size() < brackets.size()) throw GaveUp{"the brackets of the admissible motions are nearly dependent"};
+  Rows square;
+  for (std::size_t r : pivots) square.push_back(on[r]);
+  Column divisors;
+  PointValues rough = at.rough();
+  const Rows inverted = inverse(square, rough, divisors, false);
+  Rows out;
+  for (std::size_t r = 0; r < s; ++r) {
+    if (std::find(pivots.begin(), pivots.end(), r) != pivots.end()) continue;
+    Column row(s, g.zero());
+    row[r] = g.one();
+    const Column k = on[r] * inverted;
+    for (std::size_t i = 0; i < pivots.size(); ++i) row[pivots[i]] = arranged(-k[i], {});
+    out.push_back(row);
+  }
+  return out;
+}
+
+Integrability decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointValues& near, bool values) {
+  Integrability out;
+  FormPoint at(m, near, 1, false), generic(m, near, 2, true);
+  bool special = false;
+  const Pfaffian p = pfaffian(m, linear, values, at, generic, special);
+  out.constraints = p.constraints;
+  out.time = p.space.time;
+  const Rows brackets = derived_flag(p, at, generic, out.flag, special);
+  if (special && !values) {
+    out = decide(m, linear, near, true);
+    out.these_values = out.integrable() > 0;
+    return out;
+  }
+  if (out.integrable() == 0) return out;
+  Graph& g = m.graph();
+  // The forms of I^(p), then functions whose differentials they are.
+  const Rows combinations = annihilator(p, brackets, at);
+  Rows forms;
+  for (const Column& k : combinations) {
+    Column w(p.space.z.size(), g.zero());
+    for (std::size_t r = 0; r < p.s(); ++r)
+      if (!is_zero(k[r]))
+        for (std::size_t a = 0; a < w.size(); ++a) w[a] = w[a] + k[r] * p.of(r)[a];
+    for (Expr& e : w) e = shorter(e);
+    forms.push_back(w);
+  }
+  const auto named = [&](const Column& k) {
+    Column all(m.phi.size(), g.zero());
+    for (std::size_t r = 0; r < p.s(); ++r) all[p.constraints[r]] = k[r];
+    return all;
+  };
+  Rows found;  // differentials of holonomic constraints and of the integrals
+  for (Expr f : p.phi) found.push_back(p.space.differential(f));
+  for (Expr f : first_integrals(p.space, forms, p.phi, p.kernel, at)) {
+    const Column df = p.space.differential(f);
+    found.push_back(df);
+    Column on_pivots, k;
+    for (std::size_t c : p.pivots) on_pivots.push_back(df[c]);
+    const Column h = on_pivots * p.inverse;
+    for (std::size_t r = 0; r < p.s(); ++r) k.push_back(arranged(h[p.holonomic + r], m.model->names));
+    out.combinations.push_back({named(k), arranged(f, m.model->names)});
+  }
+  if (out.combinations.size() == forms.size()) return out;
+  // Those that are left are integrable by Frobenius, without a formula.
+  out.proved = proved_closed(p.space, forms, p.kernel, brackets);
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    Rows more = found;
+    more.push_back(forms[i]);
+    if (rank(values_at(more, at)) < more.size()) continue;
+    found = more;
+    out.combinations.push_back({named(combinations[i]), std::nullopt});
+  }
+  return out;
+}
+
+}  // namespace
+
+Integrability integrability(const Mechanics& m, const std::vector<std::size_t>& linear, PointValues& near) {
+  Integrability out;
+  if (linear.empty()) return out;
+  const PrecisionScope precision(kFormDigits);
+  try {
+    return decide(m, linear, near, false);
+  } catch (const GaveUp& e) {
+    out.undecided = e.why;
+  } catch (const NoValue&) {
+    out.undecided = "a constraint has no value near the initial data";
+  } catch (const Failure& e) {
+    out.undecided = e.diagnostic.message;
+  }
+  return out;
+}
+
+}  // namespace anholon
