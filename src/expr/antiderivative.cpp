@@ -41,10 +41,9 @@ std::optional<Expr> of_function(Function f, Expr u, const Rational& k) {
       case Function::tan: return -log(cos(u));
       case Function::sinh: return cosh(u);
       case Function::cosh: return sinh(u);
-      case Function::tanh: return log(cosh(u));
       case Function::exp: return exp(u);
       case Function::log: return u * log(u) - u;
-      case Function::asin: case Function::acos: case Function::atan: case Function::asinh: case Function::acosh:
+      case Function::tanh: case Function::asin: case Function::acos: case Function::atan: case Function::asinh: case Function::acosh:
       case Function::atanh: case Function::abs: case Function::sign:
         return std::nullopt;
     }

@@ -13,8 +13,8 @@ namespace anholon {
 
 namespace {
 
-// Brackets may add so many nodes to the graph, and so many of them are formed, before the flag is given up.
-constexpr std::size_t kMostNodes = 300'000, kMostBrackets = 2000;
+// Brackets may add so many nodes to the graph before the flag is given up.
+constexpr std::size_t kMostNodes = 300'000;
 
 struct GaveUp {
   std::string why;
@@ -122,35 +122,69 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
   return p;
 }
 
-// D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel.
+// A vector field with its values and those of its derivatives at a point.
+struct FieldValues {
+  std::vector<Multi> X;
+  Matrix<Multi> d;  // dX_a/dz_b
+
+  FieldValues(const VectorField& field, FormPoint& at) : d(values_at(field.differentials, at)) {
+    const Matrix<Multi> row = values_at({field.X}, at);
+    X = row.data;
+  }
+};
+
+// The components of [X, Y] at the point, as one more row.
+void add_bracket(Matrix<Multi>& rows, const FieldValues& x, const FieldValues& y) {
+  for (std::size_t a = 0; a < x.X.size(); ++a) {
+    Multi sum(0);
+    for (std::size_t b = 0; b < x.X.size(); ++b) {
+      addmul(sum, x.X[b], y.d(a, b));
+      addmul(sum, Multi(-y.X[b]), x.d(a, b));
+    }
+    rows.data.push_back(abs(sum) > Multi(kFormZero) ? sum : Multi(0));
+  }
+  ++rows.rows;
+}
+
+// D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel. Only these become
+// formulas; of the others the values at the point are enough.
 Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag, bool& special) {
-  const std::size_t s = p.s(), nodes_before = p.space.z[0].graph->size();
+  const std::size_t s = p.s(), n = p.space.z.size(), nodes_before = p.space.z[0].graph->size();
   flag = {static_cast<int>(s)};
   std::vector<VectorField> fields;
-  for (const Column& X : p.kernel) fields.emplace_back(p.space, X);
-  Rows independent, all;
-  std::size_t first_new = 0, formed = 0;
-  while (independent.size() < s) {
-    const std::size_t known = fields.size(), before = independent.size();
-    for (std::size_t j = first_new; j < known; ++j)
-      for (std::size_t i = 0; i < j && independent.size() < s; ++i) {
-        if (++formed > kMostBrackets || p.space.z[0].graph->size() - nodes_before > kMostNodes)
-          throw GaveUp{"the brackets of the admissible motions grow too long"};
-        const Column b = bracket(fields[i], fields[j]);
-        if (std::all_of(b.begin(), b.end(), [](Expr e) { return is_zero(e); })) continue;
-        all.push_back(b);
-        Rows more = independent;
-        more.push_back(b);
-        if (rank(values_at(more, at)) < more.size()) continue;
-        independent = more;
-        fields.emplace_back(p.space, b);
+  std::vector<FieldValues> here, elsewhere;
+  Matrix<Multi> values(0, n), all_elsewhere(0, n);
+  Rows fresh = p.kernel, formulas;
+  std::vector<std::pair<std::size_t, std::size_t>> found;  // independent brackets [i, j] that are no formulas yet
+  const auto write_out = [&] {
+    for (const auto& [i, j] : found) fresh.push_back(bracket(fields[i], fields[j])), formulas.push_back(fresh.back());
+    found.clear();
+  };
+  while (values.rows < s) {
+    const std::size_t first_new = fields.size();
+    write_out();
+    for (const Column& X : fresh) {
+      fields.emplace_back(p.space, X);
+      here.emplace_back(fields.back(), at);
+      elsewhere.emplace_back(fields.back(), generic);
+      if (p.space.z[0].graph->size() - nodes_before > kMostNodes) throw GaveUp{"the brackets of the admissible motions grow too long"};
+    }
+    fresh.clear();
+    for (std::size_t j = first_new; j < fields.size(); ++j)
+      for (std::size_t i = 0; i < j && values.rows < s; ++i) {
+        add_bracket(all_elsewhere, elsewhere[i], elsewhere[j]);
+        Matrix<Multi> more = values;
+        add_bracket(more, here[i], here[j]);
+        if (rank(more) < more.rows) continue;
+        values = more;
+        found.emplace_back(i, j);
       }
-    if (independent.size() == before) break;
-    flag.push_back(static_cast<int>(s - independent.size()));
-    first_new = known;
+    if (found.empty()) break;
+    flag.push_back(static_cast<int>(s - values.rows));
   }
-  if (independent.size() < s && rank(values_at(all, generic)) > independent.size()) special = true;
-  return independent;
+  if (values.rows == s) return {};  // nothing is integrable, and nobody asks for formulas
+  special = special || rank(all_elsewhere) > values.rows;
+  return formulas;
 }
 
 // A basis of the annihilator of the brackets in the span of the forms of the constraints: coefficients, row by row.
