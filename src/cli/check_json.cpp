@@ -10,11 +10,7 @@ namespace {
 void constraint(JsonWriter& j, const Scenario& s, const Explanation& x, std::size_t r) {
   const ConstraintFacts& facts = x.constraints[r];
   j.key("reactions").string(name(facts.hypothesis));
-  const bool works = !is_zero(facts.power_factor);
-  j.key("work").open_object().key("none").boolean(!works).key("power");
-  const std::string power = works ? power_text(s, x, r) : "0";
-  power.empty() ? j.null() : j.string(power);
-  j.close();
+  j.key("work").open_object().key("none").boolean(is_zero(facts.power_factor)).key("power").string(power_text(s, x, r)).close();
   if (!s.classes[r].redundant) return;
   j.key("follows_from").open_array();
   for (std::size_t k : facts.follows_from) j.string(s.model->constraints[k].name);

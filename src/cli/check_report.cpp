@@ -44,9 +44,7 @@ std::vector<Entry> higher_state(const Scenario& s) {
 }
 
 std::string power_text(const Scenario& s, const Explanation& x, std::size_t r) {
-  constexpr std::size_t kLongestPower = 100;
-  const std::string power = print(s.mechanics->lambda[r] * x.constraints[r].power_factor, s.model->names, Format::text);
-  return power.size() <= kLongestPower ? power : "";
+  return print(s.mechanics->lambda[r] * x.constraints[r].power_factor, s.model->names, Format::text);
 }
 
 }  // namespace anholon::cli

@@ -16,7 +16,7 @@ struct Entry {
 };
 std::vector<Entry> higher_state(const Scenario& s);
 
-// The power of a constraint's reaction; empty if it is too long to be read.
+// The power of a constraint's reaction.
 std::string power_text(const Scenario& s, const Explanation& x, std::size_t r);
 
 void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome);

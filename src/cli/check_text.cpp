@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include "cli/check_report.h"
 
@@ -18,8 +19,9 @@ std::string describe(const ConstraintClass& c, int order) {
 
 std::string work(const Scenario& s, const Explanation& x, std::size_t r) {
   if (is_zero(x.constraints[r].power_factor)) return "does no work";
+  constexpr std::size_t kLongestPower = 120;  // what is longer is not read here; --json has it
   const std::string power = power_text(s, x, r);
-  return power.empty() ? "may do work" : "may do work, of power " + power;
+  return power.size() > kLongestPower ? "may do work" : "may do work, of power " + power;
 }
 
 std::string listed(const Model& model, const std::vector<std::size_t>& constraints) {
@@ -93,12 +95,14 @@ void structure(const Scenario& s, const Explanation& x) {
   if (x.blocks.size() > 1) std::printf("%s\n", print(s.system, s.structure, x.blocks).c_str());
   if (x.hidden.empty()) return;
   std::printf("what the state must satisfy (hidden constraints)\n");
-  for (const HiddenConstraint& h : x.hidden) {
-    std::string line;
-    for (std::size_t k = 0; k < h.orders.size(); ++k)
-      line += (k ? ", " : "") + derivative_name(hidden_name(s, h), static_cast<unsigned>(k), Format::text) + " (" + derivative_of(h.orders[k]) + ")";
-    std::printf("  %s\n", line.c_str());
-  }
+  // By the derivatives that they bind.
+  std::map<int, std::string> on;
+  for (const HiddenConstraint& h : x.hidden)
+    for (std::size_t k = 0; k < h.orders.size(); ++k) {
+      std::string& list = on[h.orders[k]];
+      list += (list.empty() ? "" : ", ") + derivative_name(hidden_name(s, h), static_cast<unsigned>(k), Format::text);
+    }
+  for (const auto& [order, list] : on) std::printf("  on %s: %s\n", derivative_of(order).c_str(), list.c_str());
   std::printf("\n");
 }
 
