@@ -22,7 +22,9 @@ void integrability(JsonWriter& j, const Scenario& s, const Integrability& i) {
   const auto text = [&](Expr e) { return print(e, model.names, Format::text); };
   j.key("integrability").open_object();
   if (!i.undecided.empty()) {
-    j.key("decided").boolean(false).key("message").string(i.undecided).close();
+    j.key("decided").boolean(false).key("message").string(i.undecided).key("derived_flag").open_array();
+    for (int d : i.flag) j.integer(d);
+    j.close().close();
     return;
   }
   j.key("decided").boolean(true).key("constraints").open_array();

@@ -53,13 +53,14 @@ void reactions(const Scenario& s, const Explanation& x) {
 
 void integrability(const Scenario& s, const Integrability& i) {
   const Model& model = *s.model;
+  std::string flag;
+  for (int d : i.flag) flag += (flag.empty() ? "" : ", ") + std::to_string(d);
   if (!i.undecided.empty()) {
-    std::printf("  integrability: not decided: %s\n", i.undecided.c_str());
+    const std::string most = i.flag.empty() ? "" : "; no more than " + std::to_string(i.integrable()) + " of " + std::to_string(i.constraints.size()) + " are integrable (derived flag " + flag + ", …)";
+    std::printf("  integrability: not decided: %s%s\n", i.undecided.c_str(), most.c_str());
     return;
   }
   if (i.constraints.empty()) return;
-  std::string flag;
-  for (int d : i.flag) flag += (flag.empty() ? "" : ", ") + std::to_string(d);
   const std::size_t count = i.constraints.size(), p = static_cast<std::size_t>(i.integrable());
   std::string text = count == 1 ? listed(model, i.constraints) + (p ? " is integrable" : " is not integrable")
                      : p == 0   ? "none of the " + std::to_string(count) + " linear constraints on velocities is integrable, alone or with others"

@@ -13,8 +13,8 @@ namespace anholon {
 
 namespace {
 
-// Brackets may add so many nodes to the graph before the flag is given up.
-constexpr std::size_t kMostNodes = 300'000;
+// A vector field of more nodes is not differentiated: the flag is given up.
+constexpr std::size_t kLongestField = 4'000;
 
 struct GaveUp {
   std::string why;
@@ -92,12 +92,16 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
     else p.constraints.push_back(from[i]);
   }
   p.forms = kept;
-  // Pivots among the coordinates, constant ones before others.
-  constexpr int kConstant = 100;
+  // Pivots among the coordinates: constant columns before others, and columns of few entries before others, so that the
+  // inverse is short.
+  constexpr double kConstant = 100, kSparser = 10;
   Matrix<Multi> a = values_at(p.forms, at);
   for (std::size_t c = 0; c < a.cols; ++c) {
     const bool constant = std::all_of(p.forms.begin(), p.forms.end(), [&](const Column& w) { return is_number(w[c]); });
-    for (std::size_t i = 0; i < a.rows; ++i) a(i, c) *= Multi(time && c + 1 == a.cols ? 0 : constant ? kConstant : 1);
+    Multi weight(time && c + 1 == a.cols ? 0 : constant ? kConstant : 1);
+    for (const Column& w : p.forms)
+      if (!is_zero(w[c])) weight /= Multi(kSparser);
+    for (std::size_t i = 0; i < a.rows; ++i) a(i, c) *= weight;
   }
   p.pivots = choose_rows(a, Multi(kIndependent)).pivot_columns;
   if (p.pivots.size() < p.forms.size()) throw GaveUp{"the constraints contradict each other at a point nearby"};
@@ -133,57 +137,84 @@ struct FieldValues {
   }
 };
 
-// The components of [X, Y] at the point, as one more row.
-void add_bracket(Matrix<Multi>& rows, const FieldValues& x, const FieldValues& y) {
-  for (std::size_t a = 0; a < x.X.size(); ++a) {
-    Multi sum(0);
-    for (std::size_t b = 0; b < x.X.size(); ++b) {
-      addmul(sum, x.X[b], y.d(a, b));
-      addmul(sum, Multi(-y.X[b]), x.d(a, b));
+// w_r([X, Y]) at the point, for all forms.
+std::vector<Multi> on_bracket(const Matrix<Multi>& forms, const FieldValues& x, const FieldValues& y) {
+  const std::size_t n = x.X.size();
+  std::vector<Multi> bracket(n, Multi(0)), out(forms.rows, Multi(0));
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b) {
+      addmul(bracket[a], x.X[b], y.d(a, b));
+      addmul(bracket[a], Multi(-y.X[b]), x.d(a, b));
     }
-    rows.data.push_back(abs(sum) > Multi(kFormZero) ? sum : Multi(0));
+  for (std::size_t r = 0; r < forms.rows; ++r)
+    for (std::size_t a = 0; a < n; ++a) addmul(out[r], forms(r, a), bracket[a]);
+  return out;
+}
+
+// V less what it shares with the fields before it, 1 in the component that becomes its pivot: the same span with short
+// formulas, which brackets of brackets need.
+Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, FormPoint& at) {
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const Expr factor = V[pivots[k]];
+    if (is_zero(factor)) continue;
+    for (std::size_t a = 0; a < V.size(); ++a)
+      if (!is_zero(before[k][a])) V[a] = a == pivots[k] ? factor.graph->zero() : shorter(V[a] - factor * before[k][a]);
   }
-  ++rows.rows;
+  // The shortest of the components that are not small.
+  constexpr double kPivot = 1e-3;
+  const Matrix<Multi> v = values_at({V}, at);
+  Multi largest(0);
+  for (const Multi& x : v.data)
+    if (abs(x) > largest) largest = abs(x);
+  std::size_t pivot = V.size(), shortest = SIZE_MAX;
+  for (std::size_t a = 0; a < V.size(); ++a) {
+    if (!(abs(v(0, a)) >= Multi(kPivot) * largest)) continue;
+    const std::size_t size = reachable({&V[a], 1}).size();
+    if (size < shortest) shortest = size, pivot = a;
+  }
+  pivots.push_back(pivot);
+  const Expr divisor = V[pivot];
+  for (Expr& e : V)
+    if (!is_zero(e)) e = shorter(e / divisor);
+  return V;
 }
 
 // D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel. Only these become
 // formulas; of the others the values at the point are enough.
 Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag, bool& special) {
-  const std::size_t s = p.s(), n = p.space.z.size(), nodes_before = p.space.z[0].graph->size();
+  const std::size_t s = p.s();
   flag = {static_cast<int>(s)};
+  const Matrix<Multi> forms_here = values_at(p.forms, at), forms_elsewhere = values_at(p.forms, generic);
+  Echelon span, span_elsewhere;
   std::vector<VectorField> fields;
   std::vector<FieldValues> here, elsewhere;
-  Matrix<Multi> values(0, n), all_elsewhere(0, n);
   Rows fresh = p.kernel, formulas;
+  std::vector<std::size_t> pivots;  // of the formulas
   std::vector<std::pair<std::size_t, std::size_t>> found;  // independent brackets [i, j] that are no formulas yet
-  const auto write_out = [&] {
-    for (const auto& [i, j] : found) fresh.push_back(bracket(fields[i], fields[j])), formulas.push_back(fresh.back());
-    found.clear();
-  };
-  while (values.rows < s) {
+  while (span.dimension() < s) {
     const std::size_t first_new = fields.size();
-    write_out();
+    for (const auto& [i, j] : found) {
+      fresh.push_back(reduced(bracket(fields[i], fields[j]), formulas, pivots, at));
+      formulas.push_back(fresh.back());
+    }
+    found.clear();
     for (const Column& X : fresh) {
+      if (reachable(X).size() > kLongestField) throw GaveUp{"the brackets of the admissible motions grow too long"};
       fields.emplace_back(p.space, X);
       here.emplace_back(fields.back(), at);
       elsewhere.emplace_back(fields.back(), generic);
-      if (p.space.z[0].graph->size() - nodes_before > kMostNodes) throw GaveUp{"the brackets of the admissible motions grow too long"};
     }
     fresh.clear();
     for (std::size_t j = first_new; j < fields.size(); ++j)
-      for (std::size_t i = 0; i < j && values.rows < s; ++i) {
-        add_bracket(all_elsewhere, elsewhere[i], elsewhere[j]);
-        Matrix<Multi> more = values;
-        add_bracket(more, here[i], here[j]);
-        if (rank(more) < more.rows) continue;
-        values = more;
-        found.emplace_back(i, j);
+      for (std::size_t i = 0; i < j && span.dimension() < s; ++i) {
+        span_elsewhere.add(on_bracket(forms_elsewhere, elsewhere[i], elsewhere[j]));
+        if (span.add(on_bracket(forms_here, here[i], here[j]))) found.emplace_back(i, j);
       }
     if (found.empty()) break;
-    flag.push_back(static_cast<int>(s - values.rows));
+    flag.push_back(static_cast<int>(s - span.dimension()));
   }
-  if (values.rows == s) return {};  // nothing is integrable, and nobody asks for formulas
-  special = special || rank(all_elsewhere) > values.rows;
+  if (span.dimension() == s) return {};  // nothing is integrable, and nobody asks for formulas
+  special = special || span_elsewhere.dimension() > span.dimension();
   return formulas;
 }
 
@@ -220,8 +251,7 @@ Rows annihilator(const Pfaffian& p, const Rows& brackets, FormPoint& at) {
   return out;
 }
 
-Integrability decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointValues& near, bool values) {
-  Integrability out;
+void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointValues& near, bool values, Integrability& out) {
   FormPoint at(m, near, 1, false), generic(m, near, 2, true);
   bool special = false;
   const Pfaffian p = pfaffian(m, linear, values, at, generic, special);
@@ -229,11 +259,11 @@ Integrability decide(const Mechanics& m, const std::vector<std::size_t>& linear,
   out.time = p.space.time;
   const Rows brackets = derived_flag(p, at, generic, out.flag, special);
   if (special && !values) {
-    out = decide(m, linear, near, true);
+    decide(m, linear, near, true, out);
     out.these_values = out.integrable() > 0;
-    return out;
+    return;
   }
-  if (out.integrable() == 0) return out;
+  if (out.integrable() == 0) return;
   Graph& g = m.graph();
   // The forms of I^(p), then functions whose differentials they are.
   const Rows combinations = annihilator(p, brackets, at);
@@ -262,7 +292,7 @@ Integrability decide(const Mechanics& m, const std::vector<std::size_t>& linear,
     for (std::size_t r = 0; r < p.s(); ++r) k.push_back(arranged(h[p.holonomic + r], m.model->names));
     out.combinations.push_back({named(k), arranged(f, m.model->names)});
   }
-  if (out.combinations.size() == forms.size()) return out;
+  if (out.combinations.size() == forms.size()) return;
   // Those that are left are integrable by Frobenius, without a formula.
   out.proved = proved_closed(p.space, forms, p.kernel, brackets);
   for (std::size_t i = 0; i < forms.size(); ++i) {
@@ -272,7 +302,6 @@ Integrability decide(const Mechanics& m, const std::vector<std::size_t>& linear,
     found = more;
     out.combinations.push_back({named(combinations[i]), std::nullopt});
   }
-  return out;
 }
 
 }  // namespace
@@ -282,7 +311,7 @@ Integrability integrability(const Mechanics& m, const std::vector<std::size_t>& 
   if (linear.empty()) return out;
   const PrecisionScope precision(kFormDigits);
   try {
-    return decide(m, linear, near, false);
+    decide(m, linear, near, false, out);
   } catch (const GaveUp& e) {
     out.undecided = e.why;
   } catch (const NoValue&) {

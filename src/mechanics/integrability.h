@@ -37,7 +37,7 @@ struct Integrability {
   std::vector<IntegrableCombination> combinations;  // p of them
   bool proved = true;        // what is called integrable is; else it only seems so by numbers
   bool these_values = false; // it holds for the values of the parameters and not for all
-  std::string undecided;     // why nothing is said; empty if something is
+  std::string undecided;     // why nothing more is said than that no more than flag.back() are integrable; else empty
 
   int integrable() const { return flag.empty() ? 0 : flag.back(); }
 };

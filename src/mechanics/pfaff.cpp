@@ -75,6 +75,29 @@ Matrix<Multi> values_at(const Rows& rows, FormPoint& at) {
 
 std::size_t rank(const Matrix<Multi>& a) { return choose_rows(a, Multi(kIndependent)).independent.size(); }
 
+bool Echelon::add(std::vector<Multi> v) {
+  const auto largest = [&] {
+    std::size_t at = 0;
+    for (std::size_t a = 1; a < v.size(); ++a)
+      if (abs(v[a]) > abs(v[at])) at = a;
+    return at;
+  };
+  if (v.empty() || !(abs(v[largest()]) > Multi(kFormZero))) return false;
+  const Multi scale = v[largest()];
+  for (Multi& x : v) x /= scale;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Multi factor = -v[pivots_[i]];
+    for (std::size_t a = 0; a < v.size(); ++a) addmul(v[a], factor, rows_[i][a]);
+  }
+  const std::size_t pivot = largest();
+  if (!(abs(v[pivot]) > Multi(kIndependent))) return false;
+  const Multi size = v[pivot];
+  for (Multi& x : v) x /= size;
+  rows_.push_back(std::move(v));
+  pivots_.push_back(pivot);
+  return true;
+}
+
 Expr parameters_put(const Model& model, Expr e) {
   // Values of parameters may hold other parameters.
   for (std::size_t k = 0; k <= model.parameters.size(); ++k) {

@@ -55,6 +55,18 @@ class FormPoint {
 Matrix<Multi> values_at(const Rows& rows, FormPoint& at);
 std::size_t rank(const Matrix<Multi>& a);
 
+// A space spanned by vectors that come one after the other.
+class Echelon {
+ public:
+  // True if v was independent of those before; then it is one of them.
+  bool add(std::vector<Multi> v);
+  std::size_t dimension() const { return rows_.size(); }
+
+ private:
+  std::vector<std::vector<Multi>> rows_;  // 1 at their pivots
+  std::vector<std::size_t> pivots_;
+};
+
 // e with the values of the parameters put in.
 Expr parameters_put(const Model& model, Expr e);
 
