@@ -73,8 +73,9 @@ void integrability(const Scenario& s, const Integrability& i) {
     std::vector<std::size_t> members;
     for (std::size_t r = 0; r < c.coefficients.size(); ++r)
       if (!is_zero(c.coefficients[r])) members.push_back(r);
-    const std::string integral = c.integral ? print(*c.integral, model.names, Format::text) + " = const" : "integrable; no elementary integral was found";
-    std::printf("    %s%s: %s\n", listed(model, members).c_str(), members.size() > 1 ? " together" : " alone", integral.c_str());
+    const std::string whose = listed(model, members);
+    if (!c.integral) std::printf("    %s: in the integrable part; no elementary integral was found\n", whose.c_str());
+    else std::printf("    %s %s: %s = const\n", whose.c_str(), members.size() > 1 ? "together" : "alone", print(*c.integral, model.names, Format::text).c_str());
   }
   if (s.structure.c.empty()) return;
   const int all = s.structure.configuration_dimension;

@@ -56,6 +56,46 @@ std::optional<Expr> of_function(Function f, Expr u, const Rational& k) {
   return std::nullopt;
 }
 
+// r with r^2 = e, where e is a product of even powers.
+std::optional<Expr> square_root(Expr e) {
+  Graph& g = *e.graph;
+  std::vector<std::pair<Expr, Rational>> half;
+  const auto rational_root = [](const Rational& r) -> std::optional<Rational> {
+    if (r <= 0 || !mpz_perfect_square_p(r.get_num().get_mpz_t()) || !mpz_perfect_square_p(r.get_den().get_mpz_t())) return std::nullopt;
+    return Rational(sqrt(r.get_num()), sqrt(r.get_den()));
+  };
+  if (is_number(e)) {
+    const std::optional<Rational> r = rational_root(number_value(e));
+    return r ? std::optional<Expr>(g.number(*r)) : std::nullopt;
+  }
+  Rational factor = 1;
+  if (const Node& n = g.node(e.id); n.kind == Kind::sum && n.count == 1) {
+    const std::optional<Rational> r = rational_root(g.rational(g.terms(e.id)[0].weight));
+    if (!r) return std::nullopt;
+    factor = *r;
+    e = {&g, g.terms(e.id)[0].node};
+  }
+  if (g.node(e.id).kind != Kind::product) return std::nullopt;
+  for (const Term& t : g.terms(e.id)) {
+    const Rational exponent = g.rational(t.weight) / 2;
+    if (exponent.get_den() != 1) return std::nullopt;
+    half.emplace_back(Expr{&g, t.node}, exponent);
+  }
+  return factor * g.product(half);
+}
+
+// The antiderivative of 1/(a z^2 + b) with b/a = r^2: atan(z/r)/(a r).
+std::optional<Expr> arctangent(Expr base, Expr z) {
+  const std::optional<Expr> a = without(Rational(1, 2) * partial(partial(base, z), z), z);
+  if (!a || is_zero(*a)) return std::nullopt;
+  const std::optional<Expr> b = without(base - *a * (z * z), z);
+  if (!b || is_zero(*b)) return std::nullopt;
+  const std::optional<Expr> r = square_root(divided(*b, *a));
+  if (!r) return std::nullopt;
+  const Expr angle = atan(z / *r);
+  return angle / (*a * *r);
+}
+
 struct Factor {
   Expr base;
   Rational exponent;
@@ -122,6 +162,8 @@ std::optional<Expr> of_term(Expr term, Expr z, int parts) {
         const Rational up = f.exponent + 1;
         return *c * (up == 0 ? log(f.base) : (1 / up) * pow(f.base, up));
       }
+    if (f.exponent == -1 && !holds(rest, z))
+      if (const std::optional<Expr> F = arctangent(f.base, z)) return rest * *F;
     // That of its argument.
     const Node& n = g.node(f.base.id);
     if (n.kind != Kind::function) continue;

@@ -2,6 +2,7 @@
 //
 //   of each term c w^k w' :    c w^(k+1)/(k+1),  c log w
 //   of each term c f(u)^k u' : the table of elementary functions f
+//   of c/(a z^2 + b) :         the arc tangent
 //   of z^n g(z) :              by parts, where g is in the table
 //
 // What comes back was differentiated again and proved equal. Nothing says only that it is not in the table.

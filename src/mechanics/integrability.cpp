@@ -35,13 +35,27 @@ struct Pfaffian {
   Column of(std::size_t i) const { return forms[holonomic + i]; }
 };
 
-// A constraint's coefficients do not hold velocities, though their formulas may.
-Column at_rest(const Column& es) {
-  Graph& g = *es[0].graph;
-  return substitute(es, [&](NodeId id) {
-    const Node& n = g.node(id);
-    return n.kind == Kind::jet && n.order > 0 ? g.zero() : Expr{};
-  });
+// (A, b) of a linear constraint. A does not depend on velocities; where its formula holds them all the same, they may have any
+// values, but not 0, with which the formula may be 0/0.
+Column coefficients(const Mechanics& m, std::size_t r) {
+  Graph& g = m.graph();
+  Column row = put_masses(*m.model, m.Phi[r]);
+  const Expr phi = put_masses(*m.model, m.phi[r]);
+  const bool clean = std::all_of(row.begin(), row.end(), [](Expr e) { return jet_order(e) <= 0; });
+  const auto velocity = [&](std::size_t a) { return clean ? g.zero() : g.number(Rational(static_cast<long>(a * a + 2 * a + 3), 2)); };
+  const auto put = [&](Expr e) {
+    return substitute({&e, 1}, [&](NodeId id) {
+      const Node n = g.node(id);
+      return n.kind == Kind::jet && n.order > 0 ? velocity(n.index) : Expr{};
+    })[0];
+  };
+  Expr b = put(phi);
+  for (std::size_t a = 0; a < row.size(); ++a) {
+    row[a] = shorter(put(row[a]));
+    b = b - velocity(a) * row[a];
+  }
+  row.push_back(shorter(b));
+  return row;
 }
 
 Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bool values, FormPoint& at, FormPoint& generic, bool& special) {
@@ -60,9 +74,7 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
     for (NodeId id : symbols(es)) time = time || g.node(id).kind == Kind::time || g.node(id).kind == Kind::given;
   };
   for (std::size_t r : linear) {
-    Column row = m.Phi[r];
-    row.push_back(m.phi[r]);
-    row = at_rest(put_masses(model, row));
+    Column row = coefficients(m, r);
     if (values)
       for (Expr& e : row) e = parameters_put(model, e);
     time = time || !is_zero(row.back());
@@ -284,13 +296,15 @@ void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointVal
   Rows found;  // differentials of holonomic constraints and of the integrals
   for (Expr f : p.phi) found.push_back(p.space.differential(f));
   for (Expr f : first_integrals(p.space, forms, p.phi, p.kernel, at)) {
+    f = arranged(f, m.model->names);
+    if (print(f, m.model->names, Format::text)[0] == '-') f = arranged(-f, m.model->names);
     const Column df = p.space.differential(f);
     found.push_back(df);
     Column on_pivots, k;
     for (std::size_t c : p.pivots) on_pivots.push_back(df[c]);
     const Column h = on_pivots * p.inverse;
     for (std::size_t r = 0; r < p.s(); ++r) k.push_back(arranged(h[p.holonomic + r], m.model->names));
-    out.combinations.push_back({named(k), arranged(f, m.model->names)});
+    out.combinations.push_back({named(k), f});
   }
   if (out.combinations.size() == forms.size()) return;
   // Those that are left are integrable by Frobenius, without a formula.

@@ -86,6 +86,8 @@ TEST(Integrability, OfOneForm) {
   EXPECT_EQ(integrals(found({"x' = r*y'"})), std::vector<std::string>{"x - r*y"});
   EXPECT_EQ(integrals(found({"y*x' - x*y' = 0"})).size(), 1U);
   EXPECT_EQ(found({"x' = z*y'"}).i.flag, (Ints{1, 0}));
+  // Velocities that cancel.
+  EXPECT_EQ(integrals(found({"(x'^2 - y'^2)/(x' - y') = 0"})), std::vector<std::string>{"x + y"});
   // Affine and rheonomic: t is a coordinate.
   EXPECT_EQ(found({"y' = x"}).i.flag, (Ints{1, 0}));
   EXPECT_EQ(integrals(found({"y' = 3*t^2"})).size(), 1U);

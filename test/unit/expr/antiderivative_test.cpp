@@ -15,7 +15,7 @@ TEST(Antiderivative, OfItsTable) {
   const Expr x = n.number("x");
   for (const char* text : {"3", "y", "x^3*y", "1/x", "sqrt(x)", "(a*x + b)^3", "1/(a*x + b)", "sin(a*x + y)", "cos(2*x)*y", "exp(-a*x)", "tan(x)",
                            "sinh(x)", "x*sin(x)", "x^3*exp(a*x)", "sin(x)^2", "cos(a*x)^2", "1/cos(x)^2", "sin(x)*cos(x)", "sin(x)*cos(x)^4",
-                           "x/(1 + x^2)", "x*sqrt(a + x^2)", "log(x)", "(x + y)/x", "x*(1 + sin(x))", "exp(x)*exp(x)"}) {
+                           "x/(1 + x^2)", "x*sqrt(a + x^2)", "log(x)", "(x + y)/x", "x*(1 + sin(x))", "exp(x)*exp(x)", "1/(1 + x^2)", "a/(4*x^2 + 9)", "y/(x^2 + y^2)"}) {
     const std::optional<Expr> F = antiderivative(n.number(text), x);
     ASSERT_TRUE(F) << text;
     EXPECT_TRUE(proved_zero(partial(*F, x) - n.number(text))) << text;
