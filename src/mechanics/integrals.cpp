@@ -1,6 +1,7 @@
 #include "mechanics/integrals.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "expr/antiderivative.h"
 #include "expr/arrange.h"
@@ -20,32 +21,52 @@ constexpr std::uint32_t kLevels = 100'000;
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
 bool proved(Expr e) { return is_zero(e) || (nodes(e) <= kLongestProof && proved_zero(e)); }
 
-bool closed(const FormSpace& space, const Column& w, FormPoint& at) {
-  Rows d;
-  for (Expr e : w) d.push_back(space.differential(e));
-  const Matrix<Multi> v = values_at(d, at);
-  for (std::size_t a = 0; a < w.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      if (abs(Multi(v(a, b) - v(b, a))) > Multi(kFormZero)) return false;
-  return true;
-}
+// A form with its values and those of its derivatives: they tell what is worth trying.
+struct Tried {
+  Rows d;             // dw_a/dz_b
+  Matrix<Multi> w, v;
+
+  Tried(const FormSpace& space, const Column& form, FormPoint& at) {
+    for (Expr e : form) d.push_back(space.differential(e));
+    w = values_at({form}, at);
+    v = values_at(d, at);
+  }
+  Multi curl(std::size_t a, std::size_t b) const { return v(a, b) - v(b, a); }
+  // dw = 0 in all variables but z_a; a = n: in all.
+  bool closed_without(std::size_t a) const {
+    for (std::size_t b = 0; b < v.rows; ++b)
+      for (std::size_t c = 0; c < b; ++c)
+        if (b != a && c != a && abs(curl(b, c)) > Multi(kFormZero)) return false;
+    return true;
+  }
+};
 
 // exp of the integral of mu'/mu over one variable, if that depends on it alone.
-std::optional<Expr> integrating_factor(const FormSpace& space, const Column& w, std::size_t a) {
+std::optional<Expr> integrating_factor(const FormSpace& space, const Column& w, const Tried& t, std::size_t a) {
+  if (!t.closed_without(a)) return std::nullopt;
+  std::optional<Multi> ratio;
+  std::size_t by = w.size();
   for (std::size_t b = 0; b < w.size(); ++b) {
-    if (b == a || is_zero(w[b])) continue;
-    const Column dwa = space.differential(w[a]), dwb = space.differential(w[b]);
-    const Expr difference = dwa[b] - dwb[a];
-    const Expr g = shorter(difference / w[b]);
-    if (is_zero(g)) return std::nullopt;
-    for (NodeId id : symbols({&g, 1}))
-      for (std::size_t c = 0; c < w.size(); ++c)
-        if (c != a && space.z[c].id == id) return std::nullopt;
-    const std::optional<Expr> F = antiderivative(g, space.z[a]);
-    if (!F) return std::nullopt;
-    return exponential(*F);
+    if (b == a) continue;
+    if (is_zero(w[b])) {
+      if (abs(t.curl(a, b)) > Multi(kFormZero)) return std::nullopt;
+      continue;
+    }
+    const Multi r = t.curl(a, b) / t.w(0, b);
+    if (ratio && abs(Multi(r - *ratio)) > Multi(kIndependent)) return std::nullopt;
+    ratio = r;
+    if (by == w.size() || is_number(w[b])) by = b;
   }
-  return std::nullopt;
+  if (!ratio) return std::nullopt;
+  const Expr difference = t.d[a][by] - t.d[by][a];
+  const Expr g = shorter(difference / w[by]);
+  if (is_zero(g)) return std::nullopt;
+  for (NodeId id : symbols({&g, 1}))
+    for (std::size_t c = 0; c < w.size(); ++c)
+      if (c != a && space.z[c].id == id) return std::nullopt;
+  const std::optional<Expr> F = antiderivative(g, space.z[a]);
+  if (!F) return std::nullopt;
+  return exponential(*F);
 }
 
 bool holds_logarithm(Expr e) {
@@ -55,28 +76,30 @@ bool holds_logarithm(Expr e) {
 }
 
 std::optional<Expr> integral_of(const FormSpace& space, const Column& w, FormPoint& at) {
-  const auto attempt = [&](const Column& form) -> std::optional<Expr> {
-    if (!closed(space, form, at)) return std::nullopt;
+  const auto integrated = [&](const Column& form) -> std::optional<Expr> {
     std::optional<Expr> f = potential(form, space.z);
     if (!f) return f;
     // A product of powers has a value on both sides of zero.
     const Expr power = exponential(*f);
     return holds_logarithm(*f) && !holds_logarithm(power) ? power : *f;
   };
-  if (std::optional<Expr> f = attempt(w)) return f;
+  const Tried t(space, w, at);
+  if (t.closed_without(w.size()))
+    if (std::optional<Expr> f = integrated(w)) return f;
   for (std::size_t a = 0; a < w.size(); ++a) {
-    const std::optional<Expr> mu = integrating_factor(space, w, a);
+    const std::optional<Expr> mu = integrating_factor(space, w, t, a);
     if (!mu) continue;
     Column scaled = w;
     for (Expr& e : scaled) e = shorter(e * *mu);
-    if (std::optional<Expr> f = attempt(scaled)) return f;
+    if (!Tried(space, scaled, at).closed_without(w.size())) continue;
+    if (std::optional<Expr> f = integrated(scaled)) return f;
   }
   return std::nullopt;
 }
 
-// The forms, and their reduced echelon forms with several choices of pivots.
-std::vector<Column> candidates(const Rows& forms, FormPoint& at) {
-  std::vector<Column> list(forms.begin(), forms.end());
+// Goes through the forms, and then through their reduced echelon forms with several choices of pivots, until one serves.
+bool any_form(const Rows& forms, FormPoint& at, const std::function<bool(const Column&)>& serves) {
+  if (std::any_of(forms.begin(), forms.end(), serves)) return true;
   const std::size_t p = forms.size(), n = forms[0].size();
   const Matrix<Multi> v = values_at(forms, at);
   PointValues rough = at.rough();
@@ -93,15 +116,15 @@ std::vector<Column> candidates(const Rows& forms, FormPoint& at) {
       ++k;
     }
     if (rank(minor) < p) continue;
+    ++choices;
     Column divisors;
     for (const Column& row : inverse(square, rough, divisors, false)) {
       Column w = row * forms;
       for (Expr& e : w) e = shorter(e);
-      list.push_back(w);
+      if (serves(w)) return true;
     }
-    ++choices;
   } while (choices < kMostChoices && ++looked_at < 10 * kMostChoices && std::prev_permutation(chosen.begin(), chosen.end()));
-  return list;
+  return false;
 }
 
 // f = c solved for one variable, f being linear in it, and put into the forms.
@@ -186,24 +209,24 @@ std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, const Colu
     differentials.push_back(whole.differential(f));
   }
   std::vector<Expr> out;
-  for (bool again = true; again && !forms.empty();) {
-    again = false;
-    for (const Column& w : candidates(forms, at)) {
-      const std::optional<Expr> on_level = integral_of(space, w, at);
-      if (!on_level) continue;
-      const Expr f = written_out(*on_level, levels), on_surface = written_out(*on_level, levels_on_surface);
-      const Column df = whole.differential(f);
-      Rows more = differentials;
-      more.push_back(df);
-      if (rank(values_at(more, at)) < more.size()) continue;
-      if (!std::all_of(kernel.begin(), kernel.end(), [&](const Column& X) { return proved(applied(df, X)); })) continue;
-      differentials = more;
-      out.push_back(on_surface);
-      if (!restrict_to(*on_level, f, on_surface)) continue;
-      forms = independent_of(forms, at);
-      again = true;
-      break;
-    }
+  const auto serves = [&](const Column& w) {
+    const std::optional<Expr> on_level = integral_of(space, w, at);
+    if (!on_level) return false;
+    const Expr f = written_out(*on_level, levels), on_surface = written_out(*on_level, levels_on_surface);
+    const Column df = whole.differential(f);
+    Rows more = differentials;
+    more.push_back(df);
+    if (rank(values_at(more, at)) < more.size()) return false;
+    if (!std::all_of(kernel.begin(), kernel.end(), [&](const Column& X) { return proved(applied(df, X)); })) return false;
+    differentials = more;
+    out.push_back(on_surface);
+    if (!restrict_to(*on_level, f, on_surface)) return false;  // it stays with the others
+    forms = independent_of(forms, at);
+    return true;
+  };
+  while (!forms.empty()) {
+    const Rows now = forms;
+    if (!any_form(now, at, serves)) break;
   }
   return out;
 }
