@@ -14,7 +14,7 @@ namespace anholon {
 namespace {
 
 // A vector field of more nodes is not differentiated: the flag is given up.
-constexpr std::size_t kLongestField = 4'000;
+constexpr std::size_t kLongestField = 1'200;
 
 struct GaveUp {
   std::string why;
@@ -56,6 +56,51 @@ Column coefficients(const Mechanics& m, std::size_t r) {
   }
   row.push_back(shorter(b));
   return row;
+}
+
+// Pivots among the coordinates: constant columns before others, columns of few entries before others, and then the large, or
+// those of the first or the last coordinates.
+enum class Prefer : std::uint8_t { large, early, late };
+
+std::vector<std::size_t> pivots_of(const Pfaffian& p, FormPoint& at, Prefer prefer) {
+  constexpr double kConstant = 100, kSparser = 10, kNext = 10;
+  Matrix<Multi> a = values_at(p.forms, at);
+  const std::size_t coordinates = a.cols - (p.space.time ? 1 : 0);
+  for (std::size_t c = 0; c < a.cols; ++c) {
+    const bool constant = std::all_of(p.forms.begin(), p.forms.end(), [&](const Column& w) { return is_number(w[c]); });
+    Multi weight(c >= coordinates ? 0 : constant ? kConstant : 1);
+    for (const Column& w : p.forms)
+      if (!is_zero(w[c])) weight /= Multi(kSparser);
+    const std::size_t behind = prefer == Prefer::large ? 0 : prefer == Prefer::early ? c : coordinates - std::min(c, coordinates);
+    for (std::size_t k = 0; k < std::min<std::size_t>(behind, 12); ++k) weight /= Multi(kNext);
+    for (std::size_t i = 0; i < a.rows; ++i) a(i, c) *= weight;
+  }
+  std::vector<std::size_t> pivots = choose_rows(a, Multi(kIndependent)).pivot_columns;
+  if (pivots.size() < p.forms.size()) throw GaveUp{"the constraints contradict each other at a point nearby"};
+  std::sort(pivots.begin(), pivots.end());
+  return pivots;
+}
+
+// The kernel with these pivots: X_i = d_i - sum C_si d_s, C = A_D^-1 A_I.
+void solve(Pfaffian& p, std::vector<std::size_t> pivots, FormPoint& at) {
+  Graph& g = *p.space.z[0].graph;
+  p.pivots = std::move(pivots);
+  Rows square;
+  for (const Column& w : p.forms) {
+    square.emplace_back();
+    for (std::size_t c : p.pivots) square.back().push_back(w[c]);
+  }
+  Column divisors;
+  PointValues rough = at.rough();
+  if (!square.empty()) p.inverse = inverse(square, rough, divisors, false);
+  for (std::size_t i = 0; i < p.space.z.size(); ++i) {
+    if (std::binary_search(p.pivots.begin(), p.pivots.end(), i)) continue;
+    Column X(p.space.z.size(), g.zero()), column;
+    X[i] = g.one();
+    for (const Column& w : p.forms) column.push_back(w[i]);
+    for (std::size_t k = 0; k < p.pivots.size(); ++k) X[p.pivots[k]] = shorter(-applied(p.inverse[k], column));
+    p.kernel.push_back(X);
+  }
 }
 
 Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bool values, FormPoint& at, FormPoint& generic, bool& special) {
@@ -104,38 +149,20 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
     else p.constraints.push_back(from[i]);
   }
   p.forms = kept;
-  // Pivots among the coordinates: constant columns before others, and columns of few entries before others, so that the
-  // inverse is short.
-  constexpr double kConstant = 100, kSparser = 10;
-  Matrix<Multi> a = values_at(p.forms, at);
-  for (std::size_t c = 0; c < a.cols; ++c) {
-    const bool constant = std::all_of(p.forms.begin(), p.forms.end(), [&](const Column& w) { return is_number(w[c]); });
-    Multi weight(time && c + 1 == a.cols ? 0 : constant ? kConstant : 1);
-    for (const Column& w : p.forms)
-      if (!is_zero(w[c])) weight /= Multi(kSparser);
-    for (std::size_t i = 0; i < a.rows; ++i) a(i, c) *= weight;
+  // Of several choices of pivots the one with the shortest kernel: brackets of brackets grow with it.
+  constexpr std::size_t kShortKernel = 500;  // characters: shared nodes hide how long a formula is
+  std::optional<Pfaffian> best;
+  std::size_t shortest = SIZE_MAX;
+  for (const Prefer prefer : {Prefer::large, Prefer::early, Prefer::late}) {
+    Pfaffian trial = p;
+    solve(trial, pivots_of(p, at, prefer), at);
+    std::size_t size = 0;
+    for (const Column& X : trial.kernel)
+      for (const std::string& text : print(X, model.names, Format::text)) size += text.size();
+    if (size < shortest) shortest = size, best = trial;
+    if (size <= kShortKernel) break;
   }
-  p.pivots = choose_rows(a, Multi(kIndependent)).pivot_columns;
-  if (p.pivots.size() < p.forms.size()) throw GaveUp{"the constraints contradict each other at a point nearby"};
-  std::sort(p.pivots.begin(), p.pivots.end());
-  Rows square;
-  for (const Column& w : p.forms) {
-    square.emplace_back();
-    for (std::size_t c : p.pivots) square.back().push_back(w[c]);
-  }
-  Column divisors;
-  PointValues rough = at.rough();
-  if (!square.empty()) p.inverse = inverse(square, rough, divisors, false);
-  // X_i = d_i - sum C_si d_s, C = A_D^-1 A_I.
-  for (std::size_t i = 0; i < p.space.z.size(); ++i) {
-    if (std::binary_search(p.pivots.begin(), p.pivots.end(), i)) continue;
-    Column X(p.space.z.size(), g.zero()), column;
-    X[i] = g.one();
-    for (const Column& w : p.forms) column.push_back(w[i]);
-    for (std::size_t k = 0; k < p.pivots.size(); ++k) X[p.pivots[k]] = shorter(-applied(p.inverse[k], column));
-    p.kernel.push_back(X);
-  }
-  return p;
+  return *best;
 }
 
 // A vector field with its values and those of its derivatives at a point.
@@ -191,9 +218,9 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
   return V;
 }
 
-// D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel. Only these become
-// formulas; of the others the values at the point are enough.
-Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag, bool& special) {
+// D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel, in reduced echelon
+// form with their pivots. Only these become formulas; of the others the values at the point are enough.
+Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag, std::vector<std::size_t>& pivots, bool& special) {
   const std::size_t s = p.s();
   flag = {static_cast<int>(s)};
   const Matrix<Multi> forms_here = values_at(p.forms, at), forms_elsewhere = values_at(p.forms, generic);
@@ -201,7 +228,6 @@ Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vec
   std::vector<VectorField> fields;
   std::vector<FieldValues> here, elsewhere;
   Rows fresh = p.kernel, formulas;
-  std::vector<std::size_t> pivots;  // of the formulas
   std::vector<std::pair<std::size_t, std::size_t>> found;  // independent brackets [i, j] that are no formulas yet
   while (span.dimension() < s) {
     const std::size_t first_new = fields.size();
@@ -227,38 +253,39 @@ Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vec
   }
   if (span.dimension() == s) return {};  // nothing is integrable, and nobody asks for formulas
   special = special || span_elsewhere.dimension() > span.dimension();
+  for (std::size_t k = formulas.size(); k-- > 0;)
+    for (std::size_t i = 0; i < k; ++i) {
+      const Expr factor = formulas[i][pivots[k]];
+      if (is_zero(factor)) continue;
+      for (std::size_t a = 0; a < formulas[i].size(); ++a) formulas[i][a] = shorter(formulas[i][a] - factor * formulas[k][a]);
+    }
   return formulas;
 }
 
-// A basis of the annihilator of the brackets in the span of the forms of the constraints: coefficients, row by row.
-Rows annihilator(const Pfaffian& p, const Rows& brackets, FormPoint& at) {
+// The forms that annul the kernel and the brackets V, in reduced echelon form: with w_s = dz_s - sum_i X_i,s dz_i of the pivot
+// columns, those of them that are pivots of no V, less V_k,s times that of the pivot of V_k.
+Rows annihilator(const Pfaffian& p, const Rows& brackets, const std::vector<std::size_t>& pivots) {
   Graph& g = *p.space.z[0].graph;
-  const std::size_t s = p.s();
-  if (brackets.empty()) {
-    Rows unit(s, Column(s, g.zero()));
-    for (std::size_t r = 0; r < s; ++r) unit[r][r] = g.one();
-    return unit;
-  }
-  Rows on;  // w_r(V_k)
-  for (std::size_t r = 0; r < s; ++r) {
-    on.emplace_back();
-    for (const Column& V : brackets) on.back().push_back(shorter(applied(p.of(r), V)));
-  }
-  const std::vector<std::size_t> pivots = choose_rows(values_at(on, at), Multi(kIndependent)).independent;
-  if (pivots.size() < brackets.size()) throw GaveUp{"the brackets of the admissible motions are nearly dependent"};
-  Rows square;
-  for (std::size_t r : pivots) square.push_back(on[r]);
-  Column divisors;
-  PointValues rough = at.rough();
-  const Rows inverted = inverse(square, rough, divisors, false);
+  const auto unit = [&](std::size_t s) {
+    Column w(p.space.z.size(), g.zero());
+    w[s] = g.one();
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < w.size(); ++i)
+      if (!std::binary_search(p.pivots.begin(), p.pivots.end(), i)) w[i] = -p.kernel[k++][s];
+    return w;
+  };
   Rows out;
-  for (std::size_t r = 0; r < s; ++r) {
-    if (std::find(pivots.begin(), pivots.end(), r) != pivots.end()) continue;
-    Column row(s, g.zero());
-    row[r] = g.one();
-    const Column k = on[r] * inverted;
-    for (std::size_t i = 0; i < pivots.size(); ++i) row[pivots[i]] = arranged(-k[i], {});
-    out.push_back(row);
+  for (std::size_t s : p.pivots) {
+    if (std::find(pivots.begin(), pivots.end(), s) != pivots.end()) continue;
+    Column w = unit(s);
+    for (std::size_t k = 0; k < brackets.size(); ++k) {
+      const Expr factor = brackets[k][s];
+      if (is_zero(factor)) continue;
+      const Column of_pivot = unit(pivots[k]);
+      for (std::size_t a = 0; a < w.size(); ++a) w[a] = w[a] - factor * of_pivot[a];
+    }
+    for (Expr& e : w) e = shorter(e);
+    out.push_back(w);
   }
   return out;
 }
@@ -269,52 +296,47 @@ void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointVal
   const Pfaffian p = pfaffian(m, linear, values, at, generic, special);
   out.constraints = p.constraints;
   out.time = p.space.time;
-  const Rows brackets = derived_flag(p, at, generic, out.flag, special);
+  std::vector<std::size_t> pivots;
+  const Rows brackets = derived_flag(p, at, generic, out.flag, pivots, special);
   if (special && !values) {
     decide(m, linear, near, true, out);
     out.these_values = out.integrable() > 0;
     return;
   }
   if (out.integrable() == 0) return;
-  Graph& g = m.graph();
-  // The forms of I^(p), then functions whose differentials they are.
-  const Rows combinations = annihilator(p, brackets, at);
-  Rows forms;
-  for (const Column& k : combinations) {
-    Column w(p.space.z.size(), g.zero());
-    for (std::size_t r = 0; r < p.s(); ++r)
-      if (!is_zero(k[r]))
-        for (std::size_t a = 0; a < w.size(); ++a) w[a] = w[a] + k[r] * p.of(r)[a];
-    for (Expr& e : w) e = shorter(e);
-    forms.push_back(w);
+  // The forms of I^(p), then functions whose differentials they are. The user's own forms may be more readable.
+  const Rows forms = annihilator(p, brackets, pivots);
+  Rows own;
+  for (std::size_t r = 0; r < p.s(); ++r) {
+    Column on_brackets;
+    for (const Column& V : brackets) on_brackets.push_back(applied(p.of(r), V));
+    if (on_brackets.empty() || rank(values_at({on_brackets}, at)) == 0) own.push_back(p.of(r));
   }
-  const auto named = [&](const Column& k) {
-    Column all(m.phi.size(), g.zero());
-    for (std::size_t r = 0; r < p.s(); ++r) all[p.constraints[r]] = k[r];
+  // The coefficients with which the constraints make a form of their span.
+  const auto made_of = [&](const Column& w) {
+    Column on_pivots, all(m.phi.size(), m.graph().zero());
+    for (std::size_t c : p.pivots) on_pivots.push_back(w[c]);
+    const Column k = on_pivots * p.inverse;
+    for (std::size_t r = 0; r < p.s(); ++r) all[p.constraints[r]] = arranged(k[p.holonomic + r], m.model->names);
     return all;
   };
   Rows found;  // differentials of holonomic constraints and of the integrals
   for (Expr f : p.phi) found.push_back(p.space.differential(f));
-  for (Expr f : first_integrals(p.space, forms, p.phi, p.kernel, at)) {
+  for (Expr f : first_integrals(p.space, forms, own, p.phi, p.kernel, at)) {
     f = arranged(f, m.model->names);
     if (print(f, m.model->names, Format::text)[0] == '-') f = arranged(-f, m.model->names);
-    const Column df = p.space.differential(f);
-    found.push_back(df);
-    Column on_pivots, k;
-    for (std::size_t c : p.pivots) on_pivots.push_back(df[c]);
-    const Column h = on_pivots * p.inverse;
-    for (std::size_t r = 0; r < p.s(); ++r) k.push_back(arranged(h[p.holonomic + r], m.model->names));
-    out.combinations.push_back({named(k), f});
+    found.push_back(p.space.differential(f));
+    out.combinations.push_back({made_of(found.back()), f});
   }
-  if (out.combinations.size() == forms.size()) return;
+  if (found.size() == forms.size()) return;
   // Those that are left are integrable by Frobenius, without a formula.
   out.proved = proved_closed(p.space, forms, p.kernel, brackets);
-  for (std::size_t i = 0; i < forms.size(); ++i) {
+  for (const Column& w : forms) {
     Rows more = found;
-    more.push_back(forms[i]);
+    more.push_back(w);
     if (rank(values_at(more, at)) < more.size()) continue;
     found = more;
-    out.combinations.push_back({named(combinations[i]), std::nullopt});
+    out.combinations.push_back({made_of(w), std::nullopt});
   }
 }
 

@@ -151,7 +151,7 @@ class Level {
     return shorter(substitute({&e, 1}, [&](NodeId id) { return id == symbol_.id ? value_ : Expr{}; })[0]);
   }
 
-  void restrict(FormSpace& space, Rows& forms) const {
+  Rows restricted(const Rows& forms) const {
     Rows out;
     for (const Column& w : forms) {
       Column on;
@@ -160,9 +160,9 @@ class Level {
         if (b != variable_) on.push_back(put(w[b] - factor * slopes_[b]));
       out.push_back(on);
     }
-    forms = out;
-    space.z.erase(space.z.begin() + static_cast<std::ptrdiff_t>(variable_));
+    return out;
   }
+  void leave_out(Column& z) const { z.erase(z.begin() + static_cast<std::ptrdiff_t>(variable_)); }
 
  private:
   bool found_ = false;
@@ -180,7 +180,7 @@ Rows independent_of(const Rows& forms, FormPoint& at) {
 
 }  // namespace
 
-std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, const Column& holonomic, const Rows& kernel, FormPoint& at) {
+std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, Rows own, const Column& holonomic, const Rows& kernel, FormPoint& at) {
   Graph& g = *whole.z[0].graph;
   FormSpace space = whole;
   // What the symbols c_k stand for: everywhere, and where the holonomic constraints hold.
@@ -199,7 +199,9 @@ std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, const Colu
     levels_on_surface.push_back(on_surface);
     const Level level(space, f, c, at);
     if (!level.found()) return false;
-    level.restrict(space, forms);
+    forms = independent_of(level.restricted(forms), at);
+    own = level.restricted(own);
+    level.leave_out(space.z);
     solved.push_back(level);
     return true;
   };
@@ -220,13 +222,11 @@ std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, const Colu
     if (!std::all_of(kernel.begin(), kernel.end(), [&](const Column& X) { return proved(applied(df, X)); })) return false;
     differentials = more;
     out.push_back(on_surface);
-    if (!restrict_to(*on_level, f, on_surface)) return false;  // it stays with the others
-    forms = independent_of(forms, at);
-    return true;
+    return restrict_to(*on_level, f, on_surface);  // else it stays with the others
   };
   while (!forms.empty()) {
-    const Rows now = forms;
-    if (!any_form(now, at, serves)) break;
+    const Rows now = forms, own_now = own;
+    if (!std::any_of(own_now.begin(), own_now.end(), serves) && !any_form(now, at, serves)) break;
   }
   return out;
 }

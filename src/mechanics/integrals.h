@@ -9,8 +9,9 @@
 namespace anholon {
 
 // Independent functions f, each proved: X f = 0 for all X of `kernel`, the fields that the forms of all constraints annul.
-// `forms`: independent ones of a span closed under d modulo the differentials of `holonomic`.
-std::vector<Expr> first_integrals(const FormSpace& space, Rows forms, const Column& holonomic, const Rows& kernel, FormPoint& at);
+// `forms`: a basis of a span closed under d, in which the differentials of `holonomic` lie. `own`: more forms of that span, which
+// are tried first.
+std::vector<Expr> first_integrals(const FormSpace& space, Rows forms, Rows own, const Column& holonomic, const Rows& kernel, FormPoint& at);
 
 // dw = 0 modulo the forms, for each of them: dw(X, Y) = 0 on the fields that they all annul, w(X) = 0; proved.
 bool proved_closed(const FormSpace& space, const Rows& forms, const Rows& kernel, const Rows& brackets);

@@ -189,7 +189,7 @@ TEST_P(Mixed, FlagSeesThroughTheMixture) {
   expect_constant(mutant);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seed, Mixed, testing::Range<std::uint64_t>(1, 3));
+INSTANTIATE_TEST_SUITE_P(Seed, Mixed, testing::Range<std::uint64_t>(1, 7));
 
 }  // namespace
 }  // namespace anholon
