@@ -197,7 +197,7 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
     const Expr factor = V[pivots[k]];
     if (is_zero(factor)) continue;
     for (std::size_t a = 0; a < V.size(); ++a)
-      if (!is_zero(before[k][a])) V[a] = a == pivots[k] ? factor.graph->zero() : shorter(V[a] - factor * before[k][a]);
+      if (!is_zero(before[k][a])) V[a] = a == pivots[k] ? factor.graph->zero() : simplified(V[a] - factor * before[k][a]);
   }
   // The shortest of the components that are not small.
   constexpr double kPivot = 1e-3;
@@ -214,7 +214,7 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
   pivots.push_back(pivot);
   const Expr divisor = V[pivot];
   for (Expr& e : V)
-    if (!is_zero(e)) e = shorter(e / divisor);
+    if (!is_zero(e)) e = simplified(e / divisor);
   return V;
 }
 
@@ -257,7 +257,7 @@ Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vec
     for (std::size_t i = 0; i < k; ++i) {
       const Expr factor = formulas[i][pivots[k]];
       if (is_zero(factor)) continue;
-      for (std::size_t a = 0; a < formulas[i].size(); ++a) formulas[i][a] = shorter(formulas[i][a] - factor * formulas[k][a]);
+      for (std::size_t a = 0; a < formulas[i].size(); ++a) formulas[i][a] = simplified(formulas[i][a] - factor * formulas[k][a]);
     }
   return formulas;
 }
@@ -284,7 +284,7 @@ Rows annihilator(const Pfaffian& p, const Rows& brackets, const std::vector<std:
       const Column of_pivot = unit(pivots[k]);
       for (std::size_t a = 0; a < w.size(); ++a) w[a] = w[a] - factor * of_pivot[a];
     }
-    for (Expr& e : w) e = shorter(e);
+    for (Expr& e : w) e = simplified(e);
     out.push_back(w);
   }
   return out;

@@ -1,5 +1,6 @@
 #include "mechanics/pfaff.h"
 
+#include "expr/normal.h"
 #include "tape/tape.h"
 
 namespace anholon {
@@ -27,11 +28,22 @@ VectorField::VectorField(const FormSpace& space, Column components) : X(std::mov
   for (Expr e : X) differentials.push_back(is_number(e) ? Column(X.size(), e.graph->zero()) : space.differential(e));
 }
 
+Expr simplified(Expr e) {
+  constexpr long kMostWork = 100'000;  // products of terms: a formula that takes more is not worth it here
+  const std::size_t size = reachable({&e, 1}).size();
+  if (size <= 3 || size > kShortEnough) return e;
+  const std::optional<NormalForm> form = normal_form(e, {}, kMostWork);
+  if (!form) return e;
+  const Expr top = expression(form->numerator, form->generators);
+  const Expr whole = is_zero(top) ? top : top / expression(form->denominator, form->generators);
+  return reachable({&whole, 1}).size() < size ? whole : e;
+}
+
 Column bracket(const VectorField& X, const VectorField& Y) {
   Column b;
   for (std::size_t c = 0; c < X.X.size(); ++c) {
     const Expr forth = applied(Y.differentials[c], X.X), back = applied(X.differentials[c], Y.X);
-    b.push_back(shorter(forth - back));
+    b.push_back(simplified(forth - back));
   }
   return b;
 }

@@ -23,6 +23,9 @@ struct FormSpace {
 // w(X), or X f with w = df.
 Expr applied(const Column& w, const Column& X);
 
+// e, or its normal form where that is shorter and found with little work.
+Expr simplified(Expr e);
+
 // A vector field with the differentials of its components.
 struct VectorField {
   Column X;
