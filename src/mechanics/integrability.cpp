@@ -323,8 +323,7 @@ void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointVal
   Rows found;  // differentials of holonomic constraints and of the integrals
   for (Expr f : p.phi) found.push_back(p.space.differential(f));
   for (Expr f : first_integrals(p.space, forms, own, p.phi, p.kernel, at)) {
-    f = arranged(f, m.model->names);
-    if (print(f, m.model->names, Format::text)[0] == '-') f = arranged(-f, m.model->names);
+    f = readable(p.space, f, m.model->names);
     found.push_back(p.space.differential(f));
     out.combinations.push_back({made_of(found.back()), f});
   }

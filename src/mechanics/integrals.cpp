@@ -231,6 +231,30 @@ std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, Rows own, 
   return out;
 }
 
+Expr readable(const FormSpace& space, Expr f, const SymbolNames& names) {
+  constexpr long kMostWork = 100'000;
+  const Expr as_found = arranged(f, names);
+  const std::optional<NormalForm> form = normal_form(f, {}, kMostWork);
+  if (form && !form->numerator.empty()) {
+    mpz_class common = 0, denominators = 1;
+    for (const Monomial& m : form->numerator) {
+      common = gcd(common, m.coefficient.get_num());
+      denominators = lcm(denominators, m.coefficient.get_den());
+    }
+    Expr multiple = Rational(denominators, common) * expression(form->numerator, form->generators);
+    const Expr below = expression(form->denominator, form->generators);
+    bool varies = false;
+    for (NodeId id : symbols({&below, 1})) varies = varies || std::any_of(space.z.begin(), space.z.end(), [&](Expr z) { return z.id == id; });
+    if (varies) multiple = multiple / below;
+    f = multiple;
+  }
+  f = arranged(f, names);
+  const auto length = [&](Expr e) { return print(e, names, Format::text).size(); };
+  // Exponentials do not cancel in a normal form: then it is no improvement.
+  if (2 * length(f) > 3 * length(as_found)) f = as_found;
+  return print(f, names, Format::text)[0] == '-' ? arranged(-f, names) : f;
+}
+
 bool proved_closed(const FormSpace& space, const Rows& forms, const Rows& kernel, const Rows& brackets) {
   Rows fields = kernel;
   fields.insert(fields.end(), brackets.begin(), brackets.end());

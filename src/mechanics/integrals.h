@@ -13,6 +13,9 @@ namespace anholon {
 // are tried first.
 std::vector<Expr> first_integrals(const FormSpace& space, Rows forms, Rows own, const Column& holonomic, const Rows& kernel, FormPoint& at);
 
+// A multiple of the integral by a constant, without constant denominators and common factors, as a person would write it.
+Expr readable(const FormSpace& space, Expr f, const SymbolNames& names);
+
 // dw = 0 modulo the forms, for each of them: dw(X, Y) = 0 on the fields that they all annul, w(X) = 0; proved.
 bool proved_closed(const FormSpace& space, const Rows& forms, const Rows& kernel, const Rows& brackets);
 
