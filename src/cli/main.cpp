@@ -119,7 +119,7 @@ int run(int argc, char** argv) {
   simulate_command->add_option("--digits", o.digits, "more than 16: multiprecision")->type_name("N")->check(CLI::Range(1, 2000));
   simulate_command->add_option("--numbers", o.numbers, "double or long-double")->check(CLI::IsMember({"double", "long-double"}));
   simulate_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
-  simulate_command->add_option("--integrator", o.integrator, "taylor")->type_name("NAME");
+  simulate_command->add_option("--integrator", o.integrator, "taylor, or a second opinion by SUNDIALS: cvode, ida; with its difference")->type_name("NAME");
   simulate_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
 
   CLI::App* forms_command = model_command("forms", "the catalogue of forms, and which apply to a model", cli::forms,

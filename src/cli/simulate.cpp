@@ -102,6 +102,27 @@ void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
 
 std::string small(double x) { return number_text(x, 3); }
 
+// SUNDIALS computes in double, and not below a tolerance of its own.
+void integrator(const Options& o, const Model& model, SimulationOptions& s) {
+  s.integrator = model.simulate.integrator.value_or(Integrator::taylor);
+  if (!o.integrator.empty()) {
+    const auto wanted = find_integrator(o.integrator);
+    if (!wanted) {
+      const std::string near = did_you_mean(o.integrator, integrator_names());
+      throw UsageError{"error: there is no integrator '" + o.integrator + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                       "\nhint: --integrator taylor, cvode or ida\n"};
+    }
+    s.integrator = *wanted;
+  }
+  if (s.integrator == Integrator::taylor) return;
+  if (s.precision != Precision::real)
+    throw UsageError{std::string("error: the integrator '") + name(s.integrator) + "' computes in double\nhint: leave out " +
+                     (s.precision == Precision::multi ? "--digits" : "--numbers") + ", or use --integrator taylor\n"};
+  if (s.tolerance.get_d() < kLeastSundialsTolerance)
+    std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastSundialsTolerance).c_str(), small(kLeastSundialsTolerance).c_str(),
+                 name(s.integrator));
+}
+
 void write_json(const Scenario& s, const MemorySink& rows, const SimulationReport& r, std::FILE* file) {
   JsonWriter j;
   j.open_object();
@@ -123,6 +144,16 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
                                     {"power", r.power}, {"smallest_sigma", r.smallest_sigma}})
     j.key(name).number(small(value));
   j.close();
+  if (r.second) {
+    j.key("second_opinion").open_object();
+    j.key("integrator").string(name(r.second->integrator));
+    j.key("difference").number(small(r.second->difference));
+    j.key("of").string(r.second->of);
+    j.key("t").number(number_text(r.second->t));
+    j.key("steps").integer(static_cast<long long>(r.second->steps));
+    j.key("evaluations").integer(static_cast<long long>(r.second->evaluations));
+    j.close();
+  }
   j.key("steps").integer(static_cast<long long>(r.steps));
   j.key("order").integer(r.order);
   if (s.system.form->eliminates()) j.key("eliminations").integer(static_cast<long long>(r.eliminations));
@@ -136,10 +167,16 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
   for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
-  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (before projection %s), power balance %s\n",
-               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), small(r.constraints).c_str(), small(r.power).c_str());
+  // What another integrator computed is not projected.
+  const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
+  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s), power balance %s\n",
+               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(), small(r.power).c_str());
   std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s, %.3g s\n", r.steps, r.order,
-               r.rows, small(r.smallest_sigma).c_str(), r.seconds);
+               r.rows, small(r.smallest_sigma).c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
+  if (r.second)
+    std::fprintf(stderr, "second opinion: the rows are those of %s (%zu steps, %zu evaluations, %.3g s); they differ from Taylor's motion by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
+                 name(r.second->integrator), r.second->steps, r.second->evaluations, r.second->seconds, small(r.second->difference).c_str(),
+                 r.second->of.c_str(), number_text(r.second->t, 6).c_str(), r.second->of.c_str());
 }
 
 bool ends_with(const std::string& s, const std::string& end) {
@@ -149,8 +186,6 @@ bool ends_with(const std::string& s, const std::string& end) {
 }  // namespace
 
 int simulate(const Options& o) {
-  if (o.integrator != "taylor")
-    throw UsageError{"error: the integrator '" + o.integrator + "' is not read yet\nhint: --integrator taylor\n"};
   if (ends_with(o.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
   const Reader in = read(o);
   SimulationOptions options;
@@ -166,6 +201,7 @@ int simulate(const Options& o) {
   if (!o.show.empty()) return show(o, s);
   times(o, s, options);
   accuracy(o, *in.model, options);
+  integrator(o, *in.model, options);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   options.cancelled = [] { return stop_requested != 0; };

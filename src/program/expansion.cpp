@@ -99,6 +99,27 @@ void Expansion<N>::sweep_known(int last_stage) {
 }
 
 template <Number N>
+void Expansion<N>::sweep_quadratures(int last_stage) {
+  const Program& p = *program_;
+  if (p.quadratures == 0) return;
+  const std::uint32_t end = static_cast<std::uint32_t>(p.tape.code.size());
+  for (int stage = 0; stage <= last_stage; ++stage) {
+    set_inputs(stage, 0, p.inputs.size());
+    machine_.sweep(stage, p.tape.main_end, end);
+  }
+}
+
+template <Number N>
+void Expansion<N>::equations(std::vector<N>& out) const {
+  const Program& p = *program_;
+  out.resize(p.unknowns());
+  for (std::size_t i = 0; i < p.unknowns(); ++i) {
+    const std::size_t order = static_cast<std::size_t>(p.c[i]);
+    out[i] = machine_.series(p.tape.roots[i])[order] * factorial_[order];
+  }
+}
+
+template <Number N>
 void Expansion<N>::jacobian() {
   const Program& p = *program_;
   const Tape& tape = p.tape;
@@ -375,13 +396,7 @@ Outcome Expansion<N>::extend() {
       add_leading(stage);
     }
   }
-  if (p.quadratures > 0) {
-    const std::uint32_t end = static_cast<std::uint32_t>(p.tape.code.size());
-    for (int stage = 0; stage <= stages_; ++stage) {
-      set_inputs(stage, 0, p.inputs.size());
-      machine_.sweep(stage, p.tape.main_end, end);
-    }
-  }
+  sweep_quadratures(stages_);
   return {};
 }
 

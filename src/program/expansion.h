@@ -76,6 +76,10 @@ class Expansion {
   const N& coefficient(std::size_t j, int k) const { return x_[j * stride_ + static_cast<std::size_t>(k)]; }
   void state(std::vector<N>& out) const;
   void leading(std::vector<N>& out) const;
+  // E_i^(c_i) at the leading derivatives as loaded, after evaluate(): what solve() makes zero.
+  void equations(std::vector<N>& out) const;
+  // The quadratures at the point itself, order 0; extend() does it for all orders.
+  void evaluate_quadratures() { sweep_quadratures(0); }
   // The Taylor series (ascending) of quadrature i, orders 0..stages().
   const N* quadrature(std::size_t i) const { return machine_.series(program_->tape.roots[program_->unknowns() + i]); }
 
@@ -83,6 +87,7 @@ class Expansion {
   void set_inputs(int stage, std::size_t from, std::size_t to);
   void sweep(int stage);
   void sweep_known(int last_stage);
+  void sweep_quadratures(int last_stage);
   Outcome newton(const Solver& solver, bool own);
   Outcome singular() const;
   void jacobian();

@@ -51,12 +51,21 @@ class Run {
     if (report_.outcome.ok()) {
       sink_.columns(column_names());
       schedule(start.t);
+      if constexpr (std::same_as<N, double>)
+        if (o_.integrator != Integrator::taylor)
+          second_ = std::make_unique<SecondMotion>(
+              *s_.model, leg_->program, SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, start.t, end_,
+              start.state, start.leading);
       run(start.t);
     }
     report_.t = number_text(to_double(reached_ ? *reached_ : leg_->stepper.time()));
     report_.steps = leg_->stepper.steps();
     report_.constraints = to_double(leg_->stepper.worst_constraint());
     report_.smallest_sigma = to_double(leg_->stepper.smallest_sigma());
+    if (second_) {
+      report_.second = second_->report();
+      report_.constraints = report_.second->drift;
+    }
     return report_;
   }
 
@@ -230,6 +239,8 @@ class Run {
       if (same) return false;
       auto next = std::make_unique<Leg>(*this, std::move(system), std::move(structure));
       if (!next->stepper.take_over(leg_->stepper).ok()) return false;
+      if constexpr (std::same_as<N, double>)
+        if (second_) second_->go_on_with(next->program, leg_->stepper.time());
       leg_ = std::move(next);
       ++report_.eliminations;
       return true;
@@ -319,10 +330,18 @@ class Run {
     else return number_text(convert<N>(x));
   }
 
+  // The motion that was asked for, at t.
+  Outcome point_at(const W& t) {
+    Outcome o = leg_->stepper.at(t, leg_->point);
+    if constexpr (std::same_as<N, double>)
+      if (o.ok() && second_) o = second_->at(t, leg_->point);
+    return o;
+  }
+
   void row(const W& t, const std::string& label) {
-    if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
+    if (Outcome o = point_at(t); !o.ok()) {
       report_.outcome = o;
-      report_.outcome.message += " at t = " + number_text(to_double(t), 12);
+      if (o.message.find(" t = ") == std::string::npos) report_.outcome.message += " at t = " + number_text(to_double(t), 12);
       return;
     }
     if (orders_beyond(s_, leg_->program.d) > 0)
@@ -376,7 +395,7 @@ class Run {
   }
 
   void energy_at(const W& t, W& h) {
-    if (!leg_->stepper.at(t, leg_->point).ok()) return;
+    if (!point_at(t).ok()) return;
     outputs_.evaluate(leg_->point);
     h = outputs_[s_.system.coordinates];
   }
@@ -384,7 +403,9 @@ class Run {
   void balance() {
     W h(0);
     energy_at(leg_->stepper.time(), h);
-    const W work = leg_->stepper.integrals()[0];
+    W work = leg_->stepper.integrals()[0];
+    if constexpr (std::same_as<N, double>)
+      if (second_) work = second_->work();
     W scale(1);
     for (const W& v : {h, h0_, work})
       if (abs(v) > scale) scale = abs(v);
@@ -398,6 +419,7 @@ class Run {
   Power power_;
   std::unique_ptr<Leg> leg_;
   OutputTape<W> outputs_;
+  std::unique_ptr<SecondMotion> second_;    // what another integrator makes of it
   Elimination elimination_;                 // the present one
   std::unique_ptr<OutputTape<W>> pivots_;   // its pivots, and what they were when it was chosen
   std::vector<double> chosen_;

@@ -4,6 +4,7 @@
 
 #include "result/rows.h"
 #include "run/scenario.h"
+#include "run/second_opinion.h"
 
 namespace anholon {
 
@@ -16,6 +17,7 @@ struct SimulationOptions {
   std::optional<Rational> every;
   Rational tolerance{1, 1000000000000};
   int order = 0;                   // of the Taylor polynomials; 0: from the tolerance
+  Integrator integrator = Integrator::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
   Precision precision = Precision::real;
   int digits = 16;                 // of the numbers written (multi: also of the computation)
   std::vector<std::string> at_text;  // the times as written, to be printed as given
@@ -37,6 +39,7 @@ struct SimulationReport {
   double power = 0;              // |h - h0 - work| in relation to the energies turned over
   double smallest_sigma = 1;     // scaled, of the system Jacobian
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
+  std::optional<SecondOpinion> second;  // where another integrator was asked for
 };
 
 SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink);
