@@ -147,6 +147,7 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   if (r.second) {
     j.key("second_opinion").open_object();
     j.key("integrator").string(name(r.second->integrator));
+    j.key("form").string(r.second->form);
     j.key("difference").number(small(r.second->difference));
     j.key("of").string(r.second->of);
     j.key("t").number(number_text(r.second->t));
@@ -171,11 +172,11 @@ void report(const Scenario& s, const SimulationReport& r) {
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
   std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s), power balance %s\n",
                small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(), small(r.power).c_str());
-  std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s, %.3g s\n", r.steps, r.order,
+  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s, %.3g s\n", r.second ? "Taylor's motion: " : "", r.steps, r.order,
                r.rows, small(r.smallest_sigma).c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
   if (r.second)
-    std::fprintf(stderr, "second opinion: the rows are those of %s (%zu steps, %zu evaluations, %.3g s); they differ from Taylor's motion by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
-                 name(r.second->integrator), r.second->steps, r.second->evaluations, r.second->seconds, small(r.second->difference).c_str(),
+    std::fprintf(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from Taylor's motion by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
+                 name(r.second->integrator), r.second->form == s.system.form->name ? "" : " on Routh's equations", r.second->steps, r.second->evaluations, r.second->seconds, small(r.second->difference).c_str(),
                  r.second->of.c_str(), number_text(r.second->t, 6).c_str(), r.second->of.c_str());
 }
 

@@ -66,6 +66,8 @@ class Expansion {
   // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms, at the state as
   // loaded or projected last.
   const N& constraint_residual() const { return constraint_residual_; }
+  // The same as project() found it, before it corrected the level.
+  const N& drift() const { return drift_; }
   // Residual of the equations at the leading derivatives found, in relation to their terms.
   const N& equation_residual() const { return equation_residual_; }
   N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
@@ -107,7 +109,7 @@ class Expansion {
   Lu<N> lu_;
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_, delta_x_, r_, y_, direction_;
-  N constraint_residual_{0}, equation_residual_{0};
+  N constraint_residual_{0}, drift_{0}, equation_residual_{0};
 };
 
 extern template class Expansion<double>;

@@ -2,62 +2,72 @@
 
 #include <chrono>
 
-#include "run/scenario.h"
-
 namespace anholon {
 
 namespace {
 
-std::vector<double> narrow(const std::vector<long double>& wide) {
-  std::vector<double> out;
-  for (long double x : wide) out.push_back(convert<double>(x));
-  return out;
+// The state and the leading derivatives that one program wants, out of those of another for the same unknowns.
+bool translate(const Program& from, const std::vector<double>& state, const std::vector<double>& leading, const Program& to,
+               std::vector<long double>& to_state, std::vector<long double>& to_leading) {
+  std::size_t offset = 0;
+  for (std::size_t j = 0; j < to.unknowns(); ++j) {
+    const int known = from.d[j];
+    if (to.d[j] > known + 1) return false;
+    const auto value = [&](int k) -> long double { return k < known ? state[offset + static_cast<std::size_t>(k)] : k == known ? leading[j] : 0; };
+    for (int k = 0; k < to.d[j]; ++k) to_state.push_back(value(k));
+    to_leading.push_back(value(to.d[j]));
+    offset += static_cast<std::size_t>(known);
+  }
+  return true;
 }
-
-std::vector<long double> widen(const std::vector<double>& x) { return {x.begin(), x.end()}; }
 
 }  // namespace
 
-SecondMotion::SecondMotion(const Model& model, const Program& program, const SundialsSettings& settings, long double t, long double end,
-                           const std::vector<long double>& state, const std::vector<long double>& leading)
-    : model_(model), parameters_(parameter_values<double>(model)), settings_(settings), end_(convert<double>(end)) {
+SecondMotion::SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end)
+    : model_(*scenario.model) {
   report_.integrator = settings.integrator;
-  report_.of = model.coordinates[0].name;
-  report_.t = convert<double>(t);
-  motion_ = std::make_unique<Sundials>(program, parameters_, settings_, report_.t, end_, narrow(state), narrow(leading), std::vector<double>{});
+  report_.of = model_.coordinates[0].name;
+  report_.t = scenario.state.t;
+  start_ = start(scenario, choice, power, settings, end);
 }
 
-Outcome SecondMotion::advance(double t) {
-  const auto start = std::chrono::steady_clock::now();
-  Outcome o = changeover_.ok() ? motion_->advance(t) : changeover_;
-  report_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report_.steps = steps_before_ + motion_->steps();
-  report_.evaluations = evaluations_before_ + motion_->evaluations();
-  return o;
-}
-
-void SecondMotion::go_on_with(const Program& program, long double t) {
-  changeover_ = advance(convert<double>(t));
-  steps_before_ = report_.steps;
-  evaluations_before_ = report_.evaluations;
-  motion_ = std::make_unique<Sundials>(program, parameters_, settings_, motion_->time(), end_, std::vector<double>(motion_->state()),
-                                       std::vector<double>(motion_->leading()), std::vector<double>(motion_->integrals()));
+Outcome SecondMotion::start(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end) {
+  const Scenario* s = &scenario;
+  if (scenario.system.form->eliminates()) {
+    routh_ = std::make_unique<Scenario>();
+    if (Outcome o = make_scenario(scenario.model, *find_formulation("routh"), choice, *routh_); !o.ok()) return o;
+    s = routh_.get();
+  }
+  report_.form = s->system.form->name;
+  Start<double> at;
+  if (Outcome o = initial_state(*s, choice, at); !o.ok()) return o;
+  program_ = std::make_unique<Program>(program(s->system, s->structure, {&power, 1}));
+  motion_ = std::make_unique<Sundials>(*program_, parameter_values<double>(model_), settings, at.t, convert<double>(end), at.state, at.leading,
+                                       std::vector<double>{});
+  return {};
 }
 
 Outcome SecondMotion::at(long double t, Expansion<long double>& point) {
-  if (Outcome o = advance(convert<double>(t)); !o.ok()) return o;
-  std::vector<long double> taylor;
+  if (!start_.ok()) return start_;
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome there = motion_->advance(convert<double>(t));
+  report_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report_.steps = motion_->steps();
+  report_.evaluations = motion_->evaluations();
+  if (!there.ok()) return there;
+  std::vector<long double> taylor, state, leading;
   for (std::size_t a = 0; a < model_.coordinates.size(); ++a) taylor.push_back(point.derivative(a, 0));
-  const std::vector<long double> state = widen(motion_->state()), leading = widen(motion_->leading());
+  if (!translate(*program_, motion_->state(), motion_->leading(), point.program(), state, leading))
+    return {OutcomeKind::inconsistent, "the form asks for derivatives that are no part of the second motion", "--form routh"};
   point.load(t, state, leading);
   if (Outcome o = point.prepare(); !o.ok()) return o;
   // What a projection would have to correct is the drift; the state itself stays as it was integrated.
   if (Outcome o = point.project(); !o.ok()) return o;
-  report_.drift = std::max(report_.drift, to_double(point.constraint_residual()));
+  report_.drift = std::max(report_.drift, to_double(point.drift()));
   point.load(t, state, leading);
   point.evaluate();
   for (std::size_t a = 0; a < taylor.size(); ++a) {
-    const double difference = to_double((abs(point.derivative(a, 0) - taylor[a])) / (1 + abs(taylor[a])));
+    const double difference = to_double(abs(point.derivative(a, 0) - taylor[a]) / (1 + abs(taylor[a])));
     if (!(difference > report_.difference)) continue;
     report_.difference = difference;
     report_.of = model_.coordinates[a].name;

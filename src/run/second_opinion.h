@@ -1,12 +1,16 @@
-// A second opinion on Taylor's motion: the same equations from the same start by another integrator, and where the two differ most.
+// A second opinion on Taylor's motion: the same motion from the same start by another integrator, and where the two differ most.
+//
+// Forms that eliminate coordinates are asked in Routh's equations: theirs hold on the constraints only, which SUNDIALS leaves
+// by its error, and where a pivot becomes small that error grows without bound (theory: second-opinion).
 #pragma once
 #include "integrate/sundials.h"
-#include "model/model.h"
+#include "run/scenario.h"
 
 namespace anholon {
 
 struct SecondOpinion {
   Integrator integrator = Integrator::cvode;
+  std::string form;       // of the equations it integrates
   double difference = 0;  // largest |q - q_Taylor| / (1 + |q_Taylor|) of any coordinate in any row
   std::string of;         // that coordinate
   double t = 0;           // and that time
@@ -15,31 +19,25 @@ struct SecondOpinion {
   double seconds = 0;     // of its integration alone
 };
 
-// The motion by SUNDIALS that goes along with Taylor's. Which one leads does not matter to it: it knows nothing but the start and
-// the equations.
 class SecondMotion {
  public:
-  SecondMotion(const Model& model, const Program& program, const SundialsSettings& settings, long double t, long double end,
-               const std::vector<long double>& state, const std::vector<long double>& leading);
+  // Towards `end`; the power is integrated along.
+  SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end);
 
-  // Goes on with other equations of the same motion (another elimination) from t, where Taylor's motion changes over, too.
-  void go_on_with(const Program& program, long double t);
   // Takes Taylor's point at t and puts its own there, as integrated; notes the difference.
   Outcome at(long double t, Expansion<long double>& point);
-  // The first integral of the program's quadratures at the time of the last point.
-  long double work() const { return motion_->integrals().at(0); }
+  // The work done until the last point.
+  long double work() const { return motion_ ? motion_->integrals().at(0) : 0; }
   const SecondOpinion& report() const { return report_; }
 
  private:
-  Outcome advance(double t);
+  Outcome start(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end);
 
   const Model& model_;
-  std::vector<double> parameters_;
-  SundialsSettings settings_;
-  double end_;
+  std::unique_ptr<Scenario> routh_;  // where the form eliminates
+  std::unique_ptr<Program> program_;
   std::unique_ptr<Sundials> motion_;
-  std::size_t steps_before_ = 0, evaluations_before_ = 0;  // of motions that ended with their equations
-  Outcome changeover_;
+  Outcome start_;
   SecondOpinion report_;
 };
 

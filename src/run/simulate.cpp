@@ -53,9 +53,8 @@ class Run {
       schedule(start.t);
       if constexpr (std::same_as<N, double>)
         if (o_.integrator != Integrator::taylor)
-          second_ = std::make_unique<SecondMotion>(
-              *s_.model, leg_->program, SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, start.t, end_,
-              start.state, start.leading);
+          second_ = std::make_unique<SecondMotion>(s_, o_.state, balance_power(s_, power_),
+                                                   SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, end_);
       run(start.t);
     }
     report_.t = number_text(to_double(reached_ ? *reached_ : leg_->stepper.time()));
@@ -239,8 +238,6 @@ class Run {
       if (same) return false;
       auto next = std::make_unique<Leg>(*this, std::move(system), std::move(structure));
       if (!next->stepper.take_over(leg_->stepper).ok()) return false;
-      if constexpr (std::same_as<N, double>)
-        if (second_) second_->go_on_with(next->program, leg_->stepper.time());
       leg_ = std::move(next);
       ++report_.eliminations;
       return true;
@@ -378,7 +375,9 @@ class Run {
     const NewtonResidual<W> c = certify(inertia, force, reaction, phi);
     report_.newton = std::max(report_.newton, to_double(c.newton));
     report_.projected = std::max(report_.projected, to_double(c.projected));
-    report_.constraints_kept = std::max(report_.constraints_kept, to_double(leg_->point.constraint_residual()));
+    // A second opinion is not projected.
+    const W& missed = second_ ? leg_->point.drift() : leg_->point.constraint_residual();
+    report_.constraints_kept = std::max(report_.constraints_kept, to_double(missed));
     // A constraint that was left out because it followed from the others must go on to do so.
     W size(1);
     for (std::size_t a = 0; a < n; ++a)

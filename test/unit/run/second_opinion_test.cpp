@@ -8,7 +8,7 @@ namespace {
 
 SimulationOptions options_for(Integrator integrator, const Model& model) {
   SimulationOptions o;
-  o.to = model.simulate.to;
+  o.to = std::min(*model.simulate.to, Rational(2));
   o.every = Rational(*o.to / 4);
   o.tolerance = Rational(1, 1000000000);
   o.integrator = integrator;
@@ -61,8 +61,11 @@ TEST_P(SecondOpinionOn, AgreesWithTaylor) {
     }
   EXPECT_NEAR(largest, r.second->difference, 1e-15);  // round-off of the rows
   // Accelerations and multipliers are solved for at its points; its state drifts from the constraints, its energy from the work.
-  EXPECT_LT(r.newton, 1e-12);
-  EXPECT_LT(r.constraints_kept, 1e-6);
+  // Newton's law drifts where its equations are differentiated, too; forms without multipliers hold on the constraints only.
+  const Structure& t = motion.scenario.structure;
+  const bool hidden = std::any_of(t.c.begin(), t.c.begin() + static_cast<std::ptrdiff_t>(motion.scenario.system.coordinates), [](int c) { return c > 0; });
+  EXPECT_LT(r.newton, hidden || GetParam().form != "routh" ? 1e-6 : 1e-12);
+  EXPECT_LT(r.constraints_kept, 1e-5);  // of accelerations where order 0 is differentiated twice
   EXPECT_LT(r.power, 1e-6);
 }
 
@@ -75,6 +78,7 @@ std::vector<Case> cases() {
       all.push_back({model, k});
     all.push_back({"zoo/disc", k, "chaplygin"});
     all.push_back({"papers/luo-zhao-example-2", k, "kane"});
+    all.push_back({"zoo/third-order-linear", k, "maggi"});
   }
   return all;
 }
@@ -92,7 +96,7 @@ double difference(Integrator integrator, double factor) {
   parameters[0] *= factor;
   Start<double> start;
   EXPECT_TRUE(initial_state(s, {}, start).ok());
-  const double end = s.model->simulate.to->get_d();
+  const double end = options_for(integrator, *s.model).to->get_d();
   Sundials other(p, parameters, {integrator, 1e-9}, start.t, end, start.state, start.leading, {});
   EXPECT_TRUE(other.advance(end).ok());
   double largest = 0;
@@ -119,6 +123,21 @@ TEST(SecondOpinion, KeepsToItsBranch) {
   }
 }
 
+// Taylor's motion changes its dependent coordinates on the way, eleven times.
+TEST(SecondOpinion, OnAFormWhosePivotsVanish) {
+  for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
+    Motion motion(test::shipped_text("zoo/car-three-trailers"), "maggi");
+    SimulationOptions o = options_for(k, *motion.scenario.model);
+    o.to = Rational(20);
+    o.every = Rational(5);
+    const SimulationReport r = simulate(motion.scenario, o, motion.rows);
+    ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+    EXPECT_GT(r.eliminations, 0U);
+    EXPECT_EQ(r.second->form, "routh");
+    EXPECT_LT(r.second->difference, 1e-6);
+  }
+}
+
 TEST(SecondOpinion, GoesBackInTime) {
   for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
     Motion motion(test::replaced(test::shipped_text("zoo/chaplygin-sleigh"), "to = 5", "to = -3"));
@@ -135,13 +154,13 @@ TEST(SecondOpinion, GoesBackInTime) {
 TEST(SecondOpinion, SaysWhyItStops) {
   Motion motion(test::shipped_text("zoo/chaplygin-sleigh"));
   SimulationOptions o = options_for(Integrator::ida, *motion.scenario.model);
-  o.most_steps = 100;  // enough for Taylor's series
+  o.most_steps = 50;  // enough for Taylor's series
   const SimulationReport r = simulate(motion.scenario, o, motion.rows);
   EXPECT_EQ(r.outcome.kind, OutcomeKind::interrupted);
   EXPECT_EQ(r.outcome.message.substr(0, 3), "IDA");
   EXPECT_FALSE(r.outcome.hint.empty());
   ASSERT_TRUE(r.second);
-  EXPECT_EQ(r.second->steps, 100U);
+  EXPECT_EQ(r.second->steps, 50U);
 }
 
 }  // namespace
