@@ -129,6 +129,27 @@ void write_watched(JsonWriter& j, const char* key, const std::vector<WatchedRepo
   j.close();
 }
 
+// SUNDIALS computes in double, and not below a tolerance of its own.
+void integrator(const Options& o, const Model& model, SimulationOptions& s) {
+  s.integrator = model.simulate.integrator.value_or(Integrator::taylor);
+  if (!o.integrator.empty()) {
+    const auto wanted = find_integrator(o.integrator);
+    if (!wanted) {
+      const std::string near = did_you_mean(o.integrator, integrator_names());
+      throw UsageError{"error: there is no integrator '" + o.integrator + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                       "\nhint: --integrator taylor, cvode or ida\n"};
+    }
+    s.integrator = *wanted;
+  }
+  if (s.integrator == Integrator::taylor) return;
+  if (s.precision != Precision::real)
+    throw UsageError{std::string("error: the integrator '") + name(s.integrator) + "' computes in double\nhint: leave out " +
+                     (s.precision == Precision::multi ? "--digits" : "--numbers") + ", or use --integrator taylor\n"};
+  if (s.tolerance.get_d() < kLeastSundialsTolerance)
+    std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastSundialsTolerance).c_str(), small(kLeastSundialsTolerance).c_str(),
+                 name(s.integrator));
+}
+
 void write_json(const Scenario& s, const MemorySink& rows, const SimulationReport& r, std::FILE* file) {
   JsonWriter j;
   j.open_object();
@@ -180,6 +201,17 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
     j.key("bits").integer(r.rigorous->bits);
     j.close();
   }
+  if (r.second) {
+    j.key("second_opinion").open_object();
+    j.key("integrator").string(name(r.second->integrator));
+    j.key("form").string(r.second->form);
+    j.key("difference").number(small(r.second->difference));
+    j.key("of").string(r.second->of);
+    j.key("t").number(number_text(r.second->t));
+    j.key("steps").integer(static_cast<long long>(r.second->steps));
+    j.key("evaluations").integer(static_cast<long long>(r.second->evaluations));
+    j.close();
+  }
   j.key("steps").integer(static_cast<long long>(r.steps));
   j.key("order").integer(r.order);
   if (s.system.form->eliminates()) j.key("eliminations").integer(static_cast<long long>(r.eliminations));
@@ -200,12 +232,19 @@ std::string worst_constraint(const SimulationReport& r) {
   return name.empty() ? "" : ", worst '" + name + "'";
 }
 
+void second_opinion(const Scenario& s, const SecondOpinion& o) {
+  std::fprintf(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from Taylor's motion by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
+               name(o.integrator), o.form == s.system.form->name ? "" : " on Routh's equations", o.steps, o.evaluations, o.seconds,
+               small(o.difference).c_str(), o.of.c_str(), number_text(o.t, 6).c_str(), o.of.c_str());
+}
+
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
   for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
-  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (before projection %s%s), power balance %s\n",
-               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), small(r.constraints).c_str(),
-               worst_constraint(r).c_str(), small(r.power).c_str());
+  // What another integrator computed is not projected.
+  const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints) + worst_constraint(r);
+  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s), power balance %s\n",
+               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(), small(r.power).c_str());
   if (r.error)
     std::fprintf(stderr, "digits to trust: about %d (error %s at t = %s, by %s)\n", r.error->digits, small(r.error->error).c_str(), r.error->t.c_str(),
                  r.error->means.c_str());
@@ -221,8 +260,9 @@ void report(const Scenario& s, const SimulationReport& r) {
     std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, constraints by %s, steps join within %s\n",
                  g.times == 0 ? "for all t" : ("at " + std::to_string(g.times) + " times").c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
-  std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.steps, r.order, r.rows,
-               small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.seconds);
+  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.second ? "Taylor's motion: " : "", r.steps,
+               r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
+  if (r.second) second_opinion(s, *r.second);
   for (const Warning& w : r.warnings) std::fprintf(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
 }
 
@@ -257,8 +297,6 @@ SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSin
 }
 
 int simulate_motion(const Options& o, const SavedRun* resume) {
-  if (o.integrator != "taylor")
-    throw UsageError{"error: the integrator '" + o.integrator + "' is not read yet\nhint: --integrator taylor\n"};
   if (ends_with(o.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
   const Reader in = read(o);
   if (resume) same_model(*resume, in);
@@ -279,6 +317,7 @@ int simulate_motion(const Options& o, const SavedRun* resume) {
   if (resume) beyond(*resume, o, last);
   options.rigorous = rigorous(o.rigorous);
   accuracy(o, *in.model, options);
+  integrator(o, *in.model, options);
   options.conserved = conserved(*s.mechanics);
   Saver saver(o, in, *s.system.form, options);
   std::signal(SIGINT, request_stop);

@@ -137,10 +137,17 @@ struct InitialData {
   std::vector<BranchChoice> branches;
 };
 
+// What computes a motion: Taylor series, or a second opinion.
+enum class Integrator : std::uint8_t { taylor, cvode, ida };
+const char* name(Integrator integrator);
+const std::vector<std::string>& integrator_names();
+std::optional<Integrator> find_integrator(const std::string& name);
+
 struct SimulationSettings {
   std::optional<Rational> to, tolerance, every;
   std::vector<Rational> at;
   std::optional<std::string> form;
+  std::optional<Integrator> integrator;
 };
 
 struct Model {

@@ -103,6 +103,27 @@ void Expansion<N>::sweep_known(int last_stage) {
 }
 
 template <Number N>
+void Expansion<N>::sweep_quadratures(int last_stage) {
+  const Program& p = *program_;
+  if (p.quadratures == 0) return;
+  const std::uint32_t end = static_cast<std::uint32_t>(p.tape.code.size());
+  for (int stage = 0; stage <= last_stage; ++stage) {
+    set_inputs(stage, 0, p.inputs.size());
+    machine_.sweep(stage, p.tape.main_end, end);
+  }
+}
+
+template <Number N>
+void Expansion<N>::equations(std::vector<N>& out) const {
+  const Program& p = *program_;
+  out.resize(p.unknowns());
+  for (std::size_t i = 0; i < p.unknowns(); ++i) {
+    const std::size_t order = static_cast<std::size_t>(p.c[i]);
+    out[i] = machine_.series(p.tape.roots[i])[order] * factorial_[order];
+  }
+}
+
+template <Number N>
 void Expansion<N>::jacobian() {
   const Program& p = *program_;
   const Tape& tape = p.tape;
@@ -222,14 +243,16 @@ template <Number N>
 Outcome Expansion<N>::project(const Solver& solver) {
   const Program& p = *program_;
   const N quiet = unit_roundoff<N>() * N(kQuietRoundoffs);
-  constraint_residual_ = N(0);
+  constraint_residual_ = drift_ = N(0);
   const int deepest = *std::max_element(p.c.begin(), p.c.end());
   bool changed = false;
   for (int level = deepest; level >= 1; --level) {
     N worst(0), before(-1);
     for (int k = 0;; ++k) {
       if (changed || k > 0) sweep_known(-level);
-      if (!residual(level, r_, worst) || !(worst > quiet)) break;
+      const bool any = residual(level, r_, worst);
+      if (k == 0 && worst > drift_) drift_ = worst;
+      if (!any || !(worst > quiet)) break;
       if (!is_finite(worst))
         return {OutcomeKind::not_a_number, "a constraint has no value", "the motion leaves the region where the constraint is defined"};
       if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;
@@ -359,13 +382,7 @@ Outcome Expansion<N>::extend() {
       add_leading(stage);
     }
   }
-  if (p.quadratures > 0) {
-    const std::uint32_t end = static_cast<std::uint32_t>(p.tape.code.size());
-    for (int stage = 0; stage <= stages_; ++stage) {
-      set_inputs(stage, 0, p.inputs.size());
-      machine_.sweep(stage, p.tape.main_end, end);
-    }
-  }
+  sweep_quadratures(stages_);
   return {};
 }
 

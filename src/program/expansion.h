@@ -68,6 +68,8 @@ class Expansion {
   const N& constraint_residual() const { return constraint_residual_; }
   // That of derivative k < c_i of equation i alone.
   const N& hidden_residual(std::size_t i, int k) const { return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)]; }
+  // The same as project() found it, before it corrected the level.
+  const N& drift() const { return drift_; }
   // Residual of the equations at the leading derivatives found, in relation to their terms.
   const N& equation_residual() const { return equation_residual_; }
   N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
@@ -81,6 +83,10 @@ class Expansion {
   const N& coefficient(std::size_t j, int k) const { return x_[j * stride_ + static_cast<std::size_t>(k)]; }
   void state(std::vector<N>& out) const;
   void leading(std::vector<N>& out) const;
+  // E_i^(c_i) at the leading derivatives as loaded, after evaluate(): what solve() makes zero.
+  void equations(std::vector<N>& out) const;
+  // The quadratures at the point itself, order 0; extend() does it for all orders.
+  void evaluate_quadratures() { sweep_quadratures(0); }
   // The Taylor series (ascending) of quadrature i, orders 0..stages().
   const N* quadrature(std::size_t i) const { return machine_.series(program_->tape.roots[program_->unknowns() + i]); }
 
@@ -88,6 +94,7 @@ class Expansion {
   void set_inputs(int stage, std::size_t from, std::size_t to);
   void sweep(int stage);
   void sweep_known(int last_stage);
+  void sweep_quadratures(int last_stage);
   Outcome newton(const Solver& solver, bool own);
   Outcome singular() const;
   void jacobian();
@@ -106,7 +113,7 @@ class Expansion {
   Lu<N> lu_;
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_, delta_x_, r_, y_, direction_;
-  N constraint_residual_{0}, equation_residual_{0};
+  N constraint_residual_{0}, drift_{0}, equation_residual_{0};
   std::vector<N> hidden_;      // residuals of the hidden constraints, equation by equation
   std::vector<std::size_t> hidden_offset_;
 };

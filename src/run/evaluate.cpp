@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "run/redundant.h"
+
 namespace anholon {
 
 template <Number N>
@@ -112,11 +114,15 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
     for (std::size_t a = 0; a < n; ++a)
       r.derivatives.push_back({derivative_name(model.coordinates[a].name, static_cast<unsigned>(k), Format::text),
                                text(point.derivative(a, k), digits)});
+  Redundant<N> redundant(s, parameters);
+  double missed = 0;
+  if (Outcome o = redundant.hold(point, true, missed); !o.ok()) return o;
+  const std::vector<N> multipliers = redundant.multipliers(point);
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const auto j = s.system.variable(m.lambda[k].id);
     for (int order = 0; order <= multiplier_orders(s); ++order)
       r.lambda.push_back({derivative_name(model.constraints[k].name, static_cast<unsigned>(order), Format::text),
-                          text(j ? point.derivative(*j, order) : N(0), digits)});
+                          text(order == 0 ? multipliers[k] : j ? point.derivative(*j, order) : N(0), digits)});
   }
   N dh(0), rate(0);
   for (const auto& [name, e] : numbers) {

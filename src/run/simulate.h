@@ -7,6 +7,7 @@
 #include "run/defect.h"
 #include "run/saved.h"
 #include "run/scenario.h"
+#include "run/second_opinion.h"
 
 namespace anholon {
 
@@ -21,6 +22,7 @@ struct SimulationOptions {
   std::optional<Rational> every;
   Rational tolerance{1, 1000000000000};
   int order = 0;                   // of the Taylor polynomials; 0: from the tolerance
+  Integrator integrator = Integrator::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
   Precision precision = Precision::real;
   int digits = 16;                 // of the numbers written, where more than 16 (multi: also of the computation)
   std::optional<std::size_t> rigorous;  // the defect of the dense output, enclosed at so many times; at all times: 0
@@ -80,6 +82,7 @@ struct SimulationReport {
   std::vector<Warning> warnings;
   std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
+  std::optional<SecondOpinion> second;  // where another integrator was asked for
   std::vector<WatchedReport> monitors;   // of the model's [monitor]
   std::vector<WatchedReport> conserved;  // integrals of the motion
 };

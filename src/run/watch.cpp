@@ -6,12 +6,6 @@
 
 namespace anholon {
 
-namespace {
-
-// A redundant constraint missed by more than this of the size of the state no longer follows from
-// the others.
-constexpr double kRedundantMiss = 1e-7;
-
 // The power of all forces for the energy balance. Constraints that do no work on the motion (first
 // order and homogeneous, holonomic without t) are left out: their power is zero, and its terms, which
 // are large and cancel, would only add round-off to the balance.
@@ -29,8 +23,6 @@ Expr balance_power(const Scenario& s, const Power& p) {
   }
   return total;
 }
-
-}  // namespace
 
 std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p) {
   std::vector<Expr> es = {balance_power(s, p)};
@@ -59,9 +51,9 @@ void Track<W>::see(const W& value, const W& terms) {
 
 template <Number W>
 Watch<W>::Watch(const Scenario& s, const Power& power, const std::vector<Conserved>& conserved, const std::vector<W>& parameters)
-    : s_(s), outputs_(s, expressions(power, conserved), parameters) {}
+    : s_(s), outputs_(s, expressions(power, conserved), parameters), redundant_(s, parameters) {}
 
-// N, then what the residual report needs: h, E, G, Phi, the redundant constraints; the terms of what is watched.
+// N, then what the residual report needs: h, E, G, Phi; the terms of what is watched.
 template <Number W>
 Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& conserved) {
   const Model& model = *s_.model;
@@ -74,7 +66,6 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
   es.insert(es.end(), force.begin(), force.end());
   for (std::size_t k : s_.system.constraints)
     for (Expr e : m.Phi[k]) es.push_back(put_masses(model, e));
-  for (std::size_t k : s_.redundant) es.push_back(put_masses(model, m.phi[k]));
   first_open_ = es.size();
   for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
     if (s_.structure.c[s_.system.coordinates + i] == 0) {
@@ -95,7 +86,7 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
 }
 
 template <Number W>
-Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
+Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report, bool projected) {
   outputs_.evaluate(point);
   const std::size_t n = s_.system.coordinates;
   std::vector<W> inertia(n), force(n), reaction(n);
@@ -109,30 +100,20 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
   const NewtonResidual<W> c = certify(inertia, force, reaction, phi);
   report.newton = std::max(report.newton, to_double(c.newton));
   report.projected = std::max(report.projected, to_double(c.projected));
-  constraints(point, phi, report);
+  constraints(point, phi, projected, report);
   track();
-  // A constraint that was left out because it followed from the others must go on to do so.
-  W size(1);
-  for (std::size_t a = 0; a < n; ++a)
-    for (int k = 0; k < 2; ++k)
-      if (W v = abs(point.derivative(a, k)); v > size) size = v;
-  Outcome outcome;
-  for (std::size_t i = 0; i < s_.redundant.size(); ++i) {
-    const double miss = to_double(W(abs(outputs_[3 * n + 1 + phi.data.size() + i]) / size));
-    report.constraints_kept = std::max(report.constraints_kept, miss);
-    if (miss > kRedundantMiss)
-      outcome = {OutcomeKind::singular,
-                 "the constraint '" + s_.model->constraints[s_.redundant[i]].name + "' no longer follows from the others",
-                 "it was redundant at the start only: start elsewhere, or leave out one of the constraints"};
-  }
+  double missed = 0;
+  const Outcome outcome = redundant_.hold(point, !(point.time() != start_), missed);
+  report.constraints_kept = std::max(report.constraints_kept, missed);
+  multipliers_ = redundant_.multipliers(point);
   return outcome;
 }
 
 // C3, and each constraint with its derivatives by itself.
 template <Number W>
-void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const {
+void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, bool projected, SimulationReport& report) const {
   const std::size_t n = s_.system.coordinates;
-  report.constraints_kept = std::max(report.constraints_kept, to_double(point.constraint_residual()));
+  report.constraints_kept = std::max(report.constraints_kept, to_double(projected ? point.constraint_residual() : point.drift()));
   report.constraints_each.resize(s_.system.constraints.size());
   const auto worse = [&](std::size_t i, std::size_t k, double residual) {
     std::vector<double>& list = report.constraints_each[i].residuals;
@@ -189,6 +170,7 @@ template <Number W>
 void Watch<W>::start(const Expansion<W>& point) {
   outputs_.evaluate(point);
   h0_ = outputs_[s_.system.coordinates];
+  start_ = point.time();
   track();
 }
 

@@ -7,9 +7,13 @@
 // and the model's [monitor] formulas and the integrals of the motion.
 #pragma once
 #include "run/motion.h"
+#include "run/redundant.h"
 #include "run/simulate.h"
 
 namespace anholon {
+
+// The power of all forces for the energy balance, without that of constraints that do no work.
+Expr balance_power(const Scenario& s, const Power& p);
 
 // What has to be integrated for it: the power of all forces first, then the masses that vary.
 std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p);
@@ -33,13 +37,15 @@ class Watch {
   Watch(const Scenario& scenario, const Power& power, const std::vector<Conserved>& conserved, const std::vector<W>& parameters);
 
   // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows from the others.
-  Outcome see(const Expansion<W>& point, SimulationReport& report);
+  // `projected`: the constraints were held there.
+  Outcome see(const Expansion<W>& point, SimulationReport& report, bool projected = true);
   // The monitors of the model, then the integrals.
   const std::vector<Track<W>>& tracks() const { return tracks_; }
   // What was seen, for a run that goes on.
   void save(SavedRun& to) const;
   void resume(const SavedRun& from);
-  // N at the point seen last.
+  // lambda of every constraint and N at the point seen last.
+  const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
 
   // The first and the last point: the energy balance goes from one to the other, between which the work is integrated.
@@ -49,7 +55,7 @@ class Watch {
  private:
   Column expressions(const Power& power, const std::vector<Conserved>& conserved);
   void track();
-  void constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const;
+  void constraints(const Expansion<W>& point, const Matrix<W>& phi, bool projected, SimulationReport& report) const;
 
   const Scenario& s_;
   std::vector<Track<W>> tracks_;
@@ -58,7 +64,9 @@ class Watch {
   std::vector<std::size_t> open_;
   std::size_t first_open_ = 0, first_monitor_ = 0;  // among the outputs
   OutputTape<W> outputs_;
-  W h0_{0};
+  Redundant<W> redundant_;
+  std::vector<W> multipliers_;
+  W h0_{0}, start_{0};
 };
 
 extern template class Watch<long double>;

@@ -365,8 +365,15 @@ class Reader {  // what it refers to is asked only while it runs
       if (i->kind != Item::Kind::string) throw Failure(i->span, "a form is a name in quotes", "form = \"routh\"");
       out.form = i->text();
     }
-    if (const Item* i = s->find("integrator"); i && i->text() != "taylor")
-      throw Failure(i->span, "the integrator '" + i->text() + "' is not read yet", "integrator = \"taylor\"");
+    if (const Item* i = s->find("integrator")) {
+      if (i->kind != Item::Kind::string) throw Failure(i->span, "an integrator is a name in quotes", "integrator = \"taylor\"");
+      out.integrator = find_integrator(i->text());
+      if (!out.integrator) {
+        const std::string near = did_you_mean(i->text(), integrator_names());
+        throw Failure(i->span, "there is no integrator '" + i->text() + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                      "integrator = \"taylor\", \"cvode\" or \"ida\"");
+      }
+    }
   }
 
   Diagnostics& diagnostics_;

@@ -1,0 +1,58 @@
+// The motion by SUNDIALS, as a second opinion on Taylor's: CVODE integrates the state's ordinary differential equations, IDA the
+// implicit equations themselves.
+//
+//   CVODE  y' = f(t, y),           y = (x_j^(k), k < d_j): x_j^(k)' = x_j^(k+1), and at the end of each chain the leading
+//                                  derivative, which the equations determine; Adams' methods, fixed-point iteration
+//   IDA    F(t, y, z, y', z') = 0, z = (x_j, d_j = 0): x_j^(k)' = x_j^(k+1), and E_i^(c_i) = 0 with y' in place of the leading
+//                                  derivatives; BDF, Newton's method with difference quotients for dF/dy + alpha dF/dy'
+//
+// and the integrals W of the program's quadratures, W' = P. Hypothesis: J = dE_i^(c_i) / dx_j^(d_j) is regular, so F has index 1
+// (theory: dae-view). The hidden constraints E_i^(k) = 0, k < c_i, are what the start satisfies; nothing holds them, they drift
+// with the error of the integration (theory: second-opinion). Source: Hindmarsh et al. 2005.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "model/model.h"
+#include "program/expansion.h"
+
+namespace anholon {
+
+// Below this the error test of either meets the round-off of double.
+inline constexpr double kLeastSundialsTolerance = 1e-14;
+
+struct SundialsSettings {
+  Integrator integrator = Integrator::cvode;  // or ida
+  double tolerance = 1e-12;                   // relative and absolute, of each step
+  std::size_t most_steps = 50'000'000;
+  std::function<bool()> cancelled;            // asked between steps
+};
+
+// Not copied, and used by one thread at a time; several may be used at once.
+class Sundials {
+ public:
+  // Starts at t towards `end`, beyond which the equations are not evaluated. `leading` names the branch.
+  Sundials(const Program& program, const std::vector<double>& parameters, const SundialsSettings& settings, double t, double end,
+           const std::vector<double>& state, const std::vector<double>& leading, const std::vector<double>& integrals);
+  ~Sundials();
+  Sundials(const Sundials&) = delete;
+  Sundials& operator=(const Sundials&) = delete;
+
+  // Goes on until the step in which t lies, and interpolates there; t never goes back by more than a step.
+  Outcome advance(double t);
+
+  // At the time of the last advance, or at the start: the state as integrated, the leading derivatives roughly.
+  double time() const;
+  const std::vector<double>& state() const;
+  const std::vector<double>& leading() const;
+  const std::vector<double>& integrals() const;
+
+  std::size_t steps() const;
+  std::size_t evaluations() const;  // of f or F
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace anholon

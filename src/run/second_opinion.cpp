@@ -1,0 +1,79 @@
+#include "run/second_opinion.h"
+
+#include <chrono>
+
+namespace anholon {
+
+namespace {
+
+// The state and the leading derivatives that one program wants, out of those of another for the same unknowns.
+bool translate(const Program& from, const std::vector<double>& state, const std::vector<double>& leading, const Program& to,
+               std::vector<long double>& to_state, std::vector<long double>& to_leading) {
+  std::size_t offset = 0;
+  for (std::size_t j = 0; j < to.unknowns(); ++j) {
+    const int known = from.d[j];
+    if (to.d[j] > known + 1) return false;
+    const auto value = [&](int k) -> long double { return k < known ? state[offset + static_cast<std::size_t>(k)] : k == known ? leading[j] : 0; };
+    for (int k = 0; k < to.d[j]; ++k) to_state.push_back(value(k));
+    to_leading.push_back(value(to.d[j]));
+    offset += static_cast<std::size_t>(known);
+  }
+  return true;
+}
+
+}  // namespace
+
+SecondMotion::SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end)
+    : model_(*scenario.model) {
+  report_.integrator = settings.integrator;
+  report_.of = model_.coordinates[0].name;
+  report_.t = scenario.state.t;
+  start_ = start(scenario, choice, power, settings, end);
+}
+
+Outcome SecondMotion::start(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end) {
+  const Scenario* s = &scenario;
+  if (scenario.system.form->eliminates()) {
+    routh_ = std::make_unique<Scenario>();
+    if (Outcome o = make_scenario(scenario.model, *find_formulation("routh"), choice, *routh_); !o.ok()) return o;
+    s = routh_.get();
+  }
+  report_.form = s->system.form->name;
+  Start<double> at;
+  if (Outcome o = initial_state(*s, choice, at); !o.ok()) return o;
+  program_ = std::make_unique<Program>(program(s->system, s->structure, {&power, 1}));
+  motion_ = std::make_unique<Sundials>(*program_, parameter_values<double>(model_), settings, at.t, convert<double>(end), at.state, at.leading,
+                                       std::vector<double>{});
+  return {};
+}
+
+Outcome SecondMotion::at(long double t, Expansion<long double>& point) {
+  if (!start_.ok()) return start_;
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome there = motion_->advance(convert<double>(t));
+  report_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report_.steps = motion_->steps();
+  report_.evaluations = motion_->evaluations();
+  if (!there.ok()) return there;
+  std::vector<long double> taylor, state, leading;
+  for (std::size_t a = 0; a < model_.coordinates.size(); ++a) taylor.push_back(point.derivative(a, 0));
+  if (!translate(*program_, motion_->state(), motion_->leading(), point.program(), state, leading))
+    return {OutcomeKind::inconsistent, "the form asks for derivatives that are no part of the second motion", "--form routh"};
+  point.load(t, state, leading);
+  if (Outcome o = point.prepare(); !o.ok()) return o;
+  // What a projection would have to correct is the drift; the state itself stays as it was integrated.
+  if (Outcome o = point.project(); !o.ok()) return o;
+  report_.drift = std::max(report_.drift, to_double(point.drift()));
+  point.load(t, state, leading);
+  point.evaluate();
+  for (std::size_t a = 0; a < taylor.size(); ++a) {
+    const double difference = to_double(abs(point.derivative(a, 0) - taylor[a]) / (1 + abs(taylor[a])));
+    if (!(difference > report_.difference)) continue;
+    report_.difference = difference;
+    report_.of = model_.coordinates[a].name;
+    report_.t = convert<double>(t);
+  }
+  return point.solve();
+}
+
+}  // namespace anholon
