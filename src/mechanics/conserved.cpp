@@ -89,13 +89,14 @@ bool add_force(const Mechanics& m, const Force& f, Column& potentials) {
   if (f.kind == Force::Kind::torque) {
     Vector rate = model.bodies[f.on.body].orientation ? model.bodies[f.on.body].orientation->rate : zero_vector(g);
     if (f.from && model.bodies[f.from->body].orientation) rate = rate - model.bodies[f.from->body].orientation->rate;
-    return vanishes(dot(f.vector, rate));
+    return each(rate, free_of_time) && vanishes(dot(f.vector, rate));
   }
   // Elsewhere the velocity of the material point is not that of the place.
   if (!f.on.at_center || (f.from && !f.from->at_center)) return false;
   Vector place = model.bodies[f.on.body].center, force = f.vector;
   if (f.from) place = place - model.bodies[f.from->body].center;
   if (f.kind == Force::Kind::tension) force = (-f.tension * pow(dot(place, place), {-1, 2})) * place;
+  if (!each(place, free_of_time)) return false;
   const Expr power = dot(force, total_derivative(place));
   if (vanishes(power)) return true;
   const auto u = homogeneous_potential(dot(force, place), power);

@@ -214,7 +214,7 @@ class Run {
     const Stepper<N>& stepper = motion_.stepper();
     if (stepper.smallest_sigma() < stepper.first_sigma() * N(kNearSingular)) {
       const std::size_t j = stepper.weakest_unknown(), n = s_.system.coordinates;
-      const std::string what = j < n ? "the acceleration of " + s_.system.variable_names[j] + " is hardly determined"
+      const std::string what = j < n ? derivative_name(s_.system.variable_names[j], static_cast<unsigned>(motion_.program().d[j]), Format::text) + " is hardly determined"
                                      : "the constraint '" + s_.system.equation_names[j] + "' hardly holds";
       report_.warnings.push_back({"the motion passes near a singular configuration at t = " + report_.smallest_sigma_t + ": " + what,
                                   "trust what follows less; write the constraint or the coordinates so that they are regular there"});

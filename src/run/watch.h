@@ -4,7 +4,7 @@
 //   C1, C2  Newton's law by the points themselves, with and without multipliers  (theory: certificate)
 //   C3      hidden constraints
 //   power   h - h(0) - W, W the integral of the right side of the power identity
-// and the model's [monitor] formulas and the integrals of the motion.
+// and the model's [monitor] formulas and the integrals of the motion  (theory: integrals).
 #pragma once
 #include "run/motion.h"
 #include "run/simulate.h"

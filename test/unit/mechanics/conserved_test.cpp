@@ -40,11 +40,12 @@ TEST(Conserved, NotWhereTheForceTurnsTheMutantAway) {
   // No symmetry, but a potential.
   EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "(x^2 + y^2)", "(x^2 + 2*y^2)"))), Names{"energy"});
   // A damper: no energy; its force turns with the plane, but does not leave the momentum alone.
-  EXPECT_EQ(names_of(test::model_of(kPlane + "[[force]]\non = \"P\"\nvector = \"-vel(P)\"\n")), Names{});
+  EXPECT_EQ(names_of(test::model_of(kPlane + "[[force]]\non = \"P\"\nvector = \"-vel(P.center)\"\n")), Names{});
   // Explicit time.
   EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "k/2*(x^2 + y^2)", "sin(t)*x"))), Names{"momentum of y"});
-  // A mass that varies.
-  EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"", "mass = \"m + t\""))).size(), 1U);
+  // A mass that varies: what leaves takes its momentum with it. At rest where it joins, it brings none.
+  EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"", "mass = \"m + t\""))), Names{});
+  EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"", "mass = \"m + t\"\nexpelled_velocity = \"-vel(P.center)\""))).size(), 1U);
   // A constraint that rolls in time does work; one that touches both coordinates keeps the energy alone.
   EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"drive\"\nequation = \"y' = x + t\"\n")), Names{});
   EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"blade\"\nequation = \"y' = x*x'\"\n")), Names{"energy"});
