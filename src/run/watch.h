@@ -14,6 +14,9 @@ namespace anholon {
 // What has to be integrated for it: the power of all forces first, then the masses that vary.
 std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p);
 
+// The constraints with a residual for each derivative that has to vanish, none seen yet.
+std::vector<ConstraintReport> constraint_reports(const Scenario& s);
+
 // How many orders beyond those solved for the expressions need.
 int orders_needed(const Scenario& s, std::span<const Expr> es);
 
