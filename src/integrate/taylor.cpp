@@ -19,6 +19,24 @@ void add_compensated(N& s, N& carry, const N& x) {
   s = sum;
 }
 
+// A diagonal similarity by powers of 2 that brings rows and columns to like sizes (Osborne 1960): the norm of a matrix in badly
+// scaled unknowns says nothing about its spectral radius.
+template <Number N>
+void balance(Matrix<N>& a) {
+  constexpr int kSweeps = 4;
+  const std::size_t n = a.rows;
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (std::size_t i = 0; i < n; ++i) {
+      double row = 0, column = 0;
+      for (std::size_t j = 0; j < n; ++j)
+        if (j != i) row += std::abs(to_double(a(i, j))), column += std::abs(to_double(a(j, i)));
+      if (!(row > 0) || !(column > 0) || !std::isfinite(row) || !std::isfinite(column)) continue;
+      const N factor(std::exp2(std::round(0.5 * std::log2(row / column))));
+      for (std::size_t j = 0; j < n; ++j) a(j, i) = a(j, i) * factor;
+      for (std::size_t j = 0; j < n; ++j) a(i, j) = a(i, j) / factor;
+    }
+}
+
 }  // namespace
 
 int taylor_order(double log_tolerance) {
@@ -221,7 +239,7 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
 
 // Where leading derivatives enter nonlinearly, solutions of the equations may meet where J is singular, and the Taylor polynomial
 // would go straight on from one to another. With A = J0^-1 (J - J0) of spectral radius below 1, J is regular: so a step ends
-// where the radius, estimated by the norm of A^8, reaches 1/2, and steps shrink towards a singular point (theory: taylor).
+// where the radius, estimated by the norm of the balanced A^8, reaches 1/2, and steps shrink towards a singular point (theory: taylor).
 template <Number N>
 bool Stepper<N>::near_in_branch(const W& h) {
   constexpr double kNear = 0.5;
@@ -242,6 +260,7 @@ bool Stepper<N>::near_in_branch(const W& h) {
     expansion_.lu().solve_once(column, y);
     for (std::size_t i = 0; i < n; ++i) a(i, j) = y[i];
   }
+  balance(a);
   for (int doubling = 0; doubling < 3; ++doubling) {
     Matrix<N> square(n, n);
     for (std::size_t i = 0; i < n; ++i)
