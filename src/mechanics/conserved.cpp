@@ -333,8 +333,7 @@ std::string name_of(const Model& model, const Column& field) {
     ++terms;
     last = a;
     std::string part = print(field[a], model.names, Format::text);
-    const bool sum = g.node(field[a].id).kind == Kind::sum;
-    if (sum) part = "(" + part + ")";
+    if (g.node(field[a].id).kind == Kind::sum && g.terms(field[a].id).size() > 1) part = "(" + part + ")";
     part = (part == "1" ? "" : part == "-1" ? "-" : part + "*") + "d/d" + model.coordinates[a].name;
     if (!name.empty()) name += part[0] == '-' ? " - " : " + ";
     name += name.empty() || part[0] != '-' ? part : part.substr(1);
