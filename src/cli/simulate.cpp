@@ -180,7 +180,7 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   }
   j.close();
   if (r.error) {
-    j.key("error_estimate").open_object().key("digits").integer(r.error->digits).key("largest").number(small(r.error->error));
+    j.key("error_estimate").open_object().key("digits").integer(r.error->digits).key("error").number(small(r.error->error));
     j.key("t").number(r.error->t).key("means").string(r.error->means).close();
   } else if (!r.no_error.empty()) {
     j.key("error_estimate").open_object().key("digits").null().key("reason").string(r.no_error).close();

@@ -250,6 +250,7 @@ bool Stepper<N>::near_in_branch(const W& h) {
   for (std::size_t i = 0; i < state.size(); ++i) narrow_state.push_back(convert<N>(W(state[i] + increments[i])));
   for (const W& x : leading) narrow_leading.push_back(convert<N>(x));
   ahead_->load(convert<N>(W(t_ + h)), narrow_state, narrow_leading);
+  ahead_->set_weakest_direction({});  // what was met further ahead says nothing here
   if (!ahead_->prepare().ok()) return false;
   Matrix<N> a(n, n);
   std::vector<N> column(n), y;
@@ -273,7 +274,8 @@ bool Stepper<N>::near_in_branch(const W& h) {
 
 template <Number N>
 typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
-  constexpr int kMostHalvings = 200;
+  // From a horizon of e^300 (a polynomial motion) to far below any step.
+  constexpr int kMostHalvings = 600;
   if (branch_step_ > W(0) && abs(h) > branch_step_ * W(4)) h = h > W(0) ? branch_step_ * W(4) : branch_step_ * W(-4);
   for (int k = 0; k < kMostHalvings && !(near_in_branch(h) && near_in_branch(h * W(0.5))); ++k) h = h * W(0.5);
   branch_step_ = abs(h);
@@ -375,10 +377,8 @@ Outcome Stepper<N>::step(const W& end) {
   const W left = end - t_;
   const bool forward = left > W(0);
   W h = convert<W>(horizon_);
-  if (ahead_) {
-    h = abs(left) < h ? abs(left) : h;
-    h = abs(on_the_branch(forward ? h : W(-h)));
-  }
+  // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from there.
+  if (ahead_) h = abs(on_the_branch(forward ? h : W(-h)));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
   if (!(h > floor))
     return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",

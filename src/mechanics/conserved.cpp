@@ -17,6 +17,8 @@ constexpr std::size_t kMostConstant = 60;
 // Linear algebra in double at random points of order 1: a field is a solution to this, and a number a fraction to that.
 constexpr double kRankThreshold = 1e-8, kFraction = 1e-6;
 constexpr int kLargestDenominator = 12;
+// Sums of terms of order 1 to 1e6 that vanish, after round-off.
+constexpr double kVanishing = 1e-6;
 
 bool free_of(Expr e, std::initializer_list<Kind> kinds) {
   const Graph& g = *e.graph;
@@ -42,15 +44,16 @@ PointValues random_point(std::uint64_t point) {
   });
 }
 
-// Zero at a few points first: the exact test is for what is true.
-bool vanishes(Expr e, double size = 1) {
-  if (is_zero(e)) return true;
+bool small_at_points(Expr e) {
   for (std::uint64_t k = 1; k <= 3; ++k) {
     PointValues at = random_point(1000 + k);
-    if (const double v = at(e); !(std::abs(v) < 1e-6 * size)) return false;
+    if (!(std::abs(at(e)) < kVanishing)) return false;
   }
-  return proved_zero(e);
+  return true;
 }
+
+// The exact test is for what is true.
+bool vanishes(Expr e) { return is_zero(e) || (small_at_points(e) && proved_zero(e)); }
 
 // ---- energy ------------------------------------------------------------------------------------
 
@@ -64,11 +67,12 @@ std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
   return std::nullopt;
 }
 
+// On the motion, of the reaction N of constraint r.
 bool without_power(const Mechanics& m, std::size_t r) {
-  if (m.order[r] == 0) return free_of_time(m.phi[r]);
   Expr rate = m.graph().zero();
-  for (std::size_t a = 0; a < m.q.size(); ++a) rate += m.Phi[r][a] * m.qd[a];
+  for (std::size_t a = 0; a < m.q.size(); ++a) rate += partial(m.N[a], m.lambda[r]) * m.qd[a];
   if (vanishes(rate)) return true;
+  if (m.order[r] == 0) return vanishes(rate - total_derivative(m.phi[r]));
   for (int degree = 1; m.order[r] == 1 && degree <= 6; ++degree)
     if (vanishes(rate - Rational(degree) * m.phi[r])) return true;
   return false;
@@ -89,18 +93,34 @@ bool add_force(const Mechanics& m, const Force& f, Column& potentials) {
   if (f.kind == Force::Kind::torque) {
     Vector rate = model.bodies[f.on.body].orientation ? model.bodies[f.on.body].orientation->rate : zero_vector(g);
     if (f.from && model.bodies[f.from->body].orientation) rate = rate - model.bodies[f.from->body].orientation->rate;
-    return vanishes(dot(f.vector, rate));
+    return each(rate, free_of_time) && vanishes(dot(f.vector, rate));
   }
   // Elsewhere the velocity of the material point is not that of the place.
   if (!f.on.at_center || (f.from && !f.from->at_center)) return false;
-  Vector place = model.bodies[f.on.body].center, force = f.vector;
+  Vector place = model.bodies[f.on.body].center;
   if (f.from) place = place - model.bodies[f.from->body].center;
-  if (f.kind == Force::Kind::tension) force = (-f.tension * pow(dot(place, place), {-1, 2})) * place;
-  const Expr power = dot(force, total_derivative(place));
-  if (vanishes(power)) return true;
-  const auto u = homogeneous_potential(dot(force, place), power);
-  if (u) potentials.push_back(*u);
-  return u.has_value();
+  if (!each(place, free_of_time)) return false;
+  // A tension k (|r| - l) is a sum of homogeneous ones.
+  std::vector<Vector> forces;
+  if (f.kind == Force::Kind::tension) {
+    const Expr along = -pow(dot(place, place), {-1, 2}), tension = expanded(f.tension).value_or(f.tension);
+    const bool sum = g.node(tension.id).kind == Kind::sum;
+    std::vector<Expr> terms;
+    if (sum)
+      for (const Term& t : g.terms(tension.id)) terms.push_back(g.rational(t.weight) * Expr{&g, t.node});
+    else terms.push_back(tension);
+    for (Expr t : terms) forces.push_back((t * along) * place);
+  } else {
+    forces.push_back(f.vector);
+  }
+  for (const Vector& force : forces) {
+    const Expr power = dot(force, total_derivative(place));
+    if (vanishes(power)) continue;
+    const auto u = homogeneous_potential(dot(force, place), power);
+    if (!u) return false;
+    potentials.push_back(*u);
+  }
+  return true;
 }
 
 bool add_gravity(const Body& body, Column& potentials) {
@@ -141,11 +161,15 @@ std::optional<Conserved> energy(const Mechanics& m) {
     if (!add_gravity(body, parts)) return std::nullopt;
   for (const Force& f : model.forces)
     if (!add_force(m, f, parts)) return std::nullopt;
+  // A force that is none of these would show here.
+  const Power balance = power(m);
+  const Expr rate = balance.noncons + total_derivative(put_masses(model, sum(parts.empty() ? Column{m.graph().zero()} : parts)));
+  if (!small_at_points(rate)) return std::nullopt;
   const bool scleronomic = std::all_of(m.points.begin(), m.points.end(), [](const WeightedPoint& p) { return each(p.place, free_of_time); });
   Conserved e;
   e.name = model.observer.inertial && scleronomic ? "energy" : "Jacobi integral";
   e.because = "every force has a potential or no power";
-  e.terms.push_back(scleronomic ? m.T : power(m).h);
+  e.terms.push_back(scleronomic ? m.T : balance.h);
   for (Expr u : parts)
     if (!is_zero(u)) e.terms.push_back(u);
   e.terms = put_masses(model, e.terms);
@@ -155,7 +179,8 @@ std::optional<Conserved> energy(const Mechanics& m) {
 
 // ---- momenta -----------------------------------------------------------------------------------
 
-// dT/dq' and dT/dq + G + sum mdot d(dT/dq')/dm, and Phi; masses put in.
+// dT/dq' and dT/dq + G + sum mdot d(dT/dq')/dm, and Phi; masses put in. Where the observer turns, the momentum is that of the
+// velocities v + omega x rho, which is what a symmetry keeps: Coriolis forces are then the rate of its second part.
 struct Rates {
   Column momentum, rate;
   std::vector<Column> phi;
@@ -166,6 +191,16 @@ Rates rates(const Mechanics& m) {
   Rates r;
   r.momentum = gradient(m.T, m.qd);
   r.rate = gradient(m.T, m.q) + m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma;
+  if (!is_zero(model.observer.spin)) {
+    Column places, seeds;
+    for (const WeightedPoint& p : m.points) {
+      const Vector carried = p.weight * cross(model.observer.spin, p.place);
+      for (int i = 0; i < 3; ++i) places.push_back(p.place[i]), seeds.push_back(carried[i]);
+    }
+    const Column carried = pullback(places, seeds, m.q);
+    r.momentum = r.momentum + carried;
+    r.rate = r.rate + total_derivative(carried);
+  }
   for (std::size_t i = 0; i < model.masses.size(); ++i) {
     const Expr flow = total_derivative(model.masses[i].value);
     for (std::size_t a = 0; a < m.q.size(); ++a) {
@@ -298,8 +333,7 @@ std::string name_of(const Model& model, const Column& field) {
     ++terms;
     last = a;
     std::string part = print(field[a], model.names, Format::text);
-    const bool sum = g.node(field[a].id).kind == Kind::sum;
-    if (sum) part = "(" + part + ")";
+    if (g.node(field[a].id).kind == Kind::sum && g.terms(field[a].id).size() > 1) part = "(" + part + ")";
     part = (part == "1" ? "" : part == "-1" ? "-" : part + "*") + "d/d" + model.coordinates[a].name;
     if (!name.empty()) name += part[0] == '-' ? " - " : " + ";
     name += name.empty() || part[0] != '-' ? part : part.substr(1);
@@ -323,7 +357,9 @@ std::vector<Conserved> conserved(const Mechanics& m) {
       for (std::size_t a = 0; a < field.size(); ++a) along += row[a] * field[a];
       admissible = admissible && vanishes(along);
     }
-    if (!admissible || !vanishes(rate_along(m, r, field))) continue;
+    Expr reaction = m.graph().zero();
+    for (std::size_t a = 0; a < field.size(); ++a) reaction += put_masses(model, m.N[a]) * field[a];
+    if (!admissible || !vanishes(reaction) || !vanishes(rate_along(m, r, field))) continue;
     Conserved p;
     for (std::size_t a = 0; a < field.size(); ++a)
       if (!is_zero(field[a])) p.terms.push_back(field[a] * r.momentum[a]);

@@ -1,7 +1,7 @@
 // Angles that are about to fail: a body whose orientation is made of three angles has an angular velocity
 //   omega = sum_a omega_a q_a',  a = 1, 2, 3,
 // and the three vectors omega_a fall into a plane at the singularity of the angles (theta = 0 of Euler's). Watched is
-//   |omega_1 . (omega_2 x omega_3)| / (|omega_1| |omega_2| |omega_3|).
+//   |omega_1 . (omega_2 x omega_3)| / (|omega_1| |omega_2| |omega_3|).  (theory: integrals)
 #pragma once
 #include "run/scenario.h"
 

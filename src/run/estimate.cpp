@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace anholon {
 
@@ -27,6 +28,7 @@ void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& 
   while (next < samples.size()) {
     if (!(motion.stepper().time() == end))
       if (Outcome step = motion.step(end); !step.ok()) return gave_up(step);
+    if (o.progress) o.progress(to_double(motion.stepper().time()), motion.stepper().steps());
     for (; next < samples.size(); ++next) {
       const W t = convert<W>(samples[next].t);
       if (forward ? t > motion.stepper().time() : t < motion.stepper().time()) break;
@@ -35,8 +37,8 @@ void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& 
       for (std::size_t i = 0; i < values.size(); ++i) {
         const W mine = convert<W>(samples[next].values[i]);
         const double miss = to_double(W(abs(W(mine - values[i])) / (W(1) + abs(values[i]))));
-        if (!(miss > e.error)) continue;
-        e.error = miss;
+        if (miss <= e.error) continue;
+        e.error = std::isnan(miss) ? std::numeric_limits<double>::infinity() : miss;
         e.t = number_text(to_double(t), 6);
       }
     }
@@ -45,7 +47,7 @@ void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& 
   const double roundoff = to_double(unit_roundoff<N>());
   e.error = std::max(kSafety * e.error, roundoff);
   if (e.t.empty()) e.t = number_text(to_double(end), 6);
-  e.digits = std::max(0, static_cast<int>(std::floor(-std::log10(e.error))));
+  e.digits = e.error < 1 ? static_cast<int>(std::floor(-std::log10(e.error))) : 0;
   report.error = e;
 }
 

@@ -1,6 +1,6 @@
 // The global error of a run, by a second and sharper one: in wider numbers where there are any, at a tolerance 100 times smaller
 // and two orders higher. The two are compared at times all along the run, in every position and velocity, relative to 1 + |x|.
-// A motion that forgets its start (a double pendulum after long) shows as digits lost.
+// A motion that forgets its start (a double pendulum after long) shows as digits lost.  (theory: integrals)
 #pragma once
 #include "run/motion.h"
 #include "run/simulate.h"

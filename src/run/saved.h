@@ -1,6 +1,6 @@
 // A run laid down in a file, from which it goes on with the same bits: everything that steps and residuals carry, as exact text.
 //
-// The file is TOML, a list of texts for every name, and closes with the hash of all before it.
+// The file is TOML, a list of texts for every name, and closes with the hash of all before it.  (theory: integrals)
 #pragma once
 #include <map>
 #include <string>

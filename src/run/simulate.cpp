@@ -27,8 +27,10 @@ class Run {
   using W = Wider<N>;
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), power_(anholon::power(*s.mechanics)),
-        motion_(s, step_settings(o), watched_quadratures(s, power_), std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))), watch_(s, power_, o.conserved, motion_.parameters()),
-        angles_(s, motion_.parameters()) {}
+        motion_(s, step_settings(o), watched_quadratures(s, power_), std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
+        watch_(s, power_, o.conserved, motion_.parameters()), angles_(s, motion_.parameters()) {
+    report_.constraints_each = constraint_reports(s);
+  }
 
   SimulationReport go() {
     report_.order = motion_.stepper().order();
@@ -91,40 +93,32 @@ class Run {
     t0_ = from.number<W>("start");
     done_ = from.number<W>("rows");
     watch_.resume(from);
-    const std::vector<double> worst = from.numbers<double>("residuals");
-    if (worst.size() < 3) SavedRun::unfit("residuals");
-    report_.newton = worst[0];
-    report_.projected = worst[1];
-    report_.constraints_kept = worst[2];
+    const std::vector<double*> residuals = carried();
+    const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
+    for (std::size_t i = 0; i < worst.size(); ++i) *residuals[i] = worst[i];
     const std::vector<double> angles = from.numbers<double>("angles", 2 * angles_.least.size());
     for (std::size_t i = 0; i < angles_.least.size(); ++i) angles_.least[i] = {angles[2 * i], W(angles[2 * i + 1])};
-    std::size_t at = 3;
-    for (std::size_t i = 0; i < s_.system.constraints.size(); ++i) {
-      ConstraintReport c{s_.system.equation_names[s_.system.coordinates + i], {}};
-      for (int k = 0; k < std::max(1, s_.structure.c[s_.system.coordinates + i]); ++k, ++at) {
-        if (at >= worst.size()) SavedRun::unfit("residuals");
-        c.residuals.push_back(worst[at]);
-      }
-      report_.constraints_each.push_back(c);
-    }
     schedule();
     return {};
   }
 
+  // The residuals so far.
+  std::vector<double*> carried() {
+    std::vector<double*> list = {&report_.newton, &report_.projected, &report_.constraints_kept};
+    for (ConstraintReport& c : report_.constraints_each)
+      for (double& x : c.residuals) list.push_back(&x);
+    return list;
+  }
+
   // From here a run goes on with the same bits.
-  void save() const {
+  void save() {
     SavedRun to;
     motion_.save(to);
     watch_.save(to);
     to.set_numbers<W>("start", {t0_});
     to.set_numbers<W>("rows", {*done_});
-    std::vector<double> worst = {report_.newton, report_.projected, report_.constraints_kept}, angles;
-    for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
-      for (int k = 0; k < std::max(1, s_.structure.c[s_.system.coordinates + i]); ++k) {
-        const auto order = static_cast<std::size_t>(k);
-        const bool seen = i < report_.constraints_each.size() && order < report_.constraints_each[i].residuals.size();
-        worst.push_back(seen ? report_.constraints_each[i].residuals[order] : 0);
-      }
+    std::vector<double> worst, angles;
+    for (const double* x : carried()) worst.push_back(*x);
     for (const auto& least : angles_.least) angles.insert(angles.end(), {least.value, to_double(least.t)});
     to.set_numbers("residuals", worst);
     to.set_numbers("angles", angles);
@@ -172,6 +166,8 @@ class Run {
       if (every_step_) row(t0_, "");
       while (next_ < times_.size() && times_[next_] == t0_) row(times_[next_], labels_[next_]), ++next_;
       done_ = t0_;
+    } else if (reaches(*done_, end_)) {
+      return;  // nothing is left
     }
     if (o_.rigorous) defect_.emplace(s_, *o_.rigorous, Ball(*done_), Ball(end_), significand_bits<W>());
     auto saved = std::chrono::steady_clock::now();
@@ -226,7 +222,7 @@ class Run {
     const Stepper<N>& stepper = motion_.stepper();
     if (stepper.smallest_sigma() < stepper.first_sigma() * N(kNearSingular)) {
       const std::size_t j = stepper.weakest_unknown(), n = s_.system.coordinates;
-      const std::string what = j < n ? "the acceleration of " + s_.system.variable_names[j] + " is hardly determined"
+      const std::string what = j < n ? derivative_name(s_.system.variable_names[j], static_cast<unsigned>(motion_.program().d[j]), Format::text) + " is hardly determined"
                                      : "the constraint '" + s_.system.equation_names[j] + "' hardly holds";
       report_.warnings.push_back({"the motion passes near a singular configuration at t = " + report_.smallest_sigma_t + ": " + what,
                                   "trust what follows less; write the constraint or the coordinates so that they are regular there"});

@@ -30,6 +30,13 @@ std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p) {
   return es;
 }
 
+std::vector<ConstraintReport> constraint_reports(const Scenario& s) {
+  std::vector<ConstraintReport> list;
+  for (std::size_t i = s.system.coordinates; i < s.system.size(); ++i)
+    list.push_back({s.system.equation_names[i], std::vector<double>(static_cast<std::size_t>(std::max(1, s.structure.c[i])), 0.0)});
+  return list;
+}
+
 int orders_needed(const Scenario& s, std::span<const Expr> es) {
   int beyond = 0;
   for (NodeId id : symbols(es))
@@ -114,16 +121,12 @@ template <Number W>
 void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, bool projected, SimulationReport& report) const {
   const std::size_t n = s_.system.coordinates;
   report.constraints_kept = std::max(report.constraints_kept, to_double(projected ? point.constraint_residual() : point.drift()));
-  report.constraints_each.resize(s_.system.constraints.size());
-  const auto worse = [&](std::size_t i, std::size_t k, double residual) {
-    std::vector<double>& list = report.constraints_each[i].residuals;
-    list.resize(std::max(list.size(), k + 1));
-    list[k] = std::max(list[k], residual);
+  const auto worse = [&](std::size_t i, int k, double residual) {
+    double& worst = report.constraints_each[i].residuals[static_cast<std::size_t>(k)];
+    worst = std::max(worst, residual);
   };
-  for (std::size_t i = 0; i < s_.system.constraints.size(); ++i) {
-    report.constraints_each[i].name = s_.system.equation_names[n + i];
-    for (int k = 0; k < s_.structure.c[n + i]; ++k) worse(i, static_cast<std::size_t>(k), to_double(point.hidden_residual(n + i, k)));
-  }
+  for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
+    for (int k = 0; k < s_.structure.c[n + i]; ++k) worse(i, k, to_double(point.hidden_residual(n + i, k)));
   for (std::size_t o = 0; o < open_.size(); ++o) {
     const std::size_t i = open_[o];
     W scale(1);

@@ -4,7 +4,7 @@
 //   C1, C2  Newton's law by the points themselves, with and without multipliers  (theory: certificate)
 //   C3      hidden constraints
 //   power   h - h(0) - W, W the integral of the right side of the power identity
-// and the model's [monitor] formulas and the integrals of the motion.
+// and the model's [monitor] formulas and the integrals of the motion  (theory: integrals).
 #pragma once
 #include "run/motion.h"
 #include "run/redundant.h"
@@ -17,6 +17,9 @@ Expr balance_power(const Scenario& s, const Power& p);
 
 // What has to be integrated for it: the power of all forces first, then the masses that vary.
 std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p);
+
+// The constraints with a residual for each derivative that has to vanish, none seen yet.
+std::vector<ConstraintReport> constraint_reports(const Scenario& s);
 
 // How many orders beyond those solved for the expressions need.
 int orders_needed(const Scenario& s, std::span<const Expr> es);

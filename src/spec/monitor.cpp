@@ -18,7 +18,7 @@ static void read_one(const Item& i, Names& names, Model& model) {
     throw Failure(i.key_span, "a column '" + name + "' is there already", "give the monitor a name of its own");
   for (const Monitor& m : model.monitors)
     if (m.name == name) throw Failure(i.key_span, "there are two monitors '" + name + "'");
-  if (!i.is_formula()) throw Failure(i.span, "a monitor is a formula", "speed = \"norm(vel(P))\"");
+  if (!i.is_formula()) throw Failure(i.span, "a monitor is a formula", "speed = \"norm(vel(P.center))\"");
   const Value v = evaluate(parse_formula(i.formula), names);
   if (const Expr* e = std::get_if<Expr>(&v)) {
     const Expr value = put_masses(model, *e);

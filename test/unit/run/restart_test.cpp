@@ -54,7 +54,9 @@ TEST_P(Restart, GoesOnWithTheSameBits) {
   ASSERT_GT(whole.rows.size(), second.rows.size());
   const std::vector<std::vector<std::string>> tail(whole.rows.end() - static_cast<std::ptrdiff_t>(second.rows.size()), whole.rows.end());
   EXPECT_EQ(second.rows, tail);
-  if (!c.steps) EXPECT_EQ(first.rows.size() + second.rows.size(), whole.rows.size());
+  if (!c.steps) {
+    EXPECT_EQ(first.rows.size() + second.rows.size(), whole.rows.size());
+  }
   EXPECT_EQ(second.report.steps, whole.report.steps);
   EXPECT_EQ(second.report.eliminations, whole.report.eliminations);
   EXPECT_EQ(second.report.power, whole.report.power);
@@ -68,6 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Runs, Restart,
                          testing::Values(Case{"Sleigh", "zoo/chaplygin-sleigh"}, Case{"DoublePendulum", "zoo/double-pendulum-cartesian"},
                                          Case{"AtTheSteps", "zoo/double-pendulum-cartesian", "routh", Precision::real, 16, 1, 2, true},
                                          Case{"ConstantJerk", "zoo/constant-jerk"},
+                                         Case{"Backwards", "zoo/disc", "routh", Precision::real, 16, -1, -2},
                                          // Chaplygin's form divides by cos(theta), which vanishes on the way.
                                          Case{"Elimination", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10},
                                          Case{"LongDouble", "zoo/disc", "routh", Precision::long_real},
@@ -78,6 +81,36 @@ TEST(Restart, TheEliminationChangesBeforeAndAfter) {
   const Case c{"", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10};
   const std::size_t all = run(c, 20, nullptr).report.eliminations;
   EXPECT_GE(all, 1U) << "the case above must hold a change of the elimination";
+}
+
+// Stopped between any two steps, also next to a change of the elimination.
+TEST(Restart, GoesOnFromEveryStep) {
+  const auto motion = [](std::size_t most_steps, const SavedRun* resume, std::string* saved) {
+    Scenario s;
+    EXPECT_TRUE(make_scenario(test::shipped("zoo/chaplygin-sleigh"), *find_formulation("chaplygin"), {}, s).ok());
+    SimulationOptions o;
+    o.to = 4;
+    o.most_steps = most_steps;
+    o.resume = resume;
+    o.save = [&](const SavedRun& run) { *saved = print(run); };
+    MemorySink sink;
+    const SimulationReport report = simulate(s, o, sink);
+    EXPECT_EQ(report.outcome.kind, most_steps < 1000 ? OutcomeKind::interrupted : OutcomeKind::finished) << report.outcome.message;
+    return std::pair(sink.rows(), report);
+  };
+  std::string end, middle, again;
+  const auto [all, whole] = motion(1000, nullptr, &end);
+  ASSERT_GE(whole.eliminations, 1U);
+  for (std::size_t k = 1; k < whole.steps; ++k) {
+    motion(k, nullptr, &middle);
+    const SavedRun saved = read_saved({"run.state", middle});
+    const auto [rows, report] = motion(1000, &saved, &again);
+    const std::size_t first = k + 1;  // rows at the start and at k steps were given before
+    ASSERT_EQ(rows.size() + first, all.size()) << k;
+    EXPECT_TRUE(std::equal(rows.begin(), rows.end(), all.begin() + static_cast<std::ptrdiff_t>(first))) << "after " << k << " steps";
+    EXPECT_EQ(report.eliminations, whole.eliminations) << k;
+    EXPECT_EQ(again, end) << k;
+  }
 }
 
 TEST(Restart, RefusesWhatDoesNotFit) {

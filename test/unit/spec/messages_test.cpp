@@ -100,7 +100,7 @@ TEST(Messages, ASyntaxErrorOfTomlHasItsPlace) {
 // The language holds more than this version reads: whoever uses the rest is told so, and nothing is skipped in silence.
 TEST(NotReadYet, EveryLaterSectionSaysSo) {
   for (const std::string section : {"base", "index", "table", "state", "mode", "event", "input", "output", "case", "dissipation",
-                                    "monitor", "view", "notation"})
+                                    "view", "notation"})
     for (const std::string& form : {"[" + section + "]\n", "[[" + section + "]]\n"}) {
       const std::vector<Diagnostic> list = diagnostics_of(kGood + form);
       ASSERT_EQ(list.size(), 1U) << form;

@@ -1,0 +1,208 @@
+// What is watched along a motion: monitors, integrals, the digits to trust, singular values, angles.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "run/simulate.h"
+#include "support/oracle.h"
+
+namespace anholon {
+namespace {
+
+struct Result {
+  SimulationReport report;
+  MemorySink rows;
+  double number(std::size_t row, const std::string& column) const {
+    const auto& names = rows.names();
+    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin());
+    return std::stod(rows.rows().at(row).at(at));
+  }
+};
+
+void run(const std::string& text, SimulationOptions o, Result& r, const char* form = "routh", bool with_integrals = true) {
+  Scenario s;
+  ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation(form), o.state, s).ok());
+  if (with_integrals) o.conserved = conserved(*s.mechanics);
+  r.report = simulate(s, o, r.rows);
+}
+
+const std::string kPendulum = R"toml(coordinates = ["th"]
+[parameters]
+g = 10
+[[particle]]
+name = "P"
+mass = 1
+position = ["sin(th)", "-cos(th)", "0"]
+[gravity]
+field = "-g*ey"
+[initial]
+th = 1
+[monitor]
+speed2 = "norm2(vel(P.center))"
+jerk = "D(th,4)"
+)toml";
+
+TEST(Monitor, FormulasAreColumnsAndARange) {
+  SimulationOptions o;
+  o.to = 2;
+  o.every = Rational(1, 4);
+  Result r;
+  ASSERT_NO_FATAL_FAILURE(run(kPendulum, o, r));
+  ASSERT_TRUE(r.report.outcome.ok());
+  const double th = r.number(3, "th"), rate = r.number(3, "th'");
+  EXPECT_NEAR(r.number(3, "speed2"), rate * rate, 1e-12);
+  // th'' = -g sin(th): th'''' = g^2 sin cos + g sin th'^2
+  EXPECT_NEAR(r.number(3, "jerk"), 100 * std::sin(th) * std::cos(th) + 10 * std::sin(th) * rate * rate, 1e-9);
+  ASSERT_EQ(r.report.monitors.size(), 2U);
+  const WatchedReport& speed2 = r.report.monitors[0];
+  EXPECT_EQ(speed2.name, "speed2");
+  EXPECT_EQ(speed2.first, "0");
+  EXPECT_EQ(speed2.least, "0");
+  EXPECT_LE(std::stod(speed2.greatest), 20 * (1 - std::cos(1.0)) + 1e-9);
+  EXPECT_EQ(speed2.largest_change, 1);
+  ASSERT_EQ(r.report.conserved.size(), 1U);
+  EXPECT_LT(r.report.conserved[0].largest_change, 1e-12);
+}
+
+TEST(Monitor, MultipliersInEveryForm) {
+  const std::string text = test::shipped_text("zoo/chaplygin-sleigh") + "\n[monitor]\nhold = \"lambda.blade_edge\"\nrate = \"lambda.blade_edge'\"\n";
+  SimulationOptions o;
+  o.to = 1;
+  o.every = Rational(1, 2);
+  Result routh, chaplygin;
+  ASSERT_NO_FATAL_FAILURE(run(text, o, routh));
+  ASSERT_NO_FATAL_FAILURE(run(text, o, chaplygin, "chaplygin"));
+  EXPECT_EQ(routh.number(1, "hold"), routh.number(1, "lambda.blade_edge"));
+  for (const char* name : {"hold", "rate"}) EXPECT_NEAR(routh.number(2, name), chaplygin.number(2, name), 1e-11) << name;
+  EXPECT_GT(std::abs(routh.number(2, "rate")), 1e-3);
+}
+
+// Against the reference trajectories: the estimate is no smaller than a tenth of the true error, and no larger than a thousand
+// times it (or the round-off of what is printed).
+class Estimate : public testing::TestWithParam<test::OraclePair> {};
+
+TEST_P(Estimate, OfTheErrorIsHonest) {
+  const nlohmann::json data = test::oracle_data(GetParam().oracle), &path = data["trajectory"];
+  const auto text = [](const nlohmann::json& j) { return j.get<std::string>(); };
+  SimulationOptions o;
+  for (const auto& t : path["times"]) o.at.push_back(parse_rational(text(t)).value());
+  o.tolerance = Rational(1, 10'000'000);
+  o.estimate = ErrorEstimate::always;
+  Result r;
+  ASSERT_NO_FATAL_FAILURE(run(test::shipped_text(GetParam().model), o, r, "routh", false));
+  ASSERT_TRUE(r.report.error) << r.report.no_error;
+  double error = 0;
+  const std::vector<std::string> coordinates = data["coords"].get<std::vector<std::string>>();
+  for (std::size_t k = 0; k < r.rows.rows().size(); ++k)
+    for (const auto& [symbol, value] : path["states"][k].items()) {
+      const auto [name, order] = test::split_order(symbol);
+      if (order > 1 || std::find(coordinates.begin(), coordinates.end(), name) == coordinates.end()) continue;
+      const double exact = std::stod(text(value)), mine = r.number(k, derivative_name(name, order, Format::text));
+      error = std::max(error, std::abs(mine - exact) / (1 + std::abs(exact)));
+    }
+  EXPECT_GE(r.report.error->error, error / 10);
+  EXPECT_LE(r.report.error->error, 1000 * std::max(error, 1.2e-16));
+}
+
+INSTANTIATE_TEST_SUITE_P(Model, Estimate, testing::ValuesIn(test::oracle_pairs()), [](const auto& p) { return test::test_name(p.param.model); });
+
+TEST(Estimate, AChaoticMotionLosesItsDigits) {
+  SimulationOptions o;
+  o.estimate = ErrorEstimate::always;
+  // Six times as fast as in the file: it turns over.
+  const std::string text = test::shipped_text("zoo/double-pendulum-cartesian");
+  o.tolerance = Rational(1, 100'000'000);
+  o.state.overrides = {{1, 0, Rational(24, 5)}, {1, 1, Rational(18, 5)}, {1, 2, Rational(48, 5)}, {1, 3, Rational(36, 5)}};
+  int before = 16;
+  for (const int to : {1, 15, 45}) {
+    o.at = {Rational(to)};
+    Result r;
+    ASSERT_NO_FATAL_FAILURE(run(text, o, r, "routh", false));
+    ASSERT_TRUE(r.report.error) << r.report.no_error;
+    EXPECT_LT(r.report.error->digits, before) << to;
+    before = r.report.error->digits;
+  }
+  EXPECT_LE(before, 6);
+}
+
+TEST(Estimate, InManyDigitsAndNotOfLongRuns) {
+  SimulationOptions o;
+  o.at = {Rational(1)};
+  o.estimate = ErrorEstimate::always;
+  o.tolerance = Rational(1, mpz_class("10000000000000000000000"));
+  o.precision = Precision::multi;
+  o.digits = 20;
+  Result many, lengthy;
+  ASSERT_NO_FATAL_FAILURE(run(kPendulum, o, many));
+  ASSERT_TRUE(many.report.error);
+  EXPECT_GE(many.report.error->digits, 19);
+  EXPECT_LE(many.report.error->digits, 26);
+  SimulationOptions p;
+  p.at = {Rational(1500)};
+  p.estimate = ErrorEstimate::short_runs;
+  ASSERT_NO_FATAL_FAILURE(run(kPendulum, p, lengthy));
+  ASSERT_GT(lengthy.report.steps, kShortRun);
+  EXPECT_FALSE(lengthy.report.error);
+  EXPECT_NE(lengthy.report.no_error.find("--error-estimate"), std::string::npos);
+}
+
+// A disc that lies down: Euler's angles fail, and the warning says so; upright it rolls without one.
+TEST(Angles, NearTheirSingularityAreWarnedOf) {
+  const std::string disc = test::shipped_text("zoo/disc");
+  const std::string top = R"toml(coordinates = ["psi", "theta", "phi"]
+[parameters]
+J = 2
+[[body]]
+name = "top"
+mass = 1
+inertia = [["J", "0", "0"], ["0", "J", "0"], ["0", "0", "1"]]
+center = ["0", "0", "0"]
+orientation = "rotz(psi)*rotx(theta)*rotz(phi)"
+[initial]
+theta = 0.5
+"theta'" = -1
+"psi'" = 0.00001
+)toml";
+  SimulationOptions o;
+  o.at = {Rational(1)};
+  Result upright, passes;
+  ASSERT_NO_FATAL_FAILURE(run(disc, o, upright));
+  EXPECT_TRUE(upright.report.warnings.empty());
+  ASSERT_NO_FATAL_FAILURE(run(top, o, passes));
+  bool angles = false;
+  for (const Warning& w : passes.report.warnings) angles = angles || w.message.find("the angles psi, theta, phi come near") == 0;
+  EXPECT_TRUE(angles);
+  // From there the hint: a quaternion.
+  EXPECT_NE(passes.report.warnings.back().hint.find("'top' by a quaternion"), std::string::npos);
+}
+
+TEST(Sigma, ASingularConfigurationAnnouncesItself) {
+  SimulationOptions o;
+  o.at = {Rational(2)};
+  o.state.overrides = {{1, 2, Rational(3, 10)}};
+  Result r;
+  ASSERT_NO_FATAL_FAILURE(run(test::shipped_text("zoo/appell-hamel"), o, r));
+  EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular);
+  ASSERT_FALSE(r.report.warnings.empty());
+  EXPECT_NE(r.report.warnings[0].message.find("the constraint 'thread' hardly holds"), std::string::npos) << r.report.warnings[0].message;
+  EXPECT_NEAR(std::stod(r.report.smallest_sigma_t), std::stod(r.report.t), 1e-3);
+}
+
+TEST(ConstraintsEach, HaveTheirDerivatives) {
+  SimulationOptions o;
+  o.at = {Rational(1)};
+  Result r;
+  ASSERT_NO_FATAL_FAILURE(run(test::shipped_text("zoo/double-pendulum-cartesian"), o, r));
+  ASSERT_EQ(r.report.constraints_each.size(), 2U);
+  for (const ConstraintReport& c : r.report.constraints_each) {
+    ASSERT_EQ(c.residuals.size(), 2U) << c.name;
+    for (double x : c.residuals) EXPECT_LE(x, r.report.constraints_kept);
+  }
+  // Constraints of order 2 have no derivative to hide.
+  ASSERT_NO_FATAL_FAILURE(run(test::shipped_text("zoo/second-order-linear"), o, r));
+  EXPECT_EQ(r.report.constraints_each.at(0).residuals.size(), 1U);
+  EXPECT_LT(r.report.constraints_kept, 1e-15);
+}
+
+}  // namespace
+}  // namespace anholon
