@@ -18,7 +18,8 @@ void constraint(JsonWriter& j, const Scenario& s, const Explanation& x, std::siz
   j.close();
 }
 
-void integrability(JsonWriter& j, const Scenario& s, const Integrability& i) {
+void integrability(JsonWriter& j, const Scenario& s, const Explanation& x) {
+  const Integrability& i = x.integrability;
   const Model& model = *s.model;
   const auto text = [&](Expr e) { return print(e, model.names, Format::text); };
   j.key("integrability").open_object();
@@ -34,7 +35,7 @@ void integrability(JsonWriter& j, const Scenario& s, const Integrability& i) {
   for (int d : i.flag) j.integer(d);
   j.close().key("integrable").integer(i.integrable()).key("proved").boolean(i.proved);
   j.key("for_these_values_only").boolean(i.these_values);
-  if (!s.structure.c.empty()) j.key("accessible_dimension").integer(s.structure.configuration_dimension - i.integrable());
+  if (x.accessible) j.key("accessible_dimension").integer(*x.accessible);
   j.key("combinations").open_array();
   for (const IntegrableCombination& c : i.combinations) {
     j.open_object().key("coefficients").open_object();
@@ -95,7 +96,7 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
   strings("effects", effects(model));
   strings("external_forces", external_forces(model));
   j.key("reactions_hypothesis").string(model.constraints.empty() ? "none" : "ideal (Chetaev-Niu)");
-  if (!x.integrability.constraints.empty() || !x.integrability.undecided.empty()) integrability(j, s, x.integrability);
+  if (!x.integrability.constraints.empty() || !x.integrability.undecided.empty()) integrability(j, s, x);
   if (outcome.ok()) {
     j.key("degrees_of_freedom").integer(s.structure.degrees_of_freedom);
     j.key("configuration_dimension").integer(s.structure.configuration_dimension);

@@ -52,8 +52,9 @@ void reactions(const Scenario& s, const Explanation& x) {
   line(Hypothesis::niu, "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and more)");
 }
 
-void integrability(const Scenario& s, const Integrability& i) {
+void integrability(const Scenario& s, const Explanation& x) {
   const Model& model = *s.model;
+  const Integrability& i = x.integrability;
   std::string flag;
   for (int d : i.flag) flag += (flag.empty() ? "" : ", ") + std::to_string(d);
   if (!i.undecided.empty()) {
@@ -78,10 +79,10 @@ void integrability(const Scenario& s, const Integrability& i) {
     if (!c.integral) std::printf("    %s: in the integrable part; no elementary integral was found\n", whose.c_str());
     else std::printf("    %s %s: %s = const\n", whose.c_str(), members.size() > 1 ? "together" : "alone", print(*c.integral, model.names, Format::text).c_str());
   }
-  if (s.structure.c.empty()) return;
+  if (!x.accessible) return;
   const int all = s.structure.configuration_dimension;
-  if (p == 0) std::printf("    all %d dimensions of the configuration can be reached\n", all);
-  else std::printf("    %d of the %d dimensions of the configuration can be reached\n", all - static_cast<int>(p), all);
+  if (*x.accessible == all) std::printf("    all %d dimensions of the configuration can be reached\n", all);
+  else std::printf("    %d of the %d dimensions of the configuration can be reached\n", *x.accessible, all);
 }
 
 std::string derivative_of(int order) {
@@ -170,7 +171,7 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
     std::printf("  %-14s %s; %s%s\n", "", describe(s.classes[r], c.order).c_str(), work(s, x, r).c_str(), redundant.c_str());
   }
   reactions(s, x);
-  integrability(s, x.integrability);
+  integrability(s, x);
   if (outcome.ok()) {
     std::printf("\ndegrees of freedom %d, configuration dimension %d, state dimension %d\n", s.structure.degrees_of_freedom,
                 s.structure.configuration_dimension, s.structure.state_dimension);

@@ -59,6 +59,9 @@ Explanation explain(const Scenario& s) {
   if (!s.structure.c.empty()) {
     x.blocks = blocks(s.structure);
     x.hidden = hidden_constraints(s.system, s.structure);
+    const bool known = x.integrability.undecided.empty() && x.integrability.proved;
+    if (known && std::all_of(x.constraints.begin(), x.constraints.end(), [](const ConstraintFacts& c) { return c.hypothesis == Hypothesis::dalembert; }))
+      x.accessible = s.structure.configuration_dimension - x.integrability.integrable();
   }
   return x;
 }

@@ -24,6 +24,9 @@ struct ConstraintFacts {
 struct Explanation {
   std::vector<ConstraintFacts> constraints;
   Integrability integrability;
+  // Of the positions that can be reached; nothing without a structure, or where constraints that are nonlinear in the velocities
+  // or of order 2 and more may take some away.
+  std::optional<int> accessible;
   std::vector<Block> blocks;              // both empty without a structure
   std::vector<HiddenConstraint> hidden;
 };
