@@ -60,6 +60,7 @@ class Stepper {
   N step_size() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
+  bool end_out_of_reach(const W& h, const W& left) const;
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
@@ -69,7 +70,7 @@ class Stepper {
   Expansion<W> point_;
   std::unique_ptr<Expansion<N>> ahead_;  // where leading derivatives enter nonlinearly
   W branch_step_{0};
-  W t_{0}, before_{0};
+  W started_{0}, t_{0}, before_{0};
   N horizon_{0};
   std::vector<W> state_, carry_, leading_, integrals_, integral_carry_;
   std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;

@@ -134,6 +134,7 @@ struct SimulationSettings {
   std::optional<Rational> to, tolerance, every;
   std::vector<Rational> at;
   std::optional<std::string> form;
+  Span form_span;
 };
 
 struct Model {

@@ -55,7 +55,7 @@ void Scope::unknown(const std::string& name, Span span) const {
   for (const auto& [n, d] : declarations_) known.push_back(n);
   known.insert(known.end(), body_names_.begin(), body_names_.end());
   const std::string near = did_you_mean(name, known);
-  throw Failure(span, "unknown name '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+  throw Failure(span, "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 near.empty() ? "give it a value under [parameters] or [define]" : "");
 }
 
