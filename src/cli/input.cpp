@@ -46,7 +46,7 @@ bool read_file(const fs::path& path, std::string& text, std::string* why) {
     return false;
   }
   // A device may have no end; what is longer than any model or certificate is cut, and refused by its reader.
-  constexpr std::size_t kMostBytes = 256 << 20, kPiece = 1 << 16;
+  constexpr std::size_t kMostBytes = 64 << 20, kPiece = 1 << 16;
   text.clear();
   for (std::size_t got = kPiece; got == kPiece && text.size() < kMostBytes;) {
     const std::size_t before = text.size();

@@ -62,7 +62,7 @@ void Graph::set_rate(NodeId id, NodeId rate) {
 
 void Graph::spend(std::uint64_t work) {
   work_ += work;
-  if (work_ > most_work_) throw Failure(Span{}, "the expressions grow out of all proportion");
+  if (work_ > most_work_) throw Failure(Span{}, "the expressions grow out of all proportion", "fewer derivatives or powers, or fewer definitions within definitions");
 }
 
 std::uint32_t Graph::rational_index(const Rational& r) {

@@ -27,6 +27,9 @@ constexpr Span kTop{1, 1, 1};
 // What making the expressions of a file may cost: a formula that unfolds without end is refused where it stands. The chain of
 // a thousand links takes a tenth of this.
 constexpr std::size_t kWork = 700'000, kWorkPerByte = 1000, kWorkLater = std::size_t{1} << 48;
+// Parameters are put into each other so many times.
+constexpr std::size_t kDeepestParameters = 400;
+
 // An end time, and a number of rows, beyond these are refused before they are tried.
 const Rational kLatest(mpz_class("1000000000000000000"));
 constexpr long kMostRows = 5'000'000;
@@ -364,6 +367,19 @@ class Reader {  // what it refers to is asked only while it runs
   // overflowed), in numbers without such bounds.
   void values() {
     const Graph& g = *model_.graph;
+    std::vector<std::size_t> depth(model_.parameters.size(), 0);  // through how many others a value leads
+    const std::function<std::size_t(std::size_t)> deep = [&](std::size_t i) {
+      if (depth[i] > 0 || is_number(model_.parameters[i].value)) return depth[i];
+      std::size_t most = 0;
+      for (NodeId id : symbols({&model_.parameters[i].value, 1}))
+        if (g.node(id).kind == Kind::parameter) most = std::max(most, 1 + deep(g.node(id).index));
+      return depth[i] = most;
+    };
+    for (std::size_t i = 0; i < depth.size(); ++i)
+      if (deep(i) > kDeepestParameters) {
+        diagnostics_.error(model_.parameters[i].span, "the parameter '" + model_.parameters[i].name + "' leads through more than " + std::to_string(kDeepestParameters) + " others");
+        return;
+      }
     std::vector<std::optional<double>> known(model_.parameters.size());
     const std::function<double(Expr)> value = [&](Expr e) {
       if (g.is_number(e.id)) return from_rational<double>(g.value(e.id));
@@ -407,6 +423,7 @@ class Reader {  // what it refers to is asked only while it runs
     if (!s) return;
     check_keys(*s, "[simulate]", {"to", "tolerance", "every", "at", "form", "integrator"}, {}, diagnostics_);
     SimulationSettings& out = model_.simulate;
+    const Rational start = is_number(model_.initial.t) ? number_value(model_.initial.t) : Rational(0);
     if (const Item* i = s->find("to")) {
       out.to = rational(*i);
       if (abs(*out.to) > kLatest) throw Failure(i->span, "an end time beyond 1e18");
@@ -418,13 +435,16 @@ class Reader {  // what it refers to is asked only while it runs
     if (const Item* i = s->find("every")) {
       out.every = rational(*i);
       if (*out.every <= 0) throw Failure(i->span, "'every' is a positive time");
-      const Rational start = is_number(model_.initial.t) ? number_value(model_.initial.t) : Rational(0);
       if (out.to && abs(Rational(*out.to - start)) > kMostRows * *out.every)
         throw Failure(i->span, "'every' asks for more than " + std::to_string(kMostRows) + " rows");
     }
     if (const Item* i = s->find("at")) {
       if (i->kind != Item::Kind::array) throw Failure(i->span, "'at' is a list of times");
       for (const Item& t : i->items) out.at.push_back(rational(t));
+      const auto side = [&](int sign) {
+        return std::any_of(out.at.begin(), out.at.end(), [&](const Rational& t) { return sgn(Rational(t - start)) == sign; });
+      };
+      if (side(-1) && side(1)) throw Failure(i->span, "some of these times lie before the start, others after it", "one run goes one way");
     }
     if (const Item* i = s->find("form")) {
       if (i->kind != Item::Kind::string) throw Failure(i->span, "a form is a name in quotes", "form = \"routh\"");
