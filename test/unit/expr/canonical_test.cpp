@@ -217,7 +217,9 @@ TEST(Rates, OfSharedPartsAreMadeOnce) {
     const std::uint64_t before = g.work();
     (void)total_derivative(p);
     if (k == 100) spent = g.work() - before;
-    if (k == 199) EXPECT_LE(g.work() - before, 2 * spent + 10) << "one more link each time, not all of them";
+    if (k == 199) {
+      EXPECT_LE(g.work() - before, 2 * spent + 10) << "one more link each time, not all of them";
+    }
   }
 }
 
