@@ -94,6 +94,7 @@ anholon_script_test(layers_selftest tools/check_layers.py --self-test)
 anholon_script_test(refs            tools/check_refs.py)
 anholon_script_test(refs_selftest   tools/check_refs.py --self-test)
 anholon_script_test(golden_selftest tools/golden.py --self-test)
+anholon_script_test(hostile_selftest test/hostile/run.py --self-test)
 
 if(TARGET anholon)
   anholon_script_test(readme tools/readme.py --program $<TARGET_FILE:anholon>)
@@ -103,6 +104,12 @@ if(TARGET anholon)
   anholon_script_test(oracle_chaplygin test/oracle/check_models.py $<TARGET_FILE:anholon> --form chaplygin --jobs 1)
   anholon_script_test(oracle_all_forms test/oracle/check_models.py $<TARGET_FILE:anholon> --form all)
   set_tests_properties(script.oracle_all_forms PROPERTIES LABELS long-only)
+  # Sanitizers need more time and address space than the limits leave.
+  set(no_limits "")
+  if(ANHOLON_SANITIZE)
+    set(no_limits --no-limits)
+  endif()
+  anholon_script_test(hostile test/hostile/run.py --program $<TARGET_FILE:anholon> ${no_limits})
   anholon_script_test(mathml tools/check_mathml.py --program $<TARGET_FILE:anholon>)
 
   file(GLOB cases CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/test/golden"

@@ -91,8 +91,11 @@ std::string Diagnostics::print(const SourceText& source) const {
     return a->span.line != b->span.line ? a->span.line < b->span.line
                                         : a->span.column < b->span.column;
   });
+  // More than this nobody reads; each costs a walk to its line.
+  constexpr std::size_t kShown = 100;
   std::string out;
-  for (const Diagnostic* d : sorted) out += anholon::print(*d, source);
+  for (std::size_t i = 0; i < sorted.size() && i < kShown; ++i) out += anholon::print(*sorted[i], source);
+  if (sorted.size() > kShown) out += "… and " + std::to_string(sorted.size() - kShown) + " more\n";
   return out;
 }
 
@@ -114,7 +117,7 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
   std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
   if (name.size() > 64 || name.size() < 2) return best;
   for (const std::string& c : candidates) {
-    if (c == name || c.size() > 64) continue;
+    if (c == name || c.size() > 64 || std::max(c.size(), name.size()) - std::min(c.size(), name.size()) >= best_distance) continue;
     const std::size_t distance = edit_distance(name, c);
     if (distance < best_distance && distance < std::max(c.size(), name.size())) {
       best = c;

@@ -13,6 +13,7 @@ const char* name(OutcomeKind kind) {
     case OutcomeKind::no_convergence: return "no_convergence";
     case OutcomeKind::inconsistent: return "inconsistent";
     case OutcomeKind::interrupted: return "interrupted";
+    case OutcomeKind::too_large: return "too_large";
   }
   return "";
 }

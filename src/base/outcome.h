@@ -16,6 +16,7 @@ enum class OutcomeKind : std::uint8_t {
   no_convergence,    // Newton's iteration for the leading derivatives failed
   inconsistent,      // no initial data satisfy the constraints with the values given
   interrupted,       // Ctrl-C, or the step limit of the caller
+  too_large,         // the work or the memory it would take is beyond all proportion
 };
 
 struct Outcome {

@@ -45,9 +45,16 @@ bool read_file(const fs::path& path, std::string& text, std::string* why) {
     if (why) *why = std::strerror(errno);
     return false;
   }
-  std::ostringstream all;
-  all << in.rdbuf();
-  text = all.str();
+  // A device may have no end; what is longer than any model or certificate is cut, and refused by its reader.
+  constexpr std::size_t kMostBytes = 64 << 20, kPiece = 1 << 16;
+  text.clear();
+  for (std::size_t got = kPiece; got == kPiece && text.size() < kMostBytes;) {
+    const std::size_t before = text.size();
+    text.resize(before + kPiece);
+    in.read(text.data() + before, kPiece);
+    got = static_cast<std::size_t>(in.gcount());
+    text.resize(before + got);
+  }
   return !in.bad();
 }
 
@@ -189,8 +196,10 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
       list += (list.empty() ? "" : ", ") + std::string(k->name);
     }
     const std::string near = did_you_mean(wanted, names);
-    throw UsageError{"error: there is no form '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                     "\nhint: the forms are " + list + "\n"};
+    const std::string message = "there is no form '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), hint = "the forms are " + list;
+    if (!o.form_given && model.simulate.form)
+      throw UsageError{print({Severity::error, model.simulate.form_span, message, hint}, model.source_text)};
+    throw UsageError{"error: " + message + "\nhint: " + hint + "\n"};
   }
   if (mechanics) must_apply(*f, *mechanics);
   return *f;

@@ -182,8 +182,13 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
     std::fputs(e.text.c_str(), stderr);
     return kBadInput;
+  } catch (const Failure& e) {
+    // Not met in one element of the file, but in the equations made of all of them.
+    std::fflush(stdout);
+    std::fprintf(stderr, "error: %s%s%s\n", e.what(), e.diagnostic.hint.empty() ? "" : "\nhint: ", e.diagnostic.hint.c_str());
+    return kBadInput;
   } catch (const std::bad_alloc&) {
-    std::fputs("error: out of memory\nhint: the model is too large for this machine\n", stderr);
+    std::fputs("stopped (too_large): out of memory\nhint: the model is too large for this machine\n", stderr);
     return kStopped;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "internal fault: %s\nplease report this with the model\n", e.what());

@@ -51,8 +51,8 @@ class Progress {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_ = start_;
 };
 
-// More rows than this are refused before they fill memory or disk.
-constexpr long kMostRows = 20'000'000;
+// More rows than this are refused before they fill memory or disk; JSON, which is held in memory, has less room.
+constexpr long kMostRows = 5'000'000, kMostJsonNumbers = 5'000'000;
 
 Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
   const Model& model = *scenario.model;
@@ -83,6 +83,10 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s)
   if (end < start) std::fprintf(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
   if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
+  const bool json = o.json || (o.output.size() > 5 && o.output.substr(o.output.size() - 5) == ".json");
+  const auto columns = static_cast<long>(1 + 4 * scenario.system.coordinates + scenario.system.constraints.size());
+  if (s.every && json && columns * abs(Rational(end - start)) > kMostJsonNumbers * *s.every)
+    throw UsageError{"error: --every asks for more than " + std::to_string(kMostJsonNumbers) + " numbers of JSON\nhint: write CSV: -o run.csv\n"};
   return end;
 }
 

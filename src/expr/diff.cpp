@@ -1,6 +1,7 @@
 #include "expr/diff.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "base/assert.h"
 
@@ -77,38 +78,49 @@ static Expr rate_of_symbol(Graph& g, const Node& n) {
   return g.zero();
 }
 
+// The nodes below `es` (and they themselves) whose rate is not known yet, operands before users.
+static std::vector<NodeId> without_rate(Graph& g, std::span<const Expr> es) {
+  std::vector<NodeId> found;
+  std::unordered_set<NodeId> seen;
+  const auto add = [&](NodeId id) {
+    if (!g.rate(id).graph && seen.insert(id).second) found.push_back(id);
+  };
+  for (Expr e : es) add(e.id);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const Term& t : g.summands(found[i])) add(t.node);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 Column total_derivative(std::span<const Expr> es) {
   if (es.empty()) return {};
   Graph& g = *es[0].graph;
-  const std::vector<NodeId> ids = reachable(es);
-  std::unordered_map<NodeId, Expr> rate;
-  rate.reserve(ids.size());
   Column partials;
-  for (NodeId id : ids) {
+  for (NodeId id : without_rate(g, es)) {
     const Node n = g.node(id);
     if (n.view_count == 0) {
-      rate[id] = rate_of_symbol(g, n);
+      g.set_rate(id, rate_of_symbol(g, n).id);
       continue;
     }
     const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
     std::vector<std::pair<Rational, Expr>> parts;
     const bool constant = std::all_of(terms.begin(), terms.end(),
-                                      [&](const Term& t) { return is_zero(rate[t.node]); });
+                                      [&](const Term& t) { return is_zero(g.rate(t.node)); });
     if (constant) {
-      rate[id] = g.zero();
+      g.set_rate(id, g.zero().id);
       continue;
     }
     if (n.kind == Kind::sum) {
-      for (const Term& t : terms) parts.push_back({g.rational(t.weight), rate[t.node]});
+      for (const Term& t : terms) parts.push_back({g.rational(t.weight), g.rate(t.node)});
     } else {
       local_partials(g, id, partials);
       for (std::size_t i = 0; i < terms.size(); ++i)
-        if (!is_zero(rate[terms[i].node])) parts.push_back({1, partials[i] * rate[terms[i].node]});
+        if (!is_zero(g.rate(terms[i].node))) parts.push_back({1, partials[i] * g.rate(terms[i].node)});
     }
-    rate[id] = g.sum(parts);
+    g.set_rate(id, g.sum(parts).id);
   }
   Column result;
-  for (Expr e : es) result.push_back(rate[e.id]);
+  for (Expr e : es) result.push_back(g.rate(e.id));
   return result;
 }
 

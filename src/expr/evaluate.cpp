@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "expr/formula.h"
+#include "expr/normal.h"
 
 namespace anholon {
 
@@ -161,6 +162,13 @@ Rotation euler(const Syntax& call, const std::vector<Value>& values, Graph& g) {
   return r;
 }
 
+// Throws if e is a constant other than `value`. (What varies may have this value on the constraints.)
+void must_be(Expr e, int value, Span at) {
+  const std::optional<Expr> constant = expanded(e - value);
+  if (constant && is_number(*constant) && !is_zero(*constant))
+    throw Failure(at, "this matrix is no rotation", "its columns are the new axes: of length 1, at right angles, right-handed");
+}
+
 Rotation matrix(const Syntax& call, Names& names) {
   const Syntax* rows = call.args.size() == 1 ? &call.args[0] : nullptr;
   if (!rows || rows->op != Syntax::Op::array || rows->args.size() != 3)
@@ -173,6 +181,9 @@ Rotation matrix(const Syntax& call, Names& names) {
     for (int j = 0; j < 3; ++j)
       columns[j][i] = evaluate_number(row.args[static_cast<std::size_t>(j)], names);
   }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j) must_be(dot(columns[i], columns[j]), i == j, call.span);
+  must_be(dot(cross(columns[0], columns[1]), columns[2]), 1, call.span);
   return rotation_from_axes(columns[0], columns[1], columns[2]);
 }
 
@@ -241,7 +252,13 @@ Value call(const Syntax& s, Names& names) {
     return differentiate(values[0], static_cast<int>(in.integer(1, kHighestDerivative)), s.span);
   }
   if (f == "rotx" || f == "roty" || f == "rotz") return in.expect(1), turn(f[3] - 'x', in.number(0));
-  if (f == "rot") return in.expect(2), turn(in.vector(0), in.number(1));
+  if (f == "rot") {
+    in.expect(2);
+    const Vector axis = in.vector(0);
+    if (is_zero(axis)) throw Failure(s.args[0].span, "the axis of rot is the zero vector");
+    const Expr square = dot(axis, axis), angle = in.number(1);
+    return turn(proved_zero(square - 1) ? axis : pow(square, {-1, 2}) * axis, angle);
+  }
   if (f == "quat") return in.expect(4), quaternion(in.number(0), in.number(1), in.number(2), in.number(3));
 
   std::vector<std::string> known = names.functions();
@@ -253,7 +270,7 @@ Value call(const Syntax& s, Names& names) {
 
 }  // namespace
 
-Value evaluate(const Syntax& s, Names& names) {
+static Value value_of(const Syntax& s, Names& names) {
   Graph& g = names.graph();
   switch (s.op) {
     case Syntax::Op::number: {
@@ -319,6 +336,16 @@ Value evaluate(const Syntax& s, Names& names) {
   }
   ANHOLON_ASSERT(false);
   return g.zero();
+}
+
+// What fails below without a place of its own (a division by zero, a number too long) failed here.
+Value evaluate(const Syntax& s, Names& names) {
+  try {
+    return value_of(s, names);
+  } catch (const Failure& f) {
+    if (f.diagnostic.span.line > 0 || f.diagnostic.message.empty() || s.span.line == 0) throw;
+    throw Failure(s.span, f.diagnostic.message, f.diagnostic.hint);
+  }
 }
 
 Expr evaluate_number(const Syntax& s, Names& names) {

@@ -28,6 +28,9 @@ constexpr std::array kParity = {
 // makes of its derivative stays linear in size. Products up to here are flat and so canonical.
 constexpr std::uint32_t kOpenedFactors = 64;
 
+// Numbers of more machine words than the first cost more than one unit of work; numbers of more than the second are refused.
+constexpr std::size_t kShortNumber = 16, kLongestNumber = 8'000;
+
 // A sum of more terms than this is computed through the partial sum it grew from.
 constexpr std::size_t kShortWayFrom = 8;
 
@@ -52,7 +55,22 @@ Graph::Graph() {
   one_ = number(1).id;
 }
 
+void Graph::set_rate(NodeId id, NodeId rate) {
+  if (rates_.size() <= id) rates_.resize(nodes_.size(), kUnknown);
+  rates_[id] = rate;
+}
+
+void Graph::spend(std::uint64_t work) {
+  work_ += work;
+  if (work_ > most_work_) throw Failure(Span{}, "the expressions grow out of all proportion", "fewer derivatives or powers, or fewer definitions within definitions");
+}
+
 std::uint32_t Graph::rational_index(const Rational& r) {
+  // Arithmetic with long numbers and their text take time that grows with their square.
+  if (const std::size_t limbs = mpz_size(r.get_num_mpz_t()) + mpz_size(r.get_den_mpz_t()); limbs > kShortNumber) {
+    if (limbs > kLongestNumber) throw Failure(Span{}, "a number of more than " + std::to_string(kLongestNumber * 19) + " digits");
+    spend(limbs * limbs / kShortNumber);
+  }
   const auto [it, fresh] =
       rational_index_.try_emplace(r.get_str(62), static_cast<std::uint32_t>(rationals_.size()));
   if (fresh) rationals_.push_back(r);
@@ -106,6 +124,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
     NodeId node;
     Rational coefficient;
   };
+  spend(operands.size());
   std::vector<Part> parts;
   NodeId longest = zero_;  // the operand sum with most terms, candidate for the short way
   Rational longest_factor;
@@ -115,6 +134,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
     if (n.kind == Kind::number) {
       parts.push_back({one_, factor * value(e.id)});
     } else if (n.kind == Kind::sum) {
+      spend(n.count);
       for (const Term& t : terms(e.id)) parts.push_back({t.node, factor * rational(t.weight)});
       if (n.count > 1 && (longest == zero_ || n.count > nodes_[longest].count))
         longest = e.id, longest_factor = factor;
@@ -198,6 +218,7 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
     pending.pop_back();
     if (p.exponent == 0) continue;
     const Node n = nodes_[p.node];
+    spend(n.kind == Kind::sum ? 1 + n.count : 1);
     const bool integer = p.exponent.get_den() == 1;
     if (n.kind == Kind::number) {
       const Rational& v = value(p.node);

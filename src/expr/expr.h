@@ -117,6 +117,16 @@ class Graph {
   Expr apply(Function f, Expr argument);
   Expr arctangent2(Expr y, Expr x);
 
+  // The total derivative of a node, kept once it is known: expressions that share parts (the links of a chain) are
+  // differentiated once. A handle with graph == nullptr while it is not.
+  Expr rate(NodeId id) { return id < rates_.size() && rates_[id] != kUnknown ? Expr{this, rates_[id]} : Expr{}; }
+  void set_rate(NodeId id, NodeId rate);
+
+  // Construction costs one unit for every operand of a sum or product, more for long numbers. From here on it may cost
+  // `work`; beyond that it throws Failure. So a short formula that unfolds without end is refused in time.
+  void allow(std::uint64_t work) { most_work_ = work_ + work; }
+  std::uint64_t work() const { return work_; }
+
   // Reading.
   std::size_t size() const { return nodes_.size(); }
   const Node& node(NodeId id) const { return nodes_[id]; }
@@ -132,7 +142,10 @@ class Graph {
   bool is_number(NodeId id) const { return nodes_[id].kind == Kind::number; }
 
  private:
+  static constexpr NodeId kUnknown = 0xffffffffU;
+
   std::uint32_t rational_index(const Rational& r);
+  void spend(std::uint64_t work);
   Expr leaf(Kind kind, std::uint32_t index, std::uint32_t order);
   NodeId intern(Node node, std::span<const Term> operands, std::span<const Term> view);
   Expr scaled(const Rational& factor, NodeId id);
@@ -142,6 +155,8 @@ class Graph {
   std::vector<Rational> rationals_;
   std::unordered_multimap<std::uint64_t, NodeId> index_;
   std::unordered_map<std::string, std::uint32_t> rational_index_;
+  std::vector<NodeId> rates_;
+  std::uint64_t work_ = 0, most_work_ = ~std::uint64_t{0};
   NodeId zero_ = 0, one_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <flint/fmpq_mpoly.h>
 #include <flint/fmpq_mpoly_factor.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 #include <vector>
@@ -115,6 +116,7 @@ class Poly {
   // The remainder after division by all of `relations`.
   Poly reduced(const std::vector<Poly>& relations) const {
     if (relations.empty()) return *this;
+    ring_->spend(reduction_work(relations));
     std::vector<Poly> quotients(relations.size(), Poly(*ring_));
     std::vector<fmpq_mpoly_struct*> q, d;
     for (std::size_t i = 0; i < relations.size(); ++i) {
@@ -152,6 +154,38 @@ class Poly {
   }
 
  private:
+  // About how many terms a reduction makes: each relation g^k = (a tail of T terms) opens g^(mk + …) into as many as the m-th
+  // power of its tail has, at most binomial(m + T - 1, m).
+  long reduction_work(const std::vector<Poly>& relations) const {
+    struct Rule {
+      std::size_t generator;
+      unsigned long power;
+      long tail;
+    };
+    std::vector<Rule> rules;
+    std::vector<unsigned long> e(static_cast<std::size_t>(ring_->generators()));
+    for (const Poly& r : relations) {
+      fmpq_mpoly_get_term_exp_ui(e.data(), r.p_, 0, ring_->context());
+      for (std::size_t k = 0; k < e.size(); ++k)
+        if (e[k] > 0) {
+          rules.push_back({k, e[k], r.length() - 1});
+          break;
+        }
+    }
+    // In large rings each term is compared with many relations, over exponents of many words.
+    const std::size_t words = 1 + e.size() / 8;
+    double work = static_cast<double>(length()) * static_cast<double>(relations.size() * words / 16);
+    for (long i = 0; i < length() && work < 1e9; ++i) {
+      fmpq_mpoly_get_term_exp_ui(e.data(), p_, i, ring_->context());
+      double opened = 1;
+      for (const Rule& rule : rules)
+        for (unsigned long m = e[rule.generator] / rule.power, k = 1; k <= m && opened < 1e9; ++k)
+          opened *= static_cast<double>(rule.tail - 1 + static_cast<long>(k)) / static_cast<double>(k);
+      if (opened > 1) work += opened;
+    }
+    return static_cast<long>(std::min(work, 1e9));
+  }
+
   const Ring* ring_;
   fmpq_mpoly_t p_;
 };

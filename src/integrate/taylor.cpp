@@ -10,6 +10,8 @@ namespace {
 // Steps smaller than this many round-offs of the time are a collapse.
 constexpr int kCollapsedRoundoffs = 16;
 constexpr double kBlowUp = 1e100;
+// So many steps tell how many more it will take.
+constexpr std::size_t kStepsToJudge = 1000;
 
 // s + x with the round-off kept in `carry`.
 template <Number N>
@@ -37,6 +39,72 @@ void balance(Matrix<N>& a) {
     }
 }
 
+// A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other side.
+constexpr int kPastKink = 32;
+
+template <Number N>
+N value_at(const N* c, int degree, const N& x) {
+  N s(0);
+  for (int k = degree; k >= 0; --k) s = s * x + c[k];
+  return s;
+}
+
+template <Number N>
+N slope_at(const N* c, int degree, const N& x) {
+  N s(0);
+  for (int k = degree; k >= 1; --k) s = s * x + c[k] * N(k);
+  return s;
+}
+
+template <Number N>
+struct Kink {
+  bool at_start = false, ahead = false;
+  N where{0};
+};
+
+// The first place in (0, h] where the argument of an abs or sign passes zero, or that of a square root (a norm) touches it:
+// there the function goes on as another one, of which its Taylor series knows nothing.
+template <Number N>
+Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h) {
+  constexpr int kSamples = 8, kHalvings = 80;
+  constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
+  const Tape& tape = machine.tape();
+  Kink<N> first;
+  for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) {
+    const Instruction& in = tape.code[slot];
+    const bool jump = in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign));
+    const bool root = in.op == Op::power && tape.rationals[in.index].get_den() % 2 == 0;
+    if ((!jump && !root) || tape.code[in.a].constant) continue;
+    const N* c = machine.series(in.a);
+    if (jump && !(c[0] > N(0)) && !(c[0] < N(0))) {
+      first.at_start = first.at_start || std::any_of(c + 1, c + degree + 1, [](const N& x) { return x > N(0) || x < N(0); });
+      continue;
+    }
+    const bool positive = jump ? c[0] > N(0) : c[1] > N(0);
+    if (root && positive == (h > N(0))) continue;  // it grows
+    const auto passed = [&](const N& x) {
+      const N v = jump ? value_at(c, degree, x) : slope_at(c, degree, x);
+      return positive ? !(v > N(0)) : !(v < N(0));
+    };
+    N low(0), high(0);
+    bool found = false;
+    for (int k = 1; k <= kSamples && !found; ++k) {
+      low = high;
+      high = h * N(k) / N(kSamples);
+      found = passed(high);
+    }
+    for (int k = 0; found && k < kHalvings; ++k) {
+      const N middle = (low + high) / N(2);
+      if (middle == low || middle == high) break;
+      (passed(middle) ? high : low) = middle;
+    }
+    if (!found || (root && value_at(c, degree, high) > c[0] * N(kTouches))) continue;
+    if (!first.ahead || abs(high) < abs(first.where)) first.where = high;
+    first.ahead = true;
+  }
+  return first;
+}
+
 }  // namespace
 
 int taylor_order(double log_tolerance) {
@@ -53,7 +121,7 @@ Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, co
 
 template <Number N>
 Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
-  t_ = before_ = t;
+  started_ = t_ = before_ = t;
   state_ = state;
   carry_.assign(state.size(), W(0));
   integrals_.assign(program_->quadratures, W(0));
@@ -66,6 +134,7 @@ Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::ve
 
 template <Number N>
 Outcome Stepper<N>::take_over(const Stepper& other) {
+  started_ = other.started_;
   t_ = before_ = other.t_;
   state_ = other.state_;
   carry_ = other.carry_;
@@ -84,7 +153,7 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
 
 template <Number N>
 Outcome Stepper<N>::resume(const StepperState<N>& b) {
-  t_ = before_ = b.t;
+  started_ = t_ = before_ = b.t;
   state_ = b.state;
   carry_ = b.carry;
   leading_ = b.leading;
@@ -366,6 +435,14 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   return low.sigma < start * N(kVanished) ? std::optional<W>(from) : std::nullopt;
 }
 
+// At the present pace, and at that of the whole motion so far, the end lies beyond the step limit.
+template <Number N>
+bool Stepper<N>::end_out_of_reach(const W& h, const W& left) const {
+  if (steps_ < kStepsToJudge) return false;
+  const double mean = std::abs(to_double(W(t_ - started_))) / static_cast<double>(steps_);
+  return std::abs(to_double(left)) > std::max(mean, to_double(h)) * static_cast<double>(settings_.most_steps - steps_);
+}
+
 template <Number N>
 Outcome Stepper<N>::step(const W& end) {
   if (settings_.cancelled && settings_.cancelled())
@@ -383,20 +460,35 @@ Outcome Stepper<N>::step(const W& end) {
   if (!(h > floor))
     return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
             "the motion approaches a singularity: stop before it, or look at the last good state"};
+  if (end_out_of_reach(h, left))
+    return {OutcomeKind::interrupted, "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(to_double(h), 2) + " long",
+            "end the motion earlier, or take what is very fast or very stiff out of the model"};
   if (singular_ahead_) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
-  bool last = !(h < abs(left));
+  const bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
+  const Kink<N> kink = first_kink<N>(expansion_.machine(), order_ - 1, convert<N>(h));
+  bool cut = false;
+  if (kink.at_start || kink.ahead) {
+    // At a kink functions are taken one-sided along the motion: a very short step finds the side.
+    const W roundoff = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t_) > abs(h) ? W(abs(t_)) : W(abs(h)));
+    const W past = roundoff + W(std::exp(settings_.log_tolerance)) * abs(h);
+    const W where = kink.at_start ? W(0) : convert<W>(kink.where);
+    if (!kink.at_start && !(abs(where) > past * W(4)))
+      return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign or norm",
+              "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such as tanh(x/0.01) for sign(x)"};
+    const W beyond = where + (forward ? past : W(-past));
+    if (abs(beyond) < abs(h)) h = beyond, cut = true;
+  }
   if (const std::optional<W> met = singular_within(h)) {
     // Up to where J is still regular.
     constexpr double kShortOf = 1 - 1e-7;
     h = *met * W(kShortOf);
-    last = false;
-    singular_ahead_ = true;
+    cut = singular_ahead_ = true;
     if (!(abs(h) > floor)) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
-  const W reached = last ? end : convert<W>(convert<N>(W(t_ + h)));
+  const W reached = last && !cut ? end : convert<W>(convert<N>(W(t_ + h)));
   h = reached - t_;
   last_step_ = abs(h);
   sigma_before_ = sigma_;

@@ -101,6 +101,7 @@ class Stepper {
   static bool crossed(const Mode& a, const Mode& b, std::size_t coordinates);
   std::optional<Mode> mode_ahead(const W& h);
   std::optional<W> singular_within(const W& h);
+  bool end_out_of_reach(const W& h, const W& left) const;
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
@@ -115,7 +116,7 @@ class Stepper {
   W last_step_{0};
   bool singular_ahead_ = false;          // right after the present state
   W branch_step_{0};
-  W t_{0}, before_{0};
+  W started_{0}, t_{0}, before_{0};
   N horizon_{0};
   std::vector<W> state_, carry_, leading_, integrals_, integral_carry_;
   std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;

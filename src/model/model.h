@@ -148,6 +148,7 @@ struct SimulationSettings {
   std::vector<Rational> at;
   std::optional<std::string> form;
   std::optional<Integrator> integrator;
+  Span form_span;
 };
 
 struct Model {

@@ -121,6 +121,23 @@ static void choose_constraints(const Model& model, const std::vector<double>& pa
   }
 }
 
+// No motion starts from a number beyond those of the machine, or with a negative mass.
+static Outcome admissible(const Model& model, const std::vector<double>& parameters, const InitialState<double>& state) {
+  for (std::size_t a = 0; a < state.q.size(); ++a)
+    for (const unsigned k : {0U, 1U})
+      if (!is_finite(k ? state.qd[a] : state.q[a]))
+        return {OutcomeKind::not_a_number, "at the start " + derivative_name(model.coordinates[a].name, k, Format::text) + " has no value in double precision",
+                "give another initial value, or choose units in which it is of moderate size"};
+  PointValues at = values_near(model, parameters, state);
+  for (const VaryingMass& m : model.masses) {
+    if (m.weight || jet_order(m.value) > 1) continue;
+    if (const double value = at(m.value); value < 0)
+      return {OutcomeKind::negative_mass, "the mass of '" + m.name + "' is " + number_text(value, 6) + " at the start",
+              "a mass is not negative: start at another time or place, or change its formula"};
+  }
+  return {};
+}
+
 // Routh's equations know all multipliers: the state is completed with them, whatever the form.
 static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
   auto routh = std::make_shared<System>(implicit_system(s.model, *s.mechanics, *find_formulation("routh"), s.independent, {}));
@@ -155,6 +172,7 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
   Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
+  if (initial.ok() && numbers) initial = admissible(*model, parameters, s.state);
   s.independent.clear();
   s.redundant.clear();
   if (initial.ok() && numbers) choose_constraints(*model, parameters, s);

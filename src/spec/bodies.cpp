@@ -9,12 +9,14 @@
 
 namespace anholon {
 
-bool collect(Diagnostics& diagnostics, const std::function<void()>& f) {
+bool collect(Diagnostics& diagnostics, const std::function<void()>& f, Span place) {
   try {
     f();
     return true;
   } catch (const Failure& failure) {
-    if (!is_silent(failure.diagnostic)) diagnostics.add(failure.diagnostic);
+    Diagnostic d = failure.diagnostic;
+    if (d.span.line == 0) d.span = place;
+    if (!is_silent(d)) diagnostics.add(std::move(d));
     return false;
   }
 }
@@ -30,7 +32,7 @@ void for_each_table(const Item& list, const std::string& what, Diagnostics& diag
       if (list.items[k].kind != Item::Kind::table)
         throw Failure(list.items[k].span, "an element of '" + what + "' is a table", "{name = \"…\", …}");
       f(list.items[k], k);
-    });
+    }, list.items[k].span);
 }
 
 std::optional<double> constant_value(const Model& model, Expr e) {
@@ -123,7 +125,7 @@ static void check_position(const Model& model, const Vector& place, const Item& 
 }
 
 void BodyReader::read() {
-  for (const Entry& e : entries_) collect(diagnostics_, [&] { read_body(e); });
+  for (const Entry& e : entries_) collect(diagnostics_, [&] { read_body(e); }, e.item->span);
 }
 
 void BodyReader::read_body(const Entry& e) {

@@ -6,8 +6,9 @@
 
 namespace anholon {
 
-// Runs f and adds what it throws to the diagnostics (a silent failure only returns false).
-bool collect(Diagnostics& diagnostics, const std::function<void()>& f);
+// Runs f and adds what it throws to the diagnostics (a silent failure only returns false). A failure that knows no place of
+// its own is one of the element at `place`.
+bool collect(Diagnostics& diagnostics, const std::function<void()>& f, Span place = {});
 
 // Calls f(table, index) for each element of an array of tables, collecting failures per element.
 void for_each_table(const Item& list, const std::string& what, Diagnostics& diagnostics,

@@ -37,7 +37,7 @@ class InitialReader {
         if (i.kind == Item::Kind::table) return group(i, out.given);
         if (i.key == "lambda" || i.key == "lambdadot") throw Failure(i.span, "lambda is a table", "lambda = {NAME = 0.4}");
         add(out.given, i, symbol(i.key, i.key_span));
-      });
+      }, i.span);
     // For constraints of order 3 and more these are initial data; below they follow from the state.
     int highest = 0;
     for (const Constraint& c : model_.constraints) highest = std::max(highest, c.order);
@@ -86,10 +86,13 @@ class InitialReader {
     unsigned order = 0;
     if (key.rfind("D(", 0) == 0 && key.back() == ')') {
       const std::size_t comma = key.find(',');
-      if (comma == std::string::npos) throw Failure(span, "'" + key + "' is not a derivative of a coordinate", "D(x,3)");
-      order = static_cast<unsigned>(std::strtoul(key.c_str() + comma + 1, nullptr, 10));
+      std::string digits = comma == std::string::npos ? std::string() : key.substr(comma + 1, key.size() - comma - 2);
+      std::erase(digits, ' ');
+      if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos)
+        throw Failure(span, "'" + key.substr(0, 40) + "' is not a derivative of a coordinate", "D(x,3)");
+      if (digits.size() > 2 || std::stoi(digits) > 20) throw Failure(span, "a derivative of order above 20");
+      order = static_cast<unsigned>(std::stoi(digits));
       key = key.substr(2, comma - 2);
-      if (order > 20) throw Failure(span, "a derivative of order above 20");
     } else {
       while (!key.empty() && key.back() == '\'') key.pop_back(), ++order;
       if (order > 20) throw Failure(span, "a derivative of order above 20");

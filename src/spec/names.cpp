@@ -51,11 +51,14 @@ std::size_t Scope::body(const std::string& name, Span span) const {
 }
 
 void Scope::unknown(const std::string& name, Span span) const {
+  // Where so much is unknown a guess at each name helps nobody, and takes long.
+  constexpr std::size_t kMostGuesses = 100;
+  if (failures.size() > kMostGuesses) throw Failure(span, "unknown name '" + name.substr(0, 60) + "'");
   std::vector<std::string> known(reserved().begin(), reserved().end());
   for (const auto& [n, d] : declarations_) known.push_back(n);
   known.insert(known.end(), body_names_.begin(), body_names_.end());
   const std::string near = did_you_mean(name, known);
-  throw Failure(span, "unknown name '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+  throw Failure(span, "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 near.empty() ? "give it a value under [parameters] or [define]" : "");
 }
 

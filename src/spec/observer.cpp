@@ -1,5 +1,9 @@
 #include "spec/observer.h"
 
+#include <cmath>
+
+#include "expr/normal.h"
+#include "spec/bodies.h"
 #include "spec/keys.h"
 
 namespace anholon {
@@ -73,6 +77,21 @@ static std::optional<Rotation> rotation_of(const Vector& spin) {
   return turn(axis, *angle - start);
 }
 
+// The axes at a few times: nothing else holds an observer's axes at right angles.
+static void check_orthonormal(const Rotation& a, const Model& model, Span span) {
+  constexpr double kRounded = 1e-9;
+  Graph& g = *model.graph;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const Expr miss = dot(a[i], a[j]) - (i == j ? 1 : 0);
+      if (proved_zero(miss)) continue;
+      for (const Rational& t : {Rational(0), Rational(3, 10), Rational(2)}) {
+        const auto value = constant_value(model, substitute({&miss, 1}, [&](NodeId id) { return g.node(id).kind == Kind::time ? g.number(t) : Expr{}; })[0]);
+        if (value && !(std::abs(*value) <= kRounded)) throw Failure(span, "the observer's axes are not of length 1 and at right angles", "spin = […] gives axes that are");
+      }
+    }
+}
+
 void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics) {
   Graph& g = *model.graph;
   Observer& o = model.observer;
@@ -98,6 +117,7 @@ void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics&
   } else if (rotation) {
     a = scope.rotation(*rotation);
     for (int k = 0; k < 3; ++k) check((*a)[k], *rotation);
+    if (!a->by_turns) check_orthonormal(*a, model, rotation->span);
     o.spin = a->own_rate;
   }
   const char* const kOrigins[] = {"origin_acceleration", "origin_velocity", "origin_velocity_inertial",

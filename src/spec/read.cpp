@@ -4,19 +4,36 @@
 #include <functional>
 
 #include "expr/normal.h"
+#include "numeric/multi.h"
 #include "spec/bodies.h"
 #include "spec/initial.h"
 #include "spec/keys.h"
 #include "spec/monitor.h"
 #include "spec/names.h"
 #include "spec/observer.h"
+#include "tape/point.h"
+#include "tape/tape.h"
 
 namespace anholon {
 
 namespace {
 
-// More coordinates than this are refused: the equations would not fit in memory.
-constexpr std::size_t kMostCoordinates = 5000;
+// More coordinates, or coordinates and constraints, than this are refused: matrices of their equations would not fit in memory,
+// and their factors would take minutes.
+constexpr std::size_t kMostCoordinates = 2000, kMostUnknowns = 2500;
+
+// Where something is missing that may stand anywhere.
+constexpr Span kTop{1, 1, 1};
+
+// What making the expressions of a file may cost: a formula that unfolds without end is refused where it stands. The chain of
+// a thousand links takes a tenth of this.
+constexpr std::size_t kWork = 700'000, kWorkPerByte = 1000, kWorkLater = std::size_t{1} << 48;
+// Parameters are put into each other so many times.
+constexpr std::size_t kDeepestParameters = 400;
+
+// An end time, and a number of rows, beyond these are refused before they are tried.
+const Rational kLatest(mpz_class("1000000000000000000"));
+constexpr long kMostRows = 5'000'000;
 
 class Reader {  // what it refers to is asked only while it runs
  public:
@@ -28,6 +45,7 @@ class Reader {  // what it refers to is asked only while it runs
     model_.observer.spin = model_.observer.origin_acceleration = zero_vector(g);
     model_.observer.origin_velocity = zero_vector(g);
     model_.initial.t = g.zero();
+    g.allow(kWork + kWorkPerByte * source.text.size());
   }
 
   bool run() {
@@ -45,7 +63,7 @@ class Reader {  // what it refers to is asked only while it runs
     // Bodies are declared before anything is evaluated, their parts read when the masses are.
     BodyReader bodies(scope_, model_, diagnostics_);
     bodies.declare(root);
-    if (const Item* o = table(root, "observer")) guard([&] { read_observer(*o, scope_, model_, diagnostics_); });
+    if (const Item* o = table(root, "observer")) guard([&] { read_observer(*o, scope_, model_, diagnostics_); }, o->span);
     gravity(root);
     // A name that does not stand for a value is worth one report, at the place of its use.
     bodies.read();
@@ -58,8 +76,11 @@ class Reader {  // what it refers to is asked only while it runs
     if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
     guard([&] { simulate(root); });
     for (const Diagnostic& d : scope_.failures) diagnostics_.add(d);
+    if (!diagnostics_.has_errors()) values();
+    // What is made of the model from here on grows in proportion to it.
+    model_.graph->allow(kWorkLater);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
-      diagnostics_.error({}, "the model has no body", "add [[body]] or [[particle]] with name, mass and center or position");
+      diagnostics_.error(kTop, "the model has no body", "add [[body]] or [[particle]] with name, mass and center or position");
     return !diagnostics_.has_errors();
   }
 
@@ -67,7 +88,7 @@ class Reader {  // what it refers to is asked only while it runs
   Scope& scope() { return scope_; }
 
  private:
-  bool guard(const std::function<void()>& f) { return collect(diagnostics_, f); }
+  bool guard(const std::function<void()>& f, Span place = {}) { return collect(diagnostics_, f, place); }
 
   void sections(const Item& root) {
     check_keys(root, "the model file",
@@ -95,7 +116,7 @@ class Reader {  // what it refers to is asked only while it runs
 
   void coordinates(const Item& root) {
     const Item* list = root.find("coordinates");
-    if (!list) throw Failure({}, "the model has no coordinates", "coordinates = [\"x\", \"y\"] at the top of the file");
+    if (!list) throw Failure(kTop, "the model has no coordinates", "coordinates = [\"x\", \"y\"] at the top of the file");
     if (list->kind != Item::Kind::array || list->items.empty())
       throw Failure(list->span, "coordinates is a list of names", "coordinates = [\"x\", \"y\"]");
     if (list->items.size() > kMostCoordinates)
@@ -259,7 +280,7 @@ class Reader {  // what it refers to is asked only while it runs
           throw Failure(i.span, "the potential '" + i.key + "' depends on a velocity",
                         "give a force instead");
         model_.potentials.push_back({i.key, v, i.span});
-      });
+      }, i.span);
     scope_.freeze_masses = false;
   }
 
@@ -293,6 +314,8 @@ class Reader {  // what it refers to is asked only while it runs
       throw Failure(equation.formula.whole(), "no coordinate or derivative occurs in this equation",
                     "a constraint relates coordinates and their derivatives");
     }
+    if (model_.constraints.size() + model_.coordinates.size() >= kMostUnknowns)
+      throw Failure(equation.formula.whole(), "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
     for (const Constraint& c : model_.constraints)
       if (c.name == name) throw Failure(equation.span, "there are two constraints '" + name + "'");
     model_.constraints.push_back({name, phi, order, equation.text(), equation.formula.whole()});
@@ -302,6 +325,11 @@ class Reader {  // what it refers to is asked only while it runs
   void constraints(const Item& root) {
     const Item* list = root.find("constraint");
     if (!list) return;
+    if (list->items.size() + model_.coordinates.size() > kMostUnknowns) {
+      diagnostics_.error(list->key_span, std::to_string(list->items.size()) + " constraints on " + std::to_string(model_.coordinates.size()) +
+                                             " coordinates; at most " + std::to_string(kMostUnknowns) + " of both together are accepted");
+      return;
+    }
     for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
       check_keys(c, "a constraint", {"name", "equation"}, {"along", "by"}, diagnostics_);
       const Item* equation = c.find("equation");
@@ -337,6 +365,55 @@ class Reader {  // what it refers to is asked only while it runs
                   v.index() == 3 ? "a body is not a point: write " + s.text + ".center" : v.index() == 0 ? "0 is also the zero vector" : "");
   }
 
+  // Parameters and initial values are numbers. Asked in double, node by node; where that finds none (it may only have
+  // overflowed), in numbers without such bounds.
+  void values() {
+    const Graph& g = *model_.graph;
+    std::vector<std::size_t> depth(model_.parameters.size(), 0);  // through how many others a value leads
+    const std::function<std::size_t(std::size_t)> deep = [&](std::size_t i) {
+      if (depth[i] > 0 || is_number(model_.parameters[i].value)) return depth[i];
+      std::size_t most = 0;
+      for (NodeId id : symbols({&model_.parameters[i].value, 1}))
+        if (g.node(id).kind == Kind::parameter) most = std::max(most, 1 + deep(g.node(id).index));
+      return depth[i] = most;
+    };
+    for (std::size_t i = 0; i < depth.size(); ++i)
+      if (deep(i) > kDeepestParameters) {
+        diagnostics_.error(model_.parameters[i].span, "the parameter '" + model_.parameters[i].name + "' leads through more than " + std::to_string(kDeepestParameters) + " others");
+        return;
+      }
+    std::vector<std::optional<double>> known(model_.parameters.size());
+    const std::function<double(Expr)> value = [&](Expr e) {
+      if (g.is_number(e.id)) return from_rational<double>(g.value(e.id));
+      return PointValues([&](const Node& n) {
+        std::optional<double>& v = known[n.index];
+        if (!v) v = value(model_.parameters[n.index].value);
+        return *v;
+      })(e);
+    };
+    const auto check = [&](Expr e, Span place, const std::string& what) {
+      return guard([&] {
+        if (is_number(e) || is_finite(value(e))) return;
+        std::string why = "a root or logarithm of a negative number, or a number beyond all bounds";
+        try {
+          const PrecisionScope precision(40);
+          Column all;
+          for (const Parameter& p : model_.parameters) all.push_back(p.value);
+          all.push_back(e);
+          if (is_finite(evaluate_parameters<Multi>(*model_.graph, all).back())) return;
+        } catch (const Failure& f) {
+          why = f.diagnostic.message;
+        }
+        throw Failure(place, what + " has no value: " + why);
+      });
+    };
+    for (const Parameter& p : model_.parameters)
+      if (!check(p.value, p.span, "the parameter '" + p.name + "'")) return;  // others may hold this one
+    for (const auto* list : {&model_.initial.given, &model_.initial.guess})
+      for (const GivenValue& v : *list) check(v.value, v.span, "this initial value");
+    check(model_.initial.t, {}, "the initial time");
+  }
+
   Rational rational(const Item& i) {
     const Expr e = scope_.number(i);
     if (!is_number(e)) throw Failure(i.span, "'" + i.key + "' is a plain number");
@@ -348,7 +425,11 @@ class Reader {  // what it refers to is asked only while it runs
     if (!s) return;
     check_keys(*s, "[simulate]", {"to", "tolerance", "every", "at", "form", "integrator"}, {}, diagnostics_);
     SimulationSettings& out = model_.simulate;
-    if (const Item* i = s->find("to")) out.to = rational(*i);
+    const Rational start = is_number(model_.initial.t) ? number_value(model_.initial.t) : Rational(0);
+    if (const Item* i = s->find("to")) {
+      out.to = rational(*i);
+      if (abs(*out.to) > kLatest) throw Failure(i->span, "an end time beyond 1e18");
+    }
     if (const Item* i = s->find("tolerance")) {
       out.tolerance = rational(*i);
       if (*out.tolerance <= 0 || *out.tolerance >= 1) throw Failure(i->span, "the tolerance lies between 0 and 1");
@@ -356,14 +437,21 @@ class Reader {  // what it refers to is asked only while it runs
     if (const Item* i = s->find("every")) {
       out.every = rational(*i);
       if (*out.every <= 0) throw Failure(i->span, "'every' is a positive time");
+      if (out.to && abs(Rational(*out.to - start)) > kMostRows * *out.every)
+        throw Failure(i->span, "'every' asks for more than " + std::to_string(kMostRows) + " rows");
     }
     if (const Item* i = s->find("at")) {
       if (i->kind != Item::Kind::array) throw Failure(i->span, "'at' is a list of times");
       for (const Item& t : i->items) out.at.push_back(rational(t));
+      const auto side = [&](int sign) {
+        return std::any_of(out.at.begin(), out.at.end(), [&](const Rational& t) { return sgn(Rational(t - start)) == sign; });
+      };
+      if (side(-1) && side(1)) throw Failure(i->span, "some of these times lie before the start, others after it", "one run goes one way");
     }
     if (const Item* i = s->find("form")) {
       if (i->kind != Item::Kind::string) throw Failure(i->span, "a form is a name in quotes", "form = \"routh\"");
       out.form = i->text();
+      out.form_span = i->formula.whole();
     }
     if (const Item* i = s->find("integrator")) {
       if (i->kind != Item::Kind::string) throw Failure(i->span, "an integrator is a name in quotes", "integrator = \"taylor\"");

@@ -22,7 +22,7 @@ namespace anholon {
 
 namespace {
 
-constexpr std::size_t kLongestFile = 16 << 20;
+constexpr std::size_t kLongestFile = 4 << 20;
 
 Span span_of(const toml::source_region& r) {
   Span s;
@@ -222,7 +222,7 @@ const Item* Item::find(const std::string& name) const {
 
 Item read_toml(const SourceText& source) {
   if (source.text.size() > kLongestFile)
-    throw Failure({}, "the file is larger than " + std::to_string(kLongestFile >> 20) + " MiB");
+    throw Failure(Span{1, 1, 1}, "the file is larger than " + std::to_string(kLongestFile >> 20) + " MiB");
   check_depth(source);
   check_ascii(source);
   try {
@@ -231,7 +231,7 @@ Item read_toml(const SourceText& source) {
   } catch (const toml::parse_error& e) {
     throw syntax_error(e, source);
   } catch (const std::invalid_argument& e) {
-    throw Failure(Span{}, e.what());
+    throw Failure(Span{1, 1, 1}, e.what());
   }
 }
 

@@ -37,23 +37,37 @@ class Probe {
       machine_.series(in.slot)[0] = base + (1 + std::abs(base)) * spread(random);
     }
     machine_.evaluate();
-    const std::size_t cols = tape_.inputs.size();
+    partials_.clear();
+    for (std::uint32_t s = 0; s < tape_.code.size(); ++s) partials_.push_back(machine_.partials(s));
+    // A few columns at a time: all at once would take slots times inputs of memory.
+    constexpr std::size_t kColumns = 64;
+    for (std::size_t from = 0; from < tape_.inputs.size(); from += kColumns)
+      if (!columns(from, std::min(kColumns, tape_.inputs.size() - from), largest)) return false;
+    return true;
+  }
+
+ private:
+  // The derivatives by the inputs [from, from + cols).
+  bool columns(std::size_t from, std::size_t cols, std::vector<std::vector<double>>& largest) const {
     Matrix<double> tangent(tape_.code.size(), cols), terms(tape_.code.size(), cols);
     std::size_t next_input = 0;
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) {
       const Instruction& in = tape_.code[s];
       double *row = &tangent.data[s * cols], *row_terms = &terms.data[s * cols];
       const auto add = [&](std::uint32_t operand, double factor) {
-        const double *from = &tangent.data[operand * cols], *from_terms = &terms.data[operand * cols];
+        const double *below = &tangent.data[operand * cols], *below_terms = &terms.data[operand * cols];
         for (std::size_t k = 0; k < cols; ++k) {
-          row[k] += factor * from[k];
-          row_terms[k] += std::abs(factor) * from_terms[k];
+          row[k] += factor * below[k];
+          row_terms[k] += std::abs(factor) * below_terms[k];
         }
       };
-      const auto partials = machine_.partials(s);
+      const auto& partials = partials_[s];
       switch (in.op) {
         case Op::constant: case Op::pi: case Op::parameter: break;
-        case Op::input: row[next_input] = row_terms[next_input] = 1, ++next_input; break;
+        case Op::input:
+          if (next_input >= from && next_input < from + cols) row[next_input - from] = row_terms[next_input - from] = 1;
+          ++next_input;
+          break;
         case Op::linear:
           for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
             add(tape_.linear_terms[k].slot, machine_.rational(tape_.linear_terms[k].coefficient));
@@ -69,14 +83,14 @@ class Probe {
       for (std::size_t k = 0; k < cols; ++k) {
         const double v = std::abs(tangent(tape_.roots[i], k)), all = terms(tape_.roots[i], k);
         if (!std::isfinite(v)) return false;
-        if (v > kNoDependence * all) largest[i][k] = std::max(largest[i][k], v);
+        if (v > kNoDependence * all) largest[i][from + k] = std::max(largest[i][from + k], v);
       }
     return true;
   }
 
- private:
   Tape tape_;
   Machine<double> machine_;
+  std::vector<Machine<double>::Partials> partials_;
   const System& system_;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <random>
 
+#include "base/diagnostic.h"
 #include "expr/diff.h"
 #include "support/random_expr.h"
 #include "support/value.h"
@@ -184,6 +185,42 @@ TEST(Summands, TheShortWayHasTheValueOfTheFlatTerms) {
     ASSERT_LE(test::distance(flat, by_short_way), 1e-35);
   }
   EXPECT_GT(short_ways, 10) << "otherwise this test shows nothing";
+}
+
+TEST(Budget, StopsWhatUnfoldsWithoutEnd) {
+  Graph g;
+  g.allow(10'000);
+  Expr e = g.jet(0, 0) + g.jet(1, 0);
+  EXPECT_NO_THROW(
+      for (int k = 0; k < 10; ++k) e = 1 + e * sin(e););
+  EXPECT_THROW(e = total_derivative(e * exp(e), 20), Failure);
+  // Whoever may spend more goes on where it ended.
+  g.allow(1'000'000);
+  EXPECT_NO_THROW(total_derivative(e));
+}
+
+TEST(Budget, LongNumbersCostMore) {
+  Graph g;
+  g.allow(100'000);
+  Expr e = g.number(Rational(3, 7));
+  EXPECT_THROW(
+      for (int k = 0; k < 60; ++k) e = e * e + g.number(Rational(1, 3)), Failure);
+  EXPECT_LT(mpz_sizeinbase(number_value(e).get_den_mpz_t(), 2), 1'000'000U);
+}
+
+TEST(Rates, OfSharedPartsAreMadeOnce) {
+  Graph g;
+  Expr p = g.zero();
+  std::uint64_t spent = 0;
+  for (std::uint32_t k = 0; k < 200; ++k) {
+    p = p + sin(g.jet(k, 0));
+    const std::uint64_t before = g.work();
+    (void)total_derivative(p);
+    if (k == 100) spent = g.work() - before;
+    if (k == 199) {
+      EXPECT_LE(g.work() - before, 2 * spent + 10) << "one more link each time, not all of them";
+    }
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "structure/consistent.h"
 #include "support/models.h"
 
@@ -211,6 +213,68 @@ Outcome fate(const Motion& motion, double end, double& reached, std::size_t most
 }
 
 // x'' = 2 x^3 with x = 1, x' = 1 is x = 1/(1 - t).
+// x, x' at t.
+std::vector<long double> line_at(const std::string& force, const std::string& initial, double t) {
+  const Motion motion(line(force, initial));
+  auto s = stepper<double>(motion, 1e-13);
+  const Outcome o = s.start(0, motion.start<long double>());
+  if (!o.ok()) throw std::runtime_error(o.message);
+  go<double>(s, t);
+  return state_at<double>(motion, s, t);
+}
+
+TEST(Kink, OfAbsIsPassed) {
+  // x = cos t down to 0 at pi/2, then -sinh(t - pi/2).
+  const auto x = line_at("-abs(x)", "x = 1\n", 4);
+  EXPECT_NEAR(static_cast<double>(x[0]), -std::sinh(4 - std::numbers::pi / 2), 1e-11);
+  EXPECT_NEAR(static_cast<double>(x[1]), -std::cosh(4 - std::numbers::pi / 2), 1e-11);
+}
+
+TEST(Kink, OfANormIsPassed) {
+  // A constant pull towards 0: parabolas of half period 2 sqrt(2).
+  const auto x = line_at("-x/norm(x*ex)", "x = 1\n", 4);
+  const double since = 4 - 2 * std::numbers::sqrt2;
+  EXPECT_NEAR(static_cast<double>(x[0]), -1 + since * since / 2, 1e-11);
+}
+
+TEST(Kink, WhereTheMotionStartsIsTakenOnItsSide) {
+  // Drag from rest: x' = tanh t; abs(x') has its kink at the start.
+  const auto x = line_at("1 - abs(x')*x'", "", 2);
+  EXPECT_NEAR(static_cast<double>(x[1]), std::tanh(2), 1e-12);
+  EXPECT_NEAR(static_cast<double>(x[0]), std::log(std::cosh(2)), 1e-12);
+}
+
+TEST(Kink, BackwardsToo) {
+  const auto x = line_at("-abs(x)", "x = 1\n", -4);
+  EXPECT_NEAR(static_cast<double>(x[0]), -std::sinh(4 - std::numbers::pi / 2), 1e-11);
+}
+
+TEST(Kink, ThatHoldsTheMotionIsAnOutcome) {
+  const Motion motion(line("-sign(x')", "\"x'\" = 1\n"));
+  auto s = stepper<double>(motion, 1e-12);
+  ASSERT_TRUE(s.start(0, motion.start<long double>()).ok());
+  Outcome o;
+  for (int k = 0; k < 100 && o.ok(); ++k) o = s.step(2);
+  EXPECT_EQ(o.kind, OutcomeKind::step_collapse);
+  EXPECT_NE(o.message.find("kink"), std::string::npos) << o.message;
+  EXPECT_NEAR(static_cast<double>(s.time()), 1, 1e-9);
+}
+
+TEST(Outcome, AnEndOutOfReachIsNoticedEarly) {
+  const Motion motion(line("-x", "x = 1\n"));
+  auto s = stepper<double>(motion, 1e-12);
+  ASSERT_TRUE(s.start(0, motion.start<long double>()).ok());
+  Outcome o;
+  for (int k = 0; k < 2000 && o.ok(); ++k) o = s.step(1e15L);
+  EXPECT_EQ(o.kind, OutcomeKind::interrupted);
+  EXPECT_LT(s.steps(), 1500U);
+  // An end within reach is no reason to stop.
+  ASSERT_TRUE(s.start(0, motion.start<long double>()).ok());
+  o = {};
+  for (int k = 0; k < 2000 && o.ok(); ++k) o = s.step(1e6L);
+  EXPECT_TRUE(o.ok()) << o.message;
+}
+
 TEST(Outcome, AMotionThatGrowsWithoutBoundBeforeItsPole) {
   double reached = 0;
   const Outcome o = fate(Motion(line("2*x^3", "x = 1\n\"x'\" = 1\n")), 2, reached);
@@ -254,7 +318,7 @@ TEST(Outcome, StepsCanBeLimitedAndCancelled) {
 TEST(Outcome, EveryKindHasANameOfItsOwn) {
   std::vector<std::string> names;
   for (OutcomeKind k : {OutcomeKind::finished, OutcomeKind::singular, OutcomeKind::step_collapse, OutcomeKind::blow_up, OutcomeKind::not_a_number,
-                        OutcomeKind::no_convergence, OutcomeKind::inconsistent, OutcomeKind::interrupted})
+                        OutcomeKind::no_convergence, OutcomeKind::inconsistent, OutcomeKind::interrupted, OutcomeKind::negative_mass, OutcomeKind::too_large})
     names.push_back(name(k));
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::unique(names.begin(), names.end()), names.end());
