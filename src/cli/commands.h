@@ -20,6 +20,8 @@ struct Options {
   std::string integrator;  // empty: of the file, or Taylor series
   std::vector<std::string> set, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance;
+  std::string save, resume;
+  std::string error_estimate = "short";
   int digits = 16;
   int order = 0;
   int points = 6;

@@ -9,7 +9,9 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/saved.h"
 #include "cli/show.h"
+#include "result/file.h"
 #include "run/simulate.h"
 
 namespace anholon::cli {
@@ -52,7 +54,7 @@ class Progress {
 // More rows than this are refused before they fill memory or disk.
 constexpr long kMostRows = 20'000'000;
 
-void times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
+Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
   const Model& model = *scenario.model;
   const SimulationSettings& file = model.simulate;
   s.to = o.to.empty() ? file.to : std::optional<Rational>(exact(o.to, "--to"));
@@ -81,6 +83,7 @@ void times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
   if (end < start) std::fprintf(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
   if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
+  return end;
 }
 
 void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
@@ -115,12 +118,28 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
     s.integrator = *wanted;
   }
   if (s.integrator == Integrator::taylor) return;
-  if (s.precision != Precision::real)
-    throw UsageError{std::string("error: the integrator '") + name(s.integrator) + "' computes in double\nhint: leave out " +
-                     (s.precision == Precision::multi ? "--digits" : "--numbers") + ", or use --integrator taylor\n"};
-  if (s.tolerance.get_d() < kLeastSundialsTolerance)
-    std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastSundialsTolerance).c_str(), small(kLeastSundialsTolerance).c_str(),
-                 name(s.integrator));
+  const std::string which = name(s.integrator);
+  const auto refuse = [&](const std::string& what, const std::string& option) {
+    throw UsageError{"error: the integrator '" + which + "' " + what + "\nhint: leave out " + option + ", or use --integrator taylor\n"};
+  };
+  if (s.precision != Precision::real) refuse("computes in double", s.precision == Precision::multi ? "--digits" : "--numbers");
+  if (!o.save.empty() || s.resume) refuse("cannot go on with the same bits", o.save.empty() ? "--continue" : "--save");
+  // How many digits of its rows may be trusted, the difference tells.
+  if (s.estimate == ErrorEstimate::always) refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
+  s.estimate = ErrorEstimate::never;
+  const std::string least = small(kLeastSundialsTolerance);
+  if (s.tolerance.get_d() < kLeastSundialsTolerance) std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
+}
+
+void write_watched(JsonWriter& j, const char* key, const std::vector<WatchedReport>& list) {
+  if (list.empty()) return;
+  j.key(key).open_object();
+  for (const WatchedReport& w : list) {
+    j.key(w.name).open_object();
+    for (const auto& [name, value] : {std::pair{"first", &w.first}, {"last", &w.last}, {"min", &w.least}, {"max", &w.greatest}}) j.key(name).number(*value);
+    j.key("largest_change").number(small(w.largest_change)).close();
+  }
+  j.close();
 }
 
 void write_json(const Scenario& s, const MemorySink& rows, const SimulationReport& r, std::FILE* file) {
@@ -145,14 +164,29 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
     j.key(name).number(small(value));
   j.close();
   if (r.second) {
-    j.key("second_opinion").open_object();
-    j.key("integrator").string(name(r.second->integrator));
-    j.key("form").string(r.second->form);
-    j.key("difference").number(small(r.second->difference));
-    j.key("of").string(r.second->of);
-    j.key("t").number(number_text(r.second->t));
-    j.key("steps").integer(static_cast<long long>(r.second->steps));
-    j.key("evaluations").integer(static_cast<long long>(r.second->evaluations));
+    j.key("second_opinion").open_object().key("integrator").string(name(r.second->integrator)).key("form").string(r.second->form);
+    j.key("difference").number(small(r.second->difference)).key("of").string(r.second->of).key("t").number(number_text(r.second->t));
+    j.key("steps").integer(static_cast<long long>(r.second->steps)).key("evaluations").integer(static_cast<long long>(r.second->evaluations)).close();
+  }
+  j.key("smallest_sigma_t").number(r.smallest_sigma_t.empty() ? "nan" : r.smallest_sigma_t);
+  j.key("constraints_each").open_object();
+  for (const ConstraintReport& c : r.constraints_each) {
+    j.key(c.name).open_array();
+    for (double x : c.residuals) j.number(small(x));
+    j.close();
+  }
+  j.close();
+  if (r.error) {
+    j.key("error_estimate").open_object().key("digits").integer(r.error->digits).key("largest").number(small(r.error->error));
+    j.key("t").number(r.error->t).key("means").string(r.error->means).close();
+  } else if (!r.no_error.empty()) {
+    j.key("error_estimate").open_object().key("digits").null().key("reason").string(r.no_error).close();
+  }
+  write_watched(j, "conserved", r.conserved);
+  write_watched(j, "monitors", r.monitors);
+  if (!r.warnings.empty()) {
+    j.key("warnings").open_array();
+    for (const Warning& w : r.warnings) j.open_object().key("message").string(w.message).key("hint").string(w.hint).close();
     j.close();
   }
   j.key("steps").integer(static_cast<long long>(r.steps));
@@ -165,31 +199,82 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   std::fputs((j.text() + "\n").c_str(), file);
 }
 
+// "blade'" for the first derivative of the constraint that holds worst.
+std::string worst_constraint(const SimulationReport& r) {
+  std::string name;
+  double worst = 0;
+  for (const ConstraintReport& c : r.constraints_each)
+    for (std::size_t k = 0; k < c.residuals.size(); ++k)
+      if (c.residuals[k] > worst) worst = c.residuals[k], name = derivative_name(c.name, static_cast<unsigned>(k), Format::text);
+  return name.empty() ? "" : ", worst '" + name + "'";
+}
+
+void second_opinion(const Scenario& s, const SecondOpinion& o) {
+  std::fprintf(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from Taylor's motion by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
+               name(o.integrator), o.form == s.system.form->name ? "" : " on Routh's equations", o.steps, o.evaluations, o.seconds,
+               small(o.difference).c_str(), o.of.c_str(), number_text(o.t, 6).c_str(), o.of.c_str());
+}
+
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
   for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
-  // What another integrator computed is not projected.
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
-  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s), power balance %s\n",
-               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(), small(r.power).c_str());
-  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s, %.3g s\n", r.second ? "Taylor's motion: " : "", r.steps, r.order,
-               r.rows, small(r.smallest_sigma).c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
-  if (r.second)
-    std::fprintf(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from Taylor's motion by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
-                 name(r.second->integrator), r.second->form == s.system.form->name ? "" : " on Routh's equations", r.second->steps, r.second->evaluations, r.second->seconds, small(r.second->difference).c_str(),
-                 r.second->of.c_str(), number_text(r.second->t, 6).c_str(), r.second->of.c_str());
+  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
+               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
+               worst_constraint(r).c_str(), small(r.power).c_str());
+  if (r.error)
+    std::fprintf(stderr, "digits to trust: about %d (error %s at t = %s, by %s)\n", r.error->digits, small(r.error->error).c_str(), r.error->t.c_str(),
+                 r.error->means.c_str());
+  else if (!r.no_error.empty())
+    std::fprintf(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
+  for (const WatchedReport& w : r.conserved)
+    std::fprintf(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(), small(w.largest_change).c_str());
+  for (const WatchedReport& w : r.monitors)
+    std::fprintf(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(), w.first.c_str(),
+                 w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
+  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.second ? "Taylor's motion: " : "",
+               r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
+  if (r.second) second_opinion(s, *r.second);
+  for (const Warning& w : r.warnings) std::fprintf(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
 }
 
 bool ends_with(const std::string& s, const std::string& end) {
   return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
 }
 
-}  // namespace
+// Writes the runs that --save asks for; the first failure ends it and is kept.
+class Saver {
+ public:
+  Saver(const Options& o, const Reader& in, const Formulation& form, const SimulationOptions& options) : o_(o), in_(in), form_(form), options_(options) {}
+  void operator()(SavedRun run) {
+    if (!error.empty()) return;
+    describe_run(run, o_, in_, form_, options_);
+    error = write_whole(o_.save, print(run));
+  }
+  std::string error;
 
-int simulate(const Options& o) {
+ private:
+  const Options& o_;
+  const Reader& in_;
+  const Formulation& form_;
+  const SimulationOptions& options_;
+};
+
+SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSink& rows) {
+  try {
+    return anholon::simulate(s, options, rows);
+  } catch (const Failure& e) {
+    throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
+  }
+}
+
+int simulate_motion(const Options& o, const SavedRun* resume) {
   if (ends_with(o.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
   const Reader in = read(o);
+  if (resume) same_model(*resume, in);
   SimulationOptions options;
+  options.resume = resume;
+  options.estimate = o.error_estimate == "always" ? ErrorEstimate::always : o.error_estimate == "never" ? ErrorEstimate::never : ErrorEstimate::short_runs;
   options.state = state_choice(o, *in.model);
   options.order = o.order;
   Scenario s;
@@ -200,9 +285,12 @@ int simulate(const Options& o) {
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
-  times(o, s, options);
+  const Rational last = times(o, s, options);
+  if (resume) beyond(*resume, o, last);
   accuracy(o, *in.model, options);
   integrator(o, *in.model, options);
+  options.conserved = conserved(*s.mechanics);
+  Saver saver(o, in, *s.system.form, options);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   options.cancelled = [] { return stop_requested != 0; };
@@ -218,7 +306,8 @@ int simulate(const Options& o) {
       MemorySink rows;
       std::FILE* file = o.output.empty() || o.output == "-" ? stdout : std::fopen(o.output.c_str(), "w");
       if (!file) throw UsageError{"error: cannot write " + o.output + ": " + std::strerror(errno) + "\n"};
-      if (start.ok()) r = anholon::simulate(s, options, rows);
+      if (!o.save.empty()) options.save = std::ref(saver);
+      if (start.ok()) r = run(s, options, rows);
       else r.outcome = start, r.t = number_text(s.state.t);
       write_json(s, rows, r, file);
       if (std::fflush(file) != 0 || std::ferror(file)) write_error = "cannot write " + (o.output.empty() ? "the output" : o.output) + ": " + std::strerror(errno);
@@ -230,7 +319,12 @@ int simulate(const Options& o) {
       }
       CsvSink rows(o.output);
       if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
-      r = anholon::simulate(s, options, rows);
+      if (!o.save.empty())
+        options.save = [&](const SavedRun& run) {
+          rows.flush();
+          saver(run);
+        };
+      r = run(s, options, rows);
       write_error = rows.close();
     }
   }
@@ -239,11 +333,21 @@ int simulate(const Options& o) {
     print_outcome(r.outcome);
     if (r.rows > 0 && !o.output.empty()) std::fprintf(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
   }
+  if (write_error.empty()) write_error = saver.error;
   if (!write_error.empty()) {
     std::fprintf(stderr, "error: %s\n", write_error.c_str());
     return kBadInput;
   }
   return r.outcome.ok() ? kOk : kStopped;
+}
+
+}  // namespace
+
+int simulate(const Options& o) {
+  if (o.resume.empty()) return simulate_motion(o, nullptr);
+  Options all = o;
+  const SavedRun run = continued(all);
+  return simulate_motion(all, &run);
 }
 
 }  // namespace anholon::cli

@@ -28,6 +28,10 @@ Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters
   for (int d : program.d) offset_.push_back(offset_.back() + static_cast<std::size_t>(d));
   factorial_.push_back(N(1));
   for (std::size_t k = 1; k < stride_ + 2; ++k) factorial_.push_back(factorial_.back() * N(static_cast<int>(k)));
+  for (int c : program.c) {
+    hidden_offset_.push_back(hidden_.size());
+    hidden_.resize(hidden_.size() + static_cast<std::size_t>(c), N(0));
+  }
   const std::size_t n = program.unknowns();
   tangent_ = Matrix<N>(program.tangent_rows, n);
   j_ = Matrix<N>(n, n);
@@ -229,6 +233,8 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
     const int order = p.c[i] - level;
     r[i] = N(0);
     if (order < 0) continue;
+    N* hidden = level > 0 ? &hidden_[hidden_offset_[i] + static_cast<std::size_t>(order)] : nullptr;
+    if (hidden) *hidden = N(0);
     const N value = machine_.series(p.tape.roots[i])[order];
     if (!is_finite(value)) {
       worst = value;
@@ -245,6 +251,7 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
     if (moved > scale) scale = moved;
     if (!(scale > N(0))) scale = size;
     const N relative = size / scale;
+    if (hidden) *hidden = relative;
     if (relative > worst) worst = relative;
   }
   return any;
@@ -259,16 +266,14 @@ template <Number N>
 Outcome Expansion<N>::project(const Solver& solver) {
   const Program& p = *program_;
   const N quiet = unit_roundoff<N>() * N(kQuietRoundoffs);
-  constraint_residual_ = drift_ = N(0);
+  constraint_residual_ = N(0);
   const int deepest = *std::max_element(p.c.begin(), p.c.end());
   bool changed = false;
   for (int level = deepest; level >= 1; --level) {
     N worst(0), before(-1);
     for (int k = 0;; ++k) {
       if (changed || k > 0) sweep_known(-level);
-      const bool any = residual(level, r_, worst);
-      if (k == 0 && worst > drift_) drift_ = worst;
-      if (!any || !(worst > quiet)) break;
+      if (!residual(level, r_, worst) || !(worst > quiet)) break;
       if (!is_finite(worst))
         return {OutcomeKind::not_a_number, "a constraint has no value", "the motion leaves the region where the constraint is defined"};
       if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;
@@ -285,6 +290,16 @@ Outcome Expansion<N>::project(const Solver& solver) {
   }
   if (changed) sweep_known(0);
   return {};
+}
+
+template <Number N>
+void Expansion<N>::measure() {
+  constraint_residual_ = N(0);
+  for (int level = *std::max_element(program_->c.begin(), program_->c.end()); level >= 1; --level) {
+    N worst(0);
+    residual(level, r_, worst);
+    if (!(worst <= constraint_residual_)) constraint_residual_ = worst;  // what is not a number, too
+  }
 }
 
 template <Number N>

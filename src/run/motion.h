@@ -1,0 +1,92 @@
+// One motion on its way: the steps, and the elimination of coordinates on which its equations stand.
+//
+// A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the equations
+// are then made again with other dependent coordinates, and the motion goes on from the same state (theory: elimination).
+#pragma once
+#include <algorithm>
+
+#include "run/saved.h"
+#include "run/scenario.h"
+
+namespace anholon {
+
+// N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
+template <Number N>
+class Motion {
+ public:
+  using W = Wider<N>;
+
+  // `quadratures`: expressions to be integrated or watched along the motion. `stages`: how many orders beyond the leading
+  // derivatives the points know.
+  Motion(const Scenario& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
+
+  // From the consistent state.
+  Outcome start(const StateChoice& choice);
+  // What is needed to go on from where the last expansion was made, and how: with the same bits as if the run had never ended.
+  void save(SavedRun& to) const;
+  Outcome resume(const StateChoice& choice, const SavedRun& from);
+  // One step towards `end`, with another elimination where this one fails or its pivots have become small.
+  Outcome step(const W& end);
+  // The solution anywhere in the last step, with the orders beyond where there are any.
+  Outcome at(const W& t);
+  const Expansion<W>& point() const { return leg_->point; }
+
+  const Stepper<N>& stepper() const { return leg_->stepper; }
+  const Program& program() const { return leg_->program; }
+  const std::vector<W>& parameters() const { return parameters_; }
+  std::size_t eliminations() const { return eliminations_; }  // how often other coordinates were eliminated on the way
+
+ private:
+  // A stretch of the motion with one elimination: its system and what steps through it.
+  struct Leg {
+    Leg(const Motion& motion, System of, Structure structured);
+    System system;
+    Structure structure;
+    Program program;
+    Stepper<N> stepper;
+    Expansion<W> point;
+  };
+
+  // Every choice of dependent coordinates on the way. The graph grows with each of them, and the order of its nodes decides
+  // the order of sums: whoever resumes makes them all again.
+  struct Choice {
+    InitialState<double> here;
+    bool taken = false;
+  };
+  // Those made before the last expansion, and what the pivots were at the last of them.
+  struct Mark {
+    std::size_t choices = 0;
+    std::vector<double> chosen;
+  };
+
+  void watch_pivots(const Elimination& e);
+  bool pivot_is_small();
+  InitialState<double> here() const;
+  std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
+  bool eliminate_again();
+  std::size_t levels() const { return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0); }
+
+  const Scenario& s_;
+  StepSettings settings_;
+  std::vector<Expr> quadratures_;
+  int stages_;
+  std::vector<W> parameters_;
+  std::unique_ptr<Leg> leg_;
+  bool stepped_ = false;
+  Elimination elimination_;                // the present one
+  std::unique_ptr<OutputTape<W>> pivots_;  // its pivots, and what they were when it was chosen
+  std::vector<double> chosen_;
+  std::vector<Choice> choices_;
+  Mark mark_;
+  std::size_t eliminations_ = 0;
+};
+
+extern template class Motion<double>;
+extern template class Motion<long double>;
+extern template class Motion<Multi>;
+
+// Says what the motion ran into: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.
+template <Number N>
+void explain(const Scenario& scenario, const Motion<N>& motion, Outcome& outcome);
+
+}  // namespace anholon
