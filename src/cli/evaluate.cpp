@@ -106,7 +106,7 @@ int evaluate(const Options& o) {
   }
   if (!o.show.empty()) return show(o, s);
   StateReport report;
-  if (outcome.ok()) outcome = evaluate(s, choice, o.digits, report);
+  if (outcome.ok()) outcome = evaluate(s, choice, precision(o, Precision::long_real), o.digits, report);
   if (!outcome.ok()) {
     if (o.json) {
       JsonWriter j;

@@ -102,6 +102,15 @@ std::vector<std::string> split(const std::vector<std::string>& words) {
   return out;
 }
 
+Precision precision(const Options& o, Precision usual) {
+  if (o.numbers == "quad" && o.digits > kQuadDigits)
+    throw UsageError{"error: --numbers quad holds " + std::to_string(kQuadDigits) + " digits\nhint: --digits " + std::to_string(o.digits) +
+                     " without --numbers computes in multiprecision\n"};
+  if (o.numbers == "quad") return Precision::quad;
+  if (o.digits > 16) return Precision::multi;
+  return o.numbers == "long-double" ? Precision::long_real : usual;
+}
+
 Rational exact(const std::string& text, const std::string& option) {
   if (const auto r = parse_rational(text)) return *r;
   throw UsageError{"error: " + option + ": '" + text + "' is not a number\nhint: a decimal such as 0.25, 1e-12, or a fraction 1/3\n"};

@@ -28,6 +28,8 @@ Reader read(const Options& o);
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics = nullptr);
 StateChoice state_choice(const Options& o, const Model& model);
 Rational exact(const std::string& text, const std::string& option);
+// The numbers asked for by --numbers and --digits; `usual` where neither asks for others.
+Precision precision(const Options& o, Precision usual);
 // "a,b,c" and repeated words alike.
 std::vector<std::string> split(const std::vector<std::string>& words);
 

@@ -107,7 +107,8 @@ int run(int argc, char** argv) {
   CLI::App* evaluate_command = model_command("evaluate", "all forces, accelerations, multipliers, reactions at one state", cli::evaluate,
                                              "Example: anholon evaluate disc --q theta=1 --qdot theta=0.1 --json");
   parameters(evaluate_command), state(evaluate_command), form_option(evaluate_command);
-  evaluate_command->add_option("--digits", o.digits, "more than 16: multiprecision")->type_name("N")->check(CLI::Range(1, 2000));
+  evaluate_command->add_option("--digits", o.digits, "more than 16: multiprecision, or quad if asked for")->type_name("N")->check(CLI::Range(1, 2000));
+  evaluate_command->add_option("--numbers", o.numbers, "long-double (default) or quad (33 digits)")->check(CLI::IsMember({"long-double", "quad"}));
 
   CLI::App* simulate_command = model_command("simulate", "integrate the motion", cli::simulate,
                                              "Example: anholon simulate disc --to 10 --every 0.01 -o disc.csv");
@@ -116,8 +117,9 @@ int run(int argc, char** argv) {
   simulate_command->add_option("--at", o.at, "rows at exactly these times: 0.25,0.5")->type_name("T,…");
   simulate_command->add_option("--every", o.every, "rows at this interval")->type_name("DT");
   simulate_command->add_option("--tolerance", o.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
-  simulate_command->add_option("--digits", o.digits, "more than 16: multiprecision")->type_name("N")->check(CLI::Range(1, 2000));
-  simulate_command->add_option("--numbers", o.numbers, "double or long-double")->check(CLI::IsMember({"double", "long-double"}));
+  simulate_command->add_option("--digits", o.digits, "more than 16: multiprecision, or quad if asked for")->type_name("N")->check(CLI::Range(1, 2000));
+  simulate_command->add_option("--numbers", o.numbers, "double, long-double or quad (33 digits, faster than --digits)")->check(CLI::IsMember({"double", "long-double", "quad"}));
+  simulate_command->add_option("--rigorous", o.rigorous, "bound the residuals of the dense output by ball arithmetic: at so many times, or all")->type_name("N");
   simulate_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
   simulate_command->add_option("--integrator", o.integrator, "taylor, or a second opinion by SUNDIALS: cvode, ida; with its difference")->type_name("NAME");
   simulate_command->add_option("--save", o.save, "FILE that holds the run's state at the end, after Ctrl-C, and every few seconds")->type_name("FILE");

@@ -87,20 +87,33 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s)
 }
 
 void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
+  // The tolerance of quad without --digits: some digits stay for what round-off takes.
+  constexpr int kQuadTolerance = 32;
   s.digits = o.digits;
-  if (o.digits > 16) s.precision = Precision::multi;
-  else if (o.numbers == "long-double") s.precision = Precision::long_real;
-  const std::string power_of_ten = "1e-";
-  if (o.digits > 16) s.tolerance = exact(power_of_ten + std::to_string(o.digits + 2), "--digits");
+  s.precision = precision(o, Precision::real);
+  if (o.digits > 16 || s.precision == Precision::quad)
+    s.tolerance = exact("1e-" + std::to_string(o.digits > 16 ? o.digits + 2 : kQuadTolerance), "--digits");
   else if (model.simulate.tolerance) s.tolerance = *model.simulate.tolerance;
   if (!o.tolerance.empty()) s.tolerance = exact(o.tolerance, "--tolerance");
   if (s.tolerance <= 0 || s.tolerance >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
   if (s.precision == Precision::multi) return;
-  const std::string floor = s.precision == Precision::real ? "2e-16" : "1e-19";
+  const std::string floor = s.precision == Precision::real ? "2e-16" : s.precision == Precision::long_real ? "1e-19" : "2e-34";
   if (s.tolerance < exact(floor, "")) {
     std::fprintf(stderr, "note: a tolerance below %s means %s in these numbers\n", floor.c_str(), floor.c_str());
     s.tolerance = exact(floor, "");
   }
+}
+
+// --rigorous N or all.
+std::optional<std::size_t> rigorous(const std::string& text) {
+  constexpr long kMostTimes = 1'000'000;
+  if (text.empty()) return std::nullopt;
+  if (text == "all") return 0;
+  const std::optional<Rational> n = parse_rational(text);
+  if (!n || n->get_den() != 1 || *n < 1 || *n > kMostTimes)
+    throw UsageError{"error: --rigorous takes a number of times up to " + std::to_string(kMostTimes) + ", or the word all, not '" + text +
+                     "'\nhint: --rigorous 64\n"};
+  return n->get_num().get_ui();
 }
 
 std::string small(double x) { return number_text(x, 3); }
@@ -122,8 +135,9 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   const auto refuse = [&](const std::string& what, const std::string& option) {
     throw UsageError{"error: the integrator '" + which + "' " + what + "\nhint: leave out " + option + ", or use --integrator taylor\n"};
   };
-  if (s.precision != Precision::real) refuse("computes in double", s.precision == Precision::multi ? "--digits" : "--numbers");
+  if (s.precision != Precision::real) refuse("computes in double", o.digits > 16 ? "--digits" : "--numbers");
   if (!o.save.empty() || s.resume) refuse("cannot go on with the same bits", o.save.empty() ? "--continue" : "--save");
+  if (s.rigorous) refuse("has no dense output that is enclosed", "--rigorous");
   // How many digits of its rows may be trusted, the difference tells.
   if (s.estimate == ErrorEstimate::always) refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
   s.estimate = ErrorEstimate::never;
@@ -189,6 +203,15 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
     for (const Warning& w : r.warnings) j.open_object().key("message").string(w.message).key("hint").string(w.hint).close();
     j.close();
   }
+  if (r.rigorous) {
+    j.key("rigorous").open_object();
+    j.key("times");
+    if (r.rigorous->times == 0) j.string("all");
+    else j.integer(static_cast<long long>(r.rigorous->times));
+    j.key("newton").number(r.rigorous->newton).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
+    j.key("bits").integer(r.rigorous->bits);
+    j.close();
+  }
   j.key("steps").integer(static_cast<long long>(r.steps));
   j.key("order").integer(r.order);
   if (s.system.form->eliminates()) j.key("eliminations").integer(static_cast<long long>(r.eliminations));
@@ -232,6 +255,11 @@ void report(const Scenario& s, const SimulationReport& r) {
   for (const WatchedReport& w : r.monitors)
     std::fprintf(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(), w.first.c_str(),
                  w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
+  if (r.rigorous) {
+    const RigorousReport& g = *r.rigorous;
+    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, constraints by %s, steps join within %s\n",
+                 g.times == 0 ? "for all t" : ("at " + std::to_string(g.times) + " times").c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
+  }
   std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.second ? "Taylor's motion: " : "",
                r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
   if (r.second) second_opinion(s, *r.second);
@@ -287,6 +315,7 @@ int simulate_motion(const Options& o, const SavedRun* resume) {
   if (!o.show.empty()) return show(o, s);
   const Rational last = times(o, s, options);
   if (resume) beyond(*resume, o, last);
+  options.rigorous = rigorous(o.rigorous);
   accuracy(o, *in.model, options);
   integrator(o, *in.model, options);
   options.conserved = conserved(*s.mechanics);

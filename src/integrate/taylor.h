@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "program/expansion.h"
 
@@ -67,6 +68,12 @@ class Stepper {
   // … and anywhere in the last step, in an expansion of the caller.
   Outcome at(const W& t, Expansion<W>& point) const;
 
+  // The dense output of the last step as it is: x_j is the sum of dense(j, k) (t - before())^k, k = 0..degree(j). Coefficients up
+  // to that of the leading derivative come from the wider point.
+  std::size_t unknowns() const { return program_->unknowns(); }
+  int degree(std::size_t j) const { return order_ - 1 + program_->d[j]; }
+  W dense(std::size_t j, int k) const { return k <= program_->d[j] ? point_.coefficient(j, k) : convert<W>(expansion_.coefficient(j, k)); }
+
   // Quadrature i as a polynomial in t - before() over the last step: its value there.
   W quadrature(std::size_t i, const W& dt) const;
   // Integrals of the quadratures since the start.
@@ -85,14 +92,28 @@ class Stepper {
   N step_size() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
+  // What shows that J was singular in between: the direction v that J shows least, J v, and the reactions of the multipliers in v.
+  struct Mode {
+    std::vector<N> v, image, reaction;
+    N sigma{0};
+  };
+  static Mode mode(Expansion<N>& at, N sigma);
+  static bool crossed(const Mode& a, const Mode& b, std::size_t coordinates);
+  std::optional<Mode> mode_ahead(const W& h);
+  std::optional<W> singular_within(const W& h);
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
   StepSettings settings_;
   int order_;
+  std::vector<N> parameters_;
   Expansion<N> expansion_;
   Expansion<W> point_;
   std::unique_ptr<Expansion<N>> ahead_;  // where leading derivatives enter nonlinearly
+  std::unique_ptr<Expansion<N>> probe_;  // where J may become singular within a step
+  N sigma_{0}, sigma_before_{0};         // where the last two steps began
+  W last_step_{0};
+  bool singular_ahead_ = false;          // right after the present state
   W branch_step_{0};
   W t_{0}, before_{0};
   N horizon_{0};
@@ -110,6 +131,7 @@ class Stepper {
 
 extern template class Stepper<double>;
 extern template class Stepper<long double>;
+extern template class Stepper<Quad>;
 extern template class Stepper<Multi>;
 
 }  // namespace anholon

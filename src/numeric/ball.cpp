@@ -36,11 +36,34 @@ std::optional<Rational> exactly(const arf_t x) {
   return r;
 }
 
+std::string upwards(const arf_t x) {
+  if (arf_is_zero(x)) return "0";
+  mpfr_t r;
+  mpfr_init2(r, 64);
+  arf_get_mpfr(r, x, MPFR_RNDU);
+  char* text = nullptr;
+  mpfr_asprintf(&text, "%.2RUe", r);
+  std::string s(text);
+  mpfr_free_str(text);
+  mpfr_clear(r);
+  return s;
+}
+
 }  // namespace
 
 Ball::Ball(const Multi& x) {
   arb_init(v_);
   arf_set_mpfr(arb_midref(v_), x.raw());
+  if (!arf_is_finite(arb_midref(v_))) arb_indeterminate(v_);
+}
+
+Ball::Ball(Quad x) {
+  mpfr_t exact;
+  mpfr_init2(exact, kQuadBits);
+  set_mpfr(exact, x);
+  arb_init(v_);
+  arf_set_mpfr(arb_midref(v_), exact);
+  mpfr_clear(exact);
   if (!arf_is_finite(arb_midref(v_))) arb_indeterminate(v_);
 }
 
@@ -90,6 +113,12 @@ Ball Ball::spread() const {
   return r;
 }
 
+Ball Ball::symmetric() const {
+  Ball r;
+  arb_get_mag(arb_radref(r.v_), v_);
+  return r;
+}
+
 std::optional<Rational> Ball::midpoint() const { return exactly(arb_midref(v_)); }
 
 std::optional<Rational> Ball::radius() const {
@@ -112,17 +141,18 @@ std::string Ball::midpoint_text(int digits) const {
 }
 
 std::string Ball::radius_text() const {
-  if (mag_is_zero(arb_radref(v_))) return "0";
-  mpfr_t r;
-  mpfr_init2(r, 64);
-  arf_t exact;
-  arf_init_set_mag_shallow(exact, arb_radref(v_));
-  arf_get_mpfr(r, exact, MPFR_RNDU);
-  char* text = nullptr;
-  mpfr_asprintf(&text, "%.2RUe", r);
-  std::string s(text);
-  mpfr_free_str(text);
-  mpfr_clear(r);
+  arf_t r;
+  arf_init_set_mag_shallow(r, arb_radref(v_));
+  return upwards(r);
+}
+
+std::string Ball::bound_text() const {
+  if (!is_finite()) return "inf";
+  arf_t bound;
+  arf_init(bound);
+  arb_get_abs_ubound_arf(bound, v_, 64);
+  std::string s = upwards(bound);
+  arf_clear(bound);
   return s;
 }
 
@@ -138,6 +168,13 @@ Ball abs(const Ball& x) {
   if (!arb_contains_zero(x.raw())) return r;
   // arb_abs of a ball around 0 reaches below 0.
   arb_nonnegative_part(r.raw(), r.raw());
+  return r;
+}
+
+Ball max(const Ball& x, const Ball& y) {
+  if (!x.is_finite() || !y.is_finite()) return Ball::unknown();
+  Ball r;
+  arb_max(r.raw(), x.raw(), y.raw(), Ball::working_bits());
   return r;
 }
 

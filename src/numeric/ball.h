@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "numeric/multi.h"
+#include "numeric/quad.h"
 #include "numeric/rational.h"
 
 namespace anholon {
@@ -23,6 +24,7 @@ class Ball {
   Ball() { arb_init(v_); }
   Ball(int i) { arb_init(v_); arb_set_si(v_, i); }
   explicit Ball(long double x);      // exactly x
+  explicit Ball(Quad x);             // exactly x
   explicit Ball(const Multi& x);     // exactly x
   explicit Ball(const Rational& r);  // encloses r; exactly r if the precision allows
   Ball(const Rational& midpoint, const Rational& radius);  // encloses [midpoint - radius, midpoint + radius]
@@ -57,6 +59,8 @@ class Ball {
   // The midpoint as a ball of radius 0, and the ball around 0 of the same radius.
   Ball center() const;
   Ball spread() const;
+  // The ball around 0 that holds this one and its mirror image.
+  Ball symmetric() const;
   // Exactly, as dyadic numbers; nothing if not finite or of an absurd exponent.
   std::optional<Rational> midpoint() const;
   std::optional<Rational> radius() const;
@@ -64,6 +68,8 @@ class Ball {
   // "0.3333", "1.2e-30"; the radius is rounded upwards.
   std::string midpoint_text(int digits = 16) const;
   std::string radius_text() const;
+  // A bound of the absolute value, rounded upwards: "3.14e-15", "0", or "inf" where nothing is known.
+  std::string bound_text() const;
 
   // Balls whose exponent outgrows a machine word become unknown, so that no chain of operations can
   // exhaust the memory.
@@ -106,6 +112,11 @@ ANHOLON_BALL_FUNCTION(log, arb_log)
 ANHOLON_BALL_FUNCTION(sqrt, arb_sqrt)
 #undef ANHOLON_BALL_FUNCTION
 Ball abs(const Ball& x);
+Ball max(const Ball& x, const Ball& y);
+inline void addmul(Ball& acc, const Ball& a, const Ball& b) {
+  arb_addmul(acc.raw(), a.raw(), b.raw(), Ball::working_bits());
+  acc.settle();
+}
 Ball sign(const Ball& x);                      // -1, 0, 1, or a ball that holds what is possible
 Ball pow(const Ball& x, const Rational& exponent);  // of a negative number: integer exponents only
 Ball atan2(const Ball& y, const Ball& x);      // in (-pi, pi]

@@ -27,6 +27,19 @@ std::string exact_text(const Multi& x) {
 }
 
 template <>
+std::string exact_text(const Quad& x) {
+  mpfr_t v;
+  mpfr_init2(v, kQuadBits);
+  set_mpfr(v, x);
+  char* text = nullptr;
+  mpfr_asprintf(&text, "%Ra", v);
+  std::string r(text);
+  mpfr_free_str(text);
+  mpfr_clear(v);
+  return r;
+}
+
+template <>
 std::optional<double> parse_exact(const std::string& text) {
   char* end = nullptr;
   const double x = std::strtod(text.c_str(), &end);
@@ -38,6 +51,17 @@ std::optional<long double> parse_exact(const std::string& text) {
   char* end = nullptr;
   const long double x = std::strtold(text.c_str(), &end);
   return text.empty() || *end ? std::nullopt : std::optional<long double>(x);
+}
+
+template <>
+std::optional<Quad> parse_exact(const std::string& text) {
+  char* end = nullptr;
+  mpfr_t v;
+  mpfr_init2(v, kQuadBits);
+  mpfr_strtofr(v, text.c_str(), &end, 0, MPFR_RNDN);
+  const Quad x = quad_of(v);
+  mpfr_clear(v);
+  return text.empty() || *end ? std::nullopt : std::optional<Quad>(x);
 }
 
 template <>

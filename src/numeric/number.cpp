@@ -1,5 +1,6 @@
 #include "numeric/number.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 
@@ -21,6 +22,29 @@ std::string number_text(long double x, int digits) {
                                             std::chars_format::general, digits)
                             : std::to_chars(buffer, buffer + sizeof buffer, x);
   return std::string(buffer, r.ptr);
+}
+
+std::string number_text(Quad x, int digits) {
+  if (!is_finite(x)) return x != x ? "nan" : x > 0 ? "inf" : "-inf";
+  mpfr_t v, back;
+  mpfr_inits2(kQuadBits, v, back, static_cast<mpfr_ptr>(nullptr));
+  set_mpfr(v, x);
+  std::string s;
+  // Without a wish: the fewest digits from those a Quad always holds on that read back to x.
+  for (int n = digits > 0 ? digits : kQuadDigits;; ++n) {
+    char* text = nullptr;
+    mpfr_asprintf(&text, "%.*Rg", n, v);
+    s = text;
+    mpfr_free_str(text);
+    mpfr_set_str(back, s.c_str(), 10, MPFR_RNDN);
+    if (digits > 0 || n >= kQuadTextDigits || mpfr_equal_p(back, v)) break;
+  }
+  mpfr_clears(v, back, static_cast<mpfr_ptr>(nullptr));
+  return s;
+}
+
+std::string quad_text(Quad x, int digits) {
+  return number_text(x, digits > 16 ? std::min(digits + 2, kQuadTextDigits) : 0);
 }
 
 std::string number_text(const Multi& x, int digits) {

@@ -1,4 +1,4 @@
-// One trait for all number types on which the numerics run: double, long double, Multi.
+// One trait for all number types on which the numerics run: double, long double, Quad, Multi.
 //
 // Algorithms are written once, as templates over N, with unqualified sin, sqrt, … found for each
 // type, and the functions below for what the built-in types lack.
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "numeric/multi.h"
+#include "numeric/quad.h"
 #include "numeric/rational.h"
 
 namespace anholon {
@@ -18,7 +19,15 @@ using std::tanh, std::asinh, std::acosh, std::atanh, std::exp, std::log, std::sq
 using std::atan2;
 
 template <class N>
-concept Number = std::same_as<N, double> || std::same_as<N, long double> || std::same_as<N, Multi>;
+concept Number = std::same_as<N, double> || std::same_as<N, long double> || std::same_as<N, Quad> || std::same_as<N, Multi>;
+
+// Bits of the significand.
+template <Number N>
+long significand_bits() {
+  if constexpr (std::same_as<N, Multi>) return Multi::working_bits();
+  else if constexpr (std::same_as<N, Quad>) return kQuadBits;
+  else return std::numeric_limits<N>::digits;
+}
 
 // The unit round-off: half the distance from 1 to the next number.
 template <Number N>
@@ -27,6 +36,8 @@ N unit_roundoff() {
     Multi r(1);
     mpfr_div_2ui(r.raw(), r.raw(), static_cast<unsigned long>(Multi::working_bits()), MPFR_RNDN);
     return r;
+  } else if constexpr (std::same_as<N, Quad>) {
+    return 0x1p-113L;
   } else {
     return std::numeric_limits<N>::epsilon() / 2;
   }
@@ -40,9 +51,11 @@ N from_rational(const Rational& r) {
   } else {
     // mpq_get_d truncates, and long double has no conversion: go through MPFR, which rounds.
     mpfr_t v;
-    mpfr_init2(v, std::numeric_limits<N>::digits);
+    mpfr_init2(v, significand_bits<N>());
     mpfr_set_q(v, r.get_mpq_t(), MPFR_RNDN);
-    const N n = static_cast<N>(mpfr_get_ld(v, MPFR_RNDN));
+    N n;
+    if constexpr (std::same_as<N, Quad>) n = quad_of(v);
+    else n = static_cast<N>(mpfr_get_ld(v, MPFR_RNDN));
     mpfr_clear(v);
     return n;
   }
@@ -50,6 +63,7 @@ N from_rational(const Rational& r) {
 
 inline double to_double(double x) { return x; }
 inline double to_double(long double x) { return static_cast<double>(x); }
+inline double to_double(Quad x) { return static_cast<double>(x); }
 inline double to_double(const Multi& x) { return x.to_double(); }
 
 inline bool is_finite(double x) { return std::isfinite(x); }
@@ -67,6 +81,13 @@ N pi() {
     Multi r;
     mpfr_const_pi(r.raw(), MPFR_RNDN);
     return r;
+  } else if constexpr (std::same_as<N, Quad>) {
+    mpfr_t r;
+    mpfr_init2(r, kQuadBits);
+    mpfr_const_pi(r, MPFR_RNDN);
+    const Quad x = quad_of(r);
+    mpfr_clear(r);
+    return x;
   } else {
     return static_cast<N>(3.14159265358979323846264338327950288L);
   }
@@ -86,7 +107,7 @@ inline void addmul(N& acc, const N& a, const N& b) {
 }
 
 // The type in which a state is kept while its Taylor coefficients are computed in N: the next wider
-// one that the machine has, else N itself.
+// one that the machine computes with as fast, else N itself.
 template <Number N>
 struct WiderType {
   using type = N;
@@ -100,14 +121,24 @@ using Wider = typename WiderType<N>::type;
 
 template <Number To, Number From>
 To convert(const From& x) {
-  if constexpr (std::same_as<To, From>) return x;
-  else return static_cast<To>(x);
+  if constexpr (std::same_as<To, From>) {
+    return x;
+  } else if constexpr (std::same_as<To, Multi> && std::same_as<From, Quad>) {
+    Multi m;
+    set_mpfr(m.raw(), x);
+    return m;
+  } else {
+    return static_cast<To>(x);
+  }
 }
 
-// The decimal text that reads back to the same number (built-in types), or `digits` significant
+// A decimal text that reads back to the same number (built-in types and Quad), or `digits` significant
 // digits (Multi, or when digits > 0).
 std::string number_text(double x, int digits = 0);
 std::string number_text(long double x, int digits = 0);
+std::string number_text(Quad x, int digits = 0);
 std::string number_text(const Multi& x, int digits = 0);
+// As the user asked: digits and two more, as far as a Quad has them; all where no more than 16 were asked for.
+std::string quad_text(Quad x, int digits);
 
 }  // namespace anholon

@@ -200,29 +200,6 @@ Outcome Expansion<N>::singular() const {
           "at theta = 0)"};
 }
 
-template <Number N>
-N Expansion<N>::root_scale(std::size_t i, int order) const {
-  const Tape& tape = program_->tape;
-  const Instruction& alias = tape.code[tape.roots[i]];
-  const std::uint32_t slot = tape.linear_terms[alias.first].slot;
-  const Instruction& in = tape.code[slot];
-  const std::size_t p = static_cast<std::size_t>(order);
-  N s(0);
-  const auto add_product = [&](std::uint32_t a, std::uint32_t b) {
-    const N *u = machine_.series(a), *v = machine_.series(b);
-    for (std::size_t k = 0; k <= p; ++k) s += abs(N(u[k] * v[p - k]));
-  };
-  if (in.op != Op::linear) return abs(machine_.series(slot)[p]);
-  for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
-    const LinearTerm& t = tape.linear_terms[k];
-    const Instruction& term = tape.code[t.slot];
-    if (p > 0 && term.constant) continue;
-    if (p > 0 && (term.op == Op::multiply)) add_product(term.a, term.b);
-    else s += abs(N(machine_.rational(t.coefficient) * machine_.series(t.slot)[p]));
-  }
-  return s;
-}
-
 // Residuals of the equations at derivative order c_i - level, as right sides for J.
 template <Number N>
 bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
@@ -244,7 +221,7 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
     const N size = abs(value);
     if (!(size > N(0))) continue;
     any = true;
-    N scale = root_scale(i, order), moved(0);
+    N scale = machine_.terms(i, static_cast<std::size_t>(order)), moved(0);
     for (std::size_t j = 0; j < p.unknowns(); ++j)
       if (const int k = p.d[j] - level; k >= 0 && j_(i, j) != N(0))
         moved += abs(N(j_(i, j) * x_[j * stride_ + static_cast<std::size_t>(k)]));
@@ -419,6 +396,7 @@ Outcome Expansion<N>::extend() {
 
 template class Expansion<double>;
 template class Expansion<long double>;
+template class Expansion<Quad>;
 template class Expansion<Multi>;
 
 }  // namespace anholon

@@ -98,7 +98,6 @@ class Expansion {
   Outcome newton(const Solver& solver, bool own);
   Outcome singular() const;
   void jacobian();
-  N root_scale(std::size_t i, int order) const;
   bool residual(int level, std::vector<N>& r, N& worst);
   void add_leading(int stage);
 
@@ -121,6 +120,7 @@ class Expansion {
 
 extern template class Expansion<double>;
 extern template class Expansion<long double>;
+extern template class Expansion<Quad>;
 extern template class Expansion<Multi>;
 
 }  // namespace anholon

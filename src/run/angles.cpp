@@ -56,6 +56,7 @@ void AngleWatch<W>::see(const Expansion<W>& point) {
 }
 
 template class AngleWatch<long double>;
+template class AngleWatch<Quad>;
 template class AngleWatch<Multi>;
 
 }  // namespace anholon

@@ -33,6 +33,7 @@ class AngleWatch {
 };
 
 extern template class AngleWatch<long double>;
+extern template class AngleWatch<Quad>;
 extern template class AngleWatch<Multi>;
 
 }  // namespace anholon

@@ -71,18 +71,23 @@ void estimate_error(const Scenario& s, const SimulationOptions& o, const std::ve
   if constexpr (std::same_as<N, Multi>) {
     const PrecisionScope precision(o.digits + 12 + kMoreDigits);
     compare<Multi, Multi>(s, o, settings, samples, report);
+  } else if constexpr (std::same_as<N, Quad>) {
+    const PrecisionScope precision(kQuadDigits + kMoreDigits);
+    compare<Multi, Quad>(s, o, settings, samples, report);
   } else {
     compare<long double, N>(s, o, settings, samples, report);
   }
   if (!report.error) return;
-  const std::string numbers = std::same_as<N, Multi> ? "with " + std::to_string(kMoreDigits) + " digits more" : "in long double";
+  const std::string numbers = std::same_as<N, Multi> || std::same_as<N, Quad> ? "with " + std::to_string(kMoreDigits) + " digits more" : "in long double";
   report.error->means = "a second run " + numbers + ", tolerance " + number_text(tolerance.get_d(), 3) + ", order " + std::to_string(settings.order);
 }
 
 template std::vector<long double> sampled(const Scenario&, const Program&, const Expansion<long double>&);
+template std::vector<Quad> sampled(const Scenario&, const Program&, const Expansion<Quad>&);
 template std::vector<Multi> sampled(const Scenario&, const Program&, const Expansion<Multi>&);
 template void estimate_error<double>(const Scenario&, const SimulationOptions&, const std::vector<Sample<long double>>&, SimulationReport&);
 template void estimate_error<long double>(const Scenario&, const SimulationOptions&, const std::vector<Sample<long double>>&, SimulationReport&);
+template void estimate_error<Quad>(const Scenario&, const SimulationOptions&, const std::vector<Sample<Quad>>&, SimulationReport&);
 template void estimate_error<Multi>(const Scenario&, const SimulationOptions&, const std::vector<Sample<Multi>>&, SimulationReport&);
 
 }  // namespace anholon

@@ -46,6 +46,7 @@ namespace {
 template <Number N>
 std::string text(const N& x, int digits) {
   if constexpr (std::same_as<N, Multi>) return number_text(x, digits + 2);
+  else if constexpr (std::same_as<N, Quad>) return quad_text(x, digits);
   else return number_text(static_cast<double>(x));
 }
 
@@ -158,13 +159,22 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
 }  // namespace
 
 Outcome evaluate(const Scenario& s, const StateChoice& choice, int digits, StateReport& report) {
-  if (digits <= 16) return evaluate_in<long double>(s, choice, digits, report);
-  const PrecisionScope precision(digits + 12);
+  return evaluate(s, choice, digits <= 16 ? Precision::long_real : Precision::multi, digits, report);
+}
+
+Outcome evaluate(const Scenario& s, const StateChoice& choice, Precision precision, int digits, StateReport& report) {
+  switch (precision) {
+    case Precision::real: case Precision::long_real: return evaluate_in<long double>(s, choice, digits, report);
+    case Precision::quad: return evaluate_in<Quad>(s, choice, digits, report);
+    case Precision::multi: break;
+  }
+  const PrecisionScope scope(digits + 12);
   return evaluate_in<Multi>(s, choice, digits, report);
 }
 
 template NewtonResidual<double> certify(const std::vector<double>&, const std::vector<double>&, const std::vector<double>&, const Matrix<double>&);
 template NewtonResidual<long double> certify(const std::vector<long double>&, const std::vector<long double>&, const std::vector<long double>&, const Matrix<long double>&);
+template NewtonResidual<Quad> certify(const std::vector<Quad>&, const std::vector<Quad>&, const std::vector<Quad>&, const Matrix<Quad>&);
 template NewtonResidual<Multi> certify(const std::vector<Multi>&, const std::vector<Multi>&, const std::vector<Multi>&, const Matrix<Multi>&);
 
 }  // namespace anholon

@@ -22,7 +22,9 @@ struct StateReport {
   Named residuals;     // newton (C1), projected (C2), constraints (C3), equations, power
 };
 
-// digits <= 16: computed in long double and rounded to double; else multiprecision.
+// real, long_real: computed in long double and rounded to double. digits: of the numbers written in the others, and of the computation in multi.
+Outcome evaluate(const Scenario& scenario, const StateChoice& choice, Precision precision, int digits, StateReport& report);
+// digits <= 16: long_real; else multi.
 Outcome evaluate(const Scenario& scenario, const StateChoice& choice, int digits, StateReport& report);
 
 // Residuals C1 and C2 (theory: certificate) from E - G and Phi at a state.

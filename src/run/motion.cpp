@@ -210,6 +210,7 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
 
 template class Motion<double>;
 template class Motion<long double>;
+template class Motion<Quad>;
 template class Motion<Multi>;
 
 }  // namespace anholon

@@ -83,6 +83,7 @@ class Motion {
 
 extern template class Motion<double>;
 extern template class Motion<long double>;
+extern template class Motion<Quad>;
 extern template class Motion<Multi>;
 
 // Says what the motion ran into: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.

@@ -196,6 +196,7 @@ Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& st
 
 template Outcome initial_state<double>(const Scenario&, const StateChoice&, Start<double>&);
 template Outcome initial_state<long double>(const Scenario&, const StateChoice&, Start<long double>&);
+template Outcome initial_state<Quad>(const Scenario&, const StateChoice&, Start<Quad>&);
 template Outcome initial_state<Multi>(const Scenario&, const StateChoice&, Start<Multi>&);
 
 }  // namespace anholon

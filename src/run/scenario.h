@@ -17,6 +17,9 @@ struct ConstraintClass {
   bool redundant = false;    // follows from the others at the initial state
 };
 
+// The numbers of a computation. multi: MPFR with as many digits as asked for.
+enum class Precision : std::uint8_t { real, long_real, quad, multi };
+
 struct StateChoice {
   std::vector<StateOverride> overrides;
   std::optional<Rational> t;
@@ -71,7 +74,7 @@ struct Start {
 template <Number N>
 Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start);
 
-template <Number N>
+template <Scalar N>
 std::vector<N> parameter_values(const Model& model) {
   Column es;
   for (const Parameter& p : model.parameters) es.push_back(p.value);
@@ -96,8 +99,6 @@ class OutputTape {
     machine_.evaluate();
   }
   const N& operator[](std::size_t i) const { return machine_.value(i); }
-
- private:
   // Multipliers of redundant constraints are zero.
   static Column put(const Scenario& s, const Column& es) {
     Graph& g = *s.model->graph;
@@ -105,6 +106,8 @@ class OutputTape {
       return g.node(id).kind == Kind::multiplier && !s.system.variable(id) ? g.zero() : Expr{};
     });
   }
+
+ private:
   const System& system_;
   Tape tape_;
   Machine<N> machine_;

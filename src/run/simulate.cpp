@@ -50,6 +50,7 @@ class Run {
       report_.second = second_->report();
       report_.constraints = report_.second->drift;
     }
+    if (defect_) report_.rigorous = defect_->report();
     const std::size_t monitors = s_.model->monitors.size();
     for (std::size_t i = 0; i < monitors; ++i) report_.monitors.push_back(watched(s_.model->monitors[i].name, watch_.tracks()[i]));
     for (std::size_t i = 0; i < o_.conserved.size(); ++i) report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
@@ -195,6 +196,7 @@ class Run {
       while (next_ < times_.size() && times_[next_] == t0_) row(times_[next_], labels_[next_]), ++next_;
       done_ = t0_;
     }
+    if (o_.rigorous) defect_.emplace(s_, *o_.rigorous, Ball(*done_), Ball(end_), significand_bits<W>());
     auto saved = std::chrono::steady_clock::now();
     while (report_.outcome.ok() && !(motion_.stepper().time() == end_)) {
       report_.outcome = motion_.step(end_);
@@ -202,6 +204,7 @@ class Run {
       const Stepper<N>& stepper = motion_.stepper();
       angles_.see(stepper.point());
       const W stop = masses_positive_until();
+      if (defect_) defect_->step(dense_step(stepper, stop));
       if (o_.progress) o_.progress(to_double(stepper.time()), stepper.steps());
       rows_until(stop);
       if (report_.outcome.ok() && !(stop == stepper.time())) negative_mass(stop);
@@ -230,7 +233,7 @@ class Run {
     if (report_.outcome.message.find(" t = ") != std::string::npos) return;
     report_.outcome.message += " at t = " + number_text(to_double(stepper.time()), 12);
     if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
-        report_.outcome.kind == OutcomeKind::no_convergence)
+        report_.outcome.kind == OutcomeKind::no_convergence || (report_.outcome.kind == OutcomeKind::interrupted && stepper.steps() >= o_.most_steps))
       explain(s_, motion_, report_.outcome);
     // The last good state is worth a row of its own.
     if (stepper.steps() > 0 && !every_step_) {
@@ -294,6 +297,7 @@ class Run {
 
   std::string text(const W& x) const {
     if constexpr (std::same_as<N, Multi>) return number_text(x, o_.digits + 2);
+    else if constexpr (std::same_as<N, Quad>) return quad_text(x, o_.digits);
     else return number_text(convert<N>(x));
   }
 
@@ -329,6 +333,7 @@ class Run {
   std::unique_ptr<SecondMotion> second_;  // what another integrator makes of it
   Watch<W> watch_;
   AngleWatch<W> angles_;
+  std::optional<Defect> defect_;
   std::vector<W> times_;
   std::vector<std::string> labels_;
   W t0_{0}, end_{0};
@@ -349,6 +354,7 @@ SimulationReport simulate(const Scenario& s, const SimulationOptions& o, RowSink
   switch (o.precision) {
     case Precision::real: r = Run<double>(s, o, sink).go(); break;
     case Precision::long_real: r = Run<long double>(s, o, sink).go(); break;
+    case Precision::quad: r = Run<Quad>(s, o, sink).go(); break;
     case Precision::multi: {
       const PrecisionScope precision(o.digits + 12);
       r = Run<Multi>(s, o, sink).go();

@@ -4,13 +4,12 @@
 
 #include "mechanics/conserved.h"
 #include "result/rows.h"
+#include "run/defect.h"
 #include "run/saved.h"
 #include "run/scenario.h"
 #include "run/second_opinion.h"
 
 namespace anholon {
-
-enum class Precision : std::uint8_t { real, long_real, multi };
 
 // Whether a second, sharper run is made for the estimate of the global error; it costs more than the run itself.
 enum class ErrorEstimate : std::uint8_t { never, short_runs, always };
@@ -25,7 +24,8 @@ struct SimulationOptions {
   int order = 0;                   // of the Taylor polynomials; 0: from the tolerance
   Integrator integrator = Integrator::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
   Precision precision = Precision::real;
-  int digits = 16;                 // of the numbers written (multi: also of the computation)
+  int digits = 16;                 // of the numbers written, where more than 16 (multi: also of the computation)
+  std::optional<std::size_t> rigorous;  // the defect of the dense output, enclosed at so many times; at all times: 0
   std::vector<std::string> at_text;  // the times as written, to be printed as given
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;
@@ -80,6 +80,7 @@ struct SimulationReport {
   std::optional<ErrorReport> error;
   std::string no_error;          // why there is no estimate, where one was asked for
   std::vector<Warning> warnings;
+  std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
   std::optional<SecondOpinion> second;  // where another integrator was asked for; steps, order and sigma are Taylor's
   std::vector<WatchedReport> monitors;   // of the model's [monitor]

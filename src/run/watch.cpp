@@ -204,8 +204,10 @@ void Watch<W>::end(const Expansion<W>& point, const W& work, SimulationReport& r
 }
 
 template struct Track<long double>;
+template struct Track<Quad>;
 template struct Track<Multi>;
 template class Watch<long double>;
+template class Watch<Quad>;
 template class Watch<Multi>;
 
 }  // namespace anholon

@@ -62,6 +62,7 @@ class Watch {
 };
 
 extern template class Watch<long double>;
+extern template class Watch<Quad>;
 extern template class Watch<Multi>;
 
 }  // namespace anholon

@@ -260,6 +260,7 @@ LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const
 
 template LeadingSolutions<double> leading_solutions<double>(const Mechanics&, const System&, const Structure&, const std::vector<double>&, InitialState<double>);
 template LeadingSolutions<long double> leading_solutions<long double>(const Mechanics&, const System&, const Structure&, const std::vector<long double>&, InitialState<long double>);
+template LeadingSolutions<Quad> leading_solutions<Quad>(const Mechanics&, const System&, const Structure&, const std::vector<Quad>&, InitialState<Quad>);
 template LeadingSolutions<Multi> leading_solutions<Multi>(const Mechanics&, const System&, const Structure&, const std::vector<Multi>&, InitialState<Multi>);
 
 }  // namespace anholon

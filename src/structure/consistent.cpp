@@ -530,9 +530,11 @@ Outcome complete_state(const InitialProblem<N>& problem, const System& s, const 
 
 template Outcome consistent_state<double>(const InitialProblem<double>&, InitialState<double>&);
 template Outcome consistent_state<long double>(const InitialProblem<long double>&, InitialState<long double>&);
+template Outcome consistent_state<Quad>(const InitialProblem<Quad>&, InitialState<Quad>&);
 template Outcome consistent_state<Multi>(const InitialProblem<Multi>&, InitialState<Multi>&);
 template Outcome complete_state<double>(const InitialProblem<double>&, const System&, const Structure&, InitialState<double>&);
 template Outcome complete_state<long double>(const InitialProblem<long double>&, const System&, const Structure&, InitialState<long double>&);
+template Outcome complete_state<Quad>(const InitialProblem<Quad>&, const System&, const Structure&, InitialState<Quad>&);
 template Outcome complete_state<Multi>(const InitialProblem<Multi>&, const System&, const Structure&, InitialState<Multi>&);
 
 }  // namespace anholon

@@ -72,7 +72,7 @@ IndependentConstraints choose_independent(const Matrix<double>& phi, const std::
         continue;
       }
       span.add(std::move(rest));
-      choice.weakest = std::min(choice.weakest, sine);
+      if (sine < choice.weakest) choice.weakest = sine, choice.weakest_row = i;
       choice.independent.push_back(i);
     }
     open = std::move(left);
@@ -135,6 +135,7 @@ std::vector<N> least_multipliers(const Matrix<N>& phi, const std::vector<std::si
 
 template std::vector<double> least_multipliers(const Matrix<double>&, const std::vector<std::size_t>&, const std::vector<double>&);
 template std::vector<long double> least_multipliers(const Matrix<long double>&, const std::vector<std::size_t>&, const std::vector<long double>&);
+template std::vector<Quad> least_multipliers(const Matrix<Quad>&, const std::vector<std::size_t>&, const std::vector<Quad>&);
 template std::vector<Multi> least_multipliers(const Matrix<Multi>&, const std::vector<std::size_t>&, const std::vector<Multi>&);
 
 }  // namespace anholon

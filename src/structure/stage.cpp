@@ -46,7 +46,7 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   for (std::size_t i = 0; i < size(); ++i) {
     residual[i] = machine_.value(i);
     if (!is_finite(residual[i])) return false;
-    scale[i] = term_scale(i);
+    scale[i] = machine_.terms(i, 0);
     for (std::size_t j = 0; j < n; ++j) {
       jacobian(i, j) = machine_.value(size() + i * n + j);
       if (!is_finite(jacobian(i, j))) return false;
@@ -75,21 +75,6 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
     metric(i, i) += largest * N(1e-12);
   }
   return true;
-}
-
-// The sum of the absolute values of the terms of an equation.
-template <Number N>
-N Stage<N>::term_scale(std::size_t i) const {
-  const Instruction& alias = tape_.code[tape_.roots[i]];
-  const std::uint32_t slot = tape_.linear_terms[alias.first].slot;
-  const Instruction& in = tape_.code[slot];
-  if (in.op != Op::linear) return abs(machine_.series(slot)[0]);
-  N s(0);
-  for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
-    const LinearTerm& t = tape_.linear_terms[k];
-    s += abs(N(machine_.rational(t.coefficient) * machine_.series(t.slot)[0]));
-  }
-  return s;
 }
 
 template <Number N>
@@ -255,9 +240,11 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
 
 template class Stage<double>;
 template class Stage<long double>;
+template class Stage<Quad>;
 template class Stage<Multi>;
 template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&);
 template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&, const std::vector<std::size_t>&);
+template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&);
 template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&);
 
 }  // namespace anholon

@@ -48,7 +48,6 @@ class Stage {
 
  private:
   Tape build();
-  N term_scale(std::size_t i) const;
 
   std::vector<N> floor_;
 

@@ -1,11 +1,12 @@
 #include "base/assert.h"
+#include "numeric/ball.h"
 #include "tape/tape.h"
 
 namespace anholon {
 
 namespace {
 
-template <Number N>
+template <Scalar N>
 N apply(Function f, const N& u) {
   switch (f) {
 #define ROW(name, derivative, parity, latex, domain) \
@@ -16,24 +17,42 @@ N apply(Function f, const N& u) {
   return u;
 }
 
-template <Number N>
+template <Scalar N>
+N constant_value(const Rational& r) {
+  if constexpr (std::same_as<N, Ball>) return Ball(r);
+  else return from_rational<N>(r);
+}
+
+template <Scalar N>
+N pi_value() {
+  if constexpr (std::same_as<N, Ball>) return Ball::pi();
+  else return pi<N>();
+}
+
+// abs and sign are smooth beside 0 only, atan2 beside its cut: there no Taylor coefficient after the first means anything. All other
+// functions are not finite themselves where they are not smooth.
+bool smooth(Function f, const Ball& u) { return (f != Function::abs && f != Function::sign) || !u.contains_zero(); }
+bool smooth(const Ball& y, const Ball& x) { return !y.contains_zero() || x.is_positive(); }
+
+template <Scalar N>
 N power_value(const N& u, const N& r, const Rational& exact) {
   if (exact == Rational(1, 2)) return sqrt(u);
   if (exact == Rational(-1, 2)) return N(1) / sqrt(u);
   if (exact == Rational(3, 2)) return u * sqrt(u);
   if (exact == Rational(-3, 2)) return N(1) / (u * sqrt(u));
-  return pow(u, r);
+  if constexpr (std::same_as<N, Ball>) return pow(u, exact);
+  else return pow(u, r);
 }
 
 }  // namespace
 
-template <Number N>
+template <Scalar N>
 Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& parameters)
     : tape_(&tape),
       // An odd stride keeps histories of different slots off the same cache sets.
       stride_((orders + static_cast<std::size_t>(tape.largest_lead) + 1) | 1),
       data_(stride_ * tape.code.size(), N(0)) {
-  for (const Rational& r : tape.rationals) rationals_.push_back(from_rational<N>(r));
+  for (const Rational& r : tape.rationals) rationals_.push_back(constant_value<N>(r));
   for (std::uint32_t s = 0; s < tape.code.size(); ++s) {
     const Instruction& in = tape.code[s];
     if (in.op == Op::parameter) series(s)[0] = parameters[in.index];
@@ -43,7 +62,7 @@ Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& 
     if (tape.code[s].constant) step(tape.code[s], s, 0);
 }
 
-template <Number N>
+template <Scalar N>
 void Machine<N>::sweep(int stage, std::uint32_t from, std::uint32_t to) {
   for (std::uint32_t s = from; s < to; ++s) {
     const Instruction& in = tape_->code[s];
@@ -53,12 +72,12 @@ void Machine<N>::sweep(int stage, std::uint32_t from, std::uint32_t to) {
   }
 }
 
-template <Number N>
+template <Scalar N>
 void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) {
   N* w = series(slot);
   switch (in.op) {
     case Op::constant: w[0] = rationals_[in.index]; return;
-    case Op::pi: w[0] = pi<N>(); return;
+    case Op::pi: w[0] = pi_value<N>(); return;
     case Op::input: case Op::parameter: return;
     case Op::linear: {
       N s(0);
@@ -117,6 +136,11 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
         w[0] = apply(static_cast<Function>(in.index), u[0]);
         return;
       }
+      if constexpr (std::same_as<N, Ball>)
+        if (!smooth(static_cast<Function>(in.index), u[0])) {
+          w[p] = Ball::unknown();
+          return;
+        }
       // w' = f'(u) u'
       const N* g = series(in.b);
       if (tape_->code[in.b].constant) {
@@ -134,6 +158,11 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
         w[0] = atan2(y[0], x[0]);
         return;
       }
+      if constexpr (std::same_as<N, Ball>)
+        if (!smooth(y[0], x[0])) {
+          w[p] = Ball::unknown();
+          return;
+        }
       N s(0);
       for (std::size_t j = 1; j <= p; ++j) {
         const N k(static_cast<int>(j));
@@ -146,7 +175,7 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
   }
 }
 
-template <Number N>
+template <Scalar N>
 typename Machine<N>::Partials Machine<N>::partials(std::uint32_t slot) const {
   const Instruction& in = tape_->code[slot];
   const N* w = series(slot);
@@ -166,7 +195,28 @@ typename Machine<N>::Partials Machine<N>::partials(std::uint32_t slot) const {
   return {N(0), N(0)};
 }
 
-template <Number N>
+template <Scalar N>
+N Machine<N>::terms(std::size_t root, std::size_t order) const {
+  const Instruction& alias = tape_->code[tape_->roots[root]];
+  const std::uint32_t slot = tape_->linear_terms[alias.first].slot;
+  const Instruction& in = tape_->code[slot];
+  N s(0);
+  const auto add_product = [&](std::uint32_t a, std::uint32_t b) {
+    const N *u = series(a), *v = series(b);
+    for (std::size_t k = 0; k <= order; ++k) s += abs(N(u[k] * v[order - k]));
+  };
+  if (in.op != Op::linear) return abs(series(slot)[order]);
+  for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
+    const LinearTerm& t = tape_->linear_terms[k];
+    const Instruction& term = tape_->code[t.slot];
+    if (order > 0 && term.constant) continue;
+    if (order > 0 && (term.op == Op::multiply)) add_product(term.a, term.b);
+    else s += abs(N(rational(t.coefficient) * series(t.slot)[order]));
+  }
+  return s;
+}
+
+template <Scalar N>
 std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values) {
   // Parameters may refer to each other in any order: put values in until none is left.
   std::vector<N> out;
@@ -186,9 +236,13 @@ std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values) {
 
 template class Machine<double>;
 template class Machine<long double>;
+template class Machine<Quad>;
 template class Machine<Multi>;
+template class Machine<Ball>;
 template std::vector<double> evaluate_parameters<double>(Graph&, std::span<const Expr>);
 template std::vector<long double> evaluate_parameters<long double>(Graph&, std::span<const Expr>);
+template std::vector<Quad> evaluate_parameters<Quad>(Graph&, std::span<const Expr>);
 template std::vector<Multi> evaluate_parameters<Multi>(Graph&, std::span<const Expr>);
+template std::vector<Ball> evaluate_parameters<Ball>(Graph&, std::span<const Expr>);
 
 }  // namespace anholon

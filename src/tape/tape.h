@@ -22,6 +22,8 @@
 
 namespace anholon {
 
+class Ball;
+
 enum class Op : std::uint8_t {
   constant,   // rational `index`
   pi,
@@ -79,7 +81,13 @@ struct DomainFault {
   std::uint32_t index;
 };
 
-template <Number N>
+// What a tape is computed in: numbers; or balls, of which no comparison is asked. Whatever lies in the input series of a machine of
+// balls, the Taylor coefficients of every slot lie in the slot's, where the slot is smooth on all of the balls, else they are not
+// finite.
+template <class N>
+concept Scalar = Number<N> || std::same_as<N, Ball>;
+
+template <Scalar N>
 class Machine {
  public:
   // Series of up to `orders` coefficients beyond the lead.
@@ -99,6 +107,8 @@ class Machine {
     N a, b;
   };
   Partials partials(std::uint32_t slot) const;
+  // The sum of the absolute values of the terms of a main root, in its Taylor coefficient of this order.
+  N terms(std::size_t root, std::size_t order) const;
   const N& rational(std::uint32_t index) const { return rationals_[index]; }
   const Tape& tape() const { return *tape_; }
 
@@ -113,10 +123,11 @@ class Machine {
 
 extern template class Machine<double>;
 extern template class Machine<long double>;
+extern template class Machine<Quad>;
 extern template class Machine<Multi>;
 
-// Values of parameters in any number type.
-template <Number N>
+// Values of parameters in any number type, or enclosed.
+template <Scalar N>
 std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values);
 
 }  // namespace anholon

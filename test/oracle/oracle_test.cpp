@@ -17,6 +17,7 @@ using nlohmann::json;
 constexpr double kEvaluate = 1e-13;      // long double, printed as double
 constexpr double kSimulate = 1e-12;      // double, tolerance 1e-15
 constexpr double kManyDigits = 1e-25;    // 30 digits
+constexpr double kQuad = 1e-28;          // quad
 constexpr double kUnstable = 1e-9;       // in double, where errors grow fast along the trajectory
 const char* const kUnstableSystem = "s07_rattleback";
 
@@ -135,7 +136,8 @@ class Oracle : public testing::TestWithParam<Pair> {
     }
   }
 
-  Worst evaluate_all(int digits) const {
+  Worst evaluate_all(int digits) const { return evaluate_all(digits <= 16 ? Precision::long_real : Precision::multi, digits); }
+  Worst evaluate_all(Precision numbers, int digits) const {
     Worst worst;
     int index = 0;
     for (const json& stored : data["states"]) {
@@ -143,7 +145,7 @@ class Oracle : public testing::TestWithParam<Pair> {
       const StateChoice c = choice(stored);
       Outcome o = make_scenario(model, *find_formulation("routh"), c, s);
       StateReport r;
-      if (o.ok()) o = evaluate(s, c, digits, r);
+      if (o.ok()) o = evaluate(s, c, numbers, digits, r);
       if (!o.ok()) throw std::runtime_error(o.message);
       compare_state(worst, r, stored, " at state " + std::to_string(index++));
     }
@@ -215,6 +217,13 @@ class OracleInManyDigits : public Oracle {};
 TEST_P(OracleInManyDigits, TermsAtStates) { EXPECT_TRUE(evaluate_all(30).within(kManyDigits)); }
 TEST_P(OracleInManyDigits, Trajectory) { EXPECT_TRUE(simulate_all(Precision::multi, 1e-32, 30).within(kManyDigits)); }
 INSTANTIATE_TEST_SUITE_P(Model, OracleInManyDigits, testing::ValuesIn(quick_models()),
+                         [](const auto& p) { return test::test_name(p.param.model); });
+
+// The trajectories claim 30 digits.
+class OracleInQuad : public Oracle {};
+TEST_P(OracleInQuad, TermsAtStates) { EXPECT_TRUE(evaluate_all(Precision::quad, 16).within(kQuad)); }
+TEST_P(OracleInQuad, Trajectory) { EXPECT_TRUE(simulate_all(Precision::quad, 1e-32, 16).within(kQuad)); }
+INSTANTIATE_TEST_SUITE_P(Model, OracleInQuad, testing::ValuesIn(quick_models()),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
 // Mutant: a change of the mass in the 11th digit must be seen by the comparison.

@@ -141,5 +141,22 @@ TEST(Ball, PiAndText) {
   EXPECT_EQ(*Ball(Multi(0.5)).midpoint(), Rational(1, 2));
 }
 
+TEST(Ball, TellsABoundOfItsAbsoluteValueRoundedUpwards) {
+  EXPECT_EQ(Ball(0).bound_text(), "0");
+  EXPECT_EQ(Ball(-3).bound_text(), "3.00e+00");
+  EXPECT_EQ(Ball(Rational(1, 3)).bound_text(), "3.34e-01");
+  EXPECT_EQ(Ball(Rational(-1), Rational(1, 2)).bound_text(), "1.50e+00");
+  EXPECT_EQ(Ball::unknown().bound_text(), "inf");
+  EXPECT_EQ(log(Ball(Rational(0), Rational(1))).bound_text(), "inf");
+  const Ball s = Ball(Rational(-1), Rational(1, 2)).symmetric();
+  EXPECT_TRUE(s.contains(Rational(3, 2)) && s.contains(Rational(-3, 2)) && s.midpoint() == Rational(0));
+}
+
+TEST(Ball, HasAMaximumOnlyOfWhatIsKnown) {
+  const Ball m = max(Ball(Rational(1), Rational(1, 2)), Ball(Rational(5, 4)));
+  EXPECT_TRUE(m.contains(Rational(5, 4)) && m.contains(Rational(3, 2)) && !m.contains(Rational(1)));
+  EXPECT_FALSE(max(Ball(1), Ball::unknown()).is_finite() || max(Ball::unknown(), Ball(1)).is_finite());
+}
+
 }  // namespace
 }  // namespace anholon

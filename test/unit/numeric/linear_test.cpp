@@ -54,7 +54,7 @@ class LuOf : public testing::Test {
   // Backward stability: the residual of a random system of this size is a few hundred round-offs at most.
   static constexpr double kResidualRoundoffs = 500;
 };
-using Numbers = testing::Types<double, long double, Multi>;
+using Numbers = testing::Types<double, long double, Quad, Multi>;
 TYPED_TEST_SUITE(LuOf, Numbers);
 
 TYPED_TEST(LuOf, SolvesRandomSystemsAndTheirTransposes) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "expr/print.h"
+#include "numeric/ball.h"
 #include "support/random_expr.h"
 #include "support/value.h"
 #include "tape/tape.h"
@@ -63,6 +64,7 @@ double error_in_roundoffs(Expr e, const std::vector<Multi>& expected) {
     if (abs(c) > size) size = abs(c);
     Multi found;
     if constexpr (std::same_as<N, Multi>) found = machine.series(tape.roots[0])[k];
+    else if constexpr (std::same_as<N, Quad>) set_mpfr(found.raw(), machine.series(tape.roots[0])[k]);
     else found = Multi(static_cast<long double>(machine.series(tape.roots[0])[k]));
     worst = std::max(worst, to_double(Multi(abs(Multi(found - c)) / size)) / to_double(unit_roundoff<N>()));
   }
@@ -72,11 +74,11 @@ double error_in_roundoffs(Expr e, const std::vector<Multi>& expected) {
 template <class N>
 class TaylorIn : public testing::Test {
  protected:
-  PrecisionScope precision{30};
+  PrecisionScope precision{40};
   // Recurrences of up to 8 terms, some with derivatives of derivatives: a few hundred round-offs; wrong rules err by 1e10 and more.
   static constexpr double kRoundoffs = 1000;
 };
-using NumberTypes = testing::Types<double, long double, Multi>;
+using NumberTypes = testing::Types<double, long double, Quad, Multi>;
 TYPED_TEST_SUITE(TaylorIn, NumberTypes);
 
 TYPED_TEST(TaylorIn, EveryElementaryFunction) {
@@ -130,6 +132,71 @@ TEST(Taylor, AWrongCoefficientIsRefuted) {
   std::vector<Multi> expected = reference(sin(x), kOrders);
   expected[8] = expected[8] * Multi(1.0001);
   EXPECT_GT(error_in_roundoffs<double>(sin(x), expected), 1e4);
+}
+
+// The balls of coefficients at t, or on all of an interval around it.
+std::vector<Ball> enclosed(Expr e, const Ball& t, int orders) {
+  const Tape tape = compile({&e, 1});
+  Machine<Ball> machine(tape, static_cast<std::size_t>(orders), {Ball(Rational(3, 4))});
+  const Graph& g = *e.graph;
+  for (const Input& in : tape.inputs) {
+    const Node& n = g.node(in.symbol);
+    // The polynomial of the path about t, by Horner's scheme.
+    std::vector<Ball> c;
+    for (int k = 0; k <= 3; ++k) c.emplace_back(n.kind == Kind::time ? Rational(k == 1 ? 1 : 0) : Rational(coefficient_of_path(n.index, n.order, k)));
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 3; k-- > i;) addmul(c[k], t, c[k + 1]);
+    for (int k = 0; k <= orders; ++k) machine.series(in.slot)[k] = k <= 3 ? c[static_cast<std::size_t>(k)] : Ball(0);
+  }
+  for (int stage = 0; stage <= orders; ++stage) machine.sweep(stage, 0, static_cast<std::uint32_t>(tape.code.size()));
+  const Ball* w = machine.series(tape.roots[0]);
+  return {w, w + orders + 1};
+}
+
+TEST(MachineOfBalls, EnclosesTheCoefficientsAtAPointAndOnAnInterval) {
+  const PrecisionScope precision(60);
+  const BallScope balls(220);
+  Graph g;
+  const std::vector<Expr> atoms = {g.jet(0, 0), g.jet(1, 0), g.jet(0, 1), g.parameter(0), g.time()};
+  int finite = 0;
+  for (std::uint32_t k = 1; k <= 40; ++k) {
+    const Expr e = RandomExpr(g, 200 + k, atoms).make(3);
+    const Rational radius(1, 64);
+    const std::vector<Ball> wide = enclosed(e, Ball(Rational(0), radius), kOrders);
+    for (int place = -2; place <= 2; ++place) {
+      const std::vector<Ball> at = enclosed(e, Ball(Rational(radius * place / 2)), kOrders);
+      for (std::size_t i = 0; i < at.size(); ++i)
+        if (wide[i].is_finite() && at[i].is_finite()) {
+          ++finite;
+          EXPECT_TRUE(wide[i].overlaps(at[i])) << k << ", order " << i << ": " << print(e, {}, Format::text);
+          EXPECT_TRUE((at[i] - wide[i].center()).symmetric().overlaps(wide[i].spread()));
+        }
+    }
+    const std::vector<Multi> expected = reference(e, kOrders);
+    const std::vector<Ball> at = enclosed(e, Ball(0), kOrders);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (!at[i].is_finite() || !expected[i].finite()) continue;
+      Ball near(expected[i]);  // the reference comes from differences: right to some 20 digits
+      near += Ball(Rational(0), Rational(1, mpz_class("100000000000000"))) * (Ball(1) + abs(near));
+      EXPECT_TRUE(near.overlaps(at[i])) << k << ", order " << i << ": " << print(e, {}, Format::text);
+      EXPECT_LT(*at[i].spread().radius(), Rational(1, mpz_class("1000000000000000000000000000000")) * (1 + abs(*at[i].midpoint())));
+    }
+  }
+  EXPECT_GT(finite, 1000);
+}
+
+// Where a function is not smooth on the whole ball no coefficient after the first may pretend to be one.
+TEST(MachineOfBalls, KnowsNothingBesideAKink) {
+  Graph g;
+  const Expr x = g.time();
+  const Ball wide(Rational(0), Rational(1, 8));
+  for (const Expr e : {abs(x), sign(x), atan2(x, g.number(-1)), sqrt(x), log(x), pow(x, {1, 3}), g.one() / x}) {
+    const std::vector<Ball> w = enclosed(e, wide, 3);
+    for (std::size_t k = 1; k < w.size(); ++k) EXPECT_FALSE(w[k].is_finite()) << print(e, {}, Format::text) << ", order " << k;
+    const std::vector<Ball> beside = enclosed(e, Ball(Rational(1, 4), Rational(1, 8)), 3);
+    for (const Ball& b : beside) EXPECT_TRUE(b.is_finite()) << print(e, {}, Format::text);
+  }
+  EXPECT_TRUE(enclosed(abs(x), wide, 0)[0].is_finite());
 }
 
 // A root with lead c holds, after stage s, its coefficients up to order s + c: the derivative of order c comes out at stage 0.

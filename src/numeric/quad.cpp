@@ -1,0 +1,84 @@
+#include "numeric/quad.h"
+
+#include <cmath>
+
+namespace anholon {
+
+namespace {
+
+// A number of MPFR of 113 bits.
+struct Exact {
+  mpfr_t v;
+  Exact() { mpfr_init2(v, kQuadBits); }
+  explicit Exact(Quad x) : Exact() { set_mpfr(v, x); }
+  ~Exact() { mpfr_clear(v); }
+  Exact(const Exact&) = delete;
+  Exact& operator=(const Exact&) = delete;
+};
+
+using Rounded = int (*)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);
+
+Quad apply(Rounded f, Quad x) {
+  Exact u(x);
+  f(u.v, u.v, MPFR_RNDN);
+  return quad_of(u.v);
+}
+
+}  // namespace
+
+// Two long doubles of 64 bits hold the 113 of a Quad, in the same range of exponents.
+void set_mpfr(mpfr_ptr to, Quad x) {
+  const long double high = static_cast<long double>(x);
+  mpfr_set_ld(to, high, MPFR_RNDN);
+  if (!std::isfinite(high)) return;
+  const long double low = static_cast<long double>(x - high);
+  if (low == 0) return;
+  mpfr_t rest;
+  mpfr_init2(rest, 64);
+  mpfr_set_ld(rest, low, MPFR_RNDN);
+  mpfr_add(to, to, rest, MPFR_RNDN);
+  mpfr_clear(rest);
+}
+
+Quad quad_of(mpfr_srcptr x) {
+  const long double high = mpfr_get_ld(x, MPFR_RNDN);
+  if (!std::isfinite(high)) return high;
+  mpfr_t rest;
+  mpfr_init2(rest, kQuadBits + 64);
+  mpfr_set_ld(rest, high, MPFR_RNDN);
+  mpfr_sub(rest, x, rest, MPFR_RNDN);
+  const long double low = mpfr_get_ld(rest, MPFR_RNDN);
+  mpfr_clear(rest);
+  // Where low is 0, high is x with its sign: -0 stays -0.
+  return low == 0 ? static_cast<Quad>(high) : static_cast<Quad>(high) + low;
+}
+
+Quad sin(Quad x) { return apply(mpfr_sin, x); }
+Quad cos(Quad x) { return apply(mpfr_cos, x); }
+Quad tan(Quad x) { return apply(mpfr_tan, x); }
+Quad asin(Quad x) { return apply(mpfr_asin, x); }
+Quad acos(Quad x) { return apply(mpfr_acos, x); }
+Quad atan(Quad x) { return apply(mpfr_atan, x); }
+Quad sinh(Quad x) { return apply(mpfr_sinh, x); }
+Quad cosh(Quad x) { return apply(mpfr_cosh, x); }
+Quad tanh(Quad x) { return apply(mpfr_tanh, x); }
+Quad asinh(Quad x) { return apply(mpfr_asinh, x); }
+Quad acosh(Quad x) { return apply(mpfr_acosh, x); }
+Quad atanh(Quad x) { return apply(mpfr_atanh, x); }
+Quad exp(Quad x) { return apply(mpfr_exp, x); }
+Quad log(Quad x) { return apply(mpfr_log, x); }
+Quad sqrt(Quad x) { return apply(mpfr_sqrt, x); }
+
+Quad pow(Quad x, Quad y) {
+  Exact u(x), v(y);
+  mpfr_pow(u.v, u.v, v.v, MPFR_RNDN);
+  return quad_of(u.v);
+}
+
+Quad atan2(Quad y, Quad x) {
+  Exact u(y), v(x);
+  mpfr_atan2(u.v, u.v, v.v, MPFR_RNDN);
+  return quad_of(u.v);
+}
+
+}  // namespace anholon

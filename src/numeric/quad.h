@@ -1,0 +1,42 @@
+// Quadruple precision: the compiler's number of 113 bits, with the functions that the language does not give it.
+//
+// Sums, products and quotients are the compiler's own (whole numbers underneath, correctly rounded).
+// Elementary functions go through MPFR: correctly rounded too, the same bits with every compiler, and
+// a motion needs them at order 0 of its Taylor series only.
+#pragma once
+#include <mpfr.h>
+
+namespace anholon {
+
+__extension__ typedef __float128 Quad;
+
+inline constexpr int kQuadBits = 113;
+inline constexpr int kQuadDigits = 33;      // decimal digits that a Quad always holds
+inline constexpr int kQuadTextDigits = 36;  // that tell any two Quads apart
+
+// x, exactly where `to` has 113 bits or more; and the Quad nearest to a number of at most 113 bits.
+void set_mpfr(mpfr_ptr to, Quad x);
+Quad quad_of(mpfr_srcptr x);
+
+inline Quad abs(Quad x) { return __builtin_fabsf128(x); }
+inline bool is_finite(Quad x) { return x - x == 0; }
+
+Quad sin(Quad x);
+Quad cos(Quad x);
+Quad tan(Quad x);
+Quad asin(Quad x);
+Quad acos(Quad x);
+Quad atan(Quad x);
+Quad sinh(Quad x);
+Quad cosh(Quad x);
+Quad tanh(Quad x);
+Quad asinh(Quad x);
+Quad acosh(Quad x);
+Quad atanh(Quad x);
+Quad exp(Quad x);
+Quad log(Quad x);
+Quad sqrt(Quad x);
+Quad pow(Quad x, Quad y);
+Quad atan2(Quad y, Quad x);
+
+}  // namespace anholon
