@@ -122,17 +122,6 @@ std::optional<std::size_t> rigorous(const std::string& text) {
 
 std::string small(double x) { return number_text(x, 3); }
 
-void write_watched(JsonWriter& j, const char* key, const std::vector<WatchedReport>& list) {
-  if (list.empty()) return;
-  j.key(key).open_object();
-  for (const WatchedReport& w : list) {
-    j.key(w.name).open_object();
-    for (const auto& [name, value] : {std::pair{"first", &w.first}, {"last", &w.last}, {"min", &w.least}, {"max", &w.greatest}}) j.key(name).number(*value);
-    j.key("largest_change").number(small(w.largest_change)).close();
-  }
-  j.close();
-}
-
 // SUNDIALS computes in double, and not below a tolerance of its own.
 void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   s.integrator = model.simulate.integrator.value_or(Integrator::taylor);
@@ -146,12 +135,29 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
     s.integrator = *wanted;
   }
   if (s.integrator == Integrator::taylor) return;
-  if (s.precision != Precision::real)
-    throw UsageError{std::string("error: the integrator '") + name(s.integrator) + "' computes in double\nhint: leave out " +
-                     (s.precision == Precision::multi ? "--digits" : "--numbers") + ", or use --integrator taylor\n"};
-  if (s.tolerance.get_d() < kLeastSundialsTolerance)
-    std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastSundialsTolerance).c_str(), small(kLeastSundialsTolerance).c_str(),
-                 name(s.integrator));
+  const std::string which = name(s.integrator);
+  const auto refuse = [&](const std::string& what, const std::string& option) {
+    throw UsageError{"error: the integrator '" + which + "' " + what + "\nhint: leave out " + option + ", or use --integrator taylor\n"};
+  };
+  if (s.precision != Precision::real) refuse("computes in double", o.digits > 16 ? "--digits" : "--numbers");
+  if (!o.save.empty() || s.resume) refuse("cannot go on with the same bits", o.save.empty() ? "--continue" : "--save");
+  if (s.rigorous) refuse("has no dense output that is enclosed", "--rigorous");
+  // How many digits of its rows may be trusted, the difference tells.
+  if (s.estimate == ErrorEstimate::always) refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
+  s.estimate = ErrorEstimate::never;
+  const std::string least = small(kLeastSundialsTolerance);
+  if (s.tolerance.get_d() < kLeastSundialsTolerance) std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
+}
+
+void write_watched(JsonWriter& j, const char* key, const std::vector<WatchedReport>& list) {
+  if (list.empty()) return;
+  j.key(key).open_object();
+  for (const WatchedReport& w : list) {
+    j.key(w.name).open_object();
+    for (const auto& [name, value] : {std::pair{"first", &w.first}, {"last", &w.last}, {"min", &w.least}, {"max", &w.greatest}}) j.key(name).number(*value);
+    j.key("largest_change").number(small(w.largest_change)).close();
+  }
+  j.close();
 }
 
 void write_json(const Scenario& s, const MemorySink& rows, const SimulationReport& r, std::FILE* file) {
@@ -175,6 +181,11 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
                                     {"power", r.power}, {"smallest_sigma", r.smallest_sigma}})
     j.key(name).number(small(value));
   j.close();
+  if (r.second) {
+    j.key("second_opinion").open_object().key("integrator").string(name(r.second->integrator)).key("form").string(r.second->form);
+    j.key("difference").number(small(r.second->difference)).key("of").string(r.second->of).key("t").number(number_text(r.second->t));
+    j.key("steps").integer(static_cast<long long>(r.second->steps)).key("evaluations").integer(static_cast<long long>(r.second->evaluations)).close();
+  }
   j.key("smallest_sigma_t").number(r.smallest_sigma_t.empty() ? "nan" : r.smallest_sigma_t);
   j.key("constraints_each").open_object();
   for (const ConstraintReport& c : r.constraints_each) {
@@ -203,17 +214,6 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
     else j.integer(static_cast<long long>(r.rigorous->times));
     j.key("newton").number(r.rigorous->newton).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
     j.key("bits").integer(r.rigorous->bits);
-    j.close();
-  }
-  if (r.second) {
-    j.key("second_opinion").open_object();
-    j.key("integrator").string(name(r.second->integrator));
-    j.key("form").string(r.second->form);
-    j.key("difference").number(small(r.second->difference));
-    j.key("of").string(r.second->of);
-    j.key("t").number(number_text(r.second->t));
-    j.key("steps").integer(static_cast<long long>(r.second->steps));
-    j.key("evaluations").integer(static_cast<long long>(r.second->evaluations));
     j.close();
   }
   j.key("steps").integer(static_cast<long long>(r.steps));
@@ -245,10 +245,10 @@ void second_opinion(const Scenario& s, const SecondOpinion& o) {
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
   for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
-  // What another integrator computed is not projected.
-  const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints) + worst_constraint(r);
-  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s), power balance %s\n",
-               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(), small(r.power).c_str());
+  const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
+  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
+               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
+               worst_constraint(r).c_str(), small(r.power).c_str());
   if (r.error)
     std::fprintf(stderr, "digits to trust: about %d (error %s at t = %s, by %s)\n", r.error->digits, small(r.error->error).c_str(), r.error->t.c_str(),
                  r.error->means.c_str());
@@ -264,8 +264,8 @@ void report(const Scenario& s, const SimulationReport& r) {
     std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, constraints by %s, steps join within %s\n",
                  g.times == 0 ? "for all t" : ("at " + std::to_string(g.times) + " times").c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
-  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.second ? "Taylor's motion: " : "", r.steps,
-               r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
+  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.second ? "Taylor's motion: " : "",
+               r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
   if (r.second) second_opinion(s, *r.second);
   for (const Warning& w : r.warnings) std::fprintf(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
 }

@@ -209,7 +209,7 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
       if (state_[i] != unprojected[i]) carry_[i] = W(0);
     expansion_.leading(leading_);
     point_.load(t_, state_, leading_);
-    worst_constraint_ = std::max(worst_constraint_, expansion_.drift());
+    worst_constraint_ = std::max(worst_constraint_, expansion_.constraint_residual());
     worst_equation_ = std::max(worst_equation_, expansion_.equation_residual());
   } else {
     const auto solver = [this](const std::vector<W>& r, std::vector<W>& y) {
@@ -233,7 +233,7 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
     point_.state(state_);
     point_.leading(leading_);
     expansion_.adopt_values(point_);
-    worst_constraint_ = std::max(worst_constraint_, point_.drift());
+    worst_constraint_ = std::max(worst_constraint_, point_.constraint_residual());
     worst_equation_ = std::max(worst_equation_, point_.equation_residual());
   }
   if (Outcome o = expansion_.extend(); !o.ok()) return o;

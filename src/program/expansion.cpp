@@ -243,16 +243,14 @@ template <Number N>
 Outcome Expansion<N>::project(const Solver& solver) {
   const Program& p = *program_;
   const N quiet = unit_roundoff<N>() * N(kQuietRoundoffs);
-  constraint_residual_ = drift_ = N(0);
+  constraint_residual_ = N(0);
   const int deepest = *std::max_element(p.c.begin(), p.c.end());
   bool changed = false;
   for (int level = deepest; level >= 1; --level) {
     N worst(0), before(-1);
     for (int k = 0;; ++k) {
       if (changed || k > 0) sweep_known(-level);
-      const bool any = residual(level, r_, worst);
-      if (k == 0 && worst > drift_) drift_ = worst;
-      if (!any || !(worst > quiet)) break;
+      if (!residual(level, r_, worst) || !(worst > quiet)) break;
       if (!is_finite(worst))
         return {OutcomeKind::not_a_number, "a constraint has no value", "the motion leaves the region where the constraint is defined"};
       if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;
@@ -269,6 +267,16 @@ Outcome Expansion<N>::project(const Solver& solver) {
   }
   if (changed) sweep_known(0);
   return {};
+}
+
+template <Number N>
+void Expansion<N>::measure() {
+  constraint_residual_ = N(0);
+  for (int level = *std::max_element(program_->c.begin(), program_->c.end()); level >= 1; --level) {
+    N worst(0);
+    residual(level, r_, worst);
+    if (!(worst <= constraint_residual_)) constraint_residual_ = worst;  // what is not a number, too
+  }
 }
 
 template <Number N>

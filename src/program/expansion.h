@@ -35,6 +35,8 @@ class Expansion {
   // Corrects the state by least change so that all hidden constraints hold to round-off.
   Outcome project();
   Outcome project(const Solver& solver);
+  // Only looks how well they hold, after prepare().
+  void measure();
   // Newton's method for the leading derivatives.
   Outcome solve();
   Outcome solve(const Solver& solver);
@@ -64,12 +66,10 @@ class Expansion {
   Outcome extend();
 
   // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms, at the state as
-  // loaded or projected last.
+  // measured or projected last.
   const N& constraint_residual() const { return constraint_residual_; }
   // That of derivative k < c_i of equation i alone.
   const N& hidden_residual(std::size_t i, int k) const { return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)]; }
-  // The same as project() found it, before it corrected the level.
-  const N& drift() const { return drift_; }
   // Residual of the equations at the leading derivatives found, in relation to their terms.
   const N& equation_residual() const { return equation_residual_; }
   N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
@@ -113,7 +113,7 @@ class Expansion {
   Lu<N> lu_;
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_, delta_x_, r_, y_, direction_;
-  N constraint_residual_{0}, drift_{0}, equation_residual_{0};
+  N constraint_residual_{0}, equation_residual_{0};
   std::vector<N> hidden_;      // residuals of the hidden constraints, equation by equation
   std::vector<std::size_t> hidden_offset_;
 };

@@ -39,16 +39,11 @@ Outcome Motion<N>::step(const W& end) {
 }
 
 template <Number N>
-Outcome Motion<N>::at(const W& t, const std::function<Outcome(Expansion<W>&)>& change) {
+Outcome Motion<N>::at(const W& t) {
   if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
     o.message += " at t = " + number_text(to_double(t), 12);
     return o;
   }
-  if (change)
-    if (Outcome o = change(leg_->point); !o.ok()) {
-      if (o.message.find(" t = ") == std::string::npos) o.message += " at t = " + number_text(to_double(t), 12);
-      return o;
-    }
   return stages_ > 0 ? leg_->point.extend() : Outcome{};
 }
 

@@ -4,7 +4,6 @@
 // are then made again with other dependent coordinates, and the motion goes on from the same state (theory: elimination).
 #pragma once
 #include <algorithm>
-#include <functional>
 
 #include "run/saved.h"
 #include "run/scenario.h"
@@ -28,8 +27,8 @@ class Motion {
   Outcome resume(const StateChoice& choice, const SavedRun& from);
   // One step towards `end`, with another elimination where this one fails or its pivots have become small.
   Outcome step(const W& end);
-  // The solution anywhere in the last step, with the orders beyond where there are any. `change` may put another solution there.
-  Outcome at(const W& t, const std::function<Outcome(Expansion<W>&)>& change = {});
+  // The solution anywhere in the last step, with the orders beyond where there are any.
+  Outcome at(const W& t);
   const Expansion<W>& point() const { return leg_->point; }
 
   const Stepper<N>& stepper() const { return leg_->stepper; }

@@ -47,7 +47,7 @@ Outcome SecondMotion::start(const Scenario& scenario, const StateChoice& choice,
   return {};
 }
 
-Outcome SecondMotion::at(long double t, Expansion<long double>& point) {
+Outcome SecondMotion::at(long double t, const Expansion<long double>& taylor) {
   if (!start_.ok()) return start_;
   const auto begin = std::chrono::steady_clock::now();
   const Outcome there = motion_->advance(convert<double>(t));
@@ -55,25 +55,31 @@ Outcome SecondMotion::at(long double t, Expansion<long double>& point) {
   report_.steps = motion_->steps();
   report_.evaluations = motion_->evaluations();
   if (!there.ok()) return there;
-  std::vector<long double> taylor, state, leading;
-  for (std::size_t a = 0; a < model_.coordinates.size(); ++a) taylor.push_back(point.derivative(a, 0));
-  if (!translate(*program_, motion_->state(), motion_->leading(), point.program(), state, leading))
+  work_ = motion_->integrals().at(0);
+  Outcome o = put(t, taylor);
+  if (!o.ok()) o.message += " at t = " + number_text(convert<double>(t), 12);
+  return o;
+}
+
+Outcome SecondMotion::put(long double t, const Expansion<long double>& taylor) {
+  std::vector<long double> state, leading;
+  if (!translate(*program_, motion_->state(), motion_->leading(), taylor.program(), state, leading))
     return {OutcomeKind::inconsistent, "the form asks for derivatives that are no part of the second motion", "--form routh"};
-  point.load(t, state, leading);
-  if (Outcome o = point.prepare(); !o.ok()) return o;
-  // What a projection would have to correct is the drift; the state itself stays as it was integrated.
-  if (Outcome o = point.project(); !o.ok()) return o;
-  report_.drift = std::max(report_.drift, to_double(point.drift()));
-  point.load(t, state, leading);
-  point.evaluate();
-  for (std::size_t a = 0; a < taylor.size(); ++a) {
-    const double difference = to_double(abs(point.derivative(a, 0) - taylor[a]) / (1 + abs(taylor[a])));
+  point_ = taylor;  // of the form that is written, whatever its elimination is here
+  point_->load(t, state, leading);
+  if (Outcome o = point_->prepare(); !o.ok()) return o;
+  point_->measure();
+  if (Outcome o = point_->solve(); !o.ok()) return o;
+  report_.drift = std::max(report_.drift, to_double(point_->constraint_residual()));
+  for (std::size_t a = 0; a < model_.coordinates.size(); ++a) {
+    const long double x = taylor.derivative(a, 0);
+    const double difference = to_double(abs(point_->derivative(a, 0) - x) / (1 + abs(x)));
     if (!(difference > report_.difference)) continue;
     report_.difference = difference;
     report_.of = model_.coordinates[a].name;
     report_.t = convert<double>(t);
   }
-  return point.solve();
+  return taylor.stages() > 0 ? point_->extend() : Outcome{};
 }
 
 }  // namespace anholon

@@ -24,19 +24,24 @@ class SecondMotion {
   // Towards `end`; the power is integrated along.
   SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end);
 
-  // Takes Taylor's point at t and puts its own there, as integrated; notes the difference.
-  Outcome at(long double t, Expansion<long double>& point);
-  // The work done until the last point.
-  long double work() const { return motion_ ? motion_->integrals().at(0) : 0; }
+  // Its own point at t, given Taylor's: the state as integrated, not projected, and what the equations say there. Notes the
+  // difference of the two.
+  Outcome at(long double t, const Expansion<long double>& taylor);
+  const Expansion<long double>& point() const { return *point_; }
+  // The work done until that point.
+  const long double& work() const { return work_; }
   const SecondOpinion& report() const { return report_; }
 
  private:
+  Outcome put(long double t, const Expansion<long double>& taylor);
   Outcome start(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end);
 
   const Model& model_;
   std::unique_ptr<Scenario> routh_;  // where the form eliminates
   std::unique_ptr<Program> program_;
   std::unique_ptr<Sundials> motion_;
+  std::optional<Expansion<long double>> point_;
+  long double work_ = 0;
   Outcome start_;
   SecondOpinion report_;
 };

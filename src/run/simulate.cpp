@@ -37,11 +37,8 @@ class Run {
     if (o_.resume) report_.outcome = resume(*o_.resume);
     else begin();
     if (report_.outcome.ok()) {
+      ask_second();
       sink_.columns(column_names());
-      if constexpr (std::same_as<N, double>)
-        if (o_.integrator != Integrator::taylor)
-          second_ = std::make_unique<SecondMotion>(s_, o_.state, balance_power(s_, power_),
-                                                   SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, end_);
       run();
     }
     const Stepper<N>& stepper = motion_.stepper();
@@ -51,17 +48,16 @@ class Run {
     report_.smallest_sigma = to_double(stepper.smallest_sigma());
     report_.smallest_sigma_t = number_text(to_double(stepper.smallest_sigma_time()), 6);
     report_.eliminations = motion_.eliminations();
+    if (second_) {
+      report_.second = second_->report();
+      report_.constraints = report_.second->drift;
+    }
     if (defect_) report_.rigorous = defect_->report();
     const std::size_t monitors = s_.model->monitors.size();
     for (std::size_t i = 0; i < monitors; ++i) report_.monitors.push_back(watched(s_.model->monitors[i].name, watch_.tracks()[i]));
     for (std::size_t i = 0; i < o_.conserved.size(); ++i) report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
     warn();
-    if (second_) {
-      report_.second = second_->report();
-      report_.constraints = report_.second->drift;
-    } else {
-      estimate();
-    }
+    estimate();
     return report_;
   }
 
@@ -86,6 +82,34 @@ class Run {
     t0_ = motion_.stepper().time();
     schedule();
     if (motion_.at(t0_).ok()) watch_.start(motion_.point());
+  }
+
+  // Another integrator, whose motion is then the one that is written.
+  void ask_second() {
+    if constexpr (std::same_as<N, double>)
+      if (o_.integrator != Integrator::taylor)
+        second_ = std::make_unique<SecondMotion>(s_, o_.state, watched_quadratures(s_, power_)[0],
+                                                 SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, end_);
+  }
+
+  // The motion that was asked for, at t.
+  Outcome at(const W& t) {
+    Outcome o = motion_.at(t);
+    if constexpr (std::same_as<N, double>)
+      if (o.ok() && second_) o = second_->at(t, motion_.point());
+    return o;
+  }
+
+  const Expansion<W>& point() const {
+    if constexpr (std::same_as<N, double>)
+      if (second_) return second_->point();
+    return motion_.point();
+  }
+
+  const W& work() const {
+    if constexpr (std::same_as<N, double>)
+      if (second_) return second_->work();
+    return motion_.stepper().integrals()[0];
   }
 
   Outcome resume(const SavedRun& from) {
@@ -186,8 +210,7 @@ class Run {
       saved = std::chrono::steady_clock::now();
     }
     const Stepper<N>& stepper = motion_.stepper();
-    if (report_.outcome.ok() && stepper.steps() > 0 && point_at(stepper.time()).ok())
-      watch_.end(motion_.point(), second_ ? W(second_->work()) : stepper.integrals()[0], report_);
+    if (report_.outcome.ok() && stepper.steps() > 0 && at(stepper.time()).ok()) watch_.end(point(), work(), report_);
     if (o_.save) save();
     if (!report_.outcome.ok()) stopped();
   }
@@ -279,26 +302,19 @@ class Run {
     return {name, text(track.first), text(track.last), text(track.least), text(track.greatest), track.relative_change()};
   }
 
-  // The motion that was asked for, at t.
-  Outcome point_at(const W& t) {
-    if constexpr (std::same_as<N, double>)
-      if (second_) return motion_.at(t, [&](Expansion<W>& point) { return second_->at(t, point); });
-    return motion_.at(t);
-  }
-
   void row(const W& t, const std::string& label) {
-    report_.outcome = point_at(t);
+    report_.outcome = at(t);
     if (!report_.outcome.ok()) return;
-    const Expansion<W>& point = motion_.point();
-    report_.outcome = watch_.see(point, report_, !second_);
+    const Expansion<W>& here = point();
+    report_.outcome = watch_.see(here, report_);
     const std::size_t n = s_.system.coordinates;
     std::vector<std::string> values = {label.empty() ? text(t) : label};
     for (int k = 0; k <= highest(); ++k)
-      for (std::size_t a = 0; a < n; ++a) values.push_back(text(point.derivative(a, k)));
+      for (std::size_t a = 0; a < n; ++a) values.push_back(text(here.derivative(a, k)));
     for (int k = 0; k <= multiplier_orders(s_); ++k)
       for (std::size_t r = 0; r < s_.model->constraints.size(); ++r) {
         const auto j = s_.system.variable(s_.mechanics->lambda[r].id);
-        values.push_back(text(k == 0 ? watch_.multiplier(r) : j ? point.derivative(*j, k) : W(0)));
+        values.push_back(text(k == 0 ? watch_.multiplier(r) : j ? here.derivative(*j, k) : W(0)));
       }
     for (std::size_t a = 0; a < n; ++a) values.push_back(text(watch_.reaction(a)));
     for (std::size_t i = 0; i < s_.model->monitors.size(); ++i) values.push_back(text(watch_.tracks()[i].last));
@@ -311,10 +327,10 @@ class Run {
   RowSink& sink_;
   Power power_;
   Motion<N> motion_;
+  std::unique_ptr<SecondMotion> second_;  // what another integrator makes of it
   Watch<W> watch_;
   AngleWatch<W> angles_;
   std::optional<Defect> defect_;
-  std::unique_ptr<SecondMotion> second_;  // what another integrator makes of it
   std::vector<W> times_;
   std::vector<std::string> labels_;
   W t0_{0}, end_{0};

@@ -82,7 +82,7 @@ struct SimulationReport {
   std::vector<Warning> warnings;
   std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
-  std::optional<SecondOpinion> second;  // where another integrator was asked for
+  std::optional<SecondOpinion> second;  // where another integrator was asked for; steps, order and sigma are Taylor's
   std::vector<WatchedReport> monitors;   // of the model's [monitor]
   std::vector<WatchedReport> conserved;  // integrals of the motion
 };

@@ -9,7 +9,7 @@ namespace anholon {
 // The power of all forces for the energy balance. Constraints that do no work on the motion (first
 // order and homogeneous, holonomic without t) are left out: their power is zero, and its terms, which
 // are large and cancel, would only add round-off to the balance.
-Expr balance_power(const Scenario& s, const Power& p) {
+static Expr balance_power(const Scenario& s, const Power& p) {
   const Mechanics& m = *s.mechanics;
   Graph& g = m.graph();
   Expr total = p.noncons;
@@ -93,7 +93,7 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
 }
 
 template <Number W>
-Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report, bool projected) {
+Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
   outputs_.evaluate(point);
   const std::size_t n = s_.system.coordinates;
   std::vector<W> inertia(n), force(n), reaction(n);
@@ -107,7 +107,7 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report, bool 
   const NewtonResidual<W> c = certify(inertia, force, reaction, phi);
   report.newton = std::max(report.newton, to_double(c.newton));
   report.projected = std::max(report.projected, to_double(c.projected));
-  constraints(point, phi, projected, report);
+  constraints(point, phi, report);
   track();
   double missed = 0;
   const Outcome outcome = redundant_.hold(point, !(point.time() != start_), missed);
@@ -118,9 +118,9 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report, bool 
 
 // C3, and each constraint with its derivatives by itself.
 template <Number W>
-void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, bool projected, SimulationReport& report) const {
+void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const {
   const std::size_t n = s_.system.coordinates;
-  report.constraints_kept = std::max(report.constraints_kept, to_double(projected ? point.constraint_residual() : point.drift()));
+  report.constraints_kept = std::max(report.constraints_kept, to_double(point.constraint_residual()));
   const auto worse = [&](std::size_t i, int k, double residual) {
     double& worst = report.constraints_each[i].residuals[static_cast<std::size_t>(k)];
     worst = std::max(worst, residual);

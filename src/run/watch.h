@@ -12,9 +12,6 @@
 
 namespace anholon {
 
-// The power of all forces for the energy balance, without that of constraints that do no work.
-Expr balance_power(const Scenario& s, const Power& p);
-
 // What has to be integrated for it: the power of all forces first, then the masses that vary.
 std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p);
 
@@ -40,8 +37,7 @@ class Watch {
   Watch(const Scenario& scenario, const Power& power, const std::vector<Conserved>& conserved, const std::vector<W>& parameters);
 
   // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows from the others.
-  // `projected`: the constraints were held there.
-  Outcome see(const Expansion<W>& point, SimulationReport& report, bool projected = true);
+  Outcome see(const Expansion<W>& point, SimulationReport& report);
   // The monitors of the model, then the integrals.
   const std::vector<Track<W>>& tracks() const { return tracks_; }
   // What was seen, for a run that goes on.
@@ -58,7 +54,7 @@ class Watch {
  private:
   Column expressions(const Power& power, const std::vector<Conserved>& conserved);
   void track();
-  void constraints(const Expansion<W>& point, const Matrix<W>& phi, bool projected, SimulationReport& report) const;
+  void constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const;
 
   const Scenario& s_;
   std::vector<Track<W>> tracks_;
