@@ -21,6 +21,7 @@ struct Options {
   std::vector<std::string> set, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance, rigorous;
   int digits = 16;
+  int proof_digits = 308;
   int order = 0;
   int points = 6;
   unsigned long long seed = 0;

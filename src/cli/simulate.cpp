@@ -139,8 +139,8 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   if (r.rigorous) {
     j.key("rigorous").open_object();
     j.key("times");
-    if (r.rigorous->times == 0) j.string("all");
-    else j.integer(static_cast<long long>(r.rigorous->times));
+    if (r.rigorous->times) j.integer(static_cast<long long>(*r.rigorous->times));
+    else j.string("all");
     j.key("newton").number(r.rigorous->newton).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
     j.key("bits").integer(r.rigorous->bits);
     j.close();
@@ -163,7 +163,7 @@ void report(const Scenario& s, const SimulationReport& r) {
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;
     std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, constraints by %s, steps join within %s\n",
-                 g.times == 0 ? "for all t" : ("at " + std::to_string(g.times) + " times").c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
+                 (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
   std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s, %.3g s\n", r.steps, r.order,
                r.rows, small(r.smallest_sigma).c_str(), r.seconds);

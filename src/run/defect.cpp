@@ -175,8 +175,10 @@ void Defect::step(const DenseStep& step) {
   }
 }
 
-RigorousReport Defect::report() const {
-  return {times_ == 0 ? 0 : reached_, pieces_, newton_.bound_text(), constraints_.bound_text(), joints_.bound_text(), bits_};
+std::optional<RigorousReport> Defect::report() const {
+  if (pieces_ == 0) return std::nullopt;
+  const auto times = times_ == 0 ? std::nullopt : std::optional(reached_);
+  return RigorousReport{times, pieces_, newton_.bound_text(), constraints_.bound_text(), joints_.bound_text(), bits_};
 }
 
 }  // namespace anholon

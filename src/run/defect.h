@@ -39,8 +39,8 @@ DenseStep dense_step(const Stepper<N>& stepper, const Wider<N>& end) {
 }
 
 struct RigorousReport {
-  std::size_t times = 0;  // at which the bounds hold; 0: at all
-  std::size_t pieces = 0;
+  std::optional<std::size_t> times;  // that the motion reached, at which the bounds hold; nothing: at all
+  std::size_t pieces = 0;            // in which these were found
   std::string newton, constraints, joints;  // bounds, rounded upwards; "inf" where there is none
   long bits = 0;                            // of the midpoints of balls
 };
@@ -52,7 +52,8 @@ class Defect {
 
   // The steps of the motion, one after the other.
   void step(const DenseStep& step);
-  RigorousReport report() const;
+  // Nothing where the motion reached none of the times.
+  std::optional<RigorousReport> report() const;
 
  private:
   struct Bound {

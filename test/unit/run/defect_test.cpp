@@ -31,7 +31,7 @@ DenseStep step(const Rational& begin, const Rational& end, const std::vector<std
 RigorousReport defect(const Scenario& s, const std::vector<DenseStep>& steps, std::size_t times) {
   Defect d(s, times, steps.front().begin, steps.back().end, 64);
   for (const DenseStep& x : steps) d.step(x);
-  return d.report();
+  return d.report().value();
 }
 
 const char* const kOscillator =
@@ -43,7 +43,7 @@ TEST(Defect, OfATruncatedCosineIsItsFirstTermLeftOut) {
   const auto s = scenario(test::model_of(kOscillator));
   const std::vector<DenseStep> cosine = {step(0, Rational(1, 2), {{1, 0, Rational(-1, 2), 0, Rational(1, 24)}})};
   const RigorousReport all = defect(*s, cosine, 0);
-  EXPECT_EQ(all.times, 0U);
+  EXPECT_FALSE(all.times.has_value());
   EXPECT_GE(number(all.newton), 1.0 / 384);
   EXPECT_LE(number(all.newton), 1.01 / 384);
   EXPECT_EQ(all.constraints, "0");
@@ -61,6 +61,16 @@ TEST(Defect, OfATruncatedCosineIsItsFirstTermLeftOut) {
   const RigorousReport backwards = defect(*s, {step(Rational(0), Rational(-1, 2), {{1, 0, Rational(-1, 2), 0, Rational(1, 24)}})}, 0);
   EXPECT_GE(number(backwards.newton), 1.0 / 384);
   EXPECT_LE(number(backwards.newton), 1.01 / 384);
+}
+
+TEST(Defect, CountsTheTimesThatTheMotionReached) {
+  const auto s = scenario(test::model_of(kOscillator));
+  Defect d(*s, 10, Ball(0), Ball(4), 64);
+  EXPECT_FALSE(d.report().has_value());
+  d.step(step(0, Rational(1, 8), {{1}}));
+  EXPECT_FALSE(d.report().has_value()) << "the first time is 1/5";
+  d.step(step(Rational(1, 8), 1, {{1}}));
+  EXPECT_EQ(d.report()->times, 3U) << "1/5, 3/5, 1";
 }
 
 TEST(Defect, SeesWhereStepsDoNotJoin) {
