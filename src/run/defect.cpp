@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/assert.h"
+
 namespace anholon {
 
 namespace {
@@ -156,6 +158,7 @@ void Defect::keep(const Bound& b) {
 }
 
 void Defect::step(const DenseStep& step) {
+  for (std::size_t j = 0; j < step.coefficients.size(); ++j) ANHOLON_ASSERT(step.coefficients[j].size() >= static_cast<std::size_t>(s_.structure.d[j]));
   const BallScope precision(bits_);
   // Where the last step ended and this one begins, the state as far as it belongs to the unknowns.
   const Series ends = shifted(step.coefficients, step.end - step.begin);

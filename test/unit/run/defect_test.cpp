@@ -63,13 +63,23 @@ TEST(Defect, OfATruncatedCosineIsItsFirstTermLeftOut) {
   EXPECT_LE(number(backwards.newton), 1.01 / 384);
 }
 
+// x = 0 under the force 1 - cos(40 t): at the middle of the step the residual vanishes to second order, between it is as large as the
+// force. Without the remainder nothing would be seen.
+TEST(Defect, IsNotOnlyThatOfTheMiddle) {
+  const auto s = scenario(test::model_of(test::replaced(kOscillator, "-x*ex", "(1 - cos(40*t))*ex")));
+  const RigorousReport r = defect(*s, {step(Rational(-1, 4), Rational(1, 4), {{0, 0}})}, 0);
+  EXPECT_GE(number(r.newton), 1);
+  EXPECT_LE(number(r.newton), 1.5);
+  EXPECT_GT(r.pieces, 4U);
+}
+
 TEST(Defect, CountsTheTimesThatTheMotionReached) {
   const auto s = scenario(test::model_of(kOscillator));
   Defect d(*s, 10, Ball(0), Ball(4), 64);
   EXPECT_FALSE(d.report().has_value());
-  d.step(step(0, Rational(1, 8), {{1}}));
+  d.step(step(0, Rational(1, 8), {{1, 0}}));
   EXPECT_FALSE(d.report().has_value()) << "the first time is 1/5";
-  d.step(step(Rational(1, 8), 1, {{1}}));
+  d.step(step(Rational(1, 8), 1, {{1, 0}}));
   EXPECT_EQ(d.report()->times, 3U) << "1/5, 3/5, 1";
 }
 
@@ -86,7 +96,7 @@ TEST(Defect, SeesHiddenConstraints) {
   const auto s = scenario(test::model_of(
       "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", \"0\"]\n"
       "[[constraint]]\nname = \"ring\"\nequation = \"x^2 + y^2 = 1\"\n[initial]\nx = 0\ny = 1\n\"x'\" = 1\n"));
-  const RigorousReport r = defect(*s, {step(0, Rational(1, 8), {{0, 1}, {1}, {0}})}, 0);
+  const RigorousReport r = defect(*s, {step(0, Rational(1, 8), {{0, 1}, {1, 0}, {0}})}, 0);
   EXPECT_GE(number(r.constraints), 1);
   EXPECT_LE(number(r.constraints), 2.01);
   EXPECT_LE(number(r.newton), 0) << "no force acts, and none is needed on a straight line";
