@@ -28,6 +28,9 @@ Ball rising(std::size_t order, std::size_t k) {
   return f;
 }
 
+// Bounds, not values: balls of remainders hold 0.
+bool reaches_beyond(const Ball& a, const Ball& b) { return a.symmetric().contains_inside(b.symmetric()); }
+
 }  // namespace
 
 Defect::Defect(const Scenario& s, std::size_t times, const Ball& begin, const Ball& end, long significand)
@@ -134,11 +137,11 @@ Defect::Bound Defect::over(const Series& centered, const Ball& center, const Bal
     Ball scale = newton;
     if (p.root >= n) scale = max(Ball(1), machine_->terms(p.root, p.derivative) * rising(0, p.derivative));
     const Ball taylor = p.polynomial + p.remainder;
-    const bool counts = (p.remainder - p.polynomial).is_positive() && (p.remainder / scale - quiet_).is_positive();
+    const bool counts = reaches_beyond(p.remainder, p.polynomial) && reaches_beyond(p.remainder / scale, quiet_);
     if (!taylor.is_finite() || counts) b.sharp = false;
-    // Beside a kink there is no Taylor polynomial, but still a value.
+    // The values on the interval are a bound as well; beside a kink there is no other.
     Ball& worst = p.root < n ? b.newton : b.constraints;
-    worst = max(worst, (taylor.is_finite() ? taylor : p.value) / scale);
+    worst = max(worst, (taylor.is_finite() && !reaches_beyond(taylor, p.value) ? taylor : p.value) / scale);
   }
   return b;
 }
