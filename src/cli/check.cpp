@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "base/json.h"
+#include "cli/conserved.h"
 #include "cli/input.h"
 #include "cli/show.h"
 
@@ -120,6 +121,7 @@ void text(const Scenario& s, const Outcome& outcome) {
                 s.structure.configuration_dimension, s.structure.state_dimension);
     std::printf("%s\n", print(s.system, s.structure).c_str());
     state_table(s);
+    print_conserved(*s.mechanics);
   }
   for (const std::string& n : s.notes) std::printf("note: %s\n", n.c_str());
 }
@@ -177,6 +179,7 @@ void json(const Scenario& s, const Outcome& outcome) {
     for (const Entry& e : higher_state(s)) j.key(e.name).open_object().key("value").number(number_text(e.value)).key("origin").string(name(e.origin)).close();
     j.close();
   }
+  if (outcome.ok()) write_conserved(j, *s.mechanics);
   strings("notes", s.notes);
   j.key("outcome").string(name(outcome.kind));
   if (!outcome.ok()) j.key("message").string(outcome.message).key("hint").string(outcome.hint);

@@ -20,6 +20,8 @@ struct Options {
   std::string integrator = "taylor";
   std::vector<std::string> set, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance, rigorous;
+  std::string save, resume;
+  std::string error_estimate = "short";
   int digits = 16;
   int proof_digits = 308;
   int order = 0;

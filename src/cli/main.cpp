@@ -122,6 +122,10 @@ int run(int argc, char** argv) {
   simulate_command->add_option("--rigorous", o.rigorous, "bound the residuals of the dense output by ball arithmetic: at so many times, or all")->type_name("N");
   simulate_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
   simulate_command->add_option("--integrator", o.integrator, "taylor")->type_name("NAME");
+  simulate_command->add_option("--save", o.save, "FILE that holds the run's state at the end, after Ctrl-C, and every few seconds")->type_name("FILE");
+  simulate_command->add_option("--continue", o.resume, "FILE that --save wrote: the run goes on with the same bits, rows after its last")->type_name("FILE");
+  simulate_command->add_option("--error-estimate", o.error_estimate, "digits to trust, by a second, sharper run: always, never, or of runs up to 5000 steps (short, the default)")
+      ->type_name("WHEN")->check(CLI::IsMember({"always", "never", "short"}));
   simulate_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
 
   CLI::App* forms_command = model_command("forms", "the catalogue of forms, and which apply to a model", cli::forms,

@@ -9,7 +9,9 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/saved.h"
 #include "cli/show.h"
+#include "result/file.h"
 #include "run/simulate.h"
 
 namespace anholon::cli {
@@ -52,7 +54,7 @@ class Progress {
 // More rows than this are refused before they fill memory or disk.
 constexpr long kMostRows = 20'000'000;
 
-void times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
+Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
   const Model& model = *scenario.model;
   const SimulationSettings& file = model.simulate;
   s.to = o.to.empty() ? file.to : std::optional<Rational>(exact(o.to, "--to"));
@@ -81,6 +83,7 @@ void times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
   if (end < start) std::fprintf(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
   if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
+  return end;
 }
 
 void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
@@ -115,6 +118,17 @@ std::optional<std::size_t> rigorous(const std::string& text) {
 
 std::string small(double x) { return number_text(x, 3); }
 
+void write_watched(JsonWriter& j, const char* key, const std::vector<WatchedReport>& list) {
+  if (list.empty()) return;
+  j.key(key).open_object();
+  for (const WatchedReport& w : list) {
+    j.key(w.name).open_object();
+    for (const auto& [name, value] : {std::pair{"first", &w.first}, {"last", &w.last}, {"min", &w.least}, {"max", &w.greatest}}) j.key(name).number(*value);
+    j.key("largest_change").number(small(w.largest_change)).close();
+  }
+  j.close();
+}
+
 void write_json(const Scenario& s, const MemorySink& rows, const SimulationReport& r, std::FILE* file) {
   JsonWriter j;
   j.open_object();
@@ -145,6 +159,27 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
     j.key("bits").integer(r.rigorous->bits);
     j.close();
   }
+  j.key("smallest_sigma_t").number(r.smallest_sigma_t.empty() ? "nan" : r.smallest_sigma_t);
+  j.key("constraints_each").open_object();
+  for (const ConstraintReport& c : r.constraints_each) {
+    j.key(c.name).open_array();
+    for (double x : c.residuals) j.number(small(x));
+    j.close();
+  }
+  j.close();
+  if (r.error) {
+    j.key("error_estimate").open_object().key("digits").integer(r.error->digits).key("largest").number(small(r.error->error));
+    j.key("t").number(r.error->t).key("means").string(r.error->means).close();
+  } else if (!r.no_error.empty()) {
+    j.key("error_estimate").open_object().key("digits").null().key("reason").string(r.no_error).close();
+  }
+  write_watched(j, "conserved", r.conserved);
+  write_watched(j, "monitors", r.monitors);
+  if (!r.warnings.empty()) {
+    j.key("warnings").open_array();
+    for (const Warning& w : r.warnings) j.open_object().key("message").string(w.message).key("hint").string(w.hint).close();
+    j.close();
+  }
   j.key("steps").integer(static_cast<long long>(r.steps));
   j.key("order").integer(r.order);
   if (s.system.form->eliminates()) j.key("eliminations").integer(static_cast<long long>(r.eliminations));
@@ -155,32 +190,81 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   std::fputs((j.text() + "\n").c_str(), file);
 }
 
+// "blade'" for the first derivative of the constraint that holds worst.
+std::string worst_constraint(const SimulationReport& r) {
+  std::string name;
+  double worst = 0;
+  for (const ConstraintReport& c : r.constraints_each)
+    for (std::size_t k = 0; k < c.residuals.size(); ++k)
+      if (c.residuals[k] > worst) worst = c.residuals[k], name = derivative_name(c.name, static_cast<unsigned>(k), Format::text);
+  return name.empty() ? "" : ", worst '" + name + "'";
+}
+
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
   for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
-  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (before projection %s), power balance %s\n",
-               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), small(r.constraints).c_str(), small(r.power).c_str());
+  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (before projection %s%s), power balance %s\n",
+               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), small(r.constraints).c_str(),
+               worst_constraint(r).c_str(), small(r.power).c_str());
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;
     std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, constraints by %s, steps join within %s\n",
                  (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
-  std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s, %.3g s\n", r.steps, r.order,
-               r.rows, small(r.smallest_sigma).c_str(), r.seconds);
+  if (r.error)
+    std::fprintf(stderr, "digits to trust: about %d (error %s at t = %s, by %s)\n", r.error->digits, small(r.error->error).c_str(), r.error->t.c_str(),
+                 r.error->means.c_str());
+  else if (!r.no_error.empty())
+    std::fprintf(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
+  for (const WatchedReport& w : r.conserved)
+    std::fprintf(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(), small(w.largest_change).c_str());
+  for (const WatchedReport& w : r.monitors)
+    std::fprintf(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(), w.first.c_str(),
+                 w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
+  std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.steps, r.order, r.rows,
+               small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.seconds);
+  for (const Warning& w : r.warnings) std::fprintf(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
 }
 
 bool ends_with(const std::string& s, const std::string& end) {
   return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
 }
 
-}  // namespace
+// Writes the runs that --save asks for; the first failure ends it and is kept.
+class Saver {
+ public:
+  Saver(const Options& o, const Reader& in, const Formulation& form, const SimulationOptions& options) : o_(o), in_(in), form_(form), options_(options) {}
+  void operator()(SavedRun run) {
+    if (!error.empty()) return;
+    describe_run(run, o_, in_, form_, options_);
+    error = write_whole(o_.save, print(run));
+  }
+  std::string error;
 
-int simulate(const Options& o) {
+ private:
+  const Options& o_;
+  const Reader& in_;
+  const Formulation& form_;
+  const SimulationOptions& options_;
+};
+
+SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSink& rows) {
+  try {
+    return anholon::simulate(s, options, rows);
+  } catch (const Failure& e) {
+    throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
+  }
+}
+
+int simulate_motion(const Options& o, const SavedRun* resume) {
   if (o.integrator != "taylor")
     throw UsageError{"error: the integrator '" + o.integrator + "' is not read yet\nhint: --integrator taylor\n"};
   if (ends_with(o.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
   const Reader in = read(o);
+  if (resume) same_model(*resume, in);
   SimulationOptions options;
+  options.resume = resume;
+  options.estimate = o.error_estimate == "always" ? ErrorEstimate::always : o.error_estimate == "never" ? ErrorEstimate::never : ErrorEstimate::short_runs;
   options.state = state_choice(o, *in.model);
   options.order = o.order;
   Scenario s;
@@ -191,9 +275,12 @@ int simulate(const Options& o) {
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
-  times(o, s, options);
+  const Rational last = times(o, s, options);
+  if (resume) beyond(*resume, o, last);
   options.rigorous = rigorous(o.rigorous);
   accuracy(o, *in.model, options);
+  options.conserved = conserved(*s.mechanics);
+  Saver saver(o, in, *s.system.form, options);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   options.cancelled = [] { return stop_requested != 0; };
@@ -209,7 +296,8 @@ int simulate(const Options& o) {
       MemorySink rows;
       std::FILE* file = o.output.empty() || o.output == "-" ? stdout : std::fopen(o.output.c_str(), "w");
       if (!file) throw UsageError{"error: cannot write " + o.output + ": " + std::strerror(errno) + "\n"};
-      if (start.ok()) r = anholon::simulate(s, options, rows);
+      if (!o.save.empty()) options.save = std::ref(saver);
+      if (start.ok()) r = run(s, options, rows);
       else r.outcome = start, r.t = number_text(s.state.t);
       write_json(s, rows, r, file);
       if (std::fflush(file) != 0 || std::ferror(file)) write_error = "cannot write " + (o.output.empty() ? "the output" : o.output) + ": " + std::strerror(errno);
@@ -221,7 +309,12 @@ int simulate(const Options& o) {
       }
       CsvSink rows(o.output);
       if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
-      r = anholon::simulate(s, options, rows);
+      if (!o.save.empty())
+        options.save = [&](const SavedRun& run) {
+          rows.flush();
+          saver(run);
+        };
+      r = run(s, options, rows);
       write_error = rows.close();
     }
   }
@@ -230,11 +323,21 @@ int simulate(const Options& o) {
     print_outcome(r.outcome);
     if (r.rows > 0 && !o.output.empty()) std::fprintf(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
   }
+  if (write_error.empty()) write_error = saver.error;
   if (!write_error.empty()) {
     std::fprintf(stderr, "error: %s\n", write_error.c_str());
     return kBadInput;
   }
   return r.outcome.ok() ? kOk : kStopped;
+}
+
+}  // namespace
+
+int simulate(const Options& o) {
+  if (o.resume.empty()) return simulate_motion(o, nullptr);
+  Options all = o;
+  const SavedRun run = continued(all);
+  return simulate_motion(all, &run);
 }
 
 }  // namespace anholon::cli

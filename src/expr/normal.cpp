@@ -324,9 +324,11 @@ bool proved_zero(Expr e) {
   }
 }
 
-std::optional<Expr> expanded(Expr e) {
+std::optional<Expr> expanded(Expr e) { return expanded(e, kMostWork); }
+
+std::optional<Expr> expanded(Expr e, long most_work) {
   try {
-    return Normalizer(e, false).expand();
+    return Normalizer(e, false, {}, most_work).expand();
   } catch (const TooLarge&) {
     return std::nullopt;
   }

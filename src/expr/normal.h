@@ -15,8 +15,10 @@ namespace anholon {
 bool proved_zero(Expr e);
 
 // The same expression written out as a reduced sum of monomials (over a denominator, where it has
-// one); nothing if that leads beyond the term limit. Equal to e wherever e is defined.
+// one); nothing if that leads beyond the term limit, or takes more than `most_work` products of terms. Equal to e wherever e
+// is defined.
 std::optional<Expr> expanded(Expr e);
+std::optional<Expr> expanded(Expr e, long most_work);
 
 // A sum of monomials c g1^e1 g2^e2 … in generators (symbols, functions, roots).
 struct Monomial {

@@ -19,6 +19,24 @@ void add_compensated(N& s, N& carry, const N& x) {
   s = sum;
 }
 
+// A diagonal similarity by powers of 2 that brings rows and columns to like sizes (Osborne 1960): the norm of a matrix in badly
+// scaled unknowns says nothing about its spectral radius.
+template <Number N>
+void balance(Matrix<N>& a) {
+  constexpr int kSweeps = 4;
+  const std::size_t n = a.rows;
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (std::size_t i = 0; i < n; ++i) {
+      double row = 0, column = 0;
+      for (std::size_t j = 0; j < n; ++j)
+        if (j != i) row += std::abs(to_double(a(i, j))), column += std::abs(to_double(a(j, i)));
+      if (!(row > 0) || !(column > 0) || !std::isfinite(row) || !std::isfinite(column)) continue;
+      const N factor(std::exp2(std::round(0.5 * std::log2(row / column))));
+      for (std::size_t j = 0; j < n; ++j) a(j, i) = a(j, i) * factor;
+      for (std::size_t j = 0; j < n; ++j) a(i, j) = a(i, j) / factor;
+    }
+}
+
 }  // namespace
 
 int taylor_order(double log_tolerance) {
@@ -41,6 +59,7 @@ Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::ve
   integrals_.assign(program_->quadratures, W(0));
   integral_carry_ = integrals_;
   steps_ = 0;
+  smallest_sigma_t_ = t;
   leading_ = leading;
   return expand(leading_);
 }
@@ -56,8 +75,42 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
   steps_ = other.steps_;
   worst_constraint_ = other.worst_constraint_;
   worst_equation_ = other.worst_equation_;
+  first_sigma_ = other.first_sigma_;
   smallest_sigma_ = other.smallest_sigma_;
+  smallest_sigma_t_ = other.smallest_sigma_t_;
+  weakest_ = other.weakest_;
   return expand(leading_);
+}
+
+template <Number N>
+Outcome Stepper<N>::resume(const StepperState<N>& b) {
+  t_ = before_ = b.t;
+  state_ = b.state;
+  carry_ = b.carry;
+  leading_ = b.leading;
+  integrals_ = b.integrals;
+  integral_carry_ = b.integral_carry;
+  branch_step_ = b.branch_step;
+  steps_ = b.steps;
+  worst_constraint_ = b.worst_constraint;
+  worst_equation_ = b.worst_equation;
+  first_sigma_ = b.first_sigma;
+  smallest_sigma_ = b.smallest_sigma;
+  smallest_sigma_t_ = b.smallest_sigma_t;
+  weakest_ = b.weakest;
+  expansion_.set_weakest_direction(b.direction);
+  return expand(leading_);
+}
+
+template <Number N>
+void Stepper<N>::note_sigma(const N& sigma) {
+  if (first_sigma_ == N(0)) first_sigma_ = sigma;
+  if (!(sigma < smallest_sigma_)) return;
+  smallest_sigma_ = sigma;
+  smallest_sigma_t_ = t_;
+  const std::vector<N>& v = expansion_.weakest_direction();
+  for (std::size_t j = weakest_ = 0; j < v.size(); ++j)
+    if (abs(v[j]) > abs(v[weakest_])) weakest_ = j;
 }
 
 template <Number To, Number From>
@@ -68,11 +121,14 @@ static void convert_all(const std::vector<From>& from, std::vector<To>& to) {
 
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
+  begun_ = {t_, state_, carry_, guess, integrals_, integral_carry_, branch_step_, steps_, worst_constraint_, worst_equation_,
+            first_sigma_, smallest_sigma_, smallest_sigma_t_, weakest_, expansion_.weakest_direction()};
+  ++expansions_;
   convert_all(state_, narrow_state_);
   convert_all(guess, narrow_leading_);
   expansion_.load(convert<N>(t_), narrow_state_, narrow_leading_);
   if (Outcome o = expansion_.prepare(); !o.ok()) return o;
-  if (N sigma = expansion_.smallest_singular_value(); sigma < smallest_sigma_) smallest_sigma_ = sigma;
+  note_sigma(expansion_.smallest_singular_value());
   point_.load(t_, state_, guess);
   if constexpr (std::same_as<N, W>) {
     if (Outcome o = expansion_.project(); !o.ok()) return o;
@@ -181,7 +237,7 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
 
 // Where leading derivatives enter nonlinearly, solutions of the equations may meet where J is singular, and the Taylor polynomial
 // would go straight on from one to another. With A = J0^-1 (J - J0) of spectral radius below 1, J is regular: so a step ends
-// where the radius, estimated by the norm of A^8, reaches 1/2, and steps shrink towards a singular point (theory: taylor).
+// where the radius, estimated by the norm of the balanced A^8, reaches 1/2, and steps shrink towards a singular point (theory: taylor).
 template <Number N>
 bool Stepper<N>::near_in_branch(const W& h) {
   constexpr double kNear = 0.5;
@@ -201,6 +257,7 @@ bool Stepper<N>::near_in_branch(const W& h) {
     expansion_.lu().solve_once(column, y);
     for (std::size_t i = 0; i < n; ++i) a(i, j) = y[i];
   }
+  balance(a);
   for (int doubling = 0; doubling < 3; ++doubling) {
     Matrix<N> square(n, n);
     for (std::size_t i = 0; i < n; ++i)

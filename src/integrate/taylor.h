@@ -18,6 +18,21 @@ struct StepSettings {
 // ceil(-ln(tolerance)/2 + 1): the order that makes the least work for the tolerance.
 int taylor_order(double log_tolerance);
 
+// All that a stepper carries where an expansion is made: from here the same steps follow, bit by bit.
+template <Number N>
+struct StepperState {
+  using W = Wider<N>;
+  W t{0};
+  std::vector<W> state, carry, leading, integrals, integral_carry;
+  W branch_step{0};
+  std::size_t steps = 0;
+  W worst_constraint{0}, worst_equation{0};
+  N first_sigma{0}, smallest_sigma{1};
+  W smallest_sigma_t{0};
+  std::size_t weakest = 0;
+  std::vector<N> direction;  // of the iteration for sigma
+};
+
 // Taylor coefficients are computed in N; the state, the projection on the constraints and the
 // leading derivatives in the wider type W, with the LU of N (mixed-precision refinement). A state
 // rounded to N at every step would be projected on the constraints of another point, which is what
@@ -34,6 +49,11 @@ class Stepper {
   Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
   // Goes on where another stepper for the same unknowns is, with its sums and counts.
   Outcome take_over(const Stepper& other);
+  // Where the present expansion was made: the start of the last step, or of the next one if that is expanded already. A step
+  // cut short by its end is thus repeated in full by whoever resumes.
+  const StepperState<N>& begun() const { return begun_; }
+  std::size_t expansions() const { return expansions_; }  // made so far
+  Outcome resume(const StepperState<N>& begun);
   // One step towards `end`, at most up to it.
   Outcome step(const W& end);
 
@@ -59,10 +79,15 @@ class Stepper {
   const std::vector<W>& integrals() const { return integrals_; }
   const W& worst_constraint() const { return worst_constraint_; }
   const W& worst_equation() const { return worst_equation_; }
+  // Of the scaled system Jacobian: the smallest so far, when it was met, the unknown that J determined least there; the first one.
   const N& smallest_sigma() const { return smallest_sigma_; }
+  const W& smallest_sigma_time() const { return smallest_sigma_t_; }
+  std::size_t weakest_unknown() const { return weakest_; }
+  const N& first_sigma() const { return first_sigma_; }
 
  private:
   Outcome expand(const std::vector<W>& guess);
+  void note_sigma(const N& sigma);
   N step_size() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
@@ -82,7 +107,11 @@ class Stepper {
   std::size_t steps_ = 0;
   bool expanded_ = false;  // at t_
   W worst_constraint_{0}, worst_equation_{0};
-  N smallest_sigma_{1};
+  N first_sigma_{0}, smallest_sigma_{1};
+  W smallest_sigma_t_{0};
+  std::size_t weakest_ = 0;
+  StepperState<N> begun_;
+  std::size_t expansions_ = 0;
 };
 
 extern template class Stepper<double>;

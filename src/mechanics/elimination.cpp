@@ -13,6 +13,8 @@ namespace {
 
 // An expression of more nodes than this is not rewritten; less in large matrices, which nobody reads.
 constexpr std::size_t kShortEnough = 200, kShortInLarge = 40, kLarge = 5;
+// What becomes short on the way is short without more products of terms than this.
+constexpr long kShortWork = 20'000;
 // A pivot is at least this part of the largest candidate.
 constexpr double kPivot = 1e-3;
 
@@ -22,7 +24,7 @@ std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
 Expr shorter(Expr e, std::size_t longest = kShortEnough) {
   const std::size_t size = nodes(e);
   if (size <= 3 || size > longest) return e;
-  const std::optional<Expr> full = expanded(e);
+  const std::optional<Expr> full = expanded(e, kShortWork);
   return full && nodes(*full) < size ? *full : e;
 }
 

@@ -104,6 +104,13 @@ struct QuasiVelocity {
   Span span;
 };
 
+// A number to be watched along the motion.
+struct Monitor {
+  std::string name;
+  Expr value;
+  Span span;
+};
+
 struct GivenValue {
   Expr symbol;  // q_a^(k) or lambda_r^(k)
   Expr value;   // exact
@@ -152,6 +159,7 @@ struct Model {
   std::vector<QuasiVelocity> quasi;
   std::vector<std::size_t> dependent;  // coordinates that the user wants eliminated
   InitialData initial;
+  std::vector<Monitor> monitors;
   SimulationSettings simulate;
   SymbolNames names;
   std::vector<std::string> notes;  // what the reader did on its own: components dropped, …

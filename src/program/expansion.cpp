@@ -28,6 +28,10 @@ Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters
   for (int d : program.d) offset_.push_back(offset_.back() + static_cast<std::size_t>(d));
   factorial_.push_back(N(1));
   for (std::size_t k = 1; k < stride_ + 2; ++k) factorial_.push_back(factorial_.back() * N(static_cast<int>(k)));
+  for (int c : program.c) {
+    hidden_offset_.push_back(hidden_.size());
+    hidden_.resize(hidden_.size() + static_cast<std::size_t>(c), N(0));
+  }
   const std::size_t n = program.unknowns();
   tangent_ = Matrix<N>(program.tangent_rows, n);
   j_ = Matrix<N>(n, n);
@@ -185,6 +189,8 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
     const int order = p.c[i] - level;
     r[i] = N(0);
     if (order < 0) continue;
+    N* hidden = level > 0 ? &hidden_[hidden_offset_[i] + static_cast<std::size_t>(order)] : nullptr;
+    if (hidden) *hidden = N(0);
     const N value = machine_.series(p.tape.roots[i])[order];
     if (!is_finite(value)) {
       worst = value;
@@ -201,6 +207,7 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
     if (moved > scale) scale = moved;
     if (!(scale > N(0))) scale = size;
     const N relative = size / scale;
+    if (hidden) *hidden = relative;
     if (relative > worst) worst = relative;
   }
   return any;

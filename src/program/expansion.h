@@ -66,9 +66,14 @@ class Expansion {
   // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms, at the state as
   // loaded or projected last.
   const N& constraint_residual() const { return constraint_residual_; }
+  // That of derivative k < c_i of equation i alone.
+  const N& hidden_residual(std::size_t i, int k) const { return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)]; }
   // Residual of the equations at the leading derivatives found, in relation to their terms.
   const N& equation_residual() const { return equation_residual_; }
   N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
+  // The unknowns' change that J shows least; its iteration goes on from here.
+  const std::vector<N>& weakest_direction() const { return direction_; }
+  void set_weakest_direction(const std::vector<N>& direction) { direction_ = direction; }
 
   const N& time() const { return t_; }
   // x_j^(k) at the point (k <= d_j), or its Taylor coefficient of order k.
@@ -102,6 +107,8 @@ class Expansion {
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_, delta_x_, r_, y_, direction_;
   N constraint_residual_{0}, equation_residual_{0};
+  std::vector<N> hidden_;      // residuals of the hidden constraints, equation by equation
+  std::vector<std::size_t> hidden_offset_;
 };
 
 extern template class Expansion<double>;

@@ -24,6 +24,11 @@ void CsvSink::row(const std::vector<std::string>& values) {
     error_ = "cannot write " + (path_.empty() ? std::string("the output") : path_) + ": " + std::strerror(errno);
 }
 
+void CsvSink::flush() {
+  if (file_ && std::fflush(file_) != 0 && error_.empty())
+    error_ = "cannot write " + (path_.empty() ? std::string("the output") : path_) + ": " + std::strerror(errno);
+}
+
 std::string CsvSink::close() {
   if (!file_) return error_;
   const bool failed = std::fflush(file_) != 0;

@@ -24,6 +24,8 @@ class CsvSink final : public RowSink {
   CsvSink& operator=(const CsvSink&) = delete;
   void columns(const std::vector<std::string>& names) override { row(names); }
   void row(const std::vector<std::string>& values) override;
+  // The rows so far are in the file, whatever happens to the program.
+  void flush();
   // Empty, or why the file could not be written.
   std::string close();
   const std::string& error() const { return error_; }

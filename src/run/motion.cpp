@@ -28,7 +28,10 @@ static bool can_go_on(OutcomeKind kind) {
 template <Number N>
 Outcome Motion<N>::step(const W& end) {
   if (stepped_ && pivot_is_small()) eliminate_again();
+  const Mark before{choices_.size(), chosen_};
+  const std::size_t expansions = leg_->stepper.expansions();
   Outcome o = leg_->stepper.step(end);
+  if (leg_->stepper.expansions() != expansions) mark_ = before;
   // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
   if (!o.ok() && pivots_ && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
   stepped_ = true;
@@ -68,20 +71,28 @@ bool Motion<N>::pivot_is_small() {
   return small;
 }
 
-// Another choice of dependent coordinates at the point where the last step began; false if it is the same and its pivots too.
+// The point where the last step began.
 template <Number N>
-bool Motion<N>::eliminate_again() {
+InitialState<double> Motion<N>::here() const {
   InitialState<double> here;
   const Expansion<W>& point = leg_->stepper.point();
   here.t = to_double(point.time());
-  const auto level = [&](int k) {
+  const auto level = [&](std::size_t k) {
     std::vector<double> values;
-    for (std::size_t a = 0; a < s_.system.coordinates; ++a) values.push_back(k <= leg_->program.d[a] ? to_double(point.derivative(a, k)) : 0.0);
+    for (std::size_t a = 0; a < s_.system.coordinates; ++a)
+      values.push_back(static_cast<int>(k) <= leg_->program.d[a] ? to_double(point.derivative(a, static_cast<int>(k))) : 0.0);
     return values;
   };
   here.q = level(0);
   here.qd = level(1);
-  for (int k = 2; s_.routh && k <= largest_order(s_, leg_->program.d); ++k) here.higher.push_back({level(k), {}});
+  for (std::size_t k = 2; k < levels(); ++k) here.higher.push_back({level(k), {}});
+  return here;
+}
+
+// The equations with the dependent coordinates that are best at a point; null if they and their pivots are the present ones, or
+// the equations cannot be made.
+template <Number N>
+std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialState<double>& here) {
   const Model& model = *s_.model;
   try {
     const auto at = std::make_shared<PointValues>(values_near(model, parameter_values<double>(model), here));
@@ -92,19 +103,109 @@ bool Motion<N>::eliminate_again() {
     hints.t = here.t;
     hints.derivatives = {here.q, here.qd};
     for (const Level<double>& k : here.higher) hints.derivatives.push_back(k.value);
-    if (!analyse(system, parameter_values<double>(model), hints, structure).ok() || structure.d != leg_->structure.d) return false;
+    if (!analyse(system, parameter_values<double>(model), hints, structure).ok() || structure.d != leg_->structure.d) return nullptr;
     drop_absent(system, structure);
     const bool same = e.dependent == elimination_.dependent && e.pivots() == elimination_.pivots();
     watch_pivots(e);
-    if (same) return false;
-    auto next = std::make_unique<Leg>(*this, std::move(system), std::move(structure));
-    if (!next->stepper.take_over(leg_->stepper).ok()) return false;
-    leg_ = std::move(next);
-    ++eliminations_;
-    return true;
+    return same ? nullptr : std::make_unique<Leg>(*this, std::move(system), std::move(structure));
   } catch (const Failure&) {
-    return false;  // the present elimination goes on as far as it can
+    return nullptr;  // the present elimination goes on as far as it can
   }
+}
+
+// Another choice of dependent coordinates where the last step began; false if there is none better.
+template <Number N>
+bool Motion<N>::eliminate_again() {
+  choices_.push_back({here(), false});
+  auto next = eliminate_at(choices_.back().here);
+  if (!next || !next->stepper.take_over(leg_->stepper).ok()) return false;
+  leg_ = std::move(next);
+  choices_.back().taken = true;
+  mark_ = {choices_.size(), {}};
+  ++eliminations_;
+  return true;
+}
+
+template <Number N>
+void Motion<N>::save(SavedRun& to) const {
+  const StepperState<N>& b = leg_->stepper.begun();
+  to.set_numbers<W>("t", {b.t});
+  to.set_numbers("state", b.state);
+  to.set_numbers("carry", b.carry);
+  to.set_numbers("leading", b.leading);
+  to.set_numbers("integrals", b.integrals);
+  to.set_numbers("integral_carry", b.integral_carry);
+  to.set_numbers<W>("stepper", {b.branch_step, b.worst_constraint, b.worst_equation, b.smallest_sigma_t});
+  to.set_numbers<N>("sigma", {b.first_sigma, b.smallest_sigma});
+  to.set_numbers("direction", b.direction);
+  to.set("counts", {std::to_string(b.steps), std::to_string(b.weakest)});
+  std::vector<double> choices;
+  for (std::size_t i = 0; i < mark_.choices; ++i) {
+    const Choice& c = choices_[i];
+    choices.push_back(c.taken ? 1 : 0);
+    choices.push_back(c.here.t);
+    choices.insert(choices.end(), c.here.q.begin(), c.here.q.end());
+    choices.insert(choices.end(), c.here.qd.begin(), c.here.qd.end());
+    for (const Level<double>& k : c.here.higher) choices.insert(choices.end(), k.value.begin(), k.value.end());
+  }
+  to.set_numbers("eliminations", choices);
+  to.set_numbers("pivots", mark_.chosen);
+}
+
+template <Number N>
+Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
+  // As at the start, for what it leaves in the graph.
+  Start<W> start;
+  if (Outcome o = initial_state(s_, choice, start); !o.ok()) return o;
+  const std::size_t n = s_.system.coordinates, length = 2 + n * levels();
+  const std::vector<double> choices = from.numbers<double>("eliminations");
+  if (choices.size() % length != 0) SavedRun::unfit("eliminations");
+  for (auto at = choices.begin(); at != choices.end();) {
+    Choice c;
+    c.taken = *at++ != 0;
+    c.here.t = *at++;
+    const auto level = [&] {
+      std::vector<double> values(at, at + static_cast<std::ptrdiff_t>(n));
+      at += static_cast<std::ptrdiff_t>(n);
+      return values;
+    };
+    c.here.q = level();
+    c.here.qd = level();
+    for (std::size_t k = 2; k < levels(); ++k) c.here.higher.push_back({level(), {}});
+    auto next = eliminate_at(c.here);
+    if (c.taken && !next) SavedRun::unfit("eliminations");
+    if (c.taken) leg_ = std::move(next), ++eliminations_;
+    choices_.push_back(std::move(c));
+  }
+  const std::vector<double> pivots = from.numbers<double>("pivots");
+  if (!pivots.empty() && pivots.size() != elimination_.pivots().size()) SavedRun::unfit("pivots");
+  chosen_ = pivots;
+  mark_ = {choices_.size(), chosen_};
+
+  const Program& p = leg_->program;
+  const std::size_t size = leg_->point.state_size();
+  const std::vector<W> more = from.numbers<W>("stepper", 4);
+  const std::vector<N> sigma = from.numbers<N>("sigma", 2);
+  const std::vector<long double> counts = from.numbers<long double>("counts", 2);
+  StepperState<N> b;
+  b.t = from.number<W>("t");
+  b.state = from.numbers<W>("state", size);
+  b.carry = from.numbers<W>("carry", size);
+  b.leading = from.numbers<W>("leading");
+  if (!b.leading.empty() && b.leading.size() != p.unknowns()) SavedRun::unfit("leading");
+  b.integrals = from.numbers<W>("integrals", p.quadratures);
+  b.integral_carry = from.numbers<W>("integral_carry", p.quadratures);
+  b.branch_step = more[0];
+  b.worst_constraint = more[1];
+  b.worst_equation = more[2];
+  b.smallest_sigma_t = more[3];
+  b.first_sigma = sigma[0];
+  b.smallest_sigma = sigma[1];
+  b.steps = static_cast<std::size_t>(counts[0]);
+  b.weakest = static_cast<std::size_t>(counts[1]);
+  b.direction = from.numbers<N>("direction");
+  if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns())) SavedRun::unfit("direction");
+  return leg_->stepper.resume(b);
 }
 
 template class Motion<double>;

@@ -3,6 +3,9 @@
 // A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the equations
 // are then made again with other dependent coordinates, and the motion goes on from the same state (theory: elimination).
 #pragma once
+#include <algorithm>
+
+#include "run/saved.h"
 #include "run/scenario.h"
 
 namespace anholon {
@@ -19,6 +22,9 @@ class Motion {
 
   // From the consistent state.
   Outcome start(const StateChoice& choice);
+  // What is needed to go on from where the last expansion was made, and how: with the same bits as if the run had never ended.
+  void save(SavedRun& to) const;
+  Outcome resume(const StateChoice& choice, const SavedRun& from);
   // One step towards `end`, with another elimination where this one fails or its pivots have become small.
   Outcome step(const W& end);
   // The solution anywhere in the last step, with the orders beyond where there are any.
@@ -41,9 +47,24 @@ class Motion {
     Expansion<W> point;
   };
 
+  // Every choice of dependent coordinates on the way. The graph grows with each of them, and the order of its nodes decides
+  // the order of sums: whoever resumes makes them all again.
+  struct Choice {
+    InitialState<double> here;
+    bool taken = false;
+  };
+  // Those made before the last expansion, and what the pivots were at the last of them.
+  struct Mark {
+    std::size_t choices = 0;
+    std::vector<double> chosen;
+  };
+
   void watch_pivots(const Elimination& e);
   bool pivot_is_small();
+  InitialState<double> here() const;
+  std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
   bool eliminate_again();
+  std::size_t levels() const { return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0); }
 
   const Scenario& s_;
   StepSettings settings_;
@@ -55,6 +76,8 @@ class Motion {
   Elimination elimination_;                // the present one
   std::unique_ptr<OutputTape<W>> pivots_;  // its pivots, and what they were when it was chosen
   std::vector<double> chosen_;
+  std::vector<Choice> choices_;
+  Mark mark_;
   std::size_t eliminations_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "expr/normal.h"
+#include "structure/redundancy.h"
 
 namespace anholon {
 
@@ -110,13 +111,9 @@ static ProbeHints hints_at(const InitialState<double>& state) {
 
 // Independent constraints at the state; those that follow from them are left out, with a note.
 static void choose_constraints(const Model& model, const std::vector<double>& parameters, Scenario& s) {
-  const RowChoice<double> rows = independent_constraints(*s.mechanics, parameters, s.state);
-  s.independent = rows.independent;
-  // Rows that vanish are a lost hold, not a redundancy: they stay in, and the Jacobian will tell.
-  for (std::size_t r : rows.dependent)
-    (std::find(rows.vanishing.begin(), rows.vanishing.end(), r) == rows.vanishing.end() ? s.redundant : s.independent)
-        .push_back(r);
-  std::sort(s.independent.begin(), s.independent.end());
+  IndependentConstraints rows = independent_constraints(*s.mechanics, parameters, s.state);
+  s.independent = std::move(rows.independent);
+  s.redundant = std::move(rows.redundant);
   for (std::size_t r : s.redundant) {
     s.classes[r].redundant = true;
     s.notes.push_back("constraint '" + model.constraints[r].name +
@@ -159,6 +156,7 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   const bool numbers = model->unknown_functions.empty();
   Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
   s.independent.clear();
+  s.redundant.clear();
   if (initial.ok() && numbers) choose_constraints(*model, parameters, s);
   else
     for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);

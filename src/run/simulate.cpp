@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "run/motion.h"
+#include "run/angles.h"
+#include "run/estimate.h"
 #include "run/watch.h"
 
 namespace anholon {
@@ -14,30 +15,42 @@ StepSettings step_settings(const SimulationOptions& o) {
   return {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled};
 }
 
+Column monitored(const Model& model) {
+  Column es;
+  for (const Monitor& m : model.monitors) es.push_back(m.value);
+  return es;
+}
+
 template <Number N>
 class Run {
  public:
   using W = Wider<N>;
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), power_(anholon::power(*s.mechanics)),
-        motion_(s, step_settings(o), watched_quadratures(s, power_), orders_beyond(s, s.structure.d)), watch_(s, power_, motion_.parameters()) {}
+        motion_(s, step_settings(o), watched_quadratures(s, power_), std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))), watch_(s, power_, o.conserved, motion_.parameters()),
+        angles_(s, motion_.parameters()) {}
 
   SimulationReport go() {
     report_.order = motion_.stepper().order();
-    report_.outcome = motion_.start(o_.state);
+    if (o_.resume) report_.outcome = resume(*o_.resume);
+    else begin();
     if (report_.outcome.ok()) {
       sink_.columns(column_names());
-      const W t0 = motion_.stepper().time();
-      schedule(t0);
-      run(t0);
+      run();
     }
     const Stepper<N>& stepper = motion_.stepper();
     report_.t = number_text(to_double(reached_ ? *reached_ : stepper.time()));
     report_.steps = stepper.steps();
     report_.constraints = to_double(stepper.worst_constraint());
     report_.smallest_sigma = to_double(stepper.smallest_sigma());
+    report_.smallest_sigma_t = number_text(to_double(stepper.smallest_sigma_time()), 6);
     report_.eliminations = motion_.eliminations();
     if (defect_) report_.rigorous = defect_->report();
+    const std::size_t monitors = s_.model->monitors.size();
+    for (std::size_t i = 0; i < monitors; ++i) report_.monitors.push_back(watched(s_.model->monitors[i].name, watch_.tracks()[i]));
+    for (std::size_t i = 0; i < o_.conserved.size(); ++i) report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
+    warn();
+    estimate();
     return report_;
   }
 
@@ -52,70 +65,177 @@ class Run {
     for (int k = 0; k <= multiplier_orders(s_); ++k)
       for (const Constraint& c : model.constraints) names.push_back(derivative_name("lambda." + c.name, static_cast<unsigned>(k), Format::text));
     for (const Coordinate& c : model.coordinates) names.push_back("N." + c.name);
+    for (const Monitor& m : model.monitors) names.push_back(m.name);
     return names;
   }
 
+  void begin() {
+    report_.outcome = motion_.start(o_.state);
+    if (!report_.outcome.ok()) return;
+    t0_ = motion_.stepper().time();
+    schedule();
+    if (motion_.at(t0_).ok()) watch_.start(motion_.point());
+  }
+
+  Outcome resume(const SavedRun& from) {
+    if (Outcome o = motion_.resume(o_.state, from); !o.ok()) return o;
+    t0_ = from.number<W>("start");
+    done_ = from.number<W>("rows");
+    watch_.resume(from);
+    const std::vector<double> worst = from.numbers<double>("residuals");
+    if (worst.size() < 3) SavedRun::unfit("residuals");
+    report_.newton = worst[0];
+    report_.projected = worst[1];
+    report_.constraints_kept = worst[2];
+    const std::vector<double> angles = from.numbers<double>("angles", 2 * angles_.least.size());
+    for (std::size_t i = 0; i < angles_.least.size(); ++i) angles_.least[i] = {angles[2 * i], W(angles[2 * i + 1])};
+    std::size_t at = 3;
+    for (std::size_t i = 0; i < s_.system.constraints.size(); ++i) {
+      ConstraintReport c{s_.system.equation_names[s_.system.coordinates + i], {}};
+      for (int k = 0; k < std::max(1, s_.structure.c[s_.system.coordinates + i]); ++k, ++at) {
+        if (at >= worst.size()) SavedRun::unfit("residuals");
+        c.residuals.push_back(worst[at]);
+      }
+      report_.constraints_each.push_back(c);
+    }
+    schedule();
+    return {};
+  }
+
+  // From here a run goes on with the same bits.
+  void save() const {
+    SavedRun to;
+    motion_.save(to);
+    watch_.save(to);
+    to.set_numbers<W>("start", {t0_});
+    to.set_numbers<W>("rows", {*done_});
+    std::vector<double> worst = {report_.newton, report_.projected, report_.constraints_kept}, angles;
+    for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
+      for (int k = 0; k < std::max(1, s_.structure.c[s_.system.coordinates + i]); ++k) {
+        const auto order = static_cast<std::size_t>(k);
+        const bool seen = i < report_.constraints_each.size() && order < report_.constraints_each[i].residuals.size();
+        worst.push_back(seen ? report_.constraints_each[i].residuals[order] : 0);
+      }
+    for (const auto& least : angles_.least) angles.insert(angles.end(), {least.value, to_double(least.t)});
+    to.set_numbers("residuals", worst);
+    to.set_numbers("angles", angles);
+    o_.save(to);
+  }
+
   // The times of the rows, in the direction of the motion, and its end.
-  void schedule(const W& t) {
+  void schedule() {
     for (const Rational& r : o_.at) times_.push_back(from_rational<W>(r));
     labels_ = o_.at_text;
     labels_.resize(times_.size());
     end_ = o_.to && (times_.empty() || *o_.to > o_.at.back()) ? from_rational<W>(*o_.to) : times_.back();
-    if (!times_.empty() && times_.front() < t && !(times_.back() > t)) {
+    if (!times_.empty() && times_.front() < t0_ && !(times_.back() > t0_)) {
       std::reverse(times_.begin(), times_.end());
       std::reverse(labels_.begin(), labels_.end());
       end_ = times_.back();
     }
-    if (!o_.every) return;
-    const Rational step = end_ < t ? Rational(-*o_.every) : *o_.every;
-    for (long k = 0;; ++k) {
-      const W next = t + from_rational<W>(Rational(k * step));
-      if (end_ < t ? next < end_ : next > end_) break;
-      times_.push_back(next);
+    forward_ = end_ > t0_;
+    if (o_.every) {
+      const Rational step = end_ < t0_ ? Rational(-*o_.every) : *o_.every;
+      for (long k = 0;; ++k) {
+        const W next = t0_ + from_rational<W>(Rational(k * step));
+        if (end_ < t0_ ? next < end_ : next > end_) break;
+        times_.push_back(next);
+      }
+      if (times_.empty() || times_.back() != end_) times_.push_back(end_);
+      labels_.resize(times_.size());
     }
-    if (times_.empty() || times_.back() != end_) times_.push_back(end_);
-    labels_.resize(times_.size());
+    every_step_ = times_.empty();
+    while (done_ && next_ < times_.size() && reaches(*done_, times_[next_])) ++next_;
+    constexpr int kSamples = 16;
+    if (o_.estimate != ErrorEstimate::never)
+      for (int k = 1; k <= kSamples; ++k) {
+        const W from = done_ ? *done_ : t0_, t = k == kSamples ? end_ : W(from + (end_ - from) * W(k) / W(kSamples));
+        samples_.push_back({t, {}});
+      }
   }
 
-  void run(const W& t0) {
-    const bool every_step = times_.empty();
-    std::size_t next = 0;
-    if (every_step) row(t0, "");
+  // Whether a motion that has come to `stop` has passed t.
+  bool reaches(const W& stop, const W& t) const { return forward_ ? t <= stop : t >= stop; }
+
+  void run() {
     // Rows at or before the start come from the initial state itself.
-    while (next < times_.size() && times_[next] == t0) row(t0, label(next)), ++next;
-    if (motion_.at(t0).ok()) watch_.start_balance(motion_.point());
-    if (o_.rigorous) defect_.emplace(s_, *o_.rigorous, Ball(t0), Ball(end_), significand_bits<W>());
-    const Stepper<N>* stepper = &motion_.stepper();
-    while (report_.outcome.ok() && !(stepper->time() == end_)) {
+    if (!done_) {
+      if (every_step_) row(t0_, "");
+      while (next_ < times_.size() && times_[next_] == t0_) row(times_[next_], labels_[next_]), ++next_;
+      done_ = t0_;
+    }
+    if (o_.rigorous) defect_.emplace(s_, *o_.rigorous, Ball(*done_), Ball(end_), significand_bits<W>());
+    auto saved = std::chrono::steady_clock::now();
+    while (report_.outcome.ok() && !(motion_.stepper().time() == end_)) {
       report_.outcome = motion_.step(end_);
-      stepper = &motion_.stepper();
       if (!report_.outcome.ok()) break;
+      const Stepper<N>& stepper = motion_.stepper();
+      angles_.see(stepper.point());
       const W stop = masses_positive_until();
-      if (defect_) defect_->step(dense_step(*stepper, stop));
-      if (o_.progress) o_.progress(to_double(stepper->time()), stepper->steps());
-      const bool forward = end_ > t0;
-      while (report_.outcome.ok() && next < times_.size() &&
-             (forward ? times_[next] <= stop : times_[next] >= stop)) {
-        row(times_[next], label(next));
-        ++next;
-      }
-      if (every_step && report_.outcome.ok()) row(stop, "");
-      if (report_.outcome.ok() && !(stop == stepper->time())) negative_mass(stop);
+      if (defect_) defect_->step(dense_step(stepper, stop));
+      if (o_.progress) o_.progress(to_double(stepper.time()), stepper.steps());
+      rows_until(stop);
+      if (report_.outcome.ok() && !(stop == stepper.time())) negative_mass(stop);
+      if (!o_.save || std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() < o_.save_seconds) continue;
+      save();
+      saved = std::chrono::steady_clock::now();
     }
-    if (report_.outcome.ok() && stepper->steps() > 0 && motion_.at(stepper->time()).ok())
-      report_.power = watch_.balance(motion_.point(), stepper->integrals()[0]);
-    if (!report_.outcome.ok() && report_.outcome.message.find(" t = ") == std::string::npos) {
-      report_.outcome.message += " at t = " + number_text(to_double(stepper->time()), 12);
-      if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
-          report_.outcome.kind == OutcomeKind::no_convergence)
-        explain(s_, motion_, report_.outcome);
-      // The last good state is worth a row of its own.
-      if (stepper->steps() > 0 && !every_step) {
-        const Outcome why = report_.outcome;
-        row(stepper->before(), "");
-        report_.outcome = why;
-      }
+    const Stepper<N>& stepper = motion_.stepper();
+    if (report_.outcome.ok() && stepper.steps() > 0 && motion_.at(stepper.time()).ok())
+      watch_.end(motion_.point(), stepper.integrals()[0], report_);
+    if (o_.save) save();
+    if (!report_.outcome.ok()) stopped();
+  }
+
+  // What lies in the last step.
+  void rows_until(const W& stop) {
+    for (; report_.outcome.ok() && next_ < times_.size() && reaches(stop, times_[next_]); ++next_) row(times_[next_], labels_[next_]);
+    if (every_step_ && report_.outcome.ok() && !reaches(*done_, stop)) row(stop, "");
+    for (; next_sample_ < samples_.size() && reaches(stop, samples_[next_sample_].t); ++next_sample_)
+      if (motion_.at(samples_[next_sample_].t).ok()) samples_[next_sample_].values = sampled(s_, motion_.program(), motion_.point());
+      else return;
+    if (!reaches(*done_, stop)) done_ = stop;
+  }
+
+  void stopped() {
+    const Stepper<N>& stepper = motion_.stepper();
+    if (report_.outcome.message.find(" t = ") != std::string::npos) return;
+    report_.outcome.message += " at t = " + number_text(to_double(stepper.time()), 12);
+    if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
+        report_.outcome.kind == OutcomeKind::no_convergence)
+      explain(s_, motion_, report_.outcome);
+    // The last good state is worth a row of its own.
+    if (stepper.steps() > 0 && !every_step_) {
+      const Outcome why = report_.outcome;
+      row(stepper.before(), "");
+      report_.outcome = why;
     }
+  }
+
+  void warn() {
+    constexpr double kNearSingular = 1e-3;
+    const Stepper<N>& stepper = motion_.stepper();
+    if (stepper.smallest_sigma() < stepper.first_sigma() * N(kNearSingular)) {
+      const std::size_t j = stepper.weakest_unknown(), n = s_.system.coordinates;
+      const std::string what = j < n ? "the acceleration of " + s_.system.variable_names[j] + " is hardly determined"
+                                     : "the constraint '" + s_.system.equation_names[j] + "' hardly holds";
+      report_.warnings.push_back({"the motion passes near a singular configuration at t = " + report_.smallest_sigma_t + ": " + what,
+                                  "trust what follows less; write the constraint or the coordinates so that they are regular there"});
+    }
+    for (std::size_t i = 0; i < angles_.triples.size(); ++i)
+      if (angles_.least[i].value < kNearSingular)
+        report_.warnings.push_back({"the angles " + angles_.triples[i].angles + " come near their singularity at t = " + number_text(to_double(angles_.least[i].t), 6),
+                                    "describe the orientation of '" + angles_.triples[i].body + "' by a quaternion: quat(e0, e1, e2, e3)"});
+  }
+
+  void estimate() {
+    if (o_.estimate == ErrorEstimate::never) return;
+    if (o_.estimate == ErrorEstimate::short_runs && report_.steps > kShortRun) {
+      report_.no_error = "the run has more than " + std::to_string(kShortRun) + " steps: --error-estimate makes one";
+      return;
+    }
+    samples_.resize(next_sample_);
+    estimate_error<N>(s_, o_, samples_, report_);
   }
 
   // The end of the last step, or the earlier time at which a mass passes zero.
@@ -144,12 +264,14 @@ class Run {
     reached_ = t;
   }
 
-  const std::string& label(std::size_t k) const { return labels_[k]; }
-
   std::string text(const W& x) const {
     if constexpr (std::same_as<N, Multi>) return number_text(x, o_.digits + 2);
     else if constexpr (std::same_as<N, Quad>) return quad_text(x, o_.digits);
     else return number_text(convert<N>(x));
+  }
+
+  WatchedReport watched(const std::string& name, const Track<W>& track) const {
+    return {name, text(track.first), text(track.last), text(track.least), text(track.greatest), track.relative_change()};
   }
 
   void row(const W& t, const std::string& label) {
@@ -167,6 +289,7 @@ class Run {
         values.push_back(text(j ? point.derivative(*j, k) : W(0)));
       }
     for (std::size_t a = 0; a < n; ++a) values.push_back(text(watch_.reaction(a)));
+    for (std::size_t i = 0; i < s_.model->monitors.size(); ++i) values.push_back(text(watch_.tracks()[i].last));
     sink_.row(values);
     ++report_.rows;
   }
@@ -177,10 +300,15 @@ class Run {
   Power power_;
   Motion<N> motion_;
   Watch<W> watch_;
+  AngleWatch<W> angles_;
   std::optional<Defect> defect_;
   std::vector<W> times_;
   std::vector<std::string> labels_;
-  W end_{0};
+  W t0_{0}, end_{0};
+  bool forward_ = true, every_step_ = false;
+  std::size_t next_ = 0, next_sample_ = 0;  // row, sample
+  std::optional<W> done_;                   // all rows up to here have been given
+  std::vector<Sample<W>> samples_;
   std::optional<W> reached_;
   std::size_t negative_ = 0;
   SimulationReport report_;

@@ -2,11 +2,17 @@
 #pragma once
 #include <functional>
 
+#include "mechanics/conserved.h"
 #include "result/rows.h"
 #include "run/defect.h"
+#include "run/saved.h"
 #include "run/scenario.h"
 
 namespace anholon {
+
+// Whether a second, sharper run is made for the estimate of the global error; it costs more than the run itself.
+enum class ErrorEstimate : std::uint8_t { never, short_runs, always };
+inline constexpr std::size_t kShortRun = 5000;  // steps
 
 struct SimulationOptions {
   StateChoice state;
@@ -22,6 +28,37 @@ struct SimulationOptions {
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;
   std::size_t most_steps = 50'000'000;
+  ErrorEstimate estimate = ErrorEstimate::never;
+  std::vector<Conserved> conserved;  // to be watched
+  // Called at the end, and every few seconds: what is needed to go on.
+  std::function<void(const SavedRun&)> save;
+  double save_seconds = 10;
+  const SavedRun* resume = nullptr;  // a run to go on with; only rows after its last are given
+};
+
+// A number watched from the start, at the rows and at the end; the numbers are in the precision of the rows.
+struct WatchedReport {
+  std::string name;
+  std::string first, last, least, greatest;
+  double largest_change = 0;  // from the start, in relation to the greatest of its terms
+};
+
+// Derivatives k = 0, 1, … of a constraint that have to vanish: the worst at the rows, in relation to their terms.
+struct ConstraintReport {
+  std::string name;
+  std::vector<double> residuals;
+};
+
+// What the user should look at, and what to do.
+struct Warning {
+  std::string message, hint;
+};
+
+struct ErrorReport {
+  double error = 0;   // largest |difference| / (1 + |x|) of any position or velocity
+  std::string t;      // where
+  int digits = 0;     // of the trajectory that may be trusted
+  std::string means;  // how it was found
 };
 
 struct SimulationReport {
@@ -37,7 +74,14 @@ struct SimulationReport {
   double power = 0;              // |h - h0 - work| in relation to the energies turned over
   double smallest_sigma = 1;     // scaled, of the system Jacobian
   std::optional<RigorousReport> rigorous;
+  std::string smallest_sigma_t;  // when it was met
+  std::vector<ConstraintReport> constraints_each;
+  std::optional<ErrorReport> error;
+  std::string no_error;          // why there is no estimate, where one was asked for
+  std::vector<Warning> warnings;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
+  std::vector<WatchedReport> monitors;   // of the model's [monitor]
+  std::vector<WatchedReport> conserved;  // integrals of the motion
 };
 
 SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink);

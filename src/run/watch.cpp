@@ -38,13 +38,32 @@ std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p) {
   return es;
 }
 
-template <Number W>
-Watch<W>::Watch(const Scenario& s, const Power& power, const std::vector<W>& parameters)
-    : s_(s), outputs_(s, expressions(power), parameters) {}
+int orders_needed(const Scenario& s, std::span<const Expr> es) {
+  int beyond = 0;
+  for (NodeId id : symbols(es))
+    if (const auto j = s.system.variable(id))
+      beyond = std::max(beyond, static_cast<int>(s.model->graph->node(id).order) - s.structure.d[*j]);
+  return beyond;
+}
 
-// N, then what the residual report needs: h, E, G, Phi, the redundant constraints.
 template <Number W>
-Column Watch<W>::expressions(const Power& power) const {
+void Track<W>::see(const W& value, const W& terms) {
+  if (!any) first = least = greatest = value;
+  any = true;
+  last = value;
+  if (value < least) least = value;
+  if (value > greatest) greatest = value;
+  if (terms > size) size = terms;
+  if (W v = abs(W(value - first)); v > change || !is_finite(v)) change = v;
+}
+
+template <Number W>
+Watch<W>::Watch(const Scenario& s, const Power& power, const std::vector<Conserved>& conserved, const std::vector<W>& parameters)
+    : s_(s), outputs_(s, expressions(power, conserved), parameters) {}
+
+// N, then what the residual report needs: h, E, G, Phi, the redundant constraints; the terms of what is watched.
+template <Number W>
+Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& conserved) {
   const Model& model = *s_.model;
   const Mechanics& m = *s_.mechanics;
   Column es = put_masses(model, m.N);
@@ -56,6 +75,22 @@ Column Watch<W>::expressions(const Power& power) const {
   for (std::size_t k : s_.system.constraints)
     for (Expr e : m.Phi[k]) es.push_back(put_masses(model, e));
   for (std::size_t k : s_.redundant) es.push_back(put_masses(model, m.phi[k]));
+  first_open_ = es.size();
+  for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
+    if (s_.structure.c[s_.system.coordinates + i] == 0) {
+      open_.push_back(i);
+      es.push_back(put_masses(model, m.phi[s_.system.constraints[i]]));
+    }
+  first_monitor_ = es.size();
+  for (const Monitor& monitor : model.monitors) {
+    es.push_back(monitor.value);
+    terms_.push_back(1);
+  }
+  for (const Conserved& c : conserved) {
+    es.insert(es.end(), c.terms.begin(), c.terms.end());
+    terms_.push_back(c.terms.size());
+  }
+  tracks_.resize(terms_.size());
   return es;
 }
 
@@ -74,7 +109,8 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
   const NewtonResidual<W> c = certify(inertia, force, reaction, phi);
   report.newton = std::max(report.newton, to_double(c.newton));
   report.projected = std::max(report.projected, to_double(c.projected));
-  report.constraints_kept = std::max(report.constraints_kept, to_double(point.constraint_residual()));
+  constraints(point, phi, report);
+  track();
   // A constraint that was left out because it followed from the others must go on to do so.
   W size(1);
   for (std::size_t a = 0; a < n; ++a)
@@ -92,21 +128,84 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
   return outcome;
 }
 
+// C3, and each constraint with its derivatives by itself.
 template <Number W>
-W Watch<W>::energy(const Expansion<W>& point) {
-  outputs_.evaluate(point);
-  return outputs_[s_.system.coordinates];
+void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const {
+  const std::size_t n = s_.system.coordinates;
+  report.constraints_kept = std::max(report.constraints_kept, to_double(point.constraint_residual()));
+  report.constraints_each.resize(s_.system.constraints.size());
+  const auto worse = [&](std::size_t i, std::size_t k, double residual) {
+    std::vector<double>& list = report.constraints_each[i].residuals;
+    list.resize(std::max(list.size(), k + 1));
+    list[k] = std::max(list[k], residual);
+  };
+  for (std::size_t i = 0; i < s_.system.constraints.size(); ++i) {
+    report.constraints_each[i].name = s_.system.equation_names[n + i];
+    for (int k = 0; k < s_.structure.c[n + i]; ++k) worse(i, static_cast<std::size_t>(k), to_double(point.hidden_residual(n + i, k)));
+  }
+  for (std::size_t o = 0; o < open_.size(); ++o) {
+    const std::size_t i = open_[o];
+    W scale(1);
+    for (std::size_t a = 0; a < n; ++a)
+      scale += abs(W(phi(i, a) * point.derivative(a, s_.mechanics->order[s_.system.constraints[i]])));
+    const double residual = to_double(W(abs(outputs_[first_open_ + o]) / scale));
+    worse(i, 0, residual);
+    report.constraints_kept = std::max(report.constraints_kept, residual);
+  }
 }
 
 template <Number W>
-double Watch<W>::balance(const Expansion<W>& point, const W& work) {
-  const W h = energy(point);
+void Watch<W>::save(SavedRun& to) const {
+  std::vector<W> tracks;
+  for (const Track<W>& t : tracks_) tracks.insert(tracks.end(), {W(t.any ? 1 : 0), t.first, t.last, t.least, t.greatest, t.change, t.size});
+  to.set_numbers("tracks", tracks);
+  to.set_numbers<W>("energy", {h0_});
+}
+
+template <Number W>
+void Watch<W>::resume(const SavedRun& from) {
+  const std::vector<W> tracks = from.numbers<W>("tracks", 7 * tracks_.size());
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const W* t = &tracks[7 * i];
+    tracks_[i] = {!(t[0] == W(0)), t[1], t[2], t[3], t[4], t[5], t[6]};
+  }
+  h0_ = from.number<W>("energy");
+}
+
+template <Number W>
+void Watch<W>::track() {
+  std::size_t at = first_monitor_;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    W value(0), terms(0);
+    for (std::size_t k = 0; k < terms_[i]; ++k, ++at) {
+      value += outputs_[at];
+      terms += abs(outputs_[at]);
+    }
+    tracks_[i].see(value, terms);
+  }
+}
+
+template <Number W>
+void Watch<W>::start(const Expansion<W>& point) {
+  outputs_.evaluate(point);
+  h0_ = outputs_[s_.system.coordinates];
+  track();
+}
+
+template <Number W>
+void Watch<W>::end(const Expansion<W>& point, const W& work, SimulationReport& report) {
+  outputs_.evaluate(point);
+  const W h = outputs_[s_.system.coordinates];
   W scale(1);
   for (const W& v : {h, h0_, work})
     if (abs(v) > scale) scale = abs(v);
-  return to_double(W(abs(W(h - h0_ - work)) / scale));
+  report.power = to_double(W(abs(W(h - h0_ - work)) / scale));
+  track();
 }
 
+template struct Track<long double>;
+template struct Track<Quad>;
+template struct Track<Multi>;
 template class Watch<long double>;
 template class Watch<Quad>;
 template class Watch<Multi>;

@@ -4,6 +4,7 @@
 //   C1, C2  Newton's law by the points themselves, with and without multipliers  (theory: certificate)
 //   C3      hidden constraints
 //   power   h - h(0) - W, W the integral of the right side of the power identity
+// and the model's [monitor] formulas and the integrals of the motion.
 #pragma once
 #include "run/motion.h"
 #include "run/simulate.h"
@@ -13,25 +14,49 @@ namespace anholon {
 // What has to be integrated for it: the power of all forces first, then the masses that vary.
 std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p);
 
+// How many orders beyond those solved for the expressions need.
+int orders_needed(const Scenario& s, std::span<const Expr> es);
+
+// A number along the motion: its range, and how far it went from its first value.
+template <Number W>
+struct Track {
+  bool any = false;
+  W first{0}, last{0}, least{0}, greatest{0}, change{0}, size{0};
+  // `terms`: the sum of the magnitudes of what it is made of.
+  void see(const W& value, const W& terms);
+  double relative_change() const { return change == W(0) ? 0 : to_double(W(change / size)); }
+};
+
 template <Number W>
 class Watch {
  public:
-  Watch(const Scenario& scenario, const Power& power, const std::vector<W>& parameters);
+  Watch(const Scenario& scenario, const Power& power, const std::vector<Conserved>& conserved, const std::vector<W>& parameters);
 
   // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows from the others.
   Outcome see(const Expansion<W>& point, SimulationReport& report);
+  // The monitors of the model, then the integrals.
+  const std::vector<Track<W>>& tracks() const { return tracks_; }
+  // What was seen, for a run that goes on.
+  void save(SavedRun& to) const;
+  void resume(const SavedRun& from);
   // N at the point seen last.
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
 
-  // The energy balance from one point to another, between which the work is integrated.
-  void start_balance(const Expansion<W>& point) { h0_ = energy(point); }
-  double balance(const Expansion<W>& point, const W& work);
+  // The first and the last point: the energy balance goes from one to the other, between which the work is integrated.
+  void start(const Expansion<W>& point);
+  void end(const Expansion<W>& point, const W& work, SimulationReport& report);
 
  private:
-  Column expressions(const Power& power) const;
-  W energy(const Expansion<W>& point);
+  Column expressions(const Power& power, const std::vector<Conserved>& conserved);
+  void track();
+  void constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const;
 
   const Scenario& s_;
+  std::vector<Track<W>> tracks_;
+  std::vector<std::size_t> terms_;  // of which each is the sum
+  // Constraints that no derivative hides: their accelerations, … are solved for with the equations.
+  std::vector<std::size_t> open_;
+  std::size_t first_open_ = 0, first_monitor_ = 0;  // among the outputs
   OutputTape<W> outputs_;
   W h0_{0};
 };

@@ -4,50 +4,11 @@
 
 #include "spec/bodies.h"
 #include "spec/keys.h"
+#include "spec/multipliers.h"
 
 namespace anholon {
 
 namespace {
-
-// In conditions lambda.NAME is a multiplier, and lambda.NAME' its rate; everything else means what it does elsewhere.
-class WithMultipliers final : public Names {
- public:
-  WithMultipliers(Scope& scope, const Model& model) : scope_(scope), model_(model) {}
-
-  Graph& graph() override { return scope_.graph(); }
-  Value name(const std::string& name, Span span) override {
-    if (name == "lambda") return InertialName{};  // means something with a member only
-    return scope_.name(name, span);
-  }
-  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax, Value& result) override {
-    return scope_.call(function, arguments, syntax, result);
-  }
-  Value member(const Value& object, const Syntax& s) override {
-    const std::string path = multiplier(s);
-    if (path.empty()) return scope_.member(object, s);
-    const std::vector<std::string>& names = model_.names.multipliers;
-    if (const auto it = std::find(names.begin(), names.end(), path); it != names.end())
-      return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
-    for (const std::string& n : names)
-      if (n.rfind(path + ".", 0) == 0) return InertialName{};  // of a vector equation: a component follows
-    const std::string near = did_you_mean(path, names);
-    throw Failure(s.span, "there is no constraint '" + path + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
-  }
-  std::vector<std::string> functions() const override { return scope_.functions(); }
-
- private:
-  // "rolling.x" of lambda.rolling.x; empty for other members.
-  static std::string multiplier(const Syntax& s) {
-    const Syntax& object = s.args[0];
-    if (object.op == Syntax::Op::name) return object.text == "lambda" ? s.text : "";
-    if (object.op != Syntax::Op::member) return "";
-    const std::string inner = multiplier(object);
-    return inner.empty() ? "" : inner + "." + s.text;
-  }
-
-  Scope& scope_;
-  const Model& model_;
-};
 
 class InitialReader {
  public:

@@ -7,6 +7,7 @@
 #include "spec/bodies.h"
 #include "spec/initial.h"
 #include "spec/keys.h"
+#include "spec/monitor.h"
 #include "spec/names.h"
 #include "spec/observer.h"
 
@@ -54,6 +55,7 @@ class Reader {  // what it refers to is asked only while it runs
     quasi(root);
     scope_.resolve_all();
     read_initial(root, scope_, model_, diagnostics_);
+    if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
     guard([&] { simulate(root); });
     for (const Diagnostic& d : scope_.failures) diagnostics_.add(d);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
@@ -71,9 +73,9 @@ class Reader {  // what it refers to is asked only while it runs
     check_keys(root, "the model file",
                {"title", "source", "coordinates", "dependent", "parameters", "functions", "define", "frame",
                 "point", "observer", "body", "particle", "force", "gravity", "potential", "constraint",
-                "initial", "simulate", "quasi"},
+                "initial", "simulate", "quasi", "monitor"},
                {"base", "index", "table", "state", "mode", "event", "input", "output", "case",
-                "dissipation", "monitor", "view", "notation"},
+                "dissipation", "view", "notation"},
                diagnostics_);
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
       if (const Item* i = root.find(key)) {

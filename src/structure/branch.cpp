@@ -154,12 +154,7 @@ class Search {
     std::vector<N> y, direction;
     for (int k = 0; k < kMostNewton; ++k) {
       const std::vector<N> scale = all_.scale;
-      const auto merit = [&] {
-        N worst(0);
-        for (std::size_t i = 0; i < n; ++i)
-          if (N v = abs(all_.residual[i]) / scale[i]; v > worst) worst = v;
-        return worst;
-      };
+      const auto merit = [&] { return all_.worst(scale); };
       const N now = merit();
       const bool solved = !(now > stage_rounding<N>());
       if (!lu.factor(all_.jacobian) || lu.smallest_singular_value(direction) < N(kSingular)) {

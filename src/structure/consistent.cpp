@@ -35,9 +35,6 @@ bool holds_higher(Expr e) {
   return false;
 }
 
-// A value that depends on the symbol alone, for what a rank must not depend on.
-double arbitrary(const Node& n) { return 0.7 + 0.13 * static_cast<double>((n.index * 7 + n.order * 3) % 11); }
-
 template <Number N>
 class Solver {
  public:
@@ -531,29 +528,6 @@ Outcome complete_state(const InitialProblem<N>& problem, const System& s, const 
   return Solver<N>(problem, state).complete(s, t);
 }
 
-template <Number N>
-RowChoice<N> independent_constraints(const Mechanics& m, const std::vector<N>& parameters, const InitialState<N>& state) {
-  const std::size_t s = m.phi.size(), n = m.q.size();
-  RowChoice<N> choice;
-  if (s == 0) return choice;
-  Column es;
-  for (const Column& row : m.Phi)
-    for (Expr e : row) es.push_back(put_masses(*m.model, e));
-  const Tape tape = compile(es);
-  Machine<N> machine(tape, 0, parameters);
-  const Graph& g = m.graph();
-  for (const Input& in : tape.inputs) {
-    const Node& node = g.node(in.symbol);
-    const N* known = state.value(node);
-    machine.series(in.slot)[0] = node.kind == Kind::time ? state.t : known ? *known : N(arbitrary(node));
-  }
-  machine.evaluate();
-  Matrix<N> phi(s, n);
-  for (std::size_t i = 0; i < s; ++i)
-    for (std::size_t a = 0; a < n; ++a) phi(i, a) = machine.value(i * n + a);
-  return choose_rows(phi, N(kDependent));
-}
-
 template Outcome consistent_state<double>(const InitialProblem<double>&, InitialState<double>&);
 template Outcome consistent_state<long double>(const InitialProblem<long double>&, InitialState<long double>&);
 template Outcome consistent_state<Quad>(const InitialProblem<Quad>&, InitialState<Quad>&);
@@ -562,9 +536,5 @@ template Outcome complete_state<double>(const InitialProblem<double>&, const Sys
 template Outcome complete_state<long double>(const InitialProblem<long double>&, const System&, const Structure&, InitialState<long double>&);
 template Outcome complete_state<Quad>(const InitialProblem<Quad>&, const System&, const Structure&, InitialState<Quad>&);
 template Outcome complete_state<Multi>(const InitialProblem<Multi>&, const System&, const Structure&, InitialState<Multi>&);
-template RowChoice<double> independent_constraints<double>(const Mechanics&, const std::vector<double>&, const InitialState<double>&);
-template RowChoice<long double> independent_constraints<long double>(const Mechanics&, const std::vector<long double>&, const InitialState<long double>&);
-template RowChoice<Quad> independent_constraints<Quad>(const Mechanics&, const std::vector<Quad>&, const InitialState<Quad>&);
-template RowChoice<Multi> independent_constraints<Multi>(const Mechanics&, const std::vector<Multi>&, const InitialState<Multi>&);
 
 }  // namespace anholon

@@ -45,9 +45,4 @@ bool needs_completion(const Mechanics& m, const System& s, const Structure& t);
 template <Number N>
 Outcome complete_state(const InitialProblem<N>& problem, const System& s, const Structure& t, InitialState<N>& state);
 
-// The constraints that are independent at the state, and those that follow from them there.
-template <Number N>
-RowChoice<N> independent_constraints(const Mechanics& m, const std::vector<N>& parameters,
-                                     const InitialState<N>& state);
-
 }  // namespace anholon

@@ -37,9 +37,10 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   const std::size_t n = unknowns(), q = m_.q.size();
   residual.assign(size(), N(0));
   scale.assign(size(), N(0));
+  floor_.assign(size(), N(0));
   jacobian = Matrix<N>(size(), n);
   metric = Matrix<N>(n, n);
-  N largest_unknown(1);  // a residual below its round-off is none
+  N largest_unknown(1);
   for (std::size_t j = 0; j < n; ++j)
     if (N v = abs(*s.value(unknown(j))); v > largest_unknown) largest_unknown = v;
   for (std::size_t i = 0; i < size(); ++i) {
@@ -49,9 +50,10 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
     for (std::size_t j = 0; j < n; ++j) {
       jacobian(i, j) = machine_.value(size() + i * n + j);
       if (!is_finite(jacobian(i, j))) return false;
-      for (N part : {abs(N(jacobian(i, j) * *s.value(unknown(j)))), N(abs(jacobian(i, j)) * largest_unknown * unit_roundoff<N>())})
-        if (part > scale[i]) scale[i] = part;
+      if (N part = abs(N(jacobian(i, j) * *s.value(unknown(j)))); part > scale[i]) scale[i] = part;
+      if (N part = abs(jacobian(i, j)) * largest_unknown * unit_roundoff<N>(); part > floor_[i]) floor_[i] = part;
     }
+    if (floor_[i] > scale[i]) scale[i] = floor_[i];
     if (!(scale[i] > N(0))) scale[i] = N(1);
   }
   const std::size_t first = size() * (n + 1);
@@ -77,88 +79,164 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
 
 // The sum of the absolute values of the terms of an equation.
 template <Number N>
-N Stage<N>::worst(std::size_t* which) const {
+N Stage<N>::worst(const std::vector<N>& scales, std::size_t* which) const {
   N most(0);
   for (std::size_t i = 0; i < size(); ++i)
-    if (N v = abs(residual[i]) / scale[i]; v > most) {
+    if (N v = abs(residual[i]) / scales[i]; v > most && abs(residual[i]) > floor_[i]) {
       most = v;
       if (which) *which = i;
     }
   return most;
 }
 
+namespace {
+
+// Newton's method on a stage, in the free unknowns.
 template <Number N>
-bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free) {
-  std::vector<N*> x;
-  std::vector<N> guess;
-  for (std::size_t j : free) x.push_back(&s.x(state, j)), guess.push_back(*x.back());
-  const N rounding = stage_rounding<N>();
-  if (!s.evaluate(state)) return false;
-  N last_step(-1);
-  bool nudged = false;
-  for (int k = 0; k < kMostIterations && !free.empty(); ++k) {
-    Matrix<N> a(s.size(), free.size());
-    for (std::size_t i = 0; i < s.size(); ++i)
-      for (std::size_t j = 0; j < free.size(); ++j) a(i, j) = s.jacobian(i, free[j]);
-    const RowChoice<N> rows = choose_rows(a, N(kDependent));
-    if (rows.dependent.size() && !nudged && s.worst() > rounding && k == 0) {
-      // The guess may be a place where a constraint is flat (the centre of a circle): leave it.
-      nudged = true;
-      bool flat = false;
-      for (std::size_t i : rows.dependent)
-        if (abs(s.residual[i]) > rounding * s.scale[i]) flat = true;
-      if (flat) {
-        for (std::size_t j = 0; j < free.size(); ++j) *x[j] += N(0.1) + N(0.037) * N(static_cast<int>(j % 7));
-        if (!s.evaluate(state)) return false;
-        continue;
+class Iteration {
+ public:
+  Iteration(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free) : s_(stage), state_(state), free_(free) {
+    for (std::size_t j : free) x_.push_back(&s_.x(state, j)), guess_.push_back(*x_.back());
+  }
+
+  const std::vector<N>& guess() const { return guess_; }
+  std::vector<N> point() const {
+    std::vector<N> p;
+    for (const N* v : x_) p.push_back(*v);
+    return p;
+  }
+  // False: no value there.
+  bool go_to(const std::vector<N>& point) {
+    for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = point[j];
+    return s_.evaluate(state_);
+  }
+  bool solved() const { return !(s_.worst() > stage_rounding<N>()); }
+
+  // The square of the distance from the guess, in the metric at the point.
+  N distance() const {
+    N sum(0);
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      for (std::size_t j = 0; j < x_.size(); ++j) sum += (*x_[i] - guess_[i]) * s_.metric(free_[i], free_[j]) * (*x_[j] - guess_[j]);
+    return sum;
+  }
+
+  // Towards the solution nearest to the guess, or, `nearest` being false, to any: every step is then the least one.
+  bool run(bool nearest) {
+    const N rounding = stage_rounding<N>();
+    if (!s_.evaluate(state_)) return false;
+    N last_step(-1);
+    bool nudged = false;
+    for (int k = 0; k < kMostIterations && !free_.empty(); ++k) {
+      Matrix<N> a(s_.size(), free_.size());
+      for (std::size_t i = 0; i < s_.size(); ++i)
+        for (std::size_t j = 0; j < free_.size(); ++j) a(i, j) = s_.jacobian(i, free_[j]);
+      const RowChoice<N> rows = choose_rows(a, N(kDependent));
+      if (rows.dependent.size() && !nudged && s_.worst() > rounding && k == 0) {
+        // The guess may be a place where a constraint is flat (the centre of a circle): leave it.
+        nudged = true;
+        if (flat(rows)) {
+          for (std::size_t j = 0; j < free_.size(); ++j) *x_[j] += N(0.1) + N(0.037) * N(static_cast<int>(j % 7));
+          if (!s_.evaluate(state_)) return false;
+          continue;
+        }
       }
+      if (rows.independent.empty()) break;
+      std::vector<N> step;
+      if (!least_step(a, rows.independent, nearest, step)) return true;
+      if (!search(step)) return false;
+      N moved(0), size(0);
+      for (std::size_t j = 0; j < free_.size(); ++j) {
+        if (N v = abs(step[j]); v > moved) moved = v;
+        if (N v = abs(*x_[j]); v > size) size = v;
+      }
+      const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
+      const bool settled = !(moved > floor) || (last_step >= N(0) && !(moved < last_step) && moved < floor * N(100));
+      last_step = moved;
+      if (settled) break;
     }
-    const std::size_t r = rows.independent.size();
-    if (r == 0) break;
-    Matrix<N> ar(r, free.size()), metric(free.size(), free.size());
+    return true;
+  }
+
+ private:
+  bool flat(const RowChoice<N>& rows) const {
+    return std::any_of(rows.dependent.begin(), rows.dependent.end(), [&](std::size_t i) { return abs(s_.residual[i]) > stage_rounding<N>() * s_.scale[i]; });
+  }
+
+  bool least_step(const Matrix<N>& a, const std::vector<std::size_t>& rows, bool nearest, std::vector<N>& step) const {
+    const std::size_t r = rows.size(), n = free_.size();
+    Matrix<N> ar(r, n), metric(n, n);
     std::vector<N> b(r, N(0)), y;
     for (std::size_t i = 0; i < r; ++i) {
-      b[i] = -s.residual[rows.independent[i]];
-      for (std::size_t j = 0; j < free.size(); ++j) {
-        ar(i, j) = a(rows.independent[i], j);
-        b[i] += ar(i, j) * (*x[j] - guess[j]);
+      b[i] = -s_.residual[rows[i]];
+      for (std::size_t j = 0; j < n; ++j) {
+        ar(i, j) = a(rows[i], j);
+        if (nearest) b[i] += ar(i, j) * (*x_[j] - guess_[j]);
       }
     }
-    for (std::size_t i = 0; i < free.size(); ++i)
-      for (std::size_t j = 0; j < free.size(); ++j) metric(i, j) = s.metric(free[i], free[j]);
-    if (!least_change(metric, ar, b, y)) return true;
-    // Progress is measured against the scales where the step begins: those at its end grow with it.
-    const std::vector<N> scale = s.scale;
-    const auto merit = [&] {
-      N worst(0);
-      for (std::size_t i = 0; i < s.size(); ++i)
-        if (N v = abs(s.residual[i]) / scale[i]; v > worst) worst = v;
-      return worst;
-    };
-    const N now = merit();
-    std::vector<N> old;
-    for (const N* v : x) old.push_back(*v);
-    N fraction(1), step(0), size(0);
-    bool better = false;
-    for (int halvings = 0; halvings < 12; ++halvings, fraction = fraction * N(0.5)) {
-      for (std::size_t j = 0; j < free.size(); ++j) *x[j] = old[j] + fraction * (guess[j] + y[j] - old[j]);
-      if (!s.evaluate(state)) continue;
-      if (merit() <= now * N(0.9) + rounding * N(4) || halvings == 11) {
-        better = true;
-        break;
-      }
-    }
-    if (!better && !s.evaluate(state)) return false;
-    for (std::size_t j = 0; j < free.size(); ++j) {
-      if (N v = abs(N(*x[j] - old[j])); v > step) step = v;
-      if (N v = abs(*x[j]); v > size) size = v;
-    }
-    const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
-    const bool settled = !(step > floor) || (last_step >= N(0) && !(step < last_step) && step < floor * N(100));
-    last_step = step;
-    if (settled) break;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) metric(i, j) = s_.metric(free_[i], free_[j]);
+    if (!least_change(metric, ar, b, y)) return false;
+    step.resize(n);
+    for (std::size_t j = 0; j < n; ++j) step[j] = nearest ? N(guess_[j] + y[j] - *x_[j]) : y[j];
+    return true;
   }
-  return true;
+
+  // Goes along the step as far as it helps; `step` is then what was gone.
+  bool search(std::vector<N>& step) {
+    // Progress is measured against the scales where the step begins: those at its end grow with it.
+    const std::vector<N> scale = s_.scale, old = point();
+    const N now = s_.worst(scale);
+    N fraction(1);
+    bool better = false;
+    for (int halvings = 0; halvings < 12 && !better; ++halvings) {
+      if (halvings > 0) fraction = fraction * N(0.5);
+      for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = old[j] + fraction * step[j];
+      if (!s_.evaluate(state_)) continue;
+      better = s_.worst(scale) <= now * N(0.9) + stage_rounding<N>() * N(4) || halvings == 11;
+    }
+    for (std::size_t j = 0; j < x_.size(); ++j) step[j] = *x_[j] - old[j];
+    return better || s_.evaluate(state_);
+  }
+
+  Stage<N>& s_;
+  InitialState<N>& state_;
+  const std::vector<std::size_t>& free_;
+  std::vector<N*> x_;
+  std::vector<N> guess_;
+};
+
+// The k-th point around the guess, farther and farther away.
+template <Number N>
+std::vector<N> around(const std::vector<N>& guess, int k) {
+  std::vector<N> p = guess;
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    const unsigned draw = (static_cast<unsigned>(k) * 2654435761U + static_cast<unsigned>(j + 1) * 2246822519U) >> 16;
+    const N size = abs(p[j]) > N(1) ? N(abs(p[j])) : N(1);
+    p[j] += size * N(k) * N(static_cast<int>(draw % 2001U) - 1000) / N(4000);
+  }
+  return p;
+}
+
+}  // namespace
+
+template <Number N>
+bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free) {
+  constexpr int kStarts = 12;
+  Iteration<N> newton(s, state, free);
+  const bool value = newton.run(true);
+  if ((value && newton.solved()) || free.empty()) return value;
+  const InitialState<N> first = state;
+  std::vector<N> best;
+  N least(0);
+  for (int k = 0; k <= kStarts && (best.empty() || k < 3); ++k) {
+    if (!newton.go_to(around(newton.guess(), k)) || !newton.run(false) || !newton.solved()) continue;
+    const std::vector<N> there = newton.point();
+    if (!newton.run(true) || !newton.solved()) newton.go_to(there);
+    if (const N d = newton.distance(); best.empty() || d < least) least = d, best = newton.point();
+  }
+  if (!best.empty()) return newton.go_to(best);
+  state = first;
+  return value && s.evaluate(state);
 }
 
 template class Stage<double>;

@@ -38,14 +38,18 @@ class Stage {
       if (abs(jacobian(i, j)) > N(0)) return true;
     return false;
   }
-  // The largest residual in relation to its scale, and where it is.
-  N worst(std::size_t* which = nullptr) const;
+  // The largest residual in relation to its scale, and where it is. Residuals below the round-off of the unknowns are none.
+  N worst(std::size_t* which = nullptr) const { return worst(scale, which); }
+  // … in relation to the scales of another point.
+  N worst(const std::vector<N>& scale, std::size_t* which = nullptr) const;
 
   std::vector<N> residual, scale;
   Matrix<N> jacobian, metric;
 
  private:
   Tape build();
+
+  std::vector<N> floor_;
 
   const Mechanics& m_;
   std::vector<StageEquation> equations_;
@@ -62,7 +66,8 @@ N stage_rounding() {
 }
 
 // min |x - x0| over the free unknowns subject to the equations, x0 being the values that the state has, by Newton's method with
-// a line search; ends at the least change reachable, and the caller looks at what is left. False: no value there.
+// a line search. Where that does not arrive, a solution is looked for from x0 and from points around it, and the nearest is
+// taken; where there is none, it ends at the least miss reachable, and the caller looks at what is left. False: no value there.
 template <Number N>
 bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free);
 

@@ -121,15 +121,5 @@ TEST(ConsistentState, HoldsInAnyPrecision) {
   EXPECT_LE(to_double(abs(Multi(s.qd[1] + Multi(Rational(1, 20))))), 1e-47);
 }
 
-TEST(IndependentConstraints, LeaveOutWhatFollowsFromTheOthers) {
-  const auto model = test::model_of(text(constraint("x' = 3*y'") + "[[constraint]]\nname = \"again\"\nequation = \"2*x' = 6*y'\"\n", "x = 0\n\"y'\" = 1\n"));
-  const Mechanics m = mechanics(*model);
-  InitialState<double> s;
-  ASSERT_TRUE(consistent_state(InitialProblem<double>{&m, {1, 4}, {}, std::nullopt}, s).ok());
-  const RowChoice<double> rows = independent_constraints(m, {1, 4}, s);
-  EXPECT_EQ(rows.independent.size(), 1U);
-  EXPECT_EQ(rows.dependent.size(), 1U);
-}
-
 }  // namespace
 }  // namespace anholon

@@ -1,0 +1,34 @@
+#include "cli/conserved.h"
+
+#include <cstdio>
+
+namespace anholon::cli {
+
+// A formula longer than this is no help on a terminal; --json has it.
+static constexpr std::size_t kLongest = 160;
+
+static bool cyclic(const Conserved& c) { return c.name.rfind("momentum of ", 0) == 0; }
+
+void print_conserved(const Mechanics& m) {
+  const std::vector<Conserved> list = conserved(m);
+  if (list.empty()) return;
+  std::string names;
+  for (const Conserved& c : list)
+    if (cyclic(c)) names += (names.empty() ? "" : ", ") + c.name.substr(12);
+  std::printf("\nconserved along every motion (proved)%s\n", names.empty() ? "" : (", cyclic: " + names).c_str());
+  for (const Conserved& c : list) {
+    const std::string formula = print(c.value, m.model->names, Format::text);
+    std::printf("  %s%s\n", c.name.c_str(), formula.size() > kLongest ? "" : (" = " + formula).c_str());
+  }
+}
+
+void write_conserved(JsonWriter& j, const Mechanics& m) {
+  j.key("conserved").open_array();
+  for (const Conserved& c : conserved(m)) {
+    j.open_object().key("name").string(c.name).key("cyclic").boolean(cyclic(c));
+    j.key("formula").string(print(c.value, m.model->names, Format::text)).key("because").string(c.because).close();
+  }
+  j.close();
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,339 @@
+#include "mechanics/conserved.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "expr/normal.h"
+#include "tape/point.h"
+
+namespace anholon {
+
+namespace {
+
+// Fields with all affine terms are looked for up to so many coordinates, beyond that constant ones only.
+constexpr std::size_t kMostAffine = 8;
+constexpr std::size_t kMostConstant = 60;
+// Linear algebra in double at random points of order 1: a field is a solution to this, and a number a fraction to that.
+constexpr double kRankThreshold = 1e-8, kFraction = 1e-6;
+constexpr int kLargestDenominator = 12;
+
+bool free_of(Expr e, std::initializer_list<Kind> kinds) {
+  const Graph& g = *e.graph;
+  for (NodeId id : symbols({&e, 1}))
+    if (std::find(kinds.begin(), kinds.end(), g.node(id).kind) != kinds.end()) return false;
+  return true;
+}
+bool free_of_time(Expr e) { return free_of(e, {Kind::time, Kind::given}); }
+bool constant(Expr e) { return free_of(e, {Kind::time, Kind::given, Kind::jet, Kind::multiplier, Kind::mass}); }
+template <class Test>
+bool each(const Vector& v, Test test) { return test(v.x) && test(v.y) && test(v.z); }
+
+// Values between -2 and 2 that depend on the symbol and the point alone; parameters and masses are positive.
+PointValues random_point(std::uint64_t point) {
+  return PointValues([point](const Node& n) {
+    std::uint64_t h = point * 0x9e3779b97f4a7c15U + (static_cast<std::uint64_t>(n.kind) << 40) + (static_cast<std::uint64_t>(n.order) << 32) + n.index;
+    for (int k = 0; k < 3; ++k) {
+      h ^= h >> 33;
+      h *= 0xff51afd7ed558ccdU;
+    }
+    const double unit = static_cast<double>(h >> 11) / 9007199254740992.0;
+    return n.kind == Kind::parameter || n.kind == Kind::mass ? 0.4 + 1.2 * unit : n.kind == Kind::pi ? 3.14159265358979323846 : 4 * unit - 2;
+  });
+}
+
+// Zero at a few points first: the exact test is for what is true.
+bool vanishes(Expr e, double size = 1) {
+  if (is_zero(e)) return true;
+  for (std::uint64_t k = 1; k <= 3; ++k) {
+    PointValues at = random_point(1000 + k);
+    if (const double v = at(e); !(std::abs(v) < 1e-6 * size)) return false;
+  }
+  return proved_zero(e);
+}
+
+// ---- energy ------------------------------------------------------------------------------------
+
+// A potential of a force F that is homogeneous of degree k in the place r it depends on: U = -F.r/(k + 1). Tried are constant
+// forces, springs and inverse squares; the proof is power + dU/dt = 0.
+std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
+  for (const Rational& factor : {Rational(-1), Rational(-1, 2), Rational(1)}) {
+    const Expr u = factor * product;
+    if (free_of_time(u) && vanishes(power + total_derivative(u))) return u;
+  }
+  return std::nullopt;
+}
+
+bool without_power(const Mechanics& m, std::size_t r) {
+  if (m.order[r] == 0) return free_of_time(m.phi[r]);
+  Expr rate = m.graph().zero();
+  for (std::size_t a = 0; a < m.q.size(); ++a) rate += m.Phi[r][a] * m.qd[a];
+  if (vanishes(rate)) return true;
+  for (int degree = 1; m.order[r] == 1 && degree <= 6; ++degree)
+    if (vanishes(rate - Rational(degree) * m.phi[r])) return true;
+  return false;
+}
+
+// Power and potential of one force; false if it is not conservative.
+bool add_force(const Mechanics& m, const Force& f, Column& potentials) {
+  Graph& g = m.graph();
+  const Model& model = *m.model;
+  if (f.kind == Force::Kind::generalized) {
+    Expr power = g.zero(), product = g.zero();
+    for (const auto& [a, component] : f.generalized) power += component * m.qd[a], product += component * m.q[a];
+    if (vanishes(power)) return true;
+    const auto u = homogeneous_potential(product, power);
+    if (u) potentials.push_back(*u);
+    return u.has_value();
+  }
+  if (f.kind == Force::Kind::torque) {
+    Vector rate = model.bodies[f.on.body].orientation ? model.bodies[f.on.body].orientation->rate : zero_vector(g);
+    if (f.from && model.bodies[f.from->body].orientation) rate = rate - model.bodies[f.from->body].orientation->rate;
+    return vanishes(dot(f.vector, rate));
+  }
+  // Elsewhere the velocity of the material point is not that of the place.
+  if (!f.on.at_center || (f.from && !f.from->at_center)) return false;
+  Vector place = model.bodies[f.on.body].center, force = f.vector;
+  if (f.from) place = place - model.bodies[f.from->body].center;
+  if (f.kind == Force::Kind::tension) force = (-f.tension * pow(dot(place, place), {-1, 2})) * place;
+  const Expr power = dot(force, total_derivative(place));
+  if (vanishes(power)) return true;
+  const auto u = homogeneous_potential(dot(force, place), power);
+  if (u) potentials.push_back(*u);
+  return u.has_value();
+}
+
+bool add_gravity(const Body& body, Column& potentials) {
+  if (is_zero(body.gravity) || is_zero(body.mass)) return true;
+  const Expr product = body.mass * dot(body.gravity, body.center);
+  if (each(body.gravity, constant)) {
+    potentials.push_back(-product);
+    return free_of_time(product);
+  }
+  if (!each(body.center, free_of_time)) return false;
+  const auto u = homogeneous_potential(product, body.mass * dot(body.gravity, total_derivative(body.center)));
+  if (u) potentials.push_back(*u);
+  return u.has_value();
+}
+
+bool add_observer(const Mechanics& m, Column& potentials) {
+  const Observer& o = m.model->observer;
+  if (!each(o.origin_acceleration, constant) || !each(o.spin, constant) || !free_of_time(m.V_O) || !free_of_time(m.V_omega)) return false;
+  if (!is_zero(m.V_O)) potentials.push_back(m.V_O);
+  if (is_zero(o.spin)) return true;
+  potentials.push_back(m.V_omega);
+  // Coriolis forces have no power where the places are free of t.
+  return std::all_of(m.points.begin(), m.points.end(), [](const WeightedPoint& p) { return each(p.place, free_of_time); });
+}
+
+std::optional<Conserved> energy(const Mechanics& m) {
+  const Model& model = *m.model;
+  if (!model.masses.empty() || !free_of_time(m.T)) return std::nullopt;
+  for (std::size_t r = 0; r < m.phi.size(); ++r)
+    if (!without_power(m, r)) return std::nullopt;
+  Column parts;
+  if (!add_observer(m, parts)) return std::nullopt;
+  for (const Potential& p : model.potentials) {
+    if (!free_of_time(p.value)) return std::nullopt;
+    parts.push_back(p.value);
+  }
+  for (const Body& body : model.bodies)
+    if (!add_gravity(body, parts)) return std::nullopt;
+  for (const Force& f : model.forces)
+    if (!add_force(m, f, parts)) return std::nullopt;
+  const bool scleronomic = std::all_of(m.points.begin(), m.points.end(), [](const WeightedPoint& p) { return each(p.place, free_of_time); });
+  Conserved e;
+  e.name = model.observer.inertial && scleronomic ? "energy" : "Jacobi integral";
+  e.because = "every force has a potential or no power";
+  e.terms.push_back(scleronomic ? m.T : power(m).h);
+  for (Expr u : parts)
+    if (!is_zero(u)) e.terms.push_back(u);
+  e.terms = put_masses(model, e.terms);
+  e.value = sum(e.terms);
+  return e;
+}
+
+// ---- momenta -----------------------------------------------------------------------------------
+
+// dT/dq' and dT/dq + G + sum mdot d(dT/dq')/dm, and Phi; masses put in.
+struct Rates {
+  Column momentum, rate;
+  std::vector<Column> phi;
+};
+Rates rates(const Mechanics& m) {
+  const Model& model = *m.model;
+  Graph& g = m.graph();
+  Rates r;
+  r.momentum = gradient(m.T, m.qd);
+  r.rate = gradient(m.T, m.q) + m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma;
+  for (std::size_t i = 0; i < model.masses.size(); ++i) {
+    const Expr flow = total_derivative(model.masses[i].value);
+    for (std::size_t a = 0; a < m.q.size(); ++a) {
+      const Expr by_mass = partial(r.momentum[a], g.mass(static_cast<std::uint32_t>(i)));
+      if (!is_zero(by_mass)) r.rate[a] += flow * by_mass;
+    }
+  }
+  r.momentum = put_masses(model, r.momentum);
+  r.rate = put_masses(model, r.rate);
+  for (const Column& row : m.Phi) r.phi.push_back(put_masses(model, row));
+  return r;
+}
+
+Expr rate_along(const Mechanics& m, const Rates& r, const Column& field) {
+  std::vector<Expr> terms;
+  for (std::size_t a = 0; a < field.size(); ++a) {
+    if (is_zero(field[a])) continue;
+    terms.push_back(field[a] * r.rate[a]);
+    terms.push_back(total_derivative(field[a]) * r.momentum[a]);
+  }
+  return terms.empty() ? m.graph().zero() : sum(terms);
+}
+
+// Solutions x of A x = 0, one for each column that is no combination of those before it; its entries in later such columns are 0.
+std::vector<std::vector<double>> kernel(std::vector<std::vector<double>> a, std::size_t columns) {
+  std::vector<std::size_t> pivots, free;
+  std::size_t row = 0;
+  for (auto& line : a) {
+    double largest = 0;
+    for (double v : line) largest = std::max(largest, std::abs(v));
+    if (largest > 0)
+      for (double& v : line) v /= largest;
+  }
+  for (std::size_t j = 0; j < columns; ++j) {
+    std::size_t best = row;
+    for (std::size_t i = row; i < a.size(); ++i)
+      if (std::abs(a[i][j]) > std::abs(a[best][j])) best = i;
+    if (row == a.size() || !(std::abs(a[best][j]) > kRankThreshold)) {
+      free.push_back(j);
+      continue;
+    }
+    std::swap(a[row], a[best]);
+    const double pivot = a[row][j];
+    for (double& v : a[row]) v /= pivot;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (i == row || a[i][j] == 0) continue;
+      const double factor = a[i][j];
+      for (std::size_t k = 0; k < columns; ++k) a[i][k] -= factor * a[row][k];
+    }
+    pivots.push_back(j);
+    ++row;
+  }
+  std::vector<std::vector<double>> list;
+  for (std::size_t j : free) {
+    std::vector<double> x(columns, 0.0);
+    x[j] = 1;
+    for (std::size_t i = 0; i < pivots.size(); ++i) x[pivots[i]] = -a[i][j];
+    list.push_back(x);
+  }
+  return list;
+}
+
+std::optional<Rational> as_fraction(double x) {
+  for (int d = 1; d <= kLargestDenominator; ++d) {
+    const double n = std::round(x * d);
+    if (std::abs(n) < 1e6 && std::abs(x - n / d) < kFraction) {
+      Rational r(static_cast<long>(n), d);
+      r.canonicalize();
+      return r;
+    }
+  }
+  return std::nullopt;
+}
+
+// The affine fields that come into question.
+std::vector<Column> fields(const Mechanics& m, const Rates& r) {
+  const std::size_t n = m.q.size();
+  Graph& g = m.graph();
+  if (n > kMostConstant) return {};
+  // The term (a, b) is q_b d/dq_a, (a, n) is d/dq_a; those come last, and are then the free ones.
+  std::vector<std::pair<std::size_t, std::size_t>> terms;
+  if (n <= kMostAffine)
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t b = 0; b < n; ++b) terms.push_back({a, b});
+  for (std::size_t a = n; a-- > 0;) terms.push_back({a, n});
+  std::vector<std::vector<double>> lines;
+  for (std::uint64_t k = 0; k < terms.size() + 4; ++k) {
+    PointValues at = random_point(k);
+    std::vector<double> q(n + 1, 1.0), qd(n + 1, 0.0), rate(n), momentum(n);
+    for (std::size_t a = 0; a < n; ++a) q[a] = at(m.q[a]), qd[a] = at(m.qd[a]), rate[a] = at(r.rate[a]), momentum[a] = at(r.momentum[a]);
+    const auto add = [&](const auto& coefficient) {
+      std::vector<double> line;
+      for (const auto& [a, b] : terms) line.push_back(coefficient(a, b));
+      // A point outside the domain of a formula says nothing.
+      if (std::all_of(line.begin(), line.end(), [](double v) { return std::isfinite(v); })) lines.push_back(std::move(line));
+    };
+    add([&](std::size_t a, std::size_t b) { return q[b] * rate[a] + qd[b] * momentum[a]; });
+    for (const Column& row : r.phi) {
+      std::vector<double> phi;
+      for (Expr e : row) phi.push_back(at(e));
+      add([&](std::size_t a, std::size_t b) { return q[b] * phi[a]; });
+    }
+  }
+  if (lines.size() < terms.size()) return {};
+  std::vector<Column> list;
+  for (const std::vector<double>& x : kernel(std::move(lines), terms.size())) {
+    std::vector<std::vector<std::pair<Rational, Expr>>> parts(n);
+    bool plain = true;
+    for (std::size_t k = 0; k < terms.size() && plain; ++k) {
+      const auto c = as_fraction(x[k]);
+      plain = c.has_value();
+      const auto [a, b] = terms[k];
+      if (plain && *c != 0) parts[a].push_back({*c, b < n ? m.q[b] : g.one()});
+    }
+    if (!plain) continue;
+    Column field;
+    for (const auto& p : parts) field.push_back(g.sum(p));
+    list.push_back(field);
+  }
+  return list;
+}
+
+std::string name_of(const Model& model, const Column& field) {
+  Graph& g = *model.graph;
+  std::string name;
+  std::size_t terms = 0;
+  std::size_t last = 0;
+  for (std::size_t a = 0; a < field.size(); ++a) {
+    if (is_zero(field[a])) continue;
+    ++terms;
+    last = a;
+    std::string part = print(field[a], model.names, Format::text);
+    const bool sum = g.node(field[a].id).kind == Kind::sum;
+    if (sum) part = "(" + part + ")";
+    part = (part == "1" ? "" : part == "-1" ? "-" : part + "*") + "d/d" + model.coordinates[a].name;
+    if (!name.empty()) name += part[0] == '-' ? " - " : " + ";
+    name += name.empty() || part[0] != '-' ? part : part.substr(1);
+  }
+  return terms == 1 && field[last] == g.one() ? "momentum of " + model.coordinates[last].name : "momentum along " + name;
+}
+
+}  // namespace
+
+Expr momentum_rate(const Mechanics& m, const Column& field) { return rate_along(m, rates(m), field); }
+
+std::vector<Conserved> conserved(const Mechanics& m) {
+  std::vector<Conserved> list;
+  if (auto e = energy(m)) list.push_back(std::move(*e));
+  const Model& model = *m.model;
+  const Rates r = rates(m);
+  for (const Column& field : fields(m, r)) {
+    bool admissible = true;
+    for (const Column& row : r.phi) {
+      Expr along = m.graph().zero();
+      for (std::size_t a = 0; a < field.size(); ++a) along += row[a] * field[a];
+      admissible = admissible && vanishes(along);
+    }
+    if (!admissible || !vanishes(rate_along(m, r, field))) continue;
+    Conserved p;
+    for (std::size_t a = 0; a < field.size(); ++a)
+      if (!is_zero(field[a])) p.terms.push_back(field[a] * r.momentum[a]);
+    p.value = sum(p.terms);
+    if (vanishes(p.value)) continue;
+    p.name = name_of(model, field);
+    p.because = "the kinetic energy, the forces and the constraints do not change along it";
+    list.push_back(std::move(p));
+  }
+  return list;
+}
+
+}  // namespace anholon

@@ -1,0 +1,62 @@
+#include "run/angles.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+std::vector<AngleTriple> angle_triples(const Model& model) {
+  std::vector<AngleTriple> list;
+  const Column qd = jets(model, 1);
+  for (const Body& body : model.bodies) {
+    if (!body.orientation) continue;
+    const Vector& rate = body.orientation->own_rate;
+    const Column by[] = {gradient(rate.x, qd), gradient(rate.y, qd), gradient(rate.z, qd)};
+    AngleTriple triple{body.name, {}, {}};
+    std::size_t found = 0;
+    for (std::size_t a = 0; a < qd.size(); ++a) {
+      const Vector column{by[0][a], by[1][a], by[2][a]};
+      if (is_zero(column)) continue;
+      if (found < 3) triple.rates[found] = column;
+      ++found;
+      triple.angles += (triple.angles.empty() ? "" : ", ") + model.coordinates[a].name;
+    }
+    const bool known = std::any_of(list.begin(), list.end(), [&](const AngleTriple& t) { return t.angles == triple.angles; });
+    if (found == 3 && !known) list.push_back(triple);
+  }
+  return list;
+}
+
+template <Number W>
+Column AngleWatch<W>::expressions(const std::vector<AngleTriple>& triples) {
+  Column es;
+  for (const AngleTriple& t : triples) {
+    es.push_back(dot(t.rates[0], cross(t.rates[1], t.rates[2])));
+    for (const Vector& v : t.rates) es.push_back(dot(v, v));
+  }
+  return es;
+}
+
+template <Number W>
+AngleWatch<W>::AngleWatch(const Scenario& s, const std::vector<W>& parameters)
+    : triples(angle_triples(*s.model)), least(triples.size()) {
+  if (!triples.empty()) outputs_.emplace(s, expressions(triples), parameters);
+}
+
+template <Number W>
+void AngleWatch<W>::see(const Expansion<W>& point) {
+  if (!outputs_) return;
+  OutputTape<W>& out = *outputs_;
+  out.evaluate(point);
+  for (std::size_t i = 0; i < triples.size(); ++i) {
+    const std::size_t at = 4 * i;
+    const W lengths = sqrt(W(out[at + 1] * out[at + 2] * out[at + 3]));
+    const double value = lengths > W(0) ? to_double(W(abs(out[at]) / lengths)) : 0;
+    if (value < least[i].value) least[i] = {value, point.time()};
+  }
+}
+
+template class AngleWatch<long double>;
+template class AngleWatch<Quad>;
+template class AngleWatch<Multi>;
+
+}  // namespace anholon

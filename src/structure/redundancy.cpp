@@ -1,0 +1,141 @@
+#include "structure/redundancy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "structure/stage.h"
+
+namespace anholon {
+
+namespace {
+
+// A row this near to the span of others is taken only if no better one is left.
+constexpr double kNearlyDependent = 0.05;
+
+// A value that depends on the symbol alone, for what a rank must not depend on.
+double arbitrary(const Node& n) { return 0.7 + 0.13 * static_cast<double>((n.index * 7 + n.order * 3) % 11); }
+
+double length(const std::vector<double>& v) {
+  double sum = 0;
+  for (double x : v) sum += x * x;
+  return std::sqrt(sum);
+}
+
+// An orthonormal basis that grows.
+class OrthonormalRows {
+ public:
+  // What is left of v, twice orthogonalized.
+  std::vector<double> beyond(std::vector<double> v) const {
+    for (int pass = 0; pass < 2; ++pass)
+      for (const std::vector<double>& e : basis_) {
+        double dot = 0;
+        for (std::size_t a = 0; a < v.size(); ++a) dot += e[a] * v[a];
+        for (std::size_t a = 0; a < v.size(); ++a) v[a] -= dot * e[a];
+      }
+    return v;
+  }
+  void add(std::vector<double> v) {
+    const double l = length(v);
+    for (double& x : v) x /= l;
+    basis_.push_back(std::move(v));
+  }
+
+ private:
+  std::vector<std::vector<double>> basis_;
+};
+
+}  // namespace
+
+IndependentConstraints choose_independent(const Matrix<double>& phi, const std::vector<int>& order) {
+  IndependentConstraints choice;
+  std::vector<std::size_t> open;
+  std::vector<std::vector<double>> rows(phi.rows);
+  for (std::size_t i = 0; i < phi.rows; ++i) {
+    rows[i].assign(&phi.data[i * phi.cols], &phi.data[i * phi.cols] + phi.cols);
+    const double l = length(rows[i]);
+    if (!(l > 0)) {
+      choice.independent.push_back(i);
+      continue;
+    }
+    for (double& x : rows[i]) x /= l;
+    open.push_back(i);
+  }
+  std::stable_sort(open.begin(), open.end(), [&](std::size_t i, std::size_t j) { return order[i] < order[j]; });
+  OrthonormalRows span;
+  for (const double threshold : {kNearlyDependent, kDependent}) {
+    std::vector<std::size_t> left;
+    for (std::size_t i : open) {
+      std::vector<double> rest = span.beyond(rows[i]);
+      const double sine = length(rest);
+      if (!(sine > threshold)) {
+        left.push_back(i);
+        continue;
+      }
+      span.add(std::move(rest));
+      choice.weakest = std::min(choice.weakest, sine);
+      choice.independent.push_back(i);
+    }
+    open = std::move(left);
+  }
+  choice.redundant = std::move(open);
+  std::sort(choice.independent.begin(), choice.independent.end());
+  std::sort(choice.redundant.begin(), choice.redundant.end());
+  return choice;
+}
+
+IndependentConstraints independent_constraints(const Mechanics& m, const std::vector<double>& parameters, const InitialState<double>& state) {
+  const std::size_t s = m.phi.size(), n = m.q.size();
+  if (s == 0) return {};
+  Column es;
+  for (const Column& row : m.Phi)
+    for (Expr e : row) es.push_back(put_masses(*m.model, e));
+  const Tape tape = compile(es);
+  Machine<double> machine(tape, 0, parameters);
+  const Graph& g = m.graph();
+  for (const Input& in : tape.inputs) {
+    const Node& node = g.node(in.symbol);
+    const double* known = state.value(node);
+    machine.series(in.slot)[0] = node.kind == Kind::time ? state.t : known ? *known : arbitrary(node);
+  }
+  machine.evaluate();
+  Matrix<double> phi(s, n);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t a = 0; a < n; ++a) phi(i, a) = machine.value(i * n + a);
+  return choose_independent(phi, m.order);
+}
+
+template <Number N>
+std::vector<N> least_multipliers(const Matrix<N>& phi, const std::vector<std::size_t>& independent, const std::vector<N>& multipliers) {
+  const std::size_t s = phi.rows, n = phi.cols, r = independent.size();
+  Matrix<N> gram(r, r), square(r, r), c(s, r);
+  const auto dot = [&](std::size_t i, std::size_t j) {
+    N sum(0);
+    for (std::size_t a = 0; a < n; ++a) addmul(sum, phi(i, a), phi(j, a));
+    return sum;
+  };
+  for (std::size_t i = 0; i < r; ++i)
+    for (std::size_t j = 0; j < r; ++j) gram(i, j) = dot(independent[i], independent[j]);
+  std::vector<N> lambda(s, N(0)), row(r, N(0)), w;
+  Lu<N> lu;
+  if (r == 0 || !lu.factor(gram)) return lambda;
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t j = 0; j < r; ++j) row[j] = dot(i, independent[j]);
+    lu.solve(row, w);
+    for (std::size_t j = 0; j < r; ++j) c(i, j) = w[j];
+  }
+  for (std::size_t j = 0; j < r; ++j)
+    for (std::size_t k = 0; k < r; ++k)
+      for (std::size_t i = 0; i < s; ++i) addmul(square(j, k), c(i, j), c(i, k));
+  if (!lu.factor(square)) return lambda;
+  lu.solve(multipliers, w);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j < r; ++j) addmul(lambda[i], c(i, j), w[j]);
+  return lambda;
+}
+
+template std::vector<double> least_multipliers(const Matrix<double>&, const std::vector<std::size_t>&, const std::vector<double>&);
+template std::vector<long double> least_multipliers(const Matrix<long double>&, const std::vector<std::size_t>&, const std::vector<long double>&);
+template std::vector<Quad> least_multipliers(const Matrix<Quad>&, const std::vector<std::size_t>&, const std::vector<Quad>&);
+template std::vector<Multi> least_multipliers(const Matrix<Multi>&, const std::vector<std::size_t>&, const std::vector<Multi>&);
+
+}  // namespace anholon

@@ -1,0 +1,135 @@
+// Integrals of the motion: what is found, that it is proved, and mutants for which nothing may be found.
+#include <gtest/gtest.h>
+
+#include "expr/normal.h"
+#include "mechanics/conserved.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+std::vector<std::string> names_of(const std::shared_ptr<const Model>& model) {
+  const Mechanics m = mechanics(*model);
+  std::vector<std::string> names;
+  for (const Conserved& c : conserved(m)) names.push_back(c.name);
+  return names;
+}
+using Names = std::vector<std::string>;
+
+const std::string kPlane = R"toml(coordinates = ["x", "y"]
+[parameters]
+m = 2
+k = 3
+[[particle]]
+name = "P"
+mass = "m"
+position = ["x", "y", "0"]
+[potential]
+spring = "k/2*(x^2 + y^2)"
+)toml";
+
+TEST(Conserved, CentralForceKeepsEnergyAndAngularMomentum) {
+  const Names both = {"energy", "momentum along -y*d/dx + x*d/dy"};
+  const Names found = names_of(test::model_of(kPlane));
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0], "energy");
+  EXPECT_EQ(found[1].rfind("momentum along ", 0), 0U) << found[1];
+}
+
+TEST(Conserved, NotWhereTheForceTurnsTheMutantAway) {
+  // No symmetry, but a potential.
+  EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "(x^2 + y^2)", "(x^2 + 2*y^2)"))), Names{"energy"});
+  // A damper: no energy; its force turns with the plane, but does not leave the momentum alone.
+  EXPECT_EQ(names_of(test::model_of(kPlane + "[[force]]\non = \"P\"\nvector = \"-vel(P)\"\n")), Names{});
+  // Explicit time.
+  EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "k/2*(x^2 + y^2)", "sin(t)*x"))), Names{"momentum of y"});
+  // A mass that varies.
+  EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"", "mass = \"m + t\""))).size(), 1U);
+  // A constraint that rolls in time does work; one that touches both coordinates keeps the energy alone.
+  EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"drive\"\nequation = \"y' = x + t\"\n")), Names{});
+  EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"blade\"\nequation = \"y' = x*x'\"\n")), Names{"energy"});
+}
+
+TEST(Conserved, AConstraintOnACyclicCoordinateEndsItsMomentum) {
+  const std::string free = R"toml(coordinates = ["x", "y", "th"]
+[parameters]
+m = 2
+J = 3
+[[body]]
+name = "B"
+mass = "m"
+inertia = "J"
+center = ["x", "y", "0"]
+angle = "th"
+)toml";
+  const Names all = names_of(test::model_of(free));
+  for (const char* name : {"energy", "momentum of x", "momentum of y", "momentum of th"}) EXPECT_NE(std::find(all.begin(), all.end(), name), all.end()) << name;
+  EXPECT_EQ(names_of(test::model_of(free + "[[constraint]]\nname = \"blade\"\nequation = \"y'*cos(th) = x'*sin(th)\"\n")), (Names{"energy", "momentum of th"}));
+  // The blade away from the mass centre: the plane may turn as a whole, but the blade does not let it.
+  EXPECT_EQ(names_of(test::model_of(free + "[[constraint]]\nname = \"blade\"\nequation = \"y'*cos(th) = x'*sin(th) + th'\"\n")), Names{"energy"});
+}
+
+TEST(Conserved, TwoBodiesKeepWhatTheyShare) {
+  const std::string two = R"toml(coordinates = ["x1", "x2"]
+[parameters]
+m1 = 2
+m2 = 3
+k = 1
+[[particle]]
+name = "A"
+mass = "m1"
+position = ["x1", "0", "0"]
+[[particle]]
+name = "B"
+mass = "m2"
+position = ["x2", "0", "0"]
+[potential]
+spring = "k/2*(x1 - x2)^2"
+)toml";
+  EXPECT_EQ(names_of(test::model_of(two)), (Names{"energy", "momentum along d/dx1 + d/dx2"}));
+  EXPECT_EQ(names_of(test::model_of(test::replaced(two, "(x1 - x2)^2", "(x1 - 2*x2)^2"))), (Names{"energy", "momentum along d/dx1 + 1/2*d/dx2"}));
+  EXPECT_EQ(names_of(test::model_of(two + "[[force]]\non = \"A\"\nvector = [\"x1*x2\", \"0\", \"0\"]\n")), Names{});
+}
+
+TEST(Conserved, GravityFrameAndDrivenPlaces) {
+  const std::string fall = R"toml(coordinates = ["x", "y", "z"]
+[parameters]
+m = 2
+mu = 3
+w = 2
+g = 10
+[[particle]]
+name = "P"
+mass = "m"
+position = ["x", "y", "z"]
+[gravity]
+field = "-mu/norm(here)^3*here"
+)toml";
+  const Names newton = names_of(test::model_of(fall));
+  ASSERT_EQ(newton.size(), 4U) << "energy and three angular momenta";
+  EXPECT_EQ(newton[0], "energy");
+  EXPECT_EQ(names_of(test::model_of(test::replaced(fall, "norm(here)^3", "norm(here)^4"))).size(), 3U) << "no potential of that power is tried";
+  EXPECT_EQ(names_of(test::model_of(fall + "[observer]\nspin = \"w*ez\"\n"))[0], "Jacobi integral");
+  EXPECT_NE(names_of(test::model_of(fall + "[observer]\nspin = \"w*t*ez\"\n"))[0].substr(0, 6), "Jacobi");
+}
+
+// Of every shipped model what is found is proved again by the power identity, and found in time.
+class OfShipped : public testing::TestWithParam<std::string> {};
+
+TEST_P(OfShipped, HasAnEnergyOnlyWhereThePowerIdentitySaysSo) {
+  const auto model = test::shipped(GetParam());
+  const Mechanics m = mechanics(*model);
+  for (const Conserved& c : conserved(m)) {
+    EXPECT_EQ(c.value, sum(c.terms));
+    if (c.name.rfind("momentum", 0) == 0) continue;
+    // d(h + U)/dt = noncons + dU/dt, U all terms but the first.
+    Expr rate = power(m).noncons;
+    for (std::size_t k = 1; k < c.terms.size(); ++k) rate += total_derivative(c.terms[k]);
+    EXPECT_TRUE(proved_zero(rate)) << c.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, OfShipped, testing::ValuesIn(test::shipped_models()), [](const auto& p) { return test::test_name(p.param); });
+
+}  // namespace
+}  // namespace anholon

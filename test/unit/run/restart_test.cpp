@@ -1,0 +1,114 @@
+// A run that is laid down and taken up again gives the rows of the run that never stopped, bit by bit.
+#include <gtest/gtest.h>
+
+#include "run/simulate.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+struct Case {
+  const char* name;
+  const char* model;
+  const char* form = "routh";
+  Precision precision = Precision::real;
+  int digits = 16;
+  Rational half{1}, whole{2};
+  bool steps = false;  // rows at the steps
+};
+
+struct Result {
+  std::vector<std::vector<std::string>> rows;
+  SimulationReport report;
+  std::string saved;
+};
+
+Result run(const Case& c, const Rational& to, const SavedRun* resume, const std::string& set_apart = {}) {
+  Scenario s;
+  EXPECT_TRUE(make_scenario(test::model_of(test::shipped_text(c.model) + set_apart), *find_formulation(c.form), {}, s).ok());
+  SimulationOptions o;
+  o.to = to;
+  if (!c.steps) o.every = Rational(1, 8);
+  o.precision = c.precision;
+  o.digits = c.digits;
+  if (c.digits > 16) o.tolerance = Rational(1, mpz_class("1" + std::string(static_cast<std::size_t>(c.digits), '0')));
+  o.resume = resume;
+  Result r;
+  o.save = [&](const SavedRun& run) { r.saved = print(run); };
+  MemorySink sink;
+  r.report = simulate(s, o, sink);
+  EXPECT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+  r.rows = sink.rows();
+  return r;
+}
+
+class Restart : public testing::TestWithParam<Case> {};
+
+TEST_P(Restart, GoesOnWithTheSameBits) {
+  const Case& c = GetParam();
+  const std::string monitor = "\n[monitor]\nwatched = \"t^2\"\n";
+  const Result first = run(c, c.half, nullptr, monitor);
+  const SavedRun saved = read_saved({"run.state", first.saved});
+  const Result second = run(c, c.whole, &saved, monitor), whole = run(c, c.whole, nullptr, monitor);
+  ASSERT_GT(second.rows.size(), 2U);
+  ASSERT_GT(whole.rows.size(), second.rows.size());
+  const std::vector<std::vector<std::string>> tail(whole.rows.end() - static_cast<std::ptrdiff_t>(second.rows.size()), whole.rows.end());
+  EXPECT_EQ(second.rows, tail);
+  if (!c.steps) EXPECT_EQ(first.rows.size() + second.rows.size(), whole.rows.size());
+  EXPECT_EQ(second.report.steps, whole.report.steps);
+  EXPECT_EQ(second.report.eliminations, whole.report.eliminations);
+  EXPECT_EQ(second.report.power, whole.report.power);
+  EXPECT_EQ(second.report.newton, whole.report.newton);
+  EXPECT_EQ(second.report.constraints, whole.report.constraints);
+  EXPECT_EQ(second.report.smallest_sigma, whole.report.smallest_sigma);
+  EXPECT_EQ(second.saved, whole.saved);
+}
+
+INSTANTIATE_TEST_SUITE_P(Runs, Restart,
+                         testing::Values(Case{"Sleigh", "zoo/chaplygin-sleigh"}, Case{"DoublePendulum", "zoo/double-pendulum-cartesian"},
+                                         Case{"AtTheSteps", "zoo/double-pendulum-cartesian", "routh", Precision::real, 16, 1, 2, true},
+                                         Case{"ConstantJerk", "zoo/constant-jerk"},
+                                         // Chaplygin's form divides by cos(theta), which vanishes on the way.
+                                         Case{"Elimination", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10},
+                                         Case{"LongDouble", "zoo/disc", "routh", Precision::long_real},
+                                         Case{"ThirtyDigits", "zoo/chaplygin-sleigh", "routh", Precision::multi, 30}),
+                         [](const auto& p) { return std::string(p.param.name); });
+
+TEST(Restart, TheEliminationChangesBeforeAndAfter) {
+  const Case c{"", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10};
+  const std::size_t all = run(c, 20, nullptr).report.eliminations;
+  EXPECT_GE(all, 1U) << "the case above must hold a change of the elimination";
+}
+
+TEST(Restart, RefusesWhatDoesNotFit) {
+  const Case c{"", "zoo/chaplygin-sleigh"};
+  const std::string saved = run(c, 1, nullptr).saved;
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      read_saved({"run.state", text});
+    } catch (const Failure& f) {
+      return f.diagnostic.message;
+    }
+    return {};
+  };
+  EXPECT_EQ(refusal(saved), "");
+  EXPECT_EQ(refusal("coordinates = []\n"), "this is not a saved run");
+  EXPECT_EQ(refusal(test::replaced(saved, "counts", "countz")), "the saved run was changed after it was written, or is cut off");
+  // The state of a larger system.
+  const SavedRun of_another = read_saved({"run.state", run({"", "zoo/disc"}, 1, nullptr).saved});
+  EXPECT_THROW(run(c, 2, &of_another), Failure);
+}
+
+TEST(Restart, NumbersAsTextKeepTheirBits) {
+  EXPECT_EQ(parse_exact<double>(exact_text(0.1)), 0.1);
+  EXPECT_EQ(parse_exact<long double>(exact_text(-1.0L / 3)), -1.0L / 3);
+  EXPECT_TRUE(std::signbit(*parse_exact<double>(exact_text(-0.0))));
+  const PrecisionScope precision(40);
+  const Multi third = Multi(1) / Multi(3);
+  EXPECT_TRUE(*parse_exact<Multi>(exact_text(third)) == third);
+  EXPECT_FALSE(parse_exact<double>("0x1p3x"));
+  EXPECT_FALSE(parse_exact<Multi>(""));
+}
+
+}  // namespace
+}  // namespace anholon

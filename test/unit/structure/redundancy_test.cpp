@@ -1,0 +1,70 @@
+#include "structure/redundancy.h"
+
+#include <gtest/gtest.h>
+
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+// A particle with the constraints listed, separated by semicolons.
+IndependentConstraints choice_of(const std::string& constraints, const std::string& initial) {
+  std::string text = "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", \"z\"]\n";
+  for (std::size_t at = 0, k = 0; at < constraints.size(); ++k) {
+    const std::size_t end = std::min(constraints.find(';', at), constraints.size());
+    text += "[[constraint]]\nname = \"c" + std::to_string(k) + "\"\nequation = \"" + constraints.substr(at, end - at) + "\"\n";
+    at = end + 1;
+  }
+  const auto model = test::model_of(text + "[initial]\n" + initial);
+  const Mechanics m = mechanics(*model);
+  InitialState<double> s;
+  EXPECT_TRUE(consistent_state(InitialProblem<double>{&m, {}, {}, std::nullopt}, s).ok());
+  return independent_constraints(m, {}, s);
+}
+
+using Indices = std::vector<std::size_t>;
+
+TEST(IndependentConstraints, LeaveOutWhatFollowsFromTheOthers) {
+  const IndependentConstraints c = choice_of("x' = 3*y';2*x' = 6*y'", "\"y'\" = 1\n");
+  EXPECT_EQ(c.independent, Indices{0});
+  EXPECT_EQ(c.redundant, Indices{1});
+}
+
+TEST(IndependentConstraints, KeepTheLowerOrder) {
+  EXPECT_EQ(choice_of("x'' = 3*y'';x' = 3*y'", "\"y'\" = 1\n").independent, Indices{1});
+  EXPECT_EQ(choice_of("x' = 3*y';x''' = 3*y''';x = 3*y", "\"y'\" = 1\n").independent, Indices{2});
+}
+
+// The second is nearly the first; the third is a good one.
+TEST(IndependentConstraints, PreferRowsFarFromDependent) {
+  const IndependentConstraints c = choice_of("x' = 3*y';x' = 3*y' + z'/1000;x' = z' + 3*y'", "\"y'\" = 0\n");
+  EXPECT_EQ(c.independent, (Indices{0, 2}));
+  EXPECT_EQ(c.redundant, Indices{1});
+}
+
+TEST(IndependentConstraints, TakeNearlyDependentRowsIfThereIsNoBetter) {
+  const IndependentConstraints c = choice_of("x' = 3*y';x' = 3*y' + z'/1000", "\"y'\" = 0\n");
+  EXPECT_EQ(c.independent, (Indices{0, 1}));
+  EXPECT_LT(c.weakest, 1e-3);
+}
+
+TEST(IndependentConstraints, RowsThatVanishStayIn) {
+  EXPECT_EQ(choice_of("x' = 3*y';x'^2 = 0", "\"y'\" = 0\n").independent, (Indices{0, 1}));
+}
+
+// The third row is twice the first and half of the second.
+TEST(LeastMultipliers, AreTheLeastWithTheSameForces) {
+  Matrix<double> phi(3, 2);
+  phi(0, 0) = 1, phi(1, 1) = 3, phi(2, 0) = 2, phi(2, 1) = 1.5;
+  const std::vector<double> lambda = least_multipliers<double>(phi, {0, 1}, {5, -2});
+  for (std::size_t a = 0; a < 2; ++a) {
+    double force = 0;
+    for (std::size_t i = 0; i < 3; ++i) force += phi(i, a) * lambda[i];
+    EXPECT_NEAR(force, a == 0 ? 5 : -6, 1e-14);
+  }
+  // Nothing along (2, 1/2, -1), the kernel of Phi^T.
+  EXPECT_NEAR(2 * lambda[0] + lambda[1] / 2 - lambda[2], 0, 1e-14);
+}
+
+}  // namespace
+}  // namespace anholon
