@@ -77,7 +77,6 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   return true;
 }
 
-// The sum of the absolute values of the terms of an equation.
 template <Number N>
 N Stage<N>::worst(const std::vector<N>& scales, std::size_t* which) const {
   N most(0);
