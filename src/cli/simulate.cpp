@@ -155,7 +155,7 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
     j.key("times");
     if (r.rigorous->times) j.integer(static_cast<long long>(*r.rigorous->times));
     else j.string("all");
-    j.key("newton").number(r.rigorous->newton).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
+    j.key("newton").number(r.rigorous->newton).key("projected").number(r.rigorous->projected).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
     j.key("bits").integer(r.rigorous->bits);
     j.close();
   }
@@ -208,8 +208,8 @@ void report(const Scenario& s, const SimulationReport& r) {
                worst_constraint(r).c_str(), small(r.power).c_str());
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;
-    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, constraints by %s, steps join within %s\n",
-                 (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
+    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, constraints %s, steps join within %s\n",
+                 (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
   if (r.error)
     std::fprintf(stderr, "digits to trust: about %d (error %s at t = %s, by %s)\n", r.error->digits, small(r.error->error).c_str(), r.error->t.c_str(),

@@ -132,7 +132,9 @@ TEST_P(DefectOfAMotion, ForAllTimesHoldsAtMany) {
   EXPECT_LT(number(all.rigorous->constraints), 1e-7);
   EXPECT_LT(number(all.rigorous->joints), 1e-10);
   EXPECT_LE(number(many.rigorous->newton), number(all.rigorous->newton));
+  EXPECT_LE(number(many.rigorous->projected), number(all.rigorous->projected));
   EXPECT_LE(number(many.rigorous->constraints), number(all.rigorous->constraints));
+  EXPECT_LT(number(all.rigorous->projected), 1e-8);
   EXPECT_LE(number(all.rigorous->newton), 10 * number(many.rigorous->newton)) << "the largest of many times is near the bound";
 }
 INSTANTIATE_TEST_SUITE_P(Models, DefectOfAMotion,
@@ -160,6 +162,20 @@ TEST(Defect, FallsWithTheToleranceInEveryNumberType) {
   EXPECT_LT(newton(Precision::multi, "1e-42", 40), 1e-38);
 }
 
+// Near a pole of the multiplier its polynomial is poor; what moves is not.
+TEST(Defect, WithoutMultipliersIsThatOfTheMotionAlone) {
+  const auto s = scenario(test::shipped("zoo/appell-hamel"));
+  SimulationOptions o;
+  o.to = Rational(1, 2);
+  MemorySink rows;
+  for (const std::size_t times : {0U, 16U}) {
+    o.rigorous = times;
+    const SimulationReport r = simulate(*s, o, rows);
+    EXPECT_GT(number(r.rigorous->newton), 1e-10);
+    EXPECT_LT(number(r.rigorous->projected), 1e-12);
+  }
+}
+
 // Mutants: one coefficient changed by 1e-9, and a force with the wrong sign, must be seen.
 TEST(Defect, OfADisturbedTrajectoryOrAWrongLawIsSeen) {
   auto s = scenario(test::shipped("zoo/chaplygin-sleigh"));
@@ -181,10 +197,16 @@ TEST(Defect, OfADisturbedTrajectoryOrAWrongLawIsSeen) {
       bad.coefficients[unknown][k] += Ball(Rational(1, 1000000000));
       const RigorousReport r = defect(*s, {bad}, times);
       EXPECT_GT(std::max(number(r.newton), number(r.constraints)), 1e-10) << "unknown " << unknown << ", coefficient " << k;
+      if (unknown == 3) {
+        EXPECT_LT(number(r.projected), 1e-11) << "the multiplier is not looked at";
+      } else {
+        EXPECT_GT(std::max(number(r.projected), number(r.constraints)), 1e-10) << "unknown " << unknown << ", coefficient " << k;
+      }
     }
   }
   s->mechanics->Q[2] += s->mechanics->graph().number(1);
   EXPECT_GT(number(defect(*s, {good}, 16).newton), 0.1) << "another torque";
+  EXPECT_GT(number(defect(*s, {good}, 0).projected), 0.1);
 }
 
 }  // namespace
