@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "cli/input.h"
+#include "structure/blocks.h"
 
 namespace anholon::cli {
 
@@ -45,6 +46,7 @@ int show(const Options& o, const Scenario& s) {
       std::printf("%s: %s = 0\n", s.system.equation_names[i].c_str(), texts[i].c_str());
   } else if (o.show == "structure") {
     std::fputs(print(s.system, s.structure).c_str(), stdout);
+    if (const std::vector<Block> list = blocks(s.structure); list.size() > 1) std::printf("\n%s", print(s.system, s.structure, list).c_str());
   } else if (o.show == "program") {
     std::fputs(print(program(s.system, s.structure)).c_str(), stdout);
   } else {

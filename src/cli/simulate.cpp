@@ -150,15 +150,6 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
                                     {"power", r.power}, {"smallest_sigma", r.smallest_sigma}})
     j.key(name).number(small(value));
   j.close();
-  if (r.rigorous) {
-    j.key("rigorous").open_object();
-    j.key("times");
-    if (r.rigorous->times) j.integer(static_cast<long long>(*r.rigorous->times));
-    else j.string("all");
-    j.key("newton").number(r.rigorous->newton).key("projected").number(r.rigorous->projected).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
-    j.key("bits").integer(r.rigorous->bits);
-    j.close();
-  }
   j.key("smallest_sigma_t").number(r.smallest_sigma_t.empty() ? "nan" : r.smallest_sigma_t);
   j.key("constraints_each").open_object();
   for (const ConstraintReport& c : r.constraints_each) {
@@ -178,6 +169,15 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   if (!r.warnings.empty()) {
     j.key("warnings").open_array();
     for (const Warning& w : r.warnings) j.open_object().key("message").string(w.message).key("hint").string(w.hint).close();
+    j.close();
+  }
+  if (r.rigorous) {
+    j.key("rigorous").open_object();
+    j.key("times");
+    if (r.rigorous->times) j.integer(static_cast<long long>(*r.rigorous->times));
+    else j.string("all");
+    j.key("newton").number(r.rigorous->newton).key("projected").number(r.rigorous->projected).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
+    j.key("bits").integer(r.rigorous->bits);
     j.close();
   }
   j.key("steps").integer(static_cast<long long>(r.steps));
@@ -206,11 +206,6 @@ void report(const Scenario& s, const SimulationReport& r) {
   std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (before projection %s%s), power balance %s\n",
                small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), small(r.constraints).c_str(),
                worst_constraint(r).c_str(), small(r.power).c_str());
-  if (r.rigorous) {
-    const RigorousReport& g = *r.rigorous;
-    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, constraints %s, steps join within %s\n",
-                 (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
-  }
   if (r.error)
     std::fprintf(stderr, "digits to trust: about %d (error %s at t = %s, by %s)\n", r.error->digits, small(r.error->error).c_str(), r.error->t.c_str(),
                  r.error->means.c_str());
@@ -221,6 +216,11 @@ void report(const Scenario& s, const SimulationReport& r) {
   for (const WatchedReport& w : r.monitors)
     std::fprintf(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(), w.first.c_str(),
                  w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
+  if (r.rigorous) {
+    const RigorousReport& g = *r.rigorous;
+    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, constraints %s, steps join within %s\n",
+                 (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
+  }
   std::fprintf(stderr, "%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.steps, r.order, r.rows,
                small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.seconds);
   for (const Warning& w : r.warnings) std::fprintf(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());

@@ -47,7 +47,7 @@ template <Number N>
 Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
                     const StepSettings& settings)
     : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
-      expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {
+      parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {
   if (program.nonlinear) ahead_ = std::make_unique<Expansion<N>>(program, parameters, 1);
 }
 
@@ -128,7 +128,8 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
   convert_all(guess, narrow_leading_);
   expansion_.load(convert<N>(t_), narrow_state_, narrow_leading_);
   if (Outcome o = expansion_.prepare(); !o.ok()) return o;
-  note_sigma(expansion_.smallest_singular_value());
+  sigma_ = expansion_.smallest_singular_value();
+  note_sigma(sigma_);
   point_.load(t_, state_, guess);
   if constexpr (std::same_as<N, W>) {
     if (Outcome o = expansion_.project(); !o.ok()) return o;
@@ -279,6 +280,90 @@ typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
   return h;
 }
 
+// The Taylor polynomial may also carry a motion across a point where J is singular: a linkage that folds flat, a multiplier that
+// makes the inertia vanish. The motion beyond is one of several, so it ends there. J is singular between two points if its
+// smallest singular value, with a sign, or the reaction of the weakest combination of multipliers changes sign on the way
+// (theory: taylor).
+template <Number N>
+typename Stepper<N>::Mode Stepper<N>::mode(Expansion<N>& at, N sigma) {
+  const Matrix<N>& J = at.system_jacobian();
+  const std::size_t size = J.rows, n = at.program().system->coordinates;
+  Mode m;
+  m.sigma = sigma;
+  m.v = at.weakest_direction();
+  m.image.assign(size, N(0));
+  m.reaction.assign(n, N(0));
+  for (std::size_t i = 0; i < size; ++i) {
+    N largest(0);
+    for (std::size_t j = 0; j < size; ++j) {
+      addmul(m.image[i], J(i, j), m.v[j]);
+      if (i < n && j >= n) addmul(m.reaction[i], J(i, j), m.v[j]);
+      if (N x = abs(J(i, j)); x > largest) largest = x;
+    }
+    if (largest > N(0)) m.image[i] = m.image[i] / largest;
+  }
+  return m;
+}
+
+// The cosine of the angle between parts of two vectors.
+template <Number N>
+static double cosine(const std::vector<N>& a, const std::vector<N>& b, std::size_t from = 0) {
+  double dot = 0, aa = 0, bb = 0;
+  for (std::size_t i = from; i < a.size(); ++i) {
+    const double x = to_double(a[i]), y = to_double(b[i]);
+    dot += x * y, aa += x * x, bb += y * y;
+  }
+  return aa > 0 && bb > 0 ? dot / std::sqrt(aa * bb) : 0;
+}
+
+template <Number N>
+bool Stepper<N>::crossed(const Mode& a, const Mode& b, std::size_t coordinates) {
+  constexpr double kSameDirection = 0.5;
+  const auto flipped = [](double x, double y) { return std::abs(x) > kSameDirection && std::abs(y) > kSameDirection && x * y < 0; };
+  return flipped(cosine(a.v, b.v), cosine(a.image, b.image)) || flipped(cosine(a.v, b.v, coordinates), cosine(a.reaction, b.reaction));
+}
+
+// At t + h on the polynomial; nothing where J has no LU.
+template <Number N>
+std::optional<typename Stepper<N>::Mode> Stepper<N>::mode_ahead(const W& h) {
+  if (!probe_) probe_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
+  std::vector<W> increments, leading, state;
+  polynomial(h, increments, leading);
+  point_.state(state);
+  std::vector<N> narrow_state, narrow_leading;
+  for (std::size_t i = 0; i < state.size(); ++i) narrow_state.push_back(convert<N>(W(state[i] + increments[i])));
+  for (const W& x : leading) narrow_leading.push_back(convert<N>(x));
+  probe_->load(convert<N>(W(t_ + h)), narrow_state, narrow_leading);
+  if (!probe_->prepare().ok()) return std::nullopt;
+  const N sigma = probe_->smallest_singular_value();
+  return mode(*probe_, sigma);
+}
+
+// How far from t_ the first singular point is that is met within h; nothing if there is none.
+template <Number N>
+std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
+  constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
+  constexpr int kBisections = 60;
+  // A singular value that vanishes within the step has fallen by more than half in one as long.
+  const bool suspected = last_step_ == W(0) || sigma_ < sigma_before_ * N(kFaster) || abs(h) > last_step_ * W(kLonger);
+  if (!suspected) return std::nullopt;
+  const std::size_t n = program_->system->coordinates;
+  Mode low = mode(expansion_, sigma_);
+  const N start = low.sigma;
+  const std::optional<Mode> end = mode_ahead(h);
+  if (!end || !crossed(low, *end, n)) return std::nullopt;
+  W from(0), to = h;
+  for (int k = 0; k < kBisections; ++k) {
+    const W middle = from + (to - from) * W(0.5);
+    if (middle == from || middle == to) break;
+    std::optional<Mode> m = mode_ahead(middle);
+    if (!m) return middle;
+    if (crossed(low, *m, n)) to = middle;
+    else from = middle, low = std::move(*m);
+  }
+  return low.sigma < start * N(kVanished) ? std::optional<W>(from) : std::nullopt;
+}
+
 template <Number N>
 Outcome Stepper<N>::step(const W& end) {
   if (settings_.cancelled && settings_.cancelled())
@@ -298,12 +383,23 @@ Outcome Stepper<N>::step(const W& end) {
   if (!(h > floor))
     return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
             "the motion approaches a singularity: stop before it, or look at the last good state"};
-  const bool last = !(h < abs(left));
+  if (singular_ahead_) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+  bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
+  if (const std::optional<W> met = singular_within(h)) {
+    // Up to where J is still regular.
+    constexpr double kShortOf = 1 - 1e-7;
+    h = *met * W(kShortOf);
+    last = false;
+    singular_ahead_ = true;
+    if (!(abs(h) > floor)) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+  }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
   const W reached = last ? end : convert<W>(convert<N>(W(t_ + h)));
   h = reached - t_;
+  last_step_ = abs(h);
+  sigma_before_ = sigma_;
 
   std::vector<W> increments;
   polynomial(h, increments, leading_);

@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "program/expansion.h"
 
@@ -91,14 +92,28 @@ class Stepper {
   N step_size() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
+  // What shows that J was singular in between: the direction v that J shows least, J v, and the reactions of the multipliers in v.
+  struct Mode {
+    std::vector<N> v, image, reaction;
+    N sigma{0};
+  };
+  static Mode mode(Expansion<N>& at, N sigma);
+  static bool crossed(const Mode& a, const Mode& b, std::size_t coordinates);
+  std::optional<Mode> mode_ahead(const W& h);
+  std::optional<W> singular_within(const W& h);
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
   StepSettings settings_;
   int order_;
+  std::vector<N> parameters_;
   Expansion<N> expansion_;
   Expansion<W> point_;
   std::unique_ptr<Expansion<N>> ahead_;  // where leading derivatives enter nonlinearly
+  std::unique_ptr<Expansion<N>> probe_;  // where J may become singular within a step
+  N sigma_{0}, sigma_before_{0};         // where the last two steps began
+  W last_step_{0};
+  bool singular_ahead_ = false;          // right after the present state
   W branch_step_{0};
   W t_{0}, before_{0};
   N horizon_{0};

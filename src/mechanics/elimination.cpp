@@ -11,22 +11,14 @@ namespace anholon {
 
 namespace {
 
-// An expression of more nodes than this is not rewritten; less in large matrices, which nobody reads.
-constexpr std::size_t kShortEnough = 200, kShortInLarge = 40, kLarge = 5;
+// In large matrices, which nobody reads, only shorter expressions are rewritten.
+constexpr std::size_t kShortInLarge = 40, kLarge = 5;
 // What becomes short on the way is short without more products of terms than this.
 constexpr long kShortWork = 20'000;
 // A pivot is at least this part of the largest candidate.
 constexpr double kPivot = 1e-3;
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
-
-// e, or its expanded form where that is shorter.
-Expr shorter(Expr e, std::size_t longest = kShortEnough) {
-  const std::size_t size = nodes(e);
-  if (size <= 3 || size > longest) return e;
-  const std::optional<Expr> full = expanded(e, kShortWork);
-  return full && nodes(*full) < size ? *full : e;
-}
 
 // e as short as a person would write it: common factors of fractions cancelled, also those that sin^2 + cos^2 = 1 hides.
 Expr shortest(Expr e) {
@@ -57,6 +49,13 @@ bool depends(std::span<const Expr> es, const Column& on) {
 }
 
 }  // namespace
+
+Expr shorter(Expr e, std::size_t longest) {
+  const std::size_t size = nodes(e);
+  if (size <= 3 || size > longest) return e;
+  const std::optional<Expr> full = expanded(e, kShortWork);
+  return full && nodes(*full) < size ? *full : e;
+}
 
 Column operator*(const Column& X, const Rows& Y) {
   ANHOLON_ASSERT(X.size() == Y.size());

@@ -22,6 +22,11 @@ namespace anholon {
 
 using Rows = std::vector<Column>;
 
+// An expression of more nodes than this is not rewritten.
+inline constexpr std::size_t kShortEnough = 200;
+// e, or its expanded form where that is shorter.
+Expr shorter(Expr e, std::size_t longest = kShortEnough);
+
 // A^-1 by elimination on the graph, each entry in the shorter of its forms; pivots are entries that are not small at the point.
 // Those that can vanish elsewhere are added to `pivots`.
 // `readable`: the result is to be read, and worth more work.

@@ -28,14 +28,14 @@ std::string exact_text(const Multi& x) {
 
 template <>
 std::string exact_text(const Quad& x) {
-  mpfr_t exact;
-  mpfr_init2(exact, kQuadBits);
-  set_mpfr(exact, x);
+  mpfr_t v;
+  mpfr_init2(v, kQuadBits);
+  set_mpfr(v, x);
   char* text = nullptr;
-  mpfr_asprintf(&text, "%Ra", exact);
+  mpfr_asprintf(&text, "%Ra", v);
   std::string r(text);
   mpfr_free_str(text);
-  mpfr_clear(exact);
+  mpfr_clear(v);
   return r;
 }
 
@@ -56,11 +56,11 @@ std::optional<long double> parse_exact(const std::string& text) {
 template <>
 std::optional<Quad> parse_exact(const std::string& text) {
   char* end = nullptr;
-  mpfr_t exact;
-  mpfr_init2(exact, kQuadBits);
-  mpfr_strtofr(exact, text.c_str(), &end, 0, MPFR_RNDN);
-  const Quad x = quad_of(exact);
-  mpfr_clear(exact);
+  mpfr_t v;
+  mpfr_init2(v, kQuadBits);
+  mpfr_strtofr(v, text.c_str(), &end, 0, MPFR_RNDN);
+  const Quad x = quad_of(v);
+  mpfr_clear(v);
   return text.empty() || *end ? std::nullopt : std::optional<Quad>(x);
 }
 

@@ -121,8 +121,15 @@ using Wider = typename WiderType<N>::type;
 
 template <Number To, Number From>
 To convert(const From& x) {
-  if constexpr (std::same_as<To, From>) return x;
-  else return static_cast<To>(x);
+  if constexpr (std::same_as<To, From>) {
+    return x;
+  } else if constexpr (std::same_as<To, Multi> && std::same_as<From, Quad>) {
+    Multi m;
+    set_mpfr(m.raw(), x);
+    return m;
+  } else {
+    return static_cast<To>(x);
+  }
 }
 
 // A decimal text that reads back to the same number (built-in types and Quad), or `digits` significant

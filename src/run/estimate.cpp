@@ -72,12 +72,13 @@ void estimate_error(const Scenario& s, const SimulationOptions& o, const std::ve
     const PrecisionScope precision(o.digits + 12 + kMoreDigits);
     compare<Multi, Multi>(s, o, settings, samples, report);
   } else if constexpr (std::same_as<N, Quad>) {
-    compare<Quad, Quad>(s, o, settings, samples, report);
+    const PrecisionScope precision(kQuadDigits + kMoreDigits);
+    compare<Multi, Quad>(s, o, settings, samples, report);
   } else {
     compare<long double, N>(s, o, settings, samples, report);
   }
   if (!report.error) return;
-  const std::string numbers = std::same_as<N, Multi> ? "with " + std::to_string(kMoreDigits) + " digits more" : std::same_as<N, Quad> ? "in quad" : "in long double";
+  const std::string numbers = std::same_as<N, Multi> || std::same_as<N, Quad> ? "with " + std::to_string(kMoreDigits) + " digits more" : "in long double";
   report.error->means = "a second run " + numbers + ", tolerance " + number_text(tolerance.get_d(), 3) + ", order " + std::to_string(settings.order);
 }
 

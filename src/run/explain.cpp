@@ -1,66 +1,66 @@
+#include "run/explain.h"
+
 #include <algorithm>
 
-#include "run/motion.h"
-#include "structure/branch.h"
+#include "mechanics/work.h"
+#include "structure/stage.h"
 
 namespace anholon {
 
-// A root or logarithm in the equations whose argument has come to zero.
-template <Number N>
-static std::string vanishing_root(const Motion<N>& motion) {
-  const Tape& tape = motion.program().tape;
-  for (std::uint32_t k = 0; k < tape.main_end; ++k) {
-    const Instruction& in = tape.code[k];
-    const bool root = in.op == Op::power && tape.rationals[in.index].get_den() != 1;
-    const bool logarithm = in.op == Op::function && in.index == static_cast<std::uint32_t>(Function::log);
-    if ((root || logarithm) && std::abs(to_double(motion.stepper().point().machine().series(in.a)[0])) < 1e-9)
-      return root ? "the root of a quantity that reaches zero" : "the logarithm of a quantity that reaches zero";
-  }
-  return {};
+namespace {
+
+// Of more constraints than this it is not looked for which make a redundant one.
+constexpr std::size_t kManyConstraints = 60;
+
+Hypothesis hypothesis(const ConstraintClass& c, int order) {
+  if (order >= 2) return Hypothesis::niu;
+  return order == 1 && c.kind == "nonlinear" ? Hypothesis::chetaev : Hypothesis::dalembert;
 }
 
-template <Number N>
-void explain(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
-  using W = Wider<N>;
-  constexpr double kVanished = 1e-9, kUnbounded = 1e9, kMeet = 1e-6, kFaint = 1e-3;
-  const Stepper<N>& stepper = motion.stepper();
-  const Expansion<W>& point = stepper.point();
-  std::string& message = outcome.message;
-  for (std::size_t a = 0; a < s.system.coordinates; ++a)
-    for (int k = 0; k < 2; ++k)
-      if (std::abs(to_double(point.derivative(a, k))) > kUnbounded * kUnbounded) {
-        outcome.kind = OutcomeKind::blow_up;
-        message += "; " + derivative_name(s.system.variable_names[a], static_cast<unsigned>(k), Format::text) + " grows without bound";
-        outcome.hint = "look at the last good state: end the motion before";
-        return;
-      }
-  for (std::size_t k = 0; k < s.system.constraints.size(); ++k) {
-    const std::size_t r = s.system.constraints[k];
-    if (!may_branch(*s.mechanics, s.system, r)) continue;
-    const double now = to_double(point.derivative(s.system.coordinates + k, 0)), start = s.state.multipliers[0].value[r];
-    const bool vanishes = s.mechanics->order[r] > 2 && std::abs(now) < kFaint * std::abs(start);
-    if (vanishes || to_double(stepper.smallest_sigma()) < kMeet) {
-      outcome.kind = OutcomeKind::singular;
-      message = "singular configuration: " + (vanishes ? "the multiplier of the constraint '" + s.model->constraints[r].name + "' goes to 0"
-                                                       : "two solutions for the constraint '" + s.model->constraints[r].name + "' meet") +
-                " at t = " + number_text(to_double(stepper.time()), 12) + ", and the equations no longer determine the motion there";
-      outcome.hint = "end the motion before; the other branch, [initial] branch = {…}, may go on";
-      return;
-    }
+// The independent constraints without which row r would be independent, too.
+std::vector<std::size_t> made_of(const Scenario& s, std::size_t r, PointValues& at) {
+  const std::size_t n = s.mechanics->q.size();
+  std::vector<std::size_t> out;
+  if (s.independent.size() > kManyConstraints) return out;
+  for (std::size_t left_out : s.independent) {
+    std::vector<std::size_t> rows = s.independent;
+    *std::find(rows.begin(), rows.end(), left_out) = r;
+    Matrix<double> phi(rows.size(), n);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t a = 0; a < n; ++a) phi(i, a) = at(put_masses(*s.model, s.mechanics->Phi[rows[i]][a]));
+    if (choose_rows(phi, kDependent).independent.size() == rows.size()) out.push_back(left_out);
   }
-  if (const std::string root = vanishing_root(motion); !root.empty()) message += "; " + root + " is at the edge of where it has a value";
-  for (std::size_t i = 0; i < s.model->masses.size(); ++i)
-    if (std::abs(to_double(stepper.quadrature(1 + i, W(0)))) < kVanished)
-      message += "; the mass of '" + s.model->masses[i].name + "' vanishes there";
-  for (std::size_t k = 0; k < s.system.constraints.size(); ++k)
-    if (std::abs(to_double(point.derivative(s.system.coordinates + k, 0))) > kUnbounded)
-      message += "; the multiplier of '" + s.system.equation_names[s.system.coordinates + k] +
-                 "' grows without bound: the constraint loses its hold there";
+  return out;
 }
 
-template void explain(const Scenario&, const Motion<double>&, Outcome&);
-template void explain(const Scenario&, const Motion<long double>&, Outcome&);
-template void explain(const Scenario&, const Motion<Quad>&, Outcome&);
-template void explain(const Scenario&, const Motion<Multi>&, Outcome&);
+}  // namespace
+
+const char* name(Hypothesis h) {
+  switch (h) {
+    case Hypothesis::dalembert: return "d'Alembert-Lagrange";
+    case Hypothesis::chetaev: return "Chetaev";
+    case Hypothesis::niu: return "Chetaev-Niu";
+  }
+  return "";
+}
+
+Explanation explain(const Scenario& s) {
+  Explanation x;
+  PointValues at = values_near(*s.model, parameter_values<double>(*s.model), s.state);
+  std::vector<std::size_t> linear;
+  for (std::size_t r = 0; r < s.classes.size(); ++r) {
+    const int order = s.mechanics->order[r];
+    ConstraintFacts c{hypothesis(s.classes[r], order), power_factor(*s.mechanics, r), {}};
+    if (s.classes[r].redundant) c.follows_from = made_of(s, r, at);
+    if (order == 1 && c.hypothesis == Hypothesis::dalembert) linear.push_back(r);
+    x.constraints.push_back(c);
+  }
+  x.integrability = integrability(*s.mechanics, linear, at);
+  if (!s.structure.c.empty()) {
+    x.blocks = blocks(s.structure);
+    x.hidden = hidden_constraints(s.system, s.structure);
+  }
+  return x;
+}
 
 }  // namespace anholon

@@ -202,7 +202,7 @@ class Run {
     if (report_.outcome.message.find(" t = ") != std::string::npos) return;
     report_.outcome.message += " at t = " + number_text(to_double(stepper.time()), 12);
     if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
-        report_.outcome.kind == OutcomeKind::no_convergence)
+        report_.outcome.kind == OutcomeKind::no_convergence || (report_.outcome.kind == OutcomeKind::interrupted && stepper.steps() >= o_.most_steps))
       explain(s_, motion_, report_.outcome);
     // The last good state is worth a row of its own.
     if (stepper.steps() > 0 && !every_step_) {

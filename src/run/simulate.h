@@ -73,12 +73,12 @@ struct SimulationReport {
   double constraints_kept = 0;   // C3 at the rows, after projection
   double power = 0;              // |h - h0 - work| in relation to the energies turned over
   double smallest_sigma = 1;     // scaled, of the system Jacobian
-  std::optional<RigorousReport> rigorous;
   std::string smallest_sigma_t;  // when it was met
   std::vector<ConstraintReport> constraints_each;
   std::optional<ErrorReport> error;
   std::string no_error;          // why there is no estimate, where one was asked for
   std::vector<Warning> warnings;
+  std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
   std::vector<WatchedReport> monitors;   // of the model's [monitor]
   std::vector<WatchedReport> conserved;  // integrals of the motion

@@ -72,7 +72,7 @@ IndependentConstraints choose_independent(const Matrix<double>& phi, const std::
         continue;
       }
       span.add(std::move(rest));
-      choice.weakest = std::min(choice.weakest, sine);
+      if (sine < choice.weakest) choice.weakest = sine, choice.weakest_row = i;
       choice.independent.push_back(i);
     }
     open = std::move(left);

@@ -11,7 +11,8 @@ namespace anholon {
 struct IndependentConstraints {
   std::vector<std::size_t> independent;  // ascending
   std::vector<std::size_t> redundant;    // ascending; they follow from the independent ones at the state
-  double weakest = 1;  // the least sine of the angle between an independent row and the span of those chosen before it
+  double weakest = 1;           // the least sine of the angle between an independent row and the span of those chosen before it,
+  std::size_t weakest_row = 0;  // and whose it is
 };
 
 // The rows chosen: constraints of lower order before those of higher order, which may be their derivatives, and as the file

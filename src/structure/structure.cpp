@@ -219,12 +219,53 @@ void drop_absent(System& s, const Structure& t) {
     })[0];
 }
 
+namespace {
+
+// A matrix wider than this has numbers for the names of its columns; one of more unknowns is written row by row.
+constexpr std::size_t kWidest = 100, kMostColumns = 30;
+
+std::string entry(const Structure& t, std::size_t i, std::size_t j) {
+  return std::to_string(t.sigma[i][j]) + (t.transversal[i] == static_cast<int>(j) ? "*" : "");
+}
+
+// Only what occurs: "rod1 (c 2): x1 0*, y1 0".
+std::string row_by_row(const System& s, const Structure& t) {
+  std::string out = "signature matrix (equation (c): unknowns with the highest derivative that occurs; * on the transversal)\n";
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    out += "  " + s.equation_names[i] + " (c " + std::to_string(t.c[i]) + "):";
+    bool first = true;
+    for (std::size_t j = 0; j < s.size(); ++j)
+      if (t.sigma[i][j] != kAbsent) out += (first ? " " : ", ") + s.variable_names[j] + " " + entry(t, i, j), first = false;
+    out += "\n";
+  }
+  out += "  d:";
+  for (std::size_t j = 0; j < s.size(); ++j) out += (j ? ", " : " ") + s.variable_names[j] + " " + std::to_string(t.d[j]);
+  return out + "\n";
+}
+
+// "1 x, 2 y, …" in lines that are not too long.
+std::string numbered_columns(const System& s) {
+  std::string out = "  columns:", line;
+  for (std::size_t j = 0; j < s.size(); ++j) {
+    const std::string item = " " + std::to_string(j + 1) + " " + s.variable_names[j] + (j + 1 < s.size() ? "," : "");
+    if (line.size() + item.size() > kWidest - 10) out += line + "\n          ", line.clear();
+    line += item;
+  }
+  return out + line + "\n";
+}
+
+}  // namespace
+
 std::string print(const System& s, const Structure& t) {
   const std::size_t n = s.size();
+  if (n > kMostColumns) return row_by_row(s, t);
+  std::size_t all_names = 0;
+  for (const std::string& name : s.variable_names) all_names += std::max<std::size_t>(name.size(), 2) + 2;
+  const bool numbered = all_names > kWidest;
   std::vector<std::vector<std::string>> cells(n + 2, std::vector<std::string>(n + 2));
   for (std::size_t j = 0; j < n; ++j) {
-    cells[0][j + 1] = s.variable_names[j];
-    cells[n + 1][j + 1] = std::to_string(t.d[j]);
+    cells[0][j + 1] = numbered ? std::to_string(j + 1) + " " : s.variable_names[j];
+    cells[n + 1][j + 1] = std::to_string(t.d[j]) + (numbered ? " " : "");
   }
   cells[0][n + 1] = "c";
   cells[n + 1][0] = "d";
@@ -232,10 +273,10 @@ std::string print(const System& s, const Structure& t) {
     cells[i + 1][0] = s.equation_names[i];
     cells[i + 1][n + 1] = std::to_string(t.c[i]);
     for (std::size_t j = 0; j < n; ++j)
-      cells[i + 1][j + 1] = (t.sigma[i][j] == kAbsent ? "-" : std::to_string(t.sigma[i][j])) +
-                            (t.transversal[i] == static_cast<int>(j) ? "*" : " ");
+      cells[i + 1][j + 1] = t.sigma[i][j] == kAbsent ? "- " : entry(t, i, j) + (t.transversal[i] == static_cast<int>(j) ? "" : " ");
   }
   std::string out = "signature matrix (rows: equations, columns: unknowns; * on the transversal)\n";
+  if (numbered) out += numbered_columns(s);
   std::vector<std::size_t> width(n + 2, 1);
   for (const auto& row : cells)
     for (std::size_t j = 0; j < row.size(); ++j) width[j] = std::max(width[j], row[j].size());

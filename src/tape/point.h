@@ -5,20 +5,26 @@
 #include <unordered_map>
 
 #include "expr/expr.h"
+#include "numeric/number.h"
 
 namespace anholon {
 
-class PointValues {
+template <Number N>
+class ValuesAt {
  public:
   // `symbol` gives the value of every symbol (t, q_a^(k), parameters, …).
-  explicit PointValues(std::function<double(const Node&)> symbol) : symbol_(std::move(symbol)) {}
-  double operator()(Expr e);
+  explicit ValuesAt(std::function<N(const Node&)> symbol) : symbol_(std::move(symbol)) {}
+  N operator()(Expr e);
 
  private:
-  double evaluate(const Graph& g, NodeId id) const;
+  N evaluate(const Graph& g, NodeId id) const;
 
-  std::function<double(const Node&)> symbol_;
-  std::unordered_map<NodeId, double> known_;
+  std::function<N(const Node&)> symbol_;
+  std::unordered_map<NodeId, N> known_;
 };
+
+extern template class ValuesAt<double>;
+extern template class ValuesAt<Multi>;
+using PointValues = ValuesAt<double>;
 
 }  // namespace anholon

@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "cli/check_report.h"
+#include "cli/conserved.h"
+
+namespace anholon::cli {
+
+namespace {
+
+std::string describe(const ConstraintClass& c, int order) {
+  if (order == 0) return std::string(c.rheonomic ? "holonomic, rheonomic" : "holonomic");
+  std::string s = "order " + std::to_string(order) + ", ";
+  s += c.kind == "nonlinear" ? "nonlinear" : c.kind == "linear" ? "linear homogeneous" : "affine";
+  if (c.kind == "nonlinear") s += c.homogeneous ? ", homogeneous" : ", not homogeneous";
+  if (c.rheonomic) s += ", rheonomic";
+  return s;
+}
+
+std::string work(const Scenario& s, const Explanation& x, std::size_t r) {
+  if (is_zero(x.constraints[r].power_factor)) return "does no work";
+  constexpr std::size_t kLongestPower = 120;  // what is longer is not read here; --json has it
+  const std::string power = power_text(s, x, r);
+  return power.size() > kLongestPower ? "may do work" : "may do work, of power " + power;
+}
+
+std::string listed(const Model& model, const std::vector<std::size_t>& constraints) {
+  std::string list;
+  for (std::size_t r : constraints) list += (list.empty() ? "" : ", ") + model.constraints[r].name;
+  return list;
+}
+
+std::string counted(std::size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); }
+
+// The hypotheses on the reactions that occur, each with its constraints where there are several.
+void reactions(const Scenario& s, const Explanation& x) {
+  const auto with = [&](Hypothesis h) {
+    std::vector<std::size_t> list;
+    for (std::size_t r = 0; r < x.constraints.size(); ++r)
+      if (x.constraints[r].hypothesis == h) list.push_back(r);
+    return list;
+  };
+  const auto line = [&](Hypothesis h, const char* text) {
+    const std::vector<std::size_t> list = with(h);
+    if (list.empty()) return;
+    const std::string whose = list.size() < x.constraints.size() ? " of " + listed(*s.model, list) : "";
+    std::printf("  reactions%s: %s\n", whose.c_str(), text);
+  };
+  line(Hypothesis::dalembert, "ideal, no work in virtual displacements (d'Alembert, Lagrange)");
+  line(Hypothesis::chetaev, "ideal by Chetaev's rule, along dphi/dq' (nonlinear in the velocities: a hypothesis)");
+  line(Hypothesis::niu, "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and more)");
+}
+
+void integrability(const Scenario& s, const Integrability& i) {
+  const Model& model = *s.model;
+  std::string flag;
+  for (int d : i.flag) flag += (flag.empty() ? "" : ", ") + std::to_string(d);
+  if (!i.undecided.empty()) {
+    const std::string most = i.flag.empty() ? "" : "; no more than " + std::to_string(i.integrable()) + " of " + std::to_string(i.constraints.size()) + " are integrable (derived flag " + flag + ", …)";
+    std::printf("  integrability: not decided: %s%s\n", i.undecided.c_str(), most.c_str());
+    return;
+  }
+  if (i.constraints.empty()) return;
+  const std::size_t count = i.constraints.size(), p = static_cast<std::size_t>(i.integrable());
+  std::string text = count == 1 ? listed(model, i.constraints) + (p ? " is integrable" : " is not integrable")
+                     : p == 0   ? "none of the " + std::to_string(count) + " linear constraints on velocities is integrable, alone or with others"
+                     : p == count ? "all " + std::to_string(count) + " linear constraints on velocities are integrable"
+                                  : "of the " + std::to_string(count) + " linear constraints on velocities " + counted(p, "combination is", "combinations are") + " integrable";
+  if (p > 0 && !i.proved) text += ", as it seems by numbers; it was not proved";
+  if (i.these_values) text += ", for these values of the parameters";
+  std::printf("  integrability: %s (derived flag %s%s)\n", text.c_str(), flag.c_str(), i.time ? ", t as a coordinate" : "");
+  for (const IntegrableCombination& c : i.combinations) {
+    std::vector<std::size_t> members;
+    for (std::size_t r = 0; r < c.coefficients.size(); ++r)
+      if (!is_zero(c.coefficients[r])) members.push_back(r);
+    const std::string whose = listed(model, members);
+    if (!c.integral) std::printf("    %s: in the integrable part; no elementary integral was found\n", whose.c_str());
+    else std::printf("    %s %s: %s = const\n", whose.c_str(), members.size() > 1 ? "together" : "alone", print(*c.integral, model.names, Format::text).c_str());
+  }
+  if (s.structure.c.empty()) return;
+  const int all = s.structure.configuration_dimension;
+  if (p == 0) std::printf("    all %d dimensions of the configuration can be reached\n", all);
+  else std::printf("    %d of the %d dimensions of the configuration can be reached\n", all - static_cast<int>(p), all);
+}
+
+std::string derivative_of(int order) {
+  return order == kAbsent ? "multipliers" : order == 0 ? "positions" : order == 1 ? "velocities" : order == 2 ? "accelerations" : "derivatives of order " + std::to_string(order);
+}
+
+// Equations of motion have the names of coordinates.
+std::string hidden_name(const Scenario& s, const HiddenConstraint& h) {
+  return (h.equation < s.system.coordinates ? "motion." : "") + s.system.equation_names[h.equation];
+}
+
+void structure(const Scenario& s, const Explanation& x) {
+  std::printf("%s\n", print(s.system, s.structure).c_str());
+  if (x.blocks.size() > 1) std::printf("%s\n", print(s.system, s.structure, x.blocks).c_str());
+  if (x.hidden.empty()) return;
+  std::printf("what the state must satisfy (hidden constraints)\n");
+  // By the derivatives that they bind.
+  std::map<int, std::string> on;
+  for (const HiddenConstraint& h : x.hidden)
+    for (std::size_t k = 0; k < h.orders.size(); ++k) {
+      std::string& list = on[h.orders[k]];
+      list += (list.empty() ? "" : ", ") + derivative_name(hidden_name(s, h), static_cast<unsigned>(k), Format::text);
+    }
+  for (const auto& [order, list] : on) std::printf("  on %s: %s\n", derivative_of(order).c_str(), list.c_str());
+  std::printf("\n");
+}
+
+// What initial data the structure asks for, and who said what.
+std::string data_needed(const Scenario& s, const std::vector<Entry>& higher) {
+  constexpr std::size_t kNamed = 8;  // of more choices only the number is said: the table shows them
+  const InitialState<double>& x = s.state;
+  std::vector<std::string> chosen;
+  std::size_t given = 0, derived = 0;
+  const auto count = [&](const std::string& name, Origin origin) {
+    switch (origin) {
+      case Origin::given: case Origin::corrected: ++given; break;
+      case Origin::derived: ++derived; break;
+      case Origin::chosen: case Origin::guessed: chosen.push_back(name); break;
+    }
+  };
+  for (std::size_t a = 0; a < x.q.size(); ++a) count(s.model->coordinates[a].name, x.q_origin[a]);
+  for (std::size_t a = 0; a < x.q.size(); ++a) count(s.model->coordinates[a].name + "'", x.qd_origin[a]);
+  std::string among;
+  for (const Entry& e : higher) count(e.name, e.origin), among += ", " + e.name;
+  std::string out = "initial data: " + counted(static_cast<std::size_t>(s.structure.state_dimension), "number", "numbers") + " may be prescribed, among " +
+                    (among.empty() ? "positions and velocities" : "positions, velocities" + among) + "; " + std::to_string(given) + " given, " +
+                    std::to_string(derived) + " derived, " + std::to_string(chosen.size()) + " chosen";
+  if (chosen.empty() || chosen.size() > kNamed) return out;
+  std::string names;
+  for (const std::string& name : chosen) names += (names.empty() ? "" : ", ") + name;
+  return out + " (" + names + ")";
+}
+
+void state_table(const Scenario& s) {
+  const InitialState<double>& x = s.state;
+  const std::vector<Entry> higher = higher_state(s);
+  if (!x.q.empty()) std::printf("%s\n", data_needed(s, higher).c_str());
+  std::printf("initial state at t = %s\n", number_text(x.t).c_str());
+  for (std::size_t a = 0; a < x.q.size(); ++a)
+    std::printf("  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
+                name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(), number_text(x.qd[a]).c_str(), name(x.qd_origin[a]));
+  for (const Entry& e : higher) std::printf("  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
+  std::printf("  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
+}
+
+}  // namespace
+
+void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome) {
+  const Model& model = *s.model;
+  std::printf("%s\n", model.title.empty() ? model.source_text.name.c_str() : model.title.c_str());
+  if (!model.source.empty()) std::printf("source: %s\n", model.source.c_str());
+  std::printf("\n%s, %s, %s, %s\n", counted(model.coordinates.size(), "coordinate", "coordinates").c_str(),
+              counted(model.bodies.size(), "body or particle", "bodies and particles").c_str(),
+              counted(model.constraints.size(), "constraint", "constraints").c_str(),
+              counted(model.parameters.size(), "parameter", "parameters").c_str());
+  for (const std::string& e : effects(model)) std::printf("  %s\n", e.c_str());
+  const std::vector<std::string> external = external_forces(model);
+  for (const std::string& f : external) std::printf("  external force %s (it has no 'from')\n", f.c_str());
+  if (!model.constraints.empty()) std::printf("\nconstraints\n");
+  for (std::size_t r = 0; r < model.constraints.size(); ++r) {
+    const Constraint& c = model.constraints[r];
+    std::printf("  %-14s %s\n", c.name.c_str(), c.equation.c_str());
+    std::string redundant;
+    if (s.classes[r].redundant)
+      redundant = x.constraints[r].follows_from.empty() ? "; redundant here" : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
+    std::printf("  %-14s %s; %s%s\n", "", describe(s.classes[r], c.order).c_str(), work(s, x, r).c_str(), redundant.c_str());
+  }
+  reactions(s, x);
+  integrability(s, x.integrability);
+  if (outcome.ok()) {
+    std::printf("\ndegrees of freedom %d, configuration dimension %d, state dimension %d\n", s.structure.degrees_of_freedom,
+                s.structure.configuration_dimension, s.structure.state_dimension);
+    structure(s, x);
+    state_table(s);
+    print_conserved(*s.mechanics);
+  }
+  for (const std::string& n : s.notes) std::printf("note: %s\n", n.c_str());
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,126 @@
+#include "mechanics/pfaff.h"
+
+#include "expr/normal.h"
+#include "tape/tape.h"
+
+namespace anholon {
+
+Column FormSpace::differential(Expr f) const {
+  Column df = gradient(f, z);
+  if (!time) return df;
+  Graph& g = *f.graph;
+  for (NodeId id : symbols({&f, 1}))
+    if (const Node n = g.node(id); n.kind == Kind::given) {
+      const Expr slope = partial(f, {&g, id});
+      df.back() += slope * g.given(n.index, n.order + 1U);
+    }
+  return df;
+}
+
+Expr applied(const Column& w, const Column& X) {
+  std::vector<Expr> terms;
+  for (std::size_t a = 0; a < w.size(); ++a)
+    if (!is_zero(w[a]) && !is_zero(X[a])) terms.push_back(w[a] * X[a]);
+  return terms.empty() ? w[0].graph->zero() : sum(terms);
+}
+
+VectorField::VectorField(const FormSpace& space, Column components) : X(std::move(components)) {
+  for (Expr e : X) differentials.push_back(is_number(e) ? Column(X.size(), e.graph->zero()) : space.differential(e));
+}
+
+Expr simplified(Expr e) {
+  constexpr long kMostWork = 100'000;  // products of terms: a formula that takes more is not worth it here
+  const std::size_t size = reachable({&e, 1}).size();
+  if (size <= 3 || size > kShortEnough) return e;
+  const std::optional<NormalForm> form = normal_form(e, {}, kMostWork);
+  if (!form) return e;
+  const Expr top = expression(form->numerator, form->generators);
+  const Expr whole = is_zero(top) ? top : top / expression(form->denominator, form->generators);
+  return reachable({&whole, 1}).size() < size ? whole : e;
+}
+
+Column bracket(const VectorField& X, const VectorField& Y) {
+  Column b;
+  for (std::size_t c = 0; c < X.X.size(); ++c) {
+    const Expr forth = applied(Y.differentials[c], X.X), back = applied(X.differentials[c], Y.X);
+    b.push_back(simplified(forth - back));
+  }
+  return b;
+}
+
+// A number in [0, 1) that depends on the symbol and the seed alone.
+static double arbitrary(const Node& n, std::uint64_t seed) {
+  std::uint64_t h = seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order;
+  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
+  return static_cast<double>(h >> 40) / 16777216.0;
+}
+
+FormPoint::FormPoint(const Mechanics& m, PointValues& near, std::uint64_t seed, bool other_parameters) {
+  Graph& g = m.graph();
+  Column es;
+  for (const Parameter& p : m.model->parameters) es.push_back(p.value);
+  std::vector<Multi> parameters = evaluate_parameters<Multi>(g, es);
+  symbol_ = [&g, &near, seed, other_parameters, parameters = std::move(parameters)](const Node& n) {
+    const double u = arbitrary(n, seed);
+    if (n.kind == Kind::parameter && !other_parameters && n.index < parameters.size()) return parameters[n.index];
+    if (n.kind != Kind::time && n.kind != Kind::jet) return Multi(0.6 + 0.8 * u);
+    const double base = near(n.kind == Kind::time ? g.time() : g.jet(n.index, n.order));
+    return Multi(base) + Multi((1 + std::abs(base)) * (0.05 + 0.3 * u));
+  };
+  values_ = std::make_unique<ValuesAt<Multi>>(symbol_);
+}
+
+PointValues FormPoint::rough() const {
+  return PointValues([symbol = symbol_](const Node& n) { return symbol(n).to_double(); });
+}
+
+Matrix<Multi> values_at(const Rows& rows, FormPoint& at) {
+  Matrix<Multi> a(rows.size(), rows.empty() ? 0 : rows[0].size());
+  for (std::size_t i = 0; i < a.rows; ++i)
+    for (std::size_t j = 0; j < a.cols; ++j) {
+      const Multi v = at(rows[i][j]);
+      if (!v.finite()) throw NoValue{};
+      if (abs(v) > Multi(kFormZero)) a(i, j) = v;
+    }
+  return a;
+}
+
+std::size_t rank(const Matrix<Multi>& a) { return choose_rows(a, Multi(kIndependent)).independent.size(); }
+
+bool Echelon::add(std::vector<Multi> v) {
+  const auto largest = [&] {
+    std::size_t at = 0;
+    for (std::size_t a = 1; a < v.size(); ++a)
+      if (abs(v[a]) > abs(v[at])) at = a;
+    return at;
+  };
+  if (v.empty() || !(abs(v[largest()]) > Multi(kFormZero))) return false;
+  const Multi scale = v[largest()];
+  for (Multi& x : v) x /= scale;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Multi factor = -v[pivots_[i]];
+    for (std::size_t a = 0; a < v.size(); ++a) addmul(v[a], factor, rows_[i][a]);
+  }
+  const std::size_t pivot = largest();
+  if (!(abs(v[pivot]) > Multi(kIndependent))) return false;
+  const Multi size = v[pivot];
+  for (Multi& x : v) x /= size;
+  rows_.push_back(std::move(v));
+  pivots_.push_back(pivot);
+  return true;
+}
+
+Expr parameters_put(const Model& model, Expr e) {
+  // Values of parameters may hold other parameters.
+  for (std::size_t k = 0; k <= model.parameters.size(); ++k) {
+    const Expr next = substitute({&e, 1}, [&](NodeId id) {
+      const Node& n = e.graph->node(id);
+      return n.kind == Kind::parameter ? model.parameters[n.index].value : Expr{};
+    })[0];
+    if (next == e) break;
+    e = next;
+  }
+  return e;
+}
+
+}  // namespace anholon

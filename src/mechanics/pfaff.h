@@ -1,0 +1,76 @@
+// Differential forms and vector fields on the space of (q, t), with formulas as components (theory: integrability).
+//
+//   df = sum_a df/dz_a dz_a,   X f = sum_a X_a df/dz_a,   [X, Y]_a = X(Y_a) - Y(X_a),   dw_ab = dw_b/dz_a - dw_a/dz_b
+//
+// where z = (q, t) or q. Given functions of time are differentiated by t.
+#pragma once
+#include <memory>
+
+#include "mechanics/elimination.h"
+#include "mechanics/mechanics.h"
+#include "numeric/linear.h"
+#include "tape/point.h"
+
+namespace anholon {
+
+struct FormSpace {
+  Column z;           // q_1..q_n and, with time, t
+  bool time = false;
+  // df as a form.
+  Column differential(Expr f) const;
+};
+
+// w(X), or X f with w = df.
+Expr applied(const Column& w, const Column& X);
+
+// e, or its normal form where that is shorter and found with little work.
+Expr simplified(Expr e);
+
+// A vector field with the differentials of its components.
+struct VectorField {
+  Column X;
+  Rows differentials;
+  VectorField(const FormSpace& space, Column components);
+};
+Column bracket(const VectorField& X, const VectorField& Y);
+
+// Numbers of kFormDigits digits decide ranks: round-off lies far below what counts as zero, and that below any true value.
+inline constexpr int kFormDigits = 60;
+inline constexpr double kFormZero = 1e-35, kIndependent = 1e-25;
+
+struct NoValue {};  // a formula has none at the point
+
+// A random point near a state. REQUIRES: a PrecisionScope of kFormDigits.
+class FormPoint {
+ public:
+  // The seed moves the point; `other_parameters`: they have random values, too, instead of their own.
+  FormPoint(const Mechanics& m, PointValues& near, std::uint64_t seed, bool other_parameters);
+  Multi operator()(Expr e) { return (*values_)(e); }
+  // The same point in double, for the choice of pivots.
+  PointValues rough() const;
+
+ private:
+  std::function<Multi(const Node&)> symbol_;
+  std::unique_ptr<ValuesAt<Multi>> values_;
+};
+
+// Entries that are round-off are zero. Throws NoValue.
+Matrix<Multi> values_at(const Rows& rows, FormPoint& at);
+std::size_t rank(const Matrix<Multi>& a);
+
+// A space spanned by vectors that come one after the other.
+class Echelon {
+ public:
+  // True if v was independent of those before; then it is one of them.
+  bool add(std::vector<Multi> v);
+  std::size_t dimension() const { return rows_.size(); }
+
+ private:
+  std::vector<std::vector<Multi>> rows_;  // 1 at their pivots
+  std::vector<std::size_t> pivots_;
+};
+
+// e with the values of the parameters put in.
+Expr parameters_put(const Model& model, Expr e);
+
+}  // namespace anholon

@@ -1,0 +1,47 @@
+#include "mechanics/work.h"
+
+#include "expr/arrange.h"
+#include "expr/normal.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr int kHighestDegree = 4;
+
+// How much of the velocities is left in it, and how long it is to read.
+std::pair<bool, std::size_t> burden(Expr e, const SymbolNames& names) {
+  return {jet_order(e) > 0, print(e, names, Format::text).size()};
+}
+
+}  // namespace
+
+Expr power_factor(const Mechanics& m, std::size_t r) {
+  const Model& model = *m.model;
+  Graph& g = m.graph();
+  const Expr phi = put_masses(model, m.phi[r]);
+  if (m.order[r] == 0) {
+    // sum Phi q' is the total derivative without its explicit part.
+    const Expr along = total_derivative(phi);
+    const Expr by_time = substitute({&along, 1}, [&](NodeId id) {
+      const Node& n = g.node(id);
+      return n.kind == Kind::jet && n.order == 1 ? g.zero() : Expr{};
+    })[0];
+    return proved_zero(by_time) ? g.zero() : arranged(-by_time, model.names);
+  }
+  Expr radial = g.zero();
+  for (std::size_t a = 0; a < m.q.size(); ++a)
+    if (!is_zero(m.Phi[r][a])) radial += m.qd[a] * put_masses(model, m.Phi[r][a]);
+  if (proved_zero(radial)) return g.zero();
+  Expr best = arranged(radial, model.names);
+  if (m.order[r] > 1) return best;
+  for (int d = 1; d <= kHighestDegree; ++d) {
+    const Expr rest = radial - Rational(d) * phi;
+    if (proved_zero(rest)) return g.zero();
+    const Expr e = arranged(rest, model.names);
+    if (burden(e, model.names) < burden(best, model.names)) best = e;
+  }
+  return best;
+}
+
+}  // namespace anholon
