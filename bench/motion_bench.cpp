@@ -42,8 +42,9 @@ void step(benchmark::State& state, const std::string& path, Precision precision)
   o.at = {Rational(1000000)};
   o.precision = precision;
   o.digits = precision == Precision::multi ? 30 : 16;
-  o.tolerance = Rational(1, precision == Precision::multi ? mpz_class("100000000000000000000000000000000") : mpz_class("1000000000000"));
-  o.most_steps = precision == Precision::multi ? 20 : 2000;
+  const bool many = precision == Precision::quad || precision == Precision::multi;
+  o.tolerance = Rational(1, many ? mpz_class("100000000000000000000000000000000") : mpz_class("1000000000000"));
+  o.most_steps = many ? 20 : 2000;
   NoRows rows;
   std::size_t steps = 0;
   for (auto _ : state) steps += simulate(s, o, rows).steps;
@@ -55,7 +56,7 @@ const bool registered = [] {
   for (const char* model : {"zoo/chaplygin-sleigh.toml", "zoo/disc.toml", "zoo/rolling-coin.toml", "zoo/snakeboard.toml",
                             "zoo/car-three-trailers.toml", "papers/luo-zhao-example-2.toml"}) {
     benchmark::RegisterBenchmark((std::string("derive/") + model).c_str(), derive, model)->Unit(benchmark::kMillisecond);
-    for (const auto& [name, precision] : {std::pair{"double", Precision::real}, {"long_double", Precision::long_real}, {"30_digits", Precision::multi}})
+    for (const auto& [name, precision] : {std::pair{"double", Precision::real}, {"long_double", Precision::long_real}, {"quad", Precision::quad}, {"30_digits", Precision::multi}})
       benchmark::RegisterBenchmark((std::string("step/") + name + "/" + model).c_str(), step, model, precision)->Unit(benchmark::kMillisecond);
   }
   return true;

@@ -23,6 +23,7 @@ struct Options {
   std::string save, resume;
   std::string error_estimate = "short";
   int digits = 16;
+  int proof_digits = 308;
   int order = 0;
   int points = 6;
   unsigned long long seed = 0;

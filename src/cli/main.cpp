@@ -118,7 +118,7 @@ int run(int argc, char** argv) {
   simulate_command->add_option("--every", o.every, "rows at this interval")->type_name("DT");
   simulate_command->add_option("--tolerance", o.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
   simulate_command->add_option("--digits", o.digits, "more than 16: multiprecision, or quad if asked for")->type_name("N")->check(CLI::Range(1, 2000));
-  simulate_command->add_option("--numbers", o.numbers, "double, long-double or quad (33 digits, faster than --digits)")->check(CLI::IsMember({"double", "long-double", "quad"}));
+  simulate_command->add_option("--numbers", o.numbers, "double, long-double or quad (33 digits, tolerance 1e-32 unless given; faster than --digits)")->check(CLI::IsMember({"double", "long-double", "quad"}));
   simulate_command->add_option("--rigorous", o.rigorous, "bound the residuals of the dense output by ball arithmetic: at so many times, or all")->type_name("N");
   simulate_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
   simulate_command->add_option("--integrator", o.integrator, "taylor, or a second opinion by SUNDIALS: cvode, ida; with its difference")->type_name("NAME");
@@ -136,6 +136,7 @@ int run(int argc, char** argv) {
                                           "Example: anholon prove luo-zhao-example-2 -o proof.json && anholon verify proof.json");
   prove_command->add_option("--forms", o.forms, "only these forms: routh,chaplygin (default: all that apply)")->type_name("NAME,…")->allow_extra_args(false);
   prove_command->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
+  prove_command->add_option("--digits", o.proof_digits, "of the enclosures that tell a difference from zero, at most (default 308)")->type_name("N")->check(CLI::Range(20, 20000));
   prove_command->add_option("-o,--output", o.output, "write a certificate")->type_name("FILE");
   CLI::App* compare_command = model_command("compare", "published equations against the derived ones: proved, refuted, or unknown", cli::compare,
                                             "EQUATIONS holds one equation per line, LABEL: left = right, in the names of the model, lambda and lambda.NAME.\n"
@@ -152,6 +153,7 @@ int run(int argc, char** argv) {
   verify_command->add_flag("--json", o.json, "JSON on the standard output");
   verify_command->add_flag("--quiet", o.quiet, "the exit status only");
   verify_command->add_option("--points", o.points, "random points modulo each of two primes (default 6)")->type_name("N")->check(CLI::Range(1, 1000));
+  verify_command->add_option("--digits", o.proof_digits, "of the enclosures at witnesses, at most (default 308)")->type_name("N")->check(CLI::Range(20, 20000));
   verify_command->add_option("--seed", o.seed, "another choice of points (default 0)")->type_name("N");
   verify_command->callback([&command] { command = cli::verify; });
   model_command("models", "the shipped models; with a name, the text of one", cli::models, "Example: anholon models disc");

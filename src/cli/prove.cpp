@@ -112,6 +112,7 @@ int prove(const Options& o) {
   const std::vector<const Formulation*> forms = wanted_forms(o, m);
   const std::vector<Eliminations> eliminations = eliminations_of(in, m, state_choice(o, model));
   ProofOptions options;
+  options.digits = o.proof_digits;
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   std::size_t done = 0;
   if (terminal)

@@ -83,7 +83,7 @@ void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formu
 void beyond(const SavedRun& run, const Options& o, const Rational& end) {
   with_file(o.resume, [&] {
     // Times of a saved run may be wider than double; what is compared is written by hand.
-    const PrecisionScope precision(o.digits + 12);
+    const PrecisionScope precision(std::max(o.digits, kQuadTextDigits) + 12);
     const Multi start = run.number<Multi>("start"), done = run.number<Multi>("rows"), to(end);
     const bool forward = start < done || (start == done && start < to);
     if (forward ? !(done < to) : !(to < done))

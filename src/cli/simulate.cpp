@@ -210,9 +210,9 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   if (r.rigorous) {
     j.key("rigorous").open_object();
     j.key("times");
-    if (r.rigorous->times == 0) j.string("all");
-    else j.integer(static_cast<long long>(r.rigorous->times));
-    j.key("newton").number(r.rigorous->newton).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
+    if (r.rigorous->times) j.integer(static_cast<long long>(*r.rigorous->times));
+    else j.string("all");
+    j.key("newton").number(r.rigorous->newton).key("projected").number(r.rigorous->projected).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
     j.key("bits").integer(r.rigorous->bits);
     j.close();
   }
@@ -261,8 +261,8 @@ void report(const Scenario& s, const SimulationReport& r) {
                  w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;
-    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, constraints by %s, steps join within %s\n",
-                 g.times == 0 ? "for all t" : ("at " + std::to_string(g.times) + " times").c_str(), g.newton.c_str(), g.constraints.c_str(), g.joints.c_str());
+    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, constraints %s, steps join within %s\n",
+                 (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
   std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.second ? "Taylor's motion: " : "",
                r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);

@@ -124,6 +124,7 @@ int verify(const Options& o) {
   VerifyOptions options;
   options.points = o.points;
   options.seed = o.seed;
+  options.digits = o.proof_digits;
   const Verification v = anholon::verify(certificate, options);
   if (o.json) json(certificate, v);
   else if (!o.quiet) text(certificate, v);

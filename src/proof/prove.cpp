@@ -34,7 +34,7 @@ bool shown_zero(Expr e, Effort effort) {
 namespace {
 
 // Zero by algebra, or not zero at a point.
-void decide(Difference& d, const Elimination& e, const Model& model, Effort effort) {
+void decide(Difference& d, const Elimination& e, const Model& model, Effort effort, long bits) {
   const Expr x = d.expression();
   const bool likely = seems_zero(x);
   if ((likely || effort == Effort::full) && shown_zero(x, effort)) {
@@ -42,7 +42,7 @@ void decide(Difference& d, const Elimination& e, const Model& model, Effort effo
     return;
   }
   if (likely && effort == Effort::brief) return;
-  WitnessSearch search = find_witness(d, e, model);
+  WitnessSearch search = find_witness(d, e, model, bits);
   d.detail = search.detail;
   if (!search.witness) return;
   d.witness = std::move(search.witness);
@@ -59,32 +59,32 @@ Verdict of_all(const std::vector<Difference>& list) {
 }
 
 // Phi B = 0 on the manifold, and the solved constraints satisfied.
-void kernel_claims(const Mechanics& M, const Elimination& e, std::vector<Difference>& out) {
+void kernel_claims(const Mechanics& M, const Elimination& e, long bits, std::vector<Difference>& out) {
   Graph& g = M.graph();
   const Model& model = *M.model;
   for (std::size_t k = 0; k < e.constraints.size(); ++k) {
     const std::string& name = model.constraints[e.constraints[k]].name;
     if (e.solved) {
       out.push_back({name + " solved", e.on(e.phi[k]), {}, {}, {}, {}});
-      decide(out.back(), e, model, Effort::full);
+      decide(out.back(), e, model, Effort::full, bits);
     }
     const Column row = e.on(put_masses(model, M.Phi[e.constraints[k]]));
     for (std::size_t a = 0; a < e.names.size(); ++a) {
       Difference d{name + ", " + e.names[a], g.zero(), {}, {}, {}, {}};
       for (std::size_t s = 0; s < row.size(); ++s)
         if (!is_zero(row[s]) && !is_zero(e.g_by_u()[s][a])) d.right.push_back({-row[s], e.g_by_u()[s][a]});
-      decide(d, e, model, Effort::full);
+      decide(d, e, model, Effort::full, bits);
       out.push_back(std::move(d));
     }
   }
 }
 
-void pivot_claims(const Mechanics& M, const Elimination& e, std::vector<Difference>& out) {
+void pivot_claims(const Mechanics& M, const Elimination& e, long bits, std::vector<Difference>& out) {
   for (Expr pivot : e.pivots()) {
     const Expr p = e.on(pivot);
     if (std::any_of(out.begin(), out.end(), [&](const Difference& d) { return d.left == p; })) continue;
     Difference d{"pivot " + std::to_string(out.size() + 1), p, {}, {}, {}, {}};
-    WitnessSearch search = find_witness(d, e, *M.model);
+    WitnessSearch search = find_witness(d, e, *M.model, bits);
     d.witness = std::move(search.witness);
     d.verdict = d.witness ? Verdict::proved : Verdict::unknown;
     d.detail = search.detail;
@@ -92,7 +92,7 @@ void pivot_claims(const Mechanics& M, const Elimination& e, std::vector<Differen
   }
 }
 
-FormProof against_routh(const Mechanics& M, const Formulation& form, const Equations& equations, const Elimination& e, Effort effort) {
+FormProof against_routh(const Mechanics& M, const Formulation& form, const Equations& equations, const Elimination& e, Effort effort, long bits) {
   FormProof proof{&form, Verdict::unknown, {}};
   const Model& model = *M.model;
   const Column residual = equations.left - equations.right;
@@ -100,7 +100,7 @@ FormProof against_routh(const Mechanics& M, const Formulation& form, const Equat
     const Column routh = lagrange_operator(M) - right_side(M);
     for (std::size_t a = 0; a < residual.size(); ++a) {
       Difference d{model.coordinates[a].name, residual[a], {{M.graph().one(), routh[a]}}, {}, {}, {}};
-      decide(d, e, model, effort);
+      decide(d, e, model, effort, bits);
       proof.differences.push_back(std::move(d));
     }
   } else {
@@ -111,7 +111,7 @@ FormProof against_routh(const Mechanics& M, const Formulation& form, const Equat
       Difference d{e.names[nu], contracted[nu], {}, {}, {}, {}};
       for (std::size_t s = 0; s < a.size(); ++s)
         if (!is_zero(e.g_by_u()[s][nu])) d.right.push_back({e.g_by_u()[s][nu], a[s]});
-      decide(d, e, model, effort);
+      decide(d, e, model, effort, bits);
       proof.differences.push_back(std::move(d));
     }
   }
@@ -125,12 +125,13 @@ const Elimination& Eliminations::of(const Formulation& form) const {
   return form.unknowns == Unknowns::quasi_velocities ? quasi : coordinates;
 }
 
-FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations, const std::vector<Eliminations>& eliminations) {
+FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations, const std::vector<Eliminations>& eliminations,
+                     const ProofOptions& options) {
   FormProof proof;
   for (const Effort effort : {Effort::brief, Effort::full})
     for (std::size_t k = 0; k < eliminations.size(); ++k) {
       const Elimination& e = eliminations[k].of(form);
-      proof = against_routh(M, form, equations(M, e), e, effort);
+      proof = against_routh(M, form, equations(M, e), e, effort, options.bits());
       proof.elimination = k;
       if (proof.verdict != Verdict::unknown) return proof;
     }
@@ -142,13 +143,13 @@ Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, co
   std::vector<const Elimination*> used;
   for (const Formulation* form : forms) {
     if (options.progress) options.progress(*form);
-    proof.forms.push_back(prove_form(M, *form, form->equations, eliminations));
+    proof.forms.push_back(prove_form(M, *form, form->equations, eliminations, options));
     const Elimination* e = &eliminations[proof.forms.back().elimination].of(*form);
     if (form->unknowns != Unknowns::multipliers && std::find(used.begin(), used.end(), e) == used.end()) used.push_back(e);
   }
   for (const Elimination* e : used) {
-    kernel_claims(M, *e, proof.kernel);
-    pivot_claims(M, *e, proof.pivots);
+    kernel_claims(M, *e, options.bits(), proof.kernel);
+    pivot_claims(M, *e, options.bits(), proof.pivots);
   }
   return proof;
 }

@@ -75,12 +75,15 @@ struct Eliminations {
 
 struct ProofOptions {
   std::function<void(const Formulation&)> progress;
+  int digits = 308;  // of the balls at witnesses, at most: what is smaller than they resolve is not told from zero
+  long bits() const { return static_cast<long>(digits * 3.3219281) + 1; }
 };
 
 // One form's equations against Routh's. Several eliminations may be offered, which say the same in other words (constraints
 // solved or not): a form is proved with the first that serves.
 using EquationsOf = std::function<Equations(const Mechanics&, const Elimination&)>;
-FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations, const std::vector<Eliminations>& eliminations);
+FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations, const std::vector<Eliminations>& eliminations,
+                     const ProofOptions& options = {});
 Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const std::vector<Eliminations>& eliminations,
             const ProofOptions& options = {});
 

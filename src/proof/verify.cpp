@@ -91,7 +91,7 @@ void real_points(const Certificate& c, const HashKey& key, Work& work, std::vect
 }
 
 // A claim of not zero: enclosures at the witness, with more and more bits.
-ClaimFinding at_witness(const Certificate& c, const Certificate::Claim& claim, Work& work) {
+ClaimFinding at_witness(const Certificate& c, const Certificate::Claim& claim, slong most_bits, Work& work) {
   const auto unchecked = [](std::string why) { return ClaimFinding{Finding::unchecked, false, 0, std::move(why)}; };
   const Certificate::Witness& w = *claim.witness;
   RealProgram program(c, {&claim}, w.equations);
@@ -105,7 +105,7 @@ ClaimFinding at_witness(const Certificate& c, const Certificate::Claim& claim, W
 
   Ball last = Ball::unknown();
   bool rooted = false;
-  for (slong bits = 64; bits <= 1024; bits *= 2) {
+  for (slong bits = 64; bits <= most_bits; bits = bits < most_bits ? std::min(2 * bits, most_bits) : 2 * bits) {
     const BallScope precision(bits);
     if (!work.spend(static_cast<std::uint64_t>(bits) * 2 * (program.size() + 1) * (unknowns.empty() ? 1 : 70 * (1 + unknowns.size()))))
       return unchecked("the limit of work is reached");
@@ -185,7 +185,7 @@ Verification verify(const Certificate& c, const VerifyOptions& options) {
   }
   real_points(c, key, work, result.claims);
   for (std::size_t k = 0; k < c.claims.size(); ++k)
-    if (!c.claims[k].says_zero()) result.claims[k] = at_witness(c, c.claims[k], work);
+    if (!c.claims[k].says_zero()) result.claims[k] = at_witness(c, c.claims[k], static_cast<slong>(options.digits * 3.3219281) + 1, work);
   return result;
 }
 

@@ -23,6 +23,7 @@ namespace anholon {
 struct VerifyOptions {
   int points = 6;  // modulo each of two primes; more where signs have to be tried
   std::uint64_t seed = 0;
+  int digits = 308;  // of the balls at witnesses, at most
 };
 
 enum class Finding : std::uint8_t { confirmed, contradicted, unchecked };

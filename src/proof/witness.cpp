@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kPoints = 40;          // tried before the search ends
 constexpr int kSizes = 4;            // of the free derivatives: 1, 1/2, 1/4, …
-constexpr slong kFirstBits = 64, kMostBits = 1024;
+constexpr slong kFirstBits = 64;
+constexpr slong kRootBits = 256;     // of the box of a root, where no more than usual are asked for
 constexpr int kNewtonSteps = 60;
 
 // A rational in (1/5, 8/5) that depends on the symbol and the attempt.
@@ -76,7 +77,8 @@ class Search {
     }
   }
 
-  WitnessSearch run() {
+  WitnessSearch run(slong most_bits = kWitnessBits) {
+    most_bits_ = std::max(most_bits, kFirstBits);
     WitnessSearch out;
     std::string largest;
     int tried = 0;
@@ -134,7 +136,7 @@ class Search {
     }
     system.value = [&](const Box& box) { return enclose(equations_, at(box)); };
     system.jacobian = [&](const Box& box) { return enclose(derivatives, at(box)); };
-    const BallScope precision(256);
+    const BallScope precision(most_bits_ > kWitnessBits ? most_bits_ : kRootBits);
     const std::optional<Box> box = enclose_root(system, root);
     if (!box) return false;
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
@@ -188,35 +190,32 @@ class Search {
 
   // 1 if a ball around e excludes zero, 0 if not at any precision, -1 if e has no value there.
   int excludes_zero(const WitnessPoint& w, std::string& value) {
-    for (slong bits = kFirstBits; bits <= kMostBits; bits *= 4) {
+    for (slong bits = kFirstBits;; bits = std::min(4 * bits, most_bits_)) {
       const BallScope precision(bits);
       BallPoint at;
       for (const auto& [symbol, r] : w.values) at.emplace(symbol.id, Ball(r));
       for (const WitnessPoint::Enclosed& x : w.enclosed) at.emplace(x.symbol.id, Ball(x.midpoint, x.radius));
       const Ball b = enclose({&e_, 1}, at)[0];
-      if (!b.is_finite()) {
-        if (bits * 4 > kMostBits) return -1;
-        continue;
-      }
-      if (!b.contains_zero()) {
+      if (b.is_finite() && !b.contains_zero()) {
         value = b.midpoint_text(6);
         return 1;
       }
-      value = b.radius_text();
+      if (b.is_finite()) value = b.radius_text();
+      if (bits == most_bits_) return b.is_finite() ? 0 : -1;
     }
-    return 0;
   }
 
   Expr e_;
   Graph& g_;
+  slong most_bits_ = kWitnessBits;
   std::vector<std::optional<Rational>> parameters_;
   Column parts_, equations_, unknowns_;
 };
 
 }  // namespace
 
-WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model) {
-  return Search(d, elimination, model).run();
+WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model, long bits) {
+  return Search(d, elimination, model).run(bits);
 }
 
 WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model) {

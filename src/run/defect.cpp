@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/assert.h"
+
 namespace anholon {
 
 namespace {
@@ -26,6 +28,9 @@ Ball rising(std::size_t order, std::size_t k) {
   return f;
 }
 
+// Bounds, not values: balls of remainders hold 0.
+bool reaches_beyond(const Ball& a, const Ball& b) { return a.symmetric().contains_inside(b.symmetric()); }
+
 }  // namespace
 
 Defect::Defect(const Scenario& s, std::size_t times, const Ball& begin, const Ball& end, long significand)
@@ -47,7 +52,11 @@ Defect::Defect(const Scenario& s, std::size_t times, const Ball& begin, const Ba
     es.push_back(put_masses(model, m.phi[r]));
     leads.push_back(hidden_.back());
   }
+  phi_ = es.size();
+  for (const std::size_t r : s.system.constraints)
+    for (Expr e : m.Phi[r]) es.push_back(put_masses(model, e)), leads.push_back(0);
   // What the residuals are related to: needed as values only.
+  scale_ = es.size();
   for (const Column* part : {&inertia, &force, &reaction}) es.insert(es.end(), part->begin(), part->end());
   tape_ = compile(OutputTape<double>::put(s, es), leads);
   parameters_ = parameter_values<Ball>(model);
@@ -80,8 +89,52 @@ void Defect::sweep(int orders) {
 Ball Defect::newton_scale() const {
   machine_->sweep(0, tape_.main_end, static_cast<std::uint32_t>(tape_.code.size()));
   Ball scale(1);
-  for (std::size_t i = s_.mechanics->q.size() + hidden_.size(); i < tape_.roots.size(); ++i) scale = max(scale, abs(machine_->value(i)));
+  for (std::size_t i = scale_; i < tape_.roots.size(); ++i) scale = max(scale, abs(machine_->value(i)));
   return scale;
+}
+
+const Ball* Defect::phi(std::size_t constraint, std::size_t coordinate) const {
+  return machine_->series(tape_.roots[phi_ + constraint * s_.mechanics->q.size() + coordinate]);
+}
+
+// What added to the multipliers leaves least of Newton's residual, order by order, by least squares. Nothing rests on these numbers
+// being right: balls say what is left. Empty where there are none.
+Series Defect::correction(std::size_t orders) const {
+  const PrecisionScope precision(static_cast<int>(static_cast<double>(bits_) * 0.30103) + 1);
+  const std::size_t n = s_.mechanics->q.size(), count = s_.system.constraints.size();
+  Matrix<Multi> normal(count, count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j)
+      for (std::size_t a = 0; a < n; ++a) addmul(normal(i, j), phi(i, a)[0].midpoint_multi(), phi(j, a)[0].midpoint_multi());
+  Lu<Multi> lu;
+  if (count == 0 || !lu.factor(normal)) return {};
+  std::vector<std::vector<Multi>> delta(count);
+  for (std::size_t k = 0; k < orders; ++k) {
+    std::vector<Multi> right(count), solution;
+    for (std::size_t a = 0; a < n; ++a) {
+      Multi left = machine_->series(tape_.roots[a])[k].midpoint_multi();
+      for (std::size_t j = 0; j < count; ++j)
+        for (std::size_t i = 1; i <= k; ++i) addmul(left, Multi(-delta[j][k - i]), phi(j, a)[i].midpoint_multi());
+      for (std::size_t j = 0; j < count; ++j) addmul(right[j], phi(j, a)[0].midpoint_multi(), left);
+    }
+    lu.solve(right, solution);
+    for (std::size_t j = 0; j < count; ++j) {
+      if (!solution[j].finite()) return {};
+      delta[j].push_back(solution[j]);
+    }
+  }
+  Series balls(count);
+  for (std::size_t j = 0; j < count; ++j)
+    for (const Multi& x : delta[j]) balls[j].emplace_back(x);
+  return balls;
+}
+
+// The coefficient of Newton's residual with multipliers corrected by delta.
+Ball Defect::corrected(std::size_t a, std::size_t order, const Series& delta) const {
+  Ball left = machine_->series(tape_.roots[a])[order];
+  for (std::size_t j = 0; j < delta.size(); ++j)
+    for (std::size_t k = 0; k <= order && k < delta[j].size(); ++k) addmul(left, -delta[j][k], phi(j, a)[order - k]);
+  return left;
 }
 
 Defect::Bound Defect::at_time(const DenseStep& step, const Ball& time) {
@@ -90,7 +143,11 @@ Defect::Bound Defect::at_time(const DenseStep& step, const Ball& time) {
   Bound b;
   const std::size_t n = s_.mechanics->q.size();
   for (std::size_t a = 0; a < n; ++a) b.newton = max(b.newton, abs(machine_->value(a)));
-  b.newton /= newton_scale();
+  const Series delta = correction(1);
+  for (std::size_t a = 0; a < n; ++a) b.projected = max(b.projected, abs(corrected(a, 0, delta)));
+  const Ball scale = newton_scale();
+  b.newton /= scale;
+  b.projected /= scale;
   for (std::size_t r = 0; r < hidden_.size(); ++r)
     for (std::size_t k = 0; k <= static_cast<std::size_t>(hidden_[r]); ++k) {
       const Ball factor = rising(0, k), value = machine_->series(tape_.roots[n + r])[k] * factor;
@@ -110,18 +167,26 @@ Defect::Bound Defect::over(const Series& centered, const Ball& center, const Bal
   const std::size_t n = s_.mechanics->q.size();
   struct Part {
     std::size_t root, derivative;
+    bool projected;
     Ball polynomial, remainder, value;  // value: enclosed on all of the interval
   };
   std::vector<Part> parts;
-  for (std::size_t a = 0; a < n; ++a) parts.push_back({a, 0, {}, {}, {}});
+  for (std::size_t a = 0; a < n; ++a)
+    for (const bool projected : {false, true}) parts.push_back({a, 0, projected, {}, {}, {}});
   for (std::size_t r = 0; r < hidden_.size(); ++r)
-    for (std::size_t k = 0; k <= static_cast<std::size_t>(hidden_[r]); ++k) parts.push_back({n + r, k, {}, {}, {}});
-  const auto coefficient = [&](const Part& p, std::size_t k) { return abs(machine_->series(tape_.roots[p.root])[p.derivative + k] * rising(k, p.derivative)); };
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(hidden_[r]); ++k) parts.push_back({n + r, k, false, {}, {}, {}});
+  Series delta;
+  const auto coefficient = [&](const Part& p, std::size_t k) {
+    if (p.projected) return abs(corrected(p.root, k, delta));
+    return abs(machine_->series(tape_.roots[p.root])[p.derivative + k] * rising(k, p.derivative));
+  };
   set_inputs(centered, center, top);
   sweep(top - 1);
+  delta = correction(last);
   for (Part& p : parts)
     for (std::size_t k = 0; k < last; ++k) p.polynomial += coefficient(p, k) * power[k];
   const Ball spread = radius.symmetric();
+  delta = shifted(delta, spread);
   set_inputs(shifted(centered, spread), center + spread, top);
   sweep(top);
   for (Part& p : parts) p.remainder = coefficient(p, last) * power[last], p.value = coefficient(p, 0);
@@ -132,11 +197,11 @@ Defect::Bound Defect::over(const Series& centered, const Ball& center, const Bal
     Ball scale = newton;
     if (p.root >= n) scale = max(Ball(1), machine_->terms(p.root, p.derivative) * rising(0, p.derivative));
     const Ball taylor = p.polynomial + p.remainder;
-    const bool counts = (p.remainder - p.polynomial).is_positive() && (p.remainder / scale - quiet_).is_positive();
+    const bool counts = reaches_beyond(p.remainder, p.polynomial) && reaches_beyond(p.remainder / scale, quiet_);
     if (!taylor.is_finite() || counts) b.sharp = false;
-    // Beside a kink there is no Taylor polynomial, but still a value.
-    Ball& worst = p.root < n ? b.newton : b.constraints;
-    worst = max(worst, (taylor.is_finite() ? taylor : p.value) / scale);
+    // The values on the interval are a bound as well; beside a kink there is no other.
+    Ball& worst = p.root >= n ? b.constraints : p.projected ? b.projected : b.newton;
+    worst = max(worst, (taylor.is_finite() && !reaches_beyond(taylor, p.value) ? taylor : p.value) / scale);
   }
   return b;
 }
@@ -151,11 +216,14 @@ void Defect::piece(const DenseStep& step, const Ball& begin, const Ball& end, in
 
 void Defect::keep(const Bound& b) {
   newton_ = max(newton_, b.newton);
+  // The multipliers at hand are as good as any.
+  projected_ = max(projected_, reaches_beyond(b.projected, b.newton) ? b.newton : b.projected);
   constraints_ = max(constraints_, b.constraints);
   ++pieces_;
 }
 
 void Defect::step(const DenseStep& step) {
+  for (std::size_t j = 0; j < step.coefficients.size(); ++j) ANHOLON_ASSERT(step.coefficients[j].size() >= static_cast<std::size_t>(s_.structure.d[j]));
   const BallScope precision(bits_);
   // Where the last step ended and this one begins, the state as far as it belongs to the unknowns.
   const Series ends = shifted(step.coefficients, step.end - step.begin);
@@ -175,8 +243,10 @@ void Defect::step(const DenseStep& step) {
   }
 }
 
-RigorousReport Defect::report() const {
-  return {times_ == 0 ? 0 : reached_, pieces_, newton_.bound_text(), constraints_.bound_text(), joints_.bound_text(), bits_};
+std::optional<RigorousReport> Defect::report() const {
+  if (pieces_ == 0) return std::nullopt;
+  const auto times = times_ == 0 ? std::nullopt : std::optional(reached_);
+  return RigorousReport{times, pieces_, newton_.bound_text(), projected_.bound_text(), constraints_.bound_text(), joints_.bound_text(), bits_};
 }
 
 }  // namespace anholon

@@ -4,6 +4,7 @@
 // parameters are exact as the user wrote them. Put into
 //
 //   Newton's law    E_a - G_a - N_a                       (theory: certificate, C1; N with the polynomials of the multipliers)
+//   the same without multipliers: E_a - G_a - (Phi^T lambda*)_a with any lambda*, chosen so that little is left               (C2)
 //   constraints     phi_r and its derivatives by t, as far as they are hidden constraints     (C3)
 //
 // and evaluated in balls, these give bounds that hold for the trajectory itself, whatever rounding, step control or linear algebra
@@ -39,9 +40,9 @@ DenseStep dense_step(const Stepper<N>& stepper, const Wider<N>& end) {
 }
 
 struct RigorousReport {
-  std::size_t times = 0;  // at which the bounds hold; 0: at all
-  std::size_t pieces = 0;
-  std::string newton, constraints, joints;  // bounds, rounded upwards; "inf" where there is none
+  std::optional<std::size_t> times;  // that the motion reached, at which the bounds hold; nothing: at all
+  std::size_t pieces = 0;            // in which these were found
+  std::string newton, projected, constraints, joints;  // bounds, rounded upwards; "inf" where there is none
   long bits = 0;                            // of the midpoints of balls
 };
 
@@ -50,19 +51,23 @@ class Defect {
   // Bounds at `times` times, spread evenly from begin to end; at all times if 0. `significand`: bits of the numbers of the motion.
   Defect(const Scenario& scenario, std::size_t times, const Ball& begin, const Ball& end, long significand);
 
-  // The steps of the motion, one after the other.
+  // The steps of the motion, one after the other. REQUIRES: a coefficient at least for every derivative that belongs to the state.
   void step(const DenseStep& step);
-  RigorousReport report() const;
+  // Nothing where the motion reached none of the times.
+  std::optional<RigorousReport> report() const;
 
  private:
   struct Bound {
-    Ball newton, constraints;
+    Ball newton, projected, constraints;
     bool sharp = true;  // the remainders are not what counts
   };
   void set_inputs(const std::vector<std::vector<Ball>>& x, const Ball& t, int orders);
   void sweep(int orders);
   Bound at_time(const DenseStep& step, const Ball& time);
   Bound over(const std::vector<std::vector<Ball>>& centered, const Ball& center, const Ball& radius);
+  const Ball* phi(std::size_t constraint, std::size_t coordinate) const;
+  std::vector<std::vector<Ball>> correction(std::size_t orders) const;
+  Ball corrected(std::size_t coordinate, std::size_t order, const std::vector<std::vector<Ball>>& delta) const;
   void piece(const DenseStep& step, const Ball& begin, const Ball& end, int halvings);
   void keep(const Bound& b);
   Ball newton_scale() const;
@@ -72,12 +77,13 @@ class Defect {
   slong bits_;
   Ball begin_, end_, quiet_;
   Tape tape_;
+  std::size_t phi_ = 0, scale_ = 0;  // the first root of Phi; of E, G, N
   std::vector<int> hidden_;  // derivatives of each constraint that are to vanish
   std::vector<Ball> parameters_;
   std::unique_ptr<Machine<Ball>> machine_;
   int orders_ = -1;          // that the machine has room for
   std::vector<std::vector<Ball>> last_;  // derivatives of the unknowns where the last step ended
-  Ball newton_, constraints_, joints_;
+  Ball newton_, projected_, constraints_, joints_;
 };
 
 }  // namespace anholon

@@ -380,6 +380,17 @@ TEST(VerifyNonzero, AtARationalPoint) {
   EXPECT_EQ(verify(w.b.c).claims[0].detail, "the witness has no value of 'y'");
 }
 
+TEST(VerifyNonzero, WithAsManyDigitsAsItTakes) {
+  Witnessed w;
+  mpz_class huge;
+  mpz_ui_pow_ui(huge.get_mpz_t(), 10, 400);
+  w.b.nonzero(pow(sin(w.x), 2) + pow(cos(w.x), 2) - w.b.number(Rational(huge + 1, huge)), {{{0, Rational(1, 2)}}, {}, {}});
+  VerifyOptions options;
+  EXPECT_EQ(verify(w.b.c, options).claims[0].finding, Finding::unchecked);
+  options.digits = 500;
+  EXPECT_EQ(verify(w.b.c, options).claims[0].finding, Finding::confirmed);
+}
+
 // x² + y² = 2, x = y·tan(π/4 …) at (1, 1): the constraint, moved off, must not be believed.
 TEST(VerifyNonzero, AtARootOfConstraints) {
   Witnessed w;

@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Runs, Restart,
                                          // Chaplygin's form divides by cos(theta), which vanishes on the way.
                                          Case{"Elimination", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10},
                                          Case{"LongDouble", "zoo/disc", "routh", Precision::long_real},
-                                         Case{"ThirtyDigits", "zoo/chaplygin-sleigh", "routh", Precision::multi, 30}),
+                                         Case{"Quad", "zoo/chaplygin-sleigh", "routh", Precision::quad}, Case{"ThirtyDigits", "zoo/chaplygin-sleigh", "routh", Precision::multi, 30}),
                          [](const auto& p) { return std::string(p.param.name); });
 
 TEST(Restart, TheEliminationChangesBeforeAndAfter) {
@@ -136,6 +136,9 @@ TEST(Restart, NumbersAsTextKeepTheirBits) {
   EXPECT_EQ(parse_exact<double>(exact_text(0.1)), 0.1);
   EXPECT_EQ(parse_exact<long double>(exact_text(-1.0L / 3)), -1.0L / 3);
   EXPECT_TRUE(std::signbit(*parse_exact<double>(exact_text(-0.0))));
+  const Quad sevenths = -Quad(1) / Quad(7);
+  EXPECT_TRUE(*parse_exact<Quad>(exact_text(sevenths)) == sevenths);
+  EXPECT_FALSE(parse_exact<Quad>("0x1p3x"));
   const PrecisionScope precision(40);
   const Multi third = Multi(1) / Multi(3);
   EXPECT_TRUE(*parse_exact<Multi>(exact_text(third)) == third);
