@@ -190,6 +190,32 @@ static void convert_all(const std::vector<From>& from, std::vector<To>& to) {
 
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
+  const StepperState<N> last = begun_;
+  const bool again = expansions_ > 0;
+  Outcome o = expand_here(guess);
+  if (!o.ok() && again) expand_again(last);
+  return o;
+}
+
+// After a failure: the polynomial of the last good step is still asked for.
+template <Number N>
+void Stepper<N>::expand_again(const StepperState<N>& last) {
+  const W t = t_;
+  const std::vector<W> state = state_, carry = carry_, leading = leading_;
+  t_ = before_ = last.t;
+  state_ = last.state;
+  carry_ = last.carry;
+  expand_here(last.leading);
+  begun_ = last;
+  t_ = t;
+  state_ = state;
+  carry_ = carry;
+  leading_ = leading;
+  expanded_ = false;
+}
+
+template <Number N>
+Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   begun_ = {t_, state_, carry_, guess, integrals_, integral_carry_, branch_step_, steps_, worst_constraint_, worst_equation_,
             first_sigma_, smallest_sigma_, smallest_sigma_t_, weakest_, expansion_.weakest_direction()};
   ++expansions_;
@@ -209,7 +235,7 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
       if (state_[i] != unprojected[i]) carry_[i] = W(0);
     expansion_.leading(leading_);
     point_.load(t_, state_, leading_);
-    worst_constraint_ = std::max(worst_constraint_, expansion_.constraint_residual());
+    worst_constraint_ = std::max(worst_constraint_, expansion_.drift());
     worst_equation_ = std::max(worst_equation_, expansion_.equation_residual());
   } else {
     const auto solver = [this](const std::vector<W>& r, std::vector<W>& y) {
@@ -233,7 +259,7 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
     point_.state(state_);
     point_.leading(leading_);
     expansion_.adopt_values(point_);
-    worst_constraint_ = std::max(worst_constraint_, point_.constraint_residual());
+    worst_constraint_ = std::max(worst_constraint_, point_.drift());
     worst_equation_ = std::max(worst_equation_, point_.equation_residual());
   }
   if (Outcome o = expansion_.extend(); !o.ok()) return o;

@@ -88,6 +88,8 @@ class Stepper {
 
  private:
   Outcome expand(const std::vector<W>& guess);
+  Outcome expand_here(const std::vector<W>& guess);
+  void expand_again(const StepperState<N>& last);
   void note_sigma(const N& sigma);
   N step_size() const;
   W on_the_branch(W h);

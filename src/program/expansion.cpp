@@ -243,14 +243,16 @@ template <Number N>
 Outcome Expansion<N>::project(const Solver& solver) {
   const Program& p = *program_;
   const N quiet = unit_roundoff<N>() * N(kQuietRoundoffs);
-  constraint_residual_ = N(0);
+  constraint_residual_ = drift_ = N(0);
   const int deepest = *std::max_element(p.c.begin(), p.c.end());
   bool changed = false;
   for (int level = deepest; level >= 1; --level) {
     N worst(0), before(-1);
     for (int k = 0;; ++k) {
       if (changed || k > 0) sweep_known(-level);
-      if (!residual(level, r_, worst) || !(worst > quiet)) break;
+      const bool any = residual(level, r_, worst);
+      if (k == 0 && worst > drift_) drift_ = worst;
+      if (!any || !(worst > quiet)) break;
       if (!is_finite(worst))
         return {OutcomeKind::not_a_number, "a constraint has no value", "the motion leaves the region where the constraint is defined"};
       if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;

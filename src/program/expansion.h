@@ -68,6 +68,8 @@ class Expansion {
   // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms, at the state as
   // measured or projected last.
   const N& constraint_residual() const { return constraint_residual_; }
+  // The same where project() began.
+  const N& drift() const { return drift_; }
   // That of derivative k < c_i of equation i alone.
   const N& hidden_residual(std::size_t i, int k) const { return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)]; }
   // Residual of the equations at the leading derivatives found, in relation to their terms.
@@ -113,7 +115,7 @@ class Expansion {
   Lu<N> lu_;
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_, delta_x_, r_, y_, direction_;
-  N constraint_residual_{0}, equation_residual_{0};
+  N constraint_residual_{0}, drift_{0}, equation_residual_{0};
   std::vector<N> hidden_;      // residuals of the hidden constraints, equation by equation
   std::vector<std::size_t> hidden_offset_;
 };

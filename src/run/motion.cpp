@@ -22,7 +22,8 @@ Outcome Motion<N>::start(const StateChoice& choice) {
 }
 
 static bool can_go_on(OutcomeKind kind) {
-  return kind == OutcomeKind::singular || kind == OutcomeKind::step_collapse || kind == OutcomeKind::not_a_number;
+  return kind == OutcomeKind::singular || kind == OutcomeKind::step_collapse || kind == OutcomeKind::not_a_number ||
+         kind == OutcomeKind::no_convergence;
 }
 
 template <Number N>

@@ -42,7 +42,7 @@ Outcome Redundant<W>::hold(const Expansion<W>& point, bool start, double& worst)
       if (start)
         return {OutcomeKind::inconsistent, name + "contradicts the others: it is missed by " + number_text(std::abs(to_double((*outputs_)[i])), 3) + " at the start",
                 "leave it out, or the one that it contradicts"};
-      return {OutcomeKind::singular, name + "no longer follows from the others", "it was redundant at the start only: start elsewhere, or leave out one of the constraints"};
+      return {OutcomeKind::singular, name + "no longer follows from the others at t = " + number_text(to_double(point.time()), 12), "it was redundant at the start only: start elsewhere, or leave out one of the constraints"};
     }
   }
   return {};

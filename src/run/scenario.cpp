@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "expr/normal.h"
+#include "run/redundant.h"
 #include "structure/redundancy.h"
 
 namespace anholon {
@@ -91,13 +92,17 @@ static Start<N> start_of(const Scenario& s, const InitialState<N>& named) {
 }
 
 Outcome regular_at_start(const Scenario& s) {
+  using W = Wider<double>;
   const Program p = program(s.system, s.structure);
   const Start<double> start = start_of(s, s.state);
-  Expansion<double> point(p, parameter_values<double>(*s.model), 1);
-  point.load(start.t, start.state, start.leading);
+  const std::vector<W> parameters = parameter_values<W>(*s.model);
+  Expansion<W> point(p, parameters, 1);
+  point.load(start.t, {start.state.begin(), start.state.end()}, {start.leading.begin(), start.leading.end()});
   if (Outcome o = point.prepare(); !o.ok()) return o;
   if (Outcome o = point.project(); !o.ok()) return o;
-  return point.solve();
+  if (Outcome o = point.solve(); !o.ok()) return o;
+  double missed = 0;
+  return Redundant<W>(s, parameters).hold(point, true, missed);
 }
 
 static ProbeHints hints_at(const InitialState<double>& state) {

@@ -200,6 +200,7 @@ class Run {
       if (!report_.outcome.ok()) break;
       const Stepper<N>& stepper = motion_.stepper();
       angles_.see(stepper.point());
+      if (report_.outcome = watch_.still_redundant(stepper.point(), report_); !report_.outcome.ok()) break;
       const W stop = masses_positive_until();
       if (defect_) defect_->step(dense_step(stepper, stop));
       if (o_.progress) o_.progress(to_double(stepper.time()), stepper.steps());
@@ -229,8 +230,10 @@ class Run {
     const Stepper<N>& stepper = motion_.stepper();
     if (report_.outcome.message.find(" t = ") != std::string::npos) return;
     report_.outcome.message += " at t = " + number_text(to_double(stepper.time()), 12);
+    // Nobody asked for an end here.
+    const bool stopped_by_itself = report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
     if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
-        report_.outcome.kind == OutcomeKind::no_convergence || (report_.outcome.kind == OutcomeKind::interrupted && stepper.steps() >= o_.most_steps))
+        report_.outcome.kind == OutcomeKind::no_convergence || stopped_by_itself)
       explain(s_, motion_, report_.outcome);
     // The last good state is worth a row of its own.
     if (stepper.steps() > 0 && !every_step_) {

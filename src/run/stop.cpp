@@ -40,7 +40,7 @@ static std::string unbounded(const Scenario& s, const Motion<N>& motion) {
 template <Number N>
 static std::string lost_hold(const Scenario& s, const Motion<N>& motion) {
   using W = Wider<N>;
-  constexpr double kLost = 1e-3;
+  constexpr double kLost = 1e-2;
   const Mechanics& m = *s.mechanics;
   const std::size_t n = s.system.coordinates, rows = s.independent.size();
   if (rows == 0) return {};
@@ -62,7 +62,8 @@ static std::string lost_hold(const Scenario& s, const Motion<N>& motion) {
     if (size < kLost * kLost * std::max(1.0, largest)) return "the partial derivatives of the constraint '" + s.model->constraints[s.independent[i]].name + "' vanish";
   }
   const IndependentConstraints choice = choose_independent(phi, order);
-  if (choice.weakest > kLost && choice.redundant.empty()) return {};
+  const double start = independent_constraints(m, parameter_values<double>(*s.model), s.state).weakest;
+  if (choice.weakest > kLost * start && choice.redundant.empty()) return {};
   const std::size_t which = choice.redundant.empty() ? choice.weakest_row : choice.redundant[0];
   return "the constraint '" + s.model->constraints[s.independent[which]].name + "' becomes dependent on the others";
 }
@@ -82,8 +83,8 @@ void explain(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
     return;
   }
   const double first = to_double(stepper.first_sigma()), least = to_double(stepper.smallest_sigma());
-  const bool fallen = outcome.kind == OutcomeKind::singular || least < kFallen * first;
-  const std::string lost = fallen ? lost_hold(s, motion) : std::string();
+  const std::string lost = lost_hold(s, motion);
+  const bool fallen = outcome.kind == OutcomeKind::singular || least < kFallen * first || !lost.empty();
   for (std::size_t k = 0; k < s.system.constraints.size() && lost.empty(); ++k) {
     const std::size_t r = s.system.constraints[k];
     if (!may_branch(*s.mechanics, s.system, r)) continue;

@@ -109,11 +109,16 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
   report.projected = std::max(report.projected, to_double(c.projected));
   constraints(point, phi, report);
   track();
-  double missed = 0;
-  const Outcome outcome = redundant_.hold(point, !(point.time() != start_), missed);
-  report.constraints_kept = std::max(report.constraints_kept, missed);
   multipliers_ = redundant_.multipliers(point);
-  return outcome;
+  return still_redundant(point, report);
+}
+
+template <Number W>
+Outcome Watch<W>::still_redundant(const Expansion<W>& point, SimulationReport& report) {
+  double missed = 0;
+  Outcome o = redundant_.hold(point, !(point.time() != start_), missed);
+  report.constraints_kept = std::max(report.constraints_kept, missed);
+  return o;
 }
 
 // C3, and each constraint with its derivatives by itself.

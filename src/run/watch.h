@@ -38,6 +38,8 @@ class Watch {
 
   // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows from the others.
   Outcome see(const Expansion<W>& point, SimulationReport& report);
+  // That alone.
+  Outcome still_redundant(const Expansion<W>& point, SimulationReport& report);
   // The monitors of the model, then the integrals.
   const std::vector<Track<W>>& tracks() const { return tracks_; }
   // What was seen, for a run that goes on.

@@ -41,6 +41,8 @@ class InitialReader {
     // For constraints of order 3 and more these are initial data; below they follow from the state.
     int highest = 0;
     for (const Constraint& c : model_.constraints) highest = std::max(highest, c.order);
+    // The reaction of a mass that depends on accelerations holds their rates.
+    for (const VaryingMass& m : model_.masses) highest = std::max(highest, jet_order(m.value) + (jet_order(m.value) > 1 ? 1 : 0));
     for (const GivenValue& v : out.given) {
       const Node& n = model_.graph->node(v.symbol.id);
       if (highest < 3 && n.kind == Kind::multiplier)

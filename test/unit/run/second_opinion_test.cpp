@@ -82,8 +82,8 @@ std::vector<Case> cases() {
   }
   return all;
 }
-INSTANTIATE_TEST_SUITE_P(Models, SecondOpinionOn, testing::ValuesIn(cases()), [](const auto& info) {
-  return test::test_name(info.param.model + "_" + name(info.param.integrator) + "_" + info.param.form);
+INSTANTIATE_TEST_SUITE_P(Models, SecondOpinionOn, testing::ValuesIn(cases()), [](const auto& c) {
+  return test::test_name(c.param.model + "_" + name(c.param.integrator) + "_" + c.param.form);
 });
 
 // What the other integrator makes of the same motion with one parameter changed.
@@ -97,7 +97,7 @@ double difference(Integrator integrator, double factor) {
   Start<double> start;
   EXPECT_TRUE(initial_state(s, {}, start).ok());
   const double end = options_for(integrator, *s.model).to->get_d();
-  Sundials other(p, parameters, {integrator, 1e-9}, start.t, end, start.state, start.leading, {});
+  Sundials other(p, parameters, {integrator, 1e-9, 50'000'000, {}}, start.t, end, start.state, start.leading, {});
   EXPECT_TRUE(other.advance(end).ok());
   double largest = 0;
   for (std::size_t a = 0; a < s.model->coordinates.size(); ++a)
