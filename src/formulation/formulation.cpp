@@ -16,11 +16,16 @@ unsigned highest_order(const Mechanics& M) {
 
 Expr T(const Mechanics& M, unsigned k) { return total_derivative(M.T, k); }
 
-Column lagrange_operator(const Mechanics& M) { return total_derivative(gradient(M.T, M.qd)) - gradient(M.T, M.q); }
+// Operands are made one after the other: nodes then have the same order with every compiler.
+Column lagrange_operator(const Mechanics& M) {
+  const Column by_q = gradient(M.T, M.q);
+  return total_derivative(gradient(M.T, M.qd)) - by_q;
+}
 
 Column nielsen_operator(const Mechanics& M, unsigned m) {
   const Expr T_before = T(M, m - 1);
-  return Rational(m) * total_derivative(gradient(T_before, jets(*M.model, m))) - gradient(T_before, jets(*M.model, m - 1));
+  const Column below = gradient(T_before, jets(*M.model, m - 1));
+  return Rational(m) * total_derivative(gradient(T_before, jets(*M.model, m))) - below;
 }
 
 Column misevic_rusov_operator(const Mechanics& M, unsigned m) {

@@ -91,18 +91,26 @@ static Start<N> start_of(const Scenario& s, const InitialState<N>& named) {
   return start;
 }
 
-Outcome regular_at_start(const Scenario& s) {
-  using W = Wider<double>;
-  const Program p = program(s.system, s.structure);
+// Prepares, projects and solves at the start.
+template <Number N>
+static Outcome settle(const Scenario& s, Expansion<N>& point) {
   const Start<double> start = start_of(s, s.state);
-  const std::vector<W> parameters = parameter_values<W>(*s.model);
-  Expansion<W> point(p, parameters, 1);
   point.load(start.t, {start.state.begin(), start.state.end()}, {start.leading.begin(), start.leading.end()});
   if (Outcome o = point.prepare(); !o.ok()) return o;
   if (Outcome o = point.project(); !o.ok()) return o;
-  if (Outcome o = point.solve(); !o.ok()) return o;
+  return point.solve();
+}
+
+Outcome regular_at_start(const Scenario& s) {
+  using W = Wider<double>;
+  const Program p = program(s.system, s.structure);
+  Expansion<double> point(p, parameter_values<double>(*s.model), 1);
+  if (Outcome o = settle(s, point); !o.ok() || s.redundant.empty()) return o;
+  const std::vector<W> parameters = parameter_values<W>(*s.model);
+  Expansion<W> wide(p, parameters, 1);
+  if (Outcome o = settle(s, wide); !o.ok()) return o;
   double missed = 0;
-  return Redundant<W>(s, parameters).hold(point, true, missed);
+  return Redundant<W>(s, parameters).hold(wide, true, missed);
 }
 
 static ProbeHints hints_at(const InitialState<double>& state) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "run/eliminate.h"
 #include "run/motion.h"
 #include "structure/branch.h"
 #include "structure/redundancy.h"
@@ -52,18 +53,18 @@ static std::string lost_hold(const Scenario& s, const Motion<N>& motion) {
   }
   OutputTape<W> phi_tape(s, es, motion.parameters());
   phi_tape.evaluate(motion.stepper().point());
-  Matrix<double> phi(rows, n);
-  double largest = 0;
-  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = to_double(phi_tape[i]), largest = std::max(largest, std::abs(phi.data[i]));
-  for (std::size_t i = 0; i < rows; ++i) {
-    double size = 0;
-    for (std::size_t a = 0; a < n; ++a) size = std::max(size, std::abs(phi(i, a)));
-    // Alone there is nothing to compare a row with but the numbers of a usual constraint.
-    if (size < kLost * kLost * std::max(1.0, largest)) return "the partial derivatives of the constraint '" + s.model->constraints[s.independent[i]].name + "' vanish";
-  }
+  Matrix<double> phi(rows, n), at_start(rows, n);
+  PointValues start = values_near(*s.model, parameter_values<double>(*s.model), s.state);
+  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = to_double(phi_tape[i]), at_start.data[i] = start(es[i]);
+  const auto size = [&](const Matrix<double>& of, std::size_t i) {
+    double largest = 0;
+    for (std::size_t a = 0; a < n; ++a) largest = std::max(largest, std::abs(of(i, a)));
+    return largest;
+  };
+  for (std::size_t i = 0; i < rows; ++i)
+    if (size(phi, i) < kLost * size(at_start, i)) return "the partial derivatives of the constraint '" + s.model->constraints[s.independent[i]].name + "' vanish";
   const IndependentConstraints choice = choose_independent(phi, order);
-  const double start = independent_constraints(m, parameter_values<double>(*s.model), s.state).weakest;
-  if (choice.weakest > kLost * start && choice.redundant.empty()) return {};
+  if (choice.weakest > kLost * choose_independent(at_start, order).weakest && choice.redundant.empty()) return {};
   const std::size_t which = choice.redundant.empty() ? choice.weakest_row : choice.redundant[0];
   return "the constraint '" + s.model->constraints[s.independent[which]].name + "' becomes dependent on the others";
 }
@@ -76,7 +77,7 @@ void explain(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
   const Expansion<W>& point = stepper.point();
   std::string& message = outcome.message;
   const std::string when = " at t = " + number_text(to_double(stepper.time()), 12);
-  if (const std::string name = unbounded(s, motion); !name.empty()) {
+  if (const std::string name = unbounded(s, motion); !name.empty() && outcome.kind != OutcomeKind::interrupted) {
     outcome.kind = OutcomeKind::blow_up;
     message += "; " + name + " grows without bound";
     outcome.hint = "look at the last good state: end the motion before";

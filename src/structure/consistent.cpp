@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "base/assert.h"
+#include "expr/normal.h"
 #include "structure/branch.h"
 
 namespace anholon {
@@ -488,6 +489,38 @@ class Solver {
             "give a guess near the wanted configuration: [initial] guess = {…}"};
   }
 
+  // What an equation asks of the unknowns that are free, the values of the others put in: "x'^2 + 1 = 0".
+  std::string asked(const Stage<N>& stage, std::size_t row) const {
+    constexpr std::size_t kMostUnknowns = 2, kLongest = 60;
+    constexpr long kMostWork = 2000;
+    const Graph& g = m_.graph();
+    const Expr residual = stage.equation(row).residual;
+    std::size_t open = 0;
+    bool valued = true;
+    const auto number = [&](const N& value) {
+      const std::optional<Rational> r = parse_rational(number_text(to_double(value), 6));
+      valued = valued && r;
+      return m_.graph().number(r ? *r : Rational(0));
+    };
+    const auto free = [&](NodeId id) {
+      for (std::size_t j = 0; j < stage.unknowns(); ++j)
+        if (&stage.unknown(j) == &g.node(id)) return *state_.origin(g.node(id)) != Origin::given;
+      return false;
+    };
+    const Expr e = substitute({&residual, 1}, [&](NodeId id) {
+      const Node& n = g.node(id);
+      if (free(id)) return ++open, Expr{};
+      if (n.kind == Kind::time) return number(state_.t);
+      if (n.kind == Kind::parameter) return number(p_.parameters[n.index]);
+      if (const N* value = state_.value(n)) return number(*value);
+      return Expr{};
+    })[0];
+    if (open == 0 || open > kMostUnknowns || !valued || stage.equation(row).span.line == 0) return {};
+    const std::optional<Expr> full = expanded(e, kMostWork);
+    const std::string text = print(full ? *full : e, model_.names, Format::text);
+    return text.size() > kLongest ? std::string() : "; it asks for " + text + " = 0 here";
+  }
+
   Outcome clash(const Stage<N>& stage, std::size_t row) {
     const StageEquation& e = stage.equation(row);
     std::string fixed;
@@ -497,7 +530,7 @@ class Solver {
     }
     const std::string at = e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "";
     return {OutcomeKind::inconsistent,
-            e.what + at + " is missed by " + number_text(std::abs(to_double(stage.residual[row])), 3) + " with the initial data given",
+            e.what + at + " is missed by " + number_text(std::abs(to_double(stage.residual[row])), 3) + " with the initial data given" + asked(stage, row),
             fixed.empty() ? "it clashes with another constraint or condition, or has no real solution near the guess: [initial] guess = {…}"
                           : "leave out " + std::string(fixed.find(',') == std::string::npos ? "" : "one of ") + fixed +
                                 " (what is missing is found from the constraints), if the equation can be satisfied at all"};
