@@ -183,11 +183,13 @@ TEST(BetweenTwoSteps, AFoldedLinkageIsNoticed) {
       "[[particle]]\nname = \"A\"\nmass = 1\nposition = [\"cos(a)\", \"sin(a)\", \"0\"]\n[[particle]]\nname = \"B\"\nmass = 1\nposition = \"P\"\n"
       "[[particle]]\nname = \"C\"\nmass = 1\nposition = \"Q\"\n[gravity]\nfield = \"-1*ey\"\n[[constraint]]\nname = \"closing\"\nequation = \"P = Q\"\n"
       "[initial]\na = 1\n\"a'\" = -2\nguess = {b = 0, c = 1}\n";
-  for (const char* form : {"routh", "maggi"}) {
-    const Motion m = run(test::model_of(text), Rational(5), form);
-    EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular) << form << ": " << m.report.outcome.message;
-    EXPECT_NEAR(std::stod(m.report.t), 0.460032711, 2e-3) << form;
-    EXPECT_LT(std::stod(m.report.t), 0.4600328) << form;
+  const Motion routh = run(test::model_of(text), Rational(5)), maggi = run(test::model_of(text), Rational(5), "maggi");
+  EXPECT_EQ(routh.report.outcome.kind, OutcomeKind::singular) << routh.report.outcome.message;
+  // Maggi's equations lose their pivots a little before.
+  EXPECT_FALSE(maggi.report.outcome.ok());
+  for (const Motion* m : {&routh, &maggi}) {
+    EXPECT_NEAR(std::stod(m->report.t), 0.460032711, 2e-3);
+    EXPECT_LT(std::stod(m->report.t), 0.4600328);
   }
   // Other lengths do not fold flat together.
   const std::string other = test::replaced(text, "2*ex + cos(c)", "1.5*ex + cos(c)");
