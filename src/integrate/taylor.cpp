@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrate/kink.h"
+
 namespace anholon {
 
 namespace {
@@ -21,89 +23,8 @@ void add_compensated(N& s, N& carry, const N& x) {
   s = sum;
 }
 
-// A diagonal similarity by powers of 2 that brings rows and columns to like sizes (Osborne 1960): the norm of a matrix in badly
-// scaled unknowns says nothing about its spectral radius.
-template <Number N>
-void balance(Matrix<N>& a) {
-  constexpr int kSweeps = 4;
-  const std::size_t n = a.rows;
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (std::size_t i = 0; i < n; ++i) {
-      double row = 0, column = 0;
-      for (std::size_t j = 0; j < n; ++j)
-        if (j != i) row += std::abs(to_double(a(i, j))), column += std::abs(to_double(a(j, i)));
-      if (!(row > 0) || !(column > 0) || !std::isfinite(row) || !std::isfinite(column)) continue;
-      const N factor(std::exp2(std::round(0.5 * std::log2(row / column))));
-      for (std::size_t j = 0; j < n; ++j) a(j, i) = a(j, i) * factor;
-      for (std::size_t j = 0; j < n; ++j) a(i, j) = a(i, j) / factor;
-    }
-}
-
 // A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other side.
 constexpr int kPastKink = 32;
-
-template <Number N>
-N value_at(const N* c, int degree, const N& x) {
-  N s(0);
-  for (int k = degree; k >= 0; --k) s = s * x + c[k];
-  return s;
-}
-
-template <Number N>
-N slope_at(const N* c, int degree, const N& x) {
-  N s(0);
-  for (int k = degree; k >= 1; --k) s = s * x + c[k] * N(k);
-  return s;
-}
-
-template <Number N>
-struct Kink {
-  bool at_start = false, ahead = false;
-  N where{0};
-};
-
-// The first place in (0, h] where the argument of an abs or sign passes zero, or that of a square root (a norm) touches it:
-// there the function goes on as another one, of which its Taylor series knows nothing.
-template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h) {
-  constexpr int kSamples = 8, kHalvings = 80;
-  constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
-  const Tape& tape = machine.tape();
-  Kink<N> first;
-  for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) {
-    const Instruction& in = tape.code[slot];
-    const bool jump = in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign));
-    const bool root = in.op == Op::power && tape.rationals[in.index].get_den() % 2 == 0;
-    if ((!jump && !root) || tape.code[in.a].constant) continue;
-    const N* c = machine.series(in.a);
-    if (jump && !(c[0] > N(0)) && !(c[0] < N(0))) {
-      first.at_start = first.at_start || std::any_of(c + 1, c + degree + 1, [](const N& x) { return x > N(0) || x < N(0); });
-      continue;
-    }
-    const bool positive = jump ? c[0] > N(0) : c[1] > N(0);
-    if (root && positive == (h > N(0))) continue;  // it grows
-    const auto passed = [&](const N& x) {
-      const N v = jump ? value_at(c, degree, x) : slope_at(c, degree, x);
-      return positive ? !(v > N(0)) : !(v < N(0));
-    };
-    N low(0), high(0);
-    bool found = false;
-    for (int k = 1; k <= kSamples && !found; ++k) {
-      low = high;
-      high = h * N(k) / N(kSamples);
-      found = passed(high);
-    }
-    for (int k = 0; found && k < kHalvings; ++k) {
-      const N middle = (low + high) / N(2);
-      if (middle == low || middle == high) break;
-      (passed(middle) ? high : low) = middle;
-    }
-    if (!found || (root && value_at(c, degree, high) > c[0] * N(kTouches))) continue;
-    if (!first.ahead || abs(high) < abs(first.where)) first.where = high;
-    first.ahead = true;
-  }
-  return first;
-}
 
 }  // namespace
 
@@ -116,7 +37,6 @@ Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, co
                     const StepSettings& settings)
     : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
       parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {
-  if (program.nonlinear) ahead_ = std::make_unique<Expansion<N>>(program, parameters, 1);
 }
 
 template <Number N>
@@ -168,6 +88,8 @@ Outcome Stepper<N>::resume(const StepperState<N>& b) {
   smallest_sigma_t_ = b.smallest_sigma_t;
   weakest_ = b.weakest;
   expansion_.set_weakest_direction(b.direction);
+  sigma_before_ = b.sigma_before;
+  last_step_ = b.last_step;
   return expand(leading_);
 }
 
@@ -217,7 +139,7 @@ void Stepper<N>::expand_again(const StepperState<N>& last) {
 template <Number N>
 Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   begun_ = {t_, state_, carry_, guess, integrals_, integral_carry_, branch_step_, steps_, worst_constraint_, worst_equation_,
-            first_sigma_, smallest_sigma_, smallest_sigma_t_, weakest_, expansion_.weakest_direction()};
+            first_sigma_, smallest_sigma_, smallest_sigma_t_, weakest_, expansion_.weakest_direction(), sigma_before_, last_step_};
   ++expansions_;
   convert_all(state_, narrow_state_);
   convert_all(guess, narrow_leading_);
@@ -331,42 +253,30 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
   }
 }
 
-// Where leading derivatives enter nonlinearly, solutions of the equations may meet where J is singular, and the Taylor polynomial
-// would go straight on from one to another. With A = J0^-1 (J - J0) of spectral radius below 1, J is regular: so a step ends
-// where the radius, estimated by the norm of the balanced A^8, reaches 1/2, and steps shrink towards a singular point (theory: taylor).
+// J and its LU at t + h on the polynomial, or nothing where it has none. What was met elsewhere says nothing there: the iteration
+// for the singular value starts anew, so that a run that goes on finds the same.
 template <Number N>
-bool Stepper<N>::near_in_branch(const W& h) {
-  constexpr double kNear = 0.5;
-  const std::size_t n = program_->unknowns();
+Expansion<N>* Stepper<N>::ahead(const W& h) {
+  if (!ahead_) ahead_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
   std::vector<W> increments, leading, state;
   polynomial(h, increments, leading);
   point_.state(state);
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
   std::vector<N> narrow_state, narrow_leading;
-  for (std::size_t i = 0; i < state.size(); ++i) narrow_state.push_back(convert<N>(W(state[i] + increments[i])));
-  for (const W& x : leading) narrow_leading.push_back(convert<N>(x));
+  convert_all(state, narrow_state);
+  convert_all(leading, narrow_leading);
   ahead_->load(convert<N>(W(t_ + h)), narrow_state, narrow_leading);
-  ahead_->set_weakest_direction({});  // what was met further ahead says nothing here
-  if (!ahead_->prepare().ok()) return false;
-  Matrix<N> a(n, n);
-  std::vector<N> column(n), y;
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t i = 0; i < n; ++i) column[i] = ahead_->system_jacobian()(i, j) - expansion_.system_jacobian()(i, j);
-    expansion_.lu().solve_once(column, y);
-    for (std::size_t i = 0; i < n; ++i) a(i, j) = y[i];
-  }
-  balance(a);
-  for (int doubling = 0; doubling < 3; ++doubling) {
-    Matrix<N> square(n, n);
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t k = 0; k < n; ++k)
-        for (std::size_t j = 0; j < n; ++j) addmul(square(i, j), a(i, k), a(k, j));
-    a = std::move(square);
-  }
-  double norm2 = 0;
-  for (const N& v : a.data) norm2 += to_double(v) * to_double(v);
-  return norm2 <= std::pow(kNear, 16);  // false for what is not a number
+  ahead_->set_weakest_direction({});
+  return ahead_->prepare().ok() ? ahead_.get() : nullptr;
 }
 
+template <Number N>
+bool Stepper<N>::near_in_branch(const W& h) {
+  const Expansion<N>* there = ahead(h);
+  return there && near(expansion_, *there);
+}
+
+// Steps end where J may become singular, and shrink towards a singular point.
 template <Number N>
 typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
   // From a horizon of e^300 (a polynomial motion) to far below any step.
@@ -377,63 +287,12 @@ typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
   return h;
 }
 
-// The Taylor polynomial may also carry a motion across a point where J is singular: a linkage that folds flat, a multiplier that
-// makes the inertia vanish. The motion beyond is one of several, so it ends there. J is singular between two points if its
-// smallest singular value, with a sign, or the reaction of the weakest combination of multipliers changes sign on the way
-// (theory: taylor).
 template <Number N>
-typename Stepper<N>::Mode Stepper<N>::mode(Expansion<N>& at, N sigma) {
-  const Matrix<N>& J = at.system_jacobian();
-  const std::size_t size = J.rows, n = at.program().system->coordinates;
-  Mode m;
-  m.sigma = sigma;
-  m.v = at.weakest_direction();
-  m.image.assign(size, N(0));
-  m.reaction.assign(n, N(0));
-  for (std::size_t i = 0; i < size; ++i) {
-    N largest(0);
-    for (std::size_t j = 0; j < size; ++j) {
-      addmul(m.image[i], J(i, j), m.v[j]);
-      if (i < n && j >= n) addmul(m.reaction[i], J(i, j), m.v[j]);
-      if (N x = abs(J(i, j)); x > largest) largest = x;
-    }
-    if (largest > N(0)) m.image[i] = m.image[i] / largest;
-  }
-  return m;
-}
-
-// The cosine of the angle between parts of two vectors.
-template <Number N>
-static double cosine(const std::vector<N>& a, const std::vector<N>& b, std::size_t from = 0) {
-  double dot = 0, aa = 0, bb = 0;
-  for (std::size_t i = from; i < a.size(); ++i) {
-    const double x = to_double(a[i]), y = to_double(b[i]);
-    dot += x * y, aa += x * x, bb += y * y;
-  }
-  return aa > 0 && bb > 0 ? dot / std::sqrt(aa * bb) : 0;
-}
-
-template <Number N>
-bool Stepper<N>::crossed(const Mode& a, const Mode& b, std::size_t coordinates) {
-  constexpr double kSameDirection = 0.5;
-  const auto flipped = [](double x, double y) { return std::abs(x) > kSameDirection && std::abs(y) > kSameDirection && x * y < 0; };
-  return flipped(cosine(a.v, b.v), cosine(a.image, b.image)) || flipped(cosine(a.v, b.v, coordinates), cosine(a.reaction, b.reaction));
-}
-
-// At t + h on the polynomial; nothing where J has no LU.
-template <Number N>
-std::optional<typename Stepper<N>::Mode> Stepper<N>::mode_ahead(const W& h) {
-  if (!probe_) probe_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
-  std::vector<W> increments, leading, state;
-  polynomial(h, increments, leading);
-  point_.state(state);
-  std::vector<N> narrow_state, narrow_leading;
-  for (std::size_t i = 0; i < state.size(); ++i) narrow_state.push_back(convert<N>(W(state[i] + increments[i])));
-  for (const W& x : leading) narrow_leading.push_back(convert<N>(x));
-  probe_->load(convert<N>(W(t_ + h)), narrow_state, narrow_leading);
-  if (!probe_->prepare().ok()) return std::nullopt;
-  const N sigma = probe_->smallest_singular_value();
-  return mode(*probe_, sigma);
+std::optional<Mode<N>> Stepper<N>::mode_ahead(const W& h) {
+  Expansion<N>* there = ahead(h);
+  if (!there) return std::nullopt;
+  const N sigma = there->smallest_singular_value();
+  return weakest_mode(*there, sigma);
 }
 
 // How far from t_ the first singular point is that is met within h; nothing if there is none.
@@ -445,15 +304,15 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   const bool suspected = last_step_ == W(0) || sigma_ < sigma_before_ * N(kFaster) || abs(h) > last_step_ * W(kLonger);
   if (!suspected) return std::nullopt;
   const std::size_t n = program_->system->coordinates;
-  Mode low = mode(expansion_, sigma_);
+  Mode<N> low = weakest_mode(expansion_, sigma_);
   const N start = low.sigma;
-  const std::optional<Mode> end = mode_ahead(h);
+  const std::optional<Mode<N>> end = mode_ahead(h);
   if (!end || !crossed(low, *end, n)) return std::nullopt;
   W from(0), to = h;
   for (int k = 0; k < kBisections; ++k) {
     const W middle = from + (to - from) * W(0.5);
     if (middle == from || middle == to) break;
-    std::optional<Mode> m = mode_ahead(middle);
+    std::optional<Mode<N>> m = mode_ahead(middle);
     if (!m) return middle;
     if (crossed(low, *m, n)) to = middle;
     else from = middle, low = std::move(*m);
@@ -481,7 +340,7 @@ Outcome Stepper<N>::step(const W& end) {
   const bool forward = left > W(0);
   W h = convert<W>(horizon_);
   // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from there.
-  if (ahead_) h = abs(on_the_branch(forward ? h : W(-h)));
+  if (program_->nonlinear) h = abs(on_the_branch(forward ? h : W(-h)));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
   if (!(h > floor))
     return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "program/expansion.h"
+#include "integrate/regular.h"
 
 namespace anholon {
 
@@ -32,6 +32,8 @@ struct StepperState {
   W smallest_sigma_t{0};
   std::size_t weakest = 0;
   std::vector<N> direction;  // of the iteration for sigma
+  N sigma_before{0};         // where the last step began
+  W last_step{0};            // its length
 };
 
 // Taylor coefficients are computed in N; the state, the projection on the constraints and the
@@ -94,14 +96,8 @@ class Stepper {
   N step_size() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
-  // What shows that J was singular in between: the direction v that J shows least, J v, and the reactions of the multipliers in v.
-  struct Mode {
-    std::vector<N> v, image, reaction;
-    N sigma{0};
-  };
-  static Mode mode(Expansion<N>& at, N sigma);
-  static bool crossed(const Mode& a, const Mode& b, std::size_t coordinates);
-  std::optional<Mode> mode_ahead(const W& h);
+  Expansion<N>* ahead(const W& h);
+  std::optional<Mode<N>> mode_ahead(const W& h);
   std::optional<W> singular_within(const W& h);
   bool end_out_of_reach(const W& h, const W& left) const;
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
@@ -112,8 +108,7 @@ class Stepper {
   std::vector<N> parameters_;
   Expansion<N> expansion_;
   Expansion<W> point_;
-  std::unique_ptr<Expansion<N>> ahead_;  // where leading derivatives enter nonlinearly
-  std::unique_ptr<Expansion<N>> probe_;  // where J may become singular within a step
+  std::unique_ptr<Expansion<N>> ahead_;  // for looks at J further on the polynomial
   N sigma_{0}, sigma_before_{0};         // where the last two steps began
   W last_step_{0};
   bool singular_ahead_ = false;          // right after the present state

@@ -234,6 +234,25 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
   return any;
 }
 
+// How far the state lies from the hidden constraints of a level, in relation to its size: residuals r in relation to their rows of J.
+template <Number N>
+N Expansion<N>::displacement(int level, const std::vector<N>& r) const {
+  const Program& p = *program_;
+  N size(1), most(0);
+  for (std::size_t j = 0; j < p.unknowns(); ++j)
+    if (const int k = p.d[j] - level; k >= 0)
+      if (N v = abs(derivative(j, k)); v > size) size = v;
+  for (std::size_t i = 0; i < p.unknowns(); ++i) {
+    if (p.c[i] < level) continue;
+    N row(0);
+    for (std::size_t j = 0; j < p.unknowns(); ++j)
+      if (N v = abs(j_(i, j)); p.d[j] >= level && v > row) row = v;
+    if (!(row > N(0))) continue;
+    if (N v = abs(r[i]) / (row * size); v > most) most = v;
+  }
+  return most;
+}
+
 template <Number N>
 Outcome Expansion<N>::project() {
   return project([this](const std::vector<N>& r, std::vector<N>& y) { lu_.solve(r, y); });
@@ -251,7 +270,8 @@ Outcome Expansion<N>::project(const Solver& solver) {
     for (int k = 0;; ++k) {
       if (changed || k > 0) sweep_known(-level);
       const bool any = residual(level, r_, worst);
-      if (k == 0 && worst > drift_) drift_ = worst;
+      if (k == 0)
+        if (const N d = displacement(level, r_); d > drift_) drift_ = d;
       if (!any || !(worst > quiet)) break;
       if (!is_finite(worst))
         return {OutcomeKind::not_a_number, "a constraint has no value", "the motion leaves the region where the constraint is defined"};

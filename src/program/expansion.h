@@ -68,7 +68,7 @@ class Expansion {
   // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms, at the state as
   // measured or projected last.
   const N& constraint_residual() const { return constraint_residual_; }
-  // The same where project() began.
+  // How far project() found the state from the hidden constraints, in relation to the state's size.
   const N& drift() const { return drift_; }
   // That of derivative k < c_i of equation i alone.
   const N& hidden_residual(std::size_t i, int k) const { return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)]; }
@@ -101,6 +101,7 @@ class Expansion {
   Outcome singular() const;
   void jacobian();
   bool residual(int level, std::vector<N>& r, N& worst);
+  N displacement(int level, const std::vector<N>& r) const;
   void add_leading(int stage);
 
   const Program* program_;

@@ -136,8 +136,8 @@ void Motion<N>::save(SavedRun& to) const {
   to.set_numbers("leading", b.leading);
   to.set_numbers("integrals", b.integrals);
   to.set_numbers("integral_carry", b.integral_carry);
-  to.set_numbers<W>("stepper", {b.branch_step, b.worst_constraint, b.worst_equation, b.smallest_sigma_t});
-  to.set_numbers<N>("sigma", {b.first_sigma, b.smallest_sigma});
+  to.set_numbers<W>("stepper", {b.branch_step, b.worst_constraint, b.worst_equation, b.smallest_sigma_t, b.last_step});
+  to.set_numbers<N>("sigma", {b.first_sigma, b.smallest_sigma, b.sigma_before});
   to.set_numbers("direction", b.direction);
   to.set("counts", {std::to_string(b.steps), std::to_string(b.weakest)});
   std::vector<double> choices;
@@ -185,8 +185,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
 
   const Program& p = leg_->program;
   const std::size_t size = leg_->point.state_size();
-  const std::vector<W> more = from.numbers<W>("stepper", 4);
-  const std::vector<N> sigma = from.numbers<N>("sigma", 2);
+  const std::vector<W> more = from.numbers<W>("stepper", 5);
+  const std::vector<N> sigma = from.numbers<N>("sigma", 3);
   const std::vector<long double> counts = from.numbers<long double>("counts", 2);
   StepperState<N> b;
   b.t = from.number<W>("t");
@@ -200,8 +200,10 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   b.worst_constraint = more[1];
   b.worst_equation = more[2];
   b.smallest_sigma_t = more[3];
+  b.last_step = more[4];
   b.first_sigma = sigma[0];
   b.smallest_sigma = sigma[1];
+  b.sigma_before = sigma[2];
   b.steps = static_cast<std::size_t>(counts[0]);
   b.weakest = static_cast<std::size_t>(counts[1]);
   b.direction = from.numbers<N>("direction");

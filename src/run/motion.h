@@ -88,6 +88,6 @@ extern template class Motion<Multi>;
 
 // Says what the motion ran into: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.
 template <Number N>
-void explain(const Scenario& scenario, const Motion<N>& motion, Outcome& outcome);
+void explain_stop(const Scenario& scenario, const Motion<N>& motion, Outcome& outcome);
 
 }  // namespace anholon

@@ -234,7 +234,7 @@ class Run {
     const bool stopped_by_itself = report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
     if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
         report_.outcome.kind == OutcomeKind::no_convergence || stopped_by_itself)
-      explain(s_, motion_, report_.outcome);
+      explain_stop(s_, motion_, report_.outcome);
     // The last good state is worth a row of its own.
     if (stepper.steps() > 0 && !every_step_) {
       const Outcome why = report_.outcome;

@@ -70,7 +70,7 @@ static std::string lost_hold(const Scenario& s, const Motion<N>& motion) {
 }
 
 template <Number N>
-void explain(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
+void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
   using W = Wider<N>;
   constexpr double kVanished = 1e-9, kUnbounded = 1e9, kFallen = 1e-3, kFaint = 1e-3;
   const Stepper<N>& stepper = motion.stepper();
@@ -118,9 +118,9 @@ void explain(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
                  "' grows without bound: the constraint loses its hold there";
 }
 
-template void explain(const Scenario&, const Motion<double>&, Outcome&);
-template void explain(const Scenario&, const Motion<long double>&, Outcome&);
-template void explain(const Scenario&, const Motion<Quad>&, Outcome&);
-template void explain(const Scenario&, const Motion<Multi>&, Outcome&);
+template void explain_stop(const Scenario&, const Motion<double>&, Outcome&);
+template void explain_stop(const Scenario&, const Motion<long double>&, Outcome&);
+template void explain_stop(const Scenario&, const Motion<Quad>&, Outcome&);
+template void explain_stop(const Scenario&, const Motion<Multi>&, Outcome&);
 
 }  // namespace anholon

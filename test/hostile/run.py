@@ -24,13 +24,16 @@ import os
 import pathlib
 import re
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 SECONDS = 2  # of processor time, for each command
 MEMORY = 1 << 30  # bytes of address space
+PATIENCE = 600  # seconds, for a command that sleeps
 COMMANDS = (
     ("check",),
     ("simulate", "--json"),
@@ -159,9 +162,16 @@ def limit():
 
 
 def run(program, command, path, limits):
-    """Exit code (negative: a signal), stdout, stderr."""
-    process = subprocess.run([program, command[0], str(path), *command[1:], "--quiet"], capture_output=True, preexec_fn=limit if limits else None, timeout=600)
-    return process.returncode, process.stdout, process.stderr.decode("utf-8", "replace")
+    """Exit code (negative: a signal), stdout, stderr, seconds of processor time."""
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        process = subprocess.Popen([program, command[0], str(path), *command[1:], "--quiet"], stdout=out, stderr=err, preexec_fn=limit if limits else None)
+        patience = threading.Timer(PATIENCE, process.kill)
+        patience.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        patience.cancel()
+        process.returncode = os.waitstatus_to_exitcode(status)
+        out.seek(0), err.seek(0)
+        return process.returncode, out.read(), err.read().decode("utf-8", "replace"), usage.ru_utime + usage.ru_stime
 
 
 def faults(name, path, expected, program, limits, commands=COMMANDS):
@@ -169,19 +179,17 @@ def faults(name, path, expected, program, limits, commands=COMMANDS):
     positioned = re.compile(re.escape(str(path)) + r":\d+:\d+: error: .")
     whole = re.compile(r"(?:" + re.escape(str(path)) + r": )?error: .")
     for command in commands:
-        try:
-            code, out, errors = run(program, command, path, limits)
-        except subprocess.TimeoutExpired:
-            yield f"{name}: {' '.join(command)}: no end"
-            continue
+        code, out, errors, took = run(program, command, path, limits)
         said = " | ".join(l for l in errors.splitlines() if re.search("error:|stopped|fault|terminate", l))[:300]
 
         def wrong(what):
             return f"{name}: {' '.join(command)}: {what}; exit {code}; {said}"
 
         if code not in (0, 1, 2) or "internal fault" in errors:
-            yield wrong("out of time" if code == -24 else "a crash")
+            yield wrong("out of time" if code == -signal.SIGXCPU else "no end" if code == -signal.SIGKILL else "a crash")
             continue
+        if limits and took > SECONDS:
+            yield wrong(f"took {took:.1f} s of processor time")
         want = expected.get(command[0])
         if want and not want.met(code, errors):
             yield wrong(f"expected {want.kind} '{want.words}'")

@@ -133,8 +133,6 @@ class RandomSystem {
     std::string e;
     if (equations_.size() > 1 && one_in(2)) {
       const auto [l2, r2] = sides(equations_[1]);
-      e = "(2 + sin(" + any() + "))*" + l + " + " + l2 + "/2 = (2 + sin(" + any() + ") - sin(" + any() + ") + 0)*" + r + " + " + r2 + "/2";
-      // The factors must be the same for the constraint to follow.
       const std::string factor = "(2 + sin(" + any() + ")/2)";
       e = factor + "*" + l + " + " + l2 + "/2 = " + factor + "*" + r + " + " + r2 + "/2";
     } else {

@@ -1,0 +1,18 @@
+// Where a function on the way of a step goes on as another one, of which its Taylor series knows nothing: abs and sign where their
+// argument passes zero, a square root (a norm) where its argument touches zero.
+#pragma once
+#include "tape/tape.h"
+
+namespace anholon {
+
+template <Number N>
+struct Kink {
+  bool at_start = false, ahead = false;
+  N where{0};  // the first one ahead, from the point of the series
+};
+
+// In (0, h], h of either sign, by the series of orders 0..degree.
+template <Number N>
+Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h);
+
+}  // namespace anholon
