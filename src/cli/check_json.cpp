@@ -10,6 +10,10 @@ namespace {
 
 void constraint(JsonWriter& j, const Scenario& s, const Explanation& x, std::size_t r) {
   const ConstraintFacts& facts = x.constraints[r];
+  if (const auto by = s.model->constraints[r].by) {
+    j.key("reactions").string("servo").key("by").string(s.model->controls[*by].name);
+    return;
+  }
   j.key("reactions").string(name(facts.hypothesis));
   j.key("work").open_object().key("none").boolean(is_zero(facts.power_factor)).key("power").string(power_text(s, x, r)).close();
   if (!s.classes[r].redundant) return;

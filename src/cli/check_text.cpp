@@ -38,7 +38,7 @@ void reactions(const Scenario& s, const Explanation& x) {
   const auto with = [&](Hypothesis h) {
     std::vector<std::size_t> list;
     for (std::size_t r = 0; r < x.constraints.size(); ++r)
-      if (x.constraints[r].hypothesis == h) list.push_back(r);
+      if (x.constraints[r].hypothesis == h && !s.model->constraints[r].by) list.push_back(r);
     return list;
   };
   const auto line = [&](Hypothesis h, const char* text) {
@@ -47,6 +47,9 @@ void reactions(const Scenario& s, const Explanation& x) {
     const std::string whose = list.size() < x.constraints.size() ? " of " + listed(*s.model, list) : "";
     std::printf("  reactions%s: %s\n", whose.c_str(), text);
   };
+  for (std::size_t r = 0; r < x.constraints.size(); ++r)
+    if (const auto by = s.model->constraints[r].by)
+      std::printf("  %s is kept by the input %s (servo): no ideal reaction\n", s.model->constraints[r].name.c_str(), s.model->controls[*by].name.c_str());
   line(Hypothesis::dalembert, "ideal, no work in virtual displacements (d'Alembert, Lagrange)");
   line(Hypothesis::chetaev, "ideal by Chetaev's rule, along dphi/dq' (nonlinear in the velocities: a hypothesis)");
   line(Hypothesis::niu, "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and more)");

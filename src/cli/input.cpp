@@ -174,13 +174,13 @@ Reader read(const Options& o) {
 static std::string list_of_forms(const Mechanics& m, bool with_motions) {
   std::string list;
   for (const Formulation* f : formulations())
-    if (f->obstacle(m).empty() && !(with_motions && f->unknowns == Unknowns::variational)) list += (list.empty() ? "" : ", ") + std::string(f->name);
+    if (obstacle(*f, m).empty() && !(with_motions && f->unknowns == Unknowns::variational)) list += (list.empty() ? "" : ", ") + std::string(f->name);
   return list;
 }
 
 // Throws if the form does not apply to the model.
 static void must_apply(const Formulation& f, const Mechanics& m) {
-  if (const std::string why = f.obstacle(m); !why.empty())
+  if (const std::string why = obstacle(f, m); !why.empty())
     throw UsageError{"error: the form '" + std::string(f.name) + "' does not apply: " + why + "\nhint: these do: " + list_of_forms(m, false) + "\n"};
 }
 

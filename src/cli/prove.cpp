@@ -19,7 +19,7 @@ std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& 
   std::vector<const Formulation*> forms;
   if (o.forms.empty()) {
     for (const Formulation* f : formulations())
-      if (f->obstacle(m).empty()) forms.push_back(f);
+      if (obstacle(*f, m).empty()) forms.push_back(f);
     return forms;
   }
   for (const std::string& name : split(o.forms)) {

@@ -41,6 +41,7 @@ struct Syntax {
     subtract,
     multiply,  // args joined by operators multiply, divide, dot, cross
     divide,
+    compare,   // one of > < >= <= (in text) between two: a condition of piecewise
     dot, cross,  // the signs · and ×: of two vectors these products, of numbers the ordinary one
   };
   struct Operator {

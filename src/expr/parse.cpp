@@ -34,7 +34,7 @@ const char* greek_name(std::string_view letter) {
 
 enum class Token : std::uint8_t {
   number, name, plus, minus, times, over, caret, prime, superscript, open, close, left, right, comma,
-  point, equals, middle_dot, cross_sign, end,
+  point, equals, middle_dot, cross_sign, compare, end,
 };
 
 struct Lexeme {
@@ -149,6 +149,9 @@ class Parser {
         else if (c == "]") sign(Token::right);
         else if (c == ",") sign(Token::comma);
         else if (c == ".") sign(Token::point);
+        else if ((c == ">" || c == "<") && i + 1 < s.size() && s[i + 1] == '=') push(Token::compare, 2, 2, std::string(c) + "=");
+        else if (c == ">" || c == "<") sign(Token::compare);
+        else if (c == "≥" || c == "≤") push(Token::compare, width, 1, c == "≥" ? ">=" : "<=");
         else if (c == "=" && i + 1 < s.size() && s[i + 1] == '=') push(Token::equals, 2, 2, "==");
         else if (c == "=") sign(Token::equals);
         else {
@@ -284,6 +287,10 @@ class Parser {
     }
     for (;;) {
       args.push_back(expression(0));
+      if (peek().token == Token::compare) {
+        const Lexeme sign = next();
+        args.back() = make(Syntax::Op::compare, sign, two(std::move(args.back()), expression(0)));
+      }
       const Lexeme at = next();
       if (at.token == close) return args;
       if (at.token != Token::comma) {
@@ -318,6 +325,8 @@ class Parser {
   void finish() {
     const Lexeme& at = peek();
     if (at.token == Token::end) return;
+    if (at.token == Token::compare)
+      fail(at, "'" + at.text + "' stands in a condition of piecewise only", "piecewise(x > 0, x, 0)");
     if (at.token == Token::close || at.token == Token::right) fail(at, "'" + at.text + "' closes nothing");
     const Lexeme& before = lexemes_[at_ - 1];
     if (at.token == Token::name || at.token == Token::number || at.token == Token::open) {

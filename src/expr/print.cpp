@@ -120,7 +120,8 @@ class Printer {
       case Kind::given: case Kind::time: r.kind = 5; break;
       case Kind::jet: r = {6, n.order}; break;
       case Kind::quasi: r = {6, static_cast<int>(n.order) + 1}; break;
-      case Kind::function: case Kind::atan2: r.kind = 7; break;
+      case Kind::state: case Kind::control: r = {5, static_cast<int>(n.order)}; break;
+      case Kind::function: case Kind::atan2: case Kind::select: case Kind::lookup: r.kind = 7; break;
       case Kind::sum: case Kind::product: r.kind = 8; break;
     }
     r.constant = r.kind <= 2 || r.kind >= 7;
@@ -131,7 +132,7 @@ class Printer {
         if (o->second.order == r.order) r.inside &= o->second.inside;
         r.constant &= o->second.constant;
       }
-    if (n.kind == Kind::sum || n.kind == Kind::function || n.kind == Kind::atan2) r.inside = true;
+    if (n.kind == Kind::sum || n.kind == Kind::function || n.kind == Kind::atan2 || n.kind == Kind::select || n.kind == Kind::lookup) r.inside = true;
     if (n.kind == Kind::sum && r.constant) r.kind = 3;
     return rank_[id] = r;
   }
@@ -159,6 +160,8 @@ class Printer {
       case Kind::mass: return {symbol(names_.masses, n, "mu")};
       case Kind::given: return {symbol(names_.given, n, "f")};
       case Kind::quasi: return {symbol(names_.quasi, n, "u")};
+      case Kind::state: return {symbol(names_.states, n, "z")};
+      case Kind::control: return {symbol(names_.controls, n, "u")};
       case Kind::multiplier: {
         const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
         const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(base) + "}}"
@@ -174,6 +177,11 @@ class Printer {
         const std::string &y = done_[g_.terms(id)[0].node].text, &x = done_[g_.terms(id)[1].node].text;
         return {call("atan2", "\\operatorname{atan2}", y + (mathml() ? "<mo>,</mo>" : ", ") + x)};
       }
+      case Kind::select: return branches(id);
+      case Kind::lookup: {
+        const std::string& name = g_.step_function(n.index).name;
+        return {call(name, "\\operatorname{" + latex_escape(name) + "}", done_[g_.terms(id)[0].node].text)};
+      }
       case Kind::sum: return sum(id);
       case Kind::product: return product(id);
     }
@@ -185,7 +193,18 @@ class Printer {
     return latex() ? "\\left(" + s + "\\right)" : "(" + s + ")";
   }
 
-  std::string call(const char* name, const char* latex_text, const std::string& arguments) const {
+  // piecewise(s >= 0, a, b)
+  Printed branches(NodeId id) const {
+    const std::span<const Term> t = g_.terms(id);
+    const std::string &s = done_.at(t[0].node).text, &a = done_.at(t[1].node).text, &b = done_.at(t[2].node).text;
+    if (latex()) return {cut("\\begin{cases} " + a + " & " + s + " \\ge 0 \\\\ " + b + " & \\text{else} \\end{cases}"), kSum};
+    if (mathml())
+      return {cut(row("<mo>{</mo><mtable><mtr><mtd>" + row(a) + "</mtd><mtd>" + row(s + "<mo>≥</mo><mn>0</mn>") + "</mtd></mtr><mtr><mtd>" +
+                      row(b) + "</mtd><mtd><mtext>else</mtext></mtd></mtr></mtable>")), kSum};
+    return {cut("piecewise(" + s + " >= 0, " + a + ", " + b + ")")};
+  }
+
+  std::string call(const std::string& name, const std::string& latex_text, const std::string& arguments) const {
     if (mathml()) return cut("<mi>" + function_name(latex_text) + "</mi><mo>&#x2061;</mo>" + brackets(arguments));
     return cut((latex() ? latex_text : name) + brackets(arguments));
   }

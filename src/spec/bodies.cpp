@@ -92,6 +92,7 @@ void BodyReader::declare(const Item& root) {
 
 Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
   Graph& g = *model_.graph;
+  value = put_controls(model_, {&value, 1})[0];
   const bool varies = [&] {
     for (NodeId id : symbols({&value, 1})) {
       const Kind k = g.node(id).kind;
@@ -117,6 +118,9 @@ static void check_position(const Model& model, const Vector& place, const Item& 
     for (NodeId id : symbols({&place[i], 1})) {
       const Node& n = model.graph->node(id);
       if (n.kind == Kind::multiplier) throw Failure(item.span, what + " depends on a multiplier");
+      if (n.kind == Kind::control && (!model.controls[n.index].value || jet_order(*model.controls[n.index].value) >= 0))
+        throw Failure(item.span, what + " depends on the input '" + model.controls[n.index].name + "', which is not a function of time and states",
+                      "bind the coordinate by a constraint kept by this input");
       if (n.kind == Kind::jet && n.order > 0)
         throw Failure(item.span, what + " depends on a velocity (" +
                                      derivative_name(model.names.coordinates[n.index], n.order, Format::text) + ")",

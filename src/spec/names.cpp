@@ -41,6 +41,12 @@ void Scope::declare_body(const std::string& name, Span span) {
       throw Failure(span, "a body '" + name + "' is already declared in line " + std::to_string(body_spans_[i].line));
 }
 
+std::size_t Scope::add_table(Table table) {
+  TableFunction function(*model_.graph, table);
+  tables_.push_back({std::move(table), std::move(function)});
+  return tables_.size() - 1;
+}
+
 void Scope::set_gravity(const Item& field) { gravity_ = &field; }
 
 std::size_t Scope::body(const std::string& name, Span span) const {
@@ -101,6 +107,9 @@ std::vector<Syntax> Scope::equation(const Item& item) {
 Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
   Graph& g = *model_.graph;
   switch (d.role) {
+    case Role::state: return g.state(static_cast<std::uint32_t>(d.index), 0);
+    case Role::control: return g.control(static_cast<std::uint32_t>(d.index), 0);
+    case Role::table: return InertialName{};  // means something with an argument only
     case Role::coordinate: return g.jet(static_cast<std::uint32_t>(d.index), 0);
     case Role::function:
       if (d.symbolic) return g.given(static_cast<std::uint32_t>(d.index), 0);
@@ -219,7 +228,7 @@ Value Scope::name(const std::string& name, Span span) {
     throw Failure(span, "multipliers are not read in formulas yet");
   const auto it = declarations_.find(name);
   if (it != declarations_.end()) {
-    if (!it->second.arguments.empty())
+    if (it->second.role == Role::table || !it->second.arguments.empty())
       throw Failure(span, "the function '" + name + "' is used without its arguments", name + "(…)");
     const Value v = resolve(name, it->second, span);
     if (freeze_masses)
@@ -236,7 +245,7 @@ Value Scope::name(const std::string& name, Span span) {
 std::vector<std::string> Scope::functions() const {
   std::vector<std::string> list = {"vel", "acc", "angvel", "angacc", "gravity"};
   for (const auto& [name, d] : declarations_)
-    if (d.role == Role::function || d.role == Role::frame) list.push_back(name);
+    if (d.role == Role::function || d.role == Role::frame || d.role == Role::table) list.push_back(name);
   list.insert(list.end(), body_names_.begin(), body_names_.end());
   return list;
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "expr/table.h"
 #include "model/model.h"
 #include "spec/toml.h"
 
@@ -16,7 +17,7 @@ class Scope final : public Names {
   explicit Scope(Model& model) : model_(model) {}
 
   // Declarations. A formula is parsed and evaluated at its first use.
-  enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point };
+  enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point, state, control, table };
   struct Declaration {
     Role role = Role::define;
     std::size_t index = 0;                // of a coordinate, parameter or unknown function
@@ -35,6 +36,7 @@ class Scope final : public Names {
   void declare(const std::string& name, Declaration d);
   void declare_body(const std::string& name, Span span);
   void set_gravity(const Item& field);
+  std::size_t add_table(Table table);
 
   // The bodies' parts, evaluated on demand (a centre may refer to another body's centre).
   struct BodyParts {
@@ -80,6 +82,7 @@ class Scope final : public Names {
   [[noreturn]] void unknown(const std::string& name, Span span) const;
   Vector material_velocity(std::size_t body, const Vector& place, Span use);
   Vector inertial_rate(const Vector& v);
+  Expr look_up(std::size_t table, Expr x, Span use);
   std::size_t body_argument(const Value& value, const Syntax& argument) const;
 
   Model& model_;
@@ -87,6 +90,11 @@ class Scope final : public Names {
   std::vector<std::string> body_names_;
   std::vector<Span> body_spans_;
   std::vector<BodyParts> parts_;
+  struct TableEntry {
+    Table table;
+    TableFunction function;
+  };
+  std::vector<TableEntry> tables_;
   const Item* gravity_ = nullptr;
   std::optional<Vector> here_;
   std::vector<std::string> open_;                        // path of names being evaluated

@@ -6,11 +6,14 @@
 #include "expr/normal.h"
 #include "numeric/multi.h"
 #include "spec/bodies.h"
+#include "spec/control.h"
+#include "spec/hybrid.h"
 #include "spec/initial.h"
 #include "spec/keys.h"
 #include "spec/monitor.h"
 #include "spec/names.h"
 #include "spec/observer.h"
+#include "spec/tables.h"
 #include "tape/point.h"
 #include "tape/tape.h"
 
@@ -55,6 +58,9 @@ class Reader {  // what it refers to is asked only while it runs
     // Without coordinates every formula would fail after this one error.
     if (!guard([&] { coordinates(root); })) return false;
     parameters(root);
+    declare_hybrid(root, scope_, model_, diagnostics_);
+    declare_controls(root, scope_, model_, diagnostics_);
+    declare_tables(root, scope_, model_, diagnostics_);
     functions(root);
     named(root, "define", Scope::Role::define);
     named(root, "frame", Scope::Role::frame);
@@ -65,15 +71,19 @@ class Reader {  // what it refers to is asked only while it runs
     bodies.declare(root);
     if (const Item* o = table(root, "observer")) guard([&] { read_observer(*o, scope_, model_, diagnostics_); }, o->span);
     gravity(root);
+    read_controls(root, scope_, model_, diagnostics_);
     // A name that does not stand for a value is worth one report, at the place of its use.
     bodies.read();
     bodies.read_forces(root);
     potentials(root);
     constraints(root);
     quasi(root);
+    read_states(root, scope_, model_, diagnostics_);
     scope_.resolve_all();
     read_initial(root, scope_, model_, diagnostics_);
     if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
+    read_events(root, scope_, model_, diagnostics_);
+    read_outputs(root, scope_, model_, diagnostics_);
     guard([&] { simulate(root); });
     for (const Diagnostic& d : scope_.failures) diagnostics_.add(d);
     if (!diagnostics_.has_errors()) values();
@@ -94,9 +104,8 @@ class Reader {  // what it refers to is asked only while it runs
     check_keys(root, "the model file",
                {"title", "source", "coordinates", "dependent", "parameters", "functions", "define", "frame",
                 "point", "observer", "body", "particle", "force", "gravity", "potential", "constraint",
-                "initial", "simulate", "quasi", "monitor"},
-               {"base", "index", "table", "state", "mode", "event", "input", "output", "case",
-                "dissipation", "view", "notation"},
+                "initial", "simulate", "quasi", "monitor", "state", "mode", "event", "input", "output", "table"},
+               {"base", "index", "case", "dissipation", "view", "notation"},
                diagnostics_);
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
       if (const Item* i = root.find(key)) {
@@ -105,14 +114,7 @@ class Reader {  // what it refers to is asked only while it runs
       }
   }
 
-  const Item* table(const Item& root, const char* key) {
-    const Item* i = root.find(key);
-    if (i && i->kind != Item::Kind::table) {
-      diagnostics_.error(i->span, std::string("'") + key + "' is a section", std::string("write [") + key + "]");
-      return nullptr;
-    }
-    return i;
-  }
+  const Item* table(const Item& root, const char* key) { return find_section(root, key, diagnostics_); }
 
   void coordinates(const Item& root) {
     const Item* list = root.find("coordinates");
@@ -276,10 +278,10 @@ class Reader {  // what it refers to is asked only while it runs
     for (const Item& i : section->items)
       guard([&] {
         const Expr v = scope_.number(i);
-        if (jet_order(v) > 0)
+        if (jet_order(with_feedback(model_, v)) > 0)
           throw Failure(i.span, "the potential '" + i.key + "' depends on a velocity",
                         "give a force instead");
-        model_.potentials.push_back({i.key, v, i.span});
+        model_.potentials.push_back({i.key, with_feedback(model_, v), i.span});
       }, i.span);
     scope_.freeze_masses = false;
   }
@@ -305,6 +307,7 @@ class Reader {  // what it refers to is asked only while it runs
   }
 
   void add_constraint(const std::string& name, Expr phi, const Item& equation) {
+    phi = with_feedback(model_, phi);
     const int order = true_order(phi);
     if (order < 0) {
       if (proved_zero(phi))
@@ -331,7 +334,11 @@ class Reader {  // what it refers to is asked only while it runs
       return;
     }
     for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
-      check_keys(c, "a constraint", {"name", "equation"}, {"along", "by"}, diagnostics_);
+      check_keys(c, "a constraint", {"name", "equation", "by"}, {"along"}, diagnostics_);
+      const std::size_t first = model_.constraints.size();
+      const auto servo = [&] {
+        if (const Item* by = c.find("by")) keep_by(*by, first, scope_, model_);
+      };
       const Item* equation = c.find("equation");
       if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"x' = 0\"");
       const Item* named = c.find("name");
@@ -342,6 +349,7 @@ class Reader {  // what it refers to is asked only while it runs
       Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
       if (std::holds_alternative<Expr>(left) && std::holds_alternative<Expr>(right)) {
         add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), *equation);
+        servo();
         return;
       }
       const Vector phi = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
@@ -355,6 +363,7 @@ class Reader {  // what it refers to is asked only while it runs
       if (!dropped.empty())
         model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
       for (int i : kept) add_constraint(name + "." + std::string(1, "xyz"[i]), phi[i], *equation);
+      servo();
     });
   }
 
@@ -409,6 +418,7 @@ class Reader {  // what it refers to is asked only while it runs
     };
     for (const Parameter& p : model_.parameters)
       if (!check(p.value, p.span, "the parameter '" + p.name + "'")) return;  // others may hold this one
+    for (const StateVariable& z : model_.states) check(z.initial, z.span, "the initial value of '" + z.name + "'");
     for (const auto* list : {&model_.initial.given, &model_.initial.guess})
       for (const GivenValue& v : *list) check(v.value, v.span, "this initial value");
     check(model_.initial.t, {}, "the initial time");
