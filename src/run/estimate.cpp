@@ -45,7 +45,7 @@ void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& 
     if (!motion.fired()) continue;
     std::vector<Occurrence<W>> occurrences;
     bool goes_on = true;
-    if (Outcome o = motion.settle(occurrences, goes_on); !o.ok()) return gave_up(o);
+    if (Outcome settled = motion.settle(occurrences, goes_on); !settled.ok()) return gave_up(settled);
     if (!goes_on && next < samples.size()) break;
   }
   // What is written is rounded.

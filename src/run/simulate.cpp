@@ -222,8 +222,6 @@ class Run {
 
   // What fired in the last step; false if it ends the motion.
   bool events() {
-    constexpr std::size_t kMany = 30;
-    constexpr double kNoTime = 1e-9;
     if (Outcome o = motion_.at(motion_.stepper().time()); o.ok()) watch_.leave(motion_.point());
     std::vector<Occurrence<W>> occurrences;
     bool goes_on = true;
@@ -233,21 +231,33 @@ class Run {
       EventReport r{e.name, text(o.t), {}, to_double(o.correction), e.stop};
       for (const auto& c : o.changes) r.changes.push_back({c.name, text(c.before), text(c.after)});
       report_.events.push_back(std::move(r));
-      if (e.ends_step()) served_.push_back(o.t);
+      accumulate(o);
     }
     if (!report_.outcome.ok() || !goes_on) {
       reached_ = motion_.stepper().time();
       return false;
     }
     angles_.set_parameters(motion_.parameters());
-    if (!served_.empty() && motion_.at(motion_.stepper().time()).ok()) watch_.enter(motion_.point(), motion_.parameters());
-    if (served_.size() < kMany) return true;
-    const W since = abs(W(served_.back() - served_[served_.size() - kMany]));
-    if (since > W(kNoTime) * abs(W(end_ - t0_))) return true;
-    const std::string& name = occurrences.empty() ? s_.model->events[0].name : s_.model->events[occurrences.back().event].name;
-    report_.outcome = {OutcomeKind::step_collapse, "events accumulate: '" + name + "' fired " + std::to_string(kMany) + " times within " + number_text(to_double(since), 2),
-                       "let an event end the motion (stop = true) or change a mode when what it resets has become small"};
-    return false;
+    if (motion_.at(motion_.stepper().time()).ok()) watch_.enter(motion_.point(), motion_.parameters());
+    return report_.outcome.ok();
+  }
+
+  // An event that comes sooner and sooner has infinitely many before some moment: nothing is computed beyond it.
+  void accumulate(const Occurrence<W>& o) {
+    constexpr int kShrinking = 3;
+    constexpr double kNoTime = 1e-8;
+    const Event& e = s_.model->events[o.event];
+    if (e.set.empty()) return;
+    paces_.resize(s_.model->events.size());
+    Pace& p = paces_[o.event];
+    const W interval = abs(W(o.t - p.last));
+    p.shrinking = p.times > 1 && interval < p.interval ? p.shrinking + 1 : 0;
+    p.interval = interval;
+    p.last = o.t;
+    ++p.times;
+    if (!report_.outcome.ok() || p.shrinking < kShrinking || interval > W(kNoTime) * abs(W(end_ - t0_))) return;
+    report_.outcome = {OutcomeKind::step_collapse, "events accumulate: '" + e.name + "' fired " + std::to_string(p.times) + " times, sooner and sooner, the last time after " + number_text(to_double(interval), 2),
+                       "let an event end the motion (stop = true), or change a mode, when what it resets has become small"};
   }
 
   // What lies in the last step.
@@ -373,7 +383,12 @@ class Run {
   std::vector<std::string> labels_;
   W t0_{0}, end_{0};
   bool forward_ = true, every_step_ = false;
-  std::vector<W> served_;  // times of events that changed something
+  struct Pace {
+    std::size_t times = 0;
+    int shrinking = 0;  // how often in a row the time since the one before has become shorter
+    W last{0}, interval{0};
+  };
+  std::vector<Pace> paces_;  // of the events
   std::size_t next_ = 0, next_sample_ = 0;  // row, sample
   std::optional<W> done_;                   // all rows up to here have been given
   std::vector<Sample<W>> samples_;
