@@ -52,6 +52,13 @@ std::string xml_escape(const std::string& text) {
 
 std::string row(const std::string& mathml) { return "<mrow>" + mathml + "</mrow>"; }
 
+// "th[3]" is th with the index 3, "rolling[2].x" rolling.x with the index 2; nothing where there is no bracket.
+std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name) {
+  const std::size_t open = name.find('['), close = name.find(']');
+  if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
+  return std::pair{name.substr(0, open) + name.substr(close + 1), name.substr(open + 1, close - open - 1)};
+}
+
 std::string written_name(const std::string& name, Format format) {
   switch (format) {
     case Format::text: return name;
@@ -162,7 +169,8 @@ class Printer {
       case Kind::quasi: return {symbol(names_.quasi, n, "u")};
       case Kind::multiplier: {
         const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
-        const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(base) + "}}"
+        const auto indexed = indexed_name(base);
+        const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(indexed ? indexed->first : base) + "}" + (indexed ? "," + indexed->second : "") + "}"
                                  : mathml() ? "<msub><mi>λ</mi><mtext>" + xml_escape(base) + "</mtext></msub>"
                                             : "lambda." + base;
         return {derivative_name(name, n.order, format_)};
@@ -330,13 +338,6 @@ class Printer {
 };
 
 }  // namespace
-
-// "th[3]" is th with the index 3, "rolling[2].x" rolling.x with the index 2; nothing where there is no bracket.
-static std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name) {
-  const std::size_t open = name.find('['), close = name.find(']');
-  if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
-  return std::pair{name.substr(0, open) + name.substr(close + 1), name.substr(open + 1, close - open - 1)};
-}
 
 std::string latex_name(const std::string& name) {
   if (const auto indexed = indexed_name(name)) {

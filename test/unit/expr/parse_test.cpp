@@ -97,8 +97,7 @@ TEST(Mistakes, HaveTheirColumnAndSayWhatIsWrong) {
       {"[1, 2]", 1, "a vector has three components"},
       {"x²² + γ", 7, "unknown name 'gamma'"},
       {"D(x, 21)", 6, "argument 2 of D is not a whole number between 0 and 20"},
-      {"sum(x)", 1, "sum(…) is not read yet"},
-      {"q[3]", 1, "families of elements (names with [ ]) are not read yet"},
+      {"sum(x)", 1, "sum takes a letter of [index] and a formula"},
   };
   for (const Mistake& m : mistakes) {
     const Failure f = n.failure(m.text);
