@@ -33,7 +33,10 @@ class IndexReader {
         out_.letters.insert(i.key);
       });
     for (const Item& i : section.items)
-      if (entries_.count(i.key)) collect(diagnostics, [&] { find(i.key); }, i.key_span);
+      if (entries_.count(i.key)) {
+        open_.clear();
+        collect(diagnostics, [&] { find(i.key); }, i.key_span);
+      }
     return indices_;
   }
 
@@ -46,8 +49,11 @@ class IndexReader {
       for (const std::string& n : open_) path += n + " -> ";
       throw Failure(entries_.at(name)->key_span, "the index '" + name + "' is defined through itself: " + path + name);
     }
+    if (failed_.count(name)) throw silent_failure();
     open_.push_back(name);
+    failed_.insert(name);  // until it is done
     entry(*entries_.at(name));
+    failed_.erase(name);
     open_.pop_back();
     done_.insert(name);
   }
@@ -62,6 +68,7 @@ class IndexReader {
       try {
         indices_->values[i.key] = integer(FormulaText(o->second, Span{}));
       } catch (const Failure& f) {
+        if (is_silent(f.diagnostic)) throw;
         throw Failure(Span{}, option + ": " + f.diagnostic.message, f.diagnostic.hint);
       }
       return;
@@ -94,7 +101,7 @@ class IndexReader {
   Families& out_;
   std::map<std::string, const Item*> entries_;
   std::shared_ptr<Indices> indices_;
-  std::set<std::string> done_;
+  std::set<std::string> done_, failed_;
   std::vector<std::string> open_;
 };
 

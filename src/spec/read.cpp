@@ -138,7 +138,8 @@ class Reader {  // what it refers to is asked only while it runs
   void coordinates(const Item& root) {
     const Item* list = root.find("coordinates");
     if (!list) throw Failure(kTop, "the model has no coordinates", "coordinates = [\"x\", \"y\"] at the top of the file");
-    if (list->kind != Item::Kind::array || list->items.empty())
+    if (list->kind == Item::Kind::array && list->items.empty()) throw Failure(list->span, "the list of coordinates is empty", "coordinates = [\"x\", \"y\"]");
+    if (list->kind != Item::Kind::array)
       throw Failure(list->span, "coordinates is a list of names", "coordinates = [\"x\", \"y\"]");
     if (list->items.size() > kMostCoordinates)
       throw Failure(list->span, std::to_string(list->items.size()) + " coordinates; at most " +
