@@ -78,6 +78,11 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
   j.open_object();
   j.key("title").string(model.title);
   j.key("source").string(model.source);
+  if (!model.cases.empty()) {
+    j.key("cases").open_array();
+    for (const std::string& c : model.cases) j.string(c);
+    j.close();
+  }
   j.key("coordinates").open_array();
   for (const Coordinate& c : model.coordinates) j.string(c.name);
   j.close();

@@ -157,6 +157,9 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
   const Model& model = *s.model;
   std::printf("%s\n", model.title.empty() ? model.source_text.name.c_str() : model.title.c_str());
   if (!model.source.empty()) std::printf("source: %s\n", model.source.c_str());
+  std::string cases;
+  for (const std::string& c : model.cases) cases += (cases.empty() ? "" : ", ") + c;
+  if (!cases.empty()) std::printf("cases (--case NAME): %s\n", cases.c_str());
   std::printf("\n%s, %s, %s, %s\n", counted(model.coordinates.size(), "coordinate", "coordinates").c_str(),
               counted(model.bodies.size(), "body or particle", "bodies and particles").c_str(),
               counted(model.constraints.size(), "constraint", "constraints").c_str(),

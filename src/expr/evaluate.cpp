@@ -252,9 +252,9 @@ const std::vector<std::string>& built_in() {
 Value call(const Syntax& s, Names& names) {
   Graph& g = names.graph();
   const std::string& f = s.text;
-  for (const char* later : {"sum", "prod"})
-    if (f == later) throw Failure(s.span, f + "(…) is not read yet");
   if (f == "piecewise") return piecewise(s, names);
+  if (f == "sum" || f == "prod")  // over a declared range it is written out by the parser
+    throw Failure(s.span, f + " runs over a range of [index]", f + "(k, …) with k = \"1..n\" under [index]");
   if (f == "matrix") return matrix(s, names);
   std::vector<Value> values;
   if (f == "euler") {
@@ -333,9 +333,6 @@ static Value value_of(const Syntax& s, Names& names) {
     case Syntax::Op::name: return names.name(s.text, s.span);
     case Syntax::Op::call: return call(s, names);
     case Syntax::Op::member: return names.member(evaluate(s.args[0], names), s);
-    case Syntax::Op::index:
-      throw Failure(s.span, "families of elements (names with [ ]) are not read yet",
-                    "write the members out under names of their own");
     case Syntax::Op::array: {
       if (s.args.size() != 3) throw Failure(s.span, "a vector has three components");
       return Vector{evaluate_number(s.args[0], names), evaluate_number(s.args[1], names),
@@ -369,6 +366,18 @@ static Value value_of(const Syntax& s, Names& names) {
         }
         return g.sum(parts);
       }
+      if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 1; })) {
+        Vector total;
+        for (int axis = 0; axis < 3; ++axis) {
+          std::vector<std::pair<Rational, Expr>> parts;
+          for (std::size_t i = 0; i < values.size(); ++i) {
+            const bool minus = i > 0 && s.operators[i - 1].op == Syntax::Op::subtract;
+            parts.push_back({minus ? -1 : 1, std::get<Vector>(values[i])[axis]});
+          }
+          total[axis] = g.sum(parts);
+        }
+        return total;
+      }
       Value total = values[0];
       for (std::size_t i = 1; i < values.size(); ++i)
         total = add(total, values[i], s.operators[i - 1].op == Syntax::Op::subtract, s.operators[i - 1].span);
@@ -384,6 +393,8 @@ static Value value_of(const Syntax& s, Names& names) {
       }
       return product;
     }
+    case Syntax::Op::index: case Syntax::Op::apply:
+      break;  // replaced by the parser
     case Syntax::Op::subtract: case Syntax::Op::divide: case Syntax::Op::dot: case Syntax::Op::cross:
       break;  // only inside `operators`
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <optional>
 
 namespace anholon {
 
@@ -50,6 +51,13 @@ std::string xml_escape(const std::string& text) {
 }
 
 std::string row(const std::string& mathml) { return "<mrow>" + mathml + "</mrow>"; }
+
+// "th[3]" is th with the index 3, "rolling[2].x" rolling.x with the index 2; nothing where there is no bracket.
+std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name) {
+  const std::size_t open = name.find('['), close = name.find(']');
+  if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
+  return std::pair{name.substr(0, open) + name.substr(close + 1), name.substr(open + 1, close - open - 1)};
+}
 
 std::string written_name(const std::string& name, Format format) {
   switch (format) {
@@ -164,7 +172,8 @@ class Printer {
       case Kind::control: return {symbol(names_.controls, n, "u")};
       case Kind::multiplier: {
         const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
-        const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(base) + "}}"
+        const auto indexed = indexed_name(base);
+        const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(indexed ? indexed->first : base) + "}" + (indexed ? "," + indexed->second : "") + "}"
                                  : mathml() ? "<msub><mi>λ</mi><mtext>" + xml_escape(base) + "</mtext></msub>"
                                             : "lambda." + base;
         return {derivative_name(name, n.order, format_)};
@@ -350,6 +359,13 @@ class Printer {
 }  // namespace
 
 std::string latex_name(const std::string& name) {
+  if (const auto indexed = indexed_name(name)) {
+    const auto& [base, index] = *indexed;
+    const std::string written = latex_name(base);
+    // One subscript holds what the name had and the index: x_{1,3}.
+    if (written.find("_{") != std::string::npos && written.back() == '}') return written.substr(0, written.size() - 1) + "," + index + "}";
+    return written + "_{" + index + "}";
+  }
   if (is_greek(name)) return "\\" + name;
   if (name.size() == 1) return name;
   std::size_t digits = name.size();
@@ -363,6 +379,19 @@ std::string latex_name(const std::string& name) {
 }
 
 std::string mathml_name(const std::string& name) {
+  if (const auto indexed = indexed_name(name)) {
+    const auto& [base, index] = *indexed;
+    std::string own = "<mn>";
+    for (const char c : index) own += c == ',' ? std::string("</mn><mo>,</mo><mn>") : std::string(1, c);
+    own += "</mn>";
+    const std::string written = mathml_name(base), open = "<msub>", close = "</msub>";
+    if (written.rfind(open, 0) != 0) return open + written + (index.find(',') == std::string::npos ? own : row(own)) + close;
+    // Its second child, the subscript, goes before the index.
+    const std::size_t underscore = base.find('_'), digit = base.find_last_not_of("0123456789") + 1;
+    const std::string root = mathml_name(base.substr(0, underscore != std::string::npos ? underscore : digit));
+    const std::size_t start = open.size() + root.size();
+    return open + root + row(written.substr(start, written.size() - start - close.size()) + "<mo>,</mo>" + own) + close;
+  }
   const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
   if (greek != kGreekNames.end()) return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
   if (name.size() == 1) return "<mi>" + xml_escape(name) + "</mi>";

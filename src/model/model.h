@@ -225,6 +225,7 @@ struct Model {
   std::vector<Monitor> monitors;  // [monitor], then the numbers of the outputs
   SimulationSettings simulate;
   SymbolNames names;
+  std::vector<std::string> cases;  // scenarios of the file, [case.NAME]
   std::vector<std::string> notes;  // what the reader did on its own: components dropped, …
 };
 

@@ -73,8 +73,7 @@ bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax
   Graph& g = *model_.graph;
   const auto is_body = [&](std::size_t i) {
     if (a[i].index() == 3) return true;
-    return s.args[i].op == Syntax::Op::name && a[i].index() != 4 &&
-           std::find(body_names_.begin(), body_names_.end(), s.args[i].text) != body_names_.end();
+    return s.args[i].op == Syntax::Op::name && a[i].index() != 4 && find_body(s.args[i].text);
   };
   const auto count = [&](std::size_t least, std::size_t most) {
     if (a.size() < least || a.size() > most)
@@ -134,10 +133,10 @@ bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax
   }
   const auto it = declarations_.find(f);
   if (it == declarations_.end()) {
-    const auto b = std::find(body_names_.begin(), body_names_.end(), f);
-    if (b == body_names_.end()) return false;
+    const std::size_t* b = find_body(f);
+    if (!b) return false;
     count(3, 3);
-    result = orientation(static_cast<std::size_t>(b - body_names_.begin()), s.span) * components(a, s);
+    result = orientation(*b, s.span) * components(a, s);
     return true;
   }
   Declaration& d = it->second;

@@ -113,7 +113,7 @@ static void read_output(const Item& i, Names& names, Model& model, Diagnostics& 
   OutputQuantity out;
   out.name = i.key;
   out.span = i.key_span;
-  if (!is_identifier(out.name)) throw Failure(i.key_span, "'" + out.name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+  if (!is_element_name(out.name)) throw Failure(i.key_span, "'" + out.name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
   const Item* value = &i;
   if (i.kind == Item::Kind::table) {
     check_keys(i, "an output", {"value", "unit", "doc", "conserved"}, {}, diagnostics);
@@ -149,7 +149,7 @@ void read_outputs(const Item& root, Scope& scope, Model& model, Diagnostics& dia
   const Item* section = find_section(root, "output", diagnostics);
   if (!section) return;
   WithMultipliers names(scope, model);
-  for (const Item& i : section->items) collect(diagnostics, [&] { read_output(i, names, model, diagnostics); });
+  for (const Item& i : section->items) collect(diagnostics, [&] { read_output(i, names, model, diagnostics); }, i);
 }
 
 }  // namespace anholon
