@@ -41,7 +41,7 @@ const char* name(LinearModel::Motion motion) {
   return "";
 }
 
-Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice) : s_(scenario), choice_(choice) {
+Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice) : s_(scenario), choice_(choice), mass_(mass_matrix(*scenario.mechanics)) {
   Column symbols_of_entries, es;
   for (std::size_t j = 0; j < s_.system.size(); ++j) {
     first_.push_back(entries_.size());
@@ -282,20 +282,8 @@ void tell(LinearModel& m, LinearModel::Motion motion, std::string why) {
 
 }  // namespace
 
-Outcome Linearizer::at(const std::vector<Multi>& parameters, LinearModel& out) const {
-  const InitialProblem<Multi> problem{s_.mechanics.get(), parameters, choice_.overrides, choice_.t};
-  InitialState<Multi> state;
-  if (Outcome o = consistent_state(problem, state); !o.ok()) return o;
-  if (s_.routh)
-    if (Outcome o = complete_state(problem, *s_.routh, s_.routh_structure, state); !o.ok()) return o;
-  const Outcome singular{OutcomeKind::singular, "the equations do not determine the motion at this state: it has no linear model", "choose another state"};
-  LinearPoint point(*this, parameters);
-  point.load(state);
-  if (!point.evaluate()) return {OutcomeKind::not_a_number, "a derivative of the equations has no value at this state", "choose another state"};
-  if (!point.choose() || !point.settle()) return singular;
-  point.linear(out);
-
-  // Which coordinates have no influence, here and at a point where they are others.
+// Which coordinates have no influence, here and at a point where they are others; and whether all else rests.
+static void look_for_steadiness(const LinearPoint& point, bool check, LinearModel& out) {
   const std::size_t n = out.states.size();
   const Multi zero = round_off(kZeroPart) * (Multi(1) + largest(out.A.data)), still = round_off(kZeroPart) * (Multi(1) + largest(point.x));
   std::vector<bool> kept(n, true), may(n, true);
@@ -304,6 +292,7 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, LinearModel& out) c
   for (bool again = true; again;) {
     again = false;
     kept = without_cyclic(out, point, may, zero);
+    if (!check) break;
     LinearPoint there = point;
     there.t += Multi(0.375);
     for (std::size_t i = 0, k = 0; i < n; ++i)
@@ -317,6 +306,7 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, LinearModel& out) c
   out.cyclic.clear(), out.core.clear();
   for (std::size_t i = 0; i < n; ++i) (kept[i] ? out.core : out.cyclic).push_back(i);
 
+  if (!check) return tell(out, LinearModel::Motion::unchecked, "");
   tell(out, LinearModel::Motion::equilibrium, "");
   if (largest(out.rates) > still) out.motion = LinearModel::Motion::steady;
   if (!moved) tell(out, LinearModel::Motion::unchecked, "no other point of the motion was found");
@@ -338,6 +328,22 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, LinearModel& out) c
       break;
     }
   }
+}
+
+Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
+  const InitialProblem<Multi> problem{s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_};
+  InitialState<Multi> state;
+  if (Outcome o = consistent_state(problem, state); !o.ok()) return o;
+  if (s_.routh)
+    if (Outcome o = complete_state(problem, *s_.routh, s_.routh_structure, state); !o.ok()) return o;
+  const Outcome singular{OutcomeKind::singular, "the equations do not determine the motion at this state: it has no linear model", "choose another state"};
+  LinearPoint point(*this, parameters);
+  point.load(state);
+  if (!point.evaluate()) return {OutcomeKind::not_a_number, "a derivative of the equations has no value at this state", "choose another state"};
+  if (!point.choose() || !point.settle()) return singular;
+  point.linear(out);
+
+  look_for_steadiness(point, check, out);
   Matrix<Multi> core(out.core.size(), out.core.size());
   for (std::size_t i = 0; i < core.rows; ++i)
     for (std::size_t k = 0; k < core.cols; ++k) core(i, k) = out.A(out.core[i], out.core[k]);

@@ -39,8 +39,9 @@ const char* name(LinearModel::Motion motion);
 class Linearizer {
  public:
   Linearizer(const Scenario& scenario, const StateChoice& choice);
-  // With other values of the parameters; the initial data are solved anew.
-  Outcome at(const std::vector<Multi>& parameters, LinearModel& out) const;
+  // With other values of the parameters; the initial data are solved anew. Only if `check` it is found out whether the motion is
+  // steady.
+  Outcome at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const;
 
  private:
   friend class LinearPoint;
@@ -57,6 +58,7 @@ class Linearizer {
 
   const Scenario& s_;
   const StateChoice& choice_;
+  std::vector<Column> mass_;                // the mass matrix
   std::vector<Entry> entries_;              // x_j^(k), k <= d_j
   std::vector<std::size_t> first_;          // of each variable
   std::vector<std::pair<std::size_t, int>> rows_;  // E_i^(k), k <= c_i

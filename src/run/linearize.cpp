@@ -34,7 +34,7 @@ class Search {
  public:
   Search(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range) : s_(s), range_(range), linearizer_(s, choice) {}
 
-  LinearResult at(const Rational* value) const {
+  LinearResult at(const Rational* value, bool check = true) const {
     LinearResult r;
     Column es;
     for (const Parameter& p : s_.model->parameters) es.push_back(p.value);
@@ -48,7 +48,7 @@ class Search {
         r.outcome = {OutcomeKind::not_a_number, "a parameter has no value here", "choose another value"};
         return r;
       }
-    r.outcome = linearizer_.at(parameters, r.model);
+    r.outcome = linearizer_.at(parameters, check, r.model);
     return r;
   }
 
@@ -91,7 +91,7 @@ class Search {
     for (int step = 0, stayed = 0; step < kMostSteps; ++step) {
       p = leaves_zero ? (a + b) / Multi(2) : (a * fb - b * fa) / (fb - fa);
       const Rational exact = rational_of(p);
-      const LinearResult r = at(&exact);
+      const LinearResult r = at(&exact, false);
       if (!r.outcome.ok() || r.model.spectrum.size() < static_cast<std::size_t>(m + always)) return false;
       e = ranked(r.model, m, always);
       const Multi f = e.value.re;

@@ -294,7 +294,7 @@ class Reader {  // what it refers to is asked only while it runs
         if (g.node(id).kind == Kind::jet && g.node(id).order == k) top.push_back({&g, id});
       bool depends = false;
       for (Expr d : gradient(phi, top))
-        if (!proved_zero(d)) depends = true;
+        if (!depends && !proved_zero(d)) depends = true;
       if (depends) return k;
       phi = substitute({&phi, 1}, [&](NodeId id) {
         const Node& n = g.node(id);
