@@ -12,7 +12,7 @@ namespace anholon::cli {
 namespace {
 
 constexpr std::size_t kMostValues = 10000;
-constexpr int kWorkingDigits = 40, kGuardDigits = 24;
+constexpr int kWorkingDigits = 36, kGuardDigits = 24;  // 36: two words of 64 bits, with which MPFR is fastest
 
 // Shortest text of the double nearest to x, or more digits where they were asked for.
 std::string text(const Multi& x, int digits) { return digits > 16 ? number_text(x, digits) : number_text(to_double(x)); }
@@ -70,6 +70,13 @@ std::shared_ptr<const Model> at_rest(const Model& model) {
   }
   m->initial = std::move(data);
   return m;
+}
+
+// Where no rest was found, the conditions that failed are not those of the file.
+void say_no_rest(Outcome& o) {
+  if (o.kind != OutcomeKind::inconsistent) return;
+  o.message = "no equilibrium was found near the initial positions";
+  o.hint = "there may be none; other positions may help, --q or [initial]";
 }
 
 // ---- what is printed -------------------------------------------------------------------------------
@@ -183,7 +190,12 @@ std::string pair_text(const Eigenvalue& e, int digits) {
   return (e.value.re == Multi(0) ? "" : text(e.value.re, digits) + " ") + "± " + text(abs(e.value.im), digits) + "i";
 }
 
-bool second_of_pair(const Eigenvalue& e) { return e.value.im < Multi(0); }
+// The second of a pair, or a multiple eigenvalue again, which the first has told.
+bool told(const std::vector<Eigenvalue>& list, std::size_t i) {
+  for (std::size_t k = 0; k < i; ++k)
+    if (list[k].value.re == list[i].value.re && abs(list[k].value.im) == abs(list[i].value.im)) return true;
+  return false;
+}
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> width;
@@ -221,8 +233,12 @@ void print_model(const LinearModel& m, int digits) {
   std::printf("\neigenvalues");
   if (!m.cyclic.empty()) std::printf(" of the states with influence; the %zu without add as many 0", m.cyclic.size());
   std::printf("\n");
-  for (const Eigenvalue& e : m.spectrum) {
-    if (second_of_pair(e)) continue;
+  const auto width = [&](const Eigenvalue& e) { return pair_text(e, digits).size() - (e.value.im == Multi(0) ? 0 : 1); };  // "±" has two bytes
+  std::size_t widest = 0;
+  for (const Eigenvalue& e : m.spectrum) widest = std::max(widest, width(e));
+  for (std::size_t i = 0; i < m.spectrum.size(); ++i) {
+    const Eigenvalue& e = m.spectrum[i];
+    if (told(m.spectrum, i)) continue;
     std::string note;
     if (e.multiplicity > 1) note += "  " + std::to_string(e.multiplicity) + "-fold (spread " + number_text(to_double(e.radius), 1) + ")";
     if (e.value.im > Multi(0)) {
@@ -231,18 +247,18 @@ void print_model(const LinearModel& m, int digits) {
     } else if (!(e.value.re == Multi(0))) {
       note += "  time constant " + short_text(Multi(1) / abs(e.value.re));
     }
-    std::printf("  %-44s%s\n", pair_text(e, digits).c_str(), note.c_str());
+    if (!note.empty()) note.insert(0, widest - width(e), ' ');
+    std::printf("  %s%s\n", pair_text(e, digits).c_str(), note.c_str());
   }
   std::printf("\nmodes (largest entry 1)\n");
   rows.assign(1, {""});
   for (std::size_t i : m.core) rows[0].push_back(m.states[i]);
   for (const Eigenvalue& e : m.spectrum) {
-    if (second_of_pair(e)) continue;
+    if (e.value.im < Multi(0)) continue;  // the conjugate of one that is shown
     rows.push_back({short_text(e.value.re) + (e.value.im > Multi(0) ? " + " + short_text(e.value.im) + "i" : "")});
     for (const Complex& z : e.vector) {
-      const double im = to_double(z.im), size = to_double(modulus(z));
-      if (size < 1e-20) rows.back().push_back("0");
-      else rows.back().push_back(number_text(to_double(z.re), 4) + (std::abs(im) < 1e-20 ? "" : (im < 0 ? " - " : " + ") + number_text(std::abs(im), 4) + "i"));
+      const double im = to_double(z.im);
+      rows.back().push_back(number_text(to_double(z.re), 4) + (im == 0 ? "" : (im < 0 ? " - " : " + ") + number_text(std::abs(im), 4) + "i"));
     }
   }
   print_table(rows);
@@ -257,11 +273,15 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
     const std::string about = r.outcome.ok() ? "about " + motion_text(r.model) : "no linear model (" + std::string(name(r.outcome.kind)) + "): " + r.outcome.message;
     if (about != before) std::printf("%s\n", about.c_str());
     before = about;
-    std::string line;
-    if (r.outcome.ok())
-      for (const Eigenvalue& e : r.model.spectrum)
-        if (!second_of_pair(e)) line += "   " + pair_text(e, digits);
-    std::printf("  %-8s%s\n", text(Multi(range.values[k]), digits).c_str(), line.c_str());
+    std::string line = text(Multi(range.values[k]), digits);
+    if (r.outcome.ok()) {
+      if (line.size() < 8) line.resize(8, ' ');
+      for (std::size_t i = 0; i < r.model.spectrum.size(); ++i) {
+        const Eigenvalue& e = r.model.spectrum[i];
+        if (!told(r.model.spectrum, i)) line += "   " + pair_text(e, digits) + (e.multiplicity > 1 ? " (" + std::to_string(e.multiplicity) + "-fold)" : "");
+      }
+    }
+    std::printf("  %s\n", line.c_str());
   }
   std::printf("\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
   for (const Crossing& c : l.crossings)
@@ -294,7 +314,7 @@ int linearize(const Options& o) {
   const std::optional<ParameterRange> values = range(o, *in.model);
   const StateChoice choice = state_choice(o, *in.model);
   Scenario s;
-  Outcome outcome = ready(in, form(o, *in.model), choice, s);
+  const Outcome start = ready(in, form(o, *in.model), choice, s);
   form(o, *in.model, s.mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
@@ -303,19 +323,22 @@ int linearize(const Options& o) {
   if (!o.show.empty()) return show(o, s);
   const PrecisionScope scope(std::max(kWorkingDigits, o.digits + kGuardDigits));
   Linearization l;
-  if (outcome.ok()) l = linearize(s, choice, values);
-  else l.results.push_back({"", outcome, {}});
-  for (const LinearResult& r : l.results)
-    if (outcome.ok()) outcome = r.outcome;
-  if (o.json) std::fputs(json(s, l, l.results.size() == 1 && !l.results[0].outcome.ok() ? std::nullopt : values, o.digits).c_str(), stdout);
-  else if (o.csv) print_csv(s, l, values, o.digits);
-  else if (outcome.ok() || l.results.size() > 1) {
+  if (start.ok()) l = linearize(s, choice, values);
+  else l.results.push_back({"", start, {}});
+  Outcome failed;  // the first that did
+  for (LinearResult& r : l.results) {
+    if (o.about == "equilibrium") say_no_rest(r.outcome);
+    if (failed.ok()) failed = r.outcome;
+  }
+  if (o.json) std::fputs(json(s, l, start.ok() ? values : std::nullopt, o.digits).c_str(), stdout);
+  else if (o.csv) print_csv(s, l, start.ok() ? values : std::nullopt, o.digits);
+  else if (failed.ok() || l.results.size() > 1) {
     std::printf("%s\n%s, %s\n\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation);
     if (values) print_range(s, l, *values, o.digits);
     else print_model(l.results[0].model, o.digits);
   }
-  if (outcome.ok()) return kOk;
-  print_outcome(outcome);
+  if (failed.ok()) return kOk;
+  print_outcome(failed);
   return kStopped;
 }
 

@@ -116,7 +116,7 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
   const Multi change = least_change_of(largest);
   Matrix<Multi> moved = a;
   for (std::size_t i = 0; i < a.rows; ++i)
-    for (std::size_t j = 0; j < a.cols; ++j) moved(i, j) += change * Multi(static_cast<int>((i * 37 + j * 53 + 11) % 17) - 8) / Multi(8);
+    for (std::size_t j = 0; j < a.cols; ++j) moved(i, j) += change * Multi(2 * static_cast<int>((i * 37 + j * 53 + 11) % 17) - 17) / Multi(16);  // none of them 0
   std::vector<Complex> values, others;
   std::vector<std::vector<Complex>> vectors;
   if (!solve(a, values, &vectors) || !solve(moved, others, nullptr)) return false;
@@ -134,6 +134,10 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
   for (Eigenvalue& e : out)
     for (Multi* part : {&e.value.re, &e.value.im})
       if (!(abs(*part) > Multi(kSpread) * change) || (e.multiplicity == 1 && !(abs(*part) > Multi(kSpread) * e.radius))) *part = Multi(0);
+  for (Eigenvalue& e : out)
+    for (Complex& z : e.vector)
+      for (Multi* part : {&z.re, &z.im})
+        if (!(abs(*part) > Multi(kSpread) * e.radius)) *part = Multi(0);
   // A is real: eigenvalues that are not come in pairs, and a pair has one real part.
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!(out[i].value.im > Multi(0))) continue;

@@ -129,8 +129,8 @@ class LinearPoint {
       for (const Multi& r : residual) minus.push_back(-r);
       lu_.solve(minus, step);
       for (std::size_t i = 0; i < step.size(); ++i) x[dependent_[i]] += step[i];
+      if (largest(step) <= small * (Multi(1) + largest(x))) return true;  // J is that of a point as good as the same
       if (!evaluate()) return false;
-      if (largest(step) <= small * (Multi(1) + largest(x))) return solve_for_dependent();
     }
     return false;
   }
@@ -163,6 +163,10 @@ class LinearPoint {
     const Multi nothing = round_off(kEntryPart) * largest(out.A.data);
     for (Multi& a : out.A.data)
       if (!(abs(a) > nothing)) a = Multi(0);
+    const Multi still = round_off(kEntryPart) * (Multi(1) + largest(x));
+    for (std::vector<Multi>* list : {&out.values, &out.rates})
+      for (Multi& v : *list)
+        if (!(abs(v) > still)) v = Multi(0);
     for (std::size_t e : dependent_)
       if (!l_.leading(e)) out.dependent.push_back(l_.entry_name(e));
     out.t = t;
@@ -348,7 +352,7 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearM
   for (std::size_t i = 0; i < core.rows; ++i)
     for (std::size_t k = 0; k < core.cols; ++k) core(i, k) = out.A(out.core[i], out.core[k]);
   if (!eigenvalues(core, out.spectrum))
-    return {OutcomeKind::no_convergence, "the eigenvalues of A were not found", "ask for more digits, --digits 40"};
+    return {OutcomeKind::no_convergence, "the eigenvalues of A were not found", "ask for more digits: --digits 60"};
   return {};
 }
 

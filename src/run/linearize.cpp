@@ -65,14 +65,8 @@ class Search {
         out.notes.push_back("between " + to_string(a) + " and " + to_string(b) + " an eigenvalue crosses the imaginary axis where the motion could not be followed");
         continue;
       }
-      // The two of a pair cross at once.
-      const auto same = [&](const Crossing& x) {
-        return x.frequency > Multi(0) && c.frequency > Multi(0) && abs(Multi(x.value - c.value)) <= Multi(1e-12) * (Multi(1) + abs(c.value)) &&
-               abs(Multi(x.frequency - c.frequency)) <= Multi(1e-9) * c.frequency;
-      };
-      const auto known = std::find_if(out.crossings.begin() + static_cast<std::ptrdiff_t>(first), out.crossings.end(), same);
-      if (known == out.crossings.end()) out.crossings.push_back(c);
-      else ++known->eigenvalues;
+      if (c.frequency > Multi(0)) ++m, c.eigenvalues = 2;  // the two of a pair cross at once
+      out.crossings.push_back(c);
     }
     std::stable_sort(out.crossings.begin() + static_cast<std::ptrdiff_t>(first), out.crossings.end(),
                      [&](const Crossing& x, const Crossing& y) { return a < b ? x.value < y.value : y.value < x.value; });
@@ -85,16 +79,17 @@ class Search {
     Multi fa = ranked(from, m, always).value.re, fb = ranked(to, m, always).value.re;
     const bool leaves_zero = fa == Multi(0) || fb == Multi(0);
     const bool a_positive = fa > Multi(0);
-    Eigenvalue e;
+    Eigenvalue e = ranked(a_positive ? from : to, m, always);  // the one that crosses, where it is on the right
     Multi p = b;
-    const Multi narrow = Multi(1e-18) * (Multi(1) + abs(a) + abs(b));
+    const Multi narrow = Multi(1e-20) * (Multi(1) + abs(a) + abs(b));
     for (int step = 0, stayed = 0; step < kMostSteps; ++step) {
       p = leaves_zero ? (a + b) / Multi(2) : (a * fb - b * fa) / (fb - fa);
       const Rational exact = rational_of(p);
       const LinearResult r = at(&exact, false);
       if (!r.outcome.ok() || r.model.spectrum.size() < static_cast<std::size_t>(m + always)) return false;
-      e = ranked(r.model, m, always);
-      const Multi f = e.value.re;
+      const Eigenvalue& found = ranked(r.model, m, always);
+      const Multi f = found.value.re;
+      if (f > Multi(0) || !leaves_zero) e = found;
       if (!leaves_zero && f == Multi(0)) break;
       if ((f > Multi(0)) == a_positive) {
         a = p, fa = f;
@@ -107,7 +102,7 @@ class Search {
       }
       if (abs(Multi(b - a)) < narrow) break;
     }
-    c.value = p;
+    c.value = abs(p) < narrow ? Multi(0) : p;
     c.frequency = abs(e.value.im);
     return true;
   }
