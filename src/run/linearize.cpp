@@ -80,7 +80,7 @@ class Search {
     const bool leaves_zero = fa == Multi(0) || fb == Multi(0);
     const bool a_positive = fa > Multi(0);
     Eigenvalue e = ranked(a_positive ? from : to, m, always);  // the one that crosses, where it is on the right
-    Multi p = b;
+    Multi p = b, last = a;
     const Multi narrow = Multi(1e-20) * (Multi(1) + abs(a) + abs(b));
     for (int step = 0, stayed = 0; step < kMostSteps; ++step) {
       p = leaves_zero ? (a + b) / Multi(2) : (a * fb - b * fa) / (fb - fa);
@@ -100,7 +100,8 @@ class Search {
         if (stayed == -1) fa /= Multi(2);
         stayed = -1;
       }
-      if (abs(Multi(b - a)) < narrow) break;
+      if (abs(Multi(b - a)) < narrow || abs(Multi(p - last)) < narrow) break;
+      last = p;
     }
     c.value = abs(p) < narrow ? Multi(0) : p;
     c.frequency = abs(e.value.im);
