@@ -130,8 +130,14 @@ void write_model(JsonWriter& j, const LinearModel& m, int digits) {
   j.key("state").open_object();
   for (std::size_t i = 0; i < m.states.size(); ++i) j.key(m.states[i]).number(text(m.values[i], digits));
   j.close();
-  j.key("A");
-  write_matrix(j, m.A, digits);
+  j.key("inputs");
+  write_strings(j, m.inputs);
+  j.key("outputs");
+  write_strings(j, m.outputs);
+  for (const auto& [key, matrix] : {std::pair{"A", &m.A}, {"B", &m.B}, {"C", &m.C}, {"D", &m.D}}) {
+    j.key(key);
+    write_matrix(j, *matrix, digits);
+  }
   j.key("cyclic");
   write_names(j, m, m.cyclic);
   j.key("core");
@@ -213,6 +219,17 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
 
 std::string short_text(const Multi& x) { return number_text(to_double(x), 6); }
 
+void print_matrix(const char* name, const std::vector<std::string>& rows, const std::vector<std::string>& columns, const Matrix<Multi>& a) {
+  std::vector<std::vector<std::string>> table{{""}};
+  table[0].insert(table[0].end(), columns.begin(), columns.end());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    table.push_back({rows[r]});
+    for (std::size_t c = 0; c < columns.size(); ++c) table.back().push_back(short_text(a(r, c)));
+  }
+  std::printf("\n%s\n", name);
+  print_table(table);
+}
+
 void print_model(const LinearModel& m, int digits) {
   std::printf("about %s\n\n%zu states at t = %s", motion_text(m).c_str(), m.states.size(), text(m.t, digits).c_str());
   if (!m.dependent.empty()) {
@@ -222,14 +239,11 @@ void print_model(const LinearModel& m, int digits) {
   }
   std::printf("\n");
   for (std::size_t i = 0; i < m.states.size(); ++i) std::printf("  %-14s %24s\n", m.states[i].c_str(), text(m.values[i], digits).c_str());
-  std::printf("\nA\n");
-  std::vector<std::vector<std::string>> rows{{""}};
-  rows[0].insert(rows[0].end(), m.states.begin(), m.states.end());
-  for (std::size_t r = 0; r < m.states.size(); ++r) {
-    rows.push_back({m.states[r]});
-    for (std::size_t c = 0; c < m.states.size(); ++c) rows.back().push_back(short_text(m.A(r, c)));
-  }
-  print_table(rows);
+  print_matrix("A", m.states, m.states, m.A);
+  if (!m.inputs.empty()) print_matrix("B", m.states, m.inputs, m.B);
+  if (!m.outputs.empty()) print_matrix("C", m.outputs, m.states, m.C);
+  if (!m.inputs.empty() && !m.outputs.empty()) print_matrix("D", m.outputs, m.inputs, m.D);
+  for (const std::string& n : m.notes) std::printf("note: %s\n", n.c_str());
   std::printf("\neigenvalues");
   if (!m.cyclic.empty()) std::printf(" of the states with influence; the %zu without add as many 0", m.cyclic.size());
   std::printf("\n");
@@ -251,7 +265,7 @@ void print_model(const LinearModel& m, int digits) {
     std::printf("  %s%s\n", pair_text(e, digits).c_str(), note.c_str());
   }
   std::printf("\nmodes (largest entry 1)\n");
-  rows.assign(1, {""});
+  std::vector<std::vector<std::string>> rows{{""}};
   for (std::size_t i : m.core) rows[0].push_back(m.states[i]);
   for (const Eigenvalue& e : m.spectrum) {
     if (e.value.im < Multi(0)) continue;  // the conjugate of one that is shown
@@ -287,7 +301,7 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
   for (const Crossing& c : l.crossings)
     std::printf("  %s = %s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(),
                 c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0",
-                c.destabilizes ? "unstable from there" : "unstable up to there");
+                c.destabilizes ? "unstable above" : "stable above");
   for (const std::string& n : l.notes) std::printf("note: %s\n", n.c_str());
 }
 

@@ -41,13 +41,15 @@ const char* name(LinearModel::Motion motion) {
   return "";
 }
 
-Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice) : s_(scenario), choice_(choice), mass_(mass_matrix(*scenario.mechanics)) {
-  Column symbols_of_entries, es;
+Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice, Signals signals)
+    : s_(scenario), choice_(choice), signals_(std::move(signals)), mass_(mass_matrix(*scenario.mechanics)) {
+  const Graph& g = *s_.model->graph;
+  Column columns, es;
   for (std::size_t j = 0; j < s_.system.size(); ++j) {
     first_.push_back(entries_.size());
     for (int k = 0; k <= s_.structure.d[j]; ++k) {
       entries_.push_back({j, k});
-      symbols_of_entries.push_back(s_.system.symbol(j, static_cast<unsigned>(k)));
+      columns.push_back(s_.system.symbol(j, static_cast<unsigned>(k)));
     }
   }
   for (std::size_t i = 0; i < s_.system.size(); ++i)
@@ -55,12 +57,35 @@ Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice) : s_
       rows_.push_back({i, k});
       es.push_back(total_derivative(s_.system.equations[i], static_cast<unsigned>(k)));
     }
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const Column d = gradient(es[r], symbols_of_entries);
-    for (std::size_t e = 0; e < d.size(); ++e) {
-      if (is_zero(d[e])) continue;
-      partials_.push_back({r, e});
-      es.push_back(d[e]);
+  // An input on which a hidden constraint depends would come with its rate.
+  for (std::size_t u = signals_.u.size(); u-- > 0;) {
+    bool hidden = false;
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      hidden = hidden || (rows_[r].second < s_.structure.c[rows_[r].first] && !is_zero(partial(es[r], signals_.u[u])));
+    if (!hidden) continue;
+    notes_.push_back("the input '" + signals_.inputs[u] + "' stands in a constraint that holds at every time: its rate would be an input, too; it is left out");
+    signals_.u.erase(signals_.u.begin() + static_cast<std::ptrdiff_t>(u));
+    signals_.inputs.erase(signals_.inputs.begin() + static_cast<std::ptrdiff_t>(u));
+  }
+  for (std::size_t y = signals_.y.size(); y-- > 0;) {
+    bool beyond = false;
+    for (NodeId id : symbols({&signals_.y[y], 1}))
+      if (const auto j = s_.system.variable(id)) beyond = beyond || g.node(id).order > s_.structure.d[*j];
+    if (!beyond) continue;
+    notes_.push_back("the output '" + signals_.outputs[y] + "' holds derivatives beyond those of the equations; it is left out");
+    signals_.y.erase(signals_.y.begin() + static_cast<std::ptrdiff_t>(y));
+    signals_.outputs.erase(signals_.outputs.begin() + static_cast<std::ptrdiff_t>(y));
+  }
+  columns.insert(columns.end(), signals_.u.begin(), signals_.u.end());
+  const Column outputs = put_masses(*s_.model, signals_.y);
+  es.insert(es.end(), outputs.begin(), outputs.end());
+  const std::size_t rows = es.size();
+  for (std::size_t r = 0; r < rows; ++r) {
+    const Column d = gradient(es[r], columns);
+    for (std::size_t c = 0; c < d.size(); ++c) {
+      if (is_zero(d[c])) continue;
+      partials_.push_back({r, c});
+      es.push_back(d[c]);
     }
   }
   tape_ = compile(es);
@@ -82,7 +107,7 @@ class LinearPoint {
       if (const Multi* known = state.value(node(e))) x[e] = *known;
   }
 
-  // Values of all rows and J = dE/dx; false if a formula has no value here.
+  // Values of all equations, and the partial derivatives; false if a formula has no value here.
   bool evaluate() {
     const Graph& g = *l_.s_.model->graph;
     for (const Input& in : l_.tape_.inputs) {
@@ -94,9 +119,10 @@ class LinearPoint {
     }
     machine_.evaluate();
     residual.clear();
-    jacobian = Matrix<Multi>(l_.rows_.size(), x.size());
+    const std::size_t all = l_.rows_.size() + l_.signals_.y.size();
+    jacobian = Matrix<Multi>(all, x.size() + l_.signals_.u.size());
     for (std::size_t r = 0; r < l_.rows_.size(); ++r) residual.push_back(machine_.value(r));
-    for (std::size_t p = 0; p < l_.partials_.size(); ++p) jacobian(l_.partials_[p].row, l_.partials_[p].entry) = machine_.value(l_.rows_.size() + p);
+    for (std::size_t p = 0; p < l_.partials_.size(); ++p) jacobian(l_.partials_[p].row, l_.partials_[p].column) = machine_.value(all + p);
     const auto good = [](const Multi& v) { return v.finite(); };
     return std::all_of(residual.begin(), residual.end(), good) && std::all_of(jacobian.data.begin(), jacobian.data.end(), good);
   }
@@ -143,26 +169,39 @@ class LinearPoint {
       if (where[e] == x.size()) independent.push_back(e);
     // Positions before velocities, as one reads them.
     std::stable_sort(independent.begin(), independent.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
-    const std::size_t n = independent.size();
-    Matrix<Multi> follow(dependent_.size(), n);
+    const std::size_t n = independent.size(), inputs = l_.signals_.u.size(), outputs = l_.signals_.y.size();
+    // What follows from each independent entry, and from each input.
+    Matrix<Multi> follow(dependent_.size(), n + inputs);
     std::vector<Multi> column(l_.rows_.size(), Multi(0)), solution;
-    for (std::size_t c = 0; c < n; ++c) {
-      for (std::size_t r = 0; r < column.size(); ++r) column[r] = -jacobian(r, independent[c]);
+    for (std::size_t c = 0; c < n + inputs; ++c) {
+      for (std::size_t r = 0; r < column.size(); ++r) column[r] = -jacobian(r, c < n ? independent[c] : x.size() + c - n);
       lu_.solve(column, solution);
       for (std::size_t i = 0; i < solution.size(); ++i) follow(i, c) = solution[i];
     }
-    out.A = Matrix<Multi>(n, n);
+    out.A = Matrix<Multi>(n, n), out.B = Matrix<Multi>(n, inputs), out.C = Matrix<Multi>(outputs, n), out.D = Matrix<Multi>(outputs, inputs);
     out.states.clear(), out.dependent.clear(), out.values.clear(), out.rates.clear();
+    out.inputs = l_.signals_.inputs, out.outputs = l_.signals_.outputs, out.notes = l_.notes_;
     for (std::size_t r = 0; r < n; ++r) {
       const std::size_t next = independent[r] + 1;  // entries of a variable stand side by side
-      for (std::size_t c = 0; c < n; ++c) out.A(r, c) = where[next] == x.size() ? Multi(independent[c] == next ? 1 : 0) : follow(where[next], c);
+      const bool free = where[next] == x.size();
+      for (std::size_t c = 0; c < n; ++c) out.A(r, c) = free ? Multi(independent[c] == next ? 1 : 0) : follow(where[next], c);
+      for (std::size_t c = 0; c < inputs; ++c) out.B(r, c) = free ? Multi(0) : follow(where[next], n + c);
       out.states.push_back(l_.entry_name(independent[r]));
       out.values.push_back(x[independent[r]]);
       out.rates.push_back(x[next]);
     }
-    const Multi nothing = round_off(kEntryPart) * largest(out.A.data);
-    for (Multi& a : out.A.data)
-      if (!(abs(a) > nothing)) a = Multi(0);
+    for (std::size_t o = 0; o < outputs; ++o)
+      for (std::size_t c = 0; c < n + inputs; ++c) {
+        const std::size_t row = l_.rows_.size() + o;
+        Multi& entry = c < n ? out.C(o, c) : out.D(o, c - n);
+        entry = jacobian(row, c < n ? independent[c] : x.size() + c - n);
+        for (std::size_t i = 0; i < dependent_.size(); ++i) addmul(entry, jacobian(row, dependent_[i]), follow(i, c));
+      }
+    for (Matrix<Multi>* m : {&out.A, &out.B, &out.C, &out.D}) {
+      const Multi nothing = round_off(kEntryPart) * largest(m->data);
+      for (Multi& a : m->data)
+        if (!(abs(a) > nothing)) a = Multi(0);
+    }
     const Multi still = round_off(kEntryPart) * (Multi(1) + largest(x));
     for (std::vector<Multi>* list : {&out.values, &out.rates})
       for (Multi& v : *list)

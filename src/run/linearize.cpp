@@ -32,7 +32,8 @@ const Eigenvalue& ranked(const LinearModel& m, int rank, int always) {
 
 class Search {
  public:
-  Search(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range) : s_(s), range_(range), linearizer_(s, choice) {}
+  Search(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range, const Signals& signals)
+      : s_(s), range_(range), linearizer_(s, choice, signals) {}
 
   LinearResult at(const Rational* value, bool check = true) const {
     LinearResult r;
@@ -60,7 +61,7 @@ class Search {
     for (int m = std::min(before, after) + 1; m <= std::max(before, after); ++m) {
       if (static_cast<std::size_t>(m) > kept) break;
       Crossing c;
-      c.destabilizes = after > before;
+      c.destabilizes = (after > before) == (a < b);
       if (!root(from.model, to.model, Multi(a), Multi(b), m, always, c)) {
         out.notes.push_back("between " + to_string(a) + " and " + to_string(b) + " an eigenvalue crosses the imaginary axis where the motion could not be followed");
         continue;
@@ -115,8 +116,8 @@ class Search {
 
 }  // namespace
 
-Linearization linearize(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range) {
-  const Search search(s, choice, range);
+Linearization linearize(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range, const Signals& signals) {
+  const Search search(s, choice, range, signals);
   Linearization out;
   if (!range) {
     out.results.push_back(search.at(nullptr));

@@ -24,7 +24,7 @@ struct Crossing {
   Multi value{0};        // of the parameter
   Multi frequency{0};    // of the eigenvalue there; 0: it is real
   int eigenvalues = 1;   // that cross: 2 for a pair
-  bool destabilizes = false;  // for growing values of the parameter
+  bool destabilizes = false;  // for growing values of the parameter it goes to the right
 };
 
 struct Linearization {
@@ -34,6 +34,6 @@ struct Linearization {
 };
 
 // In a working precision that the caller has set (PrecisionScope).
-Linearization linearize(const Scenario& scenario, const StateChoice& choice, const std::optional<ParameterRange>& range);
+Linearization linearize(const Scenario& scenario, const StateChoice& choice, const std::optional<ParameterRange>& range, const Signals& signals = {});
 
 }  // namespace anholon

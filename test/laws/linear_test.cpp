@@ -177,6 +177,59 @@ TEST(LinearModels, FormsAgree) {
   }
 }
 
+// A cart with a pendulum, pushed by u, its rod a holonomic constraint: the textbook's A, B, C, D. With M, m, l, g and the rod downwards
+//   x'' = (u + m g th)/M,  th'' = -((M + m) g th + u)/(M l),  rod's pull (lambda in the direction of the rod) = m g to first order.
+TEST(LinearModels, InputsAndOutputs) {
+  const PrecisionScope scope(kDigits);
+  const auto model = model_of(R"(title = "cart"
+coordinates = ["x", "a", "b"]
+particle = [{name = "cart", mass = 4, position = "x*ex"}, {name = "bob", mass = 3, position = "a*ex + b*ey"}]
+constraint = [{name = "rod", equation = "(a - x)^2/2 + b^2/2 = 2"}]
+gravity.field = "-10*ey"
+force = [{on = "cart", vector = "u*ex"}]
+parameters.u = 0
+[initial]
+q = {x = 0, a = 0}
+guess = {b = -2}
+)");
+  Graph& g = *model->graph;
+  const StateChoice choice;
+  const auto s = scenario(model, choice);
+  const Expr x2 = g.jet(0, 2), b = g.jet(2, 0);
+  const Signals signals{{"push"}, {"acceleration", "height", "pull", "jerk"}, {g.parameter(0)}, {x2, b, g.multiplier(0, 0), g.jet(0, 3)}};
+  const Linearization l = linearize(*s, choice, std::nullopt, signals);
+  ASSERT_TRUE(l.results[0].outcome.ok());
+  const LinearModel& m = l.results[0].model;
+  ASSERT_EQ(m.states, (std::vector<std::string>{"x", "a", "x'", "a'"}));
+  // The angle is (a - x)/2, so x'' = (u + 15 (a - x))/4 and a'' = -5 (a - x).
+  const double A[4][4] = {{0, 0, 1, 0}, {0, 0, 0, 1}, {-3.75, 3.75, 0, 0}, {5, -5, 0, 0}}, B[4] = {0, 0, 0.25, 0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_LT(std::abs(to_double(m.A(i, k)) - A[i][k]), kExact);
+    EXPECT_LT(std::abs(to_double(m.B(i, 0)) - B[i]), kExact);
+  }
+  ASSERT_EQ(m.outputs.size(), 3U);  // the jerk has no place
+  ASSERT_EQ(m.notes.size(), 1U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_LT(std::abs(to_double(m.C(0, k)) - A[2][k]), kExact);
+    EXPECT_LT(std::abs(to_double(m.C(1, k))), kExact);  // height and pull are even in the angle
+    EXPECT_LT(std::abs(to_double(m.C(2, k))), kExact);
+  }
+  EXPECT_LT(std::abs(to_double(m.D(0, 0)) - 0.25), kExact);
+  EXPECT_LT(std::abs(to_double(m.D(1, 0))), kExact);
+}
+
+// An input that moves a constraint comes with its rate, which no B shows.
+TEST(LinearModels, InputsInConstraintsAreLeftOut) {
+  const PrecisionScope scope(kDigits);
+  const auto model = model_of("title = \"t\"\ncoordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + y*ey\"}]\n"
+                              "constraint = [{name = \"c\", equation = \"y' = u*x\"}]\nparameters.u = 2\n");
+  const StateChoice choice;
+  const auto s = scenario(model, choice);
+  const Linearization l = linearize(*s, choice, std::nullopt, {{"u"}, {}, {model->graph->parameter(0)}, {}});
+  EXPECT_TRUE(l.results[0].model.inputs.empty());
+  EXPECT_EQ(l.results[0].model.notes.size(), 1U);
+}
+
 // A coordinate that seems to be without influence where it is, and is not.
 TEST(LinearModels, InfluenceIsLookedForElsewhere) {
   const PrecisionScope scope(kDigits);
