@@ -21,18 +21,20 @@ struct Options {
   std::vector<std::string> set, cases, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance, rigorous;
   std::string save, resume;
+  std::string vary, about;
   std::string error_estimate = "short";
   int digits = 16;
   int proof_digits = 308;
   int order = 0;
   int points = 6;
   unsigned long long seed = 0;
-  bool json = false, quiet = false, steps = false;
+  bool json = false, quiet = false, steps = false, csv = false;
 };
 
 int check(const Options& o);
 int derive(const Options& o);
 int evaluate(const Options& o);
+int linearize(const Options& o);
 int simulate(const Options& o);
 int forms(const Options& o);
 int models(const Options& o);

@@ -23,8 +23,8 @@ void rescue_model(Options& o) {
     }
 }
 
-constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "forms", "models", "prove", "compare", "verify"};
-constexpr const char* kLater[] = {"new", "sweep", "linearize", "report", "plot", "render", "convert", "fmt"};
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "linearize", "forms", "models", "prove", "compare", "verify"};
+constexpr const char* kLater[] = {"new", "sweep", "report", "plot", "render", "convert", "fmt"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {
@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
              "  anholon check disc                                  what kind of system it is\n"
              "  anholon derive luo-zhao-example-2 --format latex    its equations\n"
              "  anholon simulate disc --to 10 -o disc.csv           its motion\n"
+             "  anholon linearize whipple --vary v=0..10:1          eigenvalues over a range, weave and capsize speeds\n"
              "  anholon prove disc -o proof.json                    a proof that all forms of the equations agree\n"
              "Exit status: 0 ok, 1 the motion stopped early (what was computed is kept), 2 bad input, 3 internal fault.");
   Options o;
@@ -128,6 +129,16 @@ int run(int argc, char** argv) {
   simulate_command->add_option("--error-estimate", o.error_estimate, "digits to trust, by a second, sharper run: always, never, or of runs up to 5000 steps (short, the default)")
       ->type_name("WHEN")->check(CLI::IsMember({"always", "never", "short"}));
   simulate_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
+
+  CLI::App* linearize_command = model_command("linearize", "the linear model of a motion, its eigenvalues and modes, over a range of a parameter", cli::linearize,
+                                              "About the initial state, which may be an equilibrium or a steady motion: [initial] conditions = [\"theta'' = 0\", …] finds one.\n"
+                                              "Exit status: 0 ok, 1 no linear model at some value, 2 bad input.\n"
+                                              "Example: anholon linearize whipple --vary v=0..10:1");
+  parameters(linearize_command), state(linearize_command), form_option(linearize_command);
+  linearize_command->add_option("--about", o.about, "state (default), or equilibrium: the one nearest to the initial positions")->type_name("WHAT")->check(CLI::IsMember({"state", "equilibrium"}));
+  linearize_command->add_option("--vary", o.vary, "a parameter over a range, v=0..10:1 or v=0,1,2; where eigenvalues cross the imaginary axis is found")->type_name("NAME=VALUES");
+  linearize_command->add_option("--digits", o.digits, "of the numbers printed (default 16); the computation has at least 36")->type_name("N")->check(CLI::Range(1, 2000));
+  linearize_command->add_flag("--csv", o.csv, "one line of eigenvalues per parameter value");
 
   CLI::App* forms_command = model_command("forms", "the catalogue of forms, and which apply to a model", cli::forms,
                                           "Example: anholon forms disc");

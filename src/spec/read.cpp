@@ -316,9 +316,9 @@ class Reader {  // what it refers to is asked only while it runs
       Column top;
       for (NodeId id : symbols({&phi, 1}))
         if (g.node(id).kind == Kind::jet && g.node(id).order == k) top.push_back({&g, id});
-      bool depends = false;
-      for (Expr d : gradient(phi, top))
-        if (!proved_zero(d)) depends = true;
+      const Column d = gradient(phi, top);
+      const auto told = [](Expr e) { return is_number(e) && !is_zero(e); };  // without a proof
+      const bool depends = std::any_of(d.begin(), d.end(), told) || std::any_of(d.rbegin(), d.rend(), [](Expr e) { return !proved_zero(e); });
       if (depends) return k;
       phi = substitute({&phi, 1}, [&](NodeId id) {
         const Node& n = g.node(id);

@@ -177,7 +177,7 @@ class Solver {
 
   Outcome attempt(const Equations& equations, const Column& unknowns, unsigned metric) {
     if (equations.empty()) return {};
-    Stage<N> stage(m_, equations, unknowns, metric, p_.parameters);
+    Stage<N> stage(m_, equations, unknowns, metric, p_.parameters, p_.mass);
     std::vector<std::size_t> free, all;
     std::vector<N> before;
     for (std::size_t j = 0; j < unknowns.size(); ++j) {
@@ -281,7 +281,7 @@ class Solver {
     }
     if (!higher) return;
     const InitialState<N> before = state_;
-    Stage<N> stage(m_, laws, unknowns, 1U << 2, p_.parameters);
+    Stage<N> stage(m_, laws, unknowns, 1U << 2, p_.parameters, p_.mass);
     std::vector<std::size_t> every;
     for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
     if (!find_by_least_change(stage, state_, every)) state_ = before;
@@ -298,7 +298,7 @@ class Solver {
   void start_unconstrained(const Equations& laws, const Column& unknowns, unsigned metric) {
     if (std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return free_multiplier(node(u)); })) return;
     const InitialState<N> before = state_;
-    Stage<N> stage(m_, laws, unknowns, metric, p_.parameters);
+    Stage<N> stage(m_, laws, unknowns, metric, p_.parameters, p_.mass);
     std::vector<std::size_t> free;
     for (std::size_t j = 0; j < unknowns.size(); ++j)
       if (!free_multiplier(stage.unknown(j))) free.push_back(j);
@@ -320,7 +320,7 @@ class Solver {
       if (const Origin o = *state_.origin(node(unknowns[j])); o == Origin::derived || o == Origin::chosen) free.push_back(j);
     std::size_t rank = 0;
     if (!equations.empty() && !free.empty()) {
-      Stage<N> stage(m_, equations, unknowns, metric, p_.parameters);
+      Stage<N> stage(m_, equations, unknowns, metric, p_.parameters, p_.mass);
       if (!stage.evaluate(state_)) return;
       Matrix<N> a(stage.size(), free.size());
       for (std::size_t i = 0; i < stage.size(); ++i)
@@ -406,7 +406,7 @@ class Solver {
   Outcome leading(const System& s, const Structure& t) {
     const Column unknowns = leading_unknowns(s, t);
     if (!may_branch(m_, s)) {
-      Stage<N> all(m_, leading_equations(s, t), unknowns, 0, p_.parameters);
+      Stage<N> all(m_, leading_equations(s, t), unknowns, 0, p_.parameters, p_.mass);
       std::vector<std::size_t> every;
       for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
       if (!find_by_least_change(all, state_, every)) return no_value(all);
@@ -451,7 +451,7 @@ class Solver {
       if (!holds_higher(e.residual) || level_of(e.residual, s, t) > 0) equations.push_back(e);
     equations.insert(equations.end(), late.begin(), late.end());
     {  // They may hold already: a value that follows from the others was given too.
-      Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters);
+      Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
       if (!said.evaluate(state_)) return no_value(said);
       if (to_double(said.worst()) <= kRounded && all_given(s, t)) return {};
       if (!(said.worst() > stage_rounding<N>())) return {};
@@ -471,7 +471,7 @@ class Solver {
       if (solve(equations, unknowns, metric).ok()) return {};
     }
     state_ = before;
-    Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters);
+    Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
     std::size_t worst = 0;
     if (!said.evaluate(state_)) return no_value(said);
     said.worst(&worst);

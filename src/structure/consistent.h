@@ -30,6 +30,7 @@ struct InitialProblem {
   std::vector<N> parameters;
   std::vector<StateOverride> overrides;
   std::optional<Rational> t;
+  const std::vector<Column>* mass = nullptr;  // the mass matrix, where the caller solves for many states
 };
 
 // Positions and velocities, from the constraints of orders 0 and 1 and the conditions on them.

@@ -9,19 +9,20 @@ constexpr int kMostIterations = 60;
 }  // namespace
 
 template <Number N>
-Stage<N>::Stage(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned measured, const std::vector<N>& parameters)
-    : m_(m), equations_(std::move(equations)), unknowns_(std::move(unknowns)), measured_(measured), tape_(build()),
+Stage<N>::Stage(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned measured, const std::vector<N>& parameters,
+                const std::vector<Column>* mass)
+    : m_(m), equations_(std::move(equations)), unknowns_(std::move(unknowns)), measured_(measured), tape_(build(mass ? *mass : std::vector<Column>())),
       machine_(tape_, 0, parameters) {}
 
 template <Number N>
-Tape Stage<N>::build() {
+Tape Stage<N>::build(const std::vector<Column>& mass) {
   Column es;
   for (const StageEquation& e : equations_) es.push_back(e.residual);
   for (const StageEquation& e : equations_) {
     const Column d = gradient(e.residual, unknowns_);
     es.insert(es.end(), d.begin(), d.end());
   }
-  for (const Column& row : mass_matrix(m_)) es.insert(es.end(), row.begin(), row.end());
+  for (const Column& row : mass.empty() ? mass_matrix(m_) : mass) es.insert(es.end(), row.begin(), row.end());
   return compile(es);
 }
 

@@ -22,7 +22,9 @@ inline constexpr double kDependent = 1e-9;
 template <Number N>
 class Stage {
  public:
-  Stage(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric, const std::vector<N>& parameters);
+  // `mass`: the mass matrix, where the caller has it already.
+  Stage(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric, const std::vector<N>& parameters,
+        const std::vector<Column>* mass = nullptr);
 
   std::size_t size() const { return equations_.size(); }
   std::size_t unknowns() const { return unknowns_.size(); }
@@ -47,7 +49,7 @@ class Stage {
   Matrix<N> jacobian, metric;
 
  private:
-  Tape build();
+  Tape build(const std::vector<Column>& mass);
 
   std::vector<N> floor_;
 

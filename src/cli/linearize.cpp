@@ -1,0 +1,359 @@
+#include "run/linearize.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/json.h"
+#include "cli/input.h"
+#include "cli/show.h"
+
+namespace anholon::cli {
+
+namespace {
+
+constexpr std::size_t kMostValues = 10000;
+constexpr int kWorkingDigits = 36, kGuardDigits = 24;  // 36: two words of 64 bits, with which MPFR is fastest
+
+// Shortest text of the double nearest to x, or more digits where they were asked for.
+std::string text(const Multi& x, int digits) { return digits > 16 ? number_text(x, digits) : number_text(to_double(x)); }
+
+// ---- what is asked for -----------------------------------------------------------------------------
+
+[[noreturn]] void wrong_range(const Options& o, const std::string& why) {
+  throw UsageError{"error: --vary: " + why + "\nhint: a range NAME=FROM..TO:STEP such as " + o.vary.substr(0, o.vary.find('=')) + "=0..10:1, or values NAME=0,1,2\n"};
+}
+
+std::optional<ParameterRange> range(const Options& o, const Model& model) {
+  if (o.vary.empty()) return std::nullopt;
+  const std::size_t equals = o.vary.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == o.vary.size())
+    throw UsageError{"error: --vary: '" + o.vary + "' is not of the form NAME=VALUES\nhint: a range such as v=0..10:1, or values v=0,1,2\n"};
+  ParameterRange r;
+  const std::string name = o.vary.substr(0, equals), values = o.vary.substr(equals + 1);
+  const auto it = std::find_if(model.parameters.begin(), model.parameters.end(), [&](const Parameter& p) { return p.name == name; });
+  if (it == model.parameters.end()) {
+    std::vector<std::string> names;
+    for (const Parameter& p : model.parameters) names.push_back(p.name);
+    const std::string near = did_you_mean(name, names);
+    throw UsageError{"error: --vary: there is no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
+  }
+  r.parameter = static_cast<std::size_t>(it - model.parameters.begin());
+  const std::size_t dots = values.find("..");
+  if (dots == std::string::npos) {
+    for (const std::string& v : split({values})) r.values.push_back(exact(v, "--vary"));
+  } else {
+    const std::size_t colon = values.find(':', dots);
+    if (colon == std::string::npos) wrong_range(o, "'" + values + "' has no step");
+    const Rational from = exact(values.substr(0, dots), "--vary"), to = exact(values.substr(dots + 2, colon - dots - 2), "--vary");
+    const Rational step = exact(values.substr(colon + 1), "--vary");
+    if (step == 0 || (to - from) / step < 0) wrong_range(o, "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to));
+    if ((to - from) / step > static_cast<long>(kMostValues)) wrong_range(o, "these are more than " + std::to_string(kMostValues) + " values");
+    for (Rational v = from; step > 0 ? v <= to : v >= to; v += step) r.values.push_back(v);
+  }
+  if (r.values.empty()) wrong_range(o, "no value is given");
+  return r;
+}
+
+// Rest without accelerations, near the positions of the file.
+std::shared_ptr<const Model> at_rest(const Model& model) {
+  auto m = std::make_shared<Model>(model);
+  Graph& g = *m->graph;
+  InitialData data;
+  data.t = model.initial.t;
+  for (const std::vector<GivenValue>* list : {&model.initial.guess, &model.initial.given})
+    for (const GivenValue& v : *list)
+      if (const Node& n = g.node(v.symbol.id); n.kind == Kind::jet && n.order == 0) data.guess.push_back(v);
+  for (std::size_t a = 0; a < m->coordinates.size(); ++a) {
+    const auto index = static_cast<std::uint32_t>(a);
+    data.given.push_back({g.jet(index, 1), g.zero(), {}});
+    data.conditions.push_back({g.jet(index, 2), m->coordinates[a].name + "'' = 0", {}});
+  }
+  m->initial = std::move(data);
+  return m;
+}
+
+// Where no rest was found, the conditions that failed are not those of the file.
+void say_no_rest(Outcome& o) {
+  if (o.kind != OutcomeKind::inconsistent) return;
+  o.message = "no equilibrium was found near the initial positions";
+  o.hint = "there may be none; other positions may help, --q or [initial]";
+}
+
+// ---- what is printed -------------------------------------------------------------------------------
+
+std::string motion_text(const LinearModel& m) {
+  std::string cyclic;
+  for (std::size_t i : m.cyclic) cyclic += (cyclic.empty() ? "" : ", ") + m.states[i];
+  switch (m.motion) {
+    case LinearModel::Motion::equilibrium: return "an equilibrium" + (cyclic.empty() ? "" : "; without influence: " + cyclic);
+    case LinearModel::Motion::steady: return "a steady motion; without influence: " + cyclic;
+    case LinearModel::Motion::unsteady: return "a state that is not steady: " + m.why + "; A holds for this instant, and its eigenvalues say nothing about stability";
+    case LinearModel::Motion::unchecked: return "a motion that could not be checked to be steady: " + m.why;
+  }
+  return "";
+}
+
+void write_matrix(JsonWriter& j, const Matrix<Multi>& a, int digits) {
+  j.open_array();
+  for (std::size_t r = 0; r < a.rows; ++r) {
+    j.open_array();
+    for (std::size_t c = 0; c < a.cols; ++c) j.number(text(a(r, c), digits));
+    j.close();
+  }
+  j.close();
+}
+
+void write_complex(JsonWriter& j, const Complex& z, int digits) {
+  j.open_array().number(text(z.re, digits)).number(text(z.im, digits)).close();
+}
+
+void write_strings(JsonWriter& j, const std::vector<std::string>& list) {
+  j.open_array();
+  for (const std::string& s : list) j.string(s);
+  j.close();
+}
+
+void write_names(JsonWriter& j, const LinearModel& m, const std::vector<std::size_t>& which) {
+  j.open_array();
+  for (std::size_t i : which) j.string(m.states[i]);
+  j.close();
+}
+
+void write_model(JsonWriter& j, const LinearModel& m, int digits) {
+  j.key("motion").string(name(m.motion));
+  if (!m.why.empty()) j.key("why").string(m.why);
+  j.key("t").number(text(m.t, digits));
+  j.key("states");
+  write_strings(j, m.states);
+  j.key("dependent");
+  write_strings(j, m.dependent);
+  j.key("state").open_object();
+  for (std::size_t i = 0; i < m.states.size(); ++i) j.key(m.states[i]).number(text(m.values[i], digits));
+  j.close();
+  j.key("inputs");
+  write_strings(j, m.inputs);
+  j.key("outputs");
+  write_strings(j, m.outputs);
+  for (const auto& [key, matrix] : {std::pair{"A", &m.A}, {"B", &m.B}, {"C", &m.C}, {"D", &m.D}}) {
+    j.key(key);
+    write_matrix(j, *matrix, digits);
+  }
+  j.key("cyclic");
+  write_names(j, m, m.cyclic);
+  j.key("core");
+  write_names(j, m, m.core);
+  j.key("eigenvalues").open_array();
+  for (const Eigenvalue& e : m.spectrum) write_complex(j, e.value, digits);
+  j.close();
+  j.key("multiplicities").open_array();
+  for (const Eigenvalue& e : m.spectrum) j.integer(e.multiplicity);
+  j.close();
+  j.key("modes").open_array();
+  for (const Eigenvalue& e : m.spectrum) {
+    j.new_line().open_array();
+    for (const Complex& z : e.vector) write_complex(j, z, digits);
+    j.close();
+  }
+  j.close();
+}
+
+void write_outcome(JsonWriter& j, const Outcome& o) {
+  j.key("outcome").string(name(o.kind));
+  if (!o.ok()) j.key("message").string(o.message).key("hint").string(o.hint);
+}
+
+std::string json(const Scenario& s, const Linearization& l, const std::optional<ParameterRange>& range, int digits) {
+  JsonWriter j;
+  j.open_object();
+  j.key("model").string(s.model->title);
+  j.key("form").string(s.system.form->name);
+  if (!range) {
+    if (l.results[0].outcome.ok()) write_model(j, l.results[0].model, digits);
+    write_outcome(j, l.results[0].outcome);
+    return j.close().text() + "\n";
+  }
+  const std::string& parameter = s.model->parameters[range->parameter].name;
+  j.key("parameter").string(parameter);
+  j.key("values").open_array();
+  for (std::size_t k = 0; k < l.results.size(); ++k) {
+    j.new_line().open_object().key(parameter).number(text(Multi(range->values[k]), digits));
+    if (l.results[k].outcome.ok()) write_model(j, l.results[k].model, digits);
+    write_outcome(j, l.results[k].outcome);
+    j.close();
+  }
+  j.close();
+  j.key("crossings").open_array();
+  for (const Crossing& c : l.crossings)
+    j.new_line().open_object().key(parameter).number(text(c.value, digits)).key("frequency").number(text(c.frequency, digits)).key("eigenvalues").integer(c.eigenvalues)
+        .key("destabilizes").boolean(c.destabilizes).close();
+  j.close();
+  return j.close().text() + "\n";
+}
+
+// "-0.5 ± 2i" for a pair, whose second member is not printed again.
+std::string pair_text(const Eigenvalue& e, int digits) {
+  if (e.value.im == Multi(0)) return text(e.value.re, digits);
+  return (e.value.re == Multi(0) ? "" : text(e.value.re, digits) + " ") + "± " + text(abs(e.value.im), digits) + "i";
+}
+
+// The second of a pair, or a multiple eigenvalue again, which the first has told.
+bool told(const std::vector<Eigenvalue>& list, std::size_t i) {
+  for (std::size_t k = 0; k < i; ++k)
+    if (list[k].value.re == list[i].value.re && abs(list[k].value.im) == abs(list[i].value.im)) return true;
+  return false;
+}
+
+void print_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> width;
+  for (const auto& row : rows)
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c == width.size()) width.push_back(0);
+      width[c] = std::max(width[c], row[c].size());
+    }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) line += "  " + std::string(c ? width[c] - row[c].size() : 0, ' ') + row[c] + std::string(c ? 0 : width[c] - row[c].size(), ' ');
+    std::printf("%s\n", line.c_str());
+  }
+}
+
+std::string short_text(const Multi& x) { return number_text(to_double(x), 6); }
+
+void print_matrix(const char* name, const std::vector<std::string>& rows, const std::vector<std::string>& columns, const Matrix<Multi>& a) {
+  std::vector<std::vector<std::string>> table{{""}};
+  table[0].insert(table[0].end(), columns.begin(), columns.end());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    table.push_back({rows[r]});
+    for (std::size_t c = 0; c < columns.size(); ++c) table.back().push_back(short_text(a(r, c)));
+  }
+  std::printf("\n%s\n", name);
+  print_table(table);
+}
+
+void print_model(const LinearModel& m, int digits) {
+  std::printf("about %s\n\n%zu states at t = %s", motion_text(m).c_str(), m.states.size(), text(m.t, digits).c_str());
+  if (!m.dependent.empty()) {
+    std::string list;
+    for (const std::string& d : m.dependent) list += (list.empty() ? "" : ", ") + d;
+    std::printf("; %s follow from them", list.c_str());
+  }
+  std::printf("\n");
+  for (std::size_t i = 0; i < m.states.size(); ++i) std::printf("  %-14s %24s\n", m.states[i].c_str(), text(m.values[i], digits).c_str());
+  print_matrix("A", m.states, m.states, m.A);
+  if (!m.inputs.empty()) print_matrix("B", m.states, m.inputs, m.B);
+  if (!m.outputs.empty()) print_matrix("C", m.outputs, m.states, m.C);
+  if (!m.inputs.empty() && !m.outputs.empty()) print_matrix("D", m.outputs, m.inputs, m.D);
+  for (const std::string& n : m.notes) std::printf("note: %s\n", n.c_str());
+  std::printf("\neigenvalues");
+  if (!m.cyclic.empty()) std::printf(" of the states with influence; the %zu without add as many 0", m.cyclic.size());
+  std::printf("\n");
+  const auto width = [&](const Eigenvalue& e) { return pair_text(e, digits).size() - (e.value.im == Multi(0) ? 0 : 1); };  // "±" has two bytes
+  std::size_t widest = 0;
+  for (const Eigenvalue& e : m.spectrum) widest = std::max(widest, width(e));
+  for (std::size_t i = 0; i < m.spectrum.size(); ++i) {
+    const Eigenvalue& e = m.spectrum[i];
+    if (told(m.spectrum, i)) continue;
+    std::string note;
+    if (e.multiplicity > 1) note += "  " + std::to_string(e.multiplicity) + "-fold (spread " + number_text(to_double(e.radius), 1) + ")";
+    if (e.value.im > Multi(0)) {
+      note += "  period " + short_text(Multi(2) * pi<Multi>() / e.value.im);
+      if (!(e.value.re == Multi(0))) note += ", damping ratio " + short_text(-e.value.re / modulus(e.value));
+    } else if (!(e.value.re == Multi(0))) {
+      note += "  time constant " + short_text(Multi(1) / abs(e.value.re));
+    }
+    if (!note.empty()) note.insert(0, widest - width(e), ' ');
+    std::printf("  %s%s\n", pair_text(e, digits).c_str(), note.c_str());
+  }
+  std::printf("\nmodes (largest entry 1)\n");
+  std::vector<std::vector<std::string>> rows{{""}};
+  for (std::size_t i : m.core) rows[0].push_back(m.states[i]);
+  for (const Eigenvalue& e : m.spectrum) {
+    if (e.value.im < Multi(0)) continue;  // the conjugate of one that is shown
+    rows.push_back({short_text(e.value.re) + (e.value.im > Multi(0) ? " + " + short_text(e.value.im) + "i" : "")});
+    for (const Complex& z : e.vector) {
+      const double im = to_double(z.im);
+      rows.back().push_back(number_text(to_double(z.re), 4) + (im == 0 ? "" : (im < 0 ? " - " : " + ") + number_text(std::abs(im), 4) + "i"));
+    }
+  }
+  print_table(rows);
+}
+
+void print_range(const Scenario& s, const Linearization& l, const ParameterRange& range, int digits) {
+  const std::string& parameter = s.model->parameters[range.parameter].name;
+  std::printf("eigenvalues over %s\n", parameter.c_str());
+  std::string before;
+  for (std::size_t k = 0; k < l.results.size(); ++k) {
+    const LinearResult& r = l.results[k];
+    const std::string about = r.outcome.ok() ? "about " + motion_text(r.model) : "no linear model (" + std::string(name(r.outcome.kind)) + "): " + r.outcome.message;
+    if (about != before) std::printf("%s\n", about.c_str());
+    before = about;
+    std::string line = text(Multi(range.values[k]), digits);
+    if (r.outcome.ok()) {
+      if (line.size() < 8) line.resize(8, ' ');
+      for (std::size_t i = 0; i < r.model.spectrum.size(); ++i) {
+        const Eigenvalue& e = r.model.spectrum[i];
+        if (!told(r.model.spectrum, i)) line += "   " + pair_text(e, digits) + (e.multiplicity > 1 ? " (" + std::to_string(e.multiplicity) + "-fold)" : "");
+      }
+    }
+    std::printf("  %s\n", line.c_str());
+  }
+  std::printf("\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
+  for (const Crossing& c : l.crossings)
+    std::printf("  %s = %s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(),
+                c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0",
+                c.destabilizes ? "unstable above" : "stable above");
+  for (const std::string& n : l.notes) std::printf("note: %s\n", n.c_str());
+}
+
+void print_csv(const Scenario& s, const Linearization& l, const std::optional<ParameterRange>& range, int digits) {
+  std::size_t most = 0;
+  for (const LinearResult& r : l.results) most = std::max(most, r.model.spectrum.size());
+  std::string line = range ? s.model->parameters[range->parameter].name : "t";
+  for (std::size_t i = 1; i <= most; ++i) line += ",re." + std::to_string(i) + ",im." + std::to_string(i);
+  std::printf("%s\n", line.c_str());
+  for (std::size_t k = 0; k < l.results.size(); ++k) {
+    const LinearModel& m = l.results[k].model;
+    line = text(range ? Multi(range->values[k]) : m.t, digits);
+    for (std::size_t i = 0; i < most; ++i) line += i < m.spectrum.size() ? "," + text(m.spectrum[i].value.re, digits) + "," + text(m.spectrum[i].value.im, digits) : ",,";
+    std::printf("%s\n", line.c_str());
+  }
+}
+
+}  // namespace
+
+int linearize(const Options& o) {
+  if (o.json && o.csv) throw UsageError{"error: --json and --csv are two formats\nhint: leave out one of them\n"};
+  Reader in = read(o);
+  if (o.about == "equilibrium") in.model = at_rest(*in.model);
+  const std::optional<ParameterRange> values = range(o, *in.model);
+  const StateChoice choice = state_choice(o, *in.model);
+  Scenario s;
+  const Outcome start = ready(in, form(o, *in.model), choice, s);
+  form(o, *in.model, s.mechanics.get());
+  if (const auto d = not_integrated(*in.model)) {
+    print_diagnostic(*d, in.source);
+    return kBadInput;
+  }
+  if (!o.show.empty()) return show(o, s);
+  const PrecisionScope scope(std::max(kWorkingDigits, o.digits + kGuardDigits));
+  Linearization l;
+  if (start.ok()) l = linearize(s, choice, values);
+  else l.results.push_back({"", start, {}});
+  Outcome failed;  // the first that did
+  for (LinearResult& r : l.results) {
+    if (o.about == "equilibrium") say_no_rest(r.outcome);
+    if (failed.ok()) failed = r.outcome;
+  }
+  if (o.json) std::fputs(json(s, l, start.ok() ? values : std::nullopt, o.digits).c_str(), stdout);
+  else if (o.csv) print_csv(s, l, start.ok() ? values : std::nullopt, o.digits);
+  else if (failed.ok() || l.results.size() > 1) {
+    std::printf("%s\n%s, %s\n\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation);
+    if (values) print_range(s, l, *values, o.digits);
+    else print_model(l.results[0].model, o.digits);
+  }
+  if (failed.ok()) return kOk;
+  print_outcome(failed);
+  return kStopped;
+}
+
+}  // namespace anholon::cli
