@@ -4,13 +4,18 @@
 #include <functional>
 
 #include "expr/normal.h"
+#include "expr/units.h"
 #include "numeric/multi.h"
+#include "spec/along.h"
 #include "spec/bodies.h"
+#include "spec/dimensions.h"
 #include "spec/initial.h"
 #include "spec/keys.h"
 #include "spec/monitor.h"
 #include "spec/names.h"
+#include "spec/notation.h"
 #include "spec/observer.h"
+#include "spec/quaternions.h"
 #include "tape/point.h"
 #include "tape/tape.h"
 
@@ -69,14 +74,23 @@ class Reader {  // what it refers to is asked only while it runs
     bodies.read();
     bodies.read_forces(root);
     potentials(root);
+    dissipation(root);
     constraints(root);
     quasi(root);
     scope_.resolve_all();
+    const std::vector<UnitNorm> norms = norm_constraints();
     read_initial(root, scope_, model_, diagnostics_);
+    start_at_identity(norms, model_);
     if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
+    if (const Item* n = table(root, "notation")) {
+      std::vector<std::string> declared;
+      for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
+      read_notation(*n, model_, declared, diagnostics_);
+    }
     guard([&] { simulate(root); });
     for (const Diagnostic& d : scope_.failures) diagnostics_.add(d);
     if (!diagnostics_.has_errors()) values();
+    if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
     // What is made of the model from here on grows in proportion to it.
     model_.graph->allow(kWorkLater);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
@@ -94,9 +108,9 @@ class Reader {  // what it refers to is asked only while it runs
     check_keys(root, "the model file",
                {"title", "source", "coordinates", "dependent", "parameters", "functions", "define", "frame",
                 "point", "observer", "body", "particle", "force", "gravity", "potential", "constraint",
-                "initial", "simulate", "quasi", "monitor"},
+                "initial", "simulate", "quasi", "monitor", "dissipation", "notation"},
                {"base", "index", "table", "state", "mode", "event", "input", "output", "case",
-                "dissipation", "view", "notation"},
+                "view"},
                diagnostics_);
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
       if (const Item* i = root.find(key)) {
@@ -169,6 +183,15 @@ class Reader {  // what it refers to is asked only while it runs
       });
   }
 
+  // unit = "km/h"
+  static std::string unit_text(const Item& item) {
+    if (item.kind != Item::Kind::string) throw Failure(item.span, "a unit is a text", "unit = \"km\"");
+    const std::string text = normal_name(item.text());
+    if (read_unit(text)) return text;
+    const std::string near = did_you_mean(text, unit_names());
+    throw Failure(item.formula.whole(), "'" + text.substr(0, 40) + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "unit = \"km\", \"m/s^2\", \"N*m\"");
+  }
+
   void parameters(const Item& root) {
     std::vector<std::string> used;
     const Item* section = table(root, "parameters");
@@ -178,12 +201,13 @@ class Reader {  // what it refers to is asked only while it runs
           const Item* value = &i;
           std::string doc;
           if (i.kind == Item::Kind::table) {
-            check_keys(i, "a parameter", {"value", "doc"}, {"unit"}, diagnostics_);
+            check_keys(i, "a parameter", {"value", "unit", "doc"}, {}, diagnostics_);
             value = i.find("value");
             if (!value) throw Failure(i.key_span, "the parameter '" + i.key + "' has no value");
             if (const Item* d = i.find("doc")) doc = d->text();
           }
           Scope::Declaration d;
+          if (const Item* u = i.kind == Item::Kind::table ? i.find("unit") : nullptr) d.unit = unit_text(*u);
           d.role = Scope::Role::parameter;
           d.index = model_.parameters.size();
           d.span = i.key_span;
@@ -264,7 +288,11 @@ class Reader {  // what it refers to is asked only while it runs
   void gravity(const Item& root) {
     const Item* section = table(root, "gravity");
     if (!section) return;
-    check_keys(*section, "[gravity]", {"field"}, {"gradient"}, diagnostics_);
+    check_keys(*section, "[gravity]", {"field", "gradient"}, {}, diagnostics_);
+    if (const Item* gradient = section->find("gradient")) {
+      if (gradient->kind != Item::Kind::boolean) diagnostics_.error(gradient->span, "'gradient' is true or false");
+      else scope_.gravity_gradient = gradient->truth;
+    }
     if (const Item* field = section->find("field")) scope_.set_gravity(*field);
     else diagnostics_.error(section->span, "[gravity] has no field", "field = \"-g*ez\"");
   }
@@ -280,6 +308,21 @@ class Reader {  // what it refers to is asked only while it runs
           throw Failure(i.span, "the potential '" + i.key + "' depends on a velocity",
                         "give a force instead");
         model_.potentials.push_back({i.key, v, i.span});
+      }, i.span);
+    scope_.freeze_masses = false;
+  }
+
+  void dissipation(const Item& root) {
+    const Item* section = table(root, "dissipation");
+    if (!section) return;
+    scope_.freeze_masses = true;
+    for (const Item& i : section->items)
+      guard([&] {
+        const Expr r = scope_.number(i);
+        const int order = jet_order(r);
+        if (order > 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on an acceleration");
+        if (order < 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on no velocity", "R = \"c/2*x'^2\" gives the force -c x'");
+        model_.dissipation.push_back({i.key, r, i.span});
       }, i.span);
     scope_.freeze_masses = false;
   }
@@ -304,22 +347,34 @@ class Reader {  // what it refers to is asked only while it runs
     }
   }
 
-  void add_constraint(const std::string& name, Expr phi, const Item& equation) {
+  void add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place) {
     const int order = true_order(phi);
     if (order < 0) {
       if (proved_zero(phi))
-        throw Failure(equation.formula.whole(), "this equation always holds: it constrains nothing");
+        throw Failure(place, "this equation always holds: it constrains nothing");
       if (const auto constant = expanded(phi); constant && is_number(*constant))
-        throw Failure(equation.formula.whole(), "this equation never holds: its sides differ by " + to_string(Rational(abs(number_value(*constant)))));
-      throw Failure(equation.formula.whole(), "no coordinate or derivative occurs in this equation",
+        throw Failure(place, "this equation never holds: its sides differ by " + to_string(Rational(abs(number_value(*constant)))));
+      throw Failure(place, "no coordinate or derivative occurs in this equation",
                     "a constraint relates coordinates and their derivatives");
     }
     if (model_.constraints.size() + model_.coordinates.size() >= kMostUnknowns)
-      throw Failure(equation.formula.whole(), "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
+      throw Failure(place, "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
     for (const Constraint& c : model_.constraints)
-      if (c.name == name) throw Failure(equation.span, "there are two constraints '" + name + "'");
-    model_.constraints.push_back({name, phi, order, equation.text(), equation.formula.whole()});
+      if (c.name == name) throw Failure(place, "there are two constraints '" + name + "'");
+    model_.constraints.push_back({name, phi, order, equation, place});
     model_.names.multipliers.push_back(name);
+  }
+
+  // What quaternions need to be rotations.
+  std::vector<UnitNorm> norm_constraints() {
+    std::vector<UnitNorm> norms;
+    guard([&] { norms = unit_norms(scope_, model_); });
+    for (const UnitNorm& n : norms)
+      guard([&] {
+        add_constraint(n.name, n.phi, n.equation, n.span);
+        model_.notes.push_back("constraint '" + n.name + "' is added: " + n.equation + ", without which quat(…) in line " + std::to_string(n.span.line) + " is no rotation");
+      });
+    return norms;
   }
 
   void constraints(const Item& root) {
@@ -331,7 +386,7 @@ class Reader {  // what it refers to is asked only while it runs
       return;
     }
     for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
-      check_keys(c, "a constraint", {"name", "equation"}, {"along", "by"}, diagnostics_);
+      check_keys(c, "a constraint", {"name", "equation", "along"}, {"by"}, diagnostics_);
       const Item* equation = c.find("equation");
       if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"x' = 0\"");
       const Item* named = c.find("name");
@@ -340,21 +395,27 @@ class Reader {  // what it refers to is asked only while it runs
       if (!is_identifier(name)) throw Failure(named->span, "'" + name.substr(0, 40) + "' is not a name");
       const std::vector<Syntax> sides = scope_.equation(*equation);
       Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
+      const Item* along = c.find("along");
+      const std::string& text = equation->text();
+      const Span place = equation->formula.whole();
       if (std::holds_alternative<Expr>(left) && std::holds_alternative<Expr>(right)) {
-        add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), *equation);
+        if (along) throw Failure(along->key_span, "'along' goes with an equation of vectors, this is one of numbers");
+        add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), text, place);
         return;
       }
-      const Vector phi = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
+      const Vector difference = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
       std::string dropped;
-      std::vector<int> kept;
-      for (int i = 0; i < 3; ++i) {
-        if (proved_zero(phi[i])) dropped += (dropped.empty() ? "" : ", ") + name + "." + std::string(1, "xyz"[i]);
-        else kept.push_back(i);
+      std::vector<std::pair<std::string, Expr>> kept;
+      int index = 0;
+      for (const Direction& d : directions(along, scope_)) {
+        const Expr phi = component(difference, d, index++);
+        if (proved_zero(phi)) dropped += (dropped.empty() ? "" : ", ") + name + "." + d.tag;
+        else kept.push_back({name + "." + d.tag, phi});
       }
-      if (kept.empty()) throw Failure(equation->formula.whole(), "this equation always holds: it constrains nothing");
+      if (kept.empty()) throw Failure(place, "this equation always holds: it constrains nothing");
       if (!dropped.empty())
         model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
-      for (int i : kept) add_constraint(name + "." + std::string(1, "xyz"[i]), phi[i], *equation);
+      for (const auto& [full, phi] : kept) add_constraint(full, phi, text, place);
     });
   }
 
