@@ -101,9 +101,14 @@ class Parser {
       } else if (c == "#") {
         while (i < s.size() && s[i] != '\n') i += utf8_width(s, i), ++offset;
       } else if (std::isdigit(static_cast<unsigned char>(c[0])) ||
-                 (c == "." && i + 1 < s.size() && std::isdigit(static_cast<unsigned char>(s[i + 1])))) {
+                 (c == "." && !after_name(offset) && i + 1 < s.size() && std::isdigit(static_cast<unsigned char>(s[i + 1])))) {
         std::size_t j = i;
         while (j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]))) ++j;
+        const bool member = !lexemes_.empty() && lexemes_.back().token == Token::point;  // lambda.blade.1
+        if (member) {
+          push(Token::number, j - i, j - i, s.substr(i, j - i));
+          continue;
+        }
         if (j < s.size() && s[j] == '.') for (++j; j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]));) ++j;
         if (j < s.size() && (s[j] == 'e' || s[j] == 'E')) {
           std::size_t k = j + 1;
@@ -161,6 +166,11 @@ class Parser {
       }
     }
     lexemes_.push_back({Token::end, "", offset, 1});
+  }
+
+  // Does a name end here? Then a '.' is followed by a member.
+  bool after_name(std::size_t offset) const {
+    return !lexemes_.empty() && lexemes_.back().token == Token::name && lexemes_.back().offset + lexemes_.back().length == offset;
   }
 
   const Lexeme& peek() const { return lexemes_[at_]; }
@@ -361,7 +371,7 @@ class Parser {
       } else if (at.token == Token::point) {
         next();
         const Lexeme member = next();
-        if (member.token != Token::name) fail(member, "a member name (x, y, z or center) is expected after '.'");
+        if (member.token != Token::name && member.token != Token::number) fail(member, "a member name (x, y, z or center) is expected after '.'");
         s = make(Syntax::Op::member, member, one(std::move(s)));
       } else {
         return s;

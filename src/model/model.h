@@ -100,6 +100,7 @@ struct Potential {
 struct Dissipation {
   std::string name;
   Expr value;
+  std::string formula;  // as written
   Span span;
 };
 

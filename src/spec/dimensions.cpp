@@ -28,6 +28,8 @@ class Elements {
   Elements(const Item& root, const Scope& scope, Model& model) : root_(root), scope_(scope), model_(model), formulas_(scope, model) {}
 
   bool run() {
+    // A value from outside may have taken the place of the only one with a unit.
+    each("parameters", [&](const Item& i) { if (i.is_formula()) formulas_.look_for_units(parse_formula(i.formula)); });
     formulas_.declarations(found_);
     observer();
     each("gravity", [&](const Item& i) { if (i.key == "field") formulas_.in_field = true, expect(i, "m/s^2"), formulas_.in_field = false; });

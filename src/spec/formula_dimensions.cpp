@@ -34,6 +34,16 @@ void FormulaDimensions::alike(const Measured& a, const Measured& b, Span place, 
   throw Failure(place, dimensions_.text(a.dimension) + between + dimensions_.text(b.dimension) + behind);
 }
 
+// Degrees alone say nothing of lengths and masses.
+void FormulaDimensions::seen(const DimensionForm& unit) {
+  if (!in_override_ && unit.known != Dimension{}) units_seen = true;
+}
+
+void FormulaDimensions::look_for_units(const Syntax& s) {
+  if (s.op == Syntax::Op::quantity) seen(unit(s.text.c_str()));
+  for (const Syntax& a : s.args) look_for_units(a);
+}
+
 void FormulaDimensions::pure(const Syntax& argument) { expect(of(argument), {}, argument.span); }
 
 std::optional<Dimension> FormulaDimensions::known(const std::string& name) {
@@ -93,8 +103,9 @@ Measured FormulaDimensions::declared(const std::string& name, const Scope::Decla
     case Role::parameter: {
       Measured m = d.item ? of(*d.item) : of(parse_formula(d.formula));
       if (!d.unit.empty()) {
-        units_seen = units_seen || !in_override_;
-        return {m.type, unit(d.unit.c_str())};
+        const DimensionForm given = unit(d.unit.c_str());
+        seen(given);
+        return {m.type, given};
       }
       const Measured own{m.type, dimensions_.unknown(name)};
       alike(own, m, d.formula.whole(), " and ");
@@ -176,9 +187,11 @@ Measured FormulaDimensions::product(const Syntax& s) {
 Measured FormulaDimensions::of(const Syntax& s) {
   switch (s.op) {
     case Syntax::Op::number: return number(dimensions_.unknown());
-    case Syntax::Op::quantity:
-      units_seen = units_seen || !in_override_;
-      return number(unit(s.text.c_str()));
+    case Syntax::Op::quantity: {
+      const DimensionForm given = unit(s.text.c_str());
+      seen(given);
+      return number(given);
+    }
     case Syntax::Op::name: return named(s.text, s.span);
     case Syntax::Op::negate: return of(s.args[0]);
     case Syntax::Op::prime: {

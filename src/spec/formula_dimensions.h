@@ -18,6 +18,7 @@ class FormulaDimensions {
   // All names that are declared; clashes inside one are reported once, where they are.
   void declarations(Diagnostics& found);
 
+  void look_for_units(const Syntax& s);
   Measured of(const Syntax& s);
   Measured of(const Item& item);  // a formula, or an array of three
   Measured named(const std::string& name, Span use);
@@ -39,6 +40,7 @@ class FormulaDimensions {
   Measured number(DimensionForm d = {}) const { return {Measured::Type::number, std::move(d)}; }
   Measured vector(DimensionForm d = {}) const { return {Measured::Type::vector, std::move(d)}; }
   Measured anything() { return {Measured::Type::other, dimensions_.unknown()}; }
+  void seen(const DimensionForm& unit);
   void pure(const Syntax& argument);
   bool is_body(const std::string& name) const;
 

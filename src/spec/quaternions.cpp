@@ -53,16 +53,28 @@ std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model) {
 }
 
 void start_at_identity(const std::vector<UnitNorm>& norms, Model& model) {
+  constexpr double kFull = 1e-9;
   Graph& g = *model.graph;
   for (const UnitNorm& n : norms) {
     if (!n.scalar) continue;
-    const auto mentioned = [&](const std::vector<GivenValue>& values) {
-      return std::any_of(values.begin(), values.end(), [&](const GivenValue& v) {
-        const Node& node = g.node(v.symbol.id);
-        return node.kind == Kind::jet && node.order == 0 && std::find(n.coordinates.begin(), n.coordinates.end(), node.index) != n.coordinates.end();
-      });
+    // The position that a value is given for, if it is one of the four.
+    const auto component = [&](const GivenValue& v) -> std::optional<std::size_t> {
+      const Node& node = g.node(v.symbol.id);
+      const auto it = std::find(n.coordinates.begin(), n.coordinates.end(), node.index);
+      if (node.kind != Kind::jet || node.order != 0 || it == n.coordinates.end()) return std::nullopt;
+      return static_cast<std::size_t>(it - n.coordinates.begin());
     };
-    if (mentioned(model.initial.given) || mentioned(model.initial.guess)) continue;
+    double given = 0;
+    bool mentioned = false;
+    for (const GivenValue& v : model.initial.given)
+      if (const auto k = component(v)) {
+        mentioned = mentioned || *k == 0;
+        const double value = constant_value(model, v.value).value_or(0);
+        given += value * value;
+      }
+    for (const GivenValue& v : model.initial.guess) mentioned = mentioned || component(v).has_value();
+    // With norm 1 already the scalar part stays 0: half a turn.
+    if (mentioned || given > 1 - kFull) continue;
     model.initial.guess.push_back({g.jet(static_cast<std::uint32_t>(*n.scalar), 0), g.one(), n.span});
   }
 }

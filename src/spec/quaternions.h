@@ -17,7 +17,7 @@ struct UnitNorm {
 // What must be added for the quaternions met so far. Throws Failure for one that is no rotation.
 std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model);
 
-// A quaternion of four coordinates of which nothing is given starts at the identity: 0, the default, is no rotation.
+// A quaternion of four coordinates whose first is not given is guessed to be near the identity: 0, the default, is no rotation.
 void start_at_identity(const std::vector<UnitNorm>& norms, Model& model);
 
 }  // namespace anholon

@@ -207,7 +207,7 @@ class Reader {  // what it refers to is asked only while it runs
             if (const Item* d = i.find("doc")) doc = d->text();
           }
           Scope::Declaration d;
-          if (const Item* u = i.kind == Item::Kind::table ? i.find("unit") : nullptr) d.unit = unit_text(*u);
+          if (const Item* u = i.kind == Item::Kind::table ? i.find("unit") : nullptr) guard([&] { d.unit = unit_text(*u); });
           d.role = Scope::Role::parameter;
           d.index = model_.parameters.size();
           d.span = i.key_span;
@@ -322,7 +322,7 @@ class Reader {  // what it refers to is asked only while it runs
         const int order = jet_order(r);
         if (order > 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on an acceleration");
         if (order < 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on no velocity", "R = \"c/2*x'^2\" gives the force -c x'");
-        model_.dissipation.push_back({i.key, r, i.span});
+        model_.dissipation.push_back({i.key, r, i.text(), i.span});
       }, i.span);
     scope_.freeze_masses = false;
   }
