@@ -331,6 +331,7 @@ class Parser {
       if (after.token != Token::name || after.text == "t" || !find_unit(after.text) || behind.token == Token::open || behind.token == Token::left) break;
       text += next().token == Token::over ? "/" : "*";
     }
+    if (!read_unit(text)) fail(lexemes_[first], "this unit is out of all proportion");
     Syntax s{Syntax::Op::quantity, std::move(text), {}, number.span, number.offset, 0, {}};
     const Lexeme& last = lexemes_[at_ - 1];
     s.end = last.offset + last.length;

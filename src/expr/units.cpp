@@ -126,9 +126,12 @@ std::optional<Unit> find_unit(const std::string& name) {
 
 std::optional<Unit> read_unit(const std::string& text) {
   constexpr long kMostPower = 20;
+  constexpr int kMostFactors = 20;
   Unit total;
   std::size_t i = 0;
+  int factors = 0;
   for (int sign = 1;;) {
+    if (++factors > kMostFactors) return std::nullopt;
     std::string name;
     for (; i < text.size() && std::isalpha(static_cast<unsigned char>(text[i])); ++i) name += text[i];
     const std::optional<Unit> u = find_unit(name);

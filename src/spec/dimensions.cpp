@@ -25,7 +25,7 @@ bool may_have_units(const Item& item) {
 // What each element of a model file says about dimensions.
 class Elements {
  public:
-  Elements(const Item& root, const Scope& scope, Model& model) : root_(root), scope_(scope), model_(model), formulas_(scope, model) {}
+  Elements(const Item& root, const Scope& scope, const Model& model) : root_(root), model_(model), formulas_(scope, model) {}
 
   bool run() {
     // A value from outside may have taken the place of the only one with a unit.
@@ -127,7 +127,7 @@ class Elements {
     });
   }
 
-  DimensionForm coordinate(const std::string& name) { return formulas_.named(name, {}).dimension; }
+  DimensionForm coordinate(const std::string& name) { return formulas_.named(name).dimension; }
 
   // "x''" of [initial]: the dimension of the derivative.
   void initial() {
@@ -161,8 +161,7 @@ class Elements {
   }
 
   const Item& root_;
-  const Scope& scope_;
-  Model& model_;
+  const Model& model_;
   FormulaDimensions formulas_;
   Diagnostics found_;
 };

@@ -11,7 +11,7 @@ using Type = Measured::Type;
 // Functions called inside one another, over the whole file: more is not looked into.
 static constexpr std::size_t kMostCalls = 20'000;
 
-FormulaDimensions::FormulaDimensions(const Scope& scope, const Model& model) : scope_(scope), model_(model) {
+FormulaDimensions::FormulaDimensions(const Scope& scope, const Model& model) : scope_(scope) {
   for (const std::string& name : model.names.coordinates) names_[name] = number(dimensions_.unknown(name));
 }
 
@@ -47,7 +47,7 @@ void FormulaDimensions::look_for_units(const Syntax& s) {
 void FormulaDimensions::pure(const Syntax& argument) { expect(of(argument), {}, argument.span); }
 
 std::optional<Dimension> FormulaDimensions::known(const std::string& name) {
-  const Measured m = named(name, {});
+  const Measured m = named(name);
   return m.type == Type::other ? std::nullopt : dimensions_.known(m.dimension);
 }
 
@@ -63,10 +63,10 @@ void FormulaDimensions::declarations(Diagnostics& found) {
   for (const auto& [name, d] : scope_.declarations()) order.push_back({{d.span.line, d.span.column}, name});
   std::sort(order.begin(), order.end());
   for (const auto& [place, name] : order)
-    if (scope_.declarations().at(name).arguments.empty()) named(name, {});
+    if (scope_.declarations().at(name).arguments.empty()) named(name);
 }
 
-Measured FormulaDimensions::named(const std::string& name, Span /*use*/) {
+Measured FormulaDimensions::named(const std::string& name) {
   if (!arguments_.empty())
     if (const auto it = arguments_.back().find(name); it != arguments_.back().end()) return it->second;
   if (name == "t") return number(unit("s"));
@@ -185,6 +185,21 @@ Measured FormulaDimensions::product(const Syntax& s) {
 }
 
 Measured FormulaDimensions::of(const Syntax& s) {
+  // Deeper than any formula that a person writes: nothing is asked of it.
+  constexpr int kDeepest = 3000;
+  if (depth_ > kDeepest) return anything();
+  ++depth_;
+  try {
+    Measured m = measured(s);
+    --depth_;
+    return m;
+  } catch (...) {
+    --depth_;
+    throw;
+  }
+}
+
+Measured FormulaDimensions::measured(const Syntax& s) {
   switch (s.op) {
     case Syntax::Op::number: return number(dimensions_.unknown());
     case Syntax::Op::quantity: {
@@ -192,7 +207,7 @@ Measured FormulaDimensions::of(const Syntax& s) {
       seen(given);
       return number(given);
     }
-    case Syntax::Op::name: return named(s.text, s.span);
+    case Syntax::Op::name: return named(s.text);
     case Syntax::Op::negate: return of(s.args[0]);
     case Syntax::Op::prime: {
       Measured m = of(s.args[0]);
@@ -238,7 +253,7 @@ Measured FormulaDimensions::user_call(const Syntax& s, const Scope::Declaration&
   if (d.role != Scope::Role::function) return anything();
   if (d.arguments.empty()) {
     if (!s.args.empty()) expect(of(s.args[0]), unit("s"), s.args[0].span);
-    return named(s.text, s.span);
+    return named(s.text);
   }
   if (d.arguments.size() != s.args.size() || ++calls_ > kMostCalls || std::find(open_.begin(), open_.end(), s.text) != open_.end()) return anything();
   std::map<std::string, Measured> bound;

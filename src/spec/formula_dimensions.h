@@ -21,7 +21,7 @@ class FormulaDimensions {
   void look_for_units(const Syntax& s);
   Measured of(const Syntax& s);
   Measured of(const Item& item);  // a formula, or an array of three
-  Measured named(const std::string& name, Span use);
+  Measured named(const std::string& name);
   DimensionForm unit(const char* text) const;
   // Throw Failure where it cannot be.
   void expect(const Measured& m, const DimensionForm& wanted, Span place);
@@ -33,6 +33,7 @@ class FormulaDimensions {
 
  private:
   Measured declared(const std::string& name, const Scope::Declaration& d);
+  Measured measured(const Syntax& s);
   Measured call(const Syntax& s);
   Measured user_call(const Syntax& s, const Scope::Declaration& d);
   Measured product(const Syntax& s);
@@ -45,7 +46,6 @@ class FormulaDimensions {
   bool is_body(const std::string& name) const;
 
   const Scope& scope_;
-  const Model& model_;
   Dimensions dimensions_;
   std::map<std::string, Measured> names_;
   std::map<std::string, Syntax> functions_;
@@ -53,6 +53,7 @@ class FormulaDimensions {
   Diagnostics* found_ = nullptr;
   std::vector<std::string> open_;
   std::size_t calls_ = 0;
+  int depth_ = 0;
   bool in_override_ = false;
 };
 

@@ -105,5 +105,42 @@ TEST(Zoo, TheTwoWheeledPendulumIsAPendulumOnACart) {
   EXPECT_NEAR(end.at("psi"), 0, 1e-14);
 }
 
+// Kane's equations of the speeds V along the blade and om, with the accelerations of a point (p, q(t)) of the sleigh
+// V' - om' q - 2 om q' - om^2 p along and om' p + q'' + om V - om^2 q across it.
+TEST(Zoo, TheSleighWithAMovingMassFollowsItsReducedEquations) {
+  const auto reduced = [&](double d) {
+    return runge_kutta<5>([=](double t, const std::array<double, 5>& x) {
+      const double M = 5, J = 0.4, a = 0.2, m = 1, b = 0.3, w = 3, V = x[0], om = x[1];
+      const double q = b * std::sin(w * t), q1 = b * w * std::cos(w * t), q2 = -w * w * q;
+      const double along = 2 * om * q1 + om * om * d, across = q2 + om * V - om * om * q;
+      const double a11 = M + m, a12 = -m * q, a22 = J + M * a * a + m * (q * q + d * d);
+      const double f1 = M * a * om * om + m * along, f2 = -M * a * om * V - m * (q * along + d * across), det = a11 * a22 - a12 * a12;
+      return std::array<double, 5>{(f1 * a22 - f2 * a12) / det, (f2 * a11 - f1 * a12) / det, om, V * std::cos(x[2]), V * std::sin(x[2])};
+    }, {1, 0.1, 0, 0, 0}, 10);
+  };
+  const std::map<std::string, double> end = end_of(test::shipped_text("zoo/sleigh-with-moving-mass"), 10);
+  const auto miss = [&](const std::array<double, 5>& x) { return std::abs(end.at("th") - x[2]) + std::abs(end.at("x") - x[3]) + std::abs(end.at("y") - x[4]); };
+  EXPECT_LT(miss(reduced(0.4)), kAgreement);
+  EXPECT_GT(miss(reduced(0.401)), 1e-4) << "mutant: the weight a little ahead";
+}
+
+// Straight ahead the robot is a rolling hoop of mass 5/3 M with a pendulum: angles phi of the shell, th of the arm.
+TEST(Zoo, TheSphericalRobotGoesStraightAsAHoopWithAPendulum) {
+  const auto reduced = [&](double shell) {
+    return runge_kutta<4>([=](double t, const std::array<double, 4>& s) {
+      const double M = 3, R = 0.2, m = 4, l = 0.12, g = 9.81, torque = 1.5 * std::sin(2 * t), th = s[1], w = s[3];
+      const double a11 = ((1 + shell) * M + m) * R * R, a12 = -m * R * l * std::cos(th), a22 = m * l * l;
+      const double f1 = torque - m * R * l * std::sin(th) * w * w, f2 = -torque - m * g * l * std::sin(th), det = a11 * a22 - a12 * a12;
+      return std::array<double, 4>{s[2], w, (f1 * a22 - f2 * a12) / det, (f2 * a11 - f1 * a12) / det};
+    }, {0, 0, 2, 0}, 2);
+  };
+  const std::map<std::string, double> end = end_of(test::shipped_text("zoo/spherical-robot"), 2);
+  const auto miss = [&](const std::array<double, 4>& x) { return std::abs(end.at("x") - 0.2 * x[0]) + std::abs(end.at("al") - (x[1] - x[0])); };
+  EXPECT_LT(miss(reduced(2.0 / 3)), kAgreement);
+  EXPECT_GT(miss(reduced(0.4)), 1e-4) << "mutant: a solid ball";
+  EXPECT_NEAR(end.at("y"), 0, 1e-12);
+  EXPECT_NEAR(end.at("be"), 0, 1e-12);
+}
+
 }  // namespace
 }  // namespace anholon
