@@ -303,9 +303,11 @@ class Parser {
   // The number and the unit behind it: names of units with whole powers, joined by * · and /.
   Syntax quantity(Syntax number) {
     const std::size_t first = at_;
+    constexpr std::size_t kLongestUnit = 200;
     std::string text;
     for (;;) {
       const Lexeme name = next();
+      if (text.size() > kLongestUnit) fail(lexemes_[first], "this unit is out of all proportion");
       if (!find_unit(name.text)) {
         const std::string near = did_you_mean(name.text, unit_names());
         fail(name, "'" + name.text + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "a name after a number is a unit; write " + number.text + "*" + name.text + " for a product");

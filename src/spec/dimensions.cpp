@@ -64,7 +64,7 @@ class Elements {
 
   void expect(const Item& i, const DimensionForm& wanted) {
     guard([&] {
-      if (i.is_formula() || i.kind == Item::Kind::array) formulas_.expect(formulas_.of(i), wanted, i.is_formula() ? i.formula.whole() : i.span);
+      if (i.is_formula() || i.kind == Item::Kind::array) formulas_.expect(formulas_.term(i), wanted, i.is_formula() ? i.formula.whole() : i.span);
     }, i.span);
   }
   void expect(const Item& i, const char* unit) { expect(i, formulas_.unit(unit)); }
@@ -73,8 +73,8 @@ class Elements {
   void equation(const Item& i) {
     if (i.kind != Item::Kind::string) return;
     const std::vector<Syntax> sides = parse_equation(i.formula);
-    const Measured left = formulas_.of(sides[0]);
-    if (sides.size() == 2) formulas_.alike(left, formulas_.of(sides[1]), i.formula.whole(), " on the left side, ", " on the right side");
+    const Measured left = formulas_.term(sides[0]);
+    if (sides.size() == 2) formulas_.alike(left, formulas_.term(sides[1]), i.formula.whole(), " on the left side, ", " on the right side");
   }
 
   void observer() {

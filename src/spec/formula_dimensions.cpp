@@ -105,6 +105,7 @@ Measured FormulaDimensions::declared(const std::string& name, const Scope::Decla
       if (!d.unit.empty()) {
         const DimensionForm given = unit(d.unit.c_str());
         seen(given);
+        if (!d.override.empty() && has_unit(parse_formula(d.formula))) expect(m, given, {});
         return {m.type, given};
       }
       const Measured own{m.type, dimensions_.unknown(name)};
@@ -119,7 +120,7 @@ Measured FormulaDimensions::declared(const std::string& name, const Scope::Decla
     case Role::frame:
       return of(parse_formula(d.formula));
     case Role::point: {
-      Measured m = d.item ? of(*d.item) : of(parse_formula(d.formula));
+      Measured m = d.item ? of(*d.item) : term(parse_formula(d.formula));
       expect(m, unit("m"), d.item ? d.item->span : d.formula.whole());
       return vector(unit("m"));
     }
@@ -184,9 +185,17 @@ Measured FormulaDimensions::product(const Syntax& s) {
   return total;
 }
 
+Measured FormulaDimensions::term(const Syntax& s) {
+  if (s.op == Syntax::Op::negate) return term(s.args[0]);
+  const Measured m = of(s);
+  const bool axis = (s.op == Syntax::Op::name && (s.text == "ex" || s.text == "ey" || s.text == "ez")) ||
+                    (s.op == Syntax::Op::member && s.text.size() == 1 && m.type == Type::vector);
+  return axis ? vector(dimensions_.unknown()) : m;
+}
+
 Measured FormulaDimensions::of(const Syntax& s) {
   // Deeper than any formula that a person writes: nothing is asked of it.
-  constexpr int kDeepest = 3000;
+  constexpr int kDeepest = 500;
   if (depth_ > kDeepest) return anything();
   ++depth_;
   try {
@@ -217,11 +226,11 @@ Measured FormulaDimensions::measured(const Syntax& s) {
     case Syntax::Op::power: return raised(s);
     case Syntax::Op::multiply: return product(s);
     case Syntax::Op::add: {
-      Measured total = of(s.args[0]);
+      Measured total = term(s.args[0]);
       for (std::size_t i = 1; i < s.args.size(); ++i) {
-        const Measured term = of(s.args[i]);
-        alike(total, term, s.operators[i - 1].span, s.operators[i - 1].op == Syntax::Op::subtract ? " minus " : " plus ");
-        if (total.type == Type::other || term.type == Type::vector) total = term;  // 0 is also the zero vector
+        const Measured next = term(s.args[i]);
+        alike(total, next, s.operators[i - 1].span, s.operators[i - 1].op == Syntax::Op::subtract ? " minus " : " plus ");
+        if (total.type == Type::other || next.type == Type::vector) total = next;  // 0 is also the zero vector
       }
       return total;
     }

@@ -21,6 +21,9 @@ class FormulaDimensions {
   void look_for_units(const Syntax& s);
   Measured of(const Syntax& s);
   Measured of(const Item& item);  // a formula, or an array of three
+  // As a whole side of an equation, or a term of a sum: an axis alone is 1 of any unit along it, as in vel(P) = T.x.
+  Measured term(const Syntax& s);
+  Measured term(const Item& item) { return item.is_formula() ? term(parse_formula(item.formula)) : of(item); }
   Measured named(const std::string& name);
   DimensionForm unit(const char* text) const;
   // Throw Failure where it cannot be.

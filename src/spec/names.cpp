@@ -100,7 +100,7 @@ std::vector<Syntax> Scope::equation(const Item& item) {
   return sides;
 }
 
-static bool has_unit(const Syntax& s) {
+bool has_unit(const Syntax& s) {
   return s.op == Syntax::Op::quantity || std::any_of(s.args.begin(), s.args.end(), has_unit);
 }
 

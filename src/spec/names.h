@@ -108,6 +108,9 @@ class Scope final : public Names {
   std::size_t calls_ = 0;                                // of given functions, over the whole file
 };
 
+// Does a number with a unit occur in it?
+bool has_unit(const Syntax& s);
+
 // A failure that was reported where it arose: uses of a broken definition stay silent.
 Failure silent_failure();
 bool is_silent(const Diagnostic& d);

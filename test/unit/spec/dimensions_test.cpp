@@ -117,6 +117,15 @@ TEST(DimensionsOfAModel, AreSetFromOutside) {
   const std::vector<Diagnostic> list = found(kCar, {{"l0", "3 s"}});
   ASSERT_FALSE(list.empty());
   EXPECT_EQ(messages(found(kCar, {{"l0", "3"}})), "");
+  EXPECT_NE(messages(found(kCar, {{"L", "3 s"}})), "") << "not the unit that it was declared with";
+}
+
+// An axis alone is 1 along it, in whatever unit; with a factor it is a direction.
+TEST(DimensionsOfAModel, OfAnAxisAloneAreFree) {
+  EXPECT_EQ(messages(found(test::replaced(kCar, "dot(vel(P), T.x) = 36 km/h", "vel(P) = T.x"))), "");
+  EXPECT_EQ(messages(found(test::replaced(kCar, "-g*ey", "-ey"))), "");
+  EXPECT_EQ(messages(found(test::replaced(kCar, "x*ex + y*ey", "x*ex + y*ey + ez"))), "");
+  EXPECT_NE(messages(found(test::replaced(kCar, "-g*ey", "-sin(th)*ey"))), "");
 }
 
 // The same nonsense without units is consistent with some, or nobody asked.
