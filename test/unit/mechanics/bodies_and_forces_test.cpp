@@ -2,6 +2,7 @@
 // of points; a quaternion body on norm 1 is a rigid body.
 #include <gtest/gtest.h>
 
+#include "mechanics/conserved.h"
 #include "mechanics/mechanics.h"
 #include "support/model_point.h"
 #include "support/models.h"
@@ -181,6 +182,26 @@ TEST(GravityGradient, IsTheTorqueOnThePointsOfTheBody) {
   EXPECT_LE(gap(box + "gradient = true\n", cloud(places) + field), kRounding);
   EXPECT_GT(gap(box + "gradient = false\n", cloud(places) + field), 1e-3) << "mutant: without";
   EXPECT_LE(gap(body("shape = \"box(R, h, 2)\"\n") + "[gravity]\nfield = \"-9.81*ez\"\ngradient = true\n", body("shape = \"box(R, h, 2)\"\n") + "[gravity]\nfield = \"-9.81*ez\"\n"), kRounding);
+}
+
+bool energy_is_claimed(const std::string& text) {
+  const auto model = test::model_of(text);
+  for (const Conserved& c : conserved(mechanics(*model)))
+    if (c.name == "energy") return true;
+  return false;
+}
+
+TEST(Energy, IsNotClaimedWhereItIsLost) {
+  const std::string bob = "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[potential]\nV = \"x^2\"\n[dissipation]\n";
+  EXPECT_TRUE(energy_is_claimed(bob));
+  EXPECT_FALSE(energy_is_claimed(bob + "R = \"x'^2/1000\"\n"));
+  EXPECT_TRUE(energy_is_claimed(bob + "R = \"x*x' - x*x'^2/2 + x*(x' - 1)^2/2\"\n")) << "x/2: no velocity is left in it";
+  const std::string stone = "coordinates = [\"x\", \"ps\", \"th\"]\n[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 2, 2]\norientation = \"rotz(ps)*rotx(th)\"\n[gravity]\n"
+                            "field = \"-here/norm(here)^3\"\n";
+  const auto held = [&](const std::string& center) { return test::replaced(stone, "mass = 1", "mass = 1\ncenter = " + center); };
+  EXPECT_TRUE(energy_is_claimed(held("[\"x\", 2, 1]")));
+  EXPECT_TRUE(energy_is_claimed(held("[2, 2, 1]") + "gradient = true\n"));
+  EXPECT_FALSE(energy_is_claimed(held("[\"x\", 2, 1]") + "gradient = true\n")) << "the force of second order is left out";
 }
 
 // On norm 1: T = 1/2 sum J_k (omega . B_k)^2.
