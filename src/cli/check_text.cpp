@@ -187,7 +187,7 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
     if (s.classes[r].redundant)
       redundant = x.constraints[r].follows_from.empty() ? "; redundant here" : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
     // One component of a vector equation too many.
-    if (!redundant.empty() && c.name.find('.') != std::string::npos) redundant += "; 'along' names the directions that count";
+    if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x') redundant += "; 'along' names the directions that count";
     std::printf("  %-14s %s; %s%s\n", "", describe(s.classes[r], c.order).c_str(), work(s, x, r).c_str(), redundant.c_str());
   }
   reactions(s, x);
