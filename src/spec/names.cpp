@@ -107,10 +107,10 @@ bool has_unit(const Syntax& s) {
 // {value = 2, unit = "km"} is 2 km; a bare number from outside has this unit, too, one with a unit its own.
 Value Scope::in_its_unit(Value v, const Declaration& d) {
   if (d.unit.empty()) return v;
-  if (!d.item && has_unit(parse_formula(d.formula))) {
-    if (!d.override.empty()) return v;
-    throw Failure(d.formula.whole(), "the unit is given twice: with the value and by 'unit'");
-  }
+  const bool own = d.item ? std::any_of(d.item->items.begin(), d.item->items.end(), [](const Item& i) { return has_unit(parse_formula(i.formula)); })
+                          : has_unit(parse_formula(d.formula));
+  if (own && !d.override.empty()) return v;
+  if (own) throw Failure(d.item ? d.item->span : d.formula.whole(), "the unit is given twice: with the value and by 'unit'");
   Graph& g = *model_.graph;
   const Unit unit = read_unit(d.unit).value_or(Unit{});
   const Expr factor = unit.factor * pow(g.pi(), unit.pi);

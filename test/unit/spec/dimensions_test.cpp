@@ -101,6 +101,7 @@ TEST(DimensionsOfAModel, ThatClashAreReportedWhereTheyMeet) {
       {"\"20 cm\"", "\"20 kmm\"", 8, "'kmm' is no unit; did you mean"},
       {"unit = \"cm\"", "unit = \"cmm\"", 6, "'cmm' is no unit; did you mean"},
       {"value = 30,", "value = \"30 m\",", 6, "the unit is given twice"},
+      {"value = 30,", "value = [\"30 m\", 0, 0],", 6, "the unit is given twice"},
   };
   for (const Clash& c : clashes) {
     const std::vector<Diagnostic> list = found(test::replaced(kCar, c.from, c.to));
