@@ -102,6 +102,15 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
     for (const std::string& text : list) j.string(text);
     j.close();
   };
+  if (!model.coordinate_units.empty()) {
+    j.key("units").open_object();
+    for (const auto& [names, units] : {std::pair{&model.names.coordinates, &model.coordinate_units}, {&model.names.parameters, &model.parameter_units}})
+      for (std::size_t k = 0; k < units->size(); ++k) {
+        j.key((*names)[k]);
+        (*units)[k].empty() ? j.null() : j.string((*units)[k]);
+      }
+    j.close();
+  }
   strings("effects", effects(model));
   strings("external_forces", external_forces(model));
   j.key("reactions_hypothesis").string(model.constraints.empty() ? "none" : "ideal (Chetaev-Niu)");

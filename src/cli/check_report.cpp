@@ -15,6 +15,9 @@ std::vector<std::string> effects(const Model& model) {
     names.defined.erase(m.value.id);
     list.push_back("the " + std::string(m.weight ? "second moment" : "mass") + " of '" + m.name + "' varies: " + print(m.value, names, Format::text));
   }
+  for (const Dissipation& d : model.dissipation) list.push_back("dissipation '" + d.name + "': the forces -dR/dq' of R = " + d.formula);
+  for (const Body& b : model.bodies)
+    if (!b.gravity_gradient.empty()) list.push_back("gravity turns '" + b.name + "': its field varies over the body");
   for (const Body& b : model.bodies)
     if (b.expelled_velocity) list.push_back("'" + b.name + "' expels or collects matter");
   return list;

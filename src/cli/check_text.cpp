@@ -55,6 +55,23 @@ void reactions(const Scenario& s, const Explanation& x) {
   line(Hypothesis::niu, "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and more)");
 }
 
+// Names by their units, where the file has any.
+void units(const Model& model) {
+  std::vector<std::pair<std::string, std::string>> lists;  // in the order in which the units are met
+  const auto add = [&](const std::vector<std::string>& names, const std::vector<std::string>& of) {
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const std::string unit = of[k].empty() ? "not told" : of[k];
+      auto it = std::find_if(lists.begin(), lists.end(), [&](const auto& l) { return l.first == unit; });
+      if (it == lists.end()) it = lists.insert(lists.end(), {unit, ""});
+      it->second += (it->second.empty() ? "" : ", ") + names[k];
+    }
+  };
+  add(model.names.coordinates, model.coordinate_units);
+  add(model.names.parameters, model.parameter_units);
+  if (!lists.empty()) std::printf("\nunits\n");
+  for (const auto& [unit, names] : lists) std::printf("  %-14s %s\n", unit.c_str(), names.c_str());
+}
+
 void integrability(const Scenario& s, const Explanation& x) {
   const Model& model = *s.model;
   const Integrability& i = x.integrability;
@@ -167,6 +184,7 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
   for (const std::string& e : effects(model)) std::printf("  %s\n", e.c_str());
   const std::vector<std::string> external = external_forces(model);
   for (const std::string& f : external) std::printf("  external force %s (it has no 'from')\n", f.c_str());
+  units(model);
   if (!model.constraints.empty()) std::printf("\nconstraints\n");
   for (std::size_t r = 0; r < model.constraints.size(); ++r) {
     const Constraint& c = model.constraints[r];
@@ -174,6 +192,8 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
     std::string redundant;
     if (s.classes[r].redundant)
       redundant = x.constraints[r].follows_from.empty() ? "; redundant here" : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
+    // One component of a vector equation too many.
+    if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x') redundant += "; 'along' names the directions that count";
     std::printf("  %-14s %s; %s%s\n", "", describe(s.classes[r], c.order).c_str(), work(s, x, r).c_str(), redundant.c_str());
   }
   reactions(s, x);

@@ -70,6 +70,7 @@ class Derive {
     std::vector<Line> lines;
     column(lines, "Q", m_.Q);
     column(lines, "QR", m_.QR);
+    column(lines, "QD", m_.QD);
     column(lines, "Qomega", m_.Qomega);
     column(lines, "-dV_O", m_.minus_dVO);
     column(lines, "-dV_omega", m_.minus_dVomega);

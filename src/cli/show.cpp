@@ -25,6 +25,7 @@ static void show_mechanics(const Scenario& s) {
   one("V_omega", m.V_omega);
   column("Q", m.Q, s);
   column("QR", m.QR, s);
+  if (!s.model->dissipation.empty()) column("QD", m.QD, s);
   column("Qomega", m.Qomega, s);
   column("-dV_O", m.minus_dVO, s);
   column("-dV_omega", m.minus_dVomega, s);

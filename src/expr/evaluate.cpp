@@ -4,6 +4,7 @@
 #include "expr/formula.h"
 #include "expr/normal.h"
 #include "expr/table.h"
+#include "expr/units.h"
 
 namespace anholon {
 
@@ -311,7 +312,12 @@ Value call(const Syntax& s, Names& names) {
     const Expr square = dot(axis, axis), angle = in.number(1);
     return turn(proved_zero(square - 1) ? axis : pow(square, {-1, 2}) * axis, angle);
   }
-  if (f == "quat") return in.expect(4), quaternion(in.number(0), in.number(1), in.number(2), in.number(3));
+  if (f == "quat") {
+    in.expect(4);
+    const std::array<Expr, 4> e = {in.number(0), in.number(1), in.number(2), in.number(3)};
+    names.quaternion(e, s);
+    return quaternion(e[0], e[1], e[2], e[3]);
+  }
 
   std::vector<std::string> known = names.functions();
   known.insert(known.end(), built_in().begin(), built_in().end());
@@ -329,6 +335,12 @@ static Value value_of(const Syntax& s, Names& names) {
       const auto r = parse_rational(s.text);
       if (!r) throw Failure(s.span, "the number " + s.text.substr(0, 40) + " is out of all proportion");
       return g.number(*r);
+    }
+    case Syntax::Op::quantity: {
+      const std::optional<Unit> unit = read_unit(s.text);
+      ANHOLON_ASSERT(unit.has_value());
+      const Expr number = evaluate_number(s.args[0], names), pi = pow(g.pi(), unit->pi);
+      return unit->factor * (number * pi);
     }
     case Syntax::Op::name: return names.name(s.text, s.span);
     case Syntax::Op::call: return call(s, names);

@@ -2,9 +2,10 @@
 //
 // The grammar (format.md): + - * / ^ with the usual strength (^ binds to the right and before a
 // leading minus), postfix ' for the total derivative, calls f(a, b), members P.x, arrays [a, b, c],
-// one or more `=` in an equation. Names are letters, digits and _; a Greek letter is the same name
+// one or more `=` in an equation. A number may carry a unit, `30 deg`, `9.81 m/s^2`, after a blank and without blanks in it. Names are letters, digits and _; a Greek letter is the same name
 // as its spelling; superscript 2 3, ·, ×, − and other dashes are accepted. `#` starts a comment.
 #pragma once
+#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -44,7 +45,9 @@ class FormulaText {
 
 struct Syntax {
   enum class Op : std::uint8_t {
-    number, name, call, member, array, negate, power, prime,
+    number,
+    quantity,  // a number with a unit: args[0] the number, text the unit as written
+    name, call, member, array, negate, power, prime,
     index, apply,  // P[i-1], and T[i](a, b) (args[0] is T[i]): in a parsed formula names and calls have taken their place
     add,       // args joined by operators add, subtract
     subtract,
@@ -131,6 +134,8 @@ struct Names {
                     const Syntax& syntax, Value& result) = 0;
   virtual Value member(const Value& object, const Syntax& syntax) = 0;
   virtual std::vector<std::string> functions() const = 0;  // for "did you mean"
+  // Told of each quat(…): it is a rotation only where its norm is 1.
+  virtual void quaternion(const std::array<Expr, 4>& /*components*/, const Syntax& /*call*/) {}
 };
 
 Value evaluate(const Syntax& s, Names& names);

@@ -2,7 +2,9 @@
 #include <cctype>
 
 #include "base/utf8.h"
+#include "expr/formula.h"
 #include "expr/indices.h"
+#include "expr/units.h"
 
 namespace anholon {
 
@@ -103,9 +105,14 @@ class Parser {
       } else if (c == "#") {
         while (i < s.size() && s[i] != '\n') i += utf8_width(s, i), ++offset;
       } else if (std::isdigit(static_cast<unsigned char>(c[0])) ||
-                 (c == "." && i + 1 < s.size() && std::isdigit(static_cast<unsigned char>(s[i + 1])))) {
+                 (c == "." && !after_name(offset) && i + 1 < s.size() && std::isdigit(static_cast<unsigned char>(s[i + 1])))) {
         std::size_t j = i;
         while (j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]))) ++j;
+        const bool member = !lexemes_.empty() && lexemes_.back().token == Token::point;  // lambda.blade.1
+        if (member) {
+          push(Token::number, j - i, j - i, s.substr(i, j - i));
+          continue;
+        }
         if (j < s.size() && s[j] == '.') for (++j; j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]));) ++j;
         if (j < s.size() && (s[j] == 'e' || s[j] == 'E')) {
           std::size_t k = j + 1;
@@ -166,6 +173,11 @@ class Parser {
       }
     }
     lexemes_.push_back({Token::end, "", offset, 1});
+  }
+
+  // Does a name end here? Then a '.' is followed by a member.
+  bool after_name(std::size_t offset) const {
+    return !lexemes_.empty() && lexemes_.back().token == Token::name && lexemes_.back().offset + lexemes_.back().length == offset;
   }
 
   const Lexeme& peek() const { return lexemes_[at_]; }
@@ -245,7 +257,10 @@ class Parser {
   Syntax primary() {
     const Lexeme at = next();
     switch (at.token) {
-      case Token::number: return make(Syntax::Op::number, at);
+      case Token::number: {
+        Syntax s = make(Syntax::Op::number, at);
+        return unit_follows(at) ? quantity(std::move(s)) : s;
+      }
       case Token::name: {
         if (peek().token == Token::open) {
           Syntax s = make(Syntax::Op::call, at, arguments(Token::close, ")"));
@@ -288,6 +303,59 @@ class Parser {
     }
   }
 
+  // A name after a number and a blank is a unit; a call or a member of a family is not.
+  bool unit_follows(const Lexeme& number) const {
+    const Lexeme &name = peek(), &after = lexemes_[std::min(at_ + 1, lexemes_.size() - 1)];
+    return name.token == Token::name && number.offset + number.length < name.offset && after.token != Token::open && after.token != Token::left;
+  }
+
+  // Within a unit there are no blanks: "2 m/s * t" is a product with t.
+  bool touches(std::size_t k) const {
+    return k > 0 && k < lexemes_.size() && lexemes_[k - 1].offset + lexemes_[k - 1].length == lexemes_[k].offset;
+  }
+
+  // The number and the unit behind it: names of units with whole powers, joined by * · and /.
+  Syntax quantity(Syntax number) {
+    const std::size_t first = at_;
+    constexpr std::size_t kLongestUnit = 200;
+    std::string text;
+    for (;;) {
+      const Lexeme name = next();
+      if (text.size() > kLongestUnit) fail(lexemes_[first], "this unit is out of all proportion");
+      if (!find_unit(name.text)) {
+        const std::string near = did_you_mean(name.text, unit_names());
+        fail(name, "'" + name.text + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "a name after a number is a unit; write " + number.text + "*" + name.text + " for a product");
+      }
+      text += name.text;
+      if (peek().token == Token::prime && touches(at_)) fail(peek(), "a unit has no derivative", "write " + number.text + "*" + name.text + "' for a product");
+      if (peek().token == Token::superscript && touches(at_)) {
+        text += "^" + next().text;
+      } else if (peek().token == Token::caret && touches(at_)) {
+        next();
+        text += "^";
+        if (peek().token == Token::minus) text += "-", next();
+        const Lexeme power = next();
+        if (power.token != Token::number || power.text.size() > 2 || power.text.find_first_not_of("0123456789") != std::string::npos || std::stoi(power.text) > 20)
+          fail(power, "the power of a unit is a whole number between -20 and 20");
+        text += power.text;
+      }
+      // t is the time except right after the number.
+      const Token sign = peek().token;
+      const bool joins = (sign == Token::times || sign == Token::middle_dot || sign == Token::over) && touches(at_) && touches(at_ + 1);
+      if (!joins) break;
+      const Lexeme &after = lexemes_[at_ + 1], &behind = lexemes_[std::min(at_ + 2, lexemes_.size() - 1)];
+      if (after.token != Token::name || after.text == "t" || !find_unit(after.text) || behind.token == Token::open || behind.token == Token::left) break;
+      text += next().token == Token::over ? "/" : "*";
+    }
+    if (!read_unit(text)) fail(lexemes_[first], "this unit is out of all proportion");
+    Syntax s{Syntax::Op::quantity, std::move(text), {}, number.span, number.offset, 0, {}};
+    const Lexeme& last = lexemes_[at_ - 1];
+    s.end = last.offset + last.length;
+    s.span = source_.span(lexemes_[first].offset, s.end - lexemes_[first].offset);
+    s.args.push_back(std::move(number));
+    return s;
+  }
+
   std::vector<Syntax> arguments(Token close, const char* closer) {
     std::vector<Syntax> args;
     const Lexeme opened = next();
@@ -324,7 +392,7 @@ class Parser {
       } else if (at.token == Token::point) {
         next();
         const Lexeme member = next();
-        if (member.token != Token::name) fail(member, "a member name (x, y, z or center) is expected after '.'");
+        if (member.token != Token::name && member.token != Token::number) fail(member, "a member name (x, y, z or center) is expected after '.'");
         s = make(Syntax::Op::member, member, one(std::move(s)));
         if (peek().token == Token::left) {  // lambda.axle[2]
           for (Syntax& a : arguments(Token::right, "]")) s.args.push_back(std::move(a));
@@ -344,14 +412,12 @@ class Parser {
     if (at.token == Token::close || at.token == Token::right) fail(at, "'" + at.text + "' closes nothing");
     const Lexeme& before = lexemes_[at_ - 1];
     if (at.token == Token::name || at.token == Token::number || at.token == Token::open) {
-      if (before.token == Token::number && at.token == Token::name && at_ == 1 &&
-          before.offset + before.length < at.offset)
-        fail(at, "units ('" + at.text + "') are not read yet", "give the bare number in SI units");
       fail(at, "an operator is missing before '" + at.text + "'",
            before.token == Token::prime && at_ > 1
                ? "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product"
            : before.token == Token::name || before.token == Token::number
-               ? "write " + before.text + "*" + at.text + (at.token == Token::open ? "…)" : "") + " for a product"
+               ? "write " + before.text + "*" + at.text + (at.token == Token::open ? "…)" : "") + " for a product" +
+                     (before.token == Token::number && at.token == Token::name && find_unit(at.text) ? ", " + before.text + " " + at.text + " for a unit" : "")
                : "a product is written with '*'");
     }
     fail(at, "'" + at.text + "' is not expected here");

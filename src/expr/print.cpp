@@ -150,14 +150,21 @@ class Printer {
     return mathml() ? "<mtext>…</mtext>" : "…";
   }
 
+  // As [notation] says, or by the rules for names.
+  std::string written(const std::string& name) const {
+    const auto chosen = names_.notation.find(name);
+    if (chosen == names_.notation.end() || format_ == Format::text) return written_name(name, format_);
+    return latex() ? chosen->second.latex : chosen->second.mathml;
+  }
+
   std::string symbol(const std::vector<std::string>& list, const Node& n, const char* prefix) const {
     const std::string base = n.index < list.size() ? list[n.index] : prefix + std::to_string(n.index);
-    return derivative_name(written_name(base, format_), n.order, format_);
+    return derivative_name(written(base), n.order, format_);
   }
 
   Printed node(NodeId id) {
     rank(id);
-    if (const auto it = names_.defined.find(id); it != names_.defined.end()) return {written_name(it->second, format_)};
+    if (const auto it = names_.defined.find(id); it != names_.defined.end()) return {written(it->second)};
     const Node& n = g_.node(id);
     switch (n.kind) {
       case Kind::number: return number(g_.value(id));
@@ -173,8 +180,11 @@ class Printer {
       case Kind::multiplier: {
         const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
         const auto indexed = indexed_name(base);
-        const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(indexed ? indexed->first : base) + "}" + (indexed ? "," + indexed->second : "") + "}"
-                                 : mathml() ? "<msub><mi>λ</mi><mtext>" + xml_escape(base) + "</mtext></msub>"
+        const auto chosen = names_.notation.find(base);
+        const bool plain = chosen == names_.notation.end();
+        const std::string own = "\\mathrm{" + latex_escape(indexed ? indexed->first : base) + "}" + (indexed ? "," + indexed->second : "");
+        const std::string name = latex()    ? "\\lambda_{" + (plain ? own : chosen->second.latex) + "}"
+                                 : mathml() ? "<msub><mi>λ</mi>" + (plain ? "<mtext>" + xml_escape(base) + "</mtext>" : chosen->second.mathml) + "</msub>"
                                             : "lambda." + base;
         return {derivative_name(name, n.order, format_)};
       }
@@ -321,7 +331,7 @@ class Printer {
       Rational e = g_.rational(t.weight);
       Printed base;
       if (const auto root = roots_.find({t.node, e.get_den()}); root != roots_.end()) {
-        base.text = written_name(root->second, format_);
+        base.text = written(root->second);
         e = e.get_num();
       } else {
         base = done_[t.node];

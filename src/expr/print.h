@@ -6,6 +6,7 @@
 // does not matter; a result beyond kLongestPrint characters is cut to "…".
 #pragma once
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,11 @@ struct SymbolNames {
   // Names given to subexpressions ([define]): node -> name.
   std::unordered_map<NodeId, std::string> defined;
   std::vector<std::string> quasi, states, controls;
+  // [notation]: how a name is written instead of as latex_name and mathml_name would.
+  struct Written {
+    std::string latex, mathml;
+  };
+  std::map<std::string, Written> notation = {};
 };
 
 std::string print(Expr e, const SymbolNames& names, Format format);

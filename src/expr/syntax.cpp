@@ -13,6 +13,7 @@ int strength(const Syntax& s) {
     case Syntax::Op::multiply: return kProduct;
     case Syntax::Op::negate: return kMinus;
     case Syntax::Op::power: return kPower;
+    case Syntax::Op::quantity: return kMinus;  // 2 m^2 is not (2 m)^2
     default: return kPostfix;
   }
 }
@@ -44,6 +45,7 @@ std::string list(const std::vector<Syntax>& args, const char* open, const char* 
 std::string print(const Syntax& s) {
   switch (s.op) {
     case Syntax::Op::number: case Syntax::Op::name: return s.text;
+    case Syntax::Op::quantity: return print(s.args[0]) + " " + s.text;
     case Syntax::Op::call: return s.text + list(s.args, "(", ")");
     case Syntax::Op::compare: return print(s.args[0]) + " " + s.text + " " + print(s.args[1]);
     case Syntax::Op::index: return s.text + list(s.args, "[", "]");

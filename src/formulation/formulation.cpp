@@ -4,8 +4,6 @@
 
 namespace anholon {
 
-Column forces(const Mechanics& M) { return M.Q + M.QR + M.Qomega + M.minus_dVO + M.minus_dVomega + M.Gamma; }
-
 Column right_side(const Mechanics& M) { return forces(M) + M.N; }
 
 unsigned highest_order(const Mechanics& M) {

@@ -42,9 +42,7 @@ inline constexpr const char* kMisevicRusov = "third paper on Mišević–Rusov e
 
 // What the forms have in common.
 //
-// Q + QR + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces
-Column forces(const Mechanics& M);
-// The same and the reactions sum lambda dphi/dq^(m)  [L 2.7], right side
+// The given and the inertial forces and the reactions sum lambda dphi/dq^(m)  [L 2.7], right side
 Column right_side(const Mechanics& M);
 // The highest order of the constraints, at least 1: the m of the forms of order m. A constraint of
 // lower order may be lifted to it without a change of N.

@@ -136,6 +136,25 @@ bool add_gravity(const Body& body, Column& potentials) {
   return u.has_value();
 }
 
+// The torque of a field that varies over the body has the potential -1/2 sum e u.(dg/dr u) where the centre does not move
+// through the field.
+bool add_gravity_gradient(const Body& body, Column& potentials) {
+  if (body.gravity_gradient.empty()) return true;
+  Graph& g = *body.mass.graph;
+  Expr u = g.zero();
+  Vector torque = zero_vector(g);
+  for (const Axis& axis : body.axes) {
+    const Vector x = axis.vector.x * body.gravity_gradient[0], y = axis.vector.y * body.gravity_gradient[1], z = axis.vector.z * body.gravity_gradient[2];
+    const Vector field = x + y + z;
+    u += Rational(-1, 2) * (axis.weight * dot(axis.vector, field));
+    torque = torque + axis.weight * cross(axis.vector, field);
+  }
+  const Expr power = dot(torque, body.orientation->rate), rate = total_derivative(u);
+  if (!free_of_time(u) || !vanishes(power + rate)) return false;
+  potentials.push_back(u);
+  return true;
+}
+
 bool add_observer(const Mechanics& m, Column& potentials) {
   const Observer& o = m.model->observer;
   if (!each(o.origin_acceleration, constant) || !each(o.spin, constant) || !free_of_time(m.V_O) || !free_of_time(m.V_omega)) return false;
@@ -151,6 +170,9 @@ std::optional<Conserved> energy(const Mechanics& m) {
   if (!model.masses.empty() || !free_of_time(m.T)) return std::nullopt;
   for (std::size_t r = 0; r < m.phi.size(); ++r)
     if (!without_power(m, r)) return std::nullopt;
+  Expr dissipated = m.graph().zero();
+  for (std::size_t a = 0; a < m.q.size(); ++a) dissipated += m.qd[a] * m.QD[a];
+  if (!vanishes(dissipated)) return std::nullopt;
   Column parts;
   if (!add_observer(m, parts)) return std::nullopt;
   for (const Potential& p : model.potentials) {
@@ -158,7 +180,7 @@ std::optional<Conserved> energy(const Mechanics& m) {
     parts.push_back(p.value);
   }
   for (const Body& body : model.bodies)
-    if (!add_gravity(body, parts)) return std::nullopt;
+    if (!add_gravity(body, parts) || !add_gravity_gradient(body, parts)) return std::nullopt;
   for (const Force& f : model.forces)
     if (!add_force(m, f, parts)) return std::nullopt;
   // A force that is none of these would show here.
@@ -190,7 +212,7 @@ Rates rates(const Mechanics& m) {
   Graph& g = m.graph();
   Rates r;
   r.momentum = gradient(m.T, m.qd);
-  r.rate = gradient(m.T, m.q) + m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma;
+  r.rate = gradient(m.T, m.q) + forces(m);
   if (!is_zero(model.observer.spin)) {
     Column places, seeds;
     for (const WeightedPoint& p : m.points) {

@@ -84,6 +84,15 @@ std::vector<Load> given_loads(const Model& model) {
   std::vector<Load> loads(model.bodies.size(), Load{zero_vector(g), zero_vector(g)});
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (!is_zero(model.bodies[b].gravity)) loads[b].force = model.bodies[b].mass * model.bodies[b].gravity;
+  // Where the field varies over the body it turns it: sum e_k u_k x (dg/dr u_k), to first order in the body's size.
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const std::vector<Vector>& by = model.bodies[b].gravity_gradient;
+    if (by.empty()) continue;
+    for (const Axis& axis : model.bodies[b].axes) {
+      const Vector x = axis.vector.x * by[0], y = axis.vector.y * by[1], z = axis.vector.z * by[2];
+      loads[b].torque = loads[b].torque + axis.weight * cross(axis.vector, x + y + z);
+    }
+  }
   const Expr minus = g.number(-1);
   for (const Force& f : model.forces) {
     switch (f.kind) {
@@ -138,6 +147,8 @@ Mechanics mechanics(const Model& model) {
   for (const Force& f : model.forces)
     for (const auto& [a, component] : f.generalized) m.Q[a] += component;
   m.QR = generalized_forces(m, reactive_loads(model));
+  m.QD = Column(m.q.size(), g.zero());
+  for (const Dissipation& d : model.dissipation) m.QD = m.QD - gradient(d.value, m.qd);
 
   // The moving observer.
   const Vector &omega = model.observer.spin, &a0 = model.observer.origin_acceleration;
@@ -171,6 +182,8 @@ Mechanics mechanics(const Model& model) {
   }
   return m;
 }
+
+Column forces(const Mechanics& m) { return m.Q + m.QR + m.QD + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma; }
 
 std::vector<Load> reactions(const Mechanics& m) {
   const Model& model = *m.model;
@@ -221,14 +234,14 @@ Power power(const Mechanics& m) {
   const Column momentum = gradient(m.T, m.qd);
   for (std::size_t a = 0; a < m.q.size(); ++a) h += m.qd[a] * momentum[a];
 
-  // dh/dt = sum mdot dh/dm - DT/Dt(explicit) + sum q'(Q + QR + Qomega - d(V_O + V_omega) + Gamma) + P_c
+  // dh/dt = sum mdot dh/dm - DT/Dt(explicit) + sum q'(Q + QR + QD + Qomega - d(V_O + V_omega) + Gamma) + P_c
   Column masses;
   for (std::size_t i = 0; i < model.masses.size(); ++i) masses.push_back(g.mass(static_cast<std::uint32_t>(i)));
   const Column dh_dm = gradient(h, masses);
   Expr rate = -by_time(m.T), constraint = g.zero();
   for (std::size_t i = 0; i < masses.size(); ++i) rate += total_derivative(model.masses[i].value) * dh_dm[i];
   for (std::size_t a = 0; a < m.q.size(); ++a) {
-    rate += m.qd[a] * (m.Q[a] + m.QR[a] + m.Qomega[a] + m.minus_dVO[a] + m.minus_dVomega[a] + m.Gamma[a]);
+    rate += m.qd[a] * (m.Q[a] + m.QR[a] + m.QD[a] + m.Qomega[a] + m.minus_dVO[a] + m.minus_dVomega[a] + m.Gamma[a]);
     constraint += m.qd[a] * m.N[a];
   }
   const Expr parts[] = {h, rate, constraint};

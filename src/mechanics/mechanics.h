@@ -29,6 +29,7 @@ struct Mechanics {
 
   Column Q;              // given forces, gravity, -dV/dq
   Column QR;             // mdot u
+  Column QD;             // -dR/dq' of the dissipation functions R
   Column Qomega;         // -m (omega' x rho): the omega' term only
   Column minus_dVO;      // -dV_O/dq
   Column minus_dVomega;  // -dV_omega/dq
@@ -45,8 +46,11 @@ struct Mechanics {
 
 Mechanics mechanics(const Model& model);
 
+// Q + QR + QD + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces.
+Column forces(const Mechanics& m);
+
 // Resultant force and torque about the mass centre on each body: given forces, gravity, reactive
-// force. Potentials and generalized forces have no place and are not among them.
+// force. Potentials, dissipation and generalized forces have no place and are not among them.
 struct Load {
   Vector force, torque;
 };

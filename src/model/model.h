@@ -53,6 +53,12 @@ struct Axis {
   std::vector<Expr> own;  // components along the body's own axes, where these are orthonormal identically
 };
 
+// The homogeneous solid that a body has the inertia of, or is drawn as.
+struct Shape {
+  std::string kind;         // "disc", "ball", …
+  std::vector<Expr> sizes;  // of numbers and parameters
+};
+
 struct Body {
   std::string name;
   Span span;
@@ -64,6 +70,8 @@ struct Body {
   std::optional<Vector> expelled_velocity;  // u: leaving or joining matter minus exit point
   Vector exit_point;                        // position of that material point
   Vector gravity;                           // field at the centre
+  std::vector<Vector> gravity_gradient;     // its derivatives by x, y, z; empty where it has no torque on the body
+  std::optional<Shape> shape;
 };
 
 struct Force {
@@ -86,6 +94,14 @@ struct Force {
 struct Potential {
   std::string name;
   Expr value;
+  Span span;
+};
+
+// A function R of the velocities whose force is -dR/dq'.
+struct Dissipation {
+  std::string name;
+  Expr value;
+  std::string formula;  // as written
   Span span;
 };
 
@@ -213,6 +229,7 @@ struct Model {
   std::vector<Body> bodies;  // particles among them, in the order of the file
   std::vector<Force> forces;
   std::vector<Potential> potentials;
+  std::vector<Dissipation> dissipation;
   std::vector<Constraint> constraints;
   std::vector<QuasiVelocity> quasi;
   std::vector<std::size_t> dependent;  // coordinates that the user wants eliminated
@@ -226,6 +243,8 @@ struct Model {
   SimulationSettings simulate;
   SymbolNames names;
   std::vector<std::string> cases;  // scenarios of the file, [case.NAME]
+  // Where the file has units: those of coordinates and parameters, empty where nothing tells.
+  std::vector<std::string> coordinate_units, parameter_units;
   std::vector<std::string> notes;  // what the reader did on its own: components dropped, …
 };
 

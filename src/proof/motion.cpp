@@ -99,7 +99,7 @@ Motion::Motion(const Mechanics& M, unsigned highest_order, const std::vector<std
   {
     // D/Dt dT/dq' - dT/dq - (Q + …) - N
     const Column left = total_derivative(gradient(M.T, M.qd)) - gradient(M.T, M.q);
-    routh = put_masses(model, left - (M.Q + M.QR + M.Qomega + M.minus_dVO + M.minus_dVomega + M.Gamma) - M.N);
+    routh = put_masses(model, left - forces(M) - M.N);
   }
   int of_routh = 2;
   for (Expr r : routh) of_routh = std::max(of_routh, jet_order(r));

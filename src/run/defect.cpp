@@ -40,7 +40,7 @@ Defect::Defect(const Scenario& s, std::size_t times, const Ball& begin, const Ba
   const Model& model = *s.model;
   const Mechanics& m = *s.mechanics;
   const Column inertia = newton_left_side(m), reaction = put_masses(model, m.N);
-  const Column force = put_masses(model, m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma);
+  const Column force = put_masses(model, forces(m));
   Column es;
   for (std::size_t a = 0; a < inertia.size(); ++a) es.push_back(inertia[a] - force[a] - reaction[a]);
   std::vector<int> leads(es.size(), 0);

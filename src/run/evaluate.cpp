@@ -71,9 +71,13 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
     if (Outcome o = point.extend(); !o.ok()) return o;
 
   const auto put = [&](const Column& c) { return put_masses(model, c); };
-  const std::vector<std::pair<const char*, Column>> forces = {
+  std::vector<std::pair<const char*, Column>> forces = {
       {"Q", put(m.Q)}, {"QR", put(m.QR)}, {"Qomega", put(m.Qomega)}, {"minus_dVO", put(m.minus_dVO)},
-      {"minus_dVomega", put(m.minus_dVomega)}, {"Gamma", put(m.Gamma)}, {"inertia_term", newton_left_side(m)}, {"N", put(m.N)}};
+      {"minus_dVomega", put(m.minus_dVomega)}, {"Gamma", put(m.Gamma)}};
+  if (!model.dissipation.empty()) forces.push_back({"QD", put(m.QD)});
+  const std::size_t given = forces.size();  // before Newton's left side and the reactions
+  forces.push_back({"inertia_term", newton_left_side(m)});
+  forces.push_back({"N", put(m.N)});
   const Power p = power(m);
   const std::vector<std::pair<const char*, Expr>> numbers = {
       {"T_r", put_masses(model, m.T)}, {"S_r", put_masses(model, m.S)}, {"V_O", put_masses(model, m.V_O)},
@@ -101,7 +105,7 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
     r.qdot.push_back({model.coordinates[a].name, text(point.derivative(a, 1), digits)});
   }
   std::size_t at = 0;
-  std::vector<N> columns[8];
+  std::vector<std::vector<N>> columns(forces.size());
   for (std::size_t f = 0; f < forces.size(); ++f) {
     std::vector<std::string> column;
     for (std::size_t a = 0; a < n; ++a, ++at) {
@@ -146,11 +150,11 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
     r.reactions.push_back(reaction);
   }
   std::vector<N> force(n, N(0));
-  for (std::size_t f = 0; f < 6; ++f)
+  for (std::size_t f = 0; f < given; ++f)
     for (std::size_t a = 0; a < n; ++a) force[a] += columns[f][a];
   Matrix<N> phi(s.system.constraints.size(), n);
   for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = out[phi_first + i];
-  const NewtonResidual<N> c = certify(columns[6], force, columns[7], phi);
+  const NewtonResidual<N> c = certify(columns[given], force, columns[given + 1], phi);
   N scale(1);
   for (const N* v : {&dh, &rate})
     if (abs(*v) > scale) scale = abs(*v);

@@ -68,7 +68,7 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
   Column es = put_masses(model, m.N);
   es.push_back(power.h);
   const Column inertia = newton_left_side(m);
-  const Column force = put_masses(model, m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma);
+  const Column force = put_masses(model, forces(m));
   es.insert(es.end(), inertia.begin(), inertia.end());
   es.insert(es.end(), force.begin(), force.end());
   for (std::size_t k : s_.system.constraints)

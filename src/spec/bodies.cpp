@@ -6,6 +6,7 @@
 
 #include "expr/normal.h"
 #include "spec/keys.h"
+#include "spec/shapes.h"
 #include "tape/tape.h"
 
 namespace anholon {
@@ -176,8 +177,8 @@ void BodyReader::read_body(const Entry& e) {
     check_keys(item, what, {"name", "mass", "position", "expelled_velocity"}, {}, diagnostics_);
   else
     check_keys(item, what,
-               {"name", "mass", "inertia", "center", "orientation", "angle", "axes", "expelled_velocity", "exit_point"},
-               {"shape"}, diagnostics_);
+               {"name", "mass", "inertia", "center", "orientation", "angle", "axes", "expelled_velocity", "exit_point",
+                "shape"}, {}, diagnostics_);
 
   const Item* center = scope_.parts(e.index).center;
   if (!center)
@@ -188,7 +189,8 @@ void BodyReader::read_body(const Entry& e) {
 
   const Item* inertia = item.find("inertia");
   const Item* axes = item.find("axes");
-  if (const Item* mass = item.find("mass")) body.mass = frozen(scope_.number(*mass), body.name, mass->span);
+  Expr mass_value = body.mass;
+  if (const Item* mass = item.find("mass")) mass_value = scope_.number(*mass), body.mass = frozen(mass_value, body.name, mass->span);
   else if (e.particle) throw Failure(body.span, what + " has no mass", "mass = …");
 
   if (const Item* both = item.find("angle"); both && item.find("orientation"))
@@ -197,6 +199,11 @@ void BodyReader::read_body(const Entry& e) {
     const Item& source = item.find("orientation") ? *item.find("orientation") : *item.find("angle");
     body.orientation = scope_.orientation(e.index, source.span);
     for (int k = 0; k < 3; ++k) check_position(model_, (*body.orientation)[k], source, "the orientation of " + what);
+  }
+  if (const Item* shape = item.find("shape")) {
+    body.shape = read_shape(*shape, scope_, model_);
+    // Without a mass it is a picture only, as it is beside an inertia.
+    if (!inertia && !axes && !is_zero(mass_value)) shape_axes(body, mass_value, shape->span);
   }
   if (inertia || axes) read_axes(body, inertia, axes);
 
@@ -212,6 +219,12 @@ void BodyReader::read_body(const Entry& e) {
     }
   } else if (const Item* p = item.find("exit_point")) {
     throw Failure(p->key_span, what + " has an exit_point but no expelled_velocity");
+  }
+  if (scope_.gravity_gradient && !body.axes.empty()) {
+    if (!body.orientation)
+      throw Failure(body.span, what + " has axes but no orientation: [gravity] gradient finds no torque on it",
+                    "give its inertia and orientation instead of axes");
+    body.gravity_gradient = scope_.gravity_gradient_at(body.center, body.span);
   }
   if (!is_zero(body.mass)) {
     try {
@@ -245,17 +258,9 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
   if (!body.orientation)
     throw Failure(inertia->key_span, "the body '" + body.name + "' has an inertia but no orientation",
                   "give it orientation = \"…\", or angle = \"…\" in the plane");
-  const Rotation& r = *body.orientation;
   const Expr zero = g.zero(), half = g.number(Rational(1, 2));
   const Column unit[3] = {{g.one(), zero, zero}, {zero, g.one(), zero}, {zero, zero, g.one()}};
-  const auto add = [&](Expr weight, const Column& own, const std::string& tag) {
-    if (is_zero(weight)) return;
-    Axis axis;
-    axis.weight = frozen(weight, body.name + " weight " + tag, inertia->span);
-    axis.vector = r * Vector{own[0], own[1], own[2]};
-    if (r.by_turns) axis.own = own;
-    body.axes.push_back(axis);
-  };
+  const auto add = [&](Expr weight, const Column& own, const std::string& tag) { add_axis(body, weight, own, tag, inertia->span); };
   if (inertia->kind != Item::Kind::array) {  // plane: about the z axis, e1 + e2 = J
     const Expr j = scope_.number(*inertia);
     const auto v = constant_value(model_, j);
@@ -299,6 +304,32 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
       add(e, both, std::string(1, "xyz"[k]) + "xyz"[l]);
     }
   for (int k = 0; k < 3; ++k) add(weight[k], unit[k], std::string(1, "xyz"[k]));
+}
+
+// A weighted axis, given along the body's own axes.
+void BodyReader::add_axis(Body& body, Expr weight, const Column& own, const std::string& tag, Span span) {
+  if (is_zero(weight)) return;
+  const Rotation& r = *body.orientation;
+  Axis axis;
+  axis.weight = frozen(weight, body.name + " weight " + tag, span);
+  axis.vector = r * Vector{own[0], own[1], own[2]};
+  if (r.by_turns) axis.own = own;
+  body.axes.push_back(axis);
+}
+
+// A varying mass makes varying moments, and they are frozen with it.
+void BodyReader::shape_axes(Body& body, Expr mass, Span span) {
+  if (!body.orientation)
+    throw Failure(span, "the body '" + body.name + "' has the inertia of its shape but no orientation",
+                  "give it orientation = \"…\", or angle = \"…\" in the plane");
+  Graph& g = *model_.graph;
+  const Column j = moments(*body.shape, mass);
+  const Expr half = g.number(Rational(1, 2)), trace2 = half * sum(j);
+  for (std::size_t k = 0; k < 3; ++k) {
+    Column own(3, g.zero());
+    own[k] = g.one();
+    add_axis(body, trace2 - j[k], own, std::string(1, "xyz"[k]), span);
+  }
 }
 
 // E = 1/2 tr(J) 1 - J must not have a negative eigenvalue (for principal axes: each moment is at

@@ -36,6 +36,8 @@ class BodyReader {
   };
   void read_body(const Entry& entry);
   void read_axes(Body& body, const Item* inertia, const Item* axes);
+  void shape_axes(Body& body, Expr mass, Span span);
+  void add_axis(Body& body, Expr weight, const Column& own, const std::string& tag, Span span);
   void read_force(const Item& item, std::size_t number);
   Expr frozen(Expr value, const std::string& name, Span span);
   Force::Place place(const Item& item);

@@ -5,6 +5,8 @@
 
 #include "expr/indices.h"
 
+#include "expr/units.h"
+
 namespace anholon {
 
 // Definitions within each other in one go (a matter of the stack); what is deeper waits for its parts (from_the_ground).
@@ -119,6 +121,25 @@ std::vector<Syntax> Scope::equation(const Item& item) {
   return sides;
 }
 
+bool has_unit(const Syntax& s) {
+  return s.op == Syntax::Op::quantity || std::any_of(s.args.begin(), s.args.end(), has_unit);
+}
+
+// {value = 2, unit = "km"} is 2 km; a bare number from outside has this unit, too, one with a unit its own.
+Value Scope::in_its_unit(Value v, const Declaration& d) {
+  if (d.unit.empty()) return v;
+  const bool own = d.item ? std::any_of(d.item->items.begin(), d.item->items.end(), [](const Item& i) { return has_unit(parse_formula(i.formula)); })
+                          : has_unit(parse_formula(d.formula));
+  if (own && !d.override.empty()) return v;
+  if (own) throw Failure(d.item ? d.item->span : d.formula.whole(), "the unit is given twice: with the value and by 'unit'");
+  Graph& g = *model_.graph;
+  const Unit unit = read_unit(d.unit).value_or(Unit{});
+  const Expr factor = unit.factor * pow(g.pi(), unit.pi);
+  if (const Expr* e = std::get_if<Expr>(&v)) return *e * factor;
+  if (const Vector* a = std::get_if<Vector>(&v)) return factor * *a;
+  return v;
+}
+
 Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
   Graph& g = *model_.graph;
   switch (d.role) {
@@ -130,7 +151,7 @@ Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
       if (d.symbolic) return g.given(static_cast<std::uint32_t>(d.index), 0);
       [[fallthrough]];
     case Role::define: case Role::parameter: {
-      Value v = d.item ? Value(vector(*d.item)) : evaluate(parse_formula(d.formula), *this);
+      Value v = in_its_unit(d.item ? Value(vector(*d.item)) : evaluate(parse_formula(d.formula), *this), d);
       if (d.role != Role::parameter) {
         if (Expr* e = std::get_if<Expr>(&v)) {
           const Kind k = g.node(e->id).kind;
@@ -388,6 +409,32 @@ Vector Scope::gravity_at(const Vector& place, Span use) {
     restore();
     throw;
   }
+}
+
+std::vector<Vector> Scope::gravity_gradient_at(const Vector& place, Span use) {
+  Graph& g = *model_.graph;
+  // The place stands as three symbols that no model has, so that the field can be differentiated by it.
+  constexpr std::uint32_t kPlace = 200'000;
+  const Column here = {g.quasi(kPlace, 0), g.quasi(kPlace + 1, 0), g.quasi(kPlace + 2, 0)};
+  const Vector field = gravity_at({here[0], here[1], here[2]}, use);
+  for (int i = 0; i < 3; ++i)
+    for (NodeId id : symbols({&field[i], 1}))
+      if (g.node(id).kind == Kind::quasi && g.node(id).order > 0)
+        throw Failure(gravity_->span, "the field depends on the velocity of 'here'", "a gradient is taken of a field of the place");
+  const Column rows[3] = {gradient(field.x, here), gradient(field.y, here), gradient(field.z, here)};
+  std::vector<Vector> by;
+  bool uniform = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Expr parts[] = {rows[0][k], rows[1][k], rows[2][k]};
+    const Column at = substitute(parts, [&](NodeId id) {
+      const Node& n = g.node(id);
+      return n.kind == Kind::quasi && n.index >= kPlace ? place[static_cast<int>(n.index - kPlace)] : Expr{};
+    });
+    by.push_back({at[0], at[1], at[2]});
+    uniform = uniform && is_zero(by.back());
+  }
+  if (uniform) by.clear();
+  return by;
 }
 
 }  // namespace anholon

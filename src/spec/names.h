@@ -27,6 +27,7 @@ class Scope final : public Names {
     std::vector<std::string> arguments;   // of a function with arguments
     Span span;
     bool symbolic = false;                // stands for itself: coordinate, unknown function
+    std::string unit;                     // of a parameter {value, unit}
     std::string override;                 // "--set m=3", where the value comes from there
     enum class State : std::uint8_t { fresh, open, done, failed } state = State::fresh;
     std::size_t place = 0;                // among all declarations
@@ -70,6 +71,9 @@ class Scope final : public Names {
   // In potentials the name of a varying mass means its frozen symbol.
   bool freeze_masses = false;
   Vector gravity_at(const Vector& place, Span use);
+  // Its derivatives by the three coordinates of the place; none where the field is uniform.
+  bool gravity_gradient = false;  // asked for by [gravity] gradient
+  std::vector<Vector> gravity_gradient_at(const Vector& place, Span use);
   std::vector<Diagnostic> failures;  // of declarations evaluated on demand
 
   // Names
@@ -79,6 +83,14 @@ class Scope final : public Names {
             Value& result) override;
   Value member(const Value& object, const Syntax& syntax) override;
   std::vector<std::string> functions() const override;
+  void quaternion(const std::array<Expr, 4>& components, const Syntax& call) override { quaternions_.push_back({components, call.span}); }
+
+  // The quaternions met so far, in the order of their evaluation.
+  struct Quaternion {
+    std::array<Expr, 4> components;
+    Span span;
+  };
+  const std::vector<Quaternion>& quaternions() const { return quaternions_; }
 
  private:
   // A definition that leads through too many others to be evaluated in one go: it waits until what it needs is known.
@@ -94,6 +106,7 @@ class Scope final : public Names {
   void settle_orientation(std::size_t body, Span use);
   void check_name(const std::string& name, Span span) const;
   const Value& resolve(const std::string& name, Declaration& d, Span use);
+  Value in_its_unit(Value v, const Declaration& d);
   Value evaluate_declaration(const std::string& name, Declaration& d);
   [[noreturn]] void unknown(const std::string& name, Span span) const;
   Vector material_velocity(std::size_t body, const Vector& place, Span use);
@@ -115,6 +128,7 @@ class Scope final : public Names {
   std::vector<TableEntry> tables_;
   const Item* gravity_ = nullptr;
   std::optional<Vector> here_;
+  std::vector<Quaternion> quaternions_;
   std::vector<std::string> open_;                        // path of names being evaluated
   std::size_t depth_ = 0;                                // of definitions and parts of bodies within each other
   std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
@@ -122,6 +136,8 @@ class Scope final : public Names {
 };
 
 bool is_reserved(const std::string& name);
+// Does a number with a unit occur in it?
+bool has_unit(const Syntax& s);
 
 // A failure that was reported where it arose: uses of a broken definition stay silent.
 Failure silent_failure();

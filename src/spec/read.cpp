@@ -5,16 +5,21 @@
 
 #include "expr/indices.h"
 #include "expr/normal.h"
+#include "expr/units.h"
 #include "numeric/multi.h"
+#include "spec/along.h"
 #include "spec/bodies.h"
 #include "spec/control.h"
-#include "spec/hybrid.h"
+#include "spec/dimensions.h"
 #include "spec/families.h"
+#include "spec/hybrid.h"
 #include "spec/initial.h"
 #include "spec/keys.h"
 #include "spec/monitor.h"
 #include "spec/names.h"
+#include "spec/notation.h"
 #include "spec/observer.h"
+#include "spec/quaternions.h"
 #include "spec/tables.h"
 #include "spec/variants.h"
 #include "tape/point.h"
@@ -89,18 +94,27 @@ class Reader {  // what it refers to is asked only while it runs
     bodies.read();
     bodies.read_forces(root);
     potentials(root);
+    dissipation(root);
     constraints(root);
     quasi(root);
     read_states(root, scope_, model_, diagnostics_);
     scope_.resolve_all();
+    const std::vector<UnitNorm> norms = norm_constraints();
     read_initial(root, scope_, model_, diagnostics_);
+    start_at_identity(norms, model_);
     if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
     read_events(root, scope_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
+    if (const Item* n = table(root, "notation")) {
+      std::vector<std::string> declared;
+      for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
+      read_notation(*n, model_, declared, diagnostics_);
+    }
     guard([&] { simulate(root); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
     if (!diagnostics_.has_errors()) values();
+    if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
     // What is made of the model from here on grows in proportion to it.
     model_.graph->allow(kWorkLater);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
@@ -125,8 +139,9 @@ class Reader {  // what it refers to is asked only while it runs
     check_keys(root, "the model file",
                {"title", "source", "coordinates", "dependent", "parameters", "functions", "define", "frame",
                 "point", "observer", "body", "particle", "force", "gravity", "potential", "constraint",
-                "initial", "simulate", "quasi", "monitor", "state", "mode", "event", "input", "output", "table", "base"},
-               {"dissipation", "view", "notation"},
+                "initial", "simulate", "quasi", "monitor", "state", "mode", "event", "input", "output", "table", "base",
+                "dissipation", "notation"},
+               {"view"},
                diagnostics_);
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
       if (const Item* i = root.find(key)) {
@@ -193,6 +208,15 @@ class Reader {  // what it refers to is asked only while it runs
       }, i);
   }
 
+  // unit = "km/h"
+  static std::string unit_text(const Item& item) {
+    if (item.kind != Item::Kind::string) throw Failure(item.span, "a unit is a text", "unit = \"km\"");
+    const std::string text = normal_name(item.text());
+    if (read_unit(text)) return text;
+    const std::string near = did_you_mean(text, unit_names());
+    throw Failure(item.formula.whole(), "'" + text.substr(0, 40) + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "unit = \"km\", \"m/s^2\", \"N*m\"");
+  }
+
   void parameters(const Item& root) {
     std::vector<std::string> used;
     const Item* section = table(root, "parameters");
@@ -202,12 +226,13 @@ class Reader {  // what it refers to is asked only while it runs
           const Item* value = &i;
           std::string doc;
           if (i.kind == Item::Kind::table) {
-            check_keys(i, "a parameter", {"value", "doc"}, {"unit"}, diagnostics_);
+            check_keys(i, "a parameter", {"value", "unit", "doc"}, {}, diagnostics_);
             value = i.find("value");
             if (!value) throw Failure(i.key_span, "the parameter '" + i.key + "' has no value");
             if (const Item* d = i.find("doc")) doc = d->text();
           }
           Scope::Declaration d;
+          if (const Item* u = i.kind == Item::Kind::table ? i.find("unit") : nullptr) guard([&] { d.unit = unit_text(*u); });
           d.role = Scope::Role::parameter;
           d.index = model_.parameters.size();
           d.span = i.key_span;
@@ -288,7 +313,11 @@ class Reader {  // what it refers to is asked only while it runs
   void gravity(const Item& root) {
     const Item* section = table(root, "gravity");
     if (!section) return;
-    check_keys(*section, "[gravity]", {"field"}, {"gradient"}, diagnostics_);
+    check_keys(*section, "[gravity]", {"field", "gradient"}, {}, diagnostics_);
+    if (const Item* gradient = section->find("gradient")) {
+      if (gradient->kind != Item::Kind::boolean) diagnostics_.error(gradient->span, "'gradient' is true or false");
+      else scope_.gravity_gradient = gradient->truth;
+    }
     if (const Item* field = section->find("field")) scope_.set_gravity(*field);
     else diagnostics_.error(section->span, "[gravity] has no field", "field = \"-g*ez\"");
   }
@@ -305,6 +334,21 @@ class Reader {  // what it refers to is asked only while it runs
                         "give a force instead");
         model_.potentials.push_back({i.key, with_feedback(model_, v), i.span});
       }, i);
+    scope_.freeze_masses = false;
+  }
+
+  void dissipation(const Item& root) {
+    const Item* section = table(root, "dissipation");
+    if (!section) return;
+    scope_.freeze_masses = true;
+    for (const Item& i : section->items)
+      guard([&] {
+        const Expr r = scope_.number(i);
+        const int order = jet_order(r);
+        if (order > 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on an acceleration");
+        if (order < 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on no velocity", "R = \"c/2*x'^2\" gives the force -c x'");
+        model_.dissipation.push_back({i.key, r, i.text(), i.span});
+      }, i.span);
     scope_.freeze_masses = false;
   }
 
@@ -328,22 +372,34 @@ class Reader {  // what it refers to is asked only while it runs
     }
   }
 
-  void add_constraint(const std::string& name, Expr phi, const Item& equation, const std::string& text) {
+  void add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place) {
     phi = with_feedback(model_, phi);
     const int order = true_order(phi);
     if (order < 0) {
       if (proved_zero(phi))
-        throw Failure(equation.formula.whole(), "this equation always holds: it constrains nothing");
+        throw Failure(place, "this equation always holds: it constrains nothing");
       if (const auto constant = expanded(phi); constant && is_number(*constant))
-        throw Failure(equation.formula.whole(), "this equation never holds: its sides differ by " + to_string(Rational(abs(number_value(*constant)))));
-      throw Failure(equation.formula.whole(), "no coordinate or derivative occurs in this equation",
+        throw Failure(place, "this equation never holds: its sides differ by " + to_string(Rational(abs(number_value(*constant)))));
+      throw Failure(place, "no coordinate or derivative occurs in this equation",
                     "a constraint relates coordinates and their derivatives");
     }
     if (model_.constraints.size() + model_.coordinates.size() >= kMostUnknowns)
-      throw Failure(equation.formula.whole(), "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
-    if (!constraint_names_.insert(name).second) throw Failure(equation.span, "there are two constraints '" + name + "'");
-    model_.constraints.push_back({name, phi, order, text, equation.formula.whole()});
+      throw Failure(place, "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
+    if (!constraint_names_.insert(name).second) throw Failure(place, "there are two constraints '" + name + "'");
+    model_.constraints.push_back({name, phi, order, equation, place});
     model_.names.multipliers.push_back(name);
+  }
+
+  // What quaternions need to be rotations.
+  std::vector<UnitNorm> norm_constraints() {
+    std::vector<UnitNorm> norms;
+    guard([&] { norms = unit_norms(scope_, model_); });
+    for (const UnitNorm& n : norms)
+      guard([&] {
+        add_constraint(n.name, n.phi, n.equation, n.span);
+        model_.notes.push_back("constraint '" + n.name + "' is added: " + n.equation + ", without which quat(…) in line " + std::to_string(n.span.line) + " is no rotation");
+      });
+    return norms;
   }
 
   void constraints(const Item& root) {
@@ -355,7 +411,7 @@ class Reader {  // what it refers to is asked only while it runs
       return;
     }
     for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
-      check_keys(c, "a constraint", {"name", "equation", "by"}, {"along"}, diagnostics_);
+      check_keys(c, "a constraint", {"name", "equation", "along", "by"}, {}, diagnostics_);
       const std::size_t first = model_.constraints.size();
       const auto servo = [&] {
         if (const Item* by = c.find("by")) keep_by(*by, first, scope_, model_);
@@ -369,22 +425,27 @@ class Reader {  // what it refers to is asked only while it runs
       const std::vector<Syntax> sides = scope_.equation(*equation);
       const std::string text = equation_text(equation->formula, sides);
       Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
+      const Item* along = c.find("along");
+      const Span place = equation->formula.whole();
       if (std::holds_alternative<Expr>(left) && std::holds_alternative<Expr>(right)) {
-        add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), *equation, text);
+        if (along) throw Failure(along->key_span, "'along' goes with an equation of vectors, this is one of numbers");
+        add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), text, place);
         servo();
         return;
       }
-      const Vector phi = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
+      const Vector difference = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
       std::string dropped;
-      std::vector<int> kept;
-      for (int i = 0; i < 3; ++i) {
-        if (proved_zero(phi[i])) dropped += (dropped.empty() ? "" : ", ") + name + "." + std::string(1, "xyz"[i]);
-        else kept.push_back(i);
+      std::vector<std::pair<std::string, Expr>> kept;
+      int index = 0;
+      for (const Direction& d : directions(along, scope_)) {
+        const Expr phi = component(difference, d, index++);
+        if (proved_zero(phi)) dropped += (dropped.empty() ? "" : ", ") + name + "." + d.tag;
+        else kept.push_back({name + "." + d.tag, phi});
       }
-      if (kept.empty()) throw Failure(equation->formula.whole(), "this equation always holds: it constrains nothing");
+      if (kept.empty()) throw Failure(place, "this equation always holds: it constrains nothing");
       if (!dropped.empty())
         model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
-      for (int i : kept) add_constraint(name + "." + std::string(1, "xyz"[i]), phi[i], *equation, text);
+      for (const auto& [full, phi] : kept) add_constraint(full, phi, text, place);
       servo();
     });
   }

@@ -30,7 +30,7 @@ std::vector<std::shared_ptr<System>> all_systems() {
   return systems;
 }
 
-Column given_forces(const Mechanics& m) { return m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma; }
+Column given_forces(const Mechanics& m) { return m.Q + m.QR + m.QD + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma; }
 
 // The largest |value| of the column at some random points, in units of the largest value of `scale` there.
 double size_of(const System& s, const Column& column, const Column& scale) {

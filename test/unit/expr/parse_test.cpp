@@ -78,7 +78,7 @@ TEST(Mistakes, HaveTheirColumnAndSayWhatIsWrong) {
       {"x ++", 5, "the formula ends where a number, a name or '(' should follow"},
       {"(x + y", 7, "')' is missing at the end"},
       {"x + y)", 6, "')' closes nothing"},
-      {"2 x", 3, "units ('x') are not read yet"},
+      {"2 x", 3, "'x' is no unit"},
       {"x y", 3, "an operator is missing before 'y'"},
       {"x(y) z", 6, "an operator is missing before 'z'"},
       {"x + $", 5, "'$' means nothing in a formula"},

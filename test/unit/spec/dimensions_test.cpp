@@ -1,0 +1,141 @@
+// Units that fit together and units that do not; and that a file without units is never looked at.
+#include <gtest/gtest.h>
+
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+const std::string kCar = R"toml(coordinates = ["x", "y", "th"]
+point.P = "x*ex + y*ey"
+frame.T = "rotz(th)"
+[parameters]
+m  = "2 t"
+L  = {value = 30, unit = "cm"}
+k  = 250
+l0 = "20 cm"
+g  = 9.81
+T0 = "3 s"
+c  = "5 N*s/m"
+[define]
+speed = "norm(vel(P))"
+[functions]
+"rho(h)" = "1.225*exp(-h/8500)"
+[[body]]
+name = "car"
+mass = "m"
+inertia = "m*L^2/12"
+center = "P"
+orientation = "T"
+[[force]]
+on = "car"
+vector = "-k*(x - l0)*ex - c*vel(P)"
+[[force]]
+name = "steer"
+generalized = {th = "-k*L^2*th"}
+[gravity]
+field = "-g*ey"
+[potential]
+spring = "k/2*(norm(P) - l0)^2"
+[dissipation]
+air = "rho(y)*speed^3*L^2"
+[[constraint]]
+name = "blade"
+equation = "dot(vel(P), T.y) = L*th'"
+[initial]
+x = "3 ft"
+th = "30 deg"
+conditions = ["dot(vel(P), T.x) = 36 km/h"]
+[simulate]
+to = "2 min"
+)toml";
+
+std::vector<Diagnostic> found(const std::string& text, const Overrides& overrides = {}) {
+  Diagnostics d;
+  read_model(SourceText{"test.toml", text}, d, overrides);
+  return d.list();
+}
+
+std::string messages(const std::vector<Diagnostic>& list) {
+  std::string out;
+  for (const Diagnostic& d : list) out += std::to_string(d.span.line) + ": " + d.message + "\n";
+  return out;
+}
+
+TEST(DimensionsOfAModel, ThatFitAreFoundAndNamed) {
+  const auto model = test::model_of(kCar);
+  EXPECT_EQ(model->coordinate_units, (std::vector<std::string>{"m", "m", "1"}));
+  EXPECT_EQ(model->parameter_units, (std::vector<std::string>{"kg", "m", "N/m", "m", "m/s^2", "s", "kg/s"}));
+  EXPECT_EQ(number_value(model->parameters[0].value), 2000);
+  EXPECT_EQ(number_value(model->parameters[1].value), Rational(3, 10));
+  EXPECT_EQ(number_value(model->initial.given[0].value), Rational(1143, 1250));
+  EXPECT_EQ(*model->simulate.to, 120);
+}
+
+struct Clash {
+  const char* from;
+  const char* to;
+  unsigned line;
+  const char* message;
+};
+
+TEST(DimensionsOfAModel, ThatClashAreReportedWhereTheyMeet) {
+  ASSERT_EQ(messages(found(kCar)), "");
+  const Clash clashes[] = {
+      {"(x - l0)", "(x - T0)", 24, "a length (m) minus a time (s)"},
+      {"x*ex + y*ey", "x*ex + th*ey", 3, "a pure number is expected here, this is a length (m)"},
+      {"mass = \"m\"", "mass = \"l0\"", 18, "a mass (kg) is expected here, this is a length (m)"},
+      {"inertia = \"m*L^2/12\"", "inertia = \"m*L/12 + m*l0\"", 19, "a moment of inertia (kg*m^2) is expected here, this is a quantity in kg*m"},
+      {"-k*(x - l0)*ex - c*vel(P)", "c*P", 24, "a force (N) is expected here, this is a momentum (N*s)"},
+      {"\"-k*L^2*th\"", "\"c*x\"", 27, "a torque or energy (N*m) is expected here"},
+      {"-g*ey", "-speed*ey", 29, "an acceleration (m/s^2) is expected here, this is a velocity (m/s)"},
+      {"k/2*(norm(P) - l0)^2", "c*L*l0", 31, "a torque or energy (N*m) is expected here, this is an angular momentum (N*m*s)"},
+      {"rho(y)*speed^3*L^2", "c*speed", 33, "a power (W) is expected here, this is a force (N)"},
+      {"= L*th'", "= L*L*th'", 36, "a velocity (m/s) on the left side, a quantity in m^2/s on the right side"},
+      {"3 ft", "3 s", 38, "a length (m) is expected here, this is a time (s)"},
+      {"30 deg", "30 m", 39, "a pure number is expected here, this is a length (m)"},
+      {"36 km/h", "36 km", 40, "a velocity (m/s) on the left side, a length (m) on the right side"},
+      {"2 min", "2 N", 42, "a time (s) is expected here, this is a force (N)"},
+      {"\"rotz(th)\"", "\"rotz(x)*rotz(l0)\"", 3, "a pure number is expected here, this is a length (m)"},
+      {"exp(-h/8500)", "exp(-h)", 15, "a pure number is expected here, this is a length (m)"},
+      {"\"20 cm\"", "\"20 kmm\"", 8, "'kmm' is no unit; did you mean"},
+      {"unit = \"cm\"", "unit = \"cmm\"", 6, "'cmm' is no unit; did you mean"},
+      {"value = 30,", "value = \"30 m\",", 6, "the unit is given twice"},
+      {"value = 30,", "value = [\"30 m\", 0, 0],", 6, "the unit is given twice"},
+  };
+  for (const Clash& c : clashes) {
+    const std::vector<Diagnostic> list = found(test::replaced(kCar, c.from, c.to));
+    ASSERT_FALSE(list.empty()) << c.to;
+    const bool there = std::any_of(list.begin(), list.end(), [&](const Diagnostic& d) { return d.span.line == c.line && d.message.rfind(c.message, 0) == 0; });
+    EXPECT_TRUE(there) << c.to << "\n" << messages(list);
+  }
+}
+
+TEST(DimensionsOfAModel, AreSetFromOutside) {
+  const auto L = [](const char* value) { return number_value(test::model_of(kCar, {{"L", value}})->parameters[1].value); };
+  EXPECT_EQ(L("50"), Rational(1, 2)) << "a bare number has the parameter's unit";
+  EXPECT_EQ(L("2 m"), 2);
+  const std::vector<Diagnostic> list = found(kCar, {{"l0", "3 s"}});
+  ASSERT_FALSE(list.empty());
+  EXPECT_EQ(messages(found(kCar, {{"l0", "3"}})), "");
+  EXPECT_NE(messages(found(kCar, {{"L", "3 s"}})), "") << "not the unit that it was declared with";
+}
+
+// An axis alone is 1 along it, in whatever unit; with a factor it is a direction.
+TEST(DimensionsOfAModel, OfAnAxisAloneAreFree) {
+  EXPECT_EQ(messages(found(test::replaced(kCar, "dot(vel(P), T.x) = 36 km/h", "vel(P) = T.x"))), "");
+  EXPECT_EQ(messages(found(test::replaced(kCar, "-g*ey", "-ey"))), "");
+  EXPECT_EQ(messages(found(test::replaced(kCar, "x*ex + y*ey", "x*ex + y*ey + ez"))), "");
+  EXPECT_NE(messages(found(test::replaced(kCar, "-g*ey", "-sin(th)*ey"))), "");
+}
+
+// The same nonsense without units is consistent with some, or nobody asked.
+TEST(DimensionsOfAModel, AreNotLookedAtWithoutUnits) {
+  EXPECT_EQ(messages(found("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = \"1 + 2\"\nposition = \"sin(x)*ex\"\n[gravity]\nfield = \"x*ey - vel([x, 0, 0])\"\n")), "");
+  const std::string pendulum = "coordinates = [\"th\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"sin(th)*ex\"\n[initial]\nth = ";
+  EXPECT_EQ(messages(found(pendulum + "\"30 deg\"\n")), "") << "an angle has no dimension";
+  EXPECT_NE(messages(found(pendulum + "\"30 deg\"\n\"th'\" = \"2 s^-1\"\n")), "") << "the length of the pendulum is missing";
+}
+
+}  // namespace
+}  // namespace anholon
