@@ -58,7 +58,8 @@ static std::string printable(const std::string& line) {
 // A source line is shown whole up to this many characters, else the part around the caret.
 static constexpr std::size_t kShownWidth = 160;
 
-std::string print(const Diagnostic& d, const SourceText& source) {
+std::string print(const Diagnostic& d, const SourceText& main) {
+  const SourceText& source = main.of(d.span);
   std::string out = source.name;
   if (d.span.line > 0)
     out += ":" + std::to_string(d.span.line) + ":" + std::to_string(d.span.column);
@@ -84,17 +85,24 @@ std::string print(const Diagnostic& d, const SourceText& source) {
   return out;
 }
 
+std::string line_of(Span span, const SourceText& source) {
+  return "line " + std::to_string(span.line) + (span.file > 0 ? " of " + source.of(span).name : "");
+}
+
 std::string Diagnostics::print(const SourceText& source) const {
   std::vector<const Diagnostic*> sorted;
   for (const Diagnostic& d : list_) sorted.push_back(&d);
   std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic* a, const Diagnostic* b) {
+    if (a->span.file != b->span.file) return a->span.file < b->span.file;
     return a->span.line != b->span.line ? a->span.line < b->span.line
                                         : a->span.column < b->span.column;
   });
+  SourceText all = source;
+  if (all.others.empty()) all.others = others;
   // More than this nobody reads; each costs a walk to its line.
   constexpr std::size_t kShown = 100;
   std::string out;
-  for (std::size_t i = 0; i < sorted.size() && i < kShown; ++i) out += anholon::print(*sorted[i], source);
+  for (std::size_t i = 0; i < sorted.size() && i < kShown; ++i) out += anholon::print(*sorted[i], all);
   if (sorted.size() > kShown) out += "… and " + std::to_string(sorted.size() - kShown) + " more\n";
   return out;
 }

@@ -12,9 +12,10 @@
 namespace anholon {
 
 // A place in a source text: 1-based line and column (in characters), length in characters.
-// line 0 means "the text as a whole".
+// line 0 means "the text as a whole". A model may be read from several files: file 0 is the one that was named, file k > 0
+// the (k-1)th of SourceText::others.
 struct Span {
-  std::uint32_t line = 0, column = 0, length = 1;
+  std::uint32_t line = 0, column = 0, length = 1, file = 0;
 };
 
 enum class Severity : std::uint8_t { error, warning, note };
@@ -38,7 +39,10 @@ struct Failure : std::exception {
 struct SourceText {
   std::string name;
   std::string text;
+  std::string path = {};                  // where it lies, if that is not its name
+  std::vector<SourceText> others = {};    // the files it builds on
   std::string line(std::uint32_t number) const;
+  const SourceText& of(Span span) const { return span.file == 0 || span.file > others.size() ? *this : others[span.file - 1]; }
 };
 
 class Diagnostics {
@@ -50,12 +54,16 @@ class Diagnostics {
   const std::vector<Diagnostic>& list() const { return list_; }
   // `file:line:col: error: …`, the source line, a caret range, `hint: …`; in order of position.
   std::string print(const SourceText& source) const;
+  // The files beside the main one, where they were found by what reports here.
+  std::vector<SourceText> others;
 
  private:
   std::vector<Diagnostic> list_;
 };
 
 std::string print(const Diagnostic& d, const SourceText& source);
+// "line 12", and the file if it is not the main one.
+std::string line_of(Span span, const SourceText& source);
 
 // The candidate closest to `name` by edit distance if it is close enough to be a slip, else "".
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);

@@ -16,7 +16,7 @@ int forms(const Options& o) {
     JsonWriter j;
     j.open_array();
     for (const Formulation* f : formulations()) {
-      const std::string why = m ? f->obstacle(*m) : std::string();
+      const std::string why = m ? obstacle(*f, *m) : std::string();
       j.open_object().key("name").string(f->name).key("title").string(f->title).key("equation").string(f->equation);
       j.key("source").string(f->source).key("applies").boolean(why.empty()).key("reason").string(why).close();
     }
@@ -26,7 +26,7 @@ int forms(const Options& o) {
   for (const Formulation* f : formulations()) {
     std::printf("%-28s %s\n%-28s %s\n", f->name, f->title, "", citation(*f).c_str());
     if (m) {
-      const std::string why = f->obstacle(*m);
+      const std::string why = obstacle(*f, *m);
       std::printf("%-28s %s\n", "", why.empty() ? "applies" : ("does not apply: " + why).c_str());
     }
   }

@@ -10,6 +10,10 @@ namespace {
 
 void constraint(JsonWriter& j, const Scenario& s, const Explanation& x, std::size_t r) {
   const ConstraintFacts& facts = x.constraints[r];
+  if (const auto by = s.model->constraints[r].by) {
+    j.key("reactions").string("servo").key("by").string(s.model->controls[*by].name);
+    return;
+  }
   j.key("reactions").string(name(facts.hypothesis));
   j.key("work").open_object().key("none").boolean(is_zero(facts.power_factor)).key("power").string(power_text(s, x, r)).close();
   if (!s.classes[r].redundant) return;
@@ -74,6 +78,11 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
   j.open_object();
   j.key("title").string(model.title);
   j.key("source").string(model.source);
+  if (!model.cases.empty()) {
+    j.key("cases").open_array();
+    for (const std::string& c : model.cases) j.string(c);
+    j.close();
+  }
   j.key("coordinates").open_array();
   for (const Coordinate& c : model.coordinates) j.string(c.name);
   j.close();

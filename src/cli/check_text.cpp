@@ -38,7 +38,7 @@ void reactions(const Scenario& s, const Explanation& x) {
   const auto with = [&](Hypothesis h) {
     std::vector<std::size_t> list;
     for (std::size_t r = 0; r < x.constraints.size(); ++r)
-      if (x.constraints[r].hypothesis == h) list.push_back(r);
+      if (x.constraints[r].hypothesis == h && !s.model->constraints[r].by) list.push_back(r);
     return list;
   };
   const auto line = [&](Hypothesis h, const char* text) {
@@ -47,6 +47,9 @@ void reactions(const Scenario& s, const Explanation& x) {
     const std::string whose = list.size() < x.constraints.size() ? " of " + listed(*s.model, list) : "";
     std::printf("  reactions%s: %s\n", whose.c_str(), text);
   };
+  for (std::size_t r = 0; r < x.constraints.size(); ++r)
+    if (const auto by = s.model->constraints[r].by)
+      std::printf("  %s is kept by the input %s (servo): no ideal reaction\n", s.model->constraints[r].name.c_str(), s.model->controls[*by].name.c_str());
   line(Hypothesis::dalembert, "ideal, no work in virtual displacements (d'Alembert, Lagrange)");
   line(Hypothesis::chetaev, "ideal by Chetaev's rule, along dphi/dq' (nonlinear in the velocities: a hypothesis)");
   line(Hypothesis::niu, "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and more)");
@@ -154,6 +157,9 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
   const Model& model = *s.model;
   std::printf("%s\n", model.title.empty() ? model.source_text.name.c_str() : model.title.c_str());
   if (!model.source.empty()) std::printf("source: %s\n", model.source.c_str());
+  std::string cases;
+  for (const std::string& c : model.cases) cases += (cases.empty() ? "" : ", ") + c;
+  if (!cases.empty()) std::printf("cases (--case NAME): %s\n", cases.c_str());
   std::printf("\n%s, %s, %s, %s\n", counted(model.coordinates.size(), "coordinate", "coordinates").c_str(),
               counted(model.bodies.size(), "body or particle", "bodies and particles").c_str(),
               counted(model.constraints.size(), "constraint", "constraints").c_str(),

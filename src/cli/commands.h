@@ -18,7 +18,7 @@ struct Options {
   std::string output;
   std::string numbers = "double";
   std::string integrator;  // empty: of the file, or Taylor series
-  std::vector<std::string> set, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
+  std::vector<std::string> set, cases, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance, rigorous;
   std::string save, resume;
   std::string vary, about;

@@ -68,7 +68,7 @@ int derive(const Options& o) {
     throw UsageError{"error: --form all goes with text, latex, mathml and json\nhint: name one form\n"};
   std::vector<const Formulation*> wanted;
   for (const Formulation* f : formulations())
-    if (all && f->obstacle(m).empty()) wanted.push_back(f);
+    if (all && obstacle(*f, m).empty()) wanted.push_back(f);
   if (!all) wanted.push_back(&form(o, model, &m));
   if (!o.show.empty()) {
     Scenario s;

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 namespace anholon::cli {
@@ -32,30 +30,6 @@ static std::string first_line_value(const std::string& text, const std::string& 
       if (a != std::string::npos && b > a) return line.substr(a + 1, b - a - 1);
     }
   return {};
-}
-
-bool read_file(const fs::path& path, std::string& text, std::string* why) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    if (why) *why = "it is a directory";
-    return false;
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    if (why) *why = std::strerror(errno);
-    return false;
-  }
-  // A device may have no end; what is longer than any model or certificate is cut, and refused by its reader.
-  constexpr std::size_t kMostBytes = 64 << 20, kPiece = 1 << 16;
-  text.clear();
-  for (std::size_t got = kPiece; got == kPiece && text.size() < kMostBytes;) {
-    const std::size_t before = text.size();
-    text.resize(before + kPiece);
-    in.read(text.data() + before, kPiece);
-    got = static_cast<std::size_t>(in.gcount());
-    text.resize(before + got);
-  }
-  return !in.bad();
 }
 
 static std::vector<ShippedModel> shipped(const char* extension) {
@@ -95,8 +69,8 @@ std::vector<std::string> split(const std::vector<std::string>& words) {
     int depth = 0;
     std::string part;
     for (char c : w) {
-      if (c == '(') ++depth;
-      if (c == ')') --depth;
+      if (c == '(' || c == '[') ++depth;
+      if (c == ')' || c == ']') --depth;
       if (c == ',' && depth == 0) {
         out.push_back(part);
         part.clear();
@@ -130,6 +104,12 @@ static std::pair<std::string, std::string> assignment(const std::string& text, c
   return {normal_name(text.substr(0, equals)), text.substr(equals + 1)};
 }
 
+std::string all_text(const SourceText& source) {
+  std::string text = source.text;
+  for (const SourceText& s : source.others) text += s.text;
+  return text;
+}
+
 Reader read(const Options& o) {
   Reader r;
   r.source.name = o.model;
@@ -142,6 +122,7 @@ Reader read(const Options& o) {
       if (m.name != o.model || found) continue;
       found = read_file(m.path, r.source.text);
       r.source.name = m.name + ".toml";
+      r.source.path = m.path;
     }
     if (!found) {
       const std::string near = did_you_mean(o.model, names);
@@ -157,7 +138,7 @@ Reader read(const Options& o) {
     overrides[name] = value;
   }
   Diagnostics diagnostics;
-  auto model = open_model(r.source, diagnostics, overrides);
+  auto model = open_model(r.source, diagnostics, overrides, o.cases);
   std::fflush(stdout);
   if (!model) {
     const std::size_t n = static_cast<std::size_t>(std::count_if(
@@ -166,6 +147,7 @@ Reader read(const Options& o) {
   }
   std::fputs(diagnostics.print(r.source).c_str(), stderr);
   r.model = model->model;
+  r.source = r.model->source_text;
   r.names = model->names;
   return r;
 }
@@ -174,13 +156,13 @@ Reader read(const Options& o) {
 static std::string list_of_forms(const Mechanics& m, bool with_motions) {
   std::string list;
   for (const Formulation* f : formulations())
-    if (f->obstacle(m).empty() && !(with_motions && f->unknowns == Unknowns::variational)) list += (list.empty() ? "" : ", ") + std::string(f->name);
+    if (obstacle(*f, m).empty() && !(with_motions && f->unknowns == Unknowns::variational)) list += (list.empty() ? "" : ", ") + std::string(f->name);
   return list;
 }
 
 // Throws if the form does not apply to the model.
 static void must_apply(const Formulation& f, const Mechanics& m) {
-  if (const std::string why = f.obstacle(m); !why.empty())
+  if (const std::string why = obstacle(f, m); !why.empty())
     throw UsageError{"error: the form '" + std::string(f.name) + "' does not apply: " + why + "\nhint: these do: " + list_of_forms(m, false) + "\n"};
 }
 

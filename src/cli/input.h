@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/read_file.h"
 #include "cli/commands.h"
 #include "proof/prove.h"
 #include "run/scenario.h"
@@ -20,8 +21,8 @@ struct Reader {
   std::shared_ptr<Names> names;
   SourceText source;
 };
-// The bytes of a file; false, and why, if it cannot be read.
-bool read_file(const std::filesystem::path& path, std::string& text, std::string* why = nullptr);
+// The texts of all files that a model was read from, for its fingerprint.
+std::string all_text(const SourceText& source);
 // Reads the model named by the options (a path, or the name of a shipped model) with --set applied.
 Reader read(const Options& o);
 // The form asked for: --form, else [simulate] form, else Routh's; throws if it does not apply.

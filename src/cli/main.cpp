@@ -76,7 +76,8 @@ int run(int argc, char** argv) {
     return c;
   };
   const auto parameters = [&](CLI::App* c) {
-    c->add_option("--set", o.set, "NAME=VALUE: another value of a parameter")->type_name("NAME=VALUE");
+    c->add_option("--set", o.set, "NAME=VALUE: another value of a parameter, or of an integer of [index]")->type_name("NAME=VALUE");
+    c->add_option("--case", o.cases, "a scenario of the file, [case.NAME]; several are applied one after the other")->type_name("NAME")->allow_extra_args(false);
   };
   const auto state = [&](CLI::App* c) {
     c->add_option("--t", o.t, "initial time")->type_name("T");

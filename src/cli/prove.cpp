@@ -19,7 +19,7 @@ std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& 
   std::vector<const Formulation*> forms;
   if (o.forms.empty()) {
     for (const Formulation* f : formulations())
-      if (f->obstacle(m).empty()) forms.push_back(f);
+      if (obstacle(*f, m).empty()) forms.push_back(f);
     return forms;
   }
   for (const std::string& name : split(o.forms)) {
@@ -119,7 +119,7 @@ int prove(const Options& o) {
     options.progress = [&](const Formulation& f) { std::fprintf(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name); };
   const Proof p = anholon::prove(m, forms, eliminations, options);
   if (terminal) std::fprintf(stderr, "\r\033[K");
-  const Certificate c = certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, sha256_text(in.source.text));
+  const Certificate c = certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, sha256_text(all_text(in.source)));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SymbolNames names = model.names;
   if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.names;

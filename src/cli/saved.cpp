@@ -14,7 +14,7 @@ struct WordsOption {
   const char* entry;
   std::vector<std::string> Options::*words;
 };
-constexpr WordsOption kWords[] = {{"--set", "set", &Options::set}, {"--q", "q", &Options::q}, {"--qdot", "qdot", &Options::qdot},
+constexpr WordsOption kWords[] = {{"--set", "set", &Options::set}, {"--case", "case", &Options::cases}, {"--q", "q", &Options::q}, {"--qdot", "qdot", &Options::qdot},
                                   {"--qddot", "qddot", &Options::qddot}, {"--qdddot", "qdddot", &Options::qdddot},
                                   {"--lambda", "lambda0", &Options::lambda}, {"--lambdadot", "lambda1", &Options::lambdadot},
                                   {"--eliminate", "eliminate", &Options::eliminate}};
@@ -62,7 +62,7 @@ SavedRun continued(Options& o) {
 
 void same_model(const SavedRun& run, const Reader& in) {
   with_file("the saved run", [&] {
-    if (run.one("model") != sha256_text(in.source.text))
+    if (run.one("model") != sha256_text(all_text(in.source)))
       throw UsageError{"error: the saved run is of another model ('" + run.one("title") + "'), or " + in.source.name +
                        " has changed since\nhint: only the same model goes on with the same bits; to start from a state, give it in [initial]\n"};
   });
@@ -76,7 +76,7 @@ void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formu
   run.set("numbers", {o.numbers});
   run.set("digits", {std::to_string(o.digits)});
   run.set("order", {std::to_string(o.order)});
-  run.set("model", {sha256_text(in.source.text)});
+  run.set("model", {sha256_text(all_text(in.source))});
   run.set("title", {in.model->title});
 }
 

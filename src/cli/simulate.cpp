@@ -142,6 +142,7 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   if (s.precision != Precision::real) refuse("computes in double", o.digits > 16 ? "--digits" : "--numbers");
   if (!o.save.empty() || s.resume) refuse("cannot go on with the same bits", o.save.empty() ? "--continue" : "--save");
   if (s.rigorous) refuse("has no dense output that is enclosed", "--rigorous");
+  if (std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return e.ends_step(); })) refuse("does not stop at events", "the events");
   // How many digits of its rows may be trusted, the difference tells.
   if (s.estimate == ErrorEstimate::always) refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
   s.estimate = ErrorEstimate::never;
@@ -200,6 +201,20 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
   } else if (!r.no_error.empty()) {
     j.key("error_estimate").open_object().key("digits").null().key("reason").string(r.no_error).close();
   }
+  if (!s.model->events.empty()) {
+    j.key("events").open_array();
+    for (const EventReport& e : r.events) {
+      j.open_object().key("name").string(e.name).key("t").number(e.t);
+      if (!e.changes.empty()) {
+        j.key("set").open_object();
+        for (const auto& c : e.changes) j.key(c.name).open_object().key("before").number(c.before).key("after").number(c.after).close();
+        j.close().key("correction").number(small(e.correction));
+      }
+      if (e.stop) j.key("stop").boolean(true);
+      j.close();
+    }
+    j.close();
+  }
   write_watched(j, "conserved", r.conserved);
   write_watched(j, "monitors", r.monitors);
   if (!r.warnings.empty()) {
@@ -242,6 +257,19 @@ void second_opinion(const Scenario& s, const SecondOpinion& o) {
                small(o.difference).c_str(), o.of.c_str(), number_text(o.t, 6).c_str(), o.of.c_str());
 }
 
+// "event burn_out at t = 160: stage 1 -> 2, fuel 0 -> 90000"
+void events(const SimulationReport& r) {
+  constexpr std::size_t kMostLines = 20;
+  for (std::size_t k = 0; k < r.events.size() && k < kMostLines; ++k) {
+    const EventReport& e = r.events[k];
+    std::string list;
+    for (const auto& c : e.changes) list += (list.empty() ? ": " : ", ") + c.name + " " + c.before + " -> " + c.after;
+    if (e.correction > 0) list += "; made consistent by " + small(e.correction);
+    std::fprintf(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.c_str(), list.c_str(), e.stop ? ": the motion ends here" : "");
+  }
+  if (r.events.size() > kMostLines) std::fprintf(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
+}
+
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
   for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
@@ -254,6 +282,7 @@ void report(const Scenario& s, const SimulationReport& r) {
                  r.error->means.c_str());
   else if (!r.no_error.empty())
     std::fprintf(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
+  events(r);
   for (const WatchedReport& w : r.conserved)
     std::fprintf(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(), small(w.largest_change).c_str());
   for (const WatchedReport& w : r.monitors)
@@ -319,10 +348,13 @@ int simulate_motion(const Options& o, const SavedRun* resume) {
   if (!o.show.empty()) return show(o, s);
   const Rational last = times(o, s, options);
   if (resume) beyond(*resume, o, last);
+  // What an event sets is not conserved.
+  const bool reset = std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
   options.rigorous = rigorous(o.rigorous);
+  if (options.rigorous && reset) throw UsageError{"error: --rigorous encloses motions without events that set something\nhint: leave out --rigorous\n"};
   accuracy(o, *in.model, options);
   integrator(o, *in.model, options);
-  options.conserved = conserved(*s.mechanics);
+  if (!reset) options.conserved = conserved(*s.mechanics);
   Saver saver(o, in, *s.system.form, options);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);

@@ -10,10 +10,10 @@ namespace anholon {
 static bool is_symbol(Kind k) {
   switch (k) {
     case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass:
-    case Kind::multiplier: case Kind::given: case Kind::quasi:
+    case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
       return true;
     case Kind::number: case Kind::pi: case Kind::sum: case Kind::product: case Kind::function:
-    case Kind::atan2:
+    case Kind::atan2: case Kind::select: case Kind::lookup:
       return false;
   }
   return false;
@@ -58,8 +58,18 @@ static void local_partials(Graph& g, NodeId id, Column& out) {
       out.push_back(-(y / r2));
       return;
     }
+    case Kind::lookup:  // constant between its knots
+      out.push_back(g.zero());
+      return;
+    case Kind::select: {
+      const Expr s{&g, terms[0].node};
+      out.push_back(g.zero());
+      out.push_back(select(s, g.one(), g.zero()));
+      out.push_back(select(s, g.zero(), g.one()));
+      return;
+    }
     case Kind::number: case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter:
-    case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi:
+    case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
       return;
   }
 }
@@ -71,8 +81,10 @@ static Expr rate_of_symbol(Graph& g, const Node& n) {
     case Kind::multiplier: return g.multiplier(n.index, n.order + 1U);
     case Kind::given: return g.given(n.index, n.order + 1U);
     case Kind::quasi: return g.quasi(n.index, n.order + 1U);
+    case Kind::state: return g.state(n.index, n.order + 1U);
+    case Kind::control: return g.control(n.index, n.order + 1U);
     case Kind::number: case Kind::pi: case Kind::parameter: case Kind::mass: case Kind::sum:
-    case Kind::product: case Kind::function: case Kind::atan2:
+    case Kind::product: case Kind::function: case Kind::atan2: case Kind::select: case Kind::lookup:
       return g.zero();
   }
   return g.zero();
@@ -108,6 +120,11 @@ Column total_derivative(std::span<const Expr> es) {
                                       [&](const Term& t) { return is_zero(g.rate(t.node)); });
     if (constant) {
       g.set_rate(id, g.zero().id);
+      continue;
+    }
+    if (n.kind == Kind::select) {
+      // Branch by branch: what has no value beside its branch must not enter.
+      g.set_rate(id, select(Expr{&g, terms[0].node}, g.rate(terms[1].node), g.rate(terms[2].node)).id);
       continue;
     }
     if (n.kind == Kind::sum) {
@@ -157,10 +174,20 @@ Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds,
     if (is_zero(bar)) continue;
     const Node n = g.node(id);
     if (n.view_count == 0) {
-      found[id] = bar;
+      const auto [it_found, fresh] = found.try_emplace(id, bar);
+      if (!fresh) it_found->second = it_found->second + bar;
       continue;
     }
     const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
+    if (n.kind == Kind::select) {
+      const Column a = gradient(Expr{&g, terms[1].node}, wanted), b = gradient(Expr{&g, terms[2].node}, wanted);
+      for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const Expr part = bar * select(Expr{&g, terms[0].node}, a[i], b[i]);
+        const auto [it_found, fresh] = found.try_emplace(wanted[i].id, part);
+        if (!fresh) it_found->second = it_found->second + part;
+      }
+      continue;
+    }
     if (n.kind == Kind::sum) {
       for (const Term& t : terms)
         if (depends[t.node]) adjoint[t.node].push_back({g.rational(t.weight), bar});
@@ -223,8 +250,14 @@ static Column rebuild(std::span<const Expr> es, const std::function<Expr(NodeId)
       case Kind::atan2:
         image[id] = g.arctangent2(image[terms[0].node], image[terms[1].node]);
         break;
+      case Kind::select:
+        image[id] = g.select(image[terms[0].node], image[terms[1].node], image[terms[2].node]);
+        break;
+      case Kind::lookup:
+        image[id] = g.lookup(n.index, image[terms[0].node]);
+        break;
       case Kind::number: case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter:
-      case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi:
+      case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
         break;
     }
   }

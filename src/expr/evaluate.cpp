@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "expr/formula.h"
 #include "expr/normal.h"
+#include "expr/table.h"
 
 namespace anholon {
 
@@ -96,6 +97,13 @@ Value differentiate(Value v, int times, Span at) {
                           std::to_string(kHighestDerivative) + " are read");
   if (v.index() == 3)
     throw Failure(at, "derivative of a body", "a body is not a point: write B.center, or angvel(B)");
+  const auto rough = [&](Expr e) {
+    if (const auto name = too_rough(e, times))
+      throw Failure(at, "a derivative of order " + std::to_string(times) + " of the table '" + *name + "', which its fit does not have",
+                    "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
+  };
+  if (const Expr* e = number(v)) rough(*e);
+  else if (const Vector* a = vector(v)) rough(a->x), rough(a->y), rough(a->z);
   for (; times > 0; --times) {
     if (Expr* e = number(v)) v = total_derivative(*e);
     else if (Vector* a = vector(v)) v = total_derivative(*a);
@@ -187,9 +195,51 @@ Rotation matrix(const Syntax& call, Names& names) {
   return rotation_from_axes(columns[0], columns[1], columns[2]);
 }
 
+// a where s >= 0, else b: of two numbers or two vectors.
+Value branch(Expr s, Value a, Value b, Span at) {
+  lift_zero(a, b);
+  if (number(a) && number(b)) return select(s, *number(a), *number(b));
+  if (vector(a) && vector(b)) {
+    const Vector &u = *vector(a), &v = *vector(b);
+    const Expr x = select(s, u.x, v.x), y = select(s, u.y, v.y), z = select(s, u.z, v.z);
+    return Vector{x, y, z};
+  }
+  mismatch("a choice", a, b, at);
+}
+
+// piecewise(c1, v1, c2, v2, …, else): the value of the first condition that holds.
+Value piecewise(const Syntax& call, Names& names) {
+  const std::size_t n = call.args.size();
+  if (n < 3 || n % 2 == 0)
+    throw Failure(call.span, "piecewise takes conditions with their values, and a value for all else", "piecewise(x > 1, 1, x > 0, x, 0)");
+  Value value = evaluate(call.args[n - 1], names);
+  for (std::size_t k = n - 1; k >= 2; k -= 2) {
+    const Syntax& c = call.args[k - 2];
+    if (c.op != Syntax::Op::compare) throw Failure(c.span, "a condition is expected here", "such as x > 0");
+    const Expr left = evaluate_number(c.args[0], names), right = evaluate_number(c.args[1], names);
+    Value then = evaluate(call.args[k - 1], names);
+    // x >= 0 and its opposite x < 0; x <= 0 and its opposite x > 0.
+    const bool greater = c.text[0] == '>', or_equal = c.text.size() > 1;
+    const Expr gap = greater == or_equal ? left - right : right - left;
+    value = or_equal ? branch(gap, then, value, c.span) : branch(gap, value, then, c.span);
+  }
+  return value;
+}
+
+// choose(k, v1, v2, …): v_k, k a mode or another whole number; the first below 1, the last above their number.
+Value choose(const Arguments& in) {
+  const std::size_t n = in.values.size();
+  if (n < 2) throw Failure(in.call.span, "choose takes a number and the values to choose from", "choose(stage, 2500, 270, 0)");
+  const Expr k = in.number(0);
+  Value value = in.values[n - 1];
+  for (std::size_t i = n - 1; i-- > 1;)
+    value = branch(Expr(in.number(0).graph->number(Rational(2 * static_cast<int>(i) + 1, 2))) - k, in.values[i], value, in.call.args[i].span);
+  return value;
+}
+
 const std::vector<std::string>& built_in() {
   static const std::vector<std::string> list = [] {
-    std::vector<std::string> l = {"sqrt", "atan2", "min", "max", "dot", "cross", "norm", "norm2", "unit",
+    std::vector<std::string> l = {"sqrt", "atan2", "min", "max", "piecewise", "choose", "dot", "cross", "norm", "norm2", "unit",
                                   "D", "rotx", "roty", "rotz", "rot", "quat", "euler", "matrix"};
 #define ROW(name, derivative, parity, latex, domain) l.push_back(#name);
 #include "expr/elementary.def"
@@ -202,8 +252,9 @@ const std::vector<std::string>& built_in() {
 Value call(const Syntax& s, Names& names) {
   Graph& g = names.graph();
   const std::string& f = s.text;
-  for (const char* later : {"piecewise", "choose", "sum", "prod"})
-    if (f == later) throw Failure(s.span, f + "(…) is not read yet");
+  if (f == "piecewise") return piecewise(s, names);
+  if (f == "sum" || f == "prod")  // over a declared range it is written out by the parser
+    throw Failure(s.span, f + " runs over a range of [index]", f + "(k, …) with k = \"1..n\" under [index]");
   if (f == "matrix") return matrix(s, names);
   std::vector<Value> values;
   if (f == "euler") {
@@ -234,9 +285,10 @@ Value call(const Syntax& s, Names& names) {
   if (f == "atan2") return in.expect(2), atan2(in.number(0), in.number(1));
   if (f == "min" || f == "max") {
     in.expect(2);
-    const Expr a = in.number(0), b = in.number(1), gap = abs(a - b);
-    return Rational(1, 2) * (f == "max" ? a + b + gap : a + b - gap);
+    const Expr a = in.number(0), b = in.number(1);
+    return f == "max" ? select(a - b, a, b) : select(b - a, a, b);
   }
+  if (f == "choose") return choose(in);
   if (f == "dot") return in.expect(2), dot(in.vector(0), in.vector(1));
   if (f == "cross") return in.expect(2), cross(in.vector(0), in.vector(1));
   if (f == "norm2") return in.expect(1), dot(in.vector(0), in.vector(0));
@@ -281,14 +333,12 @@ static Value value_of(const Syntax& s, Names& names) {
     case Syntax::Op::name: return names.name(s.text, s.span);
     case Syntax::Op::call: return call(s, names);
     case Syntax::Op::member: return names.member(evaluate(s.args[0], names), s);
-    case Syntax::Op::index:
-      throw Failure(s.span, "families of elements (names with [ ]) are not read yet",
-                    "write the members out under names of their own");
     case Syntax::Op::array: {
       if (s.args.size() != 3) throw Failure(s.span, "a vector has three components");
       return Vector{evaluate_number(s.args[0], names), evaluate_number(s.args[1], names),
                     evaluate_number(s.args[2], names)};
     }
+    case Syntax::Op::compare: throw Failure(s.span, "a condition stands in piecewise only", "piecewise(x > 0, x, 0)");
     case Syntax::Op::negate: {
       Value v = evaluate(s.args[0], names);
       if (Expr* e = number(v)) return -*e;
@@ -316,6 +366,18 @@ static Value value_of(const Syntax& s, Names& names) {
         }
         return g.sum(parts);
       }
+      if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 1; })) {
+        Vector total;
+        for (int axis = 0; axis < 3; ++axis) {
+          std::vector<std::pair<Rational, Expr>> parts;
+          for (std::size_t i = 0; i < values.size(); ++i) {
+            const bool minus = i > 0 && s.operators[i - 1].op == Syntax::Op::subtract;
+            parts.push_back({minus ? -1 : 1, std::get<Vector>(values[i])[axis]});
+          }
+          total[axis] = g.sum(parts);
+        }
+        return total;
+      }
       Value total = values[0];
       for (std::size_t i = 1; i < values.size(); ++i)
         total = add(total, values[i], s.operators[i - 1].op == Syntax::Op::subtract, s.operators[i - 1].span);
@@ -331,6 +393,8 @@ static Value value_of(const Syntax& s, Names& names) {
       }
       return product;
     }
+    case Syntax::Op::index: case Syntax::Op::apply:
+      break;  // replaced by the parser
     case Syntax::Op::subtract: case Syntax::Op::divide: case Syntax::Op::dot: case Syntax::Op::cross:
       break;  // only inside `operators`
   }

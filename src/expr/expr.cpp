@@ -378,6 +378,31 @@ Expr Graph::arctangent2(Expr y, Expr x) {
   return {this, intern(Node{Kind::atan2}, operands, {})};
 }
 
+Expr Graph::select(Expr s, Expr a, Expr b) {
+  if (a == b) return a;
+  if (is_number(s.id)) return value(s.id) >= 0 ? a : b;
+  const Term operands[] = {{0, s.id}, {0, a.id}, {0, b.id}};
+  return {this, intern(Node{Kind::select}, operands, {})};
+}
+
+Expr Graph::lookup(std::uint32_t f, Expr x) {
+  const StepFunction& table = step_functions_[f];
+  if (std::all_of(table.values.begin(), table.values.end(), [&](const Rational& v) { return v == table.values[0]; }))
+    return number(table.values[0]);
+  if (is_number(x.id)) {
+    const auto above = std::upper_bound(table.knots.begin(), table.knots.end(), value(x.id));
+    return number(table.values[static_cast<std::size_t>(above - table.knots.begin())]);
+  }
+  const Term operand[] = {{0, x.id}};
+  return {this, intern(Node{Kind::lookup, 0, f}, operand, {})};
+}
+
+std::uint32_t Graph::add_step_function(StepFunction f) {
+  ANHOLON_ASSERT(f.values.size() == f.knots.size() + 1);
+  step_functions_.push_back(std::move(f));
+  return static_cast<std::uint32_t>(step_functions_.size() - 1);
+}
+
 bool is_zero(Expr e) { return e.graph->is_number(e.id) && e.graph->value(e.id) == 0; }
 bool is_number(Expr e) { return e.graph->is_number(e.id); }
 const Rational& number_value(Expr e) { return e.graph->value(e.id); }
@@ -424,6 +449,7 @@ Expr sum(std::span<const Expr> terms) {
 #include "expr/elementary.def"
 #undef ROW
 
+Expr select(Expr s, Expr a, Expr b) { return s.graph->select(s, a, b); }
 Expr atan2(Expr y, Expr x) { return y.graph->arctangent2(y, x); }
 
 std::vector<NodeId> reachable(std::span<const Expr> roots) {

@@ -5,7 +5,8 @@
 //   sums      c0 + c1 x1 + c2 x2 + …   exact rational coefficients, flattened, sorted by id
 //   products  x1^r1 x2^r2 …            exact rational exponents, flattened, sorted by id
 //   f(x)                               one of elementary.def; atan2(y, x)
-//   leaves    number, pi, and symbols  t, q_a^(k), parameters, frozen masses mu_i, lambda_r^(k), u_a^(k)
+//   (s >= 0 ? a : b), step functions   what goes on as something else at a point (a kink)
+//   leaves    number, pi, and symbols  t, q_a^(k), parameters, frozen masses mu_i, lambda_r^(k), u_a^(k), z_i^(k)
 //
 // Invariants
 //   (1) Operands of a node have smaller ids: a loop over ascending ids is a topological order, so
@@ -44,6 +45,20 @@ enum class Kind : std::uint8_t {
   product,
   function,    // elementary function `index` of one operand
   atan2,       // two operands (y, x)
+  state,       // a state z_index^(order) that the user declared, with a rate of its own
+  control,     // an input u_index^(order): known only when the system is made
+  select,      // three operands (s, a, b): a where s >= 0, else b
+  lookup,      // step function `index` of one operand
+};
+
+// Constant between its knots: values[k] where k knots are at or below the argument. Tables are polynomials between knots,
+// whose coefficients are such functions.
+struct StepFunction {
+  std::string name;
+  std::vector<Rational> knots, values;  // ascending; values.size() = knots.size() + 1
+  // Of a table: the power of the argument whose coefficient this is (-1: where the polynomial is measured from), and how many
+  // derivatives of the table are continuous (-1: the table itself jumps).
+  int power = 0, smooth = 100;
 };
 
 enum class Function : std::uint8_t {
@@ -110,12 +125,18 @@ class Graph {
   Expr multiplier(std::uint32_t constraint, std::uint32_t order);
   Expr given(std::uint32_t function, std::uint32_t order);
   Expr quasi(std::uint32_t index, std::uint32_t order);
+  Expr state(std::uint32_t index, std::uint32_t order) { return leaf(Kind::state, index, order); }
+  Expr control(std::uint32_t index, std::uint32_t order) { return leaf(Kind::control, index, order); }
 
   // Canonical constructors.
   Expr sum(std::span<const std::pair<Rational, Expr>> terms);
   Expr product(std::span<const std::pair<Expr, Rational>> factors);
   Expr apply(Function f, Expr argument);
   Expr arctangent2(Expr y, Expr x);
+  Expr select(Expr s, Expr a, Expr b);
+  Expr lookup(std::uint32_t step_function, Expr argument);
+  std::uint32_t add_step_function(StepFunction f);
+  const StepFunction& step_function(std::uint32_t index) const { return step_functions_[index]; }
 
   // The total derivative of a node, kept once it is known: expressions that share parts (the links of a chain) are
   // differentiated once. A handle with graph == nullptr while it is not.
@@ -156,6 +177,7 @@ class Graph {
   std::unordered_multimap<std::uint64_t, NodeId> index_;
   std::unordered_map<std::string, std::uint32_t> rational_index_;
   std::vector<NodeId> rates_;
+  std::vector<StepFunction> step_functions_;
   std::uint64_t work_ = 0, most_work_ = ~std::uint64_t{0};
   NodeId zero_ = 0, one_ = 0;
 };
@@ -183,6 +205,7 @@ Expr sum(std::span<const Expr> terms);  // all at once
 #include "expr/elementary.def"
 #undef ROW
 Expr atan2(Expr y, Expr x);
+Expr select(Expr s, Expr a, Expr b);  // a where s >= 0, else b
 
 // All nodes on which `roots` depend, by the short way, ascending (operands before users).
 std::vector<NodeId> reachable(std::span<const Expr> roots);

@@ -5,6 +5,7 @@
 // one or more `=` in an equation. Names are letters, digits and _; a Greek letter is the same name
 // as its spelling; superscript 2 3, ·, ×, − and other dashes are accepted. `#` starts a comment.
 #pragma once
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -14,6 +15,8 @@
 #include "expr/diff.h"
 
 namespace anholon {
+
+struct Indices;  // expr/indices.h
 
 // Maps an offset (in characters) of a formula to its place in the file: the text of a TOML string
 // may start anywhere, hold escapes or run over several lines.
@@ -27,20 +30,27 @@ class FormulaText {
   const std::string& text() const { return text_; }
   Span span(std::size_t offset, std::size_t length) const;  // in characters
   Span whole() const;
+  // What the letters of [index] mean in it; nothing where there are none.
+  const std::shared_ptr<const Indices>& indices() const { return indices_; }
+  void set_file(std::uint32_t file);
+  void set_indices(std::shared_ptr<const Indices> indices) { indices_ = std::move(indices); }
 
  private:
   std::string text_;
+  std::shared_ptr<const Indices> indices_;
   Span start_;
   std::vector<Span> places_;  // per character; empty: start_ plus offset
 };
 
 struct Syntax {
   enum class Op : std::uint8_t {
-    number, name, call, member, index, array, negate, power, prime,
+    number, name, call, member, array, negate, power, prime,
+    index, apply,  // P[i-1], and T[i](a, b) (args[0] is T[i]): in a parsed formula names and calls have taken their place
     add,       // args joined by operators add, subtract
     subtract,
     multiply,  // args joined by operators multiply, divide, dot, cross
     divide,
+    compare,   // one of > < >= <= (in text) between two: a condition of piecewise
     dot, cross,  // the signs · and ×: of two vectors these products, of numbers the ordinary one
   };
   struct Operator {
@@ -58,6 +68,7 @@ struct Syntax {
 // Parses one formula; the sides of an equation with parse_equation. Throws Failure.
 Syntax parse_formula(const FormulaText& text);
 std::vector<Syntax> parse_equation(const FormulaText& text);  // one side or two
+std::vector<Syntax> parse_plain(const FormulaText& text);     // the same, as written: indices are not put in
 
 // The formula again, with brackets where they are needed.
 std::string print(const Syntax& s);

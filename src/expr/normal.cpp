@@ -110,7 +110,7 @@ class Normalizer {
     seen[root_.id] = true;
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const Node& n = g_.node(ids_[i]);
-      if (n.kind == Kind::function || n.kind == Kind::atan2 || whole(ids_[i])) continue;
+      if (n.kind == Kind::function || n.kind == Kind::atan2 || n.kind == Kind::select || n.kind == Kind::lookup || whole(ids_[i])) continue;
       for (const Term& t : g_.summands(ids_[i]))
         if (!seen[t.node]) seen[t.node] = true, ids_.push_back(t.node);
     }
@@ -279,6 +279,7 @@ class Normalizer {
         return plain(generator(generator_.at(id)));
       case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass:
       case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::atan2:
+      case Kind::state: case Kind::control: case Kind::select: case Kind::lookup:
         return plain(generator(generator_.at(id)));
     }
     return plain(constant(0));

@@ -2,7 +2,7 @@
 #include <cctype>
 
 #include "base/utf8.h"
-#include "expr/formula.h"
+#include "expr/indices.h"
 
 namespace anholon {
 
@@ -34,7 +34,7 @@ const char* greek_name(std::string_view letter) {
 
 enum class Token : std::uint8_t {
   number, name, plus, minus, times, over, caret, prime, superscript, open, close, left, right, comma,
-  point, equals, middle_dot, cross_sign, end,
+  point, equals, middle_dot, cross_sign, compare, end,
 };
 
 struct Lexeme {
@@ -57,6 +57,9 @@ class Parser {
       throw Failure(source.whole(), "a formula of more than " + std::to_string(kLongestFormula) + " bytes");
     lex();
   }
+
+  // In the formula stand brackets after names: P[2].
+  bool indexed() const { return indexed_; }
 
   Syntax formula() {
     Syntax s = expression(0);
@@ -149,6 +152,9 @@ class Parser {
         else if (c == "]") sign(Token::right);
         else if (c == ",") sign(Token::comma);
         else if (c == ".") sign(Token::point);
+        else if ((c == ">" || c == "<") && i + 1 < s.size() && s[i + 1] == '=') push(Token::compare, 2, 2, std::string(c) + "=");
+        else if (c == ">" || c == "<") sign(Token::compare);
+        else if (c == "≥" || c == "≤") push(Token::compare, width, 1, c == "≥" ? ">=" : "<=");
         else if (c == "=" && i + 1 < s.size() && s[i + 1] == '=') push(Token::equals, 2, 2, "==");
         else if (c == "=") sign(Token::equals);
         else {
@@ -249,6 +255,13 @@ class Parser {
         if (peek().token == Token::left) {
           Syntax s = make(Syntax::Op::index, at, arguments(Token::right, "]"));
           s.end = lexemes_[at_ - 1].offset + 1;
+          if (peek().token == Token::open) {
+            std::vector<Syntax> all = one(std::move(s));
+            for (Syntax& a : arguments(Token::close, ")")) all.push_back(std::move(a));
+            s = make(Syntax::Op::apply, at, std::move(all));
+            s.end = lexemes_[at_ - 1].offset + 1;
+          }
+          indexed_ = true;
           return s;
         }
         return make(Syntax::Op::name, at);
@@ -284,6 +297,10 @@ class Parser {
     }
     for (;;) {
       args.push_back(expression(0));
+      if (peek().token == Token::compare) {
+        const Lexeme sign = next();
+        args.back() = make(Syntax::Op::compare, sign, two(std::move(args.back()), expression(0)));
+      }
       const Lexeme at = next();
       if (at.token == close) return args;
       if (at.token != Token::comma) {
@@ -309,6 +326,10 @@ class Parser {
         const Lexeme member = next();
         if (member.token != Token::name) fail(member, "a member name (x, y, z or center) is expected after '.'");
         s = make(Syntax::Op::member, member, one(std::move(s)));
+        if (peek().token == Token::left) {  // lambda.axle[2]
+          for (Syntax& a : arguments(Token::right, "]")) s.args.push_back(std::move(a));
+          indexed_ = true;
+        }
       } else {
         return s;
       }
@@ -318,6 +339,8 @@ class Parser {
   void finish() {
     const Lexeme& at = peek();
     if (at.token == Token::end) return;
+    if (at.token == Token::compare)
+      fail(at, "'" + at.text + "' stands in a condition of piecewise only", "piecewise(x > 0, x, 0)");
     if (at.token == Token::close || at.token == Token::right) fail(at, "'" + at.text + "' closes nothing");
     const Lexeme& before = lexemes_[at_ - 1];
     if (at.token == Token::name || at.token == Token::number || at.token == Token::open) {
@@ -338,6 +361,7 @@ class Parser {
   std::vector<Lexeme> lexemes_;
   std::size_t at_ = 0;
   int depth_ = 0;
+  bool indexed_ = false;
 };
 
 }  // namespace
@@ -346,6 +370,11 @@ FormulaText::FormulaText(std::string text, Span start) : text_(std::move(text)),
 FormulaText::FormulaText(std::string text, std::vector<Span> places)
     : text_(std::move(text)), places_(std::move(places)) {
   if (!places_.empty()) start_ = places_[0];
+}
+
+void FormulaText::set_file(std::uint32_t file) {
+  start_.file = file;
+  for (Span& s : places_) s.file = file;
 }
 
 Span FormulaText::span(std::size_t offset, std::size_t length) const {
@@ -368,8 +397,21 @@ Span FormulaText::whole() const {
   return span(0, n == 0 ? 1 : n);
 }
 
-Syntax parse_formula(const FormulaText& text) { return Parser(text).formula(); }
-std::vector<Syntax> parse_equation(const FormulaText& text) { return Parser(text).equation(); }
+Syntax parse_formula(const FormulaText& text) {
+  Parser parser(text);
+  Syntax s = parser.formula();
+  return parser.indexed() || text.indices() ? with_indices(std::move(s), text.indices().get()) : s;
+}
+
+std::vector<Syntax> parse_equation(const FormulaText& text) {
+  Parser parser(text);
+  std::vector<Syntax> sides = parser.equation();
+  if (parser.indexed() || text.indices())
+    for (Syntax& s : sides) s = with_indices(std::move(s), text.indices().get());
+  return sides;
+}
+
+std::vector<Syntax> parse_plain(const FormulaText& text) { return Parser(text).equation(); }
 
 std::string normal_name(std::string_view name) {
   std::string out;

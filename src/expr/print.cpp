@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <optional>
 
 namespace anholon {
 
@@ -50,6 +51,13 @@ std::string xml_escape(const std::string& text) {
 }
 
 std::string row(const std::string& mathml) { return "<mrow>" + mathml + "</mrow>"; }
+
+// "th[3]" is th with the index 3, "rolling[2].x" rolling.x with the index 2; nothing where there is no bracket.
+std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name) {
+  const std::size_t open = name.find('['), close = name.find(']');
+  if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
+  return std::pair{name.substr(0, open) + name.substr(close + 1), name.substr(open + 1, close - open - 1)};
+}
 
 std::string written_name(const std::string& name, Format format) {
   switch (format) {
@@ -120,7 +128,8 @@ class Printer {
       case Kind::given: case Kind::time: r.kind = 5; break;
       case Kind::jet: r = {6, n.order}; break;
       case Kind::quasi: r = {6, static_cast<int>(n.order) + 1}; break;
-      case Kind::function: case Kind::atan2: r.kind = 7; break;
+      case Kind::state: case Kind::control: r = {5, static_cast<int>(n.order)}; break;
+      case Kind::function: case Kind::atan2: case Kind::select: case Kind::lookup: r.kind = 7; break;
       case Kind::sum: case Kind::product: r.kind = 8; break;
     }
     r.constant = r.kind <= 2 || r.kind >= 7;
@@ -131,7 +140,7 @@ class Printer {
         if (o->second.order == r.order) r.inside &= o->second.inside;
         r.constant &= o->second.constant;
       }
-    if (n.kind == Kind::sum || n.kind == Kind::function || n.kind == Kind::atan2) r.inside = true;
+    if (n.kind == Kind::sum || n.kind == Kind::function || n.kind == Kind::atan2 || n.kind == Kind::select || n.kind == Kind::lookup) r.inside = true;
     if (n.kind == Kind::sum && r.constant) r.kind = 3;
     return rank_[id] = r;
   }
@@ -159,9 +168,12 @@ class Printer {
       case Kind::mass: return {symbol(names_.masses, n, "mu")};
       case Kind::given: return {symbol(names_.given, n, "f")};
       case Kind::quasi: return {symbol(names_.quasi, n, "u")};
+      case Kind::state: return {symbol(names_.states, n, "z")};
+      case Kind::control: return {symbol(names_.controls, n, "u")};
       case Kind::multiplier: {
         const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
-        const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(base) + "}}"
+        const auto indexed = indexed_name(base);
+        const std::string name = latex()    ? "\\lambda_{\\mathrm{" + latex_escape(indexed ? indexed->first : base) + "}" + (indexed ? "," + indexed->second : "") + "}"
                                  : mathml() ? "<msub><mi>λ</mi><mtext>" + xml_escape(base) + "</mtext></msub>"
                                             : "lambda." + base;
         return {derivative_name(name, n.order, format_)};
@@ -174,6 +186,11 @@ class Printer {
         const std::string &y = done_[g_.terms(id)[0].node].text, &x = done_[g_.terms(id)[1].node].text;
         return {call("atan2", "\\operatorname{atan2}", y + (mathml() ? "<mo>,</mo>" : ", ") + x)};
       }
+      case Kind::select: return branches(id);
+      case Kind::lookup: {
+        const std::string& name = g_.step_function(n.index).name;
+        return {call(name, "\\operatorname{" + latex_escape(name) + "}", done_[g_.terms(id)[0].node].text)};
+      }
       case Kind::sum: return sum(id);
       case Kind::product: return product(id);
     }
@@ -185,7 +202,18 @@ class Printer {
     return latex() ? "\\left(" + s + "\\right)" : "(" + s + ")";
   }
 
-  std::string call(const char* name, const char* latex_text, const std::string& arguments) const {
+  // piecewise(s >= 0, a, b)
+  Printed branches(NodeId id) const {
+    const std::span<const Term> t = g_.terms(id);
+    const std::string &s = done_.at(t[0].node).text, &a = done_.at(t[1].node).text, &b = done_.at(t[2].node).text;
+    if (latex()) return {cut("\\begin{cases} " + a + " & " + s + " \\ge 0 \\\\ " + b + " & \\text{else} \\end{cases}"), kSum};
+    if (mathml())
+      return {cut(row("<mo>{</mo><mtable><mtr><mtd>" + row(a) + "</mtd><mtd>" + row(s + "<mo>≥</mo><mn>0</mn>") + "</mtd></mtr><mtr><mtd>" +
+                      row(b) + "</mtd><mtd><mtext>else</mtext></mtd></mtr></mtable>")), kSum};
+    return {cut("piecewise(" + s + " >= 0, " + a + ", " + b + ")")};
+  }
+
+  std::string call(const std::string& name, const std::string& latex_text, const std::string& arguments) const {
     if (mathml()) return cut("<mi>" + function_name(latex_text) + "</mi><mo>&#x2061;</mo>" + brackets(arguments));
     return cut((latex() ? latex_text : name) + brackets(arguments));
   }
@@ -331,6 +359,13 @@ class Printer {
 }  // namespace
 
 std::string latex_name(const std::string& name) {
+  if (const auto indexed = indexed_name(name)) {
+    const auto& [base, index] = *indexed;
+    const std::string written = latex_name(base);
+    // One subscript holds what the name had and the index: x_{1,3}.
+    if (written.find("_{") != std::string::npos && written.back() == '}') return written.substr(0, written.size() - 1) + "," + index + "}";
+    return written + "_{" + index + "}";
+  }
   if (is_greek(name)) return "\\" + name;
   if (name.size() == 1) return name;
   std::size_t digits = name.size();
@@ -344,6 +379,19 @@ std::string latex_name(const std::string& name) {
 }
 
 std::string mathml_name(const std::string& name) {
+  if (const auto indexed = indexed_name(name)) {
+    const auto& [base, index] = *indexed;
+    std::string own = "<mn>";
+    for (const char c : index) own += c == ',' ? std::string("</mn><mo>,</mo><mn>") : std::string(1, c);
+    own += "</mn>";
+    const std::string written = mathml_name(base), open = "<msub>", close = "</msub>";
+    if (written.rfind(open, 0) != 0) return open + written + (index.find(',') == std::string::npos ? own : row(own)) + close;
+    // Its second child, the subscript, goes before the index.
+    const std::size_t underscore = base.find('_'), digit = base.find_last_not_of("0123456789") + 1;
+    const std::string root = mathml_name(base.substr(0, underscore != std::string::npos ? underscore : digit));
+    const std::size_t start = open.size() + root.size();
+    return open + root + row(written.substr(start, written.size() - start - close.size()) + "<mo>,</mo>" + own) + close;
+  }
   const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
   if (greek != kGreekNames.end()) return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
   if (name.size() == 1) return "<mi>" + xml_escape(name) + "</mi>";

@@ -22,7 +22,7 @@ struct SymbolNames {
   std::vector<std::string> coordinates, parameters, masses, multipliers, given;
   // Names given to subexpressions ([define]): node -> name.
   std::unordered_map<NodeId, std::string> defined;
-  std::vector<std::string> quasi;
+  std::vector<std::string> quasi, states, controls;
 };
 
 std::string print(Expr e, const SymbolNames& names, Format format);

@@ -45,7 +45,9 @@ std::string print(const Syntax& s) {
   switch (s.op) {
     case Syntax::Op::number: case Syntax::Op::name: return s.text;
     case Syntax::Op::call: return s.text + list(s.args, "(", ")");
+    case Syntax::Op::compare: return print(s.args[0]) + " " + s.text + " " + print(s.args[1]);
     case Syntax::Op::index: return s.text + list(s.args, "[", "]");
+    case Syntax::Op::apply: return print(s.args[0]) + list({s.args.begin() + 1, s.args.end()}, "(", ")");
     case Syntax::Op::array: return list(s.args, "[", "]");
     case Syntax::Op::member: return bracketed(s.args[0], kPostfix) + "." + s.text;
     case Syntax::Op::prime: return bracketed(s.args[0], kPostfix) + "'";

@@ -46,6 +46,15 @@ std::string first_order_only(const Mechanics& M) {
   return {};
 }
 
+std::string obstacle(const Formulation& form, const Mechanics& M) {
+  if (form.unknowns != Unknowns::multipliers)
+    for (const Constraint& c : M.model->constraints)
+      if (c.by)
+        return "the constraint '" + c.name + "' is kept by the input '" + M.model->controls[*c.by].name +
+               "', not by an ideal reaction; this form eliminates ideal reactions";
+  return form.obstacle(M);
+}
+
 const Formulation* find_formulation(const std::string& name) {
   for (const Formulation* f : formulations())
     if (name == f->name) return f;

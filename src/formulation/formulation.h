@@ -65,6 +65,10 @@ std::string no_obstacle(const Mechanics&);
 // For the forms of first order: holonomic constraints are lifted to it, higher ones cannot be.
 std::string first_order_only(const Mechanics& M);
 
+// Why a form does not apply to a model: its own reason, or that a constraint is kept by an input, which no elimination of ideal
+// reactions knows. Empty if it applies.
+std::string obstacle(const Formulation& form, const Mechanics& M);
+
 // All forms, sorted by name; made by the build from the files in forms/.
 const std::vector<const Formulation*>& formulations();
 const Formulation* find_formulation(const std::string& name);

@@ -2,65 +2,90 @@
 
 #include <algorithm>
 
+#include "integrate/crossing.h"
+
 namespace anholon {
 
 namespace {
 
-template <Number N>
-N value_at(const N* c, int degree, const N& x) {
-  N s(0);
-  for (int k = degree; k >= 0; --k) s = s * x + c[k];
-  return s;
-}
+constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
 
 template <Number N>
-N slope_at(const N* c, int degree, const N& x) {
-  N s(0);
-  for (int k = degree; k >= 1; --k) s = s * x + c[k] * N(k);
-  return s;
-}
+class Search {
+ public:
+  Search(const Machine<N>& machine, int degree, const N& h) : machine_(machine), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
+
+  const Kink<N>& run() {
+    const Tape& tape = machine_.tape();
+    for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) look(tape, tape.code[slot], slot);
+    return kink_;
+  }
+
+ private:
+  void look(const Tape& tape, const Instruction& in, std::uint32_t slot) {
+    if (in.constant) return;
+    if (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign))) {
+      const N* c = machine_.series(in.a);
+      if (!(c[0] > N(0)) && !(c[0] < N(0)))
+        kink_.at_start = kink_.at_start || std::any_of(c + 1, c + degree_ + 1, [](const N& x) { return x > N(0) || x < N(0); });
+      else leaves(c, c[0] > N(0));
+    } else if (in.op == Op::select) {
+      if (tape.code[in.first].constant) return;
+      const N* c = machine_.series(in.first);
+      leaves(c, !(c[0] < N(0)));
+    } else if (in.op == Op::lookup) {
+      const N* c = machine_.series(in.a);
+      const auto [below, above] = machine_.knots_around(slot);
+      for (const N* knot : {below, above}) {
+        if (!knot) continue;
+        std::copy(c, c + degree_ + 1, c_.begin());
+        c_[0] -= *knot;
+        leaves(c_.data(), knot == below);
+      }
+    } else if (in.op == Op::power && tape.rationals[in.index].get_den() % 2 == 0) {
+      touches_zero(machine_.series(in.a));
+    }
+  }
+
+  // Where the polynomial leaves the side it is on: p >= 0, or p < 0.
+  void leaves(const N* c, bool not_negative) {
+    turned_.resize(static_cast<std::size_t>(degree_) + 1);
+    for (int k = 0; k <= degree_; ++k) turned_[static_cast<std::size_t>(k)] = not_negative ? c[k] : N(-c[k]);
+    const auto x = first_below<N>(turned_.data(), degree_, h_, N(0));
+    if (!x) return;
+    if (*x == N(0)) kink_.at_start = true;
+    else ahead(*x);
+  }
+
+  // A root goes on as another one where its argument, falling, turns at zero.
+  void touches_zero(const N* c) {
+    if ((c[1] > N(0)) == (h_ > N(0))) return;  // it grows
+    std::vector<N> slope;
+    for (int k = 1; k <= degree_; ++k) slope.push_back(c[1] > N(0) ? N(c[k] * N(k)) : N(-(c[k] * N(k))));
+    const auto x = first_below<N>(slope.data(), degree_ - 1, h_, N(0));
+    if (!x || *x == N(0)) return;
+    N value(0);
+    for (int k = degree_; k >= 0; --k) value = value * *x + c[k];
+    if (!(value > c[0] * N(kTouches))) ahead(*x);
+  }
+
+  void ahead(const N& x) {
+    if (!kink_.ahead || abs(x) < abs(kink_.where)) kink_.where = x;
+    kink_.ahead = true;
+  }
+
+  const Machine<N>& machine_;
+  int degree_;
+  N h_;
+  std::vector<N> c_, turned_;
+  Kink<N> kink_;
+};
 
 }  // namespace
 
 template <Number N>
 Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h) {
-  constexpr int kSamples = 8, kHalvings = 80;
-  constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
-  const Tape& tape = machine.tape();
-  Kink<N> first;
-  for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) {
-    const Instruction& in = tape.code[slot];
-    const bool jump = in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign));
-    const bool root = in.op == Op::power && tape.rationals[in.index].get_den() % 2 == 0;
-    if ((!jump && !root) || tape.code[in.a].constant) continue;
-    const N* c = machine.series(in.a);
-    if (jump && !(c[0] > N(0)) && !(c[0] < N(0))) {
-      first.at_start = first.at_start || std::any_of(c + 1, c + degree + 1, [](const N& x) { return x > N(0) || x < N(0); });
-      continue;
-    }
-    const bool positive = jump ? c[0] > N(0) : c[1] > N(0);
-    if (root && positive == (h > N(0))) continue;  // it grows
-    const auto passed = [&](const N& x) {
-      const N v = jump ? value_at(c, degree, x) : slope_at(c, degree, x);
-      return positive ? !(v > N(0)) : !(v < N(0));
-    };
-    N low(0), high(0);
-    bool found = false;
-    for (int k = 1; k <= kSamples && !found; ++k) {
-      low = high;
-      high = h * N(k) / N(kSamples);
-      found = passed(high);
-    }
-    for (int k = 0; found && k < kHalvings; ++k) {
-      const N middle = (low + high) / N(2);
-      if (middle == low || middle == high) break;
-      (passed(middle) ? high : low) = middle;
-    }
-    if (!found || (root && value_at(c, degree, high) > c[0] * N(kTouches))) continue;
-    if (!first.ahead || abs(high) < abs(first.where)) first.where = high;
-    first.ahead = true;
-  }
-  return first;
+  return Search<N>(machine, degree, h).run();
 }
 
 template Kink<double> first_kink(const Machine<double>&, int, const double&);

@@ -25,6 +25,8 @@ void add_compensated(N& s, N& carry, const N& x) {
 
 // A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other side.
 constexpr int kPastKink = 32;
+// Kinks met so soon after another one are other kinks, until they are too many.
+constexpr int kMostShortKinks = 20;
 
 }  // namespace
 
@@ -54,6 +56,23 @@ Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::ve
 
 template <Number N>
 Outcome Stepper<N>::take_over(const Stepper& other) {
+  adopt(other);
+  return expand(leading_);
+}
+
+template <Number N>
+Outcome Stepper<N>::restart(const std::vector<W>& state) {
+  state_ = state;
+  carry_.assign(state.size(), W(0));
+  events_.restart();
+  fired_.clear();
+  short_kinks_ = 0;
+  return expand(leading_);
+}
+
+template <Number N>
+void Stepper<N>::adopt(const Stepper& other) {
+  events_ = other.events_;
   started_ = other.started_;
   t_ = before_ = other.t_;
   state_ = other.state_;
@@ -68,7 +87,6 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
   smallest_sigma_ = other.smallest_sigma_;
   smallest_sigma_t_ = other.smallest_sigma_t_;
   weakest_ = other.weakest_;
-  return expand(leading_);
 }
 
 template <Number N>
@@ -90,6 +108,7 @@ Outcome Stepper<N>::resume(const StepperState<N>& b) {
   expansion_.set_weakest_direction(b.direction);
   sigma_before_ = b.sigma_before;
   last_step_ = b.last_step;
+  if (!b.sides.empty()) events_.set_sides(b.sides);
   return expand(leading_);
 }
 
@@ -139,7 +158,7 @@ void Stepper<N>::expand_again(const StepperState<N>& last) {
 template <Number N>
 Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   begun_ = {t_, state_, carry_, guess, integrals_, integral_carry_, branch_step_, steps_, worst_constraint_, worst_equation_,
-            first_sigma_, smallest_sigma_, smallest_sigma_t_, weakest_, expansion_.weakest_direction(), sigma_before_, last_step_};
+            first_sigma_, smallest_sigma_, smallest_sigma_t_, weakest_, expansion_.weakest_direction(), sigma_before_, last_step_, events_.sides()};
   ++expansions_;
   convert_all(state_, narrow_state_);
   convert_all(guess, narrow_leading_);
@@ -359,11 +378,14 @@ Outcome Stepper<N>::step(const W& end) {
     const W roundoff = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t_) > abs(h) ? W(abs(t_)) : W(abs(h)));
     const W past = roundoff + W(std::exp(settings_.log_tolerance)) * abs(h);
     const W where = kink.at_start ? W(0) : convert<W>(kink.where);
-    if (!kink.at_start && !(abs(where) > past * W(4)))
-      return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign or norm",
+    short_kinks_ = !kink.at_start && !(abs(where) > past * W(4)) ? short_kinks_ + 1 : 0;
+    if (short_kinks_ > kMostShortKinks)
+      return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
               "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such as tanh(x/0.01) for sign(x)"};
     const W beyond = where + (forward ? past : W(-past));
     if (abs(beyond) < abs(h)) h = beyond, cut = true;
+  } else {
+    short_kinks_ = 0;
   }
   if (const std::optional<W> met = singular_within(h)) {
     // Up to where J is still regular.
@@ -371,6 +393,13 @@ Outcome Stepper<N>::step(const W& end) {
     h = *met * W(kShortOf);
     cut = singular_ahead_ = true;
     if (!(abs(h) > floor)) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+  }
+  fired_.clear();
+  if (!events_.empty()) {
+    N to = convert<N>(h);
+    const N whole = to;
+    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to);
+    if (to != whole) h = convert<W>(to), cut = true, singular_ahead_ = false;
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
   const W reached = last && !cut ? end : convert<W>(convert<N>(W(t_ + h)));

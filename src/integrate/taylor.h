@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "integrate/events.h"
 #include "integrate/regular.h"
 
 namespace anholon {
@@ -34,6 +35,7 @@ struct StepperState {
   std::vector<N> direction;  // of the iteration for sigma
   N sigma_before{0};         // where the last step began
   W last_step{0};            // its length
+  std::vector<int> sides;    // of the series watched for events
 };
 
 // Taylor coefficients are computed in N; the state, the projection on the constraints and the
@@ -52,6 +54,15 @@ class Stepper {
   Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
   // Goes on where another stepper for the same unknowns is, with its sums and counts.
   Outcome take_over(const Stepper& other);
+  // Series to be watched for changes of sign; a step ends where one does that asks for it.
+  void watch(std::vector<WatchedSeries> series) { events_ = EventWatch<N>(std::move(series)); }
+  // What fired in the last step, in order.
+  const std::vector<Fired<N>>& fired() const { return fired_; }
+  // Goes on from another state at the same time (after `adopt`, if another stepper was there): an event has changed it. It is
+  // projected on the constraints by least change.
+  Outcome restart(const std::vector<W>& state);
+  void adopt(const Stepper& other);
+  const std::vector<W>& state() const { return state_; }
   // Where the present expansion was made: the start of the last step, or of the next one if that is expanded already. A step
   // cut short by its end is thus repeated in full by whoever resumes.
   const StepperState<N>& begun() const { return begun_; }
@@ -112,6 +123,9 @@ class Stepper {
   N sigma_{0}, sigma_before_{0};         // where the last two steps began
   W last_step_{0};
   bool singular_ahead_ = false;          // right after the present state
+  int short_kinks_ = 0;                  // steps in a row that were cut by a kink at their very start
+  EventWatch<N> events_{{}};
+  std::vector<Fired<N>> fired_;
   W branch_step_{0};
   W started_{0}, t_{0}, before_{0};
   N horizon_{0};

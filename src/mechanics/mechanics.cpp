@@ -165,6 +165,7 @@ Mechanics mechanics(const Model& model) {
     m.order.push_back(c.order);
     m.lambda.push_back(g.multiplier(static_cast<std::uint32_t>(r), 0));
     m.Phi.push_back(gradient(c.phi, jets(model, static_cast<unsigned>(c.order))));
+    if (c.by) continue;  // kept by a force of its own, not by an ideal reaction
     for (std::size_t a = 0; a < m.q.size(); ++a)
       if (!is_zero(m.Phi[r][a])) m.N[a] += m.lambda[r] * m.Phi[r][a];
   }
@@ -201,13 +202,14 @@ std::vector<Load> reactions(const Mechanics& m) {
 }
 
 // The partial derivative by explicit time, coordinates, velocities and masses held; an unknown given
-// function f(t) is explicit time, too.
+// function f(t), a state and an input are explicit time, too.
 static Expr by_time(Expr e) {
   Graph& g = *e.graph;
   Expr rate = partial(e, g.time());
   for (NodeId id : symbols({&e, 1})) {
     const Node n = g.node(id);
-    if (n.kind == Kind::given) rate += g.given(n.index, n.order + 1U) * partial(e, Expr{&g, id});
+    if (n.kind == Kind::given || n.kind == Kind::state || n.kind == Kind::control)
+      rate += total_derivative(Expr{&g, id}) * partial(e, Expr{&g, id});
   }
   return rate;
 }

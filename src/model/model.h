@@ -25,6 +25,7 @@ struct Parameter {
   Expr value;  // exact, in terms of numbers and other parameters
   std::string doc;
   Span span;
+  bool mode = false;  // [mode]: constant between events, `value` is where it starts
 };
 
 // The observer's frame: moving components of its angular velocity and of the inertial acceleration
@@ -94,6 +95,48 @@ struct Constraint {
   int order = 0;        // highest derivative that truly occurs
   std::string equation; // as written
   Span span;
+  std::optional<std::size_t> by = std::nullopt;  // kept by this input, which takes the place of lambda (servo constraint)
+};
+
+// An unknown function of the user's with z' = rate: propellant, controller, actuator.
+struct StateVariable {
+  std::string name;
+  Expr rate, initial;
+  Span span;
+};
+
+// A control: a formula of anything, held as a symbol of its own while equations are derived. Of a servo constraint it is the
+// multiplier.
+struct Control {
+  std::string name;
+  std::optional<Expr> value;
+  std::optional<std::size_t> constraint = std::nullopt;  // that it keeps
+  Span span;
+};
+
+// A number or vector to be recorded.
+struct OutputQuantity {
+  std::string name, unit, doc;
+  std::vector<Expr> values;  // one, or the three components
+  bool conserved = false;
+  Span span;
+};
+
+// What an event sets: a mode (parameter), a state, a coordinate or one of its derivatives.
+struct Assignment {
+  Expr symbol, value;  // the value by those before
+  Span span;
+};
+
+// The strict change of sign of a formula along the motion.
+struct Event {
+  std::string name;
+  Expr when;
+  int direction = 0;  // 1: up, -1: down
+  std::vector<Assignment> set;
+  bool stop = false;
+  Span span;
+  bool ends_step() const { return stop || !set.empty(); }
 };
 
 // A quasi-velocity u(q, q', …, t); its order is the highest derivative in it.
@@ -108,6 +151,13 @@ struct QuasiVelocity {
 struct Monitor {
   std::string name;
   Expr value;
+  Span span;
+};
+
+// What must stay positive: a table's argument within its knots, where nothing else was said.
+struct Bound {
+  Expr inside;
+  std::string fault;
   Span span;
 };
 
@@ -167,15 +217,26 @@ struct Model {
   std::vector<QuasiVelocity> quasi;
   std::vector<std::size_t> dependent;  // coordinates that the user wants eliminated
   InitialData initial;
-  std::vector<Monitor> monitors;
+  std::vector<StateVariable> states;
+  std::vector<Control> controls;  // [input]
+  std::vector<OutputQuantity> outputs;
+  std::vector<Event> events;
+  std::vector<Bound> bounds;
+  std::vector<Monitor> monitors;  // [monitor], then the numbers of the outputs
   SimulationSettings simulate;
   SymbolNames names;
+  std::vector<std::string> cases;  // scenarios of the file, [case.NAME]
   std::vector<std::string> notes;  // what the reader did on its own: components dropped, …
 };
 
-// mu -> m(t, q, q'): puts the masses in, after which derivatives are no longer frozen.
+// mu -> m(t, q, q'): puts the masses in, after which derivatives are no longer frozen; inputs likewise.
 Column put_masses(const Model& model, std::span<const Expr> es);
 Expr put_masses(const Model& model, Expr e);
+
+// Inputs alone.
+Column put_controls(const Model& model, std::span<const Expr> es);
+// z^(k) -> D^(k-from) of the rate, k >= from >= 1: no derivative of a state beyond `from` - 1 is left.
+Expr put_state_rates(const Model& model, Expr e, unsigned from);
 
 // Coordinates q, q', q'', … as columns of symbols.
 Column jets(const Model& model, unsigned order);

@@ -61,7 +61,8 @@ std::string lines(const std::vector<std::string>& list, const std::string& inden
 
 std::string identifier(const std::string& text, const std::string& otherwise) {
   std::string out;
-  for (char c : text) out += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  for (char c : text)
+    if (c != ']') out += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';  // th[3] is th_3
   if (out.empty() || out.find_first_not_of('_') == std::string::npos) return otherwise;
   // LocalNames that begin with _ belong to the compilers.
   if (!std::isalpha(static_cast<unsigned char>(out[0]))) out = otherwise + (out[0] == '_' ? "" : "_") + out;

@@ -118,6 +118,20 @@ std::vector<Writer::Piece> Writer::sum(NodeId id) {
 
 std::string Writer::call(NodeId id) {
   const Node& n = g_.node(id);
+  const auto choice = [&](const std::string& condition, const std::string& a, const std::string& b) {
+    return language_ == Language::c ? "(" + condition + " ? " + a + " : " + b + ")" : "(" + a + " if " + condition + " else " + b + ")";
+  };
+  if (n.kind == Kind::select) {
+    const std::span<const Term> t = g_.terms(id);
+    return choice(wrapped(text_.at(t[0].node), kSum) + " >= 0", text_.at(t[1].node).s, text_.at(t[2].node).s);
+  }
+  if (n.kind == Kind::lookup) {
+    const StepFunction& f = g_.step_function(n.index);
+    std::string s = number(f.values.back());
+    for (std::size_t k = f.knots.size(); k-- > 0;)
+      s = choice(wrapped(text_.at(g_.terms(id)[0].node), kSum) + " < " + number(f.knots[k]), number(f.values[k]), s);
+    return s;
+  }
   if (n.kind == Kind::atan2)
     return std::string(language_ == Language::c ? "atan2(" : "np.arctan2(") + text_.at(g_.terms(id)[0].node).s + ", " +
            text_.at(g_.terms(id)[1].node).s + ")";
@@ -184,12 +198,12 @@ void Writer::write(NodeId id, Statements& body) {
     case Kind::time: case Kind::jet: case Kind::parameter: case Kind::multiplier:
       text_[id] = {names_.symbol(id), kAtom};
       return;
-    case Kind::mass: case Kind::given: case Kind::quasi:
-      ANHOLON_ASSERT(!"a frozen mass, unknown function or quasi-velocity in a program");
+    case Kind::mass: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
+      ANHOLON_ASSERT(!"a frozen mass, unknown function, quasi-velocity, state or input in a program");
       return;
     case Kind::sum: pieces = sum(id), strength = kSum; break;
     case Kind::product: pieces = product(id), strength = kProduct; break;
-    case Kind::function: case Kind::atan2: pieces = {{'*', call(id)}}; break;
+    case Kind::function: case Kind::atan2: case Kind::select: case Kind::lookup: pieces = {{'*', call(id)}}; break;
   }
   std::size_t length = 0;
   for (const Piece& p : pieces) length += p.s.size() + 3;

@@ -148,6 +148,11 @@ void Expansion<N>::jacobian() {
       continue;
     }
     partials_[k] = machine_.partials(t.slot);
+    if (in.op == Op::select) {
+      // Not the other branch, which may have no value.
+      if (const bool first = partials_[k].a > N(0); first ? t.a : t.b) add(first ? in.a : in.b, N(1));
+      continue;
+    }
     if (t.a) add(in.a, partials_[k].a);
     if (t.b) add(in.b, partials_[k].b);
   }
@@ -173,7 +178,7 @@ Outcome Expansion<N>::prepare() {
 template <Number N>
 Outcome Expansion<N>::singular() const {
   const System& s = *program_->system;
-  const std::size_t n = s.coordinates, constraints = s.size() - n;
+  const std::size_t n = s.coordinates, constraints = s.constraints.size();
   constexpr double kLost = 1e-10;
   Matrix<N> phi(constraints, n);
   for (std::size_t i = 0; i < constraints; ++i)
@@ -373,6 +378,8 @@ void Expansion<N>::add_leading(int stage) {
         if (p.tangent_row[term.slot] != Program::kUntainted && tape.code[term.slot].lead == in.lead)
           addmul(change, machine_.rational(term.coefficient), delta_[term.slot]);
       }
+    } else if (in.op == Op::select) {
+      if (const bool first = partials_[k].a > N(0); first ? t.a : t.b) change = delta_[first ? in.a : in.b];
     } else {
       if (t.a) addmul(change, partials_[k].a, delta_[in.a]);
       if (t.b) addmul(change, partials_[k].b, delta_[in.b]);

@@ -92,6 +92,9 @@ class Expansion {
   // The Taylor series (ascending) of quadrature i, orders 0..stages().
   const N* quadrature(std::size_t i) const { return machine_.series(program_->tape.roots[program_->unknowns() + i]); }
 
+  // The magnitude of the terms of its value.
+  N quadrature_terms(std::size_t i) const { return machine_.magnitude(program_->tape.roots[program_->unknowns() + i]); }
+
  private:
   void set_inputs(int stage, std::size_t from, std::size_t to);
   void sweep(int stage);

@@ -43,12 +43,12 @@ Program program(const System& system, const Structure& structure, std::span<cons
     const Instruction& in = code[s];
     TaintedSlot t{s, 0, false, false};
     switch (in.op) {
-      case Op::constant: case Op::pi: case Op::input: case Op::parameter: continue;
+      case Op::constant: case Op::pi: case Op::input: case Op::parameter: case Op::lookup: continue;
       case Op::linear:
         for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
           t.a = t.a || tainted(p.tape.linear_terms[k].slot, in.lead);
         break;
-      case Op::multiply: case Op::scale: case Op::divide: case Op::arctan2:
+      case Op::multiply: case Op::scale: case Op::divide: case Op::arctan2: case Op::select:
         t.a = tainted(in.a, in.lead);
         t.b = tainted(in.b, in.lead);
         break;
@@ -57,7 +57,7 @@ Program program(const System& system, const Structure& structure, std::span<cons
     if (!t.a && !t.b) continue;
     // At higher orders of the series (leads above 0) they enter linearly whatever the operation.
     const bool product = in.op == Op::multiply || in.op == Op::scale;
-    if (in.lead == 0 && in.op != Op::linear && (product ? t.a && t.b : in.op != Op::divide || t.b)) p.nonlinear = true;
+    if (in.lead == 0 && in.op != Op::linear && in.op != Op::select && (product ? t.a && t.b : in.op != Op::divide || t.b)) p.nonlinear = true;
     t.row = static_cast<std::uint32_t>(p.tangent_rows++);
     p.tangent_row[s] = t.row;
     p.tainted.push_back(t);
@@ -71,7 +71,7 @@ ProgramSize size(const Program& p) {
     if (in.constant) continue;
     switch (in.op) {
       case Op::constant: case Op::pi: case Op::input: case Op::parameter: break;
-      case Op::linear: case Op::scale: ++r.linear; break;
+      case Op::linear: case Op::scale: case Op::select: case Op::lookup: ++r.linear; break;
       case Op::multiply: case Op::square: case Op::divide: ++r.products; break;
       case Op::power: case Op::function: case Op::arctan2: ++r.functions; break;
     }
@@ -103,6 +103,8 @@ static std::string line(const Program& p, std::uint32_t s) {
     case Op::power: return slot(in.a) + "^(" + p.tape.rationals[in.index].get_str() + ")";
     case Op::function: return std::string(info(static_cast<Function>(in.index)).name) + "(" + slot(in.a) + ")";
     case Op::arctan2: return "atan2(" + slot(in.a) + ", " + slot(in.b) + ")";
+    case Op::select: return slot(in.first) + " >= 0 ? " + slot(in.a) + " : " + slot(in.b);
+    case Op::lookup: return p.tape.step_functions[in.index].name + "(" + slot(in.a) + ")";
   }
   return {};
 }

@@ -12,6 +12,16 @@ static Ball apply(Function f, const Ball& u) {
   return Ball::unknown();
 }
 
+static Ball lookup(const StepFunction& f, const Ball& x) {
+  std::size_t k = 0;
+  for (; k < f.knots.size(); ++k) {
+    const Ball above = x - Ball(f.knots[k]);
+    if (above.contains_zero()) return Ball::unknown();
+    if (!above.is_positive()) break;
+  }
+  return Ball(f.values[k]);
+}
+
 std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at) {
   if (es.empty()) return {};
   const Graph& g = *es[0].graph;
@@ -32,9 +42,15 @@ std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at) {
       case Kind::function: v = apply(static_cast<Function>(n.index), value.at(g.terms(id)[0].node)); break;
       case Kind::atan2: v = atan2(value.at(g.terms(id)[0].node), value.at(g.terms(id)[1].node)); break;
       case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given:
-      case Kind::quasi:
+      case Kind::quasi: case Kind::state: case Kind::control:
         v = at.at(id);
         break;
+      case Kind::select: {
+        const Ball& s = value.at(g.terms(id)[0].node);
+        v = s.is_positive() ? value.at(g.terms(id)[1].node) : !s.contains_zero() ? value.at(g.terms(id)[2].node) : Ball::unknown();
+        break;
+      }
+      case Kind::lookup: v = lookup(g.step_function(n.index), value.at(g.terms(id)[0].node)); break;
     }
     value.emplace(id, std::move(v));
   }

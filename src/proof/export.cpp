@@ -74,7 +74,9 @@ class Exporter {
         for (const Term& t : g_.terms(id)) out.terms.push_back({1, index_.at(t.node)});
         break;
       case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given:
-      case Kind::quasi:
+      case Kind::quasi: case Kind::state: case Kind::control:
+      // Of what has branches a proof uses only that equal ones are equal.
+      case Kind::select: case Kind::lookup:
         out.operation = Certificate::Operation::symbol;
         out.symbol = symbol(id);
         break;

@@ -19,6 +19,9 @@ class AngleWatch {
  public:
   AngleWatch(const Scenario& scenario, const std::vector<W>& parameters);
   void see(const Expansion<W>& point);
+  void set_parameters(const std::vector<W>& parameters) {
+    if (outputs_) outputs_->set_parameters(parameters);
+  }
   // The smallest value so far and when, for every triple.
   struct Least {
     double value = 1;

@@ -139,7 +139,7 @@ PointValues values_near(const Model& model, const std::vector<double>& parameter
   return PointValues([parameters, state, known](const Node& n) {
     if (n.kind == Kind::parameter && n.index < parameters.size()) return parameters[n.index];
     if (known && n.kind == Kind::time) return state.t;
-    if (const double* value = n.kind == Kind::jet ? state.value(n) : nullptr) return *value;
+    if (const double* value = n.kind == Kind::jet || n.kind == Kind::state ? state.value(n) : nullptr) return *value;
     return arbitrary(n);
   });
 }

@@ -42,6 +42,11 @@ void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& 
         e.t = number_text(to_double(t), 6);
       }
     }
+    if (!motion.fired()) continue;
+    std::vector<Occurrence<W>> occurrences;
+    bool goes_on = true;
+    if (Outcome settled = motion.settle(occurrences, goes_on); !settled.ok()) return gave_up(settled);
+    if (!goes_on && next < samples.size()) break;
   }
   // What is written is rounded.
   const double roundoff = to_double(unit_roundoff<N>());

@@ -4,13 +4,16 @@ namespace anholon {
 
 template <Number N>
 Motion<N>::Leg::Leg(const Motion& m, System of, Structure structured)
-    : system(std::move(of)), structure(std::move(structured)), program(anholon::program(system, structure, m.quadratures_)),
-      stepper(program, parameter_values<N>(*m.s_.model), m.parameters_, m.settings_), point(program, m.parameters_, std::max(1, m.stages_)) {}
+    : system(std::move(of)), structure(std::move(structured)), program(anholon::program(system, structure, m.with_events())),
+      stepper(program, m.narrow_parameters_, m.parameters_, m.settings_), point(program, m.parameters_, std::max(1, m.stages_)) {
+  stepper.watch(m.watched());
+}
 
 template <Number N>
 Motion<N>::Motion(const Scenario& s, const StepSettings& settings, std::vector<Expr> quadratures, int stages)
-    : s_(s), settings_(settings), quadratures_(std::move(quadratures)), stages_(stages), parameters_(parameter_values<W>(*s.model)),
+    : s_(s), settings_(settings), quadratures_(std::move(quadratures)), stages_(stages), parameters_(parameter_values<W>(*s.model)), narrow_parameters_(parameter_values<N>(*s.model)),
       leg_(std::make_unique<Leg>(*this, s.system, s.structure)) {
+  begun_parameters_ = parameters_;
   watch_pivots(s.elimination);
 }
 
@@ -32,7 +35,7 @@ Outcome Motion<N>::step(const W& end) {
   const Mark before{choices_.size(), chosen_};
   const std::size_t expansions = leg_->stepper.expansions();
   Outcome o = leg_->stepper.step(end);
-  if (leg_->stepper.expansions() != expansions) mark_ = before;
+  if (leg_->stepper.expansions() != expansions) mark_ = before, begun_parameters_ = parameters_;
   // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
   if (!o.ok() && pivots_ && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
   stepped_ = true;
@@ -87,6 +90,10 @@ InitialState<double> Motion<N>::here() const {
   here.q = level(0);
   here.qd = level(1);
   for (std::size_t k = 2; k < levels(); ++k) here.higher.push_back({level(k), {}});
+  for (std::size_t j = s_.system.mechanical(); j < s_.system.size(); ++j) {
+    here.states.push_back(to_double(point.derivative(j, 0)));
+    here.state_rates.push_back(to_double(point.derivative(j, 1)));
+  }
   return here;
 }
 
@@ -96,7 +103,9 @@ template <Number N>
 std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialState<double>& here) {
   const Model& model = *s_.model;
   try {
-    const auto at = std::make_shared<PointValues>(values_near(model, parameter_values<double>(model), here));
+    std::vector<double> now;
+    for (const W& p : parameters_) now.push_back(to_double(p));
+    const auto at = std::make_shared<PointValues>(values_near(model, now, here));
     const Elimination e(*s_.mechanics, choose_elimination(*s_.mechanics, s_.independent, s_.system.form->unknowns, {}, *at), at);
     System system = implicit_system(s_.model, *s_.mechanics, *s_.system.form, s_.independent, e);
     Structure structure;
@@ -104,7 +113,8 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialSt
     hints.t = here.t;
     hints.derivatives = {here.q, here.qd};
     for (const Level<double>& k : here.higher) hints.derivatives.push_back(k.value);
-    if (!analyse(system, parameter_values<double>(model), hints, structure).ok() || structure.d != leg_->structure.d) return nullptr;
+    hints.states = here.states;
+    if (!analyse(system, now, hints, structure).ok() || structure.d != leg_->structure.d) return nullptr;
     drop_absent(system, structure);
     const bool same = e.dependent == elimination_.dependent && e.pivots() == elimination_.pivots();
     watch_pivots(e);
@@ -148,9 +158,14 @@ void Motion<N>::save(SavedRun& to) const {
     choices.insert(choices.end(), c.here.q.begin(), c.here.q.end());
     choices.insert(choices.end(), c.here.qd.begin(), c.here.qd.end());
     for (const Level<double>& k : c.here.higher) choices.insert(choices.end(), k.value.begin(), k.value.end());
+    choices.insert(choices.end(), c.here.states.begin(), c.here.states.end());
+    choices.insert(choices.end(), c.here.state_rates.begin(), c.here.state_rates.end());
   }
   to.set_numbers("eliminations", choices);
   to.set_numbers("pivots", mark_.chosen);
+  std::vector<W> sides(b.sides.begin(), b.sides.end());
+  to.set_numbers("sides", sides);
+  to.set_numbers("modes", begun_parameters_);
 }
 
 template <Number N>
@@ -158,7 +173,11 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   // As at the start, for what it leaves in the graph.
   Start<W> start;
   if (Outcome o = initial_state(s_, choice, start); !o.ok()) return o;
-  const std::size_t n = s_.system.coordinates, length = 2 + n * levels();
+  if (const std::vector<W> modes = from.numbers<W>("modes", parameters_.size()); modes != parameters_) {
+    set_modes(modes);
+    leg_ = std::make_unique<Leg>(*this, s_.system, s_.structure);
+  }
+  const std::size_t n = s_.system.coordinates, states = s_.model->states.size(), length = 2 + n * levels() + 2 * states;
   const std::vector<double> choices = from.numbers<double>("eliminations");
   if (choices.size() % length != 0) SavedRun::unfit("eliminations");
   for (auto at = choices.begin(); at != choices.end();) {
@@ -173,6 +192,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
     c.here.q = level();
     c.here.qd = level();
     for (std::size_t k = 2; k < levels(); ++k) c.here.higher.push_back({level(), {}});
+    for (std::size_t i = 0; i < states; ++i) c.here.states.push_back(*at++);
+    for (std::size_t i = 0; i < states; ++i) c.here.state_rates.push_back(*at++);
     auto next = eliminate_at(c.here);
     if (c.taken && !next) SavedRun::unfit("eliminations");
     if (c.taken) leg_ = std::move(next), ++eliminations_;
@@ -207,6 +228,7 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   b.steps = static_cast<std::size_t>(counts[0]);
   b.weakest = static_cast<std::size_t>(counts[1]);
   b.direction = from.numbers<N>("direction");
+  for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(side > W(0) ? 1 : side < W(0) ? -1 : 0);
   if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns())) SavedRun::unfit("direction");
   return leg_->stepper.resume(b);
 }

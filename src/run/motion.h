@@ -1,14 +1,28 @@
-// One motion on its way: the steps, and the elimination of coordinates on which its equations stand.
+// One motion on its way: the steps, the events between them, and the elimination of coordinates on which its equations stand.
 //
 // A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the equations
 // are then made again with other dependent coordinates, and the motion goes on from the same state (theory: elimination).
 #pragma once
 #include <algorithm>
+#include <functional>
 
 #include "run/saved.h"
 #include "run/scenario.h"
 
 namespace anholon {
+
+// An event that fired.
+template <Number W>
+struct Occurrence {
+  std::size_t event = 0;  // of the model
+  W t{0};
+  struct Change {
+    std::string name;
+    W before{0}, after{0};
+  };
+  std::vector<Change> changes;  // what was set
+  W correction{0};              // by which constraints made what was set consistent, the largest
+};
 
 // N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
 template <Number N>
@@ -30,6 +44,12 @@ class Motion {
   // The solution anywhere in the last step, with the orders beyond where there are any.
   Outcome at(const W& t);
   const Expansion<W>& point() const { return leg_->point; }
+  // What fired in the last step. `settle` puts in what it sets, after which the motion goes on from the end of the step; false
+  // in `goes_on` where an event ends the motion. Not ok if a table was left, or the state set has no consistent one near.
+  bool fired() const { return !leg_->stepper.fired().empty(); }
+  Outcome settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on);
+  // Not ok if the argument of a table lies outside of it at the start.
+  Outcome within_bounds();
 
   const Stepper<N>& stepper() const { return leg_->stepper; }
   const Program& program() const { return leg_->program; }
@@ -68,9 +88,16 @@ class Motion {
 
   const Scenario& s_;
   StepSettings settings_;
+  void set_modes(const std::vector<W>& parameters);
+  Outcome fire(const Event& event, std::vector<W>& state, std::vector<W>& parameters, Occurrence<W>& occurrence);
+  std::vector<Expr> with_events() const;
+  std::vector<WatchedSeries> watched() const;
+
   std::vector<Expr> quadratures_;
   int stages_;
   std::vector<W> parameters_;
+  std::vector<N> narrow_parameters_;
+  std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;
   bool stepped_ = false;
   Elimination elimination_;                // the present one

@@ -16,6 +16,10 @@ class Redundant {
   // for what was left out (theory: dae-view).
   std::vector<W> multipliers(const Expansion<W>& point);
 
+  void set_parameters(const std::vector<W>& parameters) {
+    if (outputs_) outputs_->set_parameters(parameters);
+  }
+
  private:
   Column expressions() const;
 

@@ -20,7 +20,10 @@ ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
   Graph& g = m.graph();
   const int order = m.order[r];
   ConstraintClass c;
-  for (NodeId id : symbols({&m.phi[r], 1})) c.rheonomic = c.rheonomic || g.node(id).kind == Kind::time;
+  for (NodeId id : symbols({&m.phi[r], 1})) {
+    const Kind k = g.node(id).kind;
+    c.rheonomic = c.rheonomic || k == Kind::time || k == Kind::state || k == Kind::control;
+  }
   if (order == 0) {
     c.kind = "holonomic";
     return c;
@@ -51,12 +54,18 @@ std::optional<Diagnostic> not_integrated(const Model& model) {
   if (!model.unknown_functions.empty())
     return Diagnostic{Severity::error, {}, "the given function '" + model.unknown_functions[0] + "' has no formula",
                       "numbers need one: [functions] " + model.unknown_functions[0] + " = \"…\""};
+  for (const Control& u : model.controls)
+    if (!u.value && !u.constraint)
+      return Diagnostic{Severity::error, u.span, "the input '" + u.name + "' has no formula, and no constraint is kept by it",
+                        "[input] " + u.name + " = \"…\", or by = \"" + u.name + "\" in a constraint"};
   return std::nullopt;
 }
 
 int multiplier_orders(const Scenario& s) {
   if (!s.routh) return 0;
-  return *std::max_element(s.routh_structure.d.begin() + static_cast<std::ptrdiff_t>(s.routh->coordinates), s.routh_structure.d.end());
+  int highest = 0;
+  for (std::size_t j = s.routh->coordinates; j < s.routh->mechanical(); ++j) highest = std::max(highest, s.routh_structure.d[j]);
+  return highest;
 }
 
 int largest_order(const Scenario& s, const std::vector<int>& d) {
@@ -66,7 +75,7 @@ int largest_order(const Scenario& s, const std::vector<int>& d) {
 int orders_beyond(const Scenario& s, const std::vector<int>& d) {
   int beyond = 0;
   const int coordinates = largest_order(s, d), multipliers = multiplier_orders(s);
-  for (std::size_t j = 0; j < d.size(); ++j)
+  for (std::size_t j = 0; j < s.system.mechanical(); ++j)
     beyond = std::max(beyond, (j < s.system.coordinates ? coordinates : multipliers) - d[j]);
   return beyond;
 }
@@ -78,7 +87,7 @@ static Start<N> start_of(const Scenario& s, const InitialState<N>& named) {
   // The multipliers of a variational principle are not those of the reactions.
   const bool reactions = s.system.form->unknowns != Unknowns::variational;
   const auto value = [&](std::size_t j, int k) {
-    if (j >= s.system.coordinates && !reactions) return N(0);
+    if (j >= s.system.coordinates && j < s.system.mechanical() && !reactions) return N(0);
     const N* known = named.value(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
     return known ? *known : N(0);
   };
@@ -118,6 +127,7 @@ static ProbeHints hints_at(const InitialState<double>& state) {
   if (state.q.empty()) return hints;
   hints.t = state.t;
   hints.derivatives = {state.q, state.qd};
+  hints.states = state.states;
   for (const Level<double>& level : state.higher) hints.derivatives.push_back(level.value);
   return hints;
 }

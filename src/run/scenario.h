@@ -99,6 +99,8 @@ class OutputTape {
     machine_.evaluate();
   }
   const N& operator[](std::size_t i) const { return machine_.value(i); }
+  // Modes have changed.
+  void set_parameters(const std::vector<N>& parameters) { machine_ = Machine<N>(tape_, 0, parameters); }
   // Multipliers of redundant constraints are zero.
   static Column put(const Scenario& s, const Column& es) {
     Graph& g = *s.model->graph;

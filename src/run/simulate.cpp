@@ -70,7 +70,9 @@ class Run {
     for (int k = 0; k <= highest(); ++k)
       for (const Coordinate& c : model.coordinates) names.push_back(derivative_name(c.name, static_cast<unsigned>(k), Format::text));
     for (int k = 0; k <= multiplier_orders(s_); ++k)
-      for (const Constraint& c : model.constraints) names.push_back(derivative_name("lambda." + c.name, static_cast<unsigned>(k), Format::text));
+      for (const Constraint& c : model.constraints)
+        names.push_back(derivative_name(c.by ? model.controls[*c.by].name : "lambda." + c.name, static_cast<unsigned>(k), Format::text));
+    for (const StateVariable& z : model.states) names.push_back(z.name);
     for (const Coordinate& c : model.coordinates) names.push_back("N." + c.name);
     for (const Monitor& m : model.monitors) names.push_back(m.name);
     return names;
@@ -82,6 +84,7 @@ class Run {
     t0_ = motion_.stepper().time();
     schedule();
     if (motion_.at(t0_).ok()) watch_.start(motion_.point());
+    report_.outcome = motion_.within_bounds();
   }
 
   // Another integrator, whose motion is then the one that is written.
@@ -206,6 +209,7 @@ class Run {
       if (o_.progress) o_.progress(to_double(stepper.time()), stepper.steps());
       rows_until(stop);
       if (report_.outcome.ok() && !(stop == stepper.time())) negative_mass(stop);
+      if (report_.outcome.ok() && motion_.fired() && !events()) break;
       if (!o_.save || std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() < o_.save_seconds) continue;
       save();
       saved = std::chrono::steady_clock::now();
@@ -214,6 +218,46 @@ class Run {
     if (report_.outcome.ok() && stepper.steps() > 0 && at(stepper.time()).ok()) watch_.end(point(), work(), report_);
     if (o_.save) save();
     if (!report_.outcome.ok()) stopped();
+  }
+
+  // What fired in the last step; false if it ends the motion.
+  bool events() {
+    if (Outcome o = motion_.at(motion_.stepper().time()); o.ok()) watch_.leave(motion_.point());
+    std::vector<Occurrence<W>> occurrences;
+    bool goes_on = true;
+    report_.outcome = motion_.settle(occurrences, goes_on);
+    for (const Occurrence<W>& o : occurrences) {
+      const Event& e = s_.model->events[o.event];
+      EventReport r{e.name, text(o.t), {}, to_double(o.correction), e.stop};
+      for (const auto& c : o.changes) r.changes.push_back({c.name, text(c.before), text(c.after)});
+      report_.events.push_back(std::move(r));
+      accumulate(o);
+    }
+    if (!report_.outcome.ok() || !goes_on) {
+      reached_ = motion_.stepper().time();
+      return false;
+    }
+    angles_.set_parameters(motion_.parameters());
+    if (motion_.at(motion_.stepper().time()).ok()) watch_.enter(motion_.point(), motion_.parameters());
+    return report_.outcome.ok();
+  }
+
+  // An event that comes sooner and sooner has infinitely many before some moment: nothing is computed beyond it.
+  void accumulate(const Occurrence<W>& o) {
+    constexpr int kShrinking = 3;
+    constexpr double kNoTime = 1e-8;
+    const Event& e = s_.model->events[o.event];
+    if (e.set.empty()) return;
+    paces_.resize(s_.model->events.size());
+    Pace& p = paces_[o.event];
+    const W interval = abs(W(o.t - p.last));
+    p.shrinking = p.times > 1 && interval < p.interval ? p.shrinking + 1 : 0;
+    p.interval = interval;
+    p.last = o.t;
+    ++p.times;
+    if (!report_.outcome.ok() || p.shrinking < kShrinking || interval > W(kNoTime) * abs(W(end_ - t0_))) return;
+    report_.outcome = {OutcomeKind::step_collapse, "events accumulate: '" + e.name + "' fired " + std::to_string(p.times) + " times, sooner and sooner, the last time after " + number_text(to_double(interval), 2),
+                       "let an event end the motion (stop = true), or change a mode, when what it resets has become small"};
   }
 
   // What lies in the last step.
@@ -319,6 +363,7 @@ class Run {
         const auto j = s_.system.variable(s_.mechanics->lambda[r].id);
         values.push_back(text(k == 0 ? watch_.multiplier(r) : j ? here.derivative(*j, k) : W(0)));
       }
+    for (std::size_t j = s_.system.mechanical(); j < s_.system.size(); ++j) values.push_back(text(here.derivative(j, 0)));
     for (std::size_t a = 0; a < n; ++a) values.push_back(text(watch_.reaction(a)));
     for (std::size_t i = 0; i < s_.model->monitors.size(); ++i) values.push_back(text(watch_.tracks()[i].last));
     sink_.row(values);
@@ -338,6 +383,12 @@ class Run {
   std::vector<std::string> labels_;
   W t0_{0}, end_{0};
   bool forward_ = true, every_step_ = false;
+  struct Pace {
+    std::size_t times = 0;
+    int shrinking = 0;  // how often in a row the time since the one before has become shorter
+    W last{0}, interval{0};
+  };
+  std::vector<Pace> paces_;  // of the events
   std::size_t next_ = 0, next_sample_ = 0;  // row, sample
   std::optional<W> done_;                   // all rows up to here have been given
   std::vector<Sample<W>> samples_;

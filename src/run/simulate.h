@@ -56,6 +56,17 @@ struct Warning {
   std::string message, hint;
 };
 
+// Where an event fired, and what it changed: name, before, after.
+struct EventReport {
+  std::string name, t;
+  struct Change {
+    std::string name, before, after;
+  };
+  std::vector<Change> changes;
+  double correction = 0;  // by which constraints made what was set consistent
+  bool stop = false;
+};
+
 struct ErrorReport {
   double error = 0;   // largest |difference| / (1 + |x|) of any position or velocity
   std::string t;      // where
@@ -80,6 +91,7 @@ struct SimulationReport {
   std::optional<ErrorReport> error;
   std::string no_error;          // why there is no estimate, where one was asked for
   std::vector<Warning> warnings;
+  std::vector<EventReport> events;
   std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
   std::optional<SecondOpinion> second;  // where another integrator was asked for; steps, order and sigma are Taylor's

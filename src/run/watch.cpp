@@ -14,7 +14,7 @@ static Expr balance_power(const Scenario& s, const Power& p) {
   Graph& g = m.graph();
   Expr total = p.noncons;
   for (std::size_t r : s.system.constraints) {
-    if (m.order[r] == 1 && s.classes[r].homogeneous) continue;
+    if (s.model->constraints[r].by || (m.order[r] == 1 && s.classes[r].homogeneous)) continue;
     Expr rate = g.zero();
     if (m.order[r] == 0) rate = -partial(m.phi[r], g.time());
     else
@@ -32,7 +32,7 @@ std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p) {
 
 std::vector<ConstraintReport> constraint_reports(const Scenario& s) {
   std::vector<ConstraintReport> list;
-  for (std::size_t i = s.system.coordinates; i < s.system.size(); ++i)
+  for (std::size_t i = s.system.coordinates; i < s.system.mechanical(); ++i)
     list.push_back({s.system.equation_names[i], std::vector<double>(static_cast<std::size_t>(std::max(1, s.structure.c[i])), 0.0)});
   return list;
 }
@@ -72,7 +72,7 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
   es.insert(es.end(), inertia.begin(), inertia.end());
   es.insert(es.end(), force.begin(), force.end());
   for (std::size_t k : s_.system.constraints)
-    for (Expr e : m.Phi[k]) es.push_back(put_masses(model, e));
+    for (Expr e : m.Phi[k]) es.push_back(model.constraints[k].by ? m.graph().zero() : put_masses(model, e));
   first_open_ = es.size();
   for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
     if (s_.structure.c[s_.system.coordinates + i] == 0) {
@@ -180,6 +180,21 @@ void Watch<W>::start(const Expansion<W>& point) {
   h0_ = outputs_[s_.system.coordinates];
   start_ = point.time();
   track();
+}
+
+template <Number W>
+void Watch<W>::leave(const Expansion<W>& point) {
+  outputs_.evaluate(point);
+  before_ = outputs_[s_.system.coordinates];
+  track();
+}
+
+template <Number W>
+void Watch<W>::enter(const Expansion<W>& point, const std::vector<W>& parameters) {
+  outputs_.set_parameters(parameters);
+  redundant_.set_parameters(parameters);
+  outputs_.evaluate(point);
+  h0_ += outputs_[s_.system.coordinates] - before_;
 }
 
 template <Number W>

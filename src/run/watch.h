@@ -51,6 +51,9 @@ class Watch {
 
   // The first and the last point: the energy balance goes from one to the other, between which the work is integrated.
   void start(const Expansion<W>& point);
+  // What an event changes at a moment is no work: the energy before and after it, and the modes from there on.
+  void leave(const Expansion<W>& point);
+  void enter(const Expansion<W>& point, const std::vector<W>& parameters);
   void end(const Expansion<W>& point, const W& work, SimulationReport& report);
 
  private:
@@ -67,7 +70,7 @@ class Watch {
   OutputTape<W> outputs_;
   Redundant<W> redundant_;
   std::vector<W> multipliers_;
-  W h0_{0}, start_{0};
+  W h0_{0}, start_{0}, before_{0};
 };
 
 extern template class Watch<long double>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "expr/normal.h"
 #include "spec/keys.h"
@@ -21,6 +22,31 @@ bool collect(Diagnostics& diagnostics, const std::function<void()>& f, Span plac
   }
 }
 
+// "P" of "in P[3]: …"; empty for other messages.
+static std::string family_of(const std::string& message) {
+  const std::size_t open = message.find('[');
+  if (message.rfind("in ", 0) != 0 || open == std::string::npos || message.find(' ', 3) < open) return {};
+  return message.substr(3, open - 3);
+}
+
+bool is_repeated(const Diagnostics& diagnostics, const Diagnostic& d) {
+  const std::string family = family_of(d.message);
+  return !family.empty() && std::any_of(diagnostics.list().begin(), diagnostics.list().end(), [&](const Diagnostic& before) {
+    return before.span.line == d.span.line && before.span.column == d.span.column && before.span.file == d.span.file && family_of(before.message) == family;
+  });
+}
+
+bool collect(Diagnostics& diagnostics, const std::function<void()>& f, const Item& element) {
+  if (element.member.empty()) return collect(diagnostics, f, element.span);
+  Diagnostics own;
+  const bool good = collect(own, f, element.span);
+  for (Diagnostic d : own.list()) {
+    d.message = "in " + element.member + ": " + d.message;
+    if (!is_repeated(diagnostics, d)) diagnostics.add(std::move(d));
+  }
+  return good;
+}
+
 void for_each_table(const Item& list, const std::string& what, Diagnostics& diagnostics,
                     const std::function<void(const Item&, std::size_t)>& f) {
   if (list.kind != Item::Kind::array) {
@@ -32,17 +58,19 @@ void for_each_table(const Item& list, const std::string& what, Diagnostics& diag
       if (list.items[k].kind != Item::Kind::table)
         throw Failure(list.items[k].span, "an element of '" + what + "' is a table", "{name = \"…\", …}");
       f(list.items[k], k);
-    }, list.items[k].span);
+    }, list.items[k]);
 }
 
 std::optional<double> constant_value(const Model& model, Expr e) {
-  Column values;
-  for (const Parameter& p : model.parameters) values.push_back(p.value);
   Graph& g = *model.graph;
-  for (std::size_t depth = 0; depth <= values.size(); ++depth)
+  const auto of_parameters = [&] {
+    const std::vector<NodeId> all = symbols({&e, 1});
+    return std::any_of(all.begin(), all.end(), [&](NodeId id) { return g.node(id).kind == Kind::parameter; });
+  };
+  for (std::size_t depth = 0; depth <= model.parameters.size() && of_parameters(); ++depth)
     e = substitute({&e, 1}, [&](NodeId id) {
       const Node& n = g.node(id);
-      return n.kind == Kind::parameter ? values[n.index] : Expr{};
+      return n.kind == Kind::parameter ? model.parameters[n.index].value : Expr{};
     })[0];
   if (!symbols({&e, 1}).empty()) return std::nullopt;  // (a division by zero is thrown as Failure)
   const Tape tape = compile({&e, 1});
@@ -63,7 +91,7 @@ void BodyReader::declare(const Item& root) {
   const auto place = [](const Item& i) {
     const Item* name = i.find("name");
     const Span s = name ? name->key_span : i.items.empty() ? i.span : i.items[0].key_span;
-    return std::pair(s.line, s.column);
+    return std::tuple(-static_cast<long>(s.file), s.line, s.column);  // what a file builds on comes before it
   };
   std::stable_sort(found.begin(), found.end(),
                    [&](const Entry& a, const Entry& b) { return place(*a.item) < place(*b.item); });
@@ -87,11 +115,12 @@ void BodyReader::declare(const Item& root) {
       }
       scope_.parts(e.index) = parts;
       entries_.push_back(e);
-    });
+    }, *e.item);
 }
 
 Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
   Graph& g = *model_.graph;
+  value = put_controls(model_, {&value, 1})[0];
   const bool varies = [&] {
     for (NodeId id : symbols({&value, 1})) {
       const Kind k = g.node(id).kind;
@@ -117,6 +146,9 @@ static void check_position(const Model& model, const Vector& place, const Item& 
     for (NodeId id : symbols({&place[i], 1})) {
       const Node& n = model.graph->node(id);
       if (n.kind == Kind::multiplier) throw Failure(item.span, what + " depends on a multiplier");
+      if (n.kind == Kind::control && (!model.controls[n.index].value || jet_order(*model.controls[n.index].value) >= 0))
+        throw Failure(item.span, what + " depends on the input '" + model.controls[n.index].name + "', which is not a function of time and states",
+                      "bind the coordinate by a constraint kept by this input");
       if (n.kind == Kind::jet && n.order > 0)
         throw Failure(item.span, what + " depends on a velocity (" +
                                      derivative_name(model.names.coordinates[n.index], n.order, Format::text) + ")",
@@ -125,7 +157,7 @@ static void check_position(const Model& model, const Vector& place, const Item& 
 }
 
 void BodyReader::read() {
-  for (const Entry& e : entries_) collect(diagnostics_, [&] { read_body(e); }, e.item->span);
+  for (const Entry& e : entries_) collect(diagnostics_, [&] { read_body(e); }, *e.item);
 }
 
 void BodyReader::read_body(const Entry& e) {

@@ -10,6 +10,12 @@ namespace anholon {
 // its own is one of the element at `place`.
 bool collect(Diagnostics& diagnostics, const std::function<void()>& f, Span place = {});
 
+// The same for an element of the file; of a member of a family the message says which one it is, and one member speaks for all
+// whose failure has the same place.
+bool collect(Diagnostics& diagnostics, const std::function<void()>& f, const Item& element);
+// Whether a failure of another member of the family was reported at its place.
+bool is_repeated(const Diagnostics& diagnostics, const Diagnostic& d);
+
 // Calls f(table, index) for each element of an array of tables, collecting failures per element.
 void for_each_table(const Item& list, const std::string& what, Diagnostics& diagnostics,
                     const std::function<void(const Item&, std::size_t)>& f);

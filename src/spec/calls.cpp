@@ -2,6 +2,7 @@
 // gravity field, components along a frame, given functions.
 #include <algorithm>
 
+#include "numeric/number.h"
 #include "spec/names.h"
 
 namespace anholon {
@@ -50,12 +51,29 @@ static Vector components(const std::vector<Value>& a, const Syntax& s) {
   return {number(0), number(1), number(2)};
 }
 
+// The table's value; one that must not be left ends the motion where it is.
+Expr Scope::look_up(std::size_t index, Expr x, Span use) {
+  const TableEntry& entry = tables_[index];
+  if (entry.table.outside == Outside::error) {
+    Graph& g = *model_.graph;
+    const Rational bounds[] = {entry.table.x.front(), entry.table.x.back()};
+    for (int side : {0, 1}) {
+      const std::string end = number_text(bounds[side].get_d(), 12);
+      const std::string fault = "the argument of the table '" + entry.table.name + "' goes " + (side ? "above its last" : "below its first") + " knot " + end;
+      const Expr inside = side ? g.number(bounds[1]) - x : x - g.number(bounds[0]);
+      if (is_number(inside) && number_value(inside) < 0) throw Failure(use, fault);
+      if (is_number(inside) || std::any_of(model_.bounds.begin(), model_.bounds.end(), [&](const Bound& b) { return b.inside == inside; })) continue;
+      model_.bounds.push_back({inside, fault, use});
+    }
+  }
+  return entry.function(x);
+}
+
 bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax& s, Value& result) {
   Graph& g = *model_.graph;
   const auto is_body = [&](std::size_t i) {
     if (a[i].index() == 3) return true;
-    return s.args[i].op == Syntax::Op::name && a[i].index() != 4 &&
-           std::find(body_names_.begin(), body_names_.end(), s.args[i].text) != body_names_.end();
+    return s.args[i].op == Syntax::Op::name && a[i].index() != 4 && find_body(s.args[i].text);
   };
   const auto count = [&](std::size_t least, std::size_t most) {
     if (a.size() < least || a.size() > most)
@@ -115,16 +133,23 @@ bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax
   }
   const auto it = declarations_.find(f);
   if (it == declarations_.end()) {
-    const auto b = std::find(body_names_.begin(), body_names_.end(), f);
-    if (b == body_names_.end()) return false;
+    const std::size_t* b = find_body(f);
+    if (!b) return false;
     count(3, 3);
-    result = orientation(static_cast<std::size_t>(b - body_names_.begin()), s.span) * components(a, s);
+    result = orientation(*b, s.span) * components(a, s);
     return true;
   }
   Declaration& d = it->second;
   if (d.role == Role::frame) {
     count(3, 3);
     result = std::get<Rotation>(resolve(f, d, s.span)) * components(a, s);
+    return true;
+  }
+  if (d.role == Role::table) {
+    count(1, 1);
+    const Expr* e = std::get_if<Expr>(&a[0]);
+    if (!e) throw Failure(s.args[0].span, std::string("the argument of a table is a number, this is ") + type_name(a[0]));
+    result = look_up(d.index, *e, s.span);
     return true;
   }
   if (d.role != Role::function) return false;

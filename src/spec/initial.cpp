@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "expr/indices.h"
 #include "spec/bodies.h"
 #include "spec/keys.h"
 #include "spec/multipliers.h"
@@ -30,14 +31,14 @@ class InitialReader {
             collect(diagnostics_, [&] {
               if (v.kind == Item::Kind::table) group(v, out.guess);
               else add(out.guess, v, symbol(v.key, v.key_span));
-            });
+            }, v);
           return;
         }
         if (i.key == "branch") return branch(i, "");
         if (i.kind == Item::Kind::table) return group(i, out.given);
         if (i.key == "lambda" || i.key == "lambdadot") throw Failure(i.span, "lambda is a table", "lambda = {NAME = 0.4}");
         add(out.given, i, symbol(i.key, i.key_span));
-      }, i.span);
+      }, i);
     // For constraints of order 3 and more these are initial data; below they follow from the state.
     int highest = 0;
     for (const Constraint& c : model_.constraints) highest = std::max(highest, c.order);
@@ -58,8 +59,7 @@ class InitialReader {
     for (std::size_t k = 0; k < out.given.size(); ++k)
       for (std::size_t j = 0; j < k; ++j)
         if (out.given[j].symbol == out.given[k].symbol)
-          diagnostics_.error(out.given[k].span, "this initial value is given twice (also in line " +
-                                                    std::to_string(out.given[j].span.line) + ")");
+          diagnostics_.error(out.given[k].span, "this initial value is given twice (also in " + line_of(out.given[j].span, model_.source_text) + ")");
   }
 
  private:
@@ -79,6 +79,8 @@ class InitialReader {
   std::size_t index(const std::vector<std::string>& names, const std::string& name, Span span, const char* what) {
     const auto it = std::find(names.begin(), names.end(), name);
     if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
+    if (const std::string members = members_known(name, names); !members.empty())
+      throw Failure(span, std::string("there is no ") + what + " '" + name + "'" + members);
     const std::string near = did_you_mean(name, names);
     throw Failure(span, std::string("there is no ") + what + " '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
@@ -87,7 +89,7 @@ class InitialReader {
   Expr symbol(std::string key, Span span) {
     unsigned order = 0;
     if (key.rfind("D(", 0) == 0 && key.back() == ')') {
-      const std::size_t comma = key.find(',');
+      const std::size_t comma = key.rfind(',');
       std::string digits = comma == std::string::npos ? std::string() : key.substr(comma + 1, key.size() - comma - 2);
       std::erase(digits, ' ');
       if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos)
@@ -99,7 +101,6 @@ class InitialReader {
       while (!key.empty() && key.back() == '\'') key.pop_back(), ++order;
       if (order > 20) throw Failure(span, "a derivative of order above 20");
     }
-    if (key.find('[') != std::string::npos) throw Failure(span, "families of elements (names with [ ]) are not read yet");
     return model_.graph->jet(static_cast<std::uint32_t>(index(model_.names.coordinates, key, span, "coordinate")), order);
   }
 
@@ -109,7 +110,7 @@ class InitialReader {
         for (const Item& v : i.items)
           collect(diagnostics_, [&] {
             add(list, v, model_.graph->jet(static_cast<std::uint32_t>(index(model_.names.coordinates, v.key, v.key_span, "coordinate")), order));
-          });
+          }, v);
         return;
       }
     for (const auto& [key, order] : {std::pair{"lambda", 0U}, {"lambdadot", 1U}})
@@ -123,7 +124,7 @@ class InitialReader {
         if (v.kind == Item::Kind::table) return multipliers(v, prefix + v.key + ".", order, list);
         const std::size_t k = index(model_.names.multipliers, prefix + v.key, v.key_span, "constraint");
         add(list, v, model_.graph->multiplier(static_cast<std::uint32_t>(k), order));
-      });
+      }, v);
   }
 
   // branch = {rolling = "lambda > 0"}
@@ -139,7 +140,7 @@ class InitialReader {
         if (text != "lambda>0" && text != "lambda<0")
           throw Failure(v.span, "a branch is named by the sign of the multiplier", "\"lambda > 0\" or \"lambda < 0\"");
         model_.initial.branches.push_back({k, text == "lambda>0", v.key_span});
-      });
+      }, v);
   }
 
   void conditions(const Item& list) {
@@ -157,7 +158,7 @@ class InitialReader {
             return kind == Kind::jet || kind == Kind::multiplier;
           });
           if (!unknown) throw Failure(c.formula.whole(), "no unknown occurs in this condition");
-          model_.initial.conditions.push_back({residual, c.text() + suffix, c.formula.whole()});
+          model_.initial.conditions.push_back({residual, equation_text(c.formula, sides) + suffix, c.formula.whole()});
         };
         for (const Value* side : {&left, &right})
           if (std::holds_alternative<InertialName>(*side))

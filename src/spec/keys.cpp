@@ -26,4 +26,11 @@ void check_keys(const Item& table, const std::string& where, const std::vector<s
   }
 }
 
+const Item* find_section(const Item& root, const char* key, Diagnostics& diagnostics) {
+  const Item* section = root.find(key);
+  if (!section || section->kind == Item::Kind::table) return section;
+  diagnostics.error(section->span, std::string("'") + key + "' is a section", std::string("write [") + key + "]");
+  return nullptr;
+}
+
 }  // namespace anholon

@@ -13,4 +13,7 @@ namespace anholon {
 void check_keys(const Item& table, const std::string& where, const std::vector<std::string>& known,
                 const std::vector<std::string>& later, Diagnostics& diagnostics);
 
+// The section of that name; null where there is none, or what stands there is none (reported).
+const Item* find_section(const Item& root, const char* key, Diagnostics& diagnostics);
+
 }  // namespace anholon

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "expr/indices.h"
 #include "spec/bodies.h"
 #include "spec/multipliers.h"
 
@@ -12,7 +13,7 @@ static constexpr int kHighestOrder = 20;
 
 static void read_one(const Item& i, Names& names, Model& model) {
   const std::string name = normal_name(i.key);
-  if (!is_identifier(name)) throw Failure(i.key_span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+  if (!is_element_name(name)) throw Failure(i.key_span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
   const auto& taken = model.names.coordinates;
   if (name == "t" || std::find(taken.begin(), taken.end(), name) != taken.end())
     throw Failure(i.key_span, "a column '" + name + "' is there already", "give the monitor a name of its own");
@@ -34,7 +35,7 @@ static void read_one(const Item& i, Names& names, Model& model) {
 
 void read_monitors(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics) {
   WithMultipliers names(scope, model);
-  for (const Item& i : section.items) collect(diagnostics, [&] { read_one(i, names, model); });
+  for (const Item& i : section.items) collect(diagnostics, [&] { read_one(i, names, model); }, i);
 }
 
 }  // namespace anholon

@@ -1,10 +1,14 @@
 #include "spec/names.h"
 
 #include <algorithm>
+#include <tuple>
+
+#include "expr/indices.h"
 
 namespace anholon {
 
-static constexpr std::size_t kDeepestDefinitions = 400;
+// Definitions within each other in one go (a matter of the stack); what is deeper waits for its parts (from_the_ground).
+static constexpr std::size_t kDeepest = 200;
 
 Failure silent_failure() { return Failure(Span{}, ""); }
 bool is_silent(const Diagnostic& d) { return d.message.empty(); }
@@ -14,40 +18,54 @@ static const std::set<std::string>& reserved() {
   return names;
 }
 
+bool is_reserved(const std::string& name) { return reserved().count(name) > 0; }
+
+void Scope::check_name(const std::string& name, Span span) const {
+  if (!is_element_name(name))
+    throw Failure(span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+  if (is_reserved(name)) throw Failure(span, "the name '" + name + "' is reserved");
+  if (letters_.count(name.substr(0, name.find('[')))) throw Failure(span, "the name '" + name + "' is reserved: it is an index");
+}
+
 void Scope::declare(const std::string& name, Declaration d) {
-  if (name.find('[') != std::string::npos)
-    throw Failure(d.span, "families of elements (names with [ ]) are not read yet",
-                  "write the members out under names of their own");
-  if (!is_identifier(name))
-    throw Failure(d.span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
-  if (reserved().count(name)) throw Failure(d.span, "the name '" + name + "' is reserved");
+  check_name(name, d.span);
+  for (const std::string& a : d.arguments)
+    if (letters_.count(a)) throw Failure(d.span, "the argument '" + a + "' is an index");
+  d.place = declarations_.size();
   const auto [it, fresh] = declarations_.emplace(name, d);
   if (!fresh)
-    throw Failure(d.span, "'" + name + "' is already declared in line " + std::to_string(it->second.span.line));
+    throw Failure(d.span, "'" + name + "' is already declared in " + line_of(it->second.span, model_.source_text));
 }
 
 void Scope::declare_body(const std::string& name, Span span) {
   parts_.emplace_back();
   body_names_.push_back(name);
   body_spans_.push_back(span);
-  if (name.find('[') != std::string::npos)
-    throw Failure(span, "families of elements (names with [ ]) are not read yet",
-                  "write the members out under names of their own");
-  if (!is_identifier(name))
-    throw Failure(span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
-  if (reserved().count(name)) throw Failure(span, "the name '" + name + "' is reserved");
-  for (std::size_t i = 0; i + 1 < body_names_.size(); ++i)
-    if (body_names_[i] == name)
-      throw Failure(span, "a body '" + name + "' is already declared in line " + std::to_string(body_spans_[i].line));
+  check_name(name, span);
+  const auto [it, fresh] = bodies_.emplace(name, body_names_.size() - 1);
+  if (!fresh)
+    throw Failure(span, "a body '" + name + "' is already declared in " + line_of(body_spans_[it->second], model_.source_text));
+}
+
+std::size_t Scope::add_table(Table table) {
+  TableFunction function(*model_.graph, table);
+  tables_.push_back({std::move(table), std::move(function)});
+  return tables_.size() - 1;
 }
 
 void Scope::set_gravity(const Item& field) { gravity_ = &field; }
 
 std::size_t Scope::body(const std::string& name, Span span) const {
-  for (std::size_t i = 0; i < body_names_.size(); ++i)
-    if (body_names_[i] == name) return i;
+  if (const std::size_t* found = find_body(name)) return *found;
+  if (const std::string members = members_known(name, body_names_); !members.empty())
+    throw Failure(span, "there is no body or particle '" + name + "'" + members);
   const std::string near = did_you_mean(name, body_names_);
   throw Failure(span, "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+const std::size_t* Scope::find_body(const std::string& name) const {
+  const auto it = bodies_.find(name);
+  return it == bodies_.end() ? nullptr : &it->second;
 }
 
 void Scope::unknown(const std::string& name, Span span) const {
@@ -57,6 +75,9 @@ void Scope::unknown(const std::string& name, Span span) const {
   std::vector<std::string> known(reserved().begin(), reserved().end());
   for (const auto& [n, d] : declarations_) known.push_back(n);
   known.insert(known.end(), body_names_.begin(), body_names_.end());
+  const bool member = name.find('[') != std::string::npos;
+  if (const std::string members = members_known(member ? name : name + "[", known); !members.empty())
+    throw Failure(span, member ? "there is no '" + name + "'" + members : "'" + name + "' is a family, not a name" + members);
   const std::string near = did_you_mean(name, known);
   throw Failure(span, "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 near.empty() ? "give it a value under [parameters] or [define]" : "");
@@ -101,6 +122,9 @@ std::vector<Syntax> Scope::equation(const Item& item) {
 Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
   Graph& g = *model_.graph;
   switch (d.role) {
+    case Role::state: return g.state(static_cast<std::uint32_t>(d.index), 0);
+    case Role::control: return g.control(static_cast<std::uint32_t>(d.index), 0);
+    case Role::table: return InertialName{};  // means something with an argument only
     case Role::coordinate: return g.jet(static_cast<std::uint32_t>(d.index), 0);
     case Role::function:
       if (d.symbolic) return g.given(static_cast<std::uint32_t>(d.index), 0);
@@ -146,9 +170,58 @@ Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
   return InertialName{};
 }
 
+namespace {
+// Marks something as being evaluated, whatever way its evaluation ends.
+class Opened {
+ public:
+  Opened(bool& flag, std::size_t& depth) : flag_(flag), depth_(depth) { flag_ = true, ++depth_; }
+  ~Opened() { flag_ = false, --depth_; }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+
+ private:
+  bool& flag_;
+  std::size_t& depth_;
+};
+}  // namespace
+
+// Asks again and again, each time for what was too deep before, until the first question is answered.
+void Scope::from_the_ground(const std::function<void()>& ask) {
+  std::vector<TooDeep> waiting{{"", nullptr, {}, ask}};
+  while (!waiting.empty()) {
+    try {
+      waiting.back().ask();
+      waiting.pop_back();
+    } catch (const TooDeep& deep) {
+      const auto again = std::find_if(waiting.begin(), waiting.end(), [&](const TooDeep& w) { return w.name == deep.name; });
+      if (again != waiting.end()) {
+        std::string path;
+        for (auto it = again; it != waiting.end(); ++it) path += it->name + " -> … -> ";
+        const Failure f(deep.use, "'" + deep.name + "' is defined through itself: " + path + deep.name);
+        if (!deep.declaration) throw f;
+        deep.declaration->state = Declaration::State::failed;
+        failures.push_back(f.diagnostic);
+        throw silent_failure();
+      }
+      waiting.push_back(deep);
+    } catch (const Failure&) {
+      // A declaration has kept its failure, and who waits for it meets it.
+      if (waiting.size() == 1 || !waiting.back().declaration) throw;
+      waiting.pop_back();
+    }
+  }
+}
+
 const Value& Scope::resolve(const std::string& name, Declaration& d, Span use) {
+  if (d.state == Declaration::State::done) return d.value;
+  if (depth_ == 0) from_the_ground([&] { settle(name, d, use); });
+  else settle(name, d, use);
+  return d.value;
+}
+
+void Scope::settle(const std::string& name, Declaration& d, Span use) {
   using State = Declaration::State;
-  if (d.state == State::done) return d.value;
+  if (d.state == State::done) return;
   if (d.state == State::failed) throw silent_failure();
   if (d.state == State::open) {
     std::string path;
@@ -156,16 +229,16 @@ const Value& Scope::resolve(const std::string& name, Declaration& d, Span use) {
     for (auto it = from; it != open_.end(); ++it) path += *it + " -> ";
     throw Failure(use, "'" + name + "' is defined through itself: " + path + name);
   }
-  if (open_.size() > kDeepestDefinitions)
-    throw Failure(use, "definitions lead through more than " + std::to_string(kDeepestDefinitions) + " others",
-                  "declare the names in the order in which they are used");
+  if (depth_ > kDeepest) throw TooDeep{name, &d, use, [this, name, &d, use] { settle(name, d, use); }};
   d.state = State::open;
+  ++depth_;
   open_.push_back(name);
   // A definition means the same wherever it is used: not frozen, not inside a call.
   const bool frozen = std::exchange(freeze_masses, false);
   const auto arguments = std::exchange(arguments_, {});
   const auto here = std::exchange(here_, std::nullopt);
   const auto restore = [&] {
+    --depth_;
     open_.pop_back();
     freeze_masses = frozen;
     arguments_ = arguments;
@@ -179,21 +252,29 @@ const Value& Scope::resolve(const std::string& name, Declaration& d, Span use) {
     restore();
     if (!is_silent(f.diagnostic)) {
       failures.push_back(f.diagnostic);
+      if (name.find('[') != std::string::npos) failures.back().message = "in " + name + ": " + f.diagnostic.message;
       if (!d.override.empty()) failures.back().message = d.override + ": " + f.diagnostic.message;
     }
     throw silent_failure();
+  } catch (const TooDeep&) {
+    d.state = State::fresh;
+    restore();
+    throw;
   }
   restore();
-  return d.value;
 }
 
 void Scope::resolve_all() {
-  std::vector<std::pair<std::uint64_t, std::string>> order;
-  for (const auto& [name, d] : declarations_)
-    order.push_back({(static_cast<std::uint64_t>(d.span.line) << 32) + d.span.column, name});
-  std::sort(order.begin(), order.end());
-  for (const auto& [place, name] : order) {
-    Declaration& d = declarations_.at(name);
+  // In the order of the file, members of a family in their order.
+  std::vector<std::pair<const std::string*, Declaration*>> order;
+  for (auto& [name, d] : declarations_) order.push_back({&name, &d});
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    const auto key = [](const Declaration& d) { return std::tuple(d.span.file, d.span.line, d.span.column, d.place); };
+    return key(*a.second) < key(*b.second);
+  });
+  for (const auto& [named, declared] : order) {
+    const std::string& name = *named;
+    Declaration& d = *declared;
     try {
       if (d.arguments.empty()) resolve(name, d, d.span);
       else if (!d.parsed) parse_formula(d.formula);
@@ -219,7 +300,7 @@ Value Scope::name(const std::string& name, Span span) {
     throw Failure(span, "multipliers are not read in formulas yet");
   const auto it = declarations_.find(name);
   if (it != declarations_.end()) {
-    if (!it->second.arguments.empty())
+    if (it->second.role == Role::table || !it->second.arguments.empty())
       throw Failure(span, "the function '" + name + "' is used without its arguments", name + "(…)");
     const Value v = resolve(name, it->second, span);
     if (freeze_masses)
@@ -228,15 +309,14 @@ Value Scope::name(const std::string& name, Span span) {
           if (model_.masses[i].value == *e) return g.mass(static_cast<std::uint32_t>(i));
     return v;
   }
-  for (std::size_t i = 0; i < body_names_.size(); ++i)
-    if (body_names_[i] == name) return BodyName{i};
+  if (const std::size_t* body = find_body(name)) return BodyName{*body};
   unknown(name, span);
 }
 
 std::vector<std::string> Scope::functions() const {
   std::vector<std::string> list = {"vel", "acc", "angvel", "angacc", "gravity"};
   for (const auto& [name, d] : declarations_)
-    if (d.role == Role::function || d.role == Role::frame) list.push_back(name);
+    if (d.role == Role::function || d.role == Role::frame || d.role == Role::table) list.push_back(name);
   list.insert(list.end(), body_names_.begin(), body_names_.end());
   return list;
 }
@@ -260,40 +340,38 @@ Value Scope::member(const Value& object, const Syntax& s) {
   throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'");
 }
 
-namespace {
-// Marks a definition as being evaluated, whatever way its evaluation ends.
-class Opened {
- public:
-  explicit Opened(bool& flag) : flag_(flag) { flag_ = true; }
-  ~Opened() { flag_ = false; }
-  Opened(const Opened&) = delete;
-  Opened& operator=(const Opened&) = delete;
-
- private:
-  bool& flag_;
-};
-}  // namespace
-
 Vector Scope::center(std::size_t body, Span use) {
+  if (depth_ == 0) from_the_ground([&] { settle_center(body, use); });
+  else settle_center(body, use);
+  return *parts_[body].center_value;
+}
+
+void Scope::settle_center(std::size_t body, Span use) {
   BodyParts& p = parts_[body];
-  if (p.center_value) return *p.center_value;
+  if (p.center_value) return;
   if (!p.center) throw silent_failure();
   if (p.center_open) throw Failure(use, "the centre of '" + body_names_[body] + "' is defined through itself");
-  const Opened opened(p.center_open);
+  if (depth_ > kDeepest) throw TooDeep{body_names_[body] + ".center", nullptr, use, [this, body, use] { settle_center(body, use); }};
+  const Opened opened(p.center_open, depth_);
   p.center_value = vector(*p.center);
-  return *p.center_value;
 }
 
 const Rotation& Scope::orientation(std::size_t body, Span use) {
+  if (depth_ == 0) from_the_ground([&] { settle_orientation(body, use); });
+  else settle_orientation(body, use);
+  return *parts_[body].orientation_value;
+}
+
+void Scope::settle_orientation(std::size_t body, Span use) {
   BodyParts& p = parts_[body];
-  if (p.orientation_value) return *p.orientation_value;
+  if (p.orientation_value) return;
   if (!has_orientation(body))
     throw Failure(use, "the body '" + body_names_[body] + "' has no orientation",
                   "give it orientation = \"…\", or angle = \"…\" in the plane");
   if (p.orientation_open) throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
-  const Opened opened(p.orientation_open);
+  if (depth_ > kDeepest) throw TooDeep{body_names_[body] + ".orientation", nullptr, use, [this, body, use] { settle_orientation(body, use); }};
+  const Opened opened(p.orientation_open, depth_);
   p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle));
-  return *p.orientation_value;
 }
 
 Vector Scope::gravity_at(const Vector& place, Span use) {

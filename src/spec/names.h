@@ -3,9 +3,11 @@
 // Values (coordinates, parameters, functions, defines, frames, points) share one namespace, bodies
 // have their own, so that a point P and a body P may live together.
 #pragma once
+#include <functional>
 #include <map>
 #include <set>
 
+#include "expr/table.h"
 #include "model/model.h"
 #include "spec/toml.h"
 
@@ -16,7 +18,7 @@ class Scope final : public Names {
   explicit Scope(Model& model) : model_(model) {}
 
   // Declarations. A formula is parsed and evaluated at its first use.
-  enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point };
+  enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point, state, control, table };
   struct Declaration {
     Role role = Role::define;
     std::size_t index = 0;                // of a coordinate, parameter or unknown function
@@ -27,14 +29,17 @@ class Scope final : public Names {
     bool symbolic = false;                // stands for itself: coordinate, unknown function
     std::string override;                 // "--set m=3", where the value comes from there
     enum class State : std::uint8_t { fresh, open, done, failed } state = State::fresh;
+    std::size_t place = 0;                // among all declarations
     Value value = InertialName{};
     Syntax body{};                        // of a function with arguments
     bool parsed = false;
   };
-  // Throws Failure if the name is reserved, not an identifier or taken.
+  void reserve(const std::set<std::string>& letters) { letters_ = letters; }  // of [index]
+  // Throws Failure if the name is reserved, not an identifier (with whole numbers in a bracket: P[2]) or taken.
   void declare(const std::string& name, Declaration d);
   void declare_body(const std::string& name, Span span);
   void set_gravity(const Item& field);
+  std::size_t add_table(Table table);
 
   // The bodies' parts, evaluated on demand (a centre may refer to another body's centre).
   struct BodyParts {
@@ -50,6 +55,7 @@ class Scope final : public Names {
   bool has_orientation(std::size_t body) const { return parts_[body].orientation || parts_[body].angle; }
   const Rotation& orientation(std::size_t body, Span use);
   std::size_t body(const std::string& name, Span span) const;  // throws if there is none
+  const std::size_t* find_body(const std::string& name) const;
   const std::vector<std::string>& body_names() const { return body_names_; }
 
   // Evaluation of items: a string or number is a formula, an array a vector.
@@ -75,24 +81,47 @@ class Scope final : public Names {
   std::vector<std::string> functions() const override;
 
  private:
+  // A definition that leads through too many others to be evaluated in one go: it waits until what it needs is known.
+  struct TooDeep {
+    std::string name;
+    Declaration* declaration;  // or a part of a body
+    Span use;
+    std::function<void()> ask;
+  };
+  void from_the_ground(const std::function<void()>& ask);
+  void settle(const std::string& name, Declaration& d, Span use);
+  void settle_center(std::size_t body, Span use);
+  void settle_orientation(std::size_t body, Span use);
+  void check_name(const std::string& name, Span span) const;
   const Value& resolve(const std::string& name, Declaration& d, Span use);
   Value evaluate_declaration(const std::string& name, Declaration& d);
   [[noreturn]] void unknown(const std::string& name, Span span) const;
   Vector material_velocity(std::size_t body, const Vector& place, Span use);
   Vector inertial_rate(const Vector& v);
+  Expr look_up(std::size_t table, Expr x, Span use);
   std::size_t body_argument(const Value& value, const Syntax& argument) const;
 
   Model& model_;
   std::map<std::string, Declaration> declarations_;
+  std::set<std::string> letters_;
+  std::map<std::string, std::size_t> bodies_;
   std::vector<std::string> body_names_;
   std::vector<Span> body_spans_;
   std::vector<BodyParts> parts_;
+  struct TableEntry {
+    Table table;
+    TableFunction function;
+  };
+  std::vector<TableEntry> tables_;
   const Item* gravity_ = nullptr;
   std::optional<Vector> here_;
   std::vector<std::string> open_;                        // path of names being evaluated
+  std::size_t depth_ = 0;                                // of definitions and parts of bodies within each other
   std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
   std::size_t calls_ = 0;                                // of given functions, over the whole file
 };
+
+bool is_reserved(const std::string& name);
 
 // A failure that was reported where it arose: uses of a broken definition stay silent.
 Failure silent_failure();

@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <functional>
 
+#include "expr/indices.h"
 #include "expr/normal.h"
 #include "numeric/multi.h"
 #include "spec/bodies.h"
+#include "spec/control.h"
+#include "spec/hybrid.h"
+#include "spec/families.h"
 #include "spec/initial.h"
 #include "spec/keys.h"
 #include "spec/monitor.h"
 #include "spec/names.h"
 #include "spec/observer.h"
+#include "spec/tables.h"
+#include "spec/variants.h"
 #include "tape/point.h"
 #include "tape/tape.h"
 
@@ -27,7 +33,7 @@ constexpr Span kTop{1, 1, 1};
 
 // What making the expressions of a file may cost: a formula that unfolds without end is refused where it stands. The chain of
 // a thousand links takes a tenth of this.
-constexpr std::size_t kWork = 700'000, kWorkPerByte = 1000, kWorkLater = std::size_t{1} << 48;
+constexpr std::size_t kWork = 700'000, kWorkPerByte = 1000, kWorkPerMember = 1000, kWorkLater = std::size_t{1} << 48;
 // Parameters are put into each other so many times.
 constexpr std::size_t kDeepestParameters = 400;
 
@@ -37,24 +43,37 @@ constexpr long kMostRows = 5'000'000;
 
 class Reader {  // what it refers to is asked only while it runs
  public:
-  Reader(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides)
-      : diagnostics_(diagnostics), overrides_(overrides), scope_(model_) {
+  Reader(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides, const std::vector<std::string>& cases)
+      : diagnostics_(diagnostics), overrides_(overrides), cases_(cases), scope_(model_) {
     model_.graph = std::make_shared<Graph>();
     model_.source_text = source;
     Graph& g = *model_.graph;
     model_.observer.spin = model_.observer.origin_acceleration = zero_vector(g);
     model_.observer.origin_velocity = zero_vector(g);
     model_.initial.t = g.zero();
-    g.allow(kWork + kWorkPerByte * source.text.size());
   }
 
   bool run() {
     Item& root = root_;
-    if (!guard([&] { root = read_toml(model_.source_text); })) return false;
+    const bool read = guard([&] { root = read_files(model_.source_text); });
+    diagnostics_.others = model_.source_text.others;
+    if (!read) return false;
+    scenarios(root);
+    const Families families = write_out_families(root, overrides_, diagnostics_);
+    // One slip in an index or a scenario would show in every element.
+    if (diagnostics_.has_errors()) return false;
+    scope_.reserve(families.letters);
+    index_overrides_ = families.used;
+    std::size_t bytes = model_.source_text.text.size();
+    for (const SourceText& s : model_.source_text.others) bytes += s.text.size();
+    model_.graph->allow(kWork + kWorkPerByte * bytes + kWorkPerMember * families.members);
     sections(root);
     // Without coordinates every formula would fail after this one error.
     if (!guard([&] { coordinates(root); })) return false;
     parameters(root);
+    declare_hybrid(root, scope_, model_, diagnostics_);
+    declare_controls(root, scope_, model_, diagnostics_);
+    declare_tables(root, scope_, model_, diagnostics_);
     functions(root);
     named(root, "define", Scope::Role::define);
     named(root, "frame", Scope::Role::frame);
@@ -65,17 +84,22 @@ class Reader {  // what it refers to is asked only while it runs
     bodies.declare(root);
     if (const Item* o = table(root, "observer")) guard([&] { read_observer(*o, scope_, model_, diagnostics_); }, o->span);
     gravity(root);
+    read_controls(root, scope_, model_, diagnostics_);
     // A name that does not stand for a value is worth one report, at the place of its use.
     bodies.read();
     bodies.read_forces(root);
     potentials(root);
     constraints(root);
     quasi(root);
+    read_states(root, scope_, model_, diagnostics_);
     scope_.resolve_all();
     read_initial(root, scope_, model_, diagnostics_);
     if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
+    read_events(root, scope_, model_, diagnostics_);
+    read_outputs(root, scope_, model_, diagnostics_);
     guard([&] { simulate(root); });
-    for (const Diagnostic& d : scope_.failures) diagnostics_.add(d);
+    for (const Diagnostic& d : scope_.failures)
+      if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
     if (!diagnostics_.has_errors()) values();
     // What is made of the model from here on grows in proportion to it.
     model_.graph->allow(kWorkLater);
@@ -89,14 +113,20 @@ class Reader {  // what it refers to is asked only while it runs
 
  private:
   bool guard(const std::function<void()>& f, Span place = {}) { return collect(diagnostics_, f, place); }
+  bool guard(const std::function<void()>& f, const Item& element) { return collect(diagnostics_, f, element); }
+
+  void scenarios(Item& root) {
+    const Item cases = take_cases(root, diagnostics_);
+    for (const Item& i : cases.items) model_.cases.push_back(i.key);
+    for (const std::string& name : cases_) apply_case(root, cases, normal_name(name), diagnostics_);
+  }
 
   void sections(const Item& root) {
     check_keys(root, "the model file",
                {"title", "source", "coordinates", "dependent", "parameters", "functions", "define", "frame",
                 "point", "observer", "body", "particle", "force", "gravity", "potential", "constraint",
-                "initial", "simulate", "quasi", "monitor"},
-               {"base", "index", "table", "state", "mode", "event", "input", "output", "case",
-                "dissipation", "view", "notation"},
+                "initial", "simulate", "quasi", "monitor", "state", "mode", "event", "input", "output", "table", "base"},
+               {"dissipation", "view", "notation"},
                diagnostics_);
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
       if (const Item* i = root.find(key)) {
@@ -105,19 +135,13 @@ class Reader {  // what it refers to is asked only while it runs
       }
   }
 
-  const Item* table(const Item& root, const char* key) {
-    const Item* i = root.find(key);
-    if (i && i->kind != Item::Kind::table) {
-      diagnostics_.error(i->span, std::string("'") + key + "' is a section", std::string("write [") + key + "]");
-      return nullptr;
-    }
-    return i;
-  }
+  const Item* table(const Item& root, const char* key) { return find_section(root, key, diagnostics_); }
 
   void coordinates(const Item& root) {
     const Item* list = root.find("coordinates");
     if (!list) throw Failure(kTop, "the model has no coordinates", "coordinates = [\"x\", \"y\"] at the top of the file");
-    if (list->kind != Item::Kind::array || list->items.empty())
+    if (list->kind == Item::Kind::array && list->items.empty()) throw Failure(list->span, "the list of coordinates is empty", "coordinates = [\"x\", \"y\"]");
+    if (list->kind != Item::Kind::array)
       throw Failure(list->span, "coordinates is a list of names", "coordinates = [\"x\", \"y\"]");
     if (list->items.size() > kMostCoordinates)
       throw Failure(list->span, std::to_string(list->items.size()) + " coordinates; at most " +
@@ -166,7 +190,7 @@ class Reader {  // what it refers to is asked only while it runs
         if (order < 1) throw Failure(i.span, "the quasi-velocity '" + i.key + "' depends on no velocity", "u = \"x'*cos(theta) + y'*sin(theta)\"");
         model_.quasi.push_back({normal_name(i.key), u, order, i.span});
         model_.names.quasi.push_back(normal_name(i.key));
-      });
+      }, i);
   }
 
   void parameters(const Item& root) {
@@ -199,9 +223,9 @@ class Reader {  // what it refers to is asked only while it runs
           scope_.declare(i.key, d);
           model_.parameters.push_back({i.key, model_.graph->zero(), doc, d.span});
           model_.names.parameters.push_back(i.key);
-        });
+        }, i);
     for (const auto& [name, formula] : overrides_)
-      if (std::find(used.begin(), used.end(), name) == used.end()) {
+      if (!index_overrides_.count(name) && std::find(used.begin(), used.end(), name) == used.end()) {
         std::vector<std::string> known;
         for (const Parameter& p : model_.parameters) known.push_back(p.name);
         const std::string near = did_you_mean(name, known);
@@ -243,7 +267,7 @@ class Reader {  // what it refers to is asked only while it runs
           throw Failure(i.span, "a given function is a formula, or {} where it is not known");
         }
         scope_.declare(name, d);
-      });
+      }, i);
   }
 
   void named(const Item& root, const char* key, Scope::Role role) {
@@ -258,7 +282,7 @@ class Reader {  // what it refers to is asked only while it runs
         else if (i.is_formula()) d.formula = i.formula;
         else throw Failure(i.span, std::string("'") + i.key + "' in [" + key + "] is not a formula");
         scope_.declare(i.key, d);
-      });
+      }, i);
   }
 
   void gravity(const Item& root) {
@@ -276,11 +300,11 @@ class Reader {  // what it refers to is asked only while it runs
     for (const Item& i : section->items)
       guard([&] {
         const Expr v = scope_.number(i);
-        if (jet_order(v) > 0)
+        if (jet_order(with_feedback(model_, v)) > 0)
           throw Failure(i.span, "the potential '" + i.key + "' depends on a velocity",
                         "give a force instead");
-        model_.potentials.push_back({i.key, v, i.span});
-      }, i.span);
+        model_.potentials.push_back({i.key, with_feedback(model_, v), i.span});
+      }, i);
     scope_.freeze_masses = false;
   }
 
@@ -304,7 +328,8 @@ class Reader {  // what it refers to is asked only while it runs
     }
   }
 
-  void add_constraint(const std::string& name, Expr phi, const Item& equation) {
+  void add_constraint(const std::string& name, Expr phi, const Item& equation, const std::string& text) {
+    phi = with_feedback(model_, phi);
     const int order = true_order(phi);
     if (order < 0) {
       if (proved_zero(phi))
@@ -316,9 +341,8 @@ class Reader {  // what it refers to is asked only while it runs
     }
     if (model_.constraints.size() + model_.coordinates.size() >= kMostUnknowns)
       throw Failure(equation.formula.whole(), "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
-    for (const Constraint& c : model_.constraints)
-      if (c.name == name) throw Failure(equation.span, "there are two constraints '" + name + "'");
-    model_.constraints.push_back({name, phi, order, equation.text(), equation.formula.whole()});
+    if (!constraint_names_.insert(name).second) throw Failure(equation.span, "there are two constraints '" + name + "'");
+    model_.constraints.push_back({name, phi, order, text, equation.formula.whole()});
     model_.names.multipliers.push_back(name);
   }
 
@@ -331,17 +355,23 @@ class Reader {  // what it refers to is asked only while it runs
       return;
     }
     for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
-      check_keys(c, "a constraint", {"name", "equation"}, {"along", "by"}, diagnostics_);
+      check_keys(c, "a constraint", {"name", "equation", "by"}, {"along"}, diagnostics_);
+      const std::size_t first = model_.constraints.size();
+      const auto servo = [&] {
+        if (const Item* by = c.find("by")) keep_by(*by, first, scope_, model_);
+      };
       const Item* equation = c.find("equation");
       if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"x' = 0\"");
       const Item* named = c.find("name");
       if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");
       const std::string name = named ? normal_name(named->text()) : "constraint" + std::to_string(k + 1);
-      if (!is_identifier(name)) throw Failure(named->span, "'" + name.substr(0, 40) + "' is not a name");
+      if (!is_element_name(name)) throw Failure(named->span, "'" + name.substr(0, 40) + "' is not a name");
       const std::vector<Syntax> sides = scope_.equation(*equation);
+      const std::string text = equation_text(equation->formula, sides);
       Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
       if (std::holds_alternative<Expr>(left) && std::holds_alternative<Expr>(right)) {
-        add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), *equation);
+        add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), *equation, text);
+        servo();
         return;
       }
       const Vector phi = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
@@ -354,7 +384,8 @@ class Reader {  // what it refers to is asked only while it runs
       if (kept.empty()) throw Failure(equation->formula.whole(), "this equation always holds: it constrains nothing");
       if (!dropped.empty())
         model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
-      for (int i : kept) add_constraint(name + "." + std::string(1, "xyz"[i]), phi[i], *equation);
+      for (int i : kept) add_constraint(name + "." + std::string(1, "xyz"[i]), phi[i], *equation, text);
+      servo();
     });
   }
 
@@ -409,6 +440,7 @@ class Reader {  // what it refers to is asked only while it runs
     };
     for (const Parameter& p : model_.parameters)
       if (!check(p.value, p.span, "the parameter '" + p.name + "'")) return;  // others may hold this one
+    for (const StateVariable& z : model_.states) check(z.initial, z.span, "the initial value of '" + z.name + "'");
     for (const auto* list : {&model_.initial.given, &model_.initial.guess})
       for (const GivenValue& v : *list) check(v.value, v.span, "this initial value");
     check(model_.initial.t, {}, "the initial time");
@@ -466,6 +498,8 @@ class Reader {  // what it refers to is asked only while it runs
 
   Diagnostics& diagnostics_;
   const Overrides& overrides_;
+  const std::vector<std::string>& cases_;
+  std::set<std::string> index_overrides_, constraint_names_;
   Item root_;  // what the scope looks up stays
   Model model_;
   Scope scope_;
@@ -512,14 +546,16 @@ class DerivedNames final : public Names {
 
 }  // namespace
 
-std::optional<Model> read_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides) {
-  Reader reader(source, diagnostics, overrides);
+std::optional<Model> read_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides,
+                                const std::vector<std::string>& cases) {
+  Reader reader(source, diagnostics, overrides, cases);
   if (!reader.run()) return std::nullopt;
   return std::move(reader.model());
 }
 
-std::optional<OpenModel> open_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides) {
-  const auto reader = std::make_shared<Reader>(source, diagnostics, overrides);
+std::optional<OpenModel> open_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides,
+                                    const std::vector<std::string>& cases) {
+  const auto reader = std::make_shared<Reader>(source, diagnostics, overrides, cases);
   if (!reader->run()) return std::nullopt;
   return OpenModel{std::shared_ptr<const Model>(reader, &reader->model()), std::make_shared<DerivedNames>(reader)};
 }

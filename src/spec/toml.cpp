@@ -212,6 +212,12 @@ Item convert(const toml::node& node, const Places& places) {
   return item;
 }
 
+void put_in_file(Item& item, std::uint32_t file) {
+  item.key_span.file = item.span.file = file;
+  item.formula.set_file(file);
+  for (Item& i : item.items) put_in_file(i, file);
+}
+
 }  // namespace
 
 const Item* Item::find(const std::string& name) const {
@@ -220,7 +226,7 @@ const Item* Item::find(const std::string& name) const {
   return nullptr;
 }
 
-Item read_toml(const SourceText& source) {
+static Item read_document(const SourceText& source) {
   if (source.text.size() > kLongestFile)
     throw Failure(Span{1, 1, 1}, "the file is larger than " + std::to_string(kLongestFile >> 20) + " MiB");
   check_depth(source);
@@ -232,6 +238,17 @@ Item read_toml(const SourceText& source) {
     throw syntax_error(e, source);
   } catch (const std::invalid_argument& e) {
     throw Failure(Span{1, 1, 1}, e.what());
+  }
+}
+
+Item read_toml(const SourceText& source, std::uint32_t file) {
+  try {
+    Item root = read_document(source);
+    if (file > 0) put_in_file(root, file);
+    return root;
+  } catch (Failure& f) {
+    f.diagnostic.span.file = file;
+    throw;
   }
 }
 

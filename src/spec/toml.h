@@ -17,13 +17,14 @@ struct Item {
   FormulaText formula;     // of strings and numbers (the digits as written)
   bool truth = false;      // of booleans
   std::vector<Item> items; // of arrays and tables
+  std::string member;      // of a family: what it is called in messages, "P[3]"
 
   const Item* find(const std::string& name) const;
   bool is_formula() const { return kind == Kind::string || kind == Kind::number; }
   const std::string& text() const { return formula.text(); }
 };
 
-// Throws Failure on a syntax error of TOML itself.
-Item read_toml(const SourceText& source);
+// Throws Failure on a syntax error of TOML itself. All its places are in this file (Span::file).
+Item read_toml(const SourceText& source, std::uint32_t file = 0);
 
 }  // namespace anholon

@@ -18,12 +18,17 @@ bool may_branch(const Mechanics& m, const System& s) {
   return std::any_of(s.constraints.begin(), s.constraints.end(), [&](std::size_t r) { return may_branch(m, s, r); });
 }
 
+StageEquation law(const System& s, std::size_t i, unsigned k) {
+  const Expr e = put_state_rates(*s.model, total_derivative(s.equations[i], k), 2);
+  const std::string& name = s.equation_names[i];
+  if (i < s.coordinates) return {e, "the equation of motion of '" + name + "'", {}};
+  if (i >= s.mechanical()) return {e, "the rate of '" + name + "'", s.model->states[i - s.mechanical()].span};
+  return {e, "constraint '" + name + "'", s.model->constraints[s.constraints[i - s.coordinates]].span};
+}
+
 std::vector<StageEquation> leading_equations(const System& s, const Structure& t) {
   std::vector<StageEquation> list;
-  for (std::size_t i = 0; i < s.size(); ++i)
-    list.push_back({total_derivative(s.equations[i], static_cast<unsigned>(t.c[i])),
-                    i < s.coordinates ? "the equation of motion of '" + s.equation_names[i] + "'" : "constraint '" + s.equation_names[i] + "'",
-                    i < s.coordinates ? Span{} : s.model->constraints[s.constraints[i - s.coordinates]].span});
+  for (std::size_t i = 0; i < s.size(); ++i) list.push_back(law(s, i, static_cast<unsigned>(t.c[i])));
   return list;
 }
 
@@ -112,7 +117,7 @@ class Search {
     std::vector<StageEquation> rows = part(equations_, 0, n_);
     Column unknowns = part(unknowns_, 0, n_);
     for (std::size_t i = n_; i < s_.size(); ++i)
-      if (!may_branch(m_, s_, s_.constraints[i - n_])) rows.push_back(equations_[i]), unknowns.push_back(unknowns_[i]);
+      if (i >= s_.mechanical() || !may_branch(m_, s_, s_.constraints[i - n_])) rows.push_back(equations_[i]), unknowns.push_back(unknowns_[i]);
     Stage<N> free(m_, rows, unknowns, metric_, parameters_);
     const InitialState<N> before = state_;
     std::vector<std::size_t> every;

@@ -17,6 +17,8 @@ struct LeadingSolutions {
   bool singular = false;  // one was met at which the equations do not determine the motion
 };
 
+// Equation i of the system, differentiated k times.
+StageEquation law(const System& s, std::size_t i, unsigned k);
 // Equations of motion and constraints, each differentiated as often as the structure says, and what they are solved for.
 std::vector<StageEquation> leading_equations(const System& s, const Structure& t);
 Column leading_unknowns(const System& s, const Structure& t);

@@ -48,6 +48,7 @@ class Solver {
     state_.qd.assign(n, N(0));
     state_.q_origin.assign(n, Origin::chosen);
     state_.qd_origin.assign(n, Origin::chosen);
+    states();
     start_values([](const Node& s) { return !is_higher(s); });
     Equations positions, velocities;
     for (std::size_t r = 0; r < model_.constraints.size(); ++r) {
@@ -57,7 +58,7 @@ class Solver {
       const std::string what = "constraint '" + c.name + "'";
       if (c.order == 0) {
         positions.push_back({phi, what, c.span});
-        velocities.push_back({total_derivative(phi), "the derivative of " + what, c.span});
+        velocities.push_back({put_state_rates(model_, total_derivative(phi), 1), "the derivative of " + what, c.span});
       } else {
         velocities.push_back({phi, what, c.span});
       }
@@ -89,6 +90,19 @@ class Solver {
   }
 
  private:
+  // The model's states start where the file says.
+  void states() {
+    const std::size_t n = model_.states.size();
+    state_.states.assign(n, N(0));
+    state_.state_rates.assign(n, N(0));
+    state_.states_origin.assign(n, Origin::given);
+    state_.state_rates_origin.assign(n, Origin::derived);
+    std::vector<GivenValue> list;
+    for (const StateVariable& z : model_.states) list.push_back({z.initial, z.initial, z.span});
+    const std::vector<N> start = values(list);
+    for (std::size_t i = 0; i < n; ++i) state_.states[i] = start[i];
+  }
+
   const Node& node(Expr e) const { return m_.graph().node(e.id); }
 
   std::vector<N> values(const std::vector<GivenValue>& list) {
@@ -197,7 +211,7 @@ class Solver {
 
   void make_room(const System& s, const Structure& t) {
     int coordinates = 2, multipliers = 0;
-    for (std::size_t j = 0; j < s.size(); ++j) (j < s.coordinates ? coordinates : multipliers) = std::max(j < s.coordinates ? coordinates : multipliers, t.d[j]);
+    for (std::size_t j = 0; j < s.mechanical(); ++j) (j < s.coordinates ? coordinates : multipliers) = std::max(j < s.coordinates ? coordinates : multipliers, t.d[j]);
     const auto level = [](std::size_t n) { return Level<N>{std::vector<N>(n, N(0)), std::vector<Origin>(n, Origin::chosen)}; };
     state_.higher.assign(static_cast<std::size_t>(coordinates) - 1, level(m_.q.size()));
     state_.multipliers.assign(static_cast<std::size_t>(multipliers) + 1, level(m_.phi.size()));
@@ -236,7 +250,7 @@ class Solver {
       const Expr e = total_derivative(s.equations[i], static_cast<unsigned>(k));
       if (!holds_higher(e)) continue;  // a matter of positions and velocities
       if (i < s.coordinates) laws.push_back({e, "the equation of motion of '" + s.equation_names[i] + "'", {}});
-      else laws.push_back({e, (k ? "a derivative of constraint '" : "constraint '") + s.equation_names[i] + "'", model_.constraints[s.constraints[i - s.coordinates]].span});
+      else if (i < s.mechanical()) laws.push_back({put_state_rates(model_, e, 2), (k ? "a derivative of constraint '" : "constraint '") + s.equation_names[i] + "'", model_.constraints[s.constraints[i - s.coordinates]].span});
     }
     Equations equations = laws;
     for (const StageEquation& e : conditions())
@@ -371,6 +385,7 @@ class Solver {
   std::string solution_text(const std::vector<N>& x, const System& s, const Structure& t) const {
     std::string list;
     for (std::size_t j = 0; j < s.size(); ++j) {
+      if (j >= s.mechanical()) continue;
       bool named = j >= s.coordinates && may_branch(m_, s, s.constraints[j - s.coordinates]);
       for (std::size_t r : s.constraints) named = named || (j < s.coordinates && may_branch(m_, s, r) && !is_zero(m_.Phi[r][j]));
       if (!named) continue;
@@ -431,9 +446,7 @@ class Solver {
     Equations equations;
     for (std::size_t i = 0; i < s.size(); ++i)
       for (int k = 0; k <= t.c[i]; ++k)
-        equations.push_back({total_derivative(s.equations[i], static_cast<unsigned>(k)),
-                             i < s.coordinates ? "the equation of motion of '" + s.equation_names[i] + "'" : "constraint '" + s.equation_names[i] + "'",
-                             i < s.coordinates ? Span{} : model_.constraints[s.constraints[i - s.coordinates]].span});
+        equations.push_back(law(s, i, static_cast<unsigned>(k)));
     for (const StageEquation& e : conditions())
       if (!holds_higher(e.residual) || level_of(e.residual, s, t) > 0) equations.push_back(e);
     equations.insert(equations.end(), late.begin(), late.end());
@@ -550,7 +563,7 @@ Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& stat
 }
 
 bool needs_completion(const Mechanics& m, const System& s, const Structure& t) {
-  for (std::size_t j = 0; j < s.size(); ++j)
+  for (std::size_t j = 0; j < s.mechanical(); ++j)
     if (t.d[j] > (j < s.coordinates ? 2 : 0)) return true;
   const auto high = [](const Condition& c) { return holds_higher(c.residual); };
   return may_branch(m, s) || std::any_of(m.model->initial.conditions.begin(), m.model->initial.conditions.end(), high);

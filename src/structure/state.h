@@ -27,6 +27,8 @@ struct InitialState {
   std::vector<Origin> q_origin, qd_origin;
   std::vector<Level<N>> higher;       // q^(k), k = 2, 3, …: the state and the leading derivatives, where they were needed
   std::vector<Level<N>> multipliers;  // lambda^(k), k = 0, 1, … of all constraints of the model, likewise
+  std::vector<N> states, state_rates;  // z and z' of the model's states
+  std::vector<Origin> states_origin, state_rates_origin;
   N largest_correction{0};            // of values that were given
   std::vector<std::string> notes;     // choices that were made
 
@@ -35,6 +37,7 @@ struct InitialState {
   const N* value(const Node& n) const { return entry(*this, n); }
   Origin* origin(const Node& n) {
     if (!entry(*this, n)) return nullptr;
+    if (n.kind == Kind::state) return n.order == 0 ? &states_origin[n.index] : &state_rates_origin[n.index];
     if (n.kind == Kind::multiplier) return &multipliers[n.order].origin[n.index];
     return n.order == 0 ? &q_origin[n.index] : n.order == 1 ? &qd_origin[n.index] : &higher[n.order - 2U].origin[n.index];
   }
@@ -44,6 +47,8 @@ struct InitialState {
   template <class State>
   static auto entry(State& s, const Node& n) -> decltype(&s.q[0]) {
     if (n.kind == Kind::multiplier) return n.order < s.multipliers.size() ? &s.multipliers[n.order].value[n.index] : nullptr;
+    if (n.kind == Kind::state && n.order < 2)
+      return n.index >= s.states.size() ? nullptr : n.order == 0 ? &s.states[n.index] : &s.state_rates[n.index];
     if (n.kind != Kind::jet) return nullptr;
     if (n.order == 0) return n.index < s.q.size() ? &s.q[n.index] : nullptr;
     if (n.order == 1) return n.index < s.qd.size() ? &s.qd[n.index] : nullptr;

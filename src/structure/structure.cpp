@@ -34,6 +34,7 @@ class Probe {
       double base = 0.4;
       if (n.kind == Kind::time) base = hints.t;
       else if (n.kind == Kind::jet && n.order < hints.derivatives.size()) base = hints.derivatives[n.order][n.index];
+      else if (n.kind == Kind::state && n.order == 0 && n.index < hints.states.size()) base = hints.states[n.index];
       machine_.series(in.slot)[0] = base + (1 + std::abs(base)) * spread(random);
     }
     machine_.evaluate();
@@ -63,7 +64,14 @@ class Probe {
       };
       const auto& partials = partials_[s];
       switch (in.op) {
-        case Op::constant: case Op::pi: case Op::parameter: break;
+        case Op::constant: case Op::pi: case Op::parameter: case Op::lookup: break;
+        // What occurs in either branch occurs.
+        case Op::select:
+          for (const std::uint32_t operand : {in.a, in.b}) {
+            const double* below = &tangent.data[operand * cols];
+            if (std::all_of(below, below + cols, [](double v) { return std::isfinite(v); })) add(operand, 1);
+          }
+          break;
         case Op::input:
           if (next_input >= from && next_input < from + cols) row[next_input - from] = row_terms[next_input - from] = 1;
           ++next_input;

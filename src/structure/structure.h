@@ -34,6 +34,7 @@ struct Structure {
 // Values from which the probing points are drawn (coordinate jets by order); may be empty.
 struct ProbeHints {
   std::vector<std::vector<double>> derivatives;  // [order][coordinate]
+  std::vector<double> states;
   double t = 0;
 };
 

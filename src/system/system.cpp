@@ -7,12 +7,14 @@ namespace anholon {
 Expr System::symbol(std::size_t j, unsigned k) const {
   Graph& g = *model->graph;
   if (j < coordinates) return g.jet(static_cast<std::uint32_t>(j), k);
+  if (j >= mechanical()) return g.state(static_cast<std::uint32_t>(j - mechanical()), k);
   return g.multiplier(static_cast<std::uint32_t>(constraints[j - coordinates]), k);
 }
 
 std::optional<std::size_t> System::variable(NodeId symbol) const {
   const Node& n = model->graph->node(symbol);
   if (n.kind == Kind::jet) return n.index;
+  if (n.kind == Kind::state) return mechanical() + n.index;
   if (n.kind != Kind::multiplier) return std::nullopt;
   const auto it = std::find(constraints.begin(), constraints.end(), n.index);
   if (it == constraints.end()) return std::nullopt;
@@ -55,6 +57,13 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
     s.equations.push_back(put_masses(*model, m.phi[r]));
     s.equation_names.push_back(model->constraints[r].name);
     s.variable_names.push_back("lambda." + model->constraints[r].name);
+  }
+  for (std::size_t i = 0; i < model->states.size(); ++i) {
+    const StateVariable& z = model->states[i];
+    const Expr rate = g.state(static_cast<std::uint32_t>(i), 1);
+    s.equations.push_back(rate - put_masses(*model, z.rate));
+    s.equation_names.push_back(z.name);
+    s.variable_names.push_back(z.name);
   }
   if (constraints.size() < model->constraints.size())
     s.equations = substitute(s.equations, [&](NodeId id) {

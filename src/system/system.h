@@ -1,5 +1,5 @@
-// The implicit system F(t, x, x', …) = 0: n equations of motion and s constraints in the unknown
-// functions q_1..q_n, lambda_1..lambda_s. Masses are put in; no form is ever solved symbolically.
+// The implicit system F(t, x, x', …) = 0: n equations of motion, s constraints and the rates of the model's states, in the
+// unknown functions q_1..q_n, lambda_1..lambda_s, z_1, …. Masses are put in; no form is ever solved symbolically.
 //
 // A form without multipliers gives n - s equations, which determine the motion together with the
 // constraints. Routh's equations of the dependent coordinates, Phi_D^T lambda = a_D [L 3.4], are added
@@ -22,6 +22,8 @@ struct System {
   std::vector<std::string> variable_names;  // q_a, then lambda.NAME
 
   std::size_t size() const { return equations.size(); }
+  // Equations and unknowns below this are those of motion and constraints; z' - rate = 0 follow.
+  std::size_t mechanical() const { return coordinates + constraints.size(); }
   // The symbol of the k-th derivative of variable j.
   Expr symbol(std::size_t variable, unsigned k) const;
   // The variable of which a symbol is a derivative, or nothing (t, parameters).

@@ -151,15 +151,15 @@ class Compiler {
         in = {Op::parameter, true};
         in.index = n.index;
         break;
-      case Kind::time: case Kind::jet: case Kind::multiplier: {
+      case Kind::time: case Kind::jet: case Kind::multiplier: case Kind::state: {
         in.op = Op::input;
         in.index = static_cast<std::uint32_t>(tape_.inputs.size());
         slot_[id] = push(in);
         tape_.inputs.push_back({id, slot_[id]});
         return;
       }
-      case Kind::mass: case Kind::given: case Kind::quasi:
-        ANHOLON_ASSERT(!"a frozen mass or unknown function in a tape");
+      case Kind::mass: case Kind::given: case Kind::quasi: case Kind::control:
+        ANHOLON_ASSERT(!"a frozen mass, an input or an unknown function in a tape");
         return;
       case Kind::sum: {
         in.op = Op::linear;
@@ -192,6 +192,22 @@ class Compiler {
         slot_[id] = push(in);
         pending_derivatives_.push_back({slot_[id], id});
         return;
+      case Kind::select:
+        in.op = Op::select;
+        in.first = slot_.at(g_.terms(id)[0].node);
+        in.a = slot_.at(g_.terms(id)[1].node);
+        in.b = slot_.at(g_.terms(id)[2].node);
+        in.constant = constant(in.first) && constant(in.a) && constant(in.b);
+        break;
+      case Kind::lookup: {
+        in.op = Op::lookup;
+        in.a = slot_.at(g_.terms(id)[0].node);
+        in.constant = constant(in.a);
+        const auto [it, fresh] = step_function_.try_emplace(n.index, static_cast<std::uint32_t>(tape_.step_functions.size()));
+        if (fresh) tape_.step_functions.push_back(g_.step_function(n.index));
+        in.index = it->second;
+        break;
+      }
     }
     slot_[id] = push(in);
   }
@@ -217,7 +233,10 @@ class Compiler {
           case Op::linear:
             for (std::uint32_t k = in.first; k < in.first + in.count; ++k) raise(tape_.linear_terms[k].slot, in.lead);
             break;
-          case Op::square: case Op::power: raise(in.a, in.lead); break;
+          case Op::square: case Op::power: case Op::lookup: raise(in.a, in.lead); break;
+          case Op::select:
+            raise(in.a, in.lead), raise(in.b, in.lead), raise(in.first, in.lead);
+            break;
           case Op::multiply: case Op::scale: case Op::divide:
             raise(in.a, in.lead), raise(in.b, in.lead);
             break;
@@ -242,6 +261,7 @@ class Compiler {
   std::unordered_map<NodeId, std::pair<Expr, Expr>> derivative_;
   std::vector<std::pair<std::uint32_t, NodeId>> pending_derivatives_;
   std::unordered_map<std::string, std::uint32_t> rational_;
+  std::unordered_map<std::uint32_t, std::uint32_t> step_function_;
   std::unordered_map<std::uint64_t, std::uint32_t> whole_power_;
   std::optional<std::uint32_t> one_;
 };

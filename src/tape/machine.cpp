@@ -44,6 +44,33 @@ N power_value(const N& u, const N& r, const Rational& exact) {
   else return pow(u, r);
 }
 
+// The side of a choice: 1 where s >= 0, -1 where s < 0, 0 where a ball does not say.
+template <Scalar N>
+int branch(const N& s) {
+  if constexpr (std::same_as<N, Ball>) return s.contains_zero() ? 0 : s.is_positive() ? 1 : -1;
+  else return s < N(0) ? -1 : 1;
+}
+
+// How many of the ascending knots lie at or below x, and whether that is sure.
+template <Scalar N>
+std::pair<std::size_t, bool> below(const std::vector<N>& knots, const N& x) {
+  std::size_t low = 0, high = knots.size();
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    const int side = branch(N(x - knots[middle]));
+    if (side == 0) return {0, false};
+    if (side > 0) low = middle + 1;
+    else high = middle;
+  }
+  return {low, true};
+}
+
+template <Scalar N>
+N unknown() {
+  if constexpr (std::same_as<N, Ball>) return Ball::unknown();
+  else return N(0);
+}
+
 }  // namespace
 
 template <Scalar N>
@@ -53,6 +80,12 @@ Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& 
       stride_((orders + static_cast<std::size_t>(tape.largest_lead) + 1) | 1),
       data_(stride_ * tape.code.size(), N(0)) {
   for (const Rational& r : tape.rationals) rationals_.push_back(constant_value<N>(r));
+  for (const StepFunction& f : tape.step_functions) {
+    Steps s;
+    for (const Rational& r : f.knots) s.knots.push_back(constant_value<N>(r));
+    for (const Rational& r : f.values) s.values.push_back(constant_value<N>(r));
+    steps_.push_back(std::move(s));
+  }
   for (std::uint32_t s = 0; s < tape.code.size(); ++s) {
     const Instruction& in = tape.code[s];
     if (in.op == Op::parameter) series(s)[0] = parameters[in.index];
@@ -172,7 +205,31 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
       w[p] = s / N(static_cast<int>(p));
       return;
     }
+    case Op::select: {
+      const int side = branch(series(in.first)[0]);
+      const std::uint32_t from = side > 0 ? in.a : in.b;
+      if (side == 0) w[p] = unknown<N>();
+      else w[p] = p > 0 && tape_->code[from].constant ? N(0) : series(from)[p];
+      return;
+    }
+    case Op::lookup: {
+      if (p > 0) {
+        w[p] = N(0);
+        return;
+      }
+      const auto [k, sure] = below(steps_[in.index].knots, series(in.a)[0]);
+      w[0] = sure ? steps_[in.index].values[k] : unknown<N>();
+      return;
+    }
   }
+}
+
+template <Scalar N>
+std::pair<const N*, const N*> Machine<N>::knots_around(std::uint32_t slot) const {
+  const Instruction& in = tape_->code[slot];
+  const std::vector<N>& knots = steps_[in.index].knots;
+  const std::size_t k = below(knots, series(in.a)[0]).first;
+  return {k > 0 ? &knots[k - 1] : nullptr, k < knots.size() ? &knots[k] : nullptr};
 }
 
 template <Scalar N>
@@ -191,8 +248,23 @@ typename Machine<N>::Partials Machine<N>::partials(std::uint32_t slot) const {
     case Op::power: return {rationals_[in.index] * w[0] / series(in.a)[0], N(0)};
     case Op::function: return {series(in.b)[0], N(0)};
     case Op::arctan2: return {series(in.first)[0], series(in.count)[0]};
+    case Op::select: {
+      const bool first = branch(series(in.first)[0]) > 0;
+      return {N(first ? 1 : 0), N(first ? 0 : 1)};
+    }
+    case Op::lookup: break;
   }
   return {N(0), N(0)};
+}
+
+template <Scalar N>
+N Machine<N>::magnitude(std::uint32_t slot) const {
+  const Instruction& in = tape_->code[slot];
+  if (in.op != Op::linear) return abs(series(slot)[0]);
+  N s(0);
+  for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+    s += abs(N(rationals_[tape_->linear_terms[k].coefficient] * series(tape_->linear_terms[k].slot)[0]));
+  return s;
 }
 
 template <Scalar N>

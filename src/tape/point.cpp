@@ -39,8 +39,16 @@ N ValuesAt<N>::evaluate(const Graph& g, NodeId id) const {
     case Kind::function: return apply(static_cast<Function>(n.index), known_.at(g.terms(id)[0].node));
     case Kind::atan2: return atan2(known_.at(g.terms(id)[0].node), known_.at(g.terms(id)[1].node));
     case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given:
-    case Kind::quasi:
+    case Kind::quasi: case Kind::state: case Kind::control:
       return symbol_(n);
+    case Kind::select: return known_.at(g.terms(id)[!(known_.at(g.terms(id)[0].node) < N(0)) ? 1 : 2].node);
+    case Kind::lookup: {
+      const StepFunction& f = g.step_function(n.index);
+      const N& x = known_.at(g.terms(id)[0].node);
+      std::size_t k = 0;
+      while (k < f.knots.size() && !(x < from_rational<N>(f.knots[k]))) ++k;
+      return from_rational<N>(f.values[k]);
+    }
   }
   return N(0);
 }

@@ -37,6 +37,8 @@ enum class Op : std::uint8_t {
   power,      // a^r, r = rational `index`, not a whole positive number
   function,   // elementary function `index` of a; b = slot of its derivative f'(a)
   arctan2,    // atan2(a, b); `first` and `second` = slots of the derivatives by a and b
+  select,     // a where slot `first` >= 0, else b: of all orders, as the value at the point says
+  lookup,     // step function `index` of a: the value there; a constant of its series
 };
 
 struct Instruction {
@@ -63,6 +65,7 @@ struct Tape {
   std::vector<Instruction> code;
   std::vector<LinearTerm> linear_terms;
   std::vector<Rational> rationals;
+  std::vector<StepFunction> step_functions;
   std::vector<Input> inputs;
   std::vector<std::uint32_t> roots;  // slots of the expressions, in the order given
   std::uint32_t main_end = 0;        // slots below this serve the first `main_roots` expressions
@@ -107,9 +110,13 @@ class Machine {
     N a, b;
   };
   Partials partials(std::uint32_t slot) const;
+  // The sum of the absolute values of what a slot is the sum of, at order 0.
+  N magnitude(std::uint32_t slot) const;
   // The sum of the absolute values of the terms of a main root, in its Taylor coefficient of this order.
   N terms(std::size_t root, std::size_t order) const;
   const N& rational(std::uint32_t index) const { return rationals_[index]; }
+  // The knots between which a slot with a step function stands: below and above; null where there is none.
+  std::pair<const N*, const N*> knots_around(std::uint32_t slot) const;
   const Tape& tape() const { return *tape_; }
 
  private:
@@ -119,6 +126,10 @@ class Machine {
   std::size_t stride_;
   std::vector<N> data_;
   std::vector<N> rationals_;
+  struct Steps {
+    std::vector<N> knots, values;
+  };
+  std::vector<Steps> steps_;
 };
 
 extern template class Machine<double>;

@@ -126,10 +126,10 @@ def made():
     yield "keys_unknown", 'error "unknown key"', PLANE + END + "".join(f"k{i} = {i}\n" for i in range(50000))
     yield "parameters_many", "ok", PLANE + END + "[parameters]\n" + "".join(f"a{i} = {i}\n" for i in range(20000))
     yield "parameters_in_a_chain", 'error "leads through more than"', PLANE + END + "[parameters]\na0 = 1\n" + "".join(f'a{i + 1} = "a{i} + 1"\n' for i in range(3000))
-    yield "parameters_in_a_chain_backwards", 'error "lead through more than"', PLANE + END + "[parameters]\n" + "".join(
+    yield "parameters_in_a_chain_backwards", 'error "leads through more than"', PLANE + END + "[parameters]\n" + "".join(
         f'a{i} = "a{i + 1} + 1"\n' for i in range(3000)
     ) + "a3000 = 1\n"
-    yield "definitions_in_a_chain", 'error "lead through more than"', PLANE + FORCE % "d2000" + END + '[define]\nd0 = "x"\n' + "".join(
+    yield "definitions_in_a_chain", "ok", PLANE + FORCE % "d2000" + END + '[define]\nd0 = "x"\n' + "".join(
         f'd{i + 1} = "sin(d{i})"\n' for i in range(2000)
     )
     yield "points_in_a_chain", "ok", PLANE + END + '[point]\nP0 = "x*ex"\n' + "".join(f'P{i + 1} = "P{i} + sin({i}*x)*ey"\n' for i in range(300))

@@ -97,8 +97,10 @@ TEST(Mistakes, HaveTheirColumnAndSayWhatIsWrong) {
       {"[1, 2]", 1, "a vector has three components"},
       {"x²² + γ", 7, "unknown name 'gamma'"},
       {"D(x, 21)", 6, "argument 2 of D is not a whole number between 0 and 20"},
-      {"sum(x)", 1, "sum(…) is not read yet"},
-      {"q[3]", 1, "families of elements (names with [ ]) are not read yet"},
+      {"q[]", 1, "the bracket after 'q' is empty"},
+      {"q[1/2]", 4, "an index is a whole number: + - * only"},
+      {"q[x]", 3, "'x' is no index"},
+      {"sum(x)", 1, "sum runs over a range of [index]"},
   };
   for (const Mistake& m : mistakes) {
     const Failure f = n.failure(m.text);

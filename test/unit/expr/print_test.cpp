@@ -62,6 +62,10 @@ TEST(Latex, Samples) {
   EXPECT_EQ(latex_name("theta12"), "\\theta_{12}");
   EXPECT_EQ(latex_name("mass"), "\\mathrm{mass}");
   EXPECT_EQ(latex_name("x_a"), "x_{a}");
+  EXPECT_EQ(latex_name("theta[3]"), "\\theta_{3}");
+  EXPECT_EQ(latex_name("x1[3]"), "x_{1,3}");
+  EXPECT_EQ(latex_name("x_a[1,2]"), "x_{a,1,2}");
+  EXPECT_EQ(latex_name("front_wheel[2]"), "\\mathrm{front}_{\\mathrm{wheel},2}");
   EXPECT_EQ(derivative_name("x", 2, Format::latex), "\\ddot{x}");
   EXPECT_EQ(derivative_name("x", 4, Format::latex), "x^{(4)}");
   EXPECT_EQ(derivative_name("x", 3, Format::text), "x'''");
@@ -91,6 +95,9 @@ TEST(Mathml, Samples) {
   EXPECT_EQ(mathml_name("theta"), "<mi>θ</mi>");
   EXPECT_EQ(mathml_name("x1"), "<msub><mi>x</mi><mn>1</mn></msub>");
   EXPECT_EQ(mathml_name("phi_a"), "<msub><mi>φ</mi><mi>a</mi></msub>");
+  EXPECT_EQ(mathml_name("theta[3]"), "<msub><mi>θ</mi><mn>3</mn></msub>");
+  EXPECT_EQ(mathml_name("x1[3]"), "<msub><mi>x</mi><mrow><mn>1</mn><mo>,</mo><mn>3</mn></mrow></msub>");
+  EXPECT_EQ(mathml_name("phi_a[1,2]"), "<msub><mi>φ</mi><mrow><mi>a</mi><mo>,</mo><mn>1</mn><mo>,</mo><mn>2</mn></mrow></msub>");
   EXPECT_EQ(mathml_name("mass"), "<mi mathvariant=\"normal\">mass</mi>");
   EXPECT_EQ(mathml_name("a<b&c"), "<mi mathvariant=\"normal\">a&lt;b&amp;c</mi>");
   EXPECT_EQ(derivative_name("<mi>x</mi>", 2, Format::mathml), "<mover accent=\"true\"><mi>x</mi><mo>¨</mo></mover>");

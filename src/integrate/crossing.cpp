@@ -1,0 +1,94 @@
+#include "integrate/crossing.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace anholon {
+
+namespace {
+
+// Halves of [0, h] beyond this depth are narrower than a round-off of h in double.
+constexpr int kDeepest = 56, kBisections = 200, kPolish = 4;
+
+template <Number N>
+N value_at(const N* c, int degree, const N& x) {
+  N s(0);
+  for (int k = degree; k >= 0; --k) s = s * x + c[k];
+  return s;
+}
+
+// Bernstein coefficients on [0, 1] of sum a_k u^k: b_j = sum_{k<=j} C(j,k)/C(n,k) a_k.
+template <Number N>
+std::vector<N> bernstein(std::vector<N> a) {
+  const std::size_t n = a.size() - 1;
+  N binomial(1);  // C(n, k)
+  for (std::size_t k = 1; k <= n; ++k) {
+    binomial = binomial * N(static_cast<int>(n - k + 1)) / N(static_cast<int>(k));
+    a[k] = a[k] / binomial;
+  }
+  // Sums with binomial weights, in place: k rounds of adding the neighbour below.
+  for (std::size_t k = 1; k <= n; ++k)
+    for (std::size_t j = n; j >= k; --j) a[j] += a[j - 1];
+  return a;
+}
+
+// Where in [from, to] of [0, 1] the polynomial with Bernstein coefficients b there is first below -floor.
+template <Number N>
+std::optional<N> search(std::vector<N> b, const N& from, const N& to, const N& floor, int depth) {
+  if (b.front() < -floor) return from;
+  if (std::none_of(b.begin(), b.end(), [&](const N& x) { return x < -floor; })) return std::nullopt;
+  if (depth == 0) return b.back() < -floor ? std::optional<N>(to) : std::nullopt;
+  std::vector<N> left = b;
+  for (std::size_t k = 1; k < b.size(); ++k) {
+    for (std::size_t j = 0; j + k < b.size(); ++j) b[j] = (b[j] + b[j + 1]) / N(2);
+    left[k] = b[0];
+  }
+  // What is left in b is the right half.
+  const N middle = (from + to) / N(2);
+  if (auto x = search(std::move(left), from, middle, floor, depth - 1)) return x;
+  return search(std::move(b), middle, to, floor, depth - 1);
+}
+
+}  // namespace
+
+template <Number N>
+std::optional<N> first_below(const N* c, int degree, const N& h, const N& floor) {
+  std::vector<N> a;
+  N power(1), rest(0);
+  for (int k = 0; k <= degree; ++k) {
+    a.push_back(c[k] * power);
+    if (k > 0) rest += abs(a.back());
+    power = power * h;
+    if (!is_finite(a.back())) return std::nullopt;
+  }
+  if (!(a[0] - rest < -floor)) return std::nullopt;
+  const auto found = search(bernstein(std::move(a)), N(0), N(1), floor, kDeepest);
+  if (!found) return std::nullopt;
+  if (c[0] < -floor) return N(0);
+  // To where it passes -floor, and from there back to zero, which is near.
+  N low(0), high = *found * h;
+  for (int k = 0; k < kBisections; ++k) {
+    const N middle = (low + high) / N(2);
+    if (middle == low || middle == high) break;
+    (value_at(c, degree, middle) < -floor ? high : low) = middle;
+  }
+  N x = high, value = abs(value_at(c, degree, x));
+  for (int k = 0; k < kPolish && value > N(0); ++k) {
+    N slope(0);
+    for (int j = degree; j >= 1; --j) slope = slope * x + c[j] * N(j);
+    if (!(abs(slope) > N(0))) break;
+    const N next = x - value_at(c, degree, x) / slope;
+    const N there = abs(value_at(c, degree, next));
+    if (!(there < value) || (next > N(0)) != (h > N(0)) || abs(next) > abs(h)) break;
+    x = next;
+    value = there;
+  }
+  return x;
+}
+
+template std::optional<double> first_below(const double*, int, const double&, const double&);
+template std::optional<long double> first_below(const long double*, int, const long double&, const long double&);
+template std::optional<Quad> first_below(const Quad*, int, const Quad&, const Quad&);
+template std::optional<Multi> first_below(const Multi*, int, const Multi&, const Multi&);
+
+}  // namespace anholon

@@ -1,0 +1,56 @@
+// Events along a motion: the strict changes of sign of given series, located on the Taylor polynomial.
+//
+// Each series has a side, the sign it last had. At the start and after a restart it is that of the value, or, where the value is
+// round-off, that which the series takes right afterwards; so nothing fires there.
+#pragma once
+#include <vector>
+
+#include "program/expansion.h"
+
+namespace anholon {
+
+struct WatchedSeries {
+  std::size_t quadrature = 0;  // of the program
+  int direction = 0;           // 1: only upwards, -1: only downwards
+  bool ends_step = false;
+  bool fires(int towards) const { return direction == 0 || direction == towards; }
+};
+
+template <Number N>
+struct Fired {
+  std::size_t series = 0;
+  N where{0};  // from the start of the step
+};
+
+template <Number N>
+class EventWatch {
+ public:
+  explicit EventWatch(std::vector<WatchedSeries> series) : series_(std::move(series)), sides_(series_.size(), 0) {}
+
+  bool empty() const { return series_.empty(); }
+  const std::vector<int>& sides() const { return sides_; }
+  void set_sides(std::vector<int> sides) { sides_ = std::move(sides); }
+  // The sides are found anew at the next step.
+  void restart() { sides_.assign(series_.size(), 0); }
+
+  // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time, those of
+  // one moment in the order of the series. Sides become those after it. `t`: the time of the expansion.
+  std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h);
+
+ private:
+  struct Crossing {
+    N where{0};
+    int towards = 0;
+  };
+  static std::vector<Crossing> crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side);
+
+  std::vector<WatchedSeries> series_;
+  std::vector<int> sides_;
+};
+
+extern template class EventWatch<double>;
+extern template class EventWatch<long double>;
+extern template class EventWatch<Quad>;
+extern template class EventWatch<Multi>;
+
+}  // namespace anholon
