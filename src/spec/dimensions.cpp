@@ -37,6 +37,7 @@ class Elements {
     forces();
     each("potential", [&](const Item& i) { expect(i, "J"); });
     each("dissipation", [&](const Item& i) { expect(i, "W"); });
+    states();
     list("constraint", [&](const Item& c) { if (const Item* e = c.find("equation")) equation(*e); });
     initial();
     each("monitor", [&](const Item& i) { if (i.is_formula()) formulas_.of(i); });
@@ -123,11 +124,20 @@ class Elements {
       for (const char* place : {"on", "from"})
         if (const Item* p = f.find(place); p && p->kind == Item::Kind::table) expect(p->find("at"), "m");
       if (const Item* g = f.find("generalized"); g && g->kind == Item::Kind::table)
-        for (const Item& i : g->items) expect(i, formulas_.unit("J") / coordinate(i.key));
+        for (const Item& i : g->items) expect(i, formulas_.unit("J") / named(i.key));
     });
   }
 
-  DimensionForm coordinate(const std::string& name) { return formulas_.named(name).dimension; }
+  void states() {
+    each("state", [&](const Item& s) {
+      const DimensionForm z = named(s.key);
+      if (const Item* rate = s.find("rate")) expect(*rate, z / formulas_.unit("s"));
+      if (const Item* initial = s.find("initial")) expect(*initial, z);
+    });
+    each("input", [&](const Item& i) { expect(i, named(i.key)); });
+  }
+
+  DimensionForm named(const std::string& name) { return formulas_.named(name).dimension; }
 
   // "x''" of [initial]: the dimension of the derivative.
   void initial() {
@@ -143,7 +153,7 @@ class Elements {
       name = name.substr(2, name.find(',') - 2);
     }
     const auto& names = model_.names.coordinates;
-    if (std::find(names.begin(), names.end(), name) != names.end()) expect(i, coordinate(name) / power(formulas_.unit("s"), order));
+    if (std::find(names.begin(), names.end(), name) != names.end()) expect(i, named(name) / power(formulas_.unit("s"), order));
   }
 
   void values(const Item& table) {

@@ -124,6 +124,7 @@ Measured FormulaDimensions::declared(const std::string& name, const Scope::Decla
       expect(m, unit("m"), d.item ? d.item->span : d.formula.whole());
       return vector(unit("m"));
     }
+    case Role::state: case Role::control: return number(dimensions_.unknown(name));
     default: return anything();
   }
 }
@@ -303,6 +304,18 @@ Measured FormulaDimensions::call(const Syntax& s) {
     const Measured first = argument(0);
     for (std::size_t k = 1; k < s.args.size(); ++k) alike(first, of(s.args[k]), s.span, " and ", (" as arguments of " + f).c_str());
     return f == "atan2" ? number() : first;
+  }
+  if (f == "choose" || f == "piecewise") {
+    // choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values are alike, and so are the sides of a condition.
+    std::optional<Measured> value;
+    for (std::size_t k = 0; k < s.args.size(); ++k) {
+      const Syntax& a = s.args[k];
+      if (a.op == Syntax::Op::compare) alike(term(a.args[0]), term(a.args[1]), a.span, " compared with ");
+      else if (f == "choose" ? k == 0 : k % 2 == 0 && k + 1 < s.args.size()) of(a);
+      else if (!value) value = term(a);
+      else alike(*value, term(a), a.span, " and ", (" as values of " + f).c_str());
+    }
+    return value ? *value : anything();
   }
   if (f == "dot" || f == "cross") {
     const DimensionForm a = argument(0).dimension, b = argument(1).dimension;
