@@ -27,6 +27,8 @@ constexpr std::array kParity = {
 // A product of more factors than this is one factor of a larger product: what a deep chain of functions
 // makes of its derivative stays linear in size. Products up to here are flat and so canonical.
 constexpr std::uint32_t kOpenedFactors = 64;
+// Likewise a sum of more terms is one term of a larger sum: the position of link i of a long chain.
+constexpr std::uint32_t kOpenedTerms = 64;
 
 // Numbers of more machine words than the first cost more than one unit of work; numbers of more than the second are refused.
 constexpr std::size_t kShortNumber = 16, kLongestNumber = 8'000;

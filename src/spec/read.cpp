@@ -343,7 +343,7 @@ class Reader {  // what it refers to is asked only while it runs
     scope_.freeze_masses = true;
     for (const Item& i : section->items)
       guard([&] {
-        const Expr r = scope_.number(i);
+        const Expr r = with_feedback(model_, scope_.number(i));
         const int order = jet_order(r);
         if (order > 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on an acceleration");
         if (order < 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on no velocity", "R = \"c/2*x'^2\" gives the force -c x'");

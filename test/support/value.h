@@ -66,7 +66,7 @@ inline std::vector<Multi> values(std::span<const Expr> es, const Point& at) {
     switch (n.kind) {
       case Kind::number: v = Multi(g.value(id)); break;
       case Kind::pi: v = pi<Multi>(); break;
-      case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi:
+      case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
         v = at(g, id);
         break;
       case Kind::sum:
@@ -80,6 +80,14 @@ inline std::vector<Multi> values(std::span<const Expr> es, const Point& at) {
         for (const Term& t : g.terms(id)) v *= raise(value.at(t.node), g.rational(t.weight));
         break;
       case Kind::function: v = apply(static_cast<Function>(n.index), value.at(g.terms(id)[0].node)); break;
+      case Kind::select: v = value.at(g.terms(id)[!(value.at(g.terms(id)[0].node) < Multi(0)) ? 1 : 2].node); break;
+      case Kind::lookup: {
+        const StepFunction& f = g.step_function(n.index);
+        std::size_t k = 0;
+        while (k < f.knots.size() && !(value.at(g.terms(id)[0].node) < Multi(f.knots[k]))) ++k;
+        v = Multi(f.values[k]);
+        break;
+      }
       case Kind::atan2: v = atan2(value.at(g.terms(id)[0].node), value.at(g.terms(id)[1].node)); break;
     }
     value.insert_or_assign(id, v);
