@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "expr/indices.h"
 #include "spec/bodies.h"
 #include "spec/keys.h"
 #include "spec/multipliers.h"
