@@ -54,6 +54,27 @@ std::optional<ParameterRange> range(const Options& o, const Model& model) {
   return r;
 }
 
+// The inputs of the file with a constant added to each, 0 here: the symbol u by which B and D are derivatives. A formula of an input
+// goes on to hold, so A is that of the motion that `simulate` computes. A servo constraint has its input as an unknown, not as a signal.
+std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) {
+  auto m = std::make_shared<Model>(model);
+  Graph& g = *m->graph;
+  for (Control& control : m->controls) {
+    if (!control.value || control.constraint) continue;
+    const Expr u = g.parameter(static_cast<std::uint32_t>(m->parameters.size()));
+    m->parameters.push_back({control.name, g.zero(), "", control.span});
+    control.value = *control.value + u;
+    signals.inputs.push_back(control.name);
+    signals.u.push_back(u);
+  }
+  for (const OutputQuantity& output : m->outputs)
+    for (std::size_t i = 0; i < output.values.size(); ++i) {
+      signals.outputs.push_back(output.name + (output.values.size() == 1 ? "" : std::string(".") + "xyz"[i]));
+      signals.y.push_back(output.values[i]);
+    }
+  return m;
+}
+
 // Rest without accelerations, near the positions of the file.
 std::shared_ptr<const Model> at_rest(const Model& model) {
   auto m = std::make_shared<Model>(model);
@@ -326,6 +347,8 @@ int linearize(const Options& o) {
   Reader in = read(o);
   if (o.about == "equilibrium") in.model = at_rest(*in.model);
   const std::optional<ParameterRange> values = range(o, *in.model);
+  Signals signals;
+  in.model = with_signals(*in.model, signals);
   const StateChoice choice = state_choice(o, *in.model);
   Scenario s;
   const Outcome start = ready(in, form(o, *in.model), choice, s);
@@ -337,7 +360,7 @@ int linearize(const Options& o) {
   if (!o.show.empty()) return show(o, s);
   const PrecisionScope scope(std::max(kWorkingDigits, o.digits + kGuardDigits));
   Linearization l;
-  if (start.ok()) l = linearize(s, choice, values);
+  if (start.ok()) l = linearize(s, choice, values, signals);
   else l.results.push_back({"", start, {}});
   Outcome failed;  // the first that did
   for (LinearResult& r : l.results) {
