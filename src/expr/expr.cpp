@@ -135,7 +135,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
     const Node& n = nodes_[e.id];
     if (n.kind == Kind::number) {
       parts.push_back({one_, factor * value(e.id)});
-    } else if (n.kind == Kind::sum && n.count > kOpenedTerms) {
+    } else if (n.kind == Kind::sum && n.count > kOpenedTerms && operands.size() > 1) {
       parts.push_back({e.id, factor});
     } else if (n.kind == Kind::sum) {
       spend(n.count);

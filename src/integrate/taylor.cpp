@@ -62,12 +62,17 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
 
 template <Number N>
 Outcome Stepper<N>::restart(const std::vector<W>& state) {
+  before_ = t_;
   state_ = state;
   carry_.assign(state.size(), W(0));
   events_.restart();
   fired_.clear();
   short_kinks_ = 0;
-  return expand(leading_);
+  // How far what was set lies from the constraints is no drift.
+  const W drift = worst_constraint_;
+  Outcome o = expand(leading_);
+  worst_constraint_ = drift;
+  return o;
 }
 
 template <Number N>
