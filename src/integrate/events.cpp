@@ -60,6 +60,16 @@ std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* 
 }
 
 template <Number N>
+double EventWatch<N>::log_reach(const Expansion<N>& e, int degree, double log_tolerance) const {
+  double reach = 300;
+  for (const WatchedSeries& s : series_) {
+    const N floor = unit_roundoff<N>() * N(kNoise) * e.quadrature_terms(s.quadrature);
+    reach = std::min(reach, anholon::log_reach<N>(e.quadrature(s.quadrature), degree, floor, log_tolerance));
+  }
+  return reach;
+}
+
+template <Number N>
 std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h) {
   const N eps = unit_roundoff<N>();
   std::vector<std::vector<Crossing>> each;

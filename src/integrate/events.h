@@ -33,6 +33,9 @@ class EventWatch {
   // The sides are found anew at the next step.
   void restart() { sides_.assign(series_.size(), 0); }
 
+  // The logarithm of how far all series are known from the present expansion.
+  double log_reach(const Expansion<N>& e, int degree, double log_tolerance) const;
+
   // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time, those of
   // one moment in the order of the series. Sides become those after it. `t`: the time of the expansion.
   std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h);

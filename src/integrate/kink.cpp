@@ -9,6 +9,11 @@ namespace anholon {
 namespace {
 
 constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
+constexpr int kNoise = 64;         // values below so many round-offs of what they are made of are zero
+
+bool turns_at_zero(const Instruction& in) {
+  return in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign));
+}
 
 template <Number N>
 class Search {
@@ -24,7 +29,7 @@ class Search {
  private:
   void look(const Tape& tape, const Instruction& in, std::uint32_t slot) {
     if (in.constant) return;
-    if (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign))) {
+    if (turns_at_zero(in)) {
       const N* c = machine_.series(in.a);
       if (!(c[0] > N(0)) && !(c[0] < N(0)))
         kink_.at_start = kink_.at_start || std::any_of(c + 1, c + degree_ + 1, [](const N& x) { return x > N(0) || x < N(0); });
@@ -88,9 +93,28 @@ Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h) {
   return Search<N>(machine, degree, h).run();
 }
 
+template <Number N>
+double kinks_log_reach(const Machine<N>& machine, int degree, double log_tolerance) {
+  const Tape& tape = machine.tape();
+  double reach = 300;
+  for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) {
+    const Instruction& in = tape.code[slot];
+    if (in.constant || !(in.op == Op::select || in.op == Op::lookup || turns_at_zero(in))) continue;
+    const std::uint32_t argument = in.op == Op::select ? in.first : in.a;
+    if (tape.code[argument].constant) continue;
+    const N floor = unit_roundoff<N>() * N(kNoise) * machine.magnitude(argument);
+    reach = std::min(reach, log_reach<N>(machine.series(argument), degree, floor, log_tolerance));
+  }
+  return reach;
+}
+
 template Kink<double> first_kink(const Machine<double>&, int, const double&);
 template Kink<long double> first_kink(const Machine<long double>&, int, const long double&);
 template Kink<Quad> first_kink(const Machine<Quad>&, int, const Quad&);
 template Kink<Multi> first_kink(const Machine<Multi>&, int, const Multi&);
+template double kinks_log_reach(const Machine<double>&, int, double);
+template double kinks_log_reach(const Machine<long double>&, int, double);
+template double kinks_log_reach(const Machine<Quad>&, int, double);
+template double kinks_log_reach(const Machine<Multi>&, int, double);
 
 }  // namespace anholon

@@ -16,4 +16,8 @@ struct Kink {
 template <Number N>
 Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h);
 
+// The logarithm of how far the series are known that decide where kinks are.
+template <Number N>
+double kinks_log_reach(const Machine<N>& machine, int degree, double log_tolerance);
+
 }  // namespace anholon

@@ -210,6 +210,10 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   }
   if (Outcome o = expansion_.extend(); !o.ok()) return o;
   horizon_ = step_size();
+  // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
+  const double reach = std::min(kinks_log_reach<N>(expansion_.machine(), order_ - 1, settings_.log_tolerance),
+                                events_.log_reach(expansion_, order_ - 1, settings_.log_tolerance));
+  if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
   expanded_ = true;
   return {};
 }
