@@ -237,6 +237,13 @@ N Stepper<N>::step_size() const {
     const double ls = std::log(size);
     log_rho = std::min({log_rho, (ls - last) / order_, (ls - before_last) / (order_ - 1)});
   }
+  // What is watched for events converges as it will, a square at half the distance.
+  for (const WatchedSeries& s : events_.series()) {
+    const N* c = expansion_.quadrature(s.quadrature);
+    const double size = std::log(std::max(1.0, std::abs(to_double(c[0]))));
+    for (int k : {order_ - 1, order_ - 2})
+      if (const N v = abs(c[k]); v > N(0) && is_finite(v)) log_rho = std::min(log_rho, (size - to_double(N(log(v)))) / k);
+  }
   // Multipliers that are no states carry no error on, but a step must not pass a pole of theirs,
   // where a constraint loses its hold: it stays within half of their radius of convergence.
   double log_pole = 300;
@@ -287,6 +294,16 @@ Expansion<N>* Stepper<N>::ahead(const W& h) {
   ahead_->load(convert<N>(W(t_ + h)), narrow_state, narrow_leading);
   ahead_->set_weakest_direction({});
   return ahead_->prepare().ok() ? ahead_.get() : nullptr;
+}
+
+// Of the polynomial itself, in formulas that follow from it without derivatives beyond the leading ones.
+template <Number N>
+std::optional<N> Stepper<N>::quadrature_ahead(std::size_t i, const N& h) {
+  Expansion<N>* there = ahead(convert<W>(h));
+  if (!there) return std::nullopt;
+  there->evaluate_quadratures();
+  const N value = there->quadrature(i)[0];
+  return is_finite(value) ? std::optional<N>(value) : std::nullopt;
 }
 
 template <Number N>
@@ -398,7 +415,7 @@ Outcome Stepper<N>::step(const W& end) {
   if (!events_.empty()) {
     N to = convert<N>(h);
     const N whole = to;
-    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to);
+    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to, [this](std::size_t i, const N& where) { return quadrature_ahead(i, where); });
     if (to != whole) h = convert<W>(to), cut = true, singular_ahead_ = false;
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
