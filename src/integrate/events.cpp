@@ -10,6 +10,8 @@ namespace {
 
 // Values below so many round-offs of what they are made of are zero; events nearer than so many round-offs are at one moment.
 constexpr int kNoise = 64, kOneMoment = 64;
+// A value that a restart leaves at zero was not much farther from it before.
+constexpr int kMargin = 16;
 // More changes of sign than this in one step are not told apart.
 constexpr int kMostCrossings = 1000;
 
@@ -26,6 +28,13 @@ int side_after(const N* c, int degree, const N& h, const N& floor) {
   return 0;
 }
 
+template <Number N>
+N value_at(const N* c, int degree, const N& x) {
+  N s(0);
+  for (int k = degree; k >= 0; --k) s = s * x + c[k];
+  return s;
+}
+
 // p(x + shift), by Horner's scheme.
 template <Number N>
 std::vector<N> shifted(const N* c, int degree, const N& shift) {
@@ -36,6 +45,32 @@ std::vector<N> shifted(const N* c, int degree, const N& shift) {
 }
 
 }  // namespace
+
+// x nearer to the zero of the formula, as long as its values fall.
+template <Number N>
+static N improved(const N* c, int degree, N x, const N& h, const std::function<std::optional<N>(const N&)>& value) {
+  constexpr int kSteps = 4;
+  // A series this far from its formula is no series of it.
+  const N range = h * N(1e-2);
+  std::optional<N> v = value(x);
+  for (int k = 0; k < kSteps && v && (*v > N(0) || *v < N(0)); ++k) {
+    N slope(0);
+    for (int j = degree; j >= 1; --j) slope = slope * x + c[j] * N(j);
+    if (!(abs(slope) > N(0))) break;
+    const N change = *v / slope, next = x - change;
+    if (!(abs(change) < abs(range)) || (next > N(0)) != (h > N(0)) || abs(next) > abs(h)) break;
+    const std::optional<N> there = value(next);
+    if (!there || !(abs(*there) < abs(*v))) break;
+    x = next;
+    v = there;
+  }
+  return x;
+}
+
+template <Number N>
+void EventWatch<N>::restart() {
+  for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i] = i < at_zero_.size() && at_zero_[i] ? (sides_[i] > 0 ? 2 : sides_[i] < 0 ? -2 : 0) : 0;
+}
 
 // All within (0, h], up to the first that ends the step.
 template <Number N>
@@ -70,9 +105,10 @@ double EventWatch<N>::log_reach(const Expansion<N>& e, int degree, double log_to
 }
 
 template <Number N>
-std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h) {
+std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h, const Values& values) {
   const N eps = unit_roundoff<N>();
   std::vector<std::vector<Crossing>> each;
+  std::vector<N> floors;
   bool ended = false;
   N end = h;
   for (std::size_t i = 0; i < series_.size(); ++i) {
@@ -80,8 +116,12 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     const N* c = e.quadrature(s.quadrature);
     // What a value is made of, and the rounding of the time at which it is taken.
     const N floor = eps * N(kNoise) * (e.quadrature_terms(s.quadrature) + abs(c[1]) * abs(t));
+    floors.push_back(floor);
     if (sides_[i] == 0) sides_[i] = side_after(c, degree, h, floor);
+    else if (abs(sides_[i]) > 1) sides_[i] = abs(c[0]) > floor ? (c[0] > N(0) ? 1 : -1) : sides_[i] / 2;
     each.push_back(crossings(c, degree, h, floor, s, sides_[i]));
+    if (s.of_state)
+      for (Crossing& x : each[i]) x.where = improved<N>(c, degree, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
     if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards)) continue;
     if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
   }
@@ -96,6 +136,11 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     }
   std::stable_sort(fired.begin(), fired.end(), [](const Fired<N>& a, const Fired<N>& b) { return abs(a.where) < abs(b.where); });
   if (ended) h = end;
+  at_zero_.clear();
+  for (std::size_t i = 0; i < series_.size(); ++i)
+    at_zero_.push_back(!(abs(value_at(e.quadrature(series_[i].quadrature), degree, h)) > floors[i] * N(kMargin)));
+  for (const Fired<N>& f : fired)
+    if (!(abs(f.where) < abs(h))) at_zero_[f.series] = false;
   return fired;
 }
 

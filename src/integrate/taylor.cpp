@@ -298,6 +298,16 @@ Expansion<N>* Stepper<N>::ahead(const W& h) {
   return ahead_->prepare().ok() ? ahead_.get() : nullptr;
 }
 
+// Of the polynomial itself, in formulas that follow from it without derivatives beyond the leading ones.
+template <Number N>
+std::optional<N> Stepper<N>::quadrature_ahead(std::size_t i, const N& h) {
+  Expansion<N>* there = ahead(convert<W>(h));
+  if (!there) return std::nullopt;
+  there->evaluate_quadratures();
+  const N value = there->quadrature(i)[0];
+  return is_finite(value) ? std::optional<N>(value) : std::nullopt;
+}
+
 template <Number N>
 bool Stepper<N>::near_in_branch(const W& h) {
   const Expansion<N>* there = ahead(h);
@@ -407,7 +417,7 @@ Outcome Stepper<N>::step(const W& end) {
   if (!events_.empty()) {
     N to = convert<N>(h);
     const N whole = to;
-    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to);
+    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to, [this](std::size_t i, const N& where) { return quadrature_ahead(i, where); });
     if (to != whole) h = convert<W>(to), cut = true, singular_ahead_ = false;
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.

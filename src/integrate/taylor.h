@@ -108,6 +108,7 @@ class Stepper {
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
   Expansion<N>* ahead(const W& h);
+  std::optional<N> quadrature_ahead(std::size_t i, const N& h);
   std::optional<Mode<N>> mode_ahead(const W& h);
   std::optional<W> singular_within(const W& h);
   bool end_out_of_reach(const W& h, const W& left) const;
