@@ -32,7 +32,7 @@ int new_model(const Options& o) {
   if (!file && errno == EEXIST) throw UsageError{"error: there is a file '" + o.output + "' already\nhint: give another name after -o, or remove it\n"};
   const bool good = file && std::fputs(text.c_str(), file) >= 0;
   if (!file || std::fclose(file) != 0 || !good) throw UsageError{"error: cannot write '" + o.output + "': " + std::strerror(errno) + "\n"};
-  std::printf("wrote %s\nnext: anholon check %s\n", o.output.c_str(), o.output.c_str());
+  std::fprintf(stderr, "wrote %s\nnext: anholon check %s\n", o.output.c_str(), o.output.c_str());
   return kOk;
 }
 

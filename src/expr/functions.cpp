@@ -10,7 +10,7 @@ const std::vector<FunctionRow>& function_table() {
         {"min", "min(a, b)", "the smaller of two numbers; the switch is located and stepped to", "min(x, 1)"},
         {"max", "max(a, b)", "the larger of two numbers", "max(x, 0)"},
         {"piecewise", "piecewise(c1, v1, c2, v2, …, else)", "the value of the first condition that holds; numbers or vectors", "piecewise(x > 1, 1, x > 0, x, 0)"},
-        {"choose", "choose(k, v1, v2, …)", "the k-th value; the first where k is below 1, the last where it is above their number", "choose(2, x, y, 0)"},
+        {"choose", "choose(k, v1, v2, …)", "the k-th value, k rounded; the first where k is below 1, the last where it is above their number", "choose(2, x, y, 0)"},
         {"dot", "dot(a, b)", "scalar product; also `a · b`", "dot(vel(P), B.x)"},
         {"cross", "cross(a, b)", "vector product; also `a × b`", "cross(angvel(plate), B.x)"},
         {"norm", "norm(a)", "length", "norm(vel(P))"},
@@ -35,7 +35,7 @@ const std::vector<FunctionRow>& function_table() {
       if (r.name == "acosh") r.example = "acosh(2)";
       if (r.name == "log") r.meaning = "natural logarithm; " + r.meaning;
       if (r.name == "abs") r.meaning = "|a|; its kink is located and stepped to";
-      if (r.name == "sign") r.meaning = "1 or -1; at 0 the sign that a takes next along the motion";
+      if (r.name == "sign") r.meaning = "1, -1 or, where a stays 0, 0; where a passes zero the sign that it takes next along the motion";
     }
     return rows;
   }();

@@ -19,6 +19,7 @@ struct Written {
   std::size_t blanks = 1;            // before it, after the comma of the one before
   std::vector<std::string> above;    // comments in lines of their own; "" for an empty line
   std::string comment;               // at the end of its line
+  std::size_t column = 0;            // where that begins
   std::vector<std::string> below;    // before the closing bracket
   bool broken = false;               // the author put elements on lines of their own
 };
@@ -29,6 +30,7 @@ struct Line {
   std::string key;
   Written value;
   std::string comment;
+  std::size_t column = 0;
 };
 
 // Reads what is known to be TOML.
@@ -58,7 +60,7 @@ class Text {
         line.value = value();
       }
       skip_blanks();
-      if (line.kind != Line::Kind::comment && at_ < s_.size() && s_[at_] == '#') line.comment = comment();
+      if (line.kind != Line::Kind::comment && is('#')) line.column = column(), line.comment = comment();
       if (at_ < s_.size() && s_[at_] == '\n') ++at_;
       list.push_back(std::move(line));
     }
@@ -71,6 +73,11 @@ class Text {
   bool is(char c) const { return at_ < s_.size() && s_[at_] == c; }
   void skip_blanks() {
     while (is(' ') || is('\t') || is('\r')) ++at_;
+  }
+
+  std::size_t column() const {
+    const std::size_t before = at_ == 0 ? std::string::npos : s_.rfind('\n', at_ - 1), begin = before == std::string::npos ? 0 : before + 1;
+    return utf8_length(s_.substr(begin, at_ - begin));
   }
 
   std::string comment() {
@@ -177,6 +184,7 @@ class Text {
         ++at_, ++empty, fresh = true;
       } else if (is('#')) {
         if (!fresh && !l.elements.empty() && l.elements.back().comment.empty()) {
+          l.elements.back().column = column();
           l.elements.back().comment = comment();
         } else {
           if (empty > 1 && !(l.elements.empty() && waiting.empty())) waiting.emplace_back();
@@ -210,43 +218,50 @@ bool has_comments(const Written& v) {
   return !v.above.empty() || !v.comment.empty() || !v.below.empty() || std::any_of(v.elements.begin(), v.elements.end(), has_comments);
 }
 
+// Is an inner list broken, or does it hold comments?
+bool has_lines(const Written& v) {
+  return v.broken || has_comments(v) || std::any_of(v.elements.begin(), v.elements.end(), has_lines);
+}
+
 bool is_number(const Written& v) { return v.kind == Written::Kind::scalar && !v.text.empty() && std::string("+-.0123456789").find(v.text[0]) != std::string::npos; }
 
-// Lines of code, each perhaps with a comment: those next to each other that have one have it in the same column.
+// Lines of code, each perhaps with a comment: those next to each other that have one have it in the same column, that of the
+// author's first one if it is wide enough.
 struct Commented {
   std::string code, comment;
+  std::size_t column = 0;
 };
 void print(std::string& out, const std::vector<Commented>& lines, const std::string& indent) {
   const auto width = [&](const Commented& l) { return utf8_length(l.code.substr(l.code.rfind('\n') + 1)) + (l.code.find('\n') == std::string::npos ? indent.size() : 0); };
   for (std::size_t i = 0; i < lines.size();) {
     std::size_t end = i, column = 0;
     for (; end < lines.size() && !lines[end].comment.empty() == !lines[i].comment.empty(); ++end)
-      if (width(lines[end]) <= kWidth * 2 / 3) column = std::max(column, width(lines[end]));
+      if (width(lines[end]) <= kWidth * 2 / 3) column = std::max(column, width(lines[end]) + 2);
+    if (lines[i].column <= kWidth * 2 / 3) column = std::max(column, lines[i].column);
     for (; i < end; ++i) {
       out += (lines[i].code.empty() ? "" : indent) + lines[i].code;
       if (!lines[i].comment.empty()) {
         const std::size_t w = width(lines[i]);
-        out += std::string(w < column ? column - w + 2 : 2, ' ') + lines[i].comment;
+        out += std::string(w + 2 < column ? column - w : 2, ' ') + lines[i].comment;
       }
       out += '\n';
     }
   }
 }
 
-std::string flat(const Written& v, bool aligned) {
+std::string flat(const Written& v) {
   if (v.kind == Written::Kind::scalar) return v.text;
   const bool table = v.kind == Written::Kind::table;
   std::string out;
   for (const Written& e : v.elements) {
-    if (!out.empty()) out += "," + std::string(aligned ? e.blanks : 1, ' ');
-    out += (table ? e.key + " = " : "") + flat(e, false);
+    if (!out.empty()) out += ", ";
+    out += (table ? e.key + " = " : "") + flat(e);
   }
   return table ? "{" + out + "}" : "[" + out + "]";
 }
 
 // The text of a value that begins in this column of a line with this indentation.
 std::string text_of(const Written& v, std::size_t indent, std::size_t column, bool aligned = false) {
-  const std::string inner(indent + 2, ' ');
   if (v.kind == Written::Kind::table) {
     std::string out;
     for (const Written& e : v.elements) {
@@ -258,11 +273,11 @@ std::string text_of(const Written& v, std::size_t indent, std::size_t column, bo
     return "{" + out + "}";
   }
   if (v.kind == Written::Kind::scalar) return v.text;
-  const std::string line = flat(v, false);
+  const std::string line = flat(v);
   const bool several = v.elements.size() > 1;
-  if (!has_comments(v) && !v.broken && (!several || column + utf8_length(line) <= kWidth || v.kind != Written::Kind::list))
-    return line.find('\n') == std::string::npos ? line : line;
+  if (!has_lines(v) && (!several || column + utf8_length(line) <= kWidth)) return line;
   if (v.elements.empty() && v.below.empty()) return "[]";
+  const std::string inner(indent + 2, ' ');
   std::string out = "[\n";
   if (!has_comments(v) && std::all_of(v.elements.begin(), v.elements.end(), is_number)) {
     std::string row;
@@ -275,7 +290,7 @@ std::string text_of(const Written& v, std::size_t indent, std::size_t column, bo
   std::vector<Commented> lines;
   for (const Written& e : v.elements) {
     for (const std::string& c : e.above) lines.push_back({c, ""});
-    lines.push_back({text_of(e, indent + 2, indent + 2, true) + ",", e.comment});
+    lines.push_back({text_of(e, indent + 2, indent + 2, true) + ",", e.comment, e.column});
   }
   for (const std::string& c : v.below) lines.push_back({c, ""});
   print(out, lines, inner);
@@ -288,7 +303,7 @@ void print_block(std::string& out, const std::vector<const Line*>& block) {
   for (const Line* l : block) column = std::max(column, utf8_length(l->key));
   std::vector<Commented> lines;
   for (const Line* l : block)
-    lines.push_back({l->key + std::string(column - utf8_length(l->key), ' ') + " = " + text_of(l->value, 0, utf8_length(l->key) + 3), l->comment});
+    lines.push_back({l->key + std::string(column - utf8_length(l->key), ' ') + " = " + text_of(l->value, 0, utf8_length(l->key) + 3), l->comment, l->column});
   print(out, lines, "");
 }
 
@@ -324,7 +339,7 @@ std::string layout(const std::vector<Line>& lines) {
       case Line::Kind::header:
         flush();
         separate(i == 0 || lines[i - 1].kind != Line::Kind::comment);
-        out += l.text + (l.comment.empty() ? "" : "  " + l.comment) + '\n';
+        print(out, {{l.text, l.comment, l.column}}, "");
         after_header = true;
         break;
       case Line::Kind::entry: {

@@ -91,6 +91,15 @@ name = "rocket"
 mass = "mr"
 position = "P + y*ez"
 expelled_velocity = "-3*ez"
+
+[[body]]
+name = "truck"                     # sand falls out at its tail, and falls behind
+mass = "mr"
+inertia = 4
+center = "y*ex"
+angle = "x"
+expelled_velocity = "-truck.x"
+exit_point = [-2, 0, 0]            # along its axes
 ```
 )md"},
       {"force", Form::elements, any,
@@ -231,6 +240,15 @@ forward = "x'*cos(theta) + y'*sin(theta)"
 [observer]
 spin = "0.1*ez"
 origin_velocity_inertial = ["0.2*cos(t)", "0", "0"]
+```
+
+```toml
+[observer]
+rotation = "rotz(t^2/10)*rotx(0.1)"
+origin_position_inertial = ["sin(t)", "0", "0"]
+```
+```toml
+observer.origin_velocity = "0.3*ex"
 ```
 
 - Without the section the observer is inertial. One of `spin` and `rotation`, one of the four for the origin, functions of t only.

@@ -16,7 +16,9 @@ std::vector<LanguageSection> language_of_files() {
         {"base", text, "a file to start from"}},
        R"md(```toml
 title = "Skate on ice"
+source = "Caratheodory 1933"
 coordinates = ["x", "y", "theta"]
+dependent = ["y"]
 particle = [{name = "skate", mass = 2, position = "x*ex + y*ey"}]
 force = [{generalized = {theta = "-theta''/10"}}]
 constraint = [{name = "edge", equation = "y'*cos(theta) = x'*sin(theta)"}]
@@ -51,7 +53,7 @@ $ anholon check heavy.toml --quiet > heavy.txt
 )md"},
       {"index", Form::named, formula, {},
        R"md(```toml
-coordinates = ["x", "y", "theta", "s[i]"]
+coordinates = ["s[i]"]
 particle = [{name = "bead[i]", mass = "mb[i]", position = "Q[i]"}]
 [index]
 n = 3                              # --set n=64
@@ -59,7 +61,7 @@ i = "1..n"
 [parameters]
 "mb[i]" = [0.1, 0.2, 0.1]          # in order; one value alone is that of all
 [point]
-"Q[0]" = "P"
+"Q[0]" = "0"
 "Q[i]" = "Q[i-1] + s[i]*ex"
 [define]
 total = "sum(i, mb[i])"
@@ -82,12 +84,12 @@ conditions = ["s[i]' = 0"]         # one equation for each value of i
 - A member that does not exist is an error with the range that does:
 
 ```toml
-coordinates = ["x", "y", "theta", "s[i]"]
+coordinates = ["s[i]"]
 particle = [{name = "bead[i]", mass = 1, position = "s[i+1]*ex"}]
 index = {i = "1..2"}
 ```
 ```text
-error: there is no 's[3]'; s has 1..2
+error: in bead[2]: there is no 's[3]'; s has 1..2
 ```
 )md"},
       {"case", Form::named, any, {},

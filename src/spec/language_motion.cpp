@@ -88,7 +88,7 @@ w = {}                             # kept by a constraint, by = "w"
 on = "plate"
 torque = "(u + w)*ez"
 [[constraint]]
-equation = "x'' = 0"
+equation = "theta'' = 0"
 by = "w"
 ```
 
@@ -127,6 +127,31 @@ conditions = ["dot(vel(P), B.y) = 0", "y = x^2 + 1"]
 guess  = {x = 1}
 ```
 
+```toml
+title = "A constraint of order 3, nonlinear: accelerations are initial data, and one of two solutions is named"
+coordinates = ["x", "y"]
+particle = [{name = "p", mass = 2, position = "x*ex + y*ey"}]
+gravity.field = "-9.81*ey"
+constraint = [{name = "jerk", equation = "x'''^2 + y'''^2 = 9"}]
+[initial]
+t = 2
+q = {x = 1, y = 0}                 # the same as x = 1, y = 0
+qdot = {x = 0.5}
+qddot = {x = 1, y = -9}
+branch = {jerk = "lambda > 0"}
+```
+```toml
+title = "A constraint of order 4: a multiplier and its rate, or accelerations and third derivatives, are initial data"
+coordinates = ["x", "y"]
+particle = [{name = "p", mass = 2, position = "x*ex + y*ey"}]
+constraint = [{name = "snap", equation = "D(x, 4) + (1 + x'/3)*D(y, 4) = y"}]
+[initial]
+lambda = {snap = 0.4}
+lambdadot = {snap = 0.1}
+[case.other]
+initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
+```
+
 - Every coordinate and its derivatives may be a key: `theta`, `"theta'"`, `"D(theta, 3)"`. What is not given follows from the constraints, and what they leave free
   is as near to the guess as the mass norm allows. `check` says of each value where it comes from.
 - A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and
@@ -162,6 +187,7 @@ reach  = "norm(P) - 2"
        R"md(```toml
 [simulate]
 to = 10
+tolerance = 1e-13
 every = 0.1
 form = "routh"
 integrator = "taylor"

@@ -136,6 +136,7 @@ void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics&
   check(v, *origin);
   const std::string& key = origin->key;
   if (key == "origin_acceleration") {
+    o.origin_velocity.reset();  // known up to a constant only
     o.origin_acceleration = v;
   } else if (key == "origin_velocity") {
     o.origin_velocity = v;

@@ -64,11 +64,10 @@ define.a = "cross(vel(P), ex)*ey"
 error: product of two vectors
 ```
 ```toml
-define.a = "2 m"
-parameters.b = "B.x"
+monitor.a = "2x"
 ```
 ```text
-error: 'm' is a length
+error: an operator is missing before 'x'
 ```
 
 **Kinks.** `abs`, `sign`, `min`, `max`, `piecewise`, `choose` and tables switch where their conditions change sign along the motion. The switch is
@@ -92,7 +91,9 @@ push   = "2*(10 N + 3 kp)"
 
 - A number, a blank, a unit: converted to SI exactly. Factors stand without blanks between them, `kg*m^2`, with whole powers; everything after one `/`
   up to the next factor only is divided (`m/s/s`).
-- A unit ends before a name that is none. `t` is a tonne only right after a number and a blank: `5 t`; `5 m/s*t` is a length.
+- Behind a number and a blank a unit is meant also where the file has that name: with a parameter `m`, `3 m` is a length and `3*m` three times
+  the parameter. A unit ends before a name that is none: `10 m/s*R` is a velocity times the parameter R; `(10 m/s)*m` keeps a parameter m apart.
+- `t` is a tonne only right after the number: `5 t`; elsewhere, as in `5 m/s*t`, it is the time.
 - A bare number fits any dimension, so that files without units are never asked. Where a file has units, all its formulas must fit together:
   sums, both sides of equations, arguments of `sin`, and what forces and bodies are.
 - An angle is a pure number: `rad` is 1, `deg` is pi/180.
@@ -103,10 +104,41 @@ parameters.l = "3 m"
 define.s = "l + 2 s"
 ```
 ```text
-error: 
+error: a length (m) plus a time (s)
 ```
 
 )md";
+
+// What a formula means where one could doubt; checked by the test of the page.
+struct Decision {
+  const char* formula;
+  const char* value;
+  const char* why;
+};
+constexpr Decision kDecisions[] = {
+    {"-x^2", "-9", "a power before a minus"},
+    {"2^3^2", "512", "powers from the right"},
+    {"8/2*4", "16", "division and product from the left"},
+    {"1/2*x", "1.5", "likewise"},
+    {"2**3 + x²", "17", "other ways to write powers"},
+    {"ex×ey·ez", "1", "of vectors"},
+    {"piecewise(x > 3, 1, 2)", "2", "3 is not above 3"},
+    {"piecewise(x >= 3, 1, 2)", "1", ""},
+    {"choose(0, 7, 8)", "7", "below 1: the first"},
+    {"choose(1.4, 7, 8)", "7", "rounded"},
+    {"choose(9, 7, 8)", "8", "above their number: the last"},
+    {"sign(x - 3)", "0", "at rest there"},
+    {"atan2(0, -1)", "3.141592653589793", "pi, not -pi"},
+    {"norm(0*ex)", "0", ""},
+    {"3*m", "6", "m is a parameter"},
+    {"3 m", "3", "three metres"},
+    {"10 m/s*m", "10", "m is a unit within a unit"},
+    {"10 m/s*R", "3", "R is none"},
+    {"5 t", "5000", "tonnes"},
+    {"5 m/s*t", "5", "the time"},
+    {"2 min", "120", "minutes; `min(…)` is the function"},
+    {"30 deg", "0.5235987755982989", ""},
+};
 
 std::string cell(std::string text) {
   std::string out;
@@ -123,6 +155,8 @@ std::string rows(const std::vector<FunctionRow>& table) {
 std::string formulas() {
   std::string out = kStart;
   out += "### Functions\n\n" + rows(function_table());
+  out += "\n### Decided\n\nIn the model above with x = 3, everything at rest, at t = 1:\n\n| formula | value | |\n|---|---|---|\n";
+  for (const Decision& d : kDecisions) out += "| `" + cell(d.formula) + "` | " + d.value + " | " + d.why + " |\n";
   out += "\n### Kinematics\n\n" + rows(kinematic_functions());
   out += "\n### Reserved names\n\n| | |\n|---|---|\n";
   for (const ReservedName& r : reserved_names()) out += std::string("| `") + r.name + "` | " + r.meaning + " |\n";
