@@ -98,6 +98,8 @@ anholon_script_test(hostile_selftest test/hostile/run.py --self-test)
 
 if(TARGET anholon)
   anholon_script_test(readme tools/readme.py --program $<TARGET_FILE:anholon>)
+  anholon_script_test(reference tools/reference.py --program $<TARGET_FILE:anholon>)
+  anholon_script_test(reference_selftest tools/reference.py --program $<TARGET_FILE:anholon> --self-test)
   anholon_script_test(generated test/backends/check_generated.py $<TARGET_FILE:anholon>)
   set_tests_properties(script.generated PROPERTIES LABELS "script;long")
   # Evaluation and motion of every reference system by a form without multipliers; by every form: ./dev long.

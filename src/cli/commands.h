@@ -28,6 +28,8 @@ struct Options {
   int order = 0;
   int points = 6;
   unsigned long long seed = 0;
+  std::vector<std::string> files;
+  bool check_only = false, to_stdout = false, schema = false;
   bool json = false, quiet = false, steps = false, csv = false;
 };
 
@@ -41,5 +43,8 @@ int models(const Options& o);
 int prove(const Options& o);
 int compare(const Options& o);
 int verify(const Options& o);
+int reference(const Options& o);
+int format(const Options& o);
+int new_model(const Options& o);
 
 }  // namespace anholon::cli

@@ -32,13 +32,15 @@ static std::string first_line_value(const std::string& text, const std::string& 
   return {};
 }
 
-static std::vector<ShippedModel> shipped(const char* extension) {
+constexpr const char* kTemplates = "templates";
+
+static std::vector<ShippedModel> shipped(const char* extension, bool of_templates = false) {
   std::vector<ShippedModel> list;
   for (const fs::path& folder : model_folders()) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) continue;
     for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
-      if (e.path().extension() != extension) continue;
+      if (e.path().extension() != extension || (e.path().parent_path().filename() == kTemplates) != of_templates) continue;
       std::string text;
       read_file(e.path(), text);
       list.push_back({e.path().stem().string(), e.path().string(), first_line_value(text, "title")});
@@ -51,6 +53,7 @@ static std::vector<ShippedModel> shipped(const char* extension) {
 
 std::vector<ShippedModel> shipped_models() { return shipped(".toml"); }
 std::vector<ShippedModel> shipped_equations() { return shipped(".eq"); }
+std::vector<ShippedModel> templates() { return shipped(".toml", true); }
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source) {
   std::fflush(stdout);

@@ -51,5 +51,6 @@ struct ShippedModel {
 };
 std::vector<ShippedModel> shipped_models();
 std::vector<ShippedModel> shipped_equations();  // published ones, *.eq
+std::vector<ShippedModel> templates();          // to start a model from
 
 }  // namespace anholon::cli

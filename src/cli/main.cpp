@@ -23,8 +23,8 @@ void rescue_model(Options& o) {
     }
 }
 
-constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "linearize", "forms", "models", "prove", "compare", "verify"};
-constexpr const char* kLater[] = {"new", "sweep", "report", "plot", "render", "convert", "fmt"};
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "linearize", "forms", "models", "prove", "compare", "verify", "new", "fmt", "reference"};
+constexpr const char* kLater[] = {"sweep", "report", "plot", "render", "convert"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {
@@ -168,6 +168,23 @@ int run(int argc, char** argv) {
   verify_command->add_option("--digits", o.proof_digits, "of the enclosures at witnesses, at most (default 308)")->type_name("N")->check(CLI::Range(20, 20000));
   verify_command->add_option("--seed", o.seed, "another choice of points (default 0)")->type_name("N");
   verify_command->callback([&command] { command = cli::verify; });
+  CLI::App* new_command = app.add_subcommand("new", "a model to start from; without a name, the list of templates");
+  new_command->footer("Example: anholon new pendulum -o mine.toml");
+  new_command->add_option("TEMPLATE", o.model, "its name");
+  new_command->add_option("-o,--output", o.output, "the file to write, which must not be there (default: the standard output)")->type_name("FILE");
+  new_command->callback([&command] { command = cli::new_model; });
+  CLI::App* format_command = app.add_subcommand("fmt", "set the layout of model files; what they say, their order and comments stay");
+  format_command->footer("Prints the names of the files it changed. Exit status: 0 ok, 1 with --check: a file would change, 2 bad input.\n"
+                         "Example: anholon fmt mine.toml");
+  format_command->add_option("FILE", o.files, "model files")->required();
+  format_command->add_flag("--check", o.check_only, "change nothing, say which files would be");
+  format_command->add_flag("--stdout", o.to_stdout, "print the text instead of changing the file");
+  format_command->callback([&command] { command = cli::format; });
+  CLI::App* reference_command = app.add_subcommand("reference", "the language of model files, in Markdown");
+  reference_command->footer("Example: anholon reference event");
+  reference_command->add_option("SECTION", o.model, "one section: body, event, …, or formulas (default: all)");
+  reference_command->add_flag("--schema", o.schema, "a JSON Schema of the language, for editors with a TOML language server");
+  reference_command->callback([&command] { command = cli::reference; });
   model_command("models", "the shipped models; with a name, the text of one", cli::models, "Example: anholon models disc");
 
   try {
@@ -179,7 +196,8 @@ int run(int argc, char** argv) {
     return kBadInput;
   }
   rescue_model(o);
-  const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models") || verify_command->parsed());
+  const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models") || verify_command->parsed() || new_command->parsed() ||
+                             format_command->parsed() || reference_command->parsed());
   if (needs_model && o.model.empty()) {
     std::fputs("error: no model is named\nhint: a path to a .toml file, or a name that `anholon models` lists\n", stderr);
     return kBadInput;

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "expr/formula.h"
+#include "expr/functions.h"
 #include "expr/normal.h"
 #include "expr/table.h"
 #include "expr/units.h"
@@ -238,18 +239,6 @@ Value choose(const Arguments& in) {
   return value;
 }
 
-const std::vector<std::string>& built_in() {
-  static const std::vector<std::string> list = [] {
-    std::vector<std::string> l = {"sqrt", "atan2", "min", "max", "piecewise", "choose", "dot", "cross", "norm", "norm2", "unit",
-                                  "D", "rotx", "roty", "rotz", "rot", "quat", "euler", "matrix"};
-#define ROW(name, derivative, parity, latex, domain) l.push_back(#name);
-#include "expr/elementary.def"
-#undef ROW
-    return l;
-  }();
-  return list;
-}
-
 Value call(const Syntax& s, Names& names) {
   Graph& g = names.graph();
   const std::string& f = s.text;
@@ -320,7 +309,8 @@ Value call(const Syntax& s, Names& names) {
   }
 
   std::vector<std::string> known = names.functions();
-  known.insert(known.end(), built_in().begin(), built_in().end());
+  const std::vector<std::string> built_in = function_names();
+  known.insert(known.end(), built_in.begin(), built_in.end());
   const std::string near = did_you_mean(f, known);
   throw Failure(s.span, "unknown function '" + f + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 near.empty() ? "a product is written with '*'" : "");

@@ -173,12 +173,7 @@ void BodyReader::read_body(const Entry& e) {
   // The list keeps its order even if this body turns out to be wrong.
   if (model_.bodies.size() <= e.index) model_.bodies.resize(e.index + 1, body);
   const std::string what = (e.particle ? "particle '" : "body '") + body.name + "'";
-  if (e.particle)
-    check_keys(item, what, {"name", "mass", "position", "expelled_velocity"}, {}, diagnostics_);
-  else
-    check_keys(item, what,
-               {"name", "mass", "inertia", "center", "orientation", "angle", "axes", "expelled_velocity", "exit_point",
-                "shape"}, {}, diagnostics_);
+  check_keys(item, what, e.particle ? "particle" : "body", diagnostics_);
 
   const Item* center = scope_.parts(e.index).center;
   if (!center)
@@ -244,7 +239,7 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
   if (inertia && axes) throw Failure(axes->key_span, "the body has both 'inertia' and 'axes'");
   if (axes) {
     for_each_table(*axes, "axes", diagnostics_, [&](const Item& a, std::size_t k) {
-      check_keys(a, "an axis", {"weight", "vector"}, {}, diagnostics_);
+      check_keys(a, "an axis", "body.axes", diagnostics_);
       const Item *w = a.find("weight"), *v = a.find("vector");
       if (!w || !v) throw Failure(a.span, "an axis has weight and vector", "{weight = \"J/2\", vector = [\"cos(th)\", \"sin(th)\", \"0\"]}");
       Axis axis;
@@ -368,7 +363,7 @@ Force::Place BodyReader::place(const Item& item) {
     return p;
   }
   if (item.kind != Item::Kind::table) throw Failure(item.span, "a body name or {body = \"…\", at = …} is expected");
-  check_keys(item, "the place of a force", {"body", "at"}, {}, diagnostics_);
+  check_keys(item, "the place of a force", "force.on", diagnostics_);
   const Item* body = item.find("body");
   if (!body || body->kind != Item::Kind::string) throw Failure(item.span, "the place of a force names a body", "{body = \"…\", at = …}");
   p.body = scope_.body(normal_name(body->text()), body->formula.whole());
@@ -389,7 +384,7 @@ void BodyReader::read_forces(const Item& root) {
 
 void BodyReader::read_force(const Item& item, std::size_t number) {
   Graph& g = *model_.graph;
-  check_keys(item, "a force", {"name", "on", "from", "vector", "torque", "tension", "generalized"}, {}, diagnostics_);
+  check_keys(item, "a force", "force", diagnostics_);
   Force f;
   f.span = item.span;
   const Item* name = item.find("name");

@@ -117,7 +117,7 @@ static void read_output(const Item& i, Names& names, Model& model, Diagnostics& 
   if (!is_element_name(out.name)) throw Failure(i.key_span, "'" + out.name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
   const Item* value = &i;
   if (i.kind == Item::Kind::table) {
-    check_keys(i, "an output", {"value", "unit", "doc", "conserved"}, {}, diagnostics);
+    check_keys(i, "an output", "output", diagnostics);
     value = i.find("value");
     if (!value) throw Failure(i.key_span, "the output '" + out.name + "' has no value", "{value = \"…\", unit = \"km\"}");
     if (const Item* unit = i.find("unit")) out.unit = unit->text();

@@ -13,7 +13,7 @@ namespace {
 void declare_state(const Item& i, Scope& scope, Model& model, Diagnostics& diagnostics) {
   if (i.kind != Item::Kind::table)
     throw Failure(i.span, "a state is a table with its rate and its initial value", i.key + " = {rate = \"-flow\", initial = 1}");
-  check_keys(i, "a state", {"rate", "initial"}, {}, diagnostics);
+  check_keys(i, "a state", "state", diagnostics);
   if (!i.find("rate")) throw Failure(i.key_span, "the state '" + i.key + "' has no rate", "rate = \"…\", its derivative by time");
   if (!i.find("initial")) throw Failure(i.key_span, "the state '" + i.key + "' has no initial value", "initial = 0");
   Scope::Declaration d;
@@ -48,7 +48,7 @@ class EventReader {
   EventReader(Scope& scope, Model& model, Diagnostics& diagnostics) : scope_(scope), names_(scope, model), model_(model), diagnostics_(diagnostics) {}
 
   void read(const Item& e, std::size_t number) {
-    check_keys(e, "an event", {"name", "when", "direction", "set", "stop"}, {}, diagnostics_);
+    check_keys(e, "an event", "event", diagnostics_);
     Event event;
     const Item* named = e.find("name");
     if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");

@@ -2,20 +2,15 @@
 
 #include <algorithm>
 
+#include "spec/language.h"
+
 namespace anholon {
 
-void check_keys(const Item& table, const std::string& where, const std::vector<std::string>& known,
-                const std::vector<std::string>& later, Diagnostics& diagnostics) {
+void check_keys(const Item& table, const std::string& where, const std::string& section, Diagnostics& diagnostics) {
+  const std::vector<std::string> known = known_keys(language_section(section));
   for (const Item& i : table.items) {
     if (std::find(known.begin(), known.end(), i.key) != known.end()) continue;
-    if (std::find(later.begin(), later.end(), i.key) != later.end()) {
-      diagnostics.error(i.key_span, "'" + i.key + "' in " + where + " is not read yet",
-                        "it belongs to the language, but this version does not know it");
-      continue;
-    }
-    std::vector<std::string> all = known;
-    all.insert(all.end(), later.begin(), later.end());
-    const std::string near = did_you_mean(i.key, all);
+    const std::string near = did_you_mean(i.key, known);
     std::string hint;
     if (near.empty()) {
       hint = "known here: ";

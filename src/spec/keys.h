@@ -1,17 +1,15 @@
-// The keys of a section: known, known but not read yet, or a slip.
+// The keys of a section: known to the language, or a slip.
 #pragma once
 #include <string>
-#include <vector>
 
 #include "base/diagnostic.h"
 #include "spec/toml.h"
 
 namespace anholon {
 
-// Reports keys of `table` that are neither in `known` nor in `later`; those in `later` belong to the
-// language but are not read by this version, and say so.
-void check_keys(const Item& table, const std::string& where, const std::vector<std::string>& known,
-                const std::vector<std::string>& later, Diagnostics& diagnostics);
+// Reports keys of `table` that the language does not have there (language_section(section)); `where` is what the author
+// knows the table by.
+void check_keys(const Item& table, const std::string& where, const std::string& section, Diagnostics& diagnostics);
 
 // The section of that name; null where there is none, or what stands there is none (reported).
 const Item* find_section(const Item& root, const char* key, Diagnostics& diagnostics);

@@ -6,6 +6,7 @@
 #include "expr/indices.h"
 
 #include "expr/units.h"
+#include "spec/language.h"
 
 namespace anholon {
 
@@ -15,12 +16,10 @@ static constexpr std::size_t kDeepest = 200;
 Failure silent_failure() { return Failure(Span{}, ""); }
 bool is_silent(const Diagnostic& d) { return d.message.empty(); }
 
-static const std::set<std::string>& reserved() {
-  static const std::set<std::string> names = {"t", "pi", "ex", "ey", "ez", "here", "lambda", "inertial"};
-  return names;
+bool is_reserved(const std::string& name) {
+  const auto& list = reserved_names();
+  return std::any_of(list.begin(), list.end(), [&](const ReservedName& r) { return name == r.name; });
 }
-
-bool is_reserved(const std::string& name) { return reserved().count(name) > 0; }
 
 void Scope::check_name(const std::string& name, Span span) const {
   if (!is_element_name(name))
@@ -74,7 +73,8 @@ void Scope::unknown(const std::string& name, Span span) const {
   // Where so much is unknown a guess at each name helps nobody, and takes long.
   constexpr std::size_t kMostGuesses = 100;
   if (failures.size() > kMostGuesses) throw Failure(span, "unknown name '" + name.substr(0, 60) + "'");
-  std::vector<std::string> known(reserved().begin(), reserved().end());
+  std::vector<std::string> known;
+  for (const ReservedName& r : reserved_names()) known.emplace_back(r.name);
   for (const auto& [n, d] : declarations_) known.push_back(n);
   known.insert(known.end(), body_names_.begin(), body_names_.end());
   const bool member = name.find('[') != std::string::npos;
@@ -335,7 +335,8 @@ Value Scope::name(const std::string& name, Span span) {
 }
 
 std::vector<std::string> Scope::functions() const {
-  std::vector<std::string> list = {"vel", "acc", "angvel", "angacc", "gravity"};
+  std::vector<std::string> list;
+  for (const FunctionRow& f : kinematic_functions()) list.push_back(f.name);
   for (const auto& [name, d] : declarations_)
     if (d.role == Role::function || d.role == Role::frame || d.role == Role::table) list.push_back(name);
   list.insert(list.end(), body_names_.begin(), body_names_.end());

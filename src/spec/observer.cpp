@@ -95,9 +95,7 @@ static void check_orthonormal(const Rotation& a, const Model& model, Span span) 
 void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics) {
   Graph& g = *model.graph;
   Observer& o = model.observer;
-  check_keys(section, "[observer]",
-             {"spin", "rotation", "origin_acceleration", "origin_velocity", "origin_velocity_inertial",
-              "origin_position_inertial"}, {}, diagnostics);
+  check_keys(section, "[observer]", "observer", diagnostics);
   const Item* spin = section.find("spin");
   const Item* rotation = section.find("rotation");
   std::optional<Rotation> a;  // observer -> inertial axes
@@ -138,6 +136,7 @@ void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics&
   check(v, *origin);
   const std::string& key = origin->key;
   if (key == "origin_acceleration") {
+    o.origin_velocity.reset();  // known up to a constant only
     o.origin_acceleration = v;
   } else if (key == "origin_velocity") {
     o.origin_velocity = v;

@@ -136,13 +136,11 @@ class Reader {  // what it refers to is asked only while it runs
   }
 
   void sections(const Item& root) {
-    check_keys(root, "the model file",
-               {"title", "source", "coordinates", "dependent", "parameters", "functions", "define", "frame",
-                "point", "observer", "body", "particle", "force", "gravity", "potential", "constraint",
-                "initial", "simulate", "quasi", "monitor", "state", "mode", "event", "input", "output", "table", "base",
-                "dissipation", "notation"},
-               {"view"},
-               diagnostics_);
+    check_keys(root, "the model file", "", diagnostics_);
+    if (const Item* view = root.find("view")) {
+      if (view->kind != Item::Kind::table) diagnostics_.error(view->span, "'view' is a section", "write [view]");
+      else model_.notes.push_back("[view] is for pictures, and this version draws none");
+    }
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
       if (const Item* i = root.find(key)) {
         if (i->kind == Item::Kind::string) *target = i->text();
@@ -226,7 +224,7 @@ class Reader {  // what it refers to is asked only while it runs
           const Item* value = &i;
           std::string doc;
           if (i.kind == Item::Kind::table) {
-            check_keys(i, "a parameter", {"value", "unit", "doc"}, {}, diagnostics_);
+            check_keys(i, "a parameter", "parameters", diagnostics_);
             value = i.find("value");
             if (!value) throw Failure(i.key_span, "the parameter '" + i.key + "' has no value");
             if (const Item* d = i.find("doc")) doc = d->text();
@@ -313,7 +311,7 @@ class Reader {  // what it refers to is asked only while it runs
   void gravity(const Item& root) {
     const Item* section = table(root, "gravity");
     if (!section) return;
-    check_keys(*section, "[gravity]", {"field", "gradient"}, {}, diagnostics_);
+    check_keys(*section, "[gravity]", "gravity", diagnostics_);
     if (const Item* gradient = section->find("gradient")) {
       if (gradient->kind != Item::Kind::boolean) diagnostics_.error(gradient->span, "'gradient' is true or false");
       else scope_.gravity_gradient = gradient->truth;
@@ -411,7 +409,7 @@ class Reader {  // what it refers to is asked only while it runs
       return;
     }
     for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
-      check_keys(c, "a constraint", {"name", "equation", "along", "by"}, {}, diagnostics_);
+      check_keys(c, "a constraint", "constraint", diagnostics_);
       const std::size_t first = model_.constraints.size();
       const auto servo = [&] {
         if (const Item* by = c.find("by")) keep_by(*by, first, scope_, model_);
@@ -516,7 +514,7 @@ class Reader {  // what it refers to is asked only while it runs
   void simulate(const Item& root) {
     const Item* s = table(root, "simulate");
     if (!s) return;
-    check_keys(*s, "[simulate]", {"to", "tolerance", "every", "at", "form", "integrator"}, {}, diagnostics_);
+    check_keys(*s, "[simulate]", "simulate", diagnostics_);
     SimulationSettings& out = model_.simulate;
     const Rational start = is_number(model_.initial.t) ? number_value(model_.initial.t) : Rational(0);
     if (const Item* i = s->find("to")) {

@@ -40,7 +40,7 @@ class TableReader {
   TableReader(Scope& scope, Model& model, Diagnostics& diagnostics) : scope_(scope), model_(model), diagnostics_(diagnostics) {}
 
   void read(const Item& t) {
-    check_keys(t, "a table", {"name", "x", "y", "file", "columns", "fit", "outside"}, {}, diagnostics_);
+    check_keys(t, "a table", "table", diagnostics_);
     const Item* named = t.find("name");
     if (!named || named->kind != Item::Kind::string) throw Failure(t.span, "a table has no name", "name = \"Cd\"");
     Table table;

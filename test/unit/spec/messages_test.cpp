@@ -97,27 +97,15 @@ TEST(Messages, ASyntaxErrorOfTomlHasItsPlace) {
   EXPECT_EQ(list[0].span.line, 2U);
 }
 
-// The language holds more than this version reads: whoever uses the rest is told so, and nothing is skipped in silence.
-TEST(NotReadYet, EveryLaterSectionSaysSo) {
-  for (const std::string section : {"view"})
-    for (const std::string& form : {"[" + section + "]\n", "[[" + section + "]]\n"}) {
-      const std::vector<Diagnostic> list = diagnostics_of(kGood + form);
-      ASSERT_EQ(list.size(), 1U) << form;
-      EXPECT_EQ(list[0].message, "'" + section + "' in the model file is not read yet");
-      EXPECT_EQ(list[0].span.line, 16U);
-    }
-}
-
-TEST(NotReadYet, LaterKeysAndFormulasSaySo) {
-  const std::pair<const char*, const char*> cases[] = {
-      {"mass = \"m\"", "mass = \"piecewise(x)\""},
-      {"[[constraint]]", "[[constraint]]\nby = \"x\""},
-  };
-  for (const auto& [from, to] : cases) {
-    const std::vector<Diagnostic> list = diagnostics_of(test::replaced(kGood, from, to));
-    ASSERT_FALSE(list.empty()) << to;
-    EXPECT_NE(list[0].message.find("not read yet"), std::string::npos) << to << ": " << list[0].message;
-  }
+// [view] belongs to pictures: whoever gives it is told that nothing is drawn.
+TEST(View, IsAcceptedWithANote) {
+  const auto model = test::model_of(kGood + "[view]\nanything = {at = \"x\"}\n");
+  ASSERT_EQ(model->notes.size(), 1U);
+  EXPECT_EQ(model->notes[0], "[view] is for pictures, and this version draws none");
+  EXPECT_TRUE(test::model_of(kGood)->notes.empty());
+  const std::vector<Diagnostic> list = diagnostics_of(kGood + "[[view]]\n");
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].message, "'view' is a section");
 }
 
 TEST(Overrides, ReplaceParametersExactlyAndKnowTheirNames) {
