@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the ```console blocks of README.md and doc/papers.md with the rules of golden.py.
+"""Runs the ```console blocks of README.md, doc/papers.md and doc/language.md with the rules of golden.py.
 
 usage: readme.py --program PROGRAM [--bless]
 
@@ -42,7 +42,7 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--bless", action="store_true")
     args = parser.parse_args()
-    pages = [page for page in (golden.ROOT / "README.md", golden.ROOT / "doc" / "papers.md") if page.exists()]
+    pages = [page for page in (golden.ROOT / "README.md", golden.ROOT / "doc" / "papers.md", golden.ROOT / "doc" / "language.md") if page.exists()]
     return 1 if golden.run_all(pages, args.program, args.bless, step_mode) else 0
 
 

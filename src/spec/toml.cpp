@@ -37,7 +37,8 @@ Span span_of(const toml::source_region& r) {
 class Places {
  public:
   explicit Places(const SourceText& source) : text_(source.text) {
-    starts_ = {0, 0};
+    // The parser counts columns after a byte order mark.
+    starts_ = {0, text_.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3U : 0U};
     for (std::size_t i = 0; i < text_.size(); ++i)
       if (text_[i] == '\n') starts_.push_back(i + 1);
   }

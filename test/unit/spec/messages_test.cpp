@@ -48,7 +48,7 @@ TEST(Messages, TypicalMistakesHaveTheirPlaceAndTheirWords) {
       {"x = 1", "y = 1", 15, 1, "there is no coordinate 'y'"},
       {"x = 1", "x = \"theta\"", 15, 5, "an initial value is a number or a formula of parameters"},
       {"\"x\", \"theta\"", "\"x\", \"x\"", 1, 22, "'x' is already declared in line 1"},
-      {"[\"x\", \"theta\"]", "[]", 1, 15, "coordinates is a list of names"},
+      {"[\"x\", \"theta\"]", "[]", 1, 15, "the list of coordinates is empty"},
       {"position = [\"x\", \"sin(theta)\", \"0\"]", "position = [\"x\", \"y'\"]", 8, 12, "a vector has three components, 2 are given"},
       {"[\"x\", \"sin(theta)\", \"0\"]", "[\"x'\", \"0\", \"0\"]", 8, 12, "the position of particle 'bob' depends on a velocity (x')"},
       {"g = 9.81", "g = \"2*h\"\nh = \"g\"", 5, 6, "'g' is defined through itself: g -> h -> g"},
