@@ -13,11 +13,11 @@ constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss,
 template <Number N>
 class Search {
  public:
-  Search(const Machine<N>& machine, int degree, const N& h) : machine_(machine), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
+  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) : machine_(machine), end_(end), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
 
   const Kink<N>& run() {
     const Tape& tape = machine_.tape();
-    for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) look(tape, tape.code[slot], slot);
+    for (std::uint32_t slot = 0; slot < end_; ++slot) look(tape, tape.code[slot], slot);
     return kink_;
   }
 
@@ -75,6 +75,7 @@ class Search {
   }
 
   const Machine<N>& machine_;
+  std::uint32_t end_;
   int degree_;
   N h_;
   std::vector<N> c_, turned_;
@@ -84,13 +85,13 @@ class Search {
 }  // namespace
 
 template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h) {
-  return Search<N>(machine, degree, h).run();
+Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) {
+  return Search<N>(machine, end, degree, h).run();
 }
 
-template Kink<double> first_kink(const Machine<double>&, int, const double&);
-template Kink<long double> first_kink(const Machine<long double>&, int, const long double&);
-template Kink<Quad> first_kink(const Machine<Quad>&, int, const Quad&);
-template Kink<Multi> first_kink(const Machine<Multi>&, int, const Multi&);
+template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&);
+template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&);
+template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&);
+template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&);
 
 }  // namespace anholon

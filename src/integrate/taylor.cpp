@@ -388,7 +388,10 @@ Outcome Stepper<N>::step(const W& end) {
   const bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
-  const Kink<N> kink = first_kink<N>(expansion_.machine(), order_ - 1, convert<N>(h));
+  // What is watched for events has kinks of its own.
+  const Tape& tape = program_->tape;
+  const std::uint32_t watched = events_.empty() ? tape.main_end : static_cast<std::uint32_t>(tape.code.size());
+  const Kink<N> kink = first_kink<N>(expansion_.machine(), watched, order_ - 1, convert<N>(h));
   bool cut = false;
   if (kink.at_start || kink.ahead) {
     // At a kink functions are taken one-sided along the motion: a very short step finds the side.
