@@ -75,6 +75,7 @@ void EventWatch<N>::restart() {
 // All within (0, h], up to the first that ends the step.
 template <Number N>
 std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side) {
+  const int forward = h > N(0) ? 1 : -1;
   std::vector<Crossing> list;
   N from(0);
   std::vector<N> p(c, c + degree + 1);
@@ -86,7 +87,7 @@ std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* 
     if (!x) break;
     side = -side;
     list.push_back({N(from + *x), side});
-    if (s.ends_step && s.fires(side)) break;
+    if (s.ends_step && s.fires(side * forward)) break;
     if (*x == N(0) && k > 0) break;
     from = list.back().where;
     p = shifted(c, degree, from);
@@ -107,6 +108,7 @@ double EventWatch<N>::log_reach(const Expansion<N>& e, int degree, double log_to
 template <Number N>
 std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h, const Values& values) {
   const N eps = unit_roundoff<N>();
+  const int forward = h > N(0) ? 1 : -1;
   std::vector<std::vector<Crossing>> each;
   std::vector<N> floors;
   bool ended = false;
@@ -122,7 +124,7 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     each.push_back(crossings(c, degree, h, floor, s, sides_[i]));
     if (s.of_state)
       for (Crossing& x : each[i]) x.where = improved<N>(c, degree, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
-    if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards)) continue;
+    if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards * forward)) continue;
     if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
   }
   // What lies a few round-offs behind the end belongs to it.
@@ -132,7 +134,7 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     for (const Crossing& x : each[i]) {
       if (abs(x.where) > abs(end) + slack) break;
       sides_[i] = x.towards;
-      if (series_[i].fires(x.towards)) fired.push_back({i, ended && !(abs(x.where) < abs(end) - slack) ? end : x.where});
+      if (series_[i].fires(x.towards * forward)) fired.push_back({i, ended && !(abs(x.where) < abs(end) - slack) ? end : x.where});
     }
   std::stable_sort(fired.begin(), fired.end(), [](const Fired<N>& a, const Fired<N>& b) { return abs(a.where) < abs(b.where); });
   if (ended) h = end;

@@ -19,6 +19,7 @@ struct WatchedSeries {
   int direction = 0;           // 1: only upwards, -1: only downwards
   bool ends_step = false;
   bool of_state = false;       // its value follows from the state and the leading derivatives
+  // `towards` in the direction of time, whichever way the motion goes.
   bool fires(int towards) const { return direction == 0 || direction == towards; }
 };
 

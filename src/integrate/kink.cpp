@@ -18,11 +18,11 @@ bool turns_at_zero(const Instruction& in) {
 template <Number N>
 class Search {
  public:
-  Search(const Machine<N>& machine, int degree, const N& h) : machine_(machine), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
+  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) : machine_(machine), end_(end), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
 
   const Kink<N>& run() {
     const Tape& tape = machine_.tape();
-    for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) look(tape, tape.code[slot], slot);
+    for (std::uint32_t slot = 0; slot < end_; ++slot) look(tape, tape.code[slot], slot);
     return kink_;
   }
 
@@ -80,6 +80,7 @@ class Search {
   }
 
   const Machine<N>& machine_;
+  std::uint32_t end_;
   int degree_;
   N h_;
   std::vector<N> c_, turned_;
@@ -89,15 +90,15 @@ class Search {
 }  // namespace
 
 template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h) {
-  return Search<N>(machine, degree, h).run();
+Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) {
+  return Search<N>(machine, end, degree, h).run();
 }
 
 template <Number N>
-double kinks_log_reach(const Machine<N>& machine, int degree, double log_tolerance) {
+double kinks_log_reach(const Machine<N>& machine, std::uint32_t end, int degree, double log_tolerance) {
   const Tape& tape = machine.tape();
   double reach = 300;
-  for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) {
+  for (std::uint32_t slot = 0; slot < end; ++slot) {
     const Instruction& in = tape.code[slot];
     if (in.constant || !(in.op == Op::select || in.op == Op::lookup || turns_at_zero(in))) continue;
     const std::uint32_t argument = in.op == Op::select ? in.first : in.a;
@@ -108,13 +109,13 @@ double kinks_log_reach(const Machine<N>& machine, int degree, double log_toleran
   return reach;
 }
 
-template Kink<double> first_kink(const Machine<double>&, int, const double&);
-template Kink<long double> first_kink(const Machine<long double>&, int, const long double&);
-template Kink<Quad> first_kink(const Machine<Quad>&, int, const Quad&);
-template Kink<Multi> first_kink(const Machine<Multi>&, int, const Multi&);
-template double kinks_log_reach(const Machine<double>&, int, double);
-template double kinks_log_reach(const Machine<long double>&, int, double);
-template double kinks_log_reach(const Machine<Quad>&, int, double);
-template double kinks_log_reach(const Machine<Multi>&, int, double);
+template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&);
+template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&);
+template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&);
+template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&);
+template double kinks_log_reach(const Machine<double>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<long double>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<Quad>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<Multi>&, std::uint32_t, int, double);
 
 }  // namespace anholon

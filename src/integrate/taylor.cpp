@@ -211,7 +211,7 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   if (Outcome o = expansion_.extend(); !o.ok()) return o;
   horizon_ = step_size();
   // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
-  const double reach = std::min(kinks_log_reach<N>(expansion_.machine(), order_ - 1, settings_.log_tolerance),
+  const double reach = std::min(kinks_log_reach<N>(expansion_.machine(), kinks_end(), order_ - 1, settings_.log_tolerance),
                                 events_.log_reach(expansion_, order_ - 1, settings_.log_tolerance));
   if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
   expanded_ = true;
@@ -390,7 +390,7 @@ Outcome Stepper<N>::step(const W& end) {
   const bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
-  const Kink<N> kink = first_kink<N>(expansion_.machine(), order_ - 1, convert<N>(h));
+  const Kink<N> kink = first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
   bool cut = false;
   if (kink.at_start || kink.ahead) {
     // At a kink functions are taken one-sided along the motion: a very short step finds the side.

@@ -17,7 +17,7 @@ std::vector<WatchedSeries> Motion<N>::watched() const {
   std::vector<WatchedSeries> list;
   const auto of_state = [&](Expr e) { return orders_needed(s_, {&e, 1}) <= 0; };
   for (const Event& e : s_.model->events) list.push_back({quadratures_.size() + list.size(), e.direction, e.ends_step(), of_state(e.when)});
-  for (const Bound& b : s_.model->bounds) list.push_back({quadratures_.size() + list.size(), -1, true, of_state(b.inside)});
+  for (const Bound& b : s_.model->bounds) list.push_back({quadratures_.size() + list.size(), 0, true, of_state(b.inside)});
   return list;
 }
 

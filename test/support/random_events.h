@@ -264,9 +264,10 @@ inline std::optional<Real> first_change(const std::function<Real(Real)>& value, 
   if (std::abs(f) > std::abs(d) * half + bend * half * half / 2) return f < 0 ? std::optional<Real>(from) : std::nullopt;
   if (std::abs(d) > bend * half) {
     const auto at = [&](Real x) { return side * (value(x) + shift); };
-    if (d > 0) return at(from) < 0 ? std::optional<Real>(from) : std::nullopt;
+    constexpr Real kRoundoff = 1e-15L;  // where the last event was
+    if (d > 0) return at(from) < -kRoundoff ? std::optional<Real>(from) : std::nullopt;
     if (!(at(to) < 0)) return std::nullopt;
-    if (at(from) < 0) return from;
+    if (at(from) < -kRoundoff) return from;
     Real low = from, high = to;
     for (int k = 0; k < 200; ++k) {
       const Real x = (low + high) / 2;
@@ -323,7 +324,7 @@ inline EventModel::Course EventModel::course() const {
       const Function f = function(s, events_[k], within);
       const auto change = [&](Real shift) { return first_change(f.value, f.slope, f.bend, shift, sides[k], since, within); };
       const auto dt = change(0);
-      const Real doubt = out.events.empty() && s.t == 0 ? kFirst : kDoubt;
+      const Real doubt = s.t == 0 ? kFirst : kDoubt;
       for (Real shift : {doubt, -doubt}) {
         // Where it begins at zero, a shift against the side is passed at once.
         if (std::abs(f.value(since)) <= doubt && shift * sides[k] < 0) continue;
