@@ -155,13 +155,30 @@ std::string mass_text(const Derivation& d, std::size_t i, Format format) {
   return print(d.model->masses[i].value, plain, format);
 }
 
-std::string printed(const Derivation& d, Expr e, Format format) { return print(e, d.names, format); }
+// Both sides of lines, all in one go.
+struct Sides {
+  std::vector<std::string> left, right;  // the left sides where there are any
+};
+Sides printed(const Derivation& d, const std::vector<Line>& lines, Format format) {
+  Column left, right;
+  for (const Line& l : lines) {
+    if (l.left) left.push_back(*l.left);
+    right.push_back(l.right);
+  }
+  Sides s;
+  if (!left.empty()) s.left = print(left, d.names, format);
+  if (!right.empty()) s.right = print(right, d.names, format);
+  return s;
+}
 
 // The named parts: their names and what they are.
 std::vector<std::pair<std::string, std::string>> parts(const Derivation& d, Format format) {
   std::vector<std::pair<std::string, std::string>> list;
   const std::vector<std::string> texts = print_contents(d.parts, d.names, format);
-  for (std::size_t i = 0; i < d.parts.size(); ++i) list.push_back({print(d.parts[i], d.names, format), texts[i]});
+  for (std::size_t i = 0; i < d.parts.size(); ++i) {
+    const std::string& name = d.names.defined.at(d.parts[i].id);
+    list.push_back({format == Format::latex ? latex_name(name) : format == Format::mathml ? mathml_name(name) : name, texts[i]});
+  }
   return list;
 }
 
@@ -201,11 +218,13 @@ std::string as_text(const std::vector<Derivation>& list) {
     out += (list.size() > 1 ? "\n" : "") + std::string(d.form->title) + ", " + citation(*d.form) + "\n\n";
     for (const auto& [heading, lines] : d.steps) {
       out += heading + "\n";
-      for (const Line& l : lines) out += "  " + l.name + " = " + printed(d, l.right, Format::text) + "\n";
+      const Sides s = printed(d, lines, Format::text);
+      for (std::size_t i = 0; i < lines.size(); ++i) out += "  " + lines[i].name + " = " + s.right[i] + "\n";
       out += "\n";
     }
-    for (const Line& l : d.equations) out += l.name + ":  " + printed(d, *l.left, Format::text) + " = " + printed(d, l.right, Format::text) + "\n";
-    for (const Line& l : d.constraints) out += l.name + ":  " + printed(d, *l.left, Format::text) + " = 0\n";
+    const Sides e = printed(d, d.equations, Format::text), c = printed(d, d.constraints, Format::text);
+    for (std::size_t i = 0; i < d.equations.size(); ++i) out += d.equations[i].name + ":  " + e.left[i] + " = " + e.right[i] + "\n";
+    for (std::size_t i = 0; i < d.constraints.size(); ++i) out += d.constraints[i].name + ":  " + c.left[i] + " = 0\n";
     if (!d.parts.empty()) out += "\nwith the parts\n";
     for (const auto& [name, text] : parts(d, Format::text)) out += "  " + name + " = " + text + "\n";
   }
@@ -228,12 +247,14 @@ std::string as_latex(const std::vector<Derivation>& list) {
     for (const auto& [heading, lines] : d.steps) {
       out += "% " + heading + "\n";
       std::vector<std::string> rows;
-      for (const Line& l : lines) rows.push_back("\\text{" + l.name + "} &= " + printed(d, l.right, Format::latex));
+      const Sides s = printed(d, lines, Format::latex);
+      for (std::size_t i = 0; i < lines.size(); ++i) rows.push_back("\\text{" + lines[i].name + "} &= " + s.right[i]);
       if (!rows.empty()) align(rows);
     }
     std::vector<std::string> rows;
-    for (const Line& l : d.equations) rows.push_back(printed(d, *l.left, Format::latex) + " &= " + printed(d, l.right, Format::latex));
-    for (const Line& l : d.constraints) rows.push_back(printed(d, *l.left, Format::latex) + " &= 0");
+    const Sides e = printed(d, d.equations, Format::latex), c = printed(d, d.constraints, Format::latex);
+    for (std::size_t i = 0; i < d.equations.size(); ++i) rows.push_back(e.left[i] + " &= " + e.right[i]);
+    for (const std::string& left : c.left) rows.push_back(left + " &= 0");
     for (const auto& [name, text] : parts(d, Format::latex)) rows.push_back(name + " &= " + text);
     align(rows);
   }
@@ -250,12 +271,14 @@ std::string as_mathml(const std::vector<Derivation>& list) {
   for (const Derivation& d : list) {
     for (const auto& [heading, lines] : d.steps) {
       std::vector<std::pair<std::string, std::string>> rows;
-      for (const Line& l : lines) rows.push_back({"<mtext>" + l.name + "</mtext>", printed(d, l.right, Format::mathml)});
+      const Sides s = printed(d, lines, Format::mathml);
+      for (std::size_t i = 0; i < lines.size(); ++i) rows.push_back({"<mtext>" + lines[i].name + "</mtext>", s.right[i]});
       if (!rows.empty()) table(rows);
     }
     std::vector<std::pair<std::string, std::string>> rows;
-    for (const Line& l : d.equations) rows.push_back({printed(d, *l.left, Format::mathml), printed(d, l.right, Format::mathml)});
-    for (const Line& l : d.constraints) rows.push_back({printed(d, *l.left, Format::mathml), "<mn>0</mn>"});
+    const Sides e = printed(d, d.equations, Format::mathml), c = printed(d, d.constraints, Format::mathml);
+    for (std::size_t i = 0; i < d.equations.size(); ++i) rows.push_back({e.left[i], e.right[i]});
+    for (const std::string& left : c.left) rows.push_back({left, "<mn>0</mn>"});
     for (const auto& [name, text] : parts(d, Format::mathml)) rows.push_back({name, text});
     table(rows);
   }
@@ -272,18 +295,19 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
       j.key("steps").open_array();
       for (const auto& [heading, lines] : d.steps) {
         j.open_object().key("heading").string(heading).key("lines").open_array();
-        for (const Line& l : lines)
-          j.open_object().key("name").string(l.name).key("text").string(printed(d, l.right, Format::text)).key("latex").string(printed(d, l.right, Format::latex)).close();
+        const Sides text = printed(d, lines, Format::text), latex = printed(d, lines, Format::latex);
+        for (std::size_t i = 0; i < lines.size(); ++i)
+          j.open_object().key("name").string(lines[i].name).key("text").string(text.right[i]).key("latex").string(latex.right[i]).close();
         j.close().close();
       }
       j.close();
     }
     for (const auto& [key, lines] : {std::pair{"equations", &d.equations}, {"constraints", &d.constraints}}) {
       j.key(key).open_array();
-      for (const Line& l : *lines) {
-        const std::string left = printed(d, *l.left, Format::latex), right = printed(d, l.right, Format::latex);
-        j.open_object().key("name").string(l.name).key("left").string(printed(d, *l.left, Format::text)).key("right").string(printed(d, l.right, Format::text));
-        j.key("latex").string(left + " = " + right).close();
+      const Sides text = printed(d, *lines, Format::text), latex = printed(d, *lines, Format::latex);
+      for (std::size_t i = 0; i < lines->size(); ++i) {
+        j.open_object().key("name").string((*lines)[i].name).key("left").string(text.left[i]).key("right").string(text.right[i]);
+        j.key("latex").string(latex.left[i] + " = " + latex.right[i]).close();
       }
       j.close();
     }

@@ -44,6 +44,6 @@ struct PlainNames final : Names {
   }
 };
 
-inline SymbolNames plain_symbol_names() { return {{"x", "y", "z"}, {"a", "b"}, {"m"}, {"c"}, {"f"}, {}, {}}; }
+inline SymbolNames plain_symbol_names() { return {{"x", "y", "z"}, {"a", "b"}, {"m"}, {"c"}, {"f"}, {}, {}, {}, {}}; }
 
 }  // namespace anholon::test
