@@ -1,5 +1,6 @@
 #include "cli/conserved.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace anholon::cli {
@@ -13,9 +14,10 @@ void print_conserved(const Mechanics& m) {
   const std::vector<Conserved> list = conserved(m);
   if (list.empty()) return;
   std::string names;
+  const bool resets = std::any_of(m.model->events.begin(), m.model->events.end(), [](const Event& e) { return !e.set.empty(); });
   for (const Conserved& c : list)
     if (cyclic(c)) names += (names.empty() ? "" : ", ") + c.name.substr(12);
-  std::printf("\nconserved along every motion (proved)%s\n", names.empty() ? "" : (", cyclic: " + names).c_str());
+  std::printf("\nconserved along every motion%s (proved)%s\n", resets ? " between events" : "", names.empty() ? "" : (", cyclic: " + names).c_str());
   for (const Conserved& c : list) {
     const std::string formula = print(c.value, m.model->names, Format::text);
     std::printf("  %s%s\n", c.name.c_str(), formula.size() > kLongest ? "" : (" = " + formula).c_str());

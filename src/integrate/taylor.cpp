@@ -62,7 +62,7 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
 
 template <Number N>
 Outcome Stepper<N>::restart(const std::vector<W>& state) {
-  before_ = t_;
+  before_ = t_;  // the last step's polynomial is not this state's
   state_ = state;
   carry_.assign(state.size(), W(0));
   events_.restart();

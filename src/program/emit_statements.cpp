@@ -1,5 +1,6 @@
 // Expressions as statements: one sweep upwards, no recursion, so depth does not matter.
 #include <algorithm>
+#include <functional>
 
 #include "base/assert.h"
 #include "program/emit_text.h"
@@ -119,7 +120,7 @@ std::vector<Writer::Piece> Writer::sum(NodeId id) {
 std::string Writer::call(NodeId id) {
   const Node& n = g_.node(id);
   const auto choice = [&](const std::string& condition, const std::string& a, const std::string& b) {
-    return language_ == Language::c ? "(" + condition + " ? " + a + " : " + b + ")" : "(" + a + " if " + condition + " else " + b + ")";
+    return language_ == Language::c ? "(" + condition + " ? " + a + " : " + b + ")" : "np.where(" + condition + ", " + a + ", " + b + ")";
   };
   if (n.kind == Kind::select) {
     const std::span<const Term> t = g_.terms(id);
@@ -127,10 +128,20 @@ std::string Writer::call(NodeId id) {
   }
   if (n.kind == Kind::lookup) {
     const StepFunction& f = g_.step_function(n.index);
-    std::string s = number(f.values.back());
-    for (std::size_t k = f.knots.size(); k-- > 0;)
-      s = choice(wrapped(text_.at(g_.terms(id)[0].node), kSum) + " < " + number(f.knots[k]), number(f.values[k]), s);
-    return s;
+    const std::string& x = text_.at(g_.terms(id)[0].node).s;
+    const auto list = [](const std::vector<Rational>& numbers) {
+      std::string out;
+      for (const Rational& r : numbers) out += (out.empty() ? "" : ", ") + number(r);
+      return "[" + out + "]";
+    };
+    if (language_ == Language::python) return "np.take(" + list(f.values) + ", np.searchsorted(" + list(f.knots) + ", " + x + ", side='right'))";
+    // By halves: compilers recurse over what is nested.
+    const std::function<std::string(std::size_t, std::size_t)> among = [&](std::size_t from, std::size_t to) {
+      if (from == to) return number(f.values[from]);
+      const std::size_t middle = from + (to - from) / 2;
+      return choice("(" + x + ") < " + number(f.knots[middle]), among(from, middle), among(middle + 1, to));
+    };
+    return among(0, f.knots.size());
   }
   if (n.kind == Kind::atan2)
     return std::string(language_ == Language::c ? "atan2(" : "np.arctan2(") + text_.at(g_.terms(id)[0].node).s + ", " +

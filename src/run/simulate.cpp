@@ -243,13 +243,21 @@ class Run {
       report_.events.push_back(std::move(r));
       accumulate(o);
     }
-    if (!report_.outcome.ok() || !goes_on) {
+    if (!report_.outcome.ok()) {
       reached_ = motion_.stepper().time();
       return false;
     }
     angles_.set_parameters(motion_.parameters());
     if (motion_.at(motion_.stepper().time()).ok()) watch_.enter(motion_.point(), motion_.parameters());
-    return report_.outcome.ok();
+    if (!goes_on) ended();
+    return goes_on && report_.outcome.ok();
+  }
+
+  // By an event: the state there is worth a row of its own.
+  void ended() {
+    const W t = motion_.stepper().time();
+    reached_ = t;
+    if (!every_step_ && !(next_ > 0 && times_[next_ - 1] == t)) row(t, "");
   }
 
   // An event that comes sooner and sooner has infinitely many before some moment: nothing is computed beyond it.

@@ -145,7 +145,7 @@ Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
 static void check_position(const Model& model, const Vector& place, const Item& item, const std::string& what) {
   for (int i = 0; i < 3; ++i) {
     if (const auto name = too_rough(place[i], 2))
-      throw Failure(item.span, what + " holds the table '" + *name + "', whose fit has no continuous derivative: accelerations would jump without end",
+      throw Failure(item.span, what + " holds the table '" + *name + "', whose fit has no continuous derivative: velocities would jump, and accelerations hold pulses",
                     "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
     for (NodeId id : symbols({&place[i], 1})) {
       const Node& n = model.graph->node(id);

@@ -72,7 +72,8 @@ void keep_by(const Item& by, std::size_t first, const Scope& scope, Model& model
     throw Failure(by.span, std::to_string(names.size()) + " inputs for " + std::to_string(equations) + " equations",
                   "as many inputs as equations: by = [\"u\", \"v\"]");
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const std::string name = names[k]->kind == Item::Kind::string ? normal_name(names[k]->text()) : std::string();
+    if (names[k]->kind != Item::Kind::string) throw Failure(names[k]->span, "'by' is the name of an input, or a list of them", "by = \"u\"");
+    const std::string name = normal_name(names[k]->text());
     const auto it = scope.declarations().find(name);
     if (it == scope.declarations().end() || it->second.role != Scope::Role::control) {
       std::vector<std::string> known;
@@ -89,6 +90,12 @@ void keep_by(const Item& by, std::size_t first, const Scope& scope, Model& model
     model.notes.push_back("constraint '" + model.constraints[first + k].name + "' is kept by the input '" + name + "' (servo): no ideal reaction acts" +
                           (u.value ? ", and the formula of '" + name + "' is not used" : ""));
   }
+}
+
+void check_kept(const Model& model, Diagnostics& diagnostics) {
+  for (const Control& u : model.controls)
+    if (!u.value && !u.constraint && !diagnostics.has_errors())
+      diagnostics.error(u.span, "the input '" + u.name + "' has no formula, and no constraint is kept by it", u.name + " = \"-2*x - x'\", or by = \"" + u.name + "\" in a constraint");
 }
 
 Expr with_feedback(const Model& model, Expr e) {

@@ -13,6 +13,8 @@ void declare_controls(const Item& root, Scope& scope, Model& model, Diagnostics&
 void read_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 // `by` of the constraints from `first` on: one input for each of them.
 void keep_by(const Item& by, std::size_t first, const Scope& scope, Model& model);
+// An input without a formula is one that keeps a constraint.
+void check_kept(const Model& model, Diagnostics& diagnostics);
 // Inputs whose formulas hold coordinates are put in: in a constraint or a potential they are no functions of time.
 Expr with_feedback(const Model& model, Expr e);
 

@@ -30,6 +30,7 @@ class Elements {
   bool run() {
     // A value from outside may have taken the place of the only one with a unit.
     each("parameters", [&](const Item& i) { if (i.is_formula()) formulas_.look_for_units(parse_formula(i.formula)); });
+    tables();  // the units of their knots are given, not found
     formulas_.declarations(found_);
     observer();
     each("gravity", [&](const Item& i) { if (i.key == "field") formulas_.in_field = true, expect(i, "m/s^2"), formulas_.in_field = false; });
@@ -37,7 +38,6 @@ class Elements {
     forces();
     each("potential", [&](const Item& i) { expect(i, "J"); });
     each("dissipation", [&](const Item& i) { expect(i, "W"); });
-    tables();
     states();
     events();
     each("output", [&](const Item& i) { output(i); });

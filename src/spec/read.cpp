@@ -96,6 +96,7 @@ class Reader {  // what it refers to is asked only while it runs
     potentials(root);
     dissipation(root);
     constraints(root);
+    check_kept(model_, diagnostics_);
     quasi(root);
     read_states(root, scope_, model_, diagnostics_);
     scope_.resolve_all();

@@ -114,6 +114,40 @@ equation = "2*y' = 2*x"
 x = 1
 "x'" = 1
 ''',
+    # Choices and tables; a Runge-Kutta method would not see kinks on the way.
+    "choices": '''
+coordinates = ["x", "y", "z"]
+[mode]
+gear = 2
+[[table]]
+name = "line"
+x = [-1, 0, 0.5, 2]
+y = [1, -0.5, -1, 0]
+[[table]]
+name = "steps"
+x = [-5, 50]
+y = [0.5, 1]
+fit = "hold"
+[[table]]
+name = "smooth"
+x = [-1, 0, 1, 3]
+y = [0, 1, 1.5, 4]
+fit = "spline"
+outside = "linear"
+[[particle]]
+name = "a"
+mass = "choose(gear, 1, 2, 3)"
+position = ["x", "y + smooth(x)/4", "z"]
+[[force]]
+on = "a"
+vector = ["line(x) + piecewise(y > 0.3, -1, y >= 0.29, -0.5, x <= 2, 0.25, 1)", "max(-y, -1) + min(x, abs(z))", "steps(t) - z"]
+[initial]
+x = 1.2
+y = 3
+z = 0.1
+"x'" = 0.1
+"y'" = 0.5
+''',
     # Newton's method has to iterate.
     "nonlinear": '''
 coordinates = ["x", "y"]

@@ -1,0 +1,163 @@
+// Events, states, kinks and servo constraints against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "run/simulate.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+struct Result {
+  SimulationReport report;
+  MemorySink rows;
+  double last(const std::string& column) const {
+    const auto& names = rows.names();
+    return std::stod(rows.rows().back()[static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin())]);
+  }
+};
+
+Result run(const std::string& text, const Rational& to, const std::string& tolerance = "1/100000000000000", const std::function<void(SimulationOptions&)>& more = {}) {
+  Result r;
+  Scenario s;
+  r.report.outcome = make_scenario(test::model_of(text), *find_formulation("routh"), {}, s);
+  if (!r.report.outcome.ok()) return r;
+  SimulationOptions o;
+  o.to = to;
+  o.tolerance = Rational(tolerance);
+  if (more) more(o);
+  r.report = simulate(s, o, r.rows);
+  return r;
+}
+
+std::string mass_on_a_line(const std::string& force, const std::string& more) {
+  return "coordinates = [\"x\"]\n" + more + "[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\non = \"p\"\nvector = \"(" + force + ")*ex\"\n";
+}
+
+TEST(Events, TwoThatAreNearlyAtOnce) {
+  // The second ball arrives 3e-12 after the first one has bounced: not at the same moment, and not never.
+  const std::string text = R"(coordinates = ["x", "y"]
+particle = [{name = "a", mass = 1, position = "x*ex"}, {name = "b", mass = 1, position = "y*ey"}]
+event = [
+  {name = "first", when = "x - 5", direction = "down", set = {"x'" = "-x'"}},
+  {name = "second", when = "y - 5", direction = "down", set = {"y'" = "-y'"}},
+]
+[initial]
+x = 6
+"x'" = -1
+y = "5.01 + 3e-14"
+"y'" = -0.01
+)";
+  const Result r = run(text, 2);
+  ASSERT_EQ(r.report.events.size(), 2U);
+  EXPECT_NEAR(r.last("y"), 5.01, 1e-12) << "the second one has turned, too";
+}
+
+TEST(Events, AKinkInTheirFormula) {
+  const Result r = run(mass_on_a_line("0", "initial = {x = 1.5, \"x'\" = -1}\nevent = [{name = \"far\", when = \"abs(x) - 2\"}]\n"), 4);
+  ASSERT_EQ(r.report.events.size(), 1U);
+  EXPECT_NEAR(std::stod(r.report.events[0].t), 3.5, 1e-14);
+}
+
+// x = 3 cos 2t: squares of a series converge more slowly than the series.
+TEST(Events, AreAtTheZeroOfTheFormula) {
+  const Result r = run(mass_on_a_line("-4*x", "initial = {x = 3}\nevent = [{name = \"e\", when = \"x^2 - 1\", set = {\"x'\" = \"2*x'\"}}]\n"), Rational(6, 5), "1/1000000000");
+  ASSERT_EQ(r.report.events.size(), 2U) << "once down, once up";
+  EXPECT_NEAR(std::stod(r.report.events[0].t), std::acos(1.0 / 3) / 2, 1e-11);
+}
+
+TEST(Events, TakenBackwardsKeepTheirDirection) {
+  const std::string text = mass_on_a_line("0", "initial = {x = 1, \"x'\" = 1}\nevent = [{name = \"up\", when = \"x\", direction = \"up\"}, {name = \"down\", when = \"x\", direction = \"down\"}]\n");
+  const Result back = run(text, -2);
+  ASSERT_EQ(back.report.events.size(), 1U);
+  EXPECT_EQ(back.report.events[0].name, "up");
+  EXPECT_NEAR(std::stod(back.report.events[0].t), -1, 1e-15);
+}
+
+TEST(Events, EnergyIsBalancedOverThem) {
+  const std::string text = mass_on_a_line("-x - x'/10 - 3", "initial = {x = 2}\nevent = [{name = \"b\", when = \"x\", direction = \"down\", set = {\"x'\" = \"-0.9*x'\"}}]\n");
+  const Result r = run(text, 3);
+  EXPECT_GE(r.report.events.size(), 2U);
+  EXPECT_LT(r.report.power, 1e-12);
+}
+
+TEST(Events, RunsGoOnAcrossThemWithTheSameBits) {
+  const std::string text = mass_on_a_line("-10 - x'/5", "initial = {x = 2}\nmode.n = 0\nstate.z = {rate = \"x - n*z\", initial = 0}\n"
+                                          "event = [{name = \"b\", when = \"x\", direction = \"down\", set = {\"x'\" = \"-0.9*x'\", n = \"n + 1\"}}, {name = \"top\", when = \"x'\", direction = \"down\"}]\n");
+  std::string saved;
+  const auto save = [&](SimulationOptions& o) { o.save = [&](const SavedRun& s) { saved = print(s); }; };
+  const Result whole = run(text, 3, "1/1000000000000", save);
+  const std::string end = saved;
+  ASSERT_GE(whole.report.events.size(), 4U);
+  for (const char* half : {"1/2", "16/25", "7/5", "5/2"}) {
+    run(text, Rational(half), "1/1000000000000", save);
+    const SavedRun from = read_saved({"run.state", saved});
+    const Result second = run(text, 3, "1/1000000000000", [&](SimulationOptions& o) {
+      save(o);
+      o.resume = &from;
+    });
+    EXPECT_EQ(second.rows.rows().back(), whole.rows.rows().back()) << half;
+    EXPECT_EQ(saved, end) << half;
+  }
+}
+
+TEST(States, FirstOrderLagAndTsiolkovsky) {
+  const Result r = run(R"(coordinates = ["x"]
+particle = [{name = "r", mass = "1 + fuel", position = "x*ex", expelled_velocity = "-3*ex"}]
+state = {fuel = {rate = "-2", initial = 9}, lag = {rate = "(1 - lag)/2", initial = 0}}
+)", 4);
+  EXPECT_NEAR(r.last("x'"), 3 * std::log(10.0 / 2), 1e-12);
+  EXPECT_NEAR(r.last("lag"), 1 - std::exp(-2), 1e-13);
+  EXPECT_NEAR(r.last("fuel"), 1, 1e-13);
+}
+
+// x'' = -sign(x), -2 x beyond 1, a table: the error falls with the tolerance, and the closed form is met.
+TEST(Kinks, TheErrorFollowsTheTolerance) {
+  struct Case {
+    const char* force;
+    double exact;  // x at t = 3, from x = 2 at rest
+  };
+  // Constant force -1 for x > 0: x = 2 - t^2/2 until t = 2, v = -2; then +1: x = -2 s + s^2/2, s = 1.
+  const double a = -2 + 0.5;
+  // Force -1 above 1, -x below: until t = sqrt(2), v = -sqrt(2); then x = cos(s) - sqrt(2) sin(s).
+  const double s = 3 - std::sqrt(2.0), b = std::cos(s) - std::sqrt(2.0) * std::sin(s);
+  for (const Case& c : {Case{"-sign(x)", a}, Case{"piecewise(x > 1, -1, -x)", b}, Case{"max(-1, -x)", b}, Case{"F(x)", b}}) {
+    double before = 1;
+    for (const char* tolerance : {"1/10000", "1/100000000", "1/1000000000000"}) {
+      const std::string table = "table = [{name = \"F\", x = [-3, 1, 3], y = [3, -1, -1]}]\n";
+      const Result r = run(mass_on_a_line(c.force, "initial = {x = 2}\n" + table), 3, tolerance);
+      ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+      const double error = std::abs(r.last("x") - c.exact);
+      EXPECT_LT(error, 100 * Rational(tolerance).get_d()) << c.force;
+      EXPECT_TRUE(error < before || error < 1e-13) << c.force;
+      before = error;
+    }
+  }
+}
+
+// A tether that is reeled out: the pull along it is an ideal reaction, a thrust sideways is none.
+TEST(Servo, IsTheIdealReactionWhereItActsAlongIt) {
+  const auto tether = [](const std::string& force, const std::string& by) {
+    return run(R"(coordinates = ["x", "y"]
+particle = [{name = "p", mass = 2, position = "x*ex + y*ey"}]
+force = [{name = "f", on = "p", vector = ")" + force + R"("}]
+constraint = [{name = "reel", equation = "norm(p.center) = 1 + t/10")" + by + R"(}]
+gravity.field = "-9.81*ey"
+input.u = )" + (by.empty() ? "\"0\"" : "{}") + R"(
+[initial]
+x = 0.6
+y = -0.8
+conditions = ["x' = 0.2"]
+)", Rational(1, 10));
+  };
+  const Result ideal = tether("0*ex", ""), along = tether("-u*unit(p.center)", ", by = \"u\""), sideways = tether("u*ex", ", by = \"u\"");
+  EXPECT_NEAR(along.last("x"), ideal.last("x"), 1e-13);
+  EXPECT_NEAR(along.last("u"), -ideal.last("lambda.reel"), 1e-11);
+  EXPECT_GT(std::abs(sideways.last("x") - ideal.last("x")), 1e-3);
+  EXPECT_NEAR(std::hypot(sideways.last("x"), sideways.last("y")), 1.01, 1e-13) << "it keeps the length all the same";
+  EXPECT_EQ(along.last("N.x"), 0);
+}
+
+}  // namespace
+}  // namespace anholon
