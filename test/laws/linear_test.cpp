@@ -114,7 +114,7 @@ TEST(LinearModels, OrdersTwoAndThree) {
 
 std::string disc(const std::string& parameters, const std::string& initial) {
   std::string text = shipped_text("zoo/disc");
-  text = replaced(text, "R = \"1/2\"        # radius\ng = 9.81", parameters);
+  text = replaced(text, "R = \"1/2\", g = 9.81", parameters);
   return text.substr(0, text.find("[initial]")) + "[initial]\n" + initial;
 }
 
@@ -122,7 +122,7 @@ std::string disc(const std::string& parameters, const std::string& initial) {
 TEST(LinearModels, UprightDiscAtItsCriticalSpeed) {
   const PrecisionScope scope(2 * kDigits);
   for (const int spin : {1, 2}) {
-    const LinearModel m = linear(disc("R = 1\ng = 3", "theta = \"pi/2\"\n\"psi'\" = 0\n\"theta'\" = 0\n\"phi'\" = " + std::to_string(spin) + "\n"));
+    const LinearModel m = linear(disc("R = 1, g = 3", "theta = \"pi/2\"\n\"psi'\" = 0\n\"theta'\" = 0\n\"phi'\" = " + std::to_string(spin) + "\n"));
     EXPECT_EQ(m.motion, LinearModel::Motion::steady);
     EXPECT_EQ(m.states.size(), 8U);
     EXPECT_EQ(m.cyclic.size(), 4U);  // x, y, psi, phi
