@@ -19,8 +19,7 @@ title = "Skate on ice"
 source = "Caratheodory 1933"
 coordinates = ["x", "y", "theta"]
 dependent = ["y"]
-particle = [{name = "skate", mass = 2, position = "x*ex + y*ey"}]
-force = [{generalized = {theta = "-theta''/10"}}]
+body = [{name = "skate", mass = 2, inertia = 0.1, center = "x*ex + y*ey", angle = "theta"}]
 constraint = [{name = "edge", equation = "y'*cos(theta) = x'*sin(theta)"}]
 ```
 
