@@ -19,6 +19,7 @@ std::string describe(const ConstraintClass& c, int order) {
 }
 
 std::string work(const Scenario& s, const Explanation& x, std::size_t r) {
+  if (s.model->constraints[r].by) return "servo";
   if (is_zero(x.constraints[r].power_factor)) return "does no work";
   constexpr std::size_t kLongestPower = 120;  // what is longer is not read here; --json has it
   const std::string power = power_text(s, x, r);

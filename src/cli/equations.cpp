@@ -41,11 +41,26 @@ class Derive {
       d_.equations.push_back({all ? d_.model->coordinates[a].name : e_.names[a], arranged(q.left[a]), arranged(q.right[a])});
     for (std::size_t r = 0; r < m_.phi.size(); ++r)
       d_.constraints.push_back({d_.model->constraints[r].name, arranged(m_.phi[r]), m_.graph().zero()});
+    if (arranger_.in_parts(m_.q.size())) in_parts();
     return std::move(d_);
   }
 
  private:
-  Expr arranged(Expr e) { return arranger_(e, d_.names); }
+  Expr arranged(Expr e) { return arranger_.in_parts(m_.q.size()) ? e : arranger_(e, d_.names); }
+
+  void in_parts() {
+    Column all;
+    const auto add_all = [&](const std::vector<Line>& lines) {
+      for (const Line& l : lines) {
+        if (l.left) all.push_back(*l.left);
+        all.push_back(l.right);
+      }
+    };
+    for (const auto& [heading, lines] : d_.steps) add_all(lines);
+    add_all(d_.equations);
+    add_all(d_.constraints);
+    d_.parts = name_parts(all, d_.names);
+  }
 
   std::string text(Expr e) const { return print(e, d_.names, Format::text); }
 
@@ -142,7 +157,20 @@ std::string mass_text(const Derivation& d, std::size_t i, Format format) {
 
 std::string printed(const Derivation& d, Expr e, Format format) { return print(e, d.names, format); }
 
+// The named parts: their names and what they are.
+std::vector<std::pair<std::string, std::string>> parts(const Derivation& d, Format format) {
+  std::vector<std::pair<std::string, std::string>> list;
+  const std::vector<std::string> texts = print_contents(d.parts, d.names, format);
+  for (std::size_t i = 0; i < d.parts.size(); ++i) list.push_back({print(d.parts[i], d.names, format), texts[i]});
+  return list;
+}
+
 }  // namespace
+
+// Equations of so many coordinates nobody reads: written out they grow with the square of their number.
+constexpr std::size_t kManyCoordinates = 24;
+
+bool Arranger::in_parts(std::size_t coordinates) const { return expand_ == "parts" || (expand_ == "auto" && coordinates > kManyCoordinates); }
 
 Expr Arranger::operator()(Expr e, const SymbolNames& names) {
   if (expand_ == "none") return e;
@@ -178,6 +206,8 @@ std::string as_text(const std::vector<Derivation>& list) {
     }
     for (const Line& l : d.equations) out += l.name + ":  " + printed(d, *l.left, Format::text) + " = " + printed(d, l.right, Format::text) + "\n";
     for (const Line& l : d.constraints) out += l.name + ":  " + printed(d, *l.left, Format::text) + " = 0\n";
+    if (!d.parts.empty()) out += "\nwith the parts\n";
+    for (const auto& [name, text] : parts(d, Format::text)) out += "  " + name + " = " + text + "\n";
   }
   const auto with = masses(list[0]);
   if (!with.empty()) out += "\nwith\n";
@@ -204,6 +234,7 @@ std::string as_latex(const std::vector<Derivation>& list) {
     std::vector<std::string> rows;
     for (const Line& l : d.equations) rows.push_back(printed(d, *l.left, Format::latex) + " &= " + printed(d, l.right, Format::latex));
     for (const Line& l : d.constraints) rows.push_back(printed(d, *l.left, Format::latex) + " &= 0");
+    for (const auto& [name, text] : parts(d, Format::latex)) rows.push_back(name + " &= " + text);
     align(rows);
   }
   return out;
@@ -225,6 +256,7 @@ std::string as_mathml(const std::vector<Derivation>& list) {
     std::vector<std::pair<std::string, std::string>> rows;
     for (const Line& l : d.equations) rows.push_back({printed(d, *l.left, Format::mathml), printed(d, l.right, Format::mathml)});
     for (const Line& l : d.constraints) rows.push_back({printed(d, *l.left, Format::mathml), "<mn>0</mn>"});
+    for (const auto& [name, text] : parts(d, Format::mathml)) rows.push_back({name, text});
     table(rows);
   }
   return out;
@@ -252,6 +284,15 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
         const std::string left = printed(d, *l.left, Format::latex), right = printed(d, l.right, Format::latex);
         j.open_object().key("name").string(l.name).key("left").string(printed(d, *l.left, Format::text)).key("right").string(printed(d, l.right, Format::text));
         j.key("latex").string(left + " = " + right).close();
+      }
+      j.close();
+    }
+    if (!d.parts.empty()) {
+      const auto latex = parts(d, Format::latex);
+      j.key("parts").open_array();
+      for (std::size_t i = 0; const auto& [name, text] : parts(d, Format::text)) {
+        j.open_object().key("name").string(name).key("text").string(text).key("latex").string(latex[i].first + " = " + latex[i].second).close();
+        ++i;
       }
       j.close();
     }

@@ -20,14 +20,17 @@ struct Derivation {
   SymbolNames names;            // masses, quasi-velocities under their own names
   std::vector<std::pair<std::string, std::vector<Line>>> steps;  // heading, lines
   std::vector<Line> equations, constraints;
+  std::vector<Expr> parts;      // named in `names`, where the equations stand in parts
 };
 
 // Arranges expressions, each only once: many forms have equations in common, or equations that are the same written out.
 class Arranger {
  public:
-  // auto or paper (grouped), none, full (written out)
+  // auto or paper (grouped), none, full (written out), parts (as they stand, with names for what occurs more than once); auto
+  // means parts where there are many coordinates.
   explicit Arranger(std::string expand) : expand_(std::move(expand)) {}
   Expr operator()(Expr e, const SymbolNames& names);
+  bool in_parts(std::size_t coordinates) const;
 
  private:
   std::string expand_;

@@ -102,7 +102,7 @@ int run(int argc, char** argv) {
                                            "Example: anholon derive disc --format latex");
   parameters(derive_command), form_option(derive_command);
   derive_command->add_option("--format", o.format, "text, latex, mathml or json; c (C99) or python (NumPy): a program that computes the motion's right side")->type_name("FORMAT");
-  derive_command->add_option("--expand", o.expand, "auto or paper (grouped), none, full (written out)")->type_name("HOW");
+  derive_command->add_option("--expand", o.expand, "auto or paper (grouped), none, full (written out), parts (named, for many coordinates)")->type_name("HOW");
 
   derive_command->add_flag("--steps", o.steps, "show T, S, forces, constraints and the elimination on the way");
 

@@ -350,6 +350,7 @@ int simulate_motion(const Options& o, const SavedRun* resume) {
   if (resume) beyond(*resume, o, last);
   // What an event sets is not conserved.
   const bool reset = std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  if (reset && last < Rational(s.state.t)) throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after the start, t = " + number_text(s.state.t) + "\n"};
   options.rigorous = rigorous(o.rigorous);
   if (options.rigorous && reset) throw UsageError{"error: --rigorous encloses motions without events that set something\nhint: leave out --rigorous\n"};
   accuracy(o, *in.model, options);

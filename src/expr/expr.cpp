@@ -135,7 +135,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
     const Node& n = nodes_[e.id];
     if (n.kind == Kind::number) {
       parts.push_back({one_, factor * value(e.id)});
-    } else if (n.kind == Kind::sum && n.count > kOpenedTerms) {
+    } else if (n.kind == Kind::sum && n.count > kOpenedTerms && operands.size() > 1) {
       parts.push_back({e.id, factor});
     } else if (n.kind == Kind::sum) {
       spend(n.count);
@@ -247,8 +247,9 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
         parts.push_back(std::move(p));
       }
     } else if (n.kind == Kind::sum) {
-      // A positive content comes out of any power, a sign out of a whole one.
-      const Rational c = n.count == 1 ? rational(terms_[n.first].weight) : content(*this, p.node);
+      // A positive content comes out of any power, a sign out of a whole one. A long sum stays as it is: what is scaled by its
+      // content would be one term, which gives the factor back.
+      const Rational c = n.count == 1 ? rational(terms_[n.first].weight) : n.count > kOpenedTerms ? Rational(1) : content(*this, p.node);
       const Rational out = integer ? c : Rational(abs(c));
       const bool whole_out = integer && exact_power(c, p.exponent.get_num().get_si());
       if (out != 1 && (whole_out || !integer)) {

@@ -85,19 +85,19 @@ class Printer {
       if (!seen[e.id]) seen[e.id] = true, ids.push_back(e.id);
     for (std::size_t i = 0; i < ids.size(); ++i) {
       if (names_.defined.count(ids[i])) continue;
-      for (const Term& t : g_.terms(ids[i]))
+      for (const Term& t : operands(ids[i]))
         if (!seen[t.node]) seen[t.node] = true, ids.push_back(t.node);
     }
     std::sort(ids.begin(), ids.end());
     for (Expr e : es) ++uses_[e.id];
     for (NodeId id : ids)
       if (!names_.defined.count(id))
-        for (const Term& t : g_.terms(id)) ++uses_[t.node];
+        for (const Term& t : operands(id)) ++uses_[t.node];
     for (NodeId id : ids) {
       done_[id] = node(id);
       if (names_.defined.count(id)) continue;
       // The text of an operand goes with its last use: a deep formula needs no more than its length.
-      for (const Term& t : g_.terms(id))
+      for (const Term& t : operands(id))
         if (--uses_[t.node] == 0) done_.erase(t.node);
     }
     std::vector<std::string> out;
@@ -105,7 +105,31 @@ class Printer {
     return out;
   }
 
+  std::vector<std::string> contents(std::span<const Expr> es) {
+    std::vector<NodeId> ids;
+    std::vector<bool> seen(g_.size(), false), root(g_.size(), false);
+    for (Expr e : es)
+      if (!seen[e.id]) seen[e.id] = root[e.id] = true, ids.push_back(e.id);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (!root[ids[i]] && names_.defined.count(ids[i])) continue;
+      for (const Term& t : operands(ids[i]))
+        if (!seen[t.node]) seen[t.node] = true, ids.push_back(t.node);
+    }
+    std::sort(ids.begin(), ids.end());
+    std::unordered_map<NodeId, std::string> texts;
+    for (NodeId id : ids) {
+      rank(id);
+      if (root[id]) texts[id] = content(id).text;
+      done_[id] = node(id);
+    }
+    std::vector<std::string> out;
+    for (Expr e : es) out.push_back(texts[e.id]);
+    return out;
+  }
+
  private:
+  std::span<const Term> operands(NodeId id) const { return names_.short_sums ? g_.summands(id) : g_.terms(id); }
+
   bool latex() const { return format_ == Format::latex; }
   bool mathml() const { return format_ == Format::mathml; }
 
@@ -165,6 +189,10 @@ class Printer {
   Printed node(NodeId id) {
     rank(id);
     if (const auto it = names_.defined.find(id); it != names_.defined.end()) return {written(it->second)};
+    return content(id);
+  }
+
+  Printed content(NodeId id) {
     const Node& n = g_.node(id);
     switch (n.kind) {
       case Kind::number: return number(g_.value(id));
@@ -266,7 +294,7 @@ class Printer {
   }
 
   Printed sum(NodeId id) {
-    std::vector<Term> terms(g_.terms(id).begin(), g_.terms(id).end());
+    std::vector<Term> terms(operands(id).begin(), operands(id).end());
     // Highest derivatives first; of accelerations those that stand alone before those in brackets.
     std::stable_sort(terms.begin(), terms.end(), [&](const Term& a, const Term& b) {
       const Rank ra = rank(a.node), rb = rank(b.node);
@@ -434,6 +462,38 @@ std::string derivative_name(const std::string& name, unsigned order, Format form
     }
   }
   return name;
+}
+
+std::vector<std::string> print_contents(std::span<const Expr> es, const SymbolNames& names, Format format) {
+  if (es.empty()) return {};
+  return Printer(*es[0].graph, names, format).contents(es);
+}
+
+std::vector<Expr> name_parts(std::span<const Expr> es, SymbolNames& names) {
+  std::vector<Expr> parts;
+  if (es.empty()) return parts;
+  Graph& g = *es[0].graph;
+  names.short_sums = true;
+  const std::vector<NodeId> ids = reachable(es);
+  std::unordered_map<NodeId, std::size_t> uses;
+  for (Expr e : es) ++uses[e.id];
+  for (NodeId id : ids)
+    for (const Term& t : g.summands(id)) ++uses[t.node];
+  std::string prefix = "w";
+  const auto taken = [&](const std::string& p) {
+    const auto begins = [&](const std::string& n) { return n.size() > p.size() && n.compare(0, p.size(), p) == 0 && std::isdigit(static_cast<unsigned char>(n[p.size()])); };
+    for (const auto* list : {&names.coordinates, &names.parameters, &names.masses, &names.given, &names.quasi, &names.states, &names.controls})
+      if (std::any_of(list->begin(), list->end(), begins)) return true;
+    return false;
+  };
+  while (taken(prefix)) prefix += "w";
+  for (NodeId id : ids) {
+    const Node& n = g.node(id);
+    if (uses[id] < 2 || n.view_count < 2 || (n.kind != Kind::sum && n.kind != Kind::product) || names.defined.count(id)) continue;
+    parts.push_back({&g, id});
+    names.defined.emplace(id, prefix + std::to_string(parts.size()));
+  }
+  return parts;
 }
 
 std::vector<std::string> print(std::span<const Expr> es, const SymbolNames& names, Format format) {

@@ -1,6 +1,7 @@
 #include "integrate/crossing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace anholon {
@@ -86,9 +87,35 @@ std::optional<N> first_below(const N* c, int degree, const N& h, const N& floor)
   return x;
 }
 
+// log|c_k| + k L <= log_tolerance + log|c_j| + j L for one j: the bound of L grows with the best j.
+template <Number N>
+double log_reach(const N* c, int degree, const N& floor, double log_tolerance) {
+  constexpr double kFar = 300;
+  const auto size = [](const N& x) { return to_double(N(log(x))); };
+  double reach = kFar;
+  for (int k = std::max(1, degree - 1); k <= degree; ++k) {
+    const N last = abs(c[k]);
+    if (!(last > N(0)) || !is_finite(last)) continue;
+    double best = -kFar;
+    bool bounded = false;
+    for (int j = 0; j < degree - 1; ++j) {
+      const N before = j == 0 && abs(c[0]) < floor ? floor : N(abs(c[j]));
+      if (!(before > N(0)) || !is_finite(before)) continue;
+      best = std::max(best, (log_tolerance + size(before) - size(last)) / (k - j));
+      bounded = true;
+    }
+    if (bounded) reach = std::min(reach, best);
+  }
+  return reach;
+}
+
 template std::optional<double> first_below(const double*, int, const double&, const double&);
 template std::optional<long double> first_below(const long double*, int, const long double&, const long double&);
 template std::optional<Quad> first_below(const Quad*, int, const Quad&, const Quad&);
 template std::optional<Multi> first_below(const Multi*, int, const Multi&, const Multi&);
+template double log_reach(const double*, int, const double&, double);
+template double log_reach(const long double*, int, const long double&, double);
+template double log_reach(const Quad*, int, const Quad&, double);
+template double log_reach(const Multi*, int, const Multi&, double);
 
 }  // namespace anholon

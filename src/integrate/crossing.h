@@ -14,4 +14,9 @@ namespace anholon {
 template <Number N>
 std::optional<N> first_below(const N* c, int degree, const N& h, const N& floor);
 
+// The logarithm of how far the sum of c_k x^k is known by its first terms: the last two stay below the tolerance times the
+// greatest of those before them, or of `floor`, which is round-off. 300, as for a step, where nothing bounds it.
+template <Number N>
+double log_reach(const N* c, int degree, const N& floor, double log_tolerance);
+
 }  // namespace anholon

@@ -10,6 +10,8 @@ namespace {
 
 // Values below so many round-offs of what they are made of are zero; events nearer than so many round-offs are at one moment.
 constexpr int kNoise = 64, kOneMoment = 64;
+// A value that a restart leaves at zero was not much farther from it before.
+constexpr int kMargin = 16;
 // More changes of sign than this in one step are not told apart.
 constexpr int kMostCrossings = 1000;
 
@@ -26,6 +28,13 @@ int side_after(const N* c, int degree, const N& h, const N& floor) {
   return 0;
 }
 
+template <Number N>
+N value_at(const N* c, int degree, const N& x) {
+  N s(0);
+  for (int k = degree; k >= 0; --k) s = s * x + c[k];
+  return s;
+}
+
 // p(x + shift), by Horner's scheme.
 template <Number N>
 std::vector<N> shifted(const N* c, int degree, const N& shift) {
@@ -37,9 +46,36 @@ std::vector<N> shifted(const N* c, int degree, const N& shift) {
 
 }  // namespace
 
+// x nearer to the zero of the formula, as long as its values fall.
+template <Number N>
+static N improved(const N* c, int degree, N x, const N& h, const std::function<std::optional<N>(const N&)>& value) {
+  constexpr int kSteps = 4;
+  // A series this far from its formula is no series of it.
+  const N range = h * N(1e-2);
+  std::optional<N> v = value(x);
+  for (int k = 0; k < kSteps && v && (*v > N(0) || *v < N(0)); ++k) {
+    N slope(0);
+    for (int j = degree; j >= 1; --j) slope = slope * x + c[j] * N(j);
+    if (!(abs(slope) > N(0))) break;
+    const N change = *v / slope, next = x - change;
+    if (!(abs(change) < abs(range)) || (next > N(0)) != (h > N(0)) || abs(next) > abs(h)) break;
+    const std::optional<N> there = value(next);
+    if (!there || !(abs(*there) < abs(*v))) break;
+    x = next;
+    v = there;
+  }
+  return x;
+}
+
+template <Number N>
+void EventWatch<N>::restart() {
+  for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i] = i < at_zero_.size() && at_zero_[i] ? (sides_[i] > 0 ? 2 : sides_[i] < 0 ? -2 : 0) : 0;
+}
+
 // All within (0, h], up to the first that ends the step.
 template <Number N>
 std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side) {
+  const int forward = h > N(0) ? 1 : -1;
   std::vector<Crossing> list;
   N from(0);
   std::vector<N> p(c, c + degree + 1);
@@ -51,7 +87,7 @@ std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* 
     if (!x) break;
     side = -side;
     list.push_back({N(from + *x), side});
-    if (s.ends_step && s.fires(side)) break;
+    if (s.ends_step && s.fires(side * forward)) break;
     if (*x == N(0) && k > 0) break;
     from = list.back().where;
     p = shifted(c, degree, from);
@@ -60,9 +96,21 @@ std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* 
 }
 
 template <Number N>
-std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h) {
+double EventWatch<N>::log_reach(const Expansion<N>& e, int degree, double log_tolerance) const {
+  double reach = 300;
+  for (const WatchedSeries& s : series_) {
+    const N floor = unit_roundoff<N>() * N(kNoise) * e.quadrature_terms(s.quadrature);
+    reach = std::min(reach, anholon::log_reach<N>(e.quadrature(s.quadrature), degree, floor, log_tolerance));
+  }
+  return reach;
+}
+
+template <Number N>
+std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h, const Values& values) {
   const N eps = unit_roundoff<N>();
+  const int forward = h > N(0) ? 1 : -1;
   std::vector<std::vector<Crossing>> each;
+  std::vector<N> floors;
   bool ended = false;
   N end = h;
   for (std::size_t i = 0; i < series_.size(); ++i) {
@@ -70,9 +118,13 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     const N* c = e.quadrature(s.quadrature);
     // What a value is made of, and the rounding of the time at which it is taken.
     const N floor = eps * N(kNoise) * (e.quadrature_terms(s.quadrature) + abs(c[1]) * abs(t));
+    floors.push_back(floor);
     if (sides_[i] == 0) sides_[i] = side_after(c, degree, h, floor);
+    else if (abs(sides_[i]) > 1) sides_[i] = abs(c[0]) > floor ? (c[0] > N(0) ? 1 : -1) : sides_[i] / 2;
     each.push_back(crossings(c, degree, h, floor, s, sides_[i]));
-    if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards)) continue;
+    if (s.of_state)
+      for (Crossing& x : each[i]) x.where = improved<N>(c, degree, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
+    if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards * forward)) continue;
     if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
   }
   // What lies a few round-offs behind the end belongs to it.
@@ -82,10 +134,15 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     for (const Crossing& x : each[i]) {
       if (abs(x.where) > abs(end) + slack) break;
       sides_[i] = x.towards;
-      if (series_[i].fires(x.towards)) fired.push_back({i, ended && !(abs(x.where) < abs(end) - slack) ? end : x.where});
+      if (series_[i].fires(x.towards * forward)) fired.push_back({i, ended && !(abs(x.where) < abs(end) - slack) ? end : x.where});
     }
   std::stable_sort(fired.begin(), fired.end(), [](const Fired<N>& a, const Fired<N>& b) { return abs(a.where) < abs(b.where); });
   if (ended) h = end;
+  at_zero_.clear();
+  for (std::size_t i = 0; i < series_.size(); ++i)
+    at_zero_.push_back(!(abs(value_at(e.quadrature(series_[i].quadrature), degree, h)) > floors[i] * N(kMargin)));
+  for (const Fired<N>& f : fired)
+    if (!(abs(f.where) < abs(h))) at_zero_[f.series] = false;
   return fired;
 }
 

@@ -1,8 +1,13 @@
 // Events along a motion: the strict changes of sign of given series, located on the Taylor polynomial.
 //
 // Each series has a side, the sign it last had. At the start and after a restart it is that of the value, or, where the value is
-// round-off, that which the series takes right afterwards; so nothing fires there.
+// round-off, that which the series takes right afterwards; so nothing fires there. A series that had not fired and that a restart
+// leaves at zero keeps its side: it may be about to pass.
+//
+// A series is cut off like the state's, and a formula of the state converges more slowly than the state: its zeros are improved on
+// values of the formula itself, by Newton's method.
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "program/expansion.h"
@@ -13,6 +18,8 @@ struct WatchedSeries {
   std::size_t quadrature = 0;  // of the program
   int direction = 0;           // 1: only upwards, -1: only downwards
   bool ends_step = false;
+  bool of_state = false;       // its value follows from the state and the leading derivatives
+  // `towards` in the direction of time, whichever way the motion goes.
   bool fires(int towards) const { return direction == 0 || direction == towards; }
 };
 
@@ -28,14 +35,20 @@ class EventWatch {
   explicit EventWatch(std::vector<WatchedSeries> series) : series_(std::move(series)), sides_(series_.size(), 0) {}
 
   bool empty() const { return series_.empty(); }
+  // -1, 1; 0: not known yet; -2, 2: kept over a restart.
   const std::vector<int>& sides() const { return sides_; }
   void set_sides(std::vector<int> sides) { sides_ = std::move(sides); }
   // The sides are found anew at the next step.
-  void restart() { sides_.assign(series_.size(), 0); }
+  void restart();
 
+  // The logarithm of how far all series are known from the present expansion.
+  double log_reach(const Expansion<N>& e, int degree, double log_tolerance) const;
+
+  // The value of a quadrature on the state at a time from the start of the step, where it has one.
+  using Values = std::function<std::optional<N>(std::size_t quadrature, const N& where)>;
   // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time, those of
   // one moment in the order of the series. Sides become those after it. `t`: the time of the expansion.
-  std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h);
+  std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h, const Values& values);
 
  private:
   struct Crossing {
@@ -46,6 +59,7 @@ class EventWatch {
 
   std::vector<WatchedSeries> series_;
   std::vector<int> sides_;
+  std::vector<bool> at_zero_;  // at the end of the last step, without having fired there
 };
 
 extern template class EventWatch<double>;

@@ -9,22 +9,27 @@ namespace anholon {
 namespace {
 
 constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
+constexpr int kNoise = 64;         // values below so many round-offs of what they are made of are zero
+
+bool turns_at_zero(const Instruction& in) {
+  return in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign));
+}
 
 template <Number N>
 class Search {
  public:
-  Search(const Machine<N>& machine, int degree, const N& h) : machine_(machine), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
+  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) : machine_(machine), end_(end), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
 
   const Kink<N>& run() {
     const Tape& tape = machine_.tape();
-    for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) look(tape, tape.code[slot], slot);
+    for (std::uint32_t slot = 0; slot < end_; ++slot) look(tape, tape.code[slot], slot);
     return kink_;
   }
 
  private:
   void look(const Tape& tape, const Instruction& in, std::uint32_t slot) {
     if (in.constant) return;
-    if (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign))) {
+    if (turns_at_zero(in)) {
       const N* c = machine_.series(in.a);
       if (!(c[0] > N(0)) && !(c[0] < N(0)))
         kink_.at_start = kink_.at_start || std::any_of(c + 1, c + degree_ + 1, [](const N& x) { return x > N(0) || x < N(0); });
@@ -75,6 +80,7 @@ class Search {
   }
 
   const Machine<N>& machine_;
+  std::uint32_t end_;
   int degree_;
   N h_;
   std::vector<N> c_, turned_;
@@ -84,13 +90,32 @@ class Search {
 }  // namespace
 
 template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h) {
-  return Search<N>(machine, degree, h).run();
+Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) {
+  return Search<N>(machine, end, degree, h).run();
 }
 
-template Kink<double> first_kink(const Machine<double>&, int, const double&);
-template Kink<long double> first_kink(const Machine<long double>&, int, const long double&);
-template Kink<Quad> first_kink(const Machine<Quad>&, int, const Quad&);
-template Kink<Multi> first_kink(const Machine<Multi>&, int, const Multi&);
+template <Number N>
+double kinks_log_reach(const Machine<N>& machine, std::uint32_t end, int degree, double log_tolerance) {
+  const Tape& tape = machine.tape();
+  double reach = 300;
+  for (std::uint32_t slot = 0; slot < end; ++slot) {
+    const Instruction& in = tape.code[slot];
+    if (in.constant || !(in.op == Op::select || in.op == Op::lookup || turns_at_zero(in))) continue;
+    const std::uint32_t argument = in.op == Op::select ? in.first : in.a;
+    if (tape.code[argument].constant) continue;
+    const N floor = unit_roundoff<N>() * N(kNoise) * machine.magnitude(argument);
+    reach = std::min(reach, log_reach<N>(machine.series(argument), degree, floor, log_tolerance));
+  }
+  return reach;
+}
+
+template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&);
+template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&);
+template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&);
+template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&);
+template double kinks_log_reach(const Machine<double>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<long double>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<Quad>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<Multi>&, std::uint32_t, int, double);
 
 }  // namespace anholon

@@ -12,8 +12,12 @@ struct Kink {
   N where{0};  // the first one ahead, from the point of the series
 };
 
-// In (0, h], h of either sign, by the series of orders 0..degree.
+// In (0, h], h of either sign, by the series of orders 0..degree, of the slots below `end`.
 template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, int degree, const N& h);
+Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h);
+
+// The logarithm of how far the series are known that decide where kinks are.
+template <Number N>
+double kinks_log_reach(const Machine<N>& machine, std::uint32_t end, int degree, double log_tolerance);
 
 }  // namespace anholon

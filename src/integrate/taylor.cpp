@@ -62,12 +62,17 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
 
 template <Number N>
 Outcome Stepper<N>::restart(const std::vector<W>& state) {
+  before_ = t_;
   state_ = state;
   carry_.assign(state.size(), W(0));
   events_.restart();
   fired_.clear();
   short_kinks_ = 0;
-  return expand(leading_);
+  // How far what was set lies from the constraints is no drift.
+  const W drift = worst_constraint_;
+  Outcome o = expand(leading_);
+  worst_constraint_ = drift;
+  return o;
 }
 
 template <Number N>
@@ -205,6 +210,10 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   }
   if (Outcome o = expansion_.extend(); !o.ok()) return o;
   horizon_ = step_size();
+  // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
+  const double reach = std::min(kinks_log_reach<N>(expansion_.machine(), kinks_end(), order_ - 1, settings_.log_tolerance),
+                                events_.log_reach(expansion_, order_ - 1, settings_.log_tolerance));
+  if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
   expanded_ = true;
   return {};
 }
@@ -289,6 +298,16 @@ Expansion<N>* Stepper<N>::ahead(const W& h) {
   return ahead_->prepare().ok() ? ahead_.get() : nullptr;
 }
 
+// Of the polynomial itself, in formulas that follow from it without derivatives beyond the leading ones.
+template <Number N>
+std::optional<N> Stepper<N>::quadrature_ahead(std::size_t i, const N& h) {
+  Expansion<N>* there = ahead(convert<W>(h));
+  if (!there) return std::nullopt;
+  there->evaluate_quadratures();
+  const N value = there->quadrature(i)[0];
+  return is_finite(value) ? std::optional<N>(value) : std::nullopt;
+}
+
 template <Number N>
 bool Stepper<N>::near_in_branch(const W& h) {
   const Expansion<N>* there = ahead(h);
@@ -371,7 +390,7 @@ Outcome Stepper<N>::step(const W& end) {
   const bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
-  const Kink<N> kink = first_kink<N>(expansion_.machine(), order_ - 1, convert<N>(h));
+  const Kink<N> kink = first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
   bool cut = false;
   if (kink.at_start || kink.ahead) {
     // At a kink functions are taken one-sided along the motion: a very short step finds the side.
@@ -398,7 +417,7 @@ Outcome Stepper<N>::step(const W& end) {
   if (!events_.empty()) {
     N to = convert<N>(h);
     const N whole = to;
-    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to);
+    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to, [this](std::size_t i, const N& where) { return quadrature_ahead(i, where); });
     if (to != whole) h = convert<W>(to), cut = true, singular_ahead_ = false;
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.

@@ -104,10 +104,13 @@ class Stepper {
   Outcome expand_here(const std::vector<W>& guess);
   void expand_again(const StepperState<N>& last);
   void note_sigma(const N& sigma);
+  // The slots that may have kinks: also those of what is watched for events.
+  std::uint32_t kinks_end() const { return events_.empty() ? program_->tape.main_end : static_cast<std::uint32_t>(program_->tape.code.size()); }
   N step_size() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
   Expansion<N>* ahead(const W& h);
+  std::optional<N> quadrature_ahead(std::size_t i, const N& h);
   std::optional<Mode<N>> mode_ahead(const W& h);
   std::optional<W> singular_within(const W& h);
   bool end_out_of_reach(const W& h, const W& left) const;

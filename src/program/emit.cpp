@@ -122,6 +122,11 @@ std::size_t Motion::place(std::size_t variable, unsigned order) const {
 
 Motion motion(const System& s, const Structure& structure) {
   const Model& model = *s.model;
+  if (!model.states.empty())
+    throw Failure(model.states[0].span, "a program for a model with states ('" + model.states[0].name + "') is not written yet", "anholon simulate computes its motion");
+  for (const Event& e : model.events)
+    if (!e.set.empty())
+      throw Failure(e.span, "a program for a model whose events set something ('" + e.name + "') is not written yet", "anholon simulate computes its motion");
   Graph& g = *model.graph;
   const std::size_t n = s.size();
   for (NodeId id : symbols(s.equations)) {

@@ -105,9 +105,13 @@ void hypotheses(const Mechanics& M, const Proof& proof, const Eliminations& elim
     c.hypotheses.push_back("there are no constraints");
     return;
   }
-  std::string names;
-  for (std::size_t r : e.constraints) names += (names.empty() ? "" : ", ") + model.constraints[r].name;
-  c.hypotheses.push_back("the reactions are ideal (Chetaev-Niu): N = sum lambda dphi/dq^(m); constraints: " + names);
+  std::string names, servo;
+  for (std::size_t r : e.constraints) {
+    std::string& list = model.constraints[r].by ? servo : names;
+    list += (list.empty() ? "" : ", ") + model.constraints[r].name;
+  }
+  if (!names.empty()) c.hypotheses.push_back("the reactions are ideal (Chetaev-Niu): N = sum lambda dphi/dq^(m); constraints: " + names);
+  if (!servo.empty()) c.hypotheses.push_back("kept by inputs, without ideal reactions: " + servo);
   if (e.constraints.size() < model.constraints.size())
     c.hypotheses.push_back("constraints not listed follow from these; their multipliers are zero");
   c.hypotheses.push_back("the constraints are lifted to order " + std::to_string(e.m) + " and have rank " + std::to_string(e.constraints.size()) +

@@ -1,5 +1,6 @@
 // What an event sets, put in where the last step has ended.
 #include "run/motion.h"
+#include "run/watch.h"
 
 namespace anholon {
 
@@ -14,8 +15,9 @@ std::vector<Expr> Motion<N>::with_events() const {
 template <Number N>
 std::vector<WatchedSeries> Motion<N>::watched() const {
   std::vector<WatchedSeries> list;
-  for (const Event& e : s_.model->events) list.push_back({quadratures_.size() + list.size(), e.direction, e.ends_step()});
-  for (std::size_t i = 0; i < s_.model->bounds.size(); ++i) list.push_back({quadratures_.size() + list.size(), -1, true});
+  const auto of_state = [&](Expr e) { return orders_needed(s_, {&e, 1}) <= 0; };
+  for (const Event& e : s_.model->events) list.push_back({quadratures_.size() + list.size(), e.direction, e.ends_step(), of_state(e.when)});
+  for (const Bound& b : s_.model->bounds) list.push_back({quadratures_.size() + list.size(), 0, true, of_state(b.inside)});
   return list;
 }
 

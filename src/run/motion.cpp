@@ -228,7 +228,7 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   b.steps = static_cast<std::size_t>(counts[0]);
   b.weakest = static_cast<std::size_t>(counts[1]);
   b.direction = from.numbers<N>("direction");
-  for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(side > W(0) ? 1 : side < W(0) ? -1 : 0);
+  for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(static_cast<int>(to_double(side)));
   if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns())) SavedRun::unfit("direction");
   return leg_->stepper.resume(b);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "expr/normal.h"
+#include "expr/table.h"
 #include "run/redundant.h"
 #include "structure/redundancy.h"
 
@@ -184,6 +185,18 @@ static bool may_need_completion(const Model& model) {
          std::any_of(model.initial.conditions.begin(), model.initial.conditions.end(), [&](const Condition& c) { return high(c.residual); });
 }
 
+// Derivatives of a constraint that the structure asks for, and the fits of its tables do not have.
+static void smooth_enough(const Scenario& s) {
+  for (std::size_t k = 0; k < s.system.constraints.size(); ++k) {
+    const int c = s.structure.c[s.system.coordinates + k];
+    const Constraint& constraint = s.model->constraints[s.system.constraints[k]];
+    if (const auto name = too_rough(put_masses(*s.model, constraint.phi), c))
+      throw Failure(constraint.span, "the constraint '" + constraint.name + "' is differentiated " + (c == 1 ? "once" : c == 2 ? "twice" : std::to_string(c) + " times") +
+                                         ", and the table '" + *name + "' in it has a fit that jumps before",
+                    "fit = \"linear\" goes into velocities, \"monotone\" and \"spline\" into positions, too");
+  }
+}
+
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                       Scenario& s) {
   s.model = model;
@@ -214,7 +227,7 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
       return n.kind == Kind::given ? model->graph->number(Rational(17 + 3 * static_cast<int>(n.index) + static_cast<int>(n.order), 19)) : Expr{};
     });
   const Outcome structured = analyse(s.system, parameters, hints_at(s.state), s.structure);
-  if (structured.ok()) drop_absent(s.system, s.structure);
+  if (structured.ok()) smooth_enough(s), drop_absent(s.system, s.structure);
   if (!initial.ok()) return initial;
   if (!structured.ok()) return structured;
   // Masses and forces that depend on accelerations may ask for more, too.

@@ -54,7 +54,10 @@ class Run {
     }
     if (defect_) report_.rigorous = defect_->report();
     const std::size_t monitors = s_.model->monitors.size();
-    for (std::size_t i = 0; i < monitors; ++i) report_.monitors.push_back(watched(s_.model->monitors[i].name, watch_.tracks()[i]));
+    for (std::size_t i = 0; i < monitors; ++i) {
+      const Monitor& m = s_.model->monitors[i];
+      (declared_conserved(m) ? report_.conserved : report_.monitors).push_back(watched(m.name, watch_.tracks()[i]));
+    }
     for (std::size_t i = 0; i < o_.conserved.size(); ++i) report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
     warn();
     estimate();
@@ -76,6 +79,13 @@ class Run {
     for (const Coordinate& c : model.coordinates) names.push_back("N." + c.name);
     for (const Monitor& m : model.monitors) names.push_back(m.name);
     return names;
+  }
+
+  // [output] conserved = true: all its components.
+  bool declared_conserved(const Monitor& m) const {
+    return std::any_of(s_.model->outputs.begin(), s_.model->outputs.end(), [&](const OutputQuantity& o) {
+      return o.conserved && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0));
+    });
   }
 
   void begin() {
@@ -297,6 +307,12 @@ class Run {
       report_.warnings.push_back({"the motion passes near a singular configuration at t = " + report_.smallest_sigma_t + ": " + what,
                                   "trust what follows less; write the constraint or the coordinates so that they are regular there"});
     }
+    // Far above what integration and round-off leave.
+    constexpr double kConserved = 1e-6;
+    for (std::size_t i = 0; i < s_.model->monitors.size(); ++i)
+      if (const double change = watch_.tracks()[i].relative_change(); declared_conserved(s_.model->monitors[i]) && !(change <= kConserved))
+        report_.warnings.push_back({"the output '" + s_.model->monitors[i].name + "' is not conserved: it changes by " + number_text(change, 3) + " of its size",
+                                    "look for a force, an event or an observer that changes it, or leave out conserved = true"});
     for (std::size_t i = 0; i < angles_.triples.size(); ++i)
       if (angles_.least[i].value < kNearSingular)
         report_.warnings.push_back({"the angles " + angles_.triples[i].angles + " come near their singularity at t = " + number_text(to_double(angles_.least[i].t), 6),

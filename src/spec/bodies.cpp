@@ -143,7 +143,10 @@ Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
 }
 
 static void check_position(const Model& model, const Vector& place, const Item& item, const std::string& what) {
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < 3; ++i) {
+    if (const auto name = too_rough(place[i], 2))
+      throw Failure(item.span, what + " holds the table '" + *name + "', whose fit has no continuous derivative: accelerations would jump without end",
+                    "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
     for (NodeId id : symbols({&place[i], 1})) {
       const Node& n = model.graph->node(id);
       if (n.kind == Kind::multiplier) throw Failure(item.span, what + " depends on a multiplier");
@@ -155,6 +158,7 @@ static void check_position(const Model& model, const Vector& place, const Item& 
                                      derivative_name(model.names.coordinates[n.index], n.order, Format::text) + ")",
                       "positions are formulas of coordinates and t; write velocities as constraints");
     }
+  }
 }
 
 void BodyReader::read() {

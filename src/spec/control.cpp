@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "expr/indices.h"
+#include "expr/units.h"
 #include "spec/bodies.h"
 #include "spec/keys.h"
 #include "spec/multipliers.h"
@@ -104,9 +105,17 @@ Expr with_feedback(const Model& model, Expr e) {
 
 static void record(const std::string& column, Expr value, const OutputQuantity& output, Model& model) {
   const auto& taken = model.names.coordinates;
-  if (column == "t" || std::find(taken.begin(), taken.end(), column) != taken.end() ||
+  const auto is_state = [&](const StateVariable& z) { return z.name == column; };
+  if (column == "t" || std::any_of(model.states.begin(), model.states.end(), is_state) || std::find(taken.begin(), taken.end(), column) != taken.end() ||
       std::any_of(model.monitors.begin(), model.monitors.end(), [&](const Monitor& m) { return m.name == column; }))
     throw Failure(output.span, "a column '" + column + "' is there already", "give the output a name of its own");
+  // What is recorded is in the unit that was asked for.
+  if (!output.unit.empty()) {
+    const Unit unit = *read_unit(output.unit);
+    const Expr factor = model.graph->number(Rational(1 / unit.factor));
+    const Expr turns = pow(model.graph->pi(), Rational(-unit.pi));
+    value = value * factor * turns;
+  }
   model.monitors.push_back({column, value, output.span});
 }
 
@@ -120,8 +129,11 @@ static void read_output(const Item& i, Names& names, Model& model, Diagnostics& 
     check_keys(i, "an output", "output", diagnostics);
     value = i.find("value");
     if (!value) throw Failure(i.key_span, "the output '" + out.name + "' has no value", "{value = \"…\", unit = \"km\"}");
-    if (const Item* unit = i.find("unit")) out.unit = unit->text();
-    if (const Item* doc = i.find("doc")) out.doc = doc->text();
+    if (const Item* unit = i.find("unit")) out.unit = unit_text(*unit);
+    if (const Item* doc = i.find("doc")) {
+      if (doc->kind != Item::Kind::string) throw Failure(doc->span, "'doc' is a text");
+      out.doc = doc->text();
+    }
     if (const Item* c = i.find("conserved")) {
       if (c->kind != Item::Kind::boolean) throw Failure(c->span, "'conserved' is true or false");
       out.conserved = c->truth;

@@ -37,7 +37,10 @@ class Elements {
     forces();
     each("potential", [&](const Item& i) { expect(i, "J"); });
     each("dissipation", [&](const Item& i) { expect(i, "W"); });
+    tables();
     states();
+    events();
+    each("output", [&](const Item& i) { output(i); });
     list("constraint", [&](const Item& c) { if (const Item* e = c.find("equation")) equation(*e); });
     initial();
     each("monitor", [&](const Item& i) { if (i.is_formula()) formulas_.of(i); });
@@ -135,6 +138,39 @@ class Elements {
       if (const Item* initial = s.find("initial")) expect(*initial, z);
     });
     each("input", [&](const Item& i) { expect(i, named(i.key)); });
+  }
+
+  // The knots may have units, too.
+  void tables() {
+    list("table", [&](const Item& t) {
+      const Item* name = t.find("name");
+      if (!name) return;
+      const auto [x, y] = formulas_.table(normal_name(name->text()));
+      for (const auto& [key, dimension] : {std::pair{"x", x}, {"y", y}})
+        if (const Item* values = t.find(key))
+          for (const Item& v : values->items) expect(v, dimension);
+    });
+  }
+
+  void events() {
+    list("event", [&](const Item& e) {
+      if (const Item* when = e.find("when")) guard([&] { formulas_.of(*when); }, when->span);
+      if (const Item* set = e.find("set"))
+        for (const Item& i : set->items) {
+          std::string name = i.key;
+          int order = 0;
+          while (!name.empty() && name.back() == '\'') name.pop_back(), ++order;
+          expect(i, named(name) / power(formulas_.unit("s"), order));
+        }
+    });
+  }
+
+  void output(const Item& i) {
+    const Item* value = i.kind == Item::Kind::table ? i.find("value") : &i;
+    if (!value) return;
+    const Item* unit = i.kind == Item::Kind::table ? i.find("unit") : nullptr;
+    if (unit) expect(*value, formulas_.given_unit(normal_name(unit->text())));
+    else formulas_.term(*value);
   }
 
   DimensionForm named(const std::string& name) { return formulas_.named(name).dimension; }

@@ -254,11 +254,31 @@ Measured FormulaDimensions::measured(const Syntax& s) {
   }
 }
 
+std::pair<DimensionForm, DimensionForm> FormulaDimensions::table(const std::string& name) {
+  const auto it = tables_.find(name);
+  if (it != tables_.end()) return it->second;
+  // One after the other: unknowns are numbered.
+  DimensionForm x = dimensions_.unknown("the argument of " + name), y = dimensions_.unknown("the values of " + name);
+  return tables_.emplace(name, std::pair(std::move(x), std::move(y))).first->second;
+}
+
+DimensionForm FormulaDimensions::given_unit(const std::string& text) {
+  DimensionForm u = unit(text.c_str());
+  seen(u);
+  return u;
+}
+
 Measured FormulaDimensions::user_call(const Syntax& s, const Scope::Declaration& d) {
   if (d.role == Scope::Role::frame) {
     const Measured first = of(s.args[0]);
     for (std::size_t k = 1; k < s.args.size(); ++k) alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
     return vector(first.dimension);
+  }
+  if (d.role == Scope::Role::table) {
+    if (s.args.size() != 1) return anything();
+    const auto [x, y] = table(s.text);
+    expect(of(s.args[0]), x, s.args[0].span);
+    return number(y);
   }
   if (d.role != Scope::Role::function) return anything();
   if (d.arguments.empty()) {
@@ -286,7 +306,7 @@ Measured FormulaDimensions::user_call(const Syntax& s, const Scope::Declaration&
 Measured FormulaDimensions::call(const Syntax& s) {
   const std::string& f = s.text;
   const auto argument = [&](std::size_t i) { return i < s.args.size() ? of(s.args[i]) : anything(); };
-  if (const auto it = scope_.declarations().find(f); it != scope_.declarations().end() && (it->second.role == Scope::Role::function || it->second.role == Scope::Role::frame))
+  if (const auto it = scope_.declarations().find(f); it != scope_.declarations().end() && (it->second.role == Scope::Role::function || it->second.role == Scope::Role::frame || it->second.role == Scope::Role::table))
     return user_call(s, it->second);
   if (is_body(f)) {
     const Measured first = argument(0);

@@ -31,6 +31,11 @@ class FormulaDimensions {
   void alike(const Measured& a, const Measured& b, Span place, const char* between, const char* behind = "");
   std::optional<Dimension> known(const std::string& name);
 
+  // x and y of a table.
+  std::pair<DimensionForm, DimensionForm> table(const std::string& name);
+  // A unit that stands beside a value.
+  DimensionForm given_unit(const std::string& text);
+
   bool units_seen = false;  // in the file, not in --set
   bool in_field = false;    // of [gravity], where 'here' is a place
 
@@ -51,6 +56,7 @@ class FormulaDimensions {
   const Scope& scope_;
   Dimensions dimensions_;
   std::map<std::string, Measured> names_;
+  std::map<std::string, std::pair<DimensionForm, DimensionForm>> tables_;
   std::map<std::string, Syntax> functions_;
   std::vector<std::map<std::string, Measured>> arguments_;
   Diagnostics* found_ = nullptr;

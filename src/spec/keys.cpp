@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "expr/units.h"
 #include "spec/language.h"
 
 namespace anholon {
@@ -26,6 +27,14 @@ const Item* find_section(const Item& root, const char* key, Diagnostics& diagnos
   if (!section || section->kind == Item::Kind::table) return section;
   diagnostics.error(section->span, std::string("'") + key + "' is a section", std::string("write [") + key + "]");
   return nullptr;
+}
+
+std::string unit_text(const Item& item) {
+  if (item.kind != Item::Kind::string) throw Failure(item.span, "a unit is a text", "unit = \"km\"");
+  const std::string text = normal_name(item.text());
+  if (read_unit(text)) return text;
+  const std::string near = did_you_mean(text, unit_names());
+  throw Failure(item.formula.whole(), "'" + text.substr(0, 40) + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "unit = \"km\", \"m/s^2\", \"N*m\"");
 }
 
 }  // namespace anholon

@@ -14,4 +14,7 @@ void check_keys(const Item& table, const std::string& where, const std::string& 
 // The section of that name; null where there is none, or what stands there is none (reported).
 const Item* find_section(const Item& root, const char* key, Diagnostics& diagnostics);
 
+// The text of unit = "km/h"; throws if it is none.
+std::string unit_text(const Item& item);
+
 }  // namespace anholon

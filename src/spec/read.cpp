@@ -206,15 +206,6 @@ class Reader {  // what it refers to is asked only while it runs
       }, i);
   }
 
-  // unit = "km/h"
-  static std::string unit_text(const Item& item) {
-    if (item.kind != Item::Kind::string) throw Failure(item.span, "a unit is a text", "unit = \"km\"");
-    const std::string text = normal_name(item.text());
-    if (read_unit(text)) return text;
-    const std::string near = did_you_mean(text, unit_names());
-    throw Failure(item.formula.whole(), "'" + text.substr(0, 40) + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "unit = \"km\", \"m/s^2\", \"N*m\"");
-  }
-
   void parameters(const Item& root) {
     std::vector<std::string> used;
     const Item* section = table(root, "parameters");
@@ -330,6 +321,8 @@ class Reader {  // what it refers to is asked only while it runs
         if (jet_order(with_feedback(model_, v)) > 0)
           throw Failure(i.span, "the potential '" + i.key + "' depends on a velocity",
                         "give a force instead");
+        if (const auto name = too_rough(v, 1))
+          throw Failure(i.span, "the potential '" + i.key + "' holds the table '" + *name + "', which jumps: so would the energy, without a force", "fit = \"linear\", \"monotone\" or \"spline\"");
         model_.potentials.push_back({i.key, with_feedback(model_, v), i.span});
       }, i);
     scope_.freeze_masses = false;

@@ -256,9 +256,31 @@ class Solver {
     for (const StageEquation& e : conditions())
       if (holds_higher(e.residual) && level_of(e.residual, s, t) == level) equations.push_back(e);
     if (!laws.empty()) start_unconstrained(laws, unknowns, metric);
-    if (Outcome o = solve(equations, unknowns, metric); !o.ok()) return o;
+    const InitialState<N> before = state_;
+    if (Outcome o = solve(equations, unknowns, metric); !o.ok()) {
+      state_ = before;
+      if (!add_velocities(s, t, level, equations, unknowns, metric) || !solve(equations, unknowns, metric).ok()) return o;
+    }
     mark_choices(equations, unknowns, metric);
     return {};
+  }
+
+  // A servo constraint that its actuator does not act against asks for velocities by the equations of motion. They move along with
+  // what else is of this level, on all that holds them. False where there are none.
+  bool add_velocities(const System& s, const Structure& t, int level, Equations& equations, Column& unknowns, unsigned& metric) const {
+    const std::size_t higher = unknowns.size();
+    for (std::size_t j = 0; j < s.coordinates; ++j)
+      if (t.d[j] - level == 1) unknowns.push_back(s.symbol(j, 1)), metric |= 2U;
+    if (unknowns.size() == higher) return false;
+    for (std::size_t i = s.coordinates; i < s.mechanical(); ++i) {
+      const int k = t.c[i] - level;
+      if (k < 0) continue;
+      const Expr e = put_state_rates(model_, total_derivative(s.equations[i], static_cast<unsigned>(k)), 2);
+      if (!holds_higher(e)) equations.push_back({e, "a derivative of constraint '" + s.equation_names[i] + "'", model_.constraints[s.constraints[i - s.coordinates]].span});
+    }
+    for (const StageEquation& e : conditions())
+      if (!holds_higher(e.residual) && jet_order(e.residual) == 1) equations.push_back(e);
+    return true;
   }
 
   // Where linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the guess

@@ -142,5 +142,64 @@ TEST(Zoo, TheSphericalRobotGoesStraightAsAHoopWithAPendulum) {
   EXPECT_NEAR(end.at("be"), 0, 1e-12);
 }
 
+// Seen from rest the ball goes round with 2/7 W, as fast as it was thrown: zeta = x + i y, zeta'' = i 2/7 W zeta'.
+TEST(Zoo, TheBallOnATurntableGoesRoundInACircle) {
+  using C = std::complex<double>;
+  // The rolling: v = W ez x r + R om x ez, om of the Euler rates at ps = 0.
+  const double th1 = 0.5, ph1 = -2, th = 1.2, R = 0.25;
+  const C start(0.5, -0.2), om(th1, -ph1 * std::sin(th)), v = C(0, 3) * start - C(0, R) * om;
+  const auto at = [&](double turn) { return start + v * (std::exp(C(0, turn * 2)) - 1.0) / C(0, turn); };
+  const std::map<std::string, double> end = end_of(test::shipped_text("zoo/ball-on-turntable"), 2);
+  const C there(end.at("x"), end.at("y"));
+  EXPECT_LT(std::abs(there - at(2.0 / 7 * 3)), kAgreement);
+  EXPECT_GT(std::abs(there - at(2.0 / 5 * 3)), 0.1) << "mutant: a hollow ball";
+  // From the table it is where the table has turned it to.
+  const std::map<std::string, double> seen = end_of(test::shipped_text("zoo/ball-on-turntable-rotating"), 2);
+  EXPECT_LT(std::abs(C(seen.at("x"), seen.at("y")) * std::exp(C(0, 6)) - there), kAgreement);
+}
+
+struct Orbit {
+  double mu = 3.986004418e14, R = 6778e3, n = std::sqrt(mu / (R * R * R));
+  // What turns a tether of length l: l angle'' + 2 l' (angle' + n) = this.
+  double across(double l, double angle) const {
+    const double r2 = R * R + 2 * R * l * std::cos(angle) + l * l;
+    return R * std::sin(angle) * (mu / (r2 * std::sqrt(r2)) - n * n);
+  }
+};
+
+TEST(Zoo, TheTetherTurnsByItsEquationAndHangsStill) {
+  const Orbit o;
+  const auto reduced = [&](double c) {
+    return runge_kutta<2>([=](double t, const std::array<double, 2>& x) {
+      const double l = 50 * std::exp(c * t);
+      return std::array<double, 2>{x[1], (o.across(l, x[0]) - 2 * c * l * (x[1] + o.n)) / l};
+    }, {-std::asin(4 * 3e-4 / (3 * o.n)) / 2, 0}, 9000);
+  };
+  const std::map<std::string, double> end = end_of(test::shipped_text("zoo/tether"), 9000);
+  EXPECT_NEAR(end.at("l"), 50 * std::exp(2.7), 1e-9);
+  EXPECT_NEAR(end.at("angle"), reduced(3e-4)[0], kAgreement);
+  EXPECT_GT(std::abs(end.at("angle") - reduced(3.001e-4)[0]), 1e-6) << "mutant: a faster reel";
+  EXPECT_NEAR(end.at("angle"), -std::asin(4 * 3e-4 / (3 * o.n)) / 2, 2 * end.at("l") / o.R) << "the angle at which a short one hangs";
+}
+
+// The angle held, the law across says how the tether grows; the law along, what the reel has to do.
+TEST(Zoo, TheTetherKeptAtAnAngleGrowsAsItsServoWants) {
+  const Orbit o;
+  const double angle = -10 * std::acos(-1.0) / 180;
+  const auto grown = [&](double at) {
+    return runge_kutta<1>([=](double, const std::array<double, 1>& x) { return std::array<double, 1>{o.across(x[0], at) / (2 * o.n)}; }, {50}, 9000)[0];
+  };
+  const std::map<std::string, double> end = end_of(test::shipped_text("zoo/tether-by-servo"), 9000);
+  const double l = end.at("l");
+  EXPECT_NEAR(l, grown(angle), 1e-9 * l);
+  EXPECT_GT(std::abs(l - grown(1.001 * angle)), 1e-4 * l) << "mutant: another angle";
+  EXPECT_NEAR(std::log(l / 50), -0.75 * o.n * std::sin(2 * angle) * 9000, 4 * l / o.R) << "exponentially, as long as it is short";
+  EXPECT_NEAR(end.at("angle"), angle, 1e-12);
+  const double r2 = o.R * o.R + 2 * o.R * l * std::cos(angle) + l * l;
+  const double along = -o.mu / (r2 * std::sqrt(r2)) * (l + o.R * std::cos(angle)) + o.n * o.n * (l + o.R * std::cos(angle)) - end.at("l''");
+  EXPECT_NEAR(end.at("pull"), 100 * along, 1e-9);
+  EXPECT_NEAR(end.at("tension"), end.at("pull"), 1e-12);
+}
+
 }  // namespace
 }  // namespace anholon

@@ -187,6 +187,18 @@ TEST(Summands, TheShortWayHasTheValueOfTheFlatTerms) {
   EXPECT_GT(short_ways, 10) << "otherwise this test shows nothing";
 }
 
+// A long sum is one term of another one, also where it is scaled: as a factor it keeps its content.
+TEST(Summands, LongSumsWithAContentAreFactors) {
+  Graph g;
+  g.allow(1'000'000);
+  std::vector<std::pair<Rational, Expr>> terms;
+  for (std::uint32_t k = 0; k < 100; ++k) terms.push_back({6, g.jet(k, 0)});
+  const Expr e = g.sum(terms);
+  const Expr x = g.jet(0, 1), inverse = pow(e, Rational(-1));
+  EXPECT_EQ(x * inverse * e, x);
+  EXPECT_EQ((x / (Rational(1, 3) * e)) * e, 3 * x);
+}
+
 TEST(Budget, StopsWhatUnfoldsWithoutEnd) {
   Graph g;
   g.allow(10'000);
