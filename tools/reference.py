@@ -79,6 +79,9 @@ def check_examples(c, text, name="language.md"):
             after = found[k + 1] if k + 1 < len(found) else None
             bad = after and after[1] == ["text"]
             code, out, err = c.run("check", path, folder=folder)
+            for case in sorted(set(re.findall(r"^\[+case\.(\w+)", body, re.M))):
+                applied, _, why = c.run("check", path, "--case", case, folder=folder)
+                code, err = (applied, err + why) if code == 0 else (code, err)
             if not bad and code != 0:
                 c.problem(f"{name}:{number}: this example is not accepted\n{err}")
             if bad and code != 2:

@@ -5,7 +5,7 @@ namespace anholon {
 const std::vector<FunctionRow>& function_table() {
   static const std::vector<FunctionRow> table = [] {
     std::vector<FunctionRow> rows = {
-        {"sqrt", "sqrt(a)", "root; where its argument passes zero it is taken one-sided along the motion", "sqrt(x^2 + y^2)"},
+        {"sqrt", "sqrt(a)", "root; where its argument touches zero the motion goes on one-sided", "sqrt(x^2 + y^2)"},
         {"atan2", "atan2(y, x)", "angle of the direction (x, y), between -pi and pi; it jumps at the negative x axis", "atan2(y, x)"},
         {"min", "min(a, b)", "the smaller of two numbers; the switch is located and stepped to", "min(x, 1)"},
         {"max", "max(a, b)", "the larger of two numbers", "max(x, 0)"},
@@ -35,7 +35,7 @@ const std::vector<FunctionRow>& function_table() {
       if (r.name == "acosh") r.example = "acosh(2)";
       if (r.name == "log") r.meaning = "natural logarithm; " + r.meaning;
       if (r.name == "abs") r.meaning = "|a|; its kink is located and stepped to";
-      if (r.name == "sign") r.meaning = "1, -1 or, where a stays 0, 0; where a passes zero the sign that it takes next along the motion";
+      if (r.name == "sign") r.meaning = "1, -1, and 0 at 0; its jump is located and stepped to";
     }
     return rows;
   }();

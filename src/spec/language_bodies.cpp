@@ -138,7 +138,7 @@ generalized = {theta = "-theta'"}
 
 - A force without `from` acts from outside; `check` lists these.
 - A force works through the velocity of the material point: at a place that moves over the body, the velocity of the body there counts.
-- Forces may depend on anything, accelerations and `lambda.NAME` excepted.
+- Forces may depend on anything but `lambda.NAME`.
 )md"},
       {"force.on", Form::part, any,
        {{"body", name, "a body or particle"},

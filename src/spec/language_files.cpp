@@ -19,8 +19,7 @@ title = "Skate on ice"
 source = "Caratheodory 1933"
 coordinates = ["x", "y", "theta"]
 dependent = ["y"]
-particle = [{name = "skate", mass = 2, position = "x*ex + y*ey"}]
-force = [{generalized = {theta = "-theta''/10"}}]
+body = [{name = "skate", mass = 2, inertia = 0.1, center = "x*ex + y*ey", angle = "theta"}]
 constraint = [{name = "edge", equation = "y'*cos(theta) = x'*sin(theta)"}]
 ```
 
@@ -29,6 +28,19 @@ constraint = [{name = "edge", equation = "y'*cos(theta) = x'*sin(theta)"}]
 - TOML wants keys of the top of the file before the first `[section]`. `body = [{…}]` above it means the same as `[[body]]`,
   `frame.B = "…"` the same as `B = "…"` under `[frame]`. A key with other characters than `A-Z a-z 0-9 _ -` stands in quotes:
   `"x'" = 1`, `"P[0]" = "0"`.
+- A section stands once, and a list is written in one of both ways; that is TOML's rule:
+
+```toml
+coordinates = ["x"]
+body = [{name = "a", mass = 1, center = "x*ex"}]
+[[body]]
+name = "b"
+center = "0"
+```
+```text
+error: in table header: cannot redefine existing array 'body' as array-of-tables
+```
+
 - All errors of a file are reported at once. An unknown key is an error, never skipped:
 
 ```toml

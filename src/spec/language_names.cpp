@@ -88,13 +88,13 @@ monitor = {l = "lift(1)"}
 ```
 
 - `fit = "linear"` and `outside = "hold"` unless said otherwise. The step is that of the knot below. Values are exact.
-- Knots are located and stepped to. A table in a formula of which more derivatives are needed than the fit has is an error;
-  `hold` has none, `linear` none that is continuous, `monotone` one, `spline` two.
+- Knots are located and stepped to. `linear` may be differentiated once, `monotone` twice, `spline` three times, the last derivative
+  a step; `hold` not at all. A formula that needs more is an error.
 - With `outside = "error"` the motion stops with an outcome where the argument leaves the knots, also at the start.
 
 ```toml
 table = [{name = "a", x = [0, 1], y = [0, 1]}]
-monitor = {j = "D(a(x), 2)"}
+monitor = {i = "D(a(x), 1)", j = "D(a(x), 2)"}
 ```
 ```text
 error: a derivative of order 2 of the table 'a', which its fit does not have

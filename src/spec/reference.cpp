@@ -28,11 +28,11 @@ mine.toml` says what is read, `anholon fmt mine.toml` formats it. Editors with a
 complete and check keys by [anholon.schema.json](anholon.schema.json), named in the first line of the file:
 
 ```toml
-#:schema https://example.org/path/to/anholon.schema.json
+#:schema ./anholon.schema.json
 monitor = {height = "P.y"}
 ```
 
-(or a path, `#:schema ./anholon.schema.json`; `anholon reference --schema > anholon.schema.json` writes it.)
+A path beside the model or a URL; `anholon reference --schema > anholon.schema.json` writes the file. The program takes the line for a comment.
 
 ## Formulas
 
@@ -71,8 +71,9 @@ error: an operator is missing before 'x'
 ```
 
 **Kinks.** `abs`, `sign`, `min`, `max`, `piecewise`, `choose` and tables switch where their conditions change sign along the motion. The switch is
-located and stepped to; at it the branch is the one that the motion enters. `sqrt`, `norm`, `unit` at zero are taken one-sided along the motion
-as well, or the motion stops with an outcome that says so.
+located and stepped to; at it the branch is the one that the motion enters. Where the argument of `sqrt`, `norm`, `unit` touches zero the motion goes on
+one-sided as well, or it stops with an outcome that says so. What is recorded at exactly that moment is the value there: `sign` is 0, `unit`
+has none (`nan`).
 
 **Conditions** `a > b`, `>=`, `<`, `<=` stand in `piecewise` only.
 
@@ -89,8 +90,8 @@ tilt   = "30 deg"
 push   = "2*(10 N + 3 kp)"
 ```
 
-- A number, a blank, a unit: converted to SI exactly. Factors stand without blanks between them, `kg*m^2`, with whole powers; everything after one `/`
-  up to the next factor only is divided (`m/s/s`).
+- A number, a blank, a unit: converted to SI exactly. Factors stand without blanks between them, `kg*m^2`, with whole powers; `/`
+  divides by the next factor only: `m/s/s`, `J/kg/K`.
 - Behind a number and a blank a unit is meant also where the file has that name: with a parameter `m`, `3 m` is a length and `3*m` three times
   the parameter. A unit ends before a name that is none: `10 m/s*R` is a velocity times the parameter R; `(10 m/s)*m` keeps a parameter m apart.
 - `t` is a tonne only right after the number: `5 t`; elsewhere, as in `5 m/s*t`, it is the time.
@@ -163,8 +164,11 @@ std::string formulas() {
   out += "\nLikewise the letters of `[index]`.\n";
   out += kUnits;
   out += "| | | |\n|---|---|---|\n";
-  for (const UnitRow& u : unit_table())
-    out += std::string("| `") + u.name + "`" + (u.prefixes ? "⁺" : "") + " | " + u.meaning + " | " + u.factor + (u.pi == 1 ? "·pi" : "") + " " + print(read_unit(u.name)->dimension) + " |\n";
+  for (const UnitRow& u : unit_table()) {
+    const std::string dimension = print(find_unit(u.name)->dimension);
+    out += std::string("| `") + u.name + "`" + (u.prefixes ? "⁺" : "") + " | " + u.meaning + " | " + u.factor + (u.pi == 1 ? "·pi" : "") +
+           (dimension == "1" ? "" : " " + dimension) + " |\n";
+  }
   return out;
 }
 
@@ -207,7 +211,7 @@ std::string heading(const LanguageSection& s) {
 std::string part(const LanguageSection& s) {
   std::string out = std::string(s.form == Form::part ? "#### " : "## ") + heading(s) + "\n\n";
   if (s.form == Form::named && s.keys.empty() && s.content != Content::any)
-    out += std::string("NAME = ") + describe(s.content) + "\n\n";
+    out += std::string("Entries: `NAME` = ") + (std::string(s.name) == "index" ? "whole number or range" : describe(s.content)) + ".\n\n";
   std::string page = s.page;
   if (!s.keys.empty()) {
     if (s.form == Form::named && std::string(s.name) != "initial")

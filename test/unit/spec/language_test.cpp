@@ -76,6 +76,44 @@ TEST(Language, KeysOfEachSectionAreThoseOfTheTable) {
   }
 }
 
+const LanguageKey& key(const std::string& section, const std::string& name) {
+  for (const LanguageKey& k : language_section(section).keys)
+    if (name == k.name) return k;
+  throw std::logic_error("no key " + name);
+}
+
+TEST(Language, ChoicesAreThoseOfTheReader) {
+  const auto with = [&](const std::string& name, const std::string& value) {
+    if (name == "direction") return kPlate + "[[event]]\nwhen = \"x\"\ndirection = \"" + value + "\"\n";
+    if (name == "integrator") return kPlate + "[simulate]\nintegrator = \"" + value + "\"\n";
+    return kPlate + "[[table]]\nname = \"T\"\nx = [0, 1]\ny = [0, 1]\n" + name + " = \"" + value + "\"\n";
+  };
+  for (const auto& [section, name] : {std::pair{"table", "fit"}, {"table", "outside"}, {"event", "direction"}, {"simulate", "integrator"}}) {
+    const std::vector<Diagnostic> wrong = diagnostics_of(with(name, "neither"));
+    ASSERT_EQ(wrong.size(), 1U) << name;
+    const std::string said = wrong[0].message + wrong[0].hint;
+    std::size_t listed = 0;
+    for (const std::string& c : key(section, name).choices) {
+      EXPECT_EQ(first(diagnostics_of(with(name, c))), "") << name << " = " << c;
+      listed += said.find(c) != std::string::npos ? 1 : 0;
+    }
+    EXPECT_EQ(listed, key(section, name).choices.size()) << said;
+  }
+}
+
+TEST(Language, ShapesAreThoseOfTheReader) {
+  const auto wrong = diagnostics_of(test::replaced(kPlate, "inertia = \"J\"", "shape = \"lump(1)\""));
+  ASSERT_EQ(wrong.size(), 1U);
+  const std::string prefix = "the shapes are ", all = wrong[0].hint.substr(prefix.size()), meaning = key("body", "shape").meaning;
+  int count = 0;
+  for (std::size_t from = 0; from < all.size(); ++count) {
+    const std::size_t to = all.find(')', from) + 1;
+    EXPECT_NE(meaning.find("`" + all.substr(from, to - from) + "`"), std::string::npos) << all.substr(from, to - from);
+    from = to + 2;
+  }
+  EXPECT_EQ(count, std::count(meaning.begin(), meaning.end(), '('));
+}
+
 TEST(Language, UnitsOfThePageAreRead) {
   const std::string page = reference_page();
   for (const UnitRow& u : unit_table()) EXPECT_NE(page.find(std::string("| `") + u.name + "`"), std::string::npos) << u.name;
