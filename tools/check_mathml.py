@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SPACE = "{http://www.w3.org/1998/Math/MathML}"
 # Children of each element; None: any number.
 CHILDREN = {
-    "math": 1, "mtable": None, "mtr": 3, "mtd": None, "mrow": None, "msqrt": None, "mfrac": 2, "msup": 2, "msub": 2,
+    "math": 1, "mtable": None, "mtr": None, "mtd": None, "mrow": None, "msqrt": None, "mfrac": 2, "msup": 2, "msub": 2,
     "mover": 2, "mi": 0, "mn": 0, "mo": 0, "mtext": 0,
 }  # fmt: skip
 
@@ -26,6 +26,9 @@ def problems(text):
     except xml.etree.ElementTree.ParseError as error:
         return [f"not well-formed: {error}"]
     found = []
+    for table in root.iter(SPACE + "mtable"):
+        columns = 3 if table in list(root) else 2  # equations; the branches of a choice
+        found += [f"a row of {len(row)} cells among {columns} columns" for row in table if len(row) != columns]
     for element in root.iter():
         name = element.tag.removeprefix(SPACE)
         if name not in CHILDREN or not element.tag.startswith(SPACE):

@@ -148,10 +148,13 @@ struct Arguments {
 };
 
 Rotation quaternion(Expr e0, Expr e1, Expr e2, Expr e3) {
+  // One product after the other: nodes are numbered in the order of their making, by every compiler alike.
+  const Expr e00 = e0 * e0, e11 = e1 * e1, e22 = e2 * e2, e33 = e3 * e3;
+  const Expr e01 = e0 * e1, e02 = e0 * e2, e03 = e0 * e3, e12 = e1 * e2, e13 = e1 * e3, e23 = e2 * e3;
   Vector columns[3];
-  columns[0] = {e0 * e0 + e1 * e1 - e2 * e2 - e3 * e3, 2 * (e1 * e2 + e0 * e3), 2 * (e1 * e3 - e0 * e2)};
-  columns[1] = {2 * (e1 * e2 - e0 * e3), e0 * e0 - e1 * e1 + e2 * e2 - e3 * e3, 2 * (e2 * e3 + e0 * e1)};
-  columns[2] = {2 * (e1 * e3 + e0 * e2), 2 * (e2 * e3 - e0 * e1), e0 * e0 - e1 * e1 - e2 * e2 + e3 * e3};
+  columns[0] = {e00 + e11 - e22 - e33, 2 * (e12 + e03), 2 * (e13 - e02)};
+  columns[1] = {2 * (e12 - e03), e00 - e11 + e22 - e33, 2 * (e23 + e01)};
+  columns[2] = {2 * (e13 + e02), 2 * (e23 - e01), e00 - e11 - e22 + e33};
   return rotation_from_axes(columns[0], columns[1], columns[2]);
 }
 

@@ -28,7 +28,7 @@ constexpr std::array kParity = {
 // makes of its derivative stays linear in size. Products up to here are flat and so canonical.
 constexpr std::uint32_t kOpenedFactors = 64;
 // Likewise a sum of more terms is one term of a larger sum: the position of link i of a long chain.
-constexpr std::uint32_t kOpenedTerms = 64;
+constexpr std::uint32_t kOpenedTerms = 32;
 
 // Numbers of more machine words than the first cost more than one unit of work; numbers of more than the second are refused.
 constexpr std::size_t kShortNumber = 16, kLongestNumber = 8'000;
@@ -68,6 +68,7 @@ void Graph::spend(std::uint64_t work) {
 }
 
 std::uint32_t Graph::rational_index(const Rational& r) {
+  if (one_ != 0 && r == 1) return nodes_[one_].index;  // most of them
   // Arithmetic with long numbers and their text take time that grows with their square.
   if (const std::size_t limbs = mpz_size(r.get_num_mpz_t()) + mpz_size(r.get_den_mpz_t()); limbs > kShortNumber) {
     if (limbs > kLongestNumber) throw Failure(Span{}, "a number of more than " + std::to_string(kLongestNumber * 19) + " digits");
@@ -128,6 +129,9 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
   };
   spend(operands.size());
   std::vector<Part> parts;
+  std::size_t most = 0;
+  for (const auto& [factor, e] : operands) most += nodes_[e.id].kind == Kind::sum && nodes_[e.id].count <= kOpenedTerms ? nodes_[e.id].count : 1;
+  parts.reserve(most);
   NodeId longest = zero_;  // the operand sum with most terms, candidate for the short way
   Rational longest_factor;
   for (const auto& [factor, e] : operands) {
@@ -135,7 +139,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
     const Node& n = nodes_[e.id];
     if (n.kind == Kind::number) {
       parts.push_back({one_, factor * value(e.id)});
-    } else if (n.kind == Kind::sum && n.count > kOpenedTerms && operands.size() > 1) {
+    } else if (n.kind == Kind::sum && n.count > kOpenedTerms) {
       parts.push_back({e.id, factor});
     } else if (n.kind == Kind::sum) {
       spend(n.count);
@@ -149,6 +153,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Part& a, const Part& b) { return a.node < b.node; });
   std::vector<Part> merged;
+  merged.reserve(parts.size());
   for (Part& p : parts) {
     if (!merged.empty() && merged.back().node == p.node) merged.back().coefficient += p.coefficient;
     else merged.push_back(std::move(p));

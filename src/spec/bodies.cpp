@@ -142,21 +142,35 @@ Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
   return g.mass(static_cast<std::uint32_t>(index));
 }
 
-static void check_position(const Model& model, const Vector& place, const Item& item, const std::string& what) {
+// Positions of a chain are parts of one another: what was looked through is not looked at again.
+void BodyReader::check_position(const Vector& place, const Item& item, const std::string& what) {
+  const Graph& g = *model_.graph;
   for (int i = 0; i < 3; ++i) {
-    if (const auto name = too_rough(place[i], 2))
+    if (const auto name = scope_.has_tables() ? too_rough(place[i], 2) : std::nullopt)
       throw Failure(item.span, what + " holds the table '" + *name + "', whose fit has no continuous derivative: velocities would jump, and accelerations hold pulses",
                     "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
-    for (NodeId id : symbols({&place[i], 1})) {
-      const Node& n = model.graph->node(id);
-      if (n.kind == Kind::multiplier) throw Failure(item.span, what + " depends on a multiplier");
-      if (n.kind == Kind::control && (!model.controls[n.index].value || jet_order(*model.controls[n.index].value) >= 0))
-        throw Failure(item.span, what + " depends on the input '" + model.controls[n.index].name + "', which is not a function of time and states",
-                      "bind the coordinate by a constraint kept by this input");
+    std::vector<NodeId> open = {place[i].id}, symbols;
+    while (!open.empty()) {
+      const NodeId id = open.back();
+      open.pop_back();
+      if (!position_nodes_.insert(id).second) continue;
+      if (g.summands(id).empty()) symbols.push_back(id);
+      for (const Term& t : g.summands(id)) open.push_back(t.node);
+    }
+    std::sort(symbols.begin(), symbols.end());
+    for (NodeId id : symbols) {
+      const Node& n = g.node(id);
+      const auto refuse = [&](const std::string& why, const std::string& hint) {
+        position_nodes_.clear();  // whoever holds it next is refused, too
+        throw Failure(item.span, what + why, hint);
+      };
+      if (n.kind == Kind::multiplier) refuse(" depends on a multiplier", "");
+      if (n.kind == Kind::control && (!model_.controls[n.index].value || jet_order(*model_.controls[n.index].value) >= 0))
+        refuse(" depends on the input '" + model_.controls[n.index].name + "', which is not a function of time and states",
+               "bind the coordinate by a constraint kept by this input");
       if (n.kind == Kind::jet && n.order > 0)
-        throw Failure(item.span, what + " depends on a velocity (" +
-                                     derivative_name(model.names.coordinates[n.index], n.order, Format::text) + ")",
-                      "positions are formulas of coordinates and t; write velocities as constraints");
+        refuse(" depends on a velocity (" + derivative_name(model_.names.coordinates[n.index], n.order, Format::text) + ")",
+               "positions are formulas of coordinates and t; write velocities as constraints");
     }
   }
 }
@@ -184,7 +198,7 @@ void BodyReader::read_body(const Entry& e) {
     throw Failure(body.span, what + " has no " + (e.particle ? "position" : "center"),
                   e.particle ? "position = \"…\"" : "center = \"…\" (its mass centre)");
   body.center = scope_.center(e.index, center->span);
-  check_position(model_, body.center, *center, "the position of " + what);
+  check_position(body.center, *center, "the position of " + what);
 
   const Item* inertia = item.find("inertia");
   const Item* axes = item.find("axes");
@@ -197,7 +211,7 @@ void BodyReader::read_body(const Entry& e) {
   if (scope_.has_orientation(e.index)) {
     const Item& source = item.find("orientation") ? *item.find("orientation") : *item.find("angle");
     body.orientation = scope_.orientation(e.index, source.span);
-    for (int k = 0; k < 3; ++k) check_position(model_, (*body.orientation)[k], source, "the orientation of " + what);
+    for (int k = 0; k < 3; ++k) check_position((*body.orientation)[k], source, "the orientation of " + what);
   }
   if (const Item* shape = item.find("shape")) {
     body.shape = read_shape(*shape, scope_, model_);
@@ -212,7 +226,7 @@ void BodyReader::read_body(const Entry& e) {
     if (const Item* p = item.find("exit_point")) {
       if (p->kind == Item::Kind::array && body.orientation) body.exit_point = body.center + *body.orientation * scope_.vector(*p);
       else body.exit_point = scope_.vector(*p);
-      check_position(model_, body.exit_point, *p, "the exit point of " + what);
+      check_position(body.exit_point, *p, "the exit point of " + what);
       if (!body.orientation && !is_zero(body.exit_point - body.center))
         throw Failure(p->key_span, what + " has no orientation: matter can leave at its centre only");
     }
@@ -249,7 +263,7 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
       Axis axis;
       axis.weight = frozen(scope_.number(*w), body.name + " weight " + std::to_string(k + 1), w->span);
       axis.vector = scope_.vector(*v);
-      check_position(model_, axis.vector, *v, "an axis vector of the body");
+      check_position(axis.vector, *v, "an axis vector of the body");
       body.axes.push_back(axis);
     });
     return;

@@ -1,6 +1,7 @@
 // [[body]], [[particle]] and [[force]].
 #pragma once
 #include <functional>
+#include <unordered_set>
 
 #include "spec/names.h"
 
@@ -41,12 +42,14 @@ class BodyReader {
   void read_force(const Item& item, std::size_t number);
   Expr frozen(Expr value, const std::string& name, Span span);
   Force::Place place(const Item& item);
+  void check_position(const Vector& place, const Item& item, const std::string& what);
   void check_inertia(const Body& body, const Expr (&moment)[3][3], Span span);
 
   Scope& scope_;
   Model& model_;
   Diagnostics& diagnostics_;
   std::vector<Entry> entries_;
+  std::unordered_set<NodeId> position_nodes_;  // that hold nothing a position may not
 };
 
 // The value of an expression of parameters and numbers; nothing if it depends on anything else.

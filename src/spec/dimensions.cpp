@@ -14,6 +14,8 @@ namespace {
 // A number, a blank and a letter somewhere, or a key 'unit'.
 bool may_have_units(const Item& item) {
   if (item.key == "unit") return true;
+  for (const char* prose : {"title", "source", "doc"})
+    if (item.key == prose) return false;
   if (item.kind == Item::Kind::string) {
     const std::string& s = item.text();
     for (std::size_t i = 0; i + 2 < s.size(); ++i)

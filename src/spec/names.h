@@ -41,6 +41,7 @@ class Scope final : public Names {
   void declare_body(const std::string& name, Span span);
   void set_gravity(const Item& field);
   std::size_t add_table(Table table);
+  bool has_tables() const { return !tables_.empty(); }
 
   // The bodies' parts, evaluated on demand (a centre may refer to another body's centre).
   struct BodyParts {
