@@ -23,17 +23,19 @@ ProgramSize size_of_chain(int n) {
 }
 
 TEST(ProgramSize, OfAChainIsLinearInItsLinks) {
-  // The line through 16 and 32 links must hold at 64: below, sums are so short that they are written out.
-  const ProgramSize at16 = size_of_chain(16), at32 = size_of_chain(32), at64 = size_of_chain(64);
+  // The line through 64 and 128 links must hold at 256: below, sums are so short that they are written out. Beyond, they are made
+  // of blocks, which do not end where the chain does.
+  constexpr double kBlocks = 1.02;
+  const ProgramSize at64 = size_of_chain(64), at128 = size_of_chain(128), at256 = size_of_chain(256);
   const auto expect_line = [](const char* what, std::size_t a, std::size_t b, std::size_t c) {
     EXPECT_GT(b, a) << what;
-    EXPECT_LE(c, b + 2 * (b - a)) << what << ": " << a << ", " << b << ", " << c;
+    EXPECT_LE(static_cast<double>(c), kBlocks * static_cast<double>(b + 2 * (b - a))) << what << ": " << a << ", " << b << ", " << c;
   };
-  expect_line("slots", at16.slots, at32.slots, at64.slots);
-  expect_line("products", at16.products, at32.products, at64.products);
-  expect_line("functions", at16.functions, at32.functions, at64.functions);
-  expect_line("tainted", at16.tainted, at32.tainted, at64.tainted);
-  EXPECT_LE(at64.slots, 64U * 60) << "sixty operations per link and its equation are plenty";
+  expect_line("slots", at64.slots, at128.slots, at256.slots);
+  expect_line("products", at64.products, at128.products, at256.products);
+  expect_line("functions", at64.functions, at128.functions, at256.functions);
+  expect_line("tainted", at64.tainted, at128.tainted, at256.tainted);
+  EXPECT_LE(at256.slots, 256U * 60) << "sixty operations per link and its equation are plenty";
 }
 
 std::size_t nodes_of_chain(int n) {
