@@ -11,13 +11,6 @@ namespace {
 // Halves of [0, h] beyond this depth are narrower than a round-off of h in double.
 constexpr int kDeepest = 56, kBisections = 200, kPolish = 4;
 
-template <Number N>
-N value_at(const N* c, int degree, const N& x) {
-  N s(0);
-  for (int k = degree; k >= 0; --k) s = s * x + c[k];
-  return s;
-}
-
 // Bernstein coefficients on [0, 1] of sum a_k u^k: b_j = sum_{k<=j} C(j,k)/C(n,k) a_k.
 template <Number N>
 std::vector<N> bernstein(std::vector<N> a) {

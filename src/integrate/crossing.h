@@ -9,6 +9,14 @@
 
 namespace anholon {
 
+// The sum of c_k x^k, k = 0..degree, by Horner's scheme.
+template <Number N>
+N value_at(const N* c, int degree, const N& x) {
+  N s(0);
+  for (int k = degree; k >= 0; --k) s = s * x + c[k];
+  return s;
+}
+
 // The first x in (0, h], h of either sign, from where on p = sum c_k x^k is below -floor, taken back to where p left the side
 // p >= 0 (where it does not hold at 0: 0). A dip that stays above -floor is none: p only touches zero there.
 template <Number N>

@@ -28,13 +28,6 @@ int side_after(const N* c, int degree, const N& h, const N& floor) {
   return 0;
 }
 
-template <Number N>
-N value_at(const N* c, int degree, const N& x) {
-  N s(0);
-  for (int k = degree; k >= 0; --k) s = s * x + c[k];
-  return s;
-}
-
 // p(x + shift), by Horner's scheme.
 template <Number N>
 std::vector<N> shifted(const N* c, int degree, const N& shift) {

@@ -69,9 +69,7 @@ class Search {
     for (int k = 1; k <= degree_; ++k) slope.push_back(c[1] > N(0) ? N(c[k] * N(k)) : N(-(c[k] * N(k))));
     const auto x = first_below<N>(slope.data(), degree_ - 1, h_, N(0));
     if (!x || *x == N(0)) return;
-    N value(0);
-    for (int k = degree_; k >= 0; --k) value = value * *x + c[k];
-    if (!(value > c[0] * N(kTouches))) ahead(*x);
+    if (!(value_at(c, degree_, *x) > c[0] * N(kTouches))) ahead(*x);
   }
 
   void ahead(const N& x) {

@@ -318,7 +318,8 @@ Value Scope::name(const std::string& name, Span span) {
     return *here_;
   }
   if (name == "lambda")
-    throw Failure(span, "multipliers are not read in formulas yet");
+    throw Failure(span, "a multiplier has no meaning here: it follows from the equations of which this formula is a part",
+                  "lambda.NAME stands in conditions, monitors, outputs, rates and events");
   const auto it = declarations_.find(name);
   if (it != declarations_.end()) {
     if (it->second.role == Role::table || !it->second.arguments.empty())
