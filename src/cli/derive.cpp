@@ -6,6 +6,7 @@
 #include "cli/input.h"
 #include "cli/show.h"
 #include "program/emit.h"
+#include "run/inputs.h"
 
 namespace anholon::cli {
 
@@ -44,7 +45,9 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   for (const std::string& set : o.set) options.made_by += " --set " + set;
   options.start = {s.state.t, s.state.q, s.state.qd};
   try {
-    std::fputs((o.format == "c" ? emit_c : emit_python)(s.system, s.structure, options).c_str(), stdout);
+    OpenSystem open = open_inputs(s);
+    options.inputs = std::move(open.inputs);
+    std::fputs((o.format == "c" ? emit_c : emit_python)(open.system, s.structure, options).c_str(), stdout);
   } catch (const Failure& failure) {
     print_diagnostic(failure.diagnostic, in.source);
     return kBadInput;

@@ -120,7 +120,7 @@ std::size_t Motion::place(std::size_t variable, unsigned order) const {
   return 0;
 }
 
-Motion motion(const System& s, const Structure& structure) {
+Motion motion(const System& s, const Structure& structure, const EmitOptions& options) {
   const Model& model = *s.model;
   if (!model.states.empty())
     throw Failure(model.states[0].span, "a program for a model with states ('" + model.states[0].name + "') is not written yet", "anholon simulate computes its motion");
@@ -144,6 +144,11 @@ Motion motion(const System& s, const Structure& structure) {
     });
   };
   Motion m;
+  for (const InputFormula& u : options.inputs) {
+    m.inputs.push_back(u.control);
+    m.input_values.push_back(u.value);
+    m.input_names.push_back(model.controls[u.control].name);
+  }
   int largest_d = 0;
   for (int d : structure.d) largest_d = std::max(largest_d, d);
   for (int k = 0; k < largest_d; ++k)
@@ -212,12 +217,15 @@ std::string LocalNames::fresh(const std::string& wanted) {
   return name;
 }
 
-LocalNames::LocalNames(const System& s, const Structure& structure) : taken_(std::begin(kReserved), std::end(kReserved)) {
+LocalNames::LocalNames(const System& s, const Structure& structure, const Motion& motion) : taken_(std::begin(kReserved), std::end(kReserved)) {
   Graph& g = *s.model->graph;
   symbols_[g.time().id] = "t";
+  if (!motion.inputs.empty()) taken_.insert({"u", "own"});
   for (std::size_t j = 0; j < s.size(); ++j) symbols_[s.symbol(j, 0).id] = fresh(s.variable_names[j]);
   for (std::size_t i = 0; i < s.model->parameters.size(); ++i)
     symbols_[g.parameter(static_cast<std::uint32_t>(i)).id] = fresh(s.model->parameters[i].name);
+  for (std::size_t k = 0; k < motion.inputs.size(); ++k)
+    symbols_[g.control(static_cast<std::uint32_t>(motion.inputs[k]), 0).id] = fresh(motion.input_names[k]);
   for (std::size_t j = 0; j < s.size(); ++j)
     for (int k = 1; k <= structure.d[j]; ++k)
       symbols_[s.symbol(j, static_cast<unsigned>(k)).id] = fresh(s.variable_names[j] + "_" + std::to_string(k));
@@ -259,6 +267,12 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
     values.push_back(p.name + " = " + print(p.value, model.names, Format::text) + (p.doc.empty() ? "" : "    " + p.doc));
   }
   list(values);
+  if (!m.inputs.empty()) {
+    add("u" + count(m.inputs.size()) + ": inputs; where there is none (a null pointer, None) these formulas give them");
+    std::vector<std::string> formulas;
+    for (std::size_t k = 0; k < m.inputs.size(); ++k) formulas.push_back(m.input_names[k] + " = " + print(m.input_values[k], model.names, Format::text));
+    list(formulas);
+  }
   add("residual" + count(s.size()) + ": the equations, left side minus right side");
   list(m.equation_names);
   add("jacobian" + count(s.size() * s.size()) + ": derivatives of the residuals (rows) by lead (columns), row by row");

@@ -7,6 +7,8 @@
 // The state is x_j^(k), k < d_j, all of order 0 first; the hidden constraints E_i^(k), k < c_i, are a
 // function of their own, so that an integrator that does not know them can be watched.
 //
+// Inputs are an array u of their own: without one, the formulas of the model give them.
+//
 // A derivative that occurs and yet does not count (structure.h: "truly") is set to zero.
 #pragma once
 #include <optional>
@@ -16,6 +18,12 @@
 
 namespace anholon {
 
+// An input that stands as a symbol in the equations, and its formula, of t, state and parameters.
+struct InputFormula {
+  std::size_t control;
+  Expr value;
+};
+
 struct EmitOptions {
   std::string name = "motion";  // begins the name of everything in C
   std::string made_by;          // how the text was made, for its head
@@ -24,6 +32,7 @@ struct EmitOptions {
     std::vector<double> q, qd;  // by coordinate
   };
   std::optional<Start> start;   // a state to begin with
+  std::vector<InputFormula> inputs;
 };
 
 // Throw Failure for what has no text: an unknown function of time, a number beyond double.

@@ -97,8 +97,8 @@ int $_leading(double t, const double *state, const double *p, double *lead)
 }
 )";
 
-std::string with_name(std::string text, const std::string& name) {
-  for (std::size_t at = 0; (at = text.find('$', at)) != std::string::npos; at += name.size()) text.replace(at, 1, name);
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
   return text;
 }
 
@@ -126,17 +126,33 @@ std::string names_table(const std::string& name, const std::vector<std::string>&
 }  // namespace
 
 std::string emit_c(const System& system, const Structure& structure, const EmitOptions& options) {
-  const Motion m = motion(system, structure);
-  const LocalNames names(system, structure);
+  const Motion m = motion(system, structure, options);
+  const LocalNames names(system, structure, m);
   Writer writer(system, structure, m, names, Language::c);
   const std::size_t n = system.size(), parameters = system.model->parameters.size();
 
-  const std::string arguments = "(double t, const double *state, const double *lead, const double *p, double *out)";
+  // Where there are inputs they follow the parameters.
+  const bool inputs = !m.inputs.empty();
+  const auto with_inputs = [&](std::string text) {
+    if (!inputs) return text;
+    text = replaced(std::move(text), "const double *p, double *", "const double *p, const double *u, double *");
+    return replaced(replaced(replaced(std::move(text), "p, f)", "p, u, f)"), "p, a)", "p, u, a)"), "p, lead)", "p, u, lead)");
+  };
+  // In front of statements that read u.
+  const auto own_inputs = [&](const Statements& s) {
+    return !inputs ? std::string() : s.inputs ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n" : "  (void)u;\n";
+  };
+  const auto not_read = [](const Statements& s) {
+    const bool all = s.inputs;  // handed on to the formulas of the inputs
+    return unused({{"t", all || s.time}, {"state", all || s.state}, {"lead", s.lead}, {"p", all || s.parameters}});
+  };
+  const std::string arguments = with_inputs("(double t, const double *state, const double *lead, const double *p, double *out)");
   const Statements residual = writer.body(m.residual, targets("out", n));
   Column entries;
   for (const Column& row : m.jacobian) entries.insert(entries.end(), row.begin(), row.end());
   const Statements jacobian = writer.body(entries, targets("out", n * n), true);
   const Statements hidden = writer.body(m.hidden, targets("out", m.hidden.size()));
+  const Statements formulas = writer.body(m.input_values, targets("out", m.inputs.size()));
   Column free, derived;
   std::vector<std::string> free_targets, derived_targets;
   for (std::size_t i = 0; i < parameters; ++i) {
@@ -151,6 +167,7 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
  * $_defaults      sets p to the default values
 )";
   if (!derived.empty()) out += " * $_derived       computes anew the parameters that depend on others: call it after a change of p\n";
+  if (inputs) out += " * $_inputs        the inputs by the formulas of the model\n";
   out += R"( * $_residual      the equations, out of any state and lead
  * $_jacobian      their derivatives by lead
  * $_hidden        the hidden constraints
@@ -165,29 +182,33 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
 
 )";
   out += "enum { $_UNKNOWNS = " + std::to_string(n) + ", $_STATE = " + std::to_string(m.state.size()) +
-         ", $_HIDDEN = " + std::to_string(m.hidden.size()) + ", $_PARAMETERS = " + std::to_string(parameters) + " };\n\n";
+         ", $_HIDDEN = " + std::to_string(m.hidden.size()) + ", $_PARAMETERS = " + std::to_string(parameters) +
+         (inputs ? ", $_INPUTS = " + std::to_string(m.inputs.size()) : std::string()) + " };\n\n";
   out += "extern const char *const $_parameter_names[], *const $_state_names[], *const $_lead_names[];\n";
+  if (inputs) out += "extern const char *const $_input_names[];\n";
   out += "void $_defaults(double *p);\n";
   if (!derived.empty()) out += "void $_derived(double *p);\n";
+  if (inputs) out += "void $_inputs(double t, const double *state, const double *p, double *out);\n";
   out += "void $_residual" + arguments + ";\nvoid $_jacobian" + arguments + ";\n";
   out += "void $_hidden(double t, const double *state, const double *p, double *out);\n";
-  out += "int $_leading(double t, const double *state, const double *p, double *lead);\n";
-  out += "int $_rhs(double t, const double *state, const double *p, double *dstate);\n";
+  out += with_inputs("int $_leading(double t, const double *state, const double *p, double *lead);\n"
+                     "int $_rhs(double t, const double *state, const double *p, double *dstate);\n");
   if (options.start) out += "void $_start(double *t, double *state);\n";
   out += "\n/* Each ends with a null pointer. */\n";
   std::vector<std::string> parameter_names;
   for (const Parameter& p : system.model->parameters) parameter_names.push_back(p.name);
   out += names_table("$_parameter_names", parameter_names) + names_table("$_state_names", m.state_names) +
-         names_table("$_lead_names", m.leading_names);
+         names_table("$_lead_names", m.leading_names) + (inputs ? names_table("$_input_names", m.input_names) : std::string());
   if (writer.used_sign()) out += "\nstatic double $_sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }\n";
 
   out += "\nvoid $_defaults(double *p)\n{\n" + unused({{"p", parameters > 0}}) + defaults.text;
   if (!derived.empty()) out += "  $_derived(p);\n}\n\nvoid $_derived(double *p)\n{\n" + follow.text;
-  out += "}\n\nvoid $_residual" + arguments + "\n{\n" +
-         unused({{"t", residual.time}, {"state", residual.state}, {"lead", residual.lead}, {"p", residual.parameters}}) +
-         residual.text + "}\n";
-  out += "\nvoid $_jacobian" + arguments + "\n{\n  int i;\n" +
-         unused({{"t", jacobian.time}, {"state", jacobian.state}, {"lead", jacobian.lead}, {"p", jacobian.parameters}}) +
+  out += "}\n";
+  if (inputs)
+    out += "\nvoid $_inputs(double t, const double *state, const double *p, double *out)\n{\n" +
+           unused({{"t", formulas.time}, {"state", formulas.state}, {"p", formulas.parameters}}) + formulas.text + "}\n";
+  out += "\nvoid $_residual" + arguments + "\n{\n" + own_inputs(residual) + not_read(residual) + residual.text + "}\n";
+  out += "\nvoid $_jacobian" + arguments + "\n{\n  int i;\n" + own_inputs(jacobian) + not_read(jacobian) +
          "  for (i = 0; i < $_UNKNOWNS * $_UNKNOWNS; ++i) out[i] = 0;\n" + jacobian.text + "}\n";
   out += "\nvoid $_hidden(double t, const double *state, const double *p, double *out)\n{\n" +
          unused({{"t", hidden.time}, {"state", hidden.state}, {"p", hidden.parameters}, {"out", !m.hidden.empty()}}) +
@@ -197,11 +218,11 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
   const std::vector<std::string> factor = {"$_jacobian(t, state, lead, p, a);", "status = $_factor(a, order, row, column);", "if (status) return status;"};
   std::string newton = put(kNewton, "@ONCE", m.linear ? lines(factor, "  ") : "");
   newton = put(newton, "@EACH", m.linear ? "" : lines(factor, "    "));
+  newton = with_inputs(newton);
   out += put(newton, "@SETTLED", m.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size && length > 0.5 * before)");
 
-  out += "\nint $_rhs(double t, const double *state, const double *p, double *dstate)\n{\n" +
-          unused({{"dstate", !m.state.empty()}}) +
-         "  double lead[$_UNKNOWNS] = {0};\n  const int status = $_leading(t, state, p, lead);\n";
+  out += with_inputs("\nint $_rhs(double t, const double *state, const double *p, double *dstate)\n{\n") + unused({{"dstate", !m.state.empty()}}) +
+         with_inputs("  double lead[$_UNKNOWNS] = {0};\n  const int status = $_leading(t, state, p, lead);\n");
   for (std::size_t i = 0; i < m.state.size(); ++i) {
     const StateEntry& e = m.state[i];
     const bool last = static_cast<int>(e.order) + 1 == structure.d[e.variable];
@@ -216,7 +237,7 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
     out += "}\n";
   }
   // A title may hold a $ of its own.
-  return "/*\n" + lines(head(system, structure, m, options), " * ") + with_name(out, identifier(options.name, "motion"));
+  return "/*\n" + lines(head(system, structure, m, options), " * ") + replaced(out, "$", identifier(options.name, "motion"));
 }
 
 }  // namespace anholon

@@ -26,7 +26,7 @@ def _scaled(a):
     return a, row, column
 
 
-def leading(t, state, p=None, start=None):
+def leading(t, state, p=None, start=None@GIVEN):
     """The leading derivatives and multipliers at one state; start is where Newton's method begins.
 
     Numbers that are nan where a formula has no value. Raises LinAlgError if the jacobian is singular,
@@ -35,7 +35,7 @@ def leading(t, state, p=None, start=None):
     lead = np.zeros(len(LEAD)) if start is None else np.array(start, dtype=float)
     before = np.inf
 @ONCE    for _ in range(30):
-@EACH        f = residual(t, state, lead, p)
+@EACH        f = residual(t, state, lead, p@INPUTS)
         if not (np.isfinite(a).all() and np.isfinite(f).all()):
             return np.full(len(LEAD), np.nan)
         step = np.linalg.solve(a, f / row) / column
@@ -81,14 +81,15 @@ std::string arrays(const Statements& b) {
   out += "    state = np.asarray(state, dtype=float)\n";
   if (b.lead) out += "    lead = np.asarray(lead, dtype=float)\n";
   if (b.parameters) out += "    p = DEFAULTS if p is None else np.asarray(p, dtype=float)\n";
+  if (b.inputs) out += "    u = inputs(t, state, p) if u is None else np.asarray(u, dtype=float)\n";
   return out;
 }
 
 }  // namespace
 
 std::string emit_python(const System& system, const Structure& structure, const EmitOptions& options) {
-  const Motion m = motion(system, structure);
-  const LocalNames names(system, structure);
+  const Motion m = motion(system, structure, options);
+  const LocalNames names(system, structure, m);
   Writer writer(system, structure, m, names, Language::python);
   const std::size_t n = system.size(), parameters = system.model->parameters.size();
 
@@ -101,6 +102,10 @@ std::string emit_python(const System& system, const Structure& structure, const 
     parameter_names.push_back(system.model->parameters[i].name);
   }
 
+  // Where there are inputs they come last, and are handed on.
+  const bool inputs = !m.inputs.empty();
+  const std::string u_argument = inputs ? ", u=None" : "", u = inputs ? ", u" : "";
+
   std::string out = "\"\"\"";
   std::vector<std::string> about = head(system, structure, m, options);
   if (!about.empty() && about[0].empty()) about[0] = "A motion";
@@ -112,7 +117,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
 )";
   if (!options.start) out = put(out, "START", "start");
   out += "import numpy as np\n\n" + table("STATE", m.state_names) + table("LEAD", m.leading_names) +
-         table("PARAMETERS", parameter_names) + table("HIDDEN", m.hidden_names);
+         table("PARAMETERS", parameter_names) + table("HIDDEN", m.hidden_names) + (inputs ? table("INPUTS", m.input_names) : "");
   if (options.start) {
     out += "T0 = " + number_text(options.start->t) + "\nSTART = np.array([";
     const std::vector<double> state = start_state(system, m, *options.start);
@@ -127,25 +132,30 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
            writer.body(derived, derived_targets).text + "    return p\n";
   out += "\n\nDEFAULTS = defaults()\n";
 
+  if (inputs) {
+    const Statements formulas = writer.body(m.input_values, targets(m.inputs.size()));
+    out += "\n\ndef inputs(t, state, p=None):\n    \"\"\"The inputs by the formulas of the model.\"\"\"\n" + arrays(formulas) +
+           "    out = np.empty((len(INPUTS),) + state.shape[1:])\n" + formulas.text + "    return out\n";
+  }
   const Statements residual = writer.body(m.residual, targets(n));
-  out += "\n\ndef residual(t, state, lead, p=None):\n    \"\"\"The equations, left side minus right side.\"\"\"\n" + arrays(residual) +
+  out += "\n\ndef residual(t, state, lead, p=None" + u_argument + "):\n    \"\"\"The equations, left side minus right side.\"\"\"\n" + arrays(residual) +
          "    out = np.empty((len(LEAD),) + state.shape[1:])\n" + residual.text + "    return out\n";
   Column entries;
   for (const Column& row : m.jacobian) entries.insert(entries.end(), row.begin(), row.end());
   const Statements jacobian = writer.body(entries, targets(n * n, n), true);
-  out += "\n\ndef jacobian(t, state, lead, p=None):\n    \"\"\"The derivatives of the residuals by lead.\"\"\"\n" + arrays(jacobian) +
+  out += "\n\ndef jacobian(t, state, lead, p=None" + u_argument + "):\n    \"\"\"The derivatives of the residuals by lead.\"\"\"\n" + arrays(jacobian) +
          "    out = np.zeros((len(LEAD), len(LEAD)) + state.shape[1:])\n" + jacobian.text + "    return out\n";
   const Statements hidden = writer.body(m.hidden, targets(m.hidden.size()));
   out += "\n\ndef hidden(t, state, p=None):\n    \"\"\"What must be zero at a state that satisfies the constraints.\"\"\"\n" + arrays(hidden) +
          "    out = np.empty((len(HIDDEN),) + state.shape[1:])\n" + hidden.text + "    return out\n";
 
-  const std::string factor = "a, row, column = _scaled(jacobian(t, state, lead, p))\n";
-  std::string newton = put(kNewton, "@ONCE", m.linear ? "    " + factor : "");
+  const std::string factor = "a, row, column = _scaled(jacobian(t, state, lead, p" + u + "))\n";
+  std::string newton = put(put(put(kNewton, "@GIVEN", u_argument), "@INPUTS", u), "@ONCE", m.linear ? "    " + factor : "");
   newton = put(newton, "@EACH", m.linear ? "" : "        " + factor);
   out += "\n" + put(newton, "@SETTLED", m.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size and length > 0.5 * before)");
 
-  out += "\n\ndef rhs(t, state, p=None):\n    \"\"\"d state / dt\"\"\"\n"
-         "    lead = leading(t, state, p)\n    out = np.empty(len(STATE))\n";
+  out += "\n\ndef rhs(t, state, p=None" + u_argument + "):\n    \"\"\"d state / dt\"\"\"\n"
+         "    lead = leading(t, state, p" + (inputs ? ", u=u" : "") + ")\n    out = np.empty(len(STATE))\n";
   for (std::size_t i = 0; i < m.state.size(); ++i) {
     const StateEntry& e = m.state[i];
     const bool last = static_cast<int>(e.order) + 1 == structure.d[e.variable];

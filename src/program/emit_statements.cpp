@@ -206,11 +206,11 @@ void Writer::write(NodeId id, Statements& body) {
       return;
     }
     case Kind::pi: text_[id] = {language_ == Language::c ? "3.14159265358979323846" : "np.pi", kAtom}; return;
-    case Kind::time: case Kind::jet: case Kind::parameter: case Kind::multiplier:
+    case Kind::time: case Kind::jet: case Kind::parameter: case Kind::multiplier: case Kind::control:
       text_[id] = {names_.symbol(id), kAtom};
       return;
-    case Kind::mass: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
-      ANHOLON_ASSERT(!"a frozen mass, unknown function, quasi-velocity, state or input in a program");
+    case Kind::mass: case Kind::given: case Kind::quasi: case Kind::state:
+      ANHOLON_ASSERT(!"a frozen mass, unknown function, quasi-velocity or state in a program");
       return;
     case Kind::sum: pieces = sum(id), strength = kSum; break;
     case Kind::product: pieces = product(id), strength = kProduct; break;
@@ -230,11 +230,16 @@ void Writer::write(NodeId id, Statements& body) {
 }
 
 void Writer::load(const std::vector<NodeId>& ids, Statements& body) {
-  std::vector<std::pair<std::size_t, NodeId>> state, lead, parameters;
+  std::vector<std::pair<std::size_t, NodeId>> state, lead, parameters, inputs;
   for (NodeId id : ids) {
     const Node& n = g_.node(id);
     if (n.kind == Kind::time) body.time = true;
     if (n.kind == Kind::parameter) parameters.push_back({n.index, id});
+    if (n.kind == Kind::control) {
+      const auto at = std::find(motion_.inputs.begin(), motion_.inputs.end(), n.index);
+      ANHOLON_ASSERT(at != motion_.inputs.end() && n.order == 0);
+      inputs.push_back({static_cast<std::size_t>(at - motion_.inputs.begin()), id});
+    }
     const auto j = system_.variable(id);
     if (!j) continue;
     if (static_cast<int>(n.order) < structure_.d[*j]) state.push_back({motion_.place(*j, n.order), id});
@@ -249,6 +254,7 @@ void Writer::load(const std::vector<NodeId>& ids, Statements& body) {
   body.state = read(state, "state");
   body.lead = read(lead, "lead");
   body.parameters = read(parameters, "p");
+  body.inputs = read(inputs, "u");
 }
 
 Statements Writer::body(const Column& es, const std::vector<std::string>& targets, bool sparse) {

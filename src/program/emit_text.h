@@ -23,15 +23,17 @@ struct Motion {
   std::vector<Column> jacobian;      // by the leading derivatives
   Column hidden;                     // E_i^(k), k < c_i
   std::vector<std::size_t> derived;  // parameters whose values depend on those of others
+  std::vector<std::size_t> inputs;   // controls of the model
+  Column input_values;               // by their formulas
   Column parameters;                 // values in terms of the parameters that are not derived
   bool linear = true;                // in the leading derivatives
-  std::vector<std::string> state_names, leading_names, equation_names, hidden_names;
+  std::vector<std::string> state_names, leading_names, equation_names, hidden_names, input_names;
 
   // Where x_j^(k) stands in the state (k < d_j).
   std::size_t place(std::size_t variable, unsigned order) const;
 };
 
-Motion motion(const System& system, const Structure& structure);
+Motion motion(const System& system, const Structure& structure, const EmitOptions& options);
 
 // The start in the order of the state; multipliers begin with zero.
 std::vector<double> start_state(const System& system, const Motion& motion, const EmitOptions::Start& start);
@@ -39,7 +41,7 @@ std::vector<double> start_state(const System& system, const Motion& motion, cons
 // A name as an identifier of both languages that none of them uses itself.
 class LocalNames {
  public:
-  LocalNames(const System& system, const Structure& structure);
+  LocalNames(const System& system, const Structure& structure, const Motion& motion);
   const std::string& symbol(NodeId id) const { return symbols_.at(id); }
   bool taken(const std::string& name) const { return taken_.count(name) > 0; }
 
@@ -58,7 +60,7 @@ std::string number(const Rational& r);
 // The statements of one function. Where a name that C gives the file is needed stands $. A node that is used more than once, or long, gets a variable.
 struct Statements {
   std::string text;
-  bool time = false, state = false, lead = false, parameters = false;  // what it reads
+  bool time = false, state = false, lead = false, parameters = false, inputs = false;  // what it reads
 };
 
 class Writer {

@@ -30,7 +30,7 @@ except ImportError:
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = ["disc", "luo-zhao-example-2", "snakeboard", "rheonomic-order-1", "second-order-linear", "fourbar",
-           "mass-depends-on-velocity", "falling-chain", "appell-hamel"]  # fmt: skip
+           "mass-depends-on-velocity", "falling-chain", "appell-hamel", "trailers"]  # fmt: skip
 FLAGS = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"]
 SAME = 1e-10  # relative, of two ways to compute the same
 MOTION = 1e-8  # of the Runge-Kutta method with its step, against the Taylor series
@@ -148,6 +148,31 @@ z = 0.1
 "x'" = 0.1
 "y'" = 0.5
 ''',
+    # Two inputs are arguments; one stands in a constraint that is differentiated, and stays a formula.
+    "inputs": '''
+coordinates = ["x", "y", "z"]
+[parameters]
+push0 = 2
+[input]
+push = "push0"
+steer = "-2*y - 3*y' + t"
+path = "0.2*sin(t)"
+[[particle]]
+name = "a"
+mass = "2 + x^2"
+position = ["x", "y", "z"]
+[[force]]
+on = "a"
+vector = ["push*cos(y) - x", "steer - y^3", "push - steer*x"]
+[[constraint]]
+name = "guide"
+equation = "z = x*y + path"
+[initial]
+x = 0.4
+y = -0.3
+"x'" = 0.2
+"y'" = 0.5
+''',
     # Newton's method has to iterate.
     "nonlinear": '''
 coordinates = ["x", "y"]
@@ -224,6 +249,8 @@ class Compiled:
         self.prefix = "".join(c if c.isalnum() else "_" for c in name)
         self.state_names, self.lead_names = self.names("state_names"), self.names("lead_names")
         self.parameter_names = self.names("parameter_names")
+        self.input_names = self.names("input_names") if hasattr(self.library, f"{self.prefix}_input_names") else []
+        self.u = None  # the inputs; None: by their formulas
         self.p = (ctypes.c_double * (len(self.parameter_names) + 1))()
         self.call("defaults", None, self.p)
 
@@ -243,14 +270,20 @@ class Compiled:
     def array(values):
         return (ctypes.c_double * max(1, len(values)))(*values)
 
+    def given(self, function):
+        """The inputs as an argument, where the function has one."""
+        if not self.input_names or function in ("hidden", "inputs"):
+            return []
+        return [ctypes.cast(None, DOUBLE) if self.u is None else self.array(self.u)]
+
     def out(self, function, size, t, *arrays):
         result = self.array([0.0] * size)
-        self.call(function, t, *map(self.array, arrays), self.p, result)
+        self.call(function, t, *map(self.array, arrays), self.p, *self.given(function), result)
         return list(result)[:size]
 
     def solved(self, function, size, t, state):
         result = self.array([0.0] * size)
-        status = self.call(function, t, self.array(state), self.p, result)
+        status = self.call(function, t, self.array(state), self.p, *self.given(function), result)
         if status != 0:
             raise Failure(f"{function} returns {status}")
         return list(result)[:size]
@@ -358,6 +391,24 @@ def check_set(c, program, name, path):
     same(c.solved("leading", len(lead), point.t, point[c.state_names]), lead, f"C with another {name}")
 
 
+def check_inputs(c, module, program, path):
+    """The inputs by their formulas are those of the model; one set from outside acts as its formula with that value."""
+    if c.input_names != ["push", "steer"]:
+        raise Failure(f"the inputs are {c.input_names}")
+    point = Point.evaluated(program, path)
+    t, state = point.t, point[c.state_names]
+    own = c.out("inputs", 2, t, state)
+    same(own, [2, 0.6 - 1.5 + t], "C inputs")
+    for u, reference in ((own, point), ([3.5, own[1]], Point.evaluated(program, path, "--set", "push0=3.5"))):
+        c.u = u
+        lead = reference[c.lead_names]
+        same(c.solved("leading", len(lead), t, state), lead, f"C leading with the inputs {u}")
+        if module is not None:
+            same(module.leading(t, state, u=u), lead, f"Python leading with the inputs {u}")
+            same(module.rhs(t, state, u=u), c.solved("rhs", len(state), t, state), f"rhs with the inputs {u}")
+    c.u = None
+
+
 def check_refusal(c, module, state, status):
     """Where there is no answer, C says why, and Python raises or gives nan."""
     got = c.call("leading", 0.0, c.array(state), c.p, c.array([0.0] * len(c.lead_names)))
@@ -417,6 +468,8 @@ def check(program, form, name, path, folder):
         check_refusal(c, module, [0, 0, 10, 0, 0, 0], 1)
     if name == "functions":  # the logarithm of a negative number
         check_refusal(c, module, [0.4, -10, 0.2, 0.3, -0.5, -0.2], 3)
+    if name == "inputs":
+        check_inputs(c, module, program, path)
     if name == "names":
         check_set(c, program, "np", path)
     return f"{name:32} {len(c.state_names):3} states, {len(c.lead_names):3} unknowns, {len(text):7} characters"
