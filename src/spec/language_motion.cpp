@@ -94,6 +94,8 @@ by = "w"
 
 - A control. Motions use its formula; `linearize` gives the derivatives by it, with the formula put in where it is used otherwise.
 - Where an input stands in a position or orientation its formula may hold t and states only.
+- Programs (`derive --format c` or `python`) take inputs as an argument, and their formulas where it is not given. An input that holds accelerations or
+  stands in a constraint of which derivatives are needed remains a formula there.
 - Inputs may use each other, not themselves. `{}` needs a constraint that is kept by it.
 )md"},
       {"output", Form::named, any,
