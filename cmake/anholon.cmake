@@ -48,6 +48,16 @@ function(anholon_layer name)
   set_property(GLOBAL APPEND PROPERTY ANHOLON_LAYERS ${name})
 endfunction()
 
+# One file per instruction set; the program chooses at run time. Optimized in every build, as nothing else is there to be looked at.
+function(anholon_kernel_tiers)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set(folder "${PROJECT_SOURCE_DIR}/src/kernel")
+    set_source_files_properties("${folder}/tier_plain.cpp" PROPERTIES COMPILE_OPTIONS "-O2")
+    set_source_files_properties("${folder}/tier_avx2.cpp" PROPERTIES COMPILE_OPTIONS "-O2;-mavx2;-mfma")
+    set_source_files_properties("${folder}/tier_avx512.cpp" PROPERTIES COMPILE_OPTIONS "-O2;-mavx2;-mfma;-mavx512f;-mprefer-vector-width=512")
+  endif()
+endfunction()
+
 # The source folder is baked in here and nowhere else, so that ccache can serve the other layers
 # to a second checkout.
 function(anholon_cli_definitions target)

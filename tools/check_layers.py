@@ -14,7 +14,7 @@ import tempfile
 
 LEVEL = {
     "base": 0, "numeric": 1, "expr": 2, "tape": 3, "model": 4, "spec": 5, "mechanics": 5,
-    "formulation": 6, "system": 7, "structure": 8, "proof": 8, "program": 9, "jit": 10,
+    "formulation": 6, "system": 7, "structure": 8, "proof": 8, "program": 9, "kernel": 9.5, "jit": 10,
     "integrate": 10, "result": 11, "run": 12, "report": 13, "cli": 14, "python": 14,
 }  # fmt: skip
 
@@ -27,6 +27,7 @@ NOT = {
     "structure": {"spec"},
     "proof": {"spec"},
     "program": {"spec", "proof"},
+    "kernel": {"spec", "proof"},
     "report": {"jit", "integrate"},
 }
 

@@ -1,0 +1,234 @@
+#include "kernel/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "base/assert.h"
+
+namespace anholon {
+
+namespace {
+
+// A state this many round-offs off its hidden constraints is left alone: it is not known better.
+constexpr double kQuiet = 8 * 0x1p-53;
+// The samples for the choice of pivots lie so far around the state given.
+constexpr double kAround = 0.7;
+
+// Numbers in [-1, 1) from a counter (a step of splitmix64).
+double scattered(std::uint64_t i) {
+  std::uint64_t z = (i + 1) * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+}
+
+}  // namespace
+
+double KernelTables::lookup(std::uint32_t function, double x) const {
+  const Knots& f = knots[function];
+  return f.values[static_cast<std::size_t>(std::upper_bound(f.at.begin(), f.at.end(), x) - f.at.begin())];
+}
+
+double power_of(double x, double exponent) { return exponent == -0.5 ? 1 / std::sqrt(x) : exponent == 1.5 ? x * std::sqrt(x) : exponent == -1.5 ? 1 / (x * std::sqrt(x)) : std::pow(x, exponent); }
+
+double function_of(std::uint32_t function, double x) {
+  switch (static_cast<Function>(function)) {
+#define ROW(name, derivative, parity, latex, domain) \
+  case Function::name: return name(x);
+#include "expr/elementary.def"
+#undef ROW
+  }
+  return x;
+}
+
+void sine_and_cosine(double x, double& sine, double& cosine) { __builtin_sincos(x, &sine, &cosine); }
+
+const std::vector<Tier>& tiers() {
+  static const std::vector<Tier> list = [] {
+    std::vector<Tier> all{tier_plain};
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) all.push_back(tier_avx2);
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) all.push_back(tier_avx512);
+    return all;
+  }();
+  return list;
+}
+
+KernelPlan::KernelPlan(const Program& program, int stages) : program_(&program), plan_(anholon::plan(program, stages)) {
+  for (int d : plan_.d) state_size_ += static_cast<std::size_t>(d);
+  tables_.plan = &plan_;
+  tables_.elimination = &elimination_;
+  for (const StepFunction& f : program.tape.step_functions) {
+    KernelTables::Knots k;
+    for (const Rational& r : f.knots) k.at.push_back(from_rational<double>(r));
+    for (const Rational& r : f.values) k.values.push_back(from_rational<double>(r));
+    tables_.knots.push_back(std::move(k));
+  }
+  long double factorial = 1;
+  for (std::uint32_t k = 0; k < plan_.stride + 8; ++k) {
+    if (k > 0) factorial *= k;
+    tables_.factorial.push_back(static_cast<double>(factorial));
+    tables_.inverse_factorial.push_back(static_cast<double>(1 / factorial));
+    tables_.reciprocal_of.push_back(k > 0 ? 1 / static_cast<double>(k) : 0);
+  }
+}
+
+void KernelPlan::lay_out() {
+  const auto even = [](std::uint32_t x) { return (x + 7) / 8 * 8; };
+  tables_.lu = even(plan_.arena);
+  tables_.reciprocal = tables_.lu + elimination_.entries;
+  tables_.rhs = tables_.reciprocal + static_cast<std::uint32_t>(elimination_.pivots.size());
+  tables_.solution = tables_.rhs + plan_.rows;
+  tables_.size = even(tables_.solution + plan_.rows);
+}
+
+std::shared_ptr<const KernelPlan> KernelPlan::make(const Program& program, int stages, const std::vector<long double>& parameters, double t,
+                                                   const std::vector<double>& state) {
+  if (!no_plan(program).empty()) return nullptr;
+  std::shared_ptr<KernelPlan> p(new KernelPlan(program, stages));
+  if (!p->choose_pivots(parameters, t, state)) return nullptr;
+  return p;
+}
+
+// At the state and at some around it, so that a pivot is not one that vanishes when the machine has moved on.
+bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state) {
+  lay_out();
+  std::vector<SampledEntry> entries;
+  for (const Entry& e : plan_.entries) {
+    const bool exact = e.from < plan_.coefficients.size() && (plan_.coefficients[e.from].one() || plan_.coefficients[e.from].minus_one());
+    entries.push_back({e.row, e.column, {}, exact});
+  }
+  std::vector<double> arena(tables_.size, 0.0);
+  const std::vector<double> coefficients = coefficient_values(plan_, *program_, parameters);
+  std::copy(coefficients.begin(), coefficients.end(), arena.begin());
+  const std::unique_ptr<Arithmetic> arithmetic = tier_plain.make(tables_, arena.data(), 1);
+  std::size_t samples = 0;
+  for (std::uint64_t attempt = 0; attempt < 3 * kSamples && samples < kSamples; ++attempt) {
+    std::size_t i = 0;
+    for (std::size_t j = 0; j < plan_.d.size(); ++j) {
+      for (int k = 0; k < plan_.d[j]; ++k, ++i)
+        arena[plan_.x[j] + static_cast<std::uint32_t>(k)] = (state[i] + (attempt == 0 ? 0 : kAround * scattered(64 * attempt + i))) * tables_.inverse_factorial[static_cast<std::size_t>(k)];
+      arena[plan_.x[j] + static_cast<std::uint32_t>(plan_.d[j])] = 0;
+    }
+    arena[plan_.time] = t;
+    arena[plan_.time + 1] = 1;
+    arithmetic->values(-plan_.largest_lead);
+    bool good = true;
+    for (std::size_t e = 0; e < entries.size(); ++e) {
+      const double value = plan_.entries[e].sign * arena[plan_.entries[e].from];
+      good = good && std::isfinite(value);
+      entries[e].value[samples] = value;
+    }
+    if (good) ++samples;
+    else if (attempt == 0) return false;
+  }
+  std::vector<bool> needed(plan_.rows, false);
+  for (std::size_t j = 0; j < plan_.d.size(); ++j) needed[j] = true;
+  for (const Completion& c : plan_.completions) needed[c.column] = true;
+  const std::uint32_t sides = static_cast<std::uint32_t>(plan_.roots.size());
+  // Samples may lie where the system is singular: fewer, then.
+  for (; samples > 0; --samples) {
+    elimination_ = eliminate_sparse(plan_.rows, entries, samples, sides, needed);
+    if (!elimination_.pivots.empty()) break;
+  }
+  for (SparseLu::Pivot& p : elimination_.pivots)
+    for (std::size_t k = samples; k < kSamples; ++k) p.value[k] = p.value[0];
+  lay_out();
+  return !elimination_.pivots.empty();
+}
+
+void Kernel::Free::operator()(double* p) const { std::free(p); }
+
+Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* tier)
+    : plan_(std::move(plan)), lanes_(lanes), health_(static_cast<std::size_t>(lanes), 1.0), drift_(static_cast<std::size_t>(lanes), 0.0), weight_(static_cast<std::size_t>(lanes), 0.0),
+      moved_(static_cast<std::size_t>(lanes), 0) {
+  if (!tier) tier = &tiers().back();
+  ANHOLON_ASSERT(lanes == 1 || lanes == tier->lanes);
+  const std::size_t bytes = plan_->tables().size * sizeof(double) * static_cast<std::size_t>(lanes);
+  memory_.reset(static_cast<double*>(std::aligned_alloc(64, (bytes + 63) / 64 * 64)));
+  if (!memory_) throw std::bad_alloc();
+  arena_ = memory_.get();
+  std::memset(arena_, 0, bytes);
+  arithmetic_ = tier->make(plan_->tables(), arena_, lanes);
+}
+
+void Kernel::set_parameters(int lane, const std::vector<long double>& parameters) {
+  const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters);
+  for (std::size_t i = 0; i < values.size(); ++i) number(static_cast<std::uint32_t>(i), lane) = values[i];
+}
+
+void Kernel::load(int lane, double t, std::span<const double> state, std::span<const double> leading) {
+  const Plan& p = plan_->plan();
+  const std::vector<double>& inverse = plan_->tables().inverse_factorial;
+  std::size_t i = 0;
+  for (std::size_t j = 0; j < p.x.size(); ++j) {
+    for (int k = 0; k < p.d[j]; ++k) number(p.x[j] + static_cast<std::uint32_t>(k), lane) = state[i++] * inverse[static_cast<std::size_t>(k)];
+    number(p.x[j] + static_cast<std::uint32_t>(p.d[j]), lane) = (leading.empty() ? 0 : leading[j]) * inverse[static_cast<std::size_t>(p.d[j])];
+  }
+  number(p.time, lane) = t;
+  number(p.time + 1, lane) = 1;
+}
+
+void Kernel::expand() {
+  arithmetic_->values(-plan_->plan().largest_lead);
+  arithmetic_->factor();
+  judge_pivots();
+  project();
+  arithmetic_->residual(0);
+  arithmetic_->complete(0);
+  arithmetic_->extend();
+}
+
+void Kernel::judge_pivots() {
+  const SparseLu& e = plan_->elimination();
+  const KernelTables& t = plan_->tables();
+  for (int lane = 0; lane < lanes_; ++lane) {
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t k = 0; k < e.pivots.size(); ++k) {
+      const SparseLu::Pivot& p = e.pivots[k];
+      if (p.one || p.minus_one) continue;
+      const double ratio = number(t.lu + p.entry, lane) / p.value[0];
+      least = ratio < least ? ratio : least;
+      if (!(ratio >= least)) least = -1;  // what is not a number
+    }
+    health_[static_cast<std::size_t>(lane)] = least;
+  }
+}
+
+void Kernel::project() {
+  const Plan& p = plan_->plan();
+  const KernelTables& t = plan_->tables();
+  std::fill(drift_.begin(), drift_.end(), 0.0);
+  std::fill(moved_.begin(), moved_.end(), 0);
+  for (int level = *std::max_element(p.c.begin(), p.c.end()); level >= 1; --level) {
+    arithmetic_->residual(level);
+    bool any = false;
+    for (int lane = 0; lane < lanes_; ++lane) {
+      const std::size_t i = static_cast<std::size_t>(lane);
+      double size = 1, most = 0;
+      for (std::size_t j = 0; j < p.x.size(); ++j) {
+        const int k = p.d[j] - level;
+        if (k < 0) continue;
+        size = std::max(size, std::abs(derivative(j, k, lane)));
+        most = std::max(most, std::abs(number(t.solution + static_cast<std::uint32_t>(j), lane)));
+      }
+      const double displacement = most / size;
+      if (!(displacement <= drift_[i])) drift_[i] = displacement;
+      weight_[i] = displacement > kQuiet ? 1 : 0;
+      if (weight_[i] > 0) any = true, moved_[i] = 1;
+    }
+    if (!any) continue;
+    arithmetic_->correct(level, weight_.data());
+    arithmetic_->values(-level);
+  }
+}
+
+bool Kernel::finite(int lane) const {
+  const Plan& p = plan_->plan();
+  for (std::size_t j = 0; j < p.x.size(); ++j)
+    if (!std::isfinite(number(p.x[j] + static_cast<std::uint32_t>(p.stages + p.d[j]), lane))) return false;
+  return true;
+}
+
+}  // namespace anholon

@@ -1,0 +1,91 @@
+// Taylor expansions of a motion in doubles, fast: one trajectory, or one in each SIMD lane.
+//
+// What is shared (the plan, the order of pivots, tables) is made once per program; a Kernel is the workspace of one thread. Against
+// Expansion<double>, the reference: the same expansion to round-off, without refinement. The pivots are static: `health` says whether
+// they still serve; where it is small, the reference takes the step.
+#pragma once
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "kernel/arithmetic.h"
+
+namespace anholon {
+
+class KernelPlan {
+ public:
+  // `state`: where the pivots are chosen, and around it. Nothing if the program has no plan, or the equations are singular there.
+  static std::shared_ptr<const KernelPlan> make(const Program& program, int stages, const std::vector<long double>& parameters, double t,
+                                                const std::vector<double>& state);
+  KernelPlan(const KernelPlan&) = delete;
+  KernelPlan& operator=(const KernelPlan&) = delete;
+
+  const Plan& plan() const { return plan_; }
+  const SparseLu& elimination() const { return elimination_; }
+  const KernelTables& tables() const { return tables_; }
+  const Program& program() const { return *program_; }
+  std::size_t state_size() const { return state_size_; }
+  // Operations of one expansion.
+  double work() const { return plan_.work() + elimination_.work() * (plan_.stages + 2) + static_cast<double>(elimination_.update_list.size()); }
+
+ private:
+  KernelPlan(const Program& program, int stages);
+  bool choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state);
+  void lay_out();
+
+  const Program* program_;
+  Plan plan_;
+  SparseLu elimination_;
+  KernelTables tables_;
+  std::size_t state_size_ = 0;
+};
+
+class Kernel {
+ public:
+  // `lanes`: 1, or what the tier has. Without a tier: the best of this machine.
+  explicit Kernel(std::shared_ptr<const KernelPlan> plan, int lanes = 1, const Tier* tier = nullptr);
+
+  int lanes() const { return lanes_; }
+  const KernelPlan& plan() const { return *plan_; }
+  void set_parameters(int lane, const std::vector<long double>& parameters);
+  // State: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
+  void load(int lane, double t, std::span<const double> state, std::span<const double> leading);
+  // Projects the state on the hidden constraints where it has left them, solves for the leading derivatives, and computes all coefficients.
+  void expand();
+
+  // Of the last expansion. The smallest pivot in relation to what it was where the pivots were chosen: below 0 it has changed sign.
+  double health(int lane) const { return health_[static_cast<std::size_t>(lane)]; }
+  bool finite(int lane) const;
+  // How far the state was from the hidden constraints, in relation to its size, and whether it was moved.
+  double drift(int lane) const { return drift_[static_cast<std::size_t>(lane)]; }
+  bool moved(int lane) const { return moved_[static_cast<std::size_t>(lane)]; }
+
+  double coefficient(std::size_t j, int k, int lane = 0) const { return number(plan_->plan().x[j] + static_cast<std::uint32_t>(k), lane); }
+  double derivative(std::size_t j, int k, int lane = 0) const { return coefficient(j, k, lane) * plan_->tables().factorial[static_cast<std::size_t>(k)]; }
+  // Taylor coefficient of quadrature i.
+  double quadrature(std::size_t i, int order, int lane = 0) const {
+    const Place q = plan_->plan().quadratures[i];
+    return q.series ? number(q.at + static_cast<std::uint32_t>(order), lane) : order == 0 ? number(q.at, lane) : 0;
+  }
+  // increments [x_j^(k), k = 0..d_j][lane] at h[lane], without the value at the point.
+  void advance(const double* h, double* increments) { arithmetic_->advance(h, increments); }
+
+ private:
+  double number(std::uint32_t slot, int lane) const { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
+  double& number(std::uint32_t slot, int lane) { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
+  void project();
+  void judge_pivots();
+
+  struct Free {
+    void operator()(double* p) const;
+  };
+  std::shared_ptr<const KernelPlan> plan_;
+  int lanes_;
+  std::unique_ptr<double[], Free> memory_;
+  double* arena_;
+  std::unique_ptr<Arithmetic> arithmetic_;
+  std::vector<double> health_, drift_, weight_;
+  std::vector<char> moved_;
+};
+
+}  // namespace anholon

@@ -1,0 +1,119 @@
+// The stepping program laid out for speed: what one Taylor expansion in doubles computes, step by step, over one arena of numbers.
+//
+// A plan is made once per program and holds no numbers of a motion, so any number of kernels (one trajectory, or one in each SIMD lane)
+// and threads share it. Against the tape (tape/tape.h), which stays the reference:
+//   - sums of sums are one sum, factors constant in time are its coefficients, a sine and its cosine are one step;
+//   - only what a convolution needs keeps its series, all else is one number per stage;
+//   - what is zero in a sweep because the unknowns of the stage are not known yet is left out of the stages beyond 0;
+//   - J is never formed: the linearized tape itself, one row for every slot that depends on the unknowns, is eliminated by a sparse
+//     LU (sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "program/program.h"
+
+namespace anholon {
+
+// A value in the arena; of a series: its coefficient of order p lies at `at` + p.
+struct Place {
+  std::uint32_t at = 0;
+  bool series = false;
+};
+
+enum class Act : std::uint8_t {
+  input,        // x^(k): a = series of x, index = k
+  linear,       // sum of coefficient * value
+  multiply,     // a * b
+  square,       // a^2
+  divide,       // a / b; c: 1 / b_0
+  square_root,  // sqrt(a)
+  power,        // a^value
+  sine_cosine,  // out = sin a, c = cos a; b = weighted series of a
+  function,     // elementary function `index` of a; b = its derivative, c = weighted series of a
+  arctan2,      // atan2(a, b); c, d = derivatives by a and b; e, f = weighted series of a and b
+  weigh,        // order * a
+  select,       // a where c_0 >= 0, else b
+  lookup,       // step function `index` of a
+};
+
+struct Step {
+  Act act = Act::linear;
+  std::uint8_t lead = 0;
+  bool a_constant = false, b_constant = false;  // only the coefficient of order 0 is not zero
+  bool a_unknown = false, b_unknown = false;    // the newest coefficient is an unknown of the stage, zero in the sweep
+  Place out, a, b, c, d, e, f;
+  std::uint32_t first = 0, count = 0;  // terms
+  std::uint32_t constants = 0;         // terms after those, constant in time
+  std::uint32_t index = 0;
+  double value = 0;
+};
+
+struct PlanTerm {
+  std::uint32_t coefficient;  // in the arena
+  Place x;
+};
+
+// A constant of the arena: rational * product of slots of the tape that are constant in time.
+struct Coefficient {
+  Rational rational{1};
+  std::vector<std::uint32_t> slots;
+  bool one() const { return slots.empty() && rational == 1; }
+  bool minus_one() const { return slots.empty() && rational == -1; }
+};
+
+// A partial derivative that is no coefficient of a series: computed once per expansion.
+struct Partial {
+  enum class Kind : std::uint8_t { twice, half_reciprocal, quotient, power, chosen, not_chosen } kind;
+  std::uint32_t out, a, b;  // twice a; 1/(2a); a b; value a / b; a >= 0; a < 0
+  double value = 0;
+};
+
+// The linearized tape: `row` of it has `sign` * arena[`from`] in `column`. Unknowns come first, then the slots that depend on them.
+struct Entry {
+  std::uint32_t row, column, from;
+  double sign;
+};
+
+// What becomes known when a stage is solved.
+struct Completion {
+  Place out;
+  std::uint8_t lead;
+  std::uint32_t column;
+  bool fresh;  // out is zero before (beyond stage 0)
+};
+
+struct Plan {
+  int stages = 0;
+  std::uint32_t stride = 0;
+  std::uint32_t arena = 0;  // its size
+
+  std::vector<Coefficient> coefficients;  // arena [0, size)
+  std::vector<Step> point, stage, after;  // stages up to 0; beyond; quadratures
+  std::vector<PlanTerm> terms;
+  std::vector<Partial> partials;
+  std::vector<Step> weigh_again;  // weighted series of what the unknowns of the stage change
+  std::vector<Entry> entries;
+  std::vector<Completion> completions;
+  std::vector<std::uint32_t> x;       // series of every unknown
+  std::uint32_t time = 0;             // series of t
+  std::vector<Place> roots;           // of the equations; the right side of row i is that of root i
+  std::vector<char> root_is_zero;     // beyond stage 0, before the unknowns of the stage are known
+  std::vector<Place> quadratures;
+  std::uint32_t rows = 0;             // of the linearized tape
+  int largest_lead = 0, largest_d = 0;
+  std::vector<int> c, d;
+
+  // For choices of representation: multiplications and additions of one expansion (without the elimination).
+  double work() const;
+};
+
+// Why a program has no plan, or nothing.
+std::string no_plan(const Program& program);
+// REQUIRES: no_plan(program).empty()
+Plan plan(const Program& program, int stages);
+
+// The coefficients' values; the slots' in long double, rounded once.
+std::vector<double> coefficient_values(const Plan& plan, const Program& program, const std::vector<long double>& parameters);
+
+}  // namespace anholon

@@ -1,0 +1,233 @@
+#include "kernel/sparse_lu.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace anholon {
+
+namespace {
+
+// A pivot is at least this part of the largest entry of its row.
+constexpr double kThreshold = 0.05;
+constexpr double kVanishes = 1e-12;
+// So many of the shortest rows and columns are looked at for the next pivot.
+constexpr int kCandidates = 6;
+constexpr int kScalings = 3;
+
+using Values = std::array<double, kSamples>;
+
+class Matrix {
+ public:
+  Matrix(std::uint32_t n, std::size_t samples, SparseLu& out) : n_(n), samples_(samples), out_(out), rows_(n), columns_(n) {}
+
+  void add(const SampledEntry& e) {
+    const auto [it, fresh] = rows_[e.row].try_emplace(e.column, static_cast<std::uint32_t>(entries_.size()));
+    if (fresh) {
+      entries_.push_back({e.value, e.exact});
+      columns_[e.column].insert(e.row);
+    } else {
+      for (std::size_t k = 0; k < samples_; ++k) entries_[it->second].value[k] += e.value[k];
+      entries_[it->second].exact = false;
+    }
+    out_.place.push_back(it->second);
+  }
+
+  // By powers of 2, so that a large entry is one that matters.
+  void scale() {
+    row_scale_.assign(n_, {});
+    column_scale_.assign(n_, {});
+    for (std::size_t k = 0; k < samples_; ++k) {
+      for (std::uint32_t i = 0; i < n_; ++i) row_scale_[i][k] = column_scale_[i][k] = 1;
+      for (int round = 0; round < kScalings; ++round) {
+        std::vector<double> most(n_, 0);
+        for (std::uint32_t i = 0; i < n_; ++i)
+          for (const auto& [j, e] : rows_[i]) most[i] = std::max(most[i], std::abs(entries_[e].value[k]) * row_scale_[i][k] * column_scale_[j][k]);
+        for (std::uint32_t i = 0; i < n_; ++i)
+          if (most[i] > 0) row_scale_[i][k] *= std::exp2(-std::round(std::log2(most[i])));
+        most.assign(n_, 0);
+        for (std::uint32_t i = 0; i < n_; ++i)
+          for (const auto& [j, e] : rows_[i]) most[j] = std::max(most[j], std::abs(entries_[e].value[k]) * row_scale_[i][k] * column_scale_[j][k]);
+        for (std::uint32_t j = 0; j < n_; ++j)
+          if (most[j] > 0) column_scale_[j][k] *= std::exp2(-std::round(std::log2(most[j])));
+      }
+    }
+  }
+
+  bool run() {
+    for (std::uint32_t i = 0; i < n_; ++i) short_rows_.insert({rows_[i].size(), i}), short_columns_.insert({columns_[i].size(), i});
+    for (std::int64_t k = 0; k < n_; ++k) {
+      best_ = {};
+      int looked = 0;
+      auto row = short_rows_.begin(), column = short_columns_.begin();
+      while (looked < kCandidates && (row != short_rows_.end() || column != short_columns_.end())) {
+        if (best_.found && best_.cost == 0 && best_.exact) break;
+        if (column == short_columns_.end() || (row != short_rows_.end() && row->first <= column->first)) {
+          const std::uint32_t i = (row++)->second;
+          for (const auto& [j, e] : rows_[i]) consider(i, j, e);
+        } else {
+          const std::uint32_t j = (column++)->second;
+          for (std::uint32_t i : columns_[j]) consider(i, j, rows_[i].at(j));
+        }
+        if (best_.found) ++looked;
+      }
+      if (!best_.found && one_sign_) {
+        // Any that is not small, then, although it passes through zero somewhere.
+        one_sign_ = false;
+        --k;
+        continue;
+      }
+      if (!best_.found) return false;
+      one_sign_ = true;
+      eliminate();
+    }
+    out_.entries = static_cast<std::uint32_t>(entries_.size());
+    return true;
+  }
+
+  const std::vector<std::map<std::uint32_t, std::uint32_t>>& upper() const { return upper_; }
+
+ private:
+  struct Entry {
+    Values value;
+    bool exact;
+  };
+  struct Best {
+    bool found = false, exact = false;
+    std::size_t cost = 0;
+    double size = 0;
+    std::uint32_t row = 0, column = 0, entry = 0;
+  };
+
+  double scaled(std::uint32_t i, std::uint32_t j, std::uint32_t e, std::size_t k) const {
+    return std::abs(entries_[e].value[k]) * row_scale_[i][k] * column_scale_[j][k];
+  }
+
+  void consider(std::uint32_t i, std::uint32_t j, std::uint32_t e) {
+    const std::size_t cost = (rows_[i].size() - 1) * (columns_[j].size() - 1);
+    const bool exact = entries_[e].exact && std::abs(entries_[e].value[0]) == 1;
+    if (best_.found && (cost > best_.cost || (cost == best_.cost && best_.exact && !exact))) return;
+    double size = 1;
+    for (std::size_t k = 0; k < samples_; ++k) {
+      double most = 0;
+      for (const auto& [other, f] : rows_[i]) most = std::max(most, scaled(i, other, f, k));
+      const double here = scaled(i, j, e, k);
+      if (!(here > kVanishes) || here < kThreshold * most) return;
+      if (one_sign_ && entries_[e].value[k] * entries_[e].value[0] < 0) return;
+      size = std::min(size, here / most);
+    }
+    if (best_.found && cost == best_.cost && exact == best_.exact && size <= best_.size) return;
+    best_ = {true, exact, cost, size, i, j, e};
+  }
+
+  void resize_row(std::uint32_t i, std::size_t from) {
+    short_rows_.erase({from, i});
+    short_rows_.insert({rows_[i].size(), i});
+  }
+  void resize_column(std::uint32_t j, std::size_t from) {
+    short_columns_.erase({from, j});
+    short_columns_.insert({columns_[j].size(), j});
+  }
+
+  void eliminate() {
+    const std::uint32_t i = best_.row, j = best_.column;
+    SparseLu::Pivot p;
+    p.row = i;
+    p.column = j;
+    p.entry = best_.entry;
+    p.one = best_.exact && entries_[p.entry].value[0] == 1;
+    p.minus_one = best_.exact && entries_[p.entry].value[0] == -1;
+    p.value = entries_[p.entry].value;
+    p.first_scaled = static_cast<std::uint32_t>(out_.scaled_entries.size());
+    p.first_update = static_cast<std::uint32_t>(out_.update_list.size());
+    short_rows_.erase({rows_[i].size(), i});
+    short_columns_.erase({columns_[j].size(), j});
+    std::map<std::uint32_t, std::uint32_t> top = std::move(rows_[i]);
+    top.erase(j);
+    for (const auto& [other, e] : top) {
+      const std::size_t from = columns_[other].size();
+      columns_[other].erase(i);
+      resize_column(other, from);
+    }
+    columns_[j].erase(i);
+    for (std::uint32_t r : columns_[j]) {
+      const std::size_t from = rows_[r].size();
+      const std::uint32_t l = rows_[r].at(j);
+      rows_[r].erase(j);
+      out_.scaled_entries.push_back(l);
+      for (std::size_t k = 0; k < samples_; ++k) entries_[l].value[k] /= p.value[k];
+      for (const auto& [other, u] : top) {
+        const auto [it, fresh] = rows_[r].try_emplace(other, static_cast<std::uint32_t>(entries_.size()));
+        if (fresh) {
+          entries_.push_back({});
+          const std::size_t column_from = columns_[other].size();
+          columns_[other].insert(r);
+          resize_column(other, column_from);
+        }
+        for (std::size_t k = 0; k < samples_; ++k) entries_[it->second].value[k] -= entries_[l].value[k] * entries_[u].value[k];
+        entries_[it->second].exact = false;
+        out_.update_list.push_back({it->second, l, u});
+      }
+      out_.forward.push_back({r, l, i});
+      resize_row(r, from);
+    }
+    columns_[j].clear();
+    p.scaled = static_cast<std::uint32_t>(out_.scaled_entries.size()) - p.first_scaled;
+    p.updates = static_cast<std::uint32_t>(out_.update_list.size()) - p.first_update;
+    out_.pivots.push_back(p);
+    upper_.push_back(std::move(top));
+  }
+
+  std::uint32_t n_;
+  std::size_t samples_;
+  SparseLu& out_;
+  std::vector<Entry> entries_;
+  std::vector<std::map<std::uint32_t, std::uint32_t>> rows_, upper_;
+  std::vector<std::set<std::uint32_t>> columns_;
+  std::vector<Values> row_scale_, column_scale_;
+  std::set<std::pair<std::size_t, std::uint32_t>> short_rows_, short_columns_;
+  Best best_;
+  bool one_sign_ = true;  // pivots of the same sign at all samples
+};
+
+}  // namespace
+
+SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, std::uint32_t sides, const std::vector<bool>& needed) {
+  SparseLu out;
+  Matrix m(rows, samples, out);
+  for (const SampledEntry& e : entries) m.add(e);
+  m.scale();
+  if (!m.run()) return {};
+
+  // Where a right side can be other than zero.
+  std::vector<bool> side(rows, false);
+  std::fill(side.begin(), side.begin() + sides, true);
+  std::vector<SparseLu::Forward> forward;
+  for (const SparseLu::Forward& f : out.forward) {
+    if (!side[f.from]) continue;
+    side[f.to] = true;
+    forward.push_back(f);
+  }
+  out.forward = std::move(forward);
+
+  std::vector<bool> wanted = needed;
+  std::vector<bool> kept(rows, false);
+  // A column is wanted by the rows of pivots before its own.
+  for (std::size_t k = 0; k < out.pivots.size(); ++k) {
+    kept[k] = wanted[out.pivots[k].column];
+    if (kept[k])
+      for (const auto& [column, entry] : m.upper()[k]) wanted[column] = true;
+  }
+  for (std::size_t k = out.pivots.size(); k-- > 0;) {
+    const SparseLu::Pivot& p = out.pivots[k];
+    if (!kept[k]) continue;
+    SparseLu::Backward b{p.column, p.row, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(out.terms.size()), 0, !side[p.row]};
+    for (const auto& [column, entry] : m.upper()[k]) out.terms.push_back({entry, column});
+    b.count = static_cast<std::uint32_t>(out.terms.size()) - b.first;
+    out.backward.push_back(b);
+  }
+  return out;
+}
+
+}  // namespace anholon

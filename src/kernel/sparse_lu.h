@@ -1,0 +1,65 @@
+// A sparse LU with a fixed order of pivots, found once and used at every step.
+//
+// The order is Markowitz's (least fill first) among pivots that are not small in their row, at any of the sample points given; exact 1 and -1 are
+// preferred, as they need no division. What comes out are lists of operations on the entries: no search, no branch at run time.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace anholon {
+
+inline constexpr std::size_t kSamples = 4;
+
+// An entry of a square matrix with its value at the samples; `exact`: it always has this value.
+struct SampledEntry {
+  std::uint32_t row, column;
+  std::array<double, kSamples> value;
+  bool exact = false;
+};
+
+struct SparseLu {
+  // Entries: those given, in their order (repeated places are summed into the first), then fill.
+  std::uint32_t entries = 0;
+  std::vector<std::uint32_t> place;  // of a given entry: where it is added
+
+  // Factors: for each pivot in order, l = a / pivot, then a -= l u.
+  struct Pivot {
+    std::uint32_t row, column, entry;
+    bool one = false, minus_one = false;
+    std::uint32_t first_scaled = 0, scaled = 0;    // into `scaled_entries`: multipliers of this pivot
+    std::uint32_t first_update = 0, updates = 0;   // into `update_list`
+    std::array<double, kSamples> value{};          // at the samples
+  };
+  struct Update {
+    std::uint32_t to, l, u;  // entry `to` -= l u
+  };
+  std::vector<Pivot> pivots;
+  std::vector<std::uint32_t> scaled_entries;
+  std::vector<Update> update_list;
+
+  // Solves, on one right side of `rows` numbers. Forward: rhs[to] -= entry rhs[from], where that is not always zero.
+  struct Forward {
+    std::uint32_t to, entry, from;
+  };
+  // Backward, pivot by pivot from the last: solution[column] = (rhs[row] - sum entry solution[other]) / pivot.
+  struct Backward {
+    std::uint32_t column, row, pivot;  // pivot: index of it, for its reciprocal
+    std::uint32_t first, count;        // into `terms`
+    bool zero_side = false;            // rhs[row] is always zero
+  };
+  struct Term {
+    std::uint32_t entry, column;
+  };
+  std::vector<Forward> forward;
+  std::vector<Backward> backward;
+  std::vector<Term> terms;
+
+  double work() const { return static_cast<double>(forward.size() + terms.size() + backward.size()); }
+};
+
+// `sides`: rows 0..sides-1 have a right side, all others zero. `needed`: the columns whose solution is asked for. Empty pivots if the matrix is singular at a sample.
+SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, std::uint32_t sides, const std::vector<bool>& needed);
+
+}  // namespace anholon

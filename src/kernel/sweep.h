@@ -1,0 +1,342 @@
+// The arithmetic of a kernel over one lane type. Included by one file per instruction set (tier_*.cpp), which says which lanes there are.
+//
+// Everything lies in an unnamed namespace: each of those files has its own copy, compiled for its machine.
+#pragma once
+#include <cmath>
+#include <cstddef>
+
+#include "kernel/arithmetic.h"
+
+namespace anholon {
+namespace {
+
+// Lanes of doubles; one lane is a double. fma is fused where the machine can, in every tier but the plainest.
+template <int L>
+struct Lanes;
+
+template <>
+struct Lanes<1> {
+  using V = double;
+  static V broadcast(double x) { return x; }
+  static double get(V v, int) { return v; }
+  static void set(V& v, int, double x) { v = x; }
+#ifdef __FMA__
+  static V fma(V a, V b, V c) { return __builtin_fma(a, b, c); }
+#else
+  static V fma(V a, V b, V c) { return a * b + c; }
+#endif
+};
+
+#ifdef __AVX2__
+}  // namespace
+}  // namespace anholon
+#include <immintrin.h>
+namespace anholon {
+namespace {
+template <>
+struct Lanes<4> {
+  using V = __m256d;
+  static V broadcast(double x) { return _mm256_set1_pd(x); }
+  static double get(V v, int lane) { return reinterpret_cast<const double*>(&v)[lane]; }
+  static void set(V& v, int lane, double x) { reinterpret_cast<double*>(&v)[lane] = x; }
+  static V fma(V a, V b, V c) { return _mm256_fmadd_pd(a, b, c); }
+};
+#endif
+#ifdef __AVX512F__
+template <>
+struct Lanes<8> {
+  using V = __m512d;
+  static V broadcast(double x) { return _mm512_set1_pd(x); }
+  static double get(V v, int lane) { return reinterpret_cast<const double*>(&v)[lane]; }
+  static void set(V& v, int lane, double x) { reinterpret_cast<double*>(&v)[lane] = x; }
+  static V fma(V a, V b, V c) { return _mm512_fmadd_pd(a, b, c); }
+};
+#endif
+
+template <int L>
+class Sweep final : public Arithmetic {
+  using T = Lanes<L>;
+  using V = typename T::V;
+
+ public:
+  Sweep(const KernelTables& tables, double* arena) : k_(tables), p_(*tables.plan), w_(reinterpret_cast<V*>(arena)) {}
+
+  void values(int from) override {
+    for (int stage = from; stage <= 0; ++stage) run(p_.point, stage);
+    for (const Partial& d : p_.partials) w_[d.out] = partial(d);
+  }
+
+  void factor() override {
+    const SparseLu& e = *k_.elimination;
+    V* lu = w_ + k_.lu;
+    const V zero = T::broadcast(0);
+    for (std::uint32_t i = 0; i < e.entries; ++i) lu[i] = zero;
+    for (std::size_t i = 0; i < p_.entries.size(); ++i) {
+      const Entry& entry = p_.entries[i];
+      V& to = lu[e.place[i]];
+      to = T::fma(T::broadcast(entry.sign), w_[entry.from], to);
+    }
+    V* reciprocal = w_ + k_.reciprocal;
+    const V one = T::broadcast(1);
+    for (std::size_t k = 0; k < e.pivots.size(); ++k) {
+      const SparseLu::Pivot& p = e.pivots[k];
+      if (!p.one) {
+        const V r = p.minus_one ? -one : one / lu[p.entry];
+        reciprocal[k] = r;
+        for (std::uint32_t i = p.first_scaled; i < p.first_scaled + p.scaled; ++i) lu[e.scaled_entries[i]] *= r;
+      }
+      for (std::uint32_t i = p.first_update; i < p.first_update + p.updates; ++i) {
+        const SparseLu::Update& u = e.update_list[i];
+        lu[u.to] = T::fma(-lu[u.l], lu[u.u], lu[u.to]);
+      }
+    }
+  }
+
+  void residual(int level) override {
+    V* rhs = w_ + k_.rhs;
+    for (std::size_t i = 0; i < p_.roots.size(); ++i) {
+      const int order = p_.c[i] - level;
+      const Place r = p_.roots[i];
+      rhs[i] = order < 0 ? T::broadcast(0) : *at(r, static_cast<std::uint32_t>(order)) * T::broadcast(-k_.factorial[order]);
+    }
+    solve();
+  }
+
+  void correct(int level, const double* weight) override {
+    const V* y = w_ + k_.solution;
+    V use;
+    for (int lane = 0; lane < L; ++lane) T::set(use, lane, weight[lane]);
+    for (std::size_t j = 0; j < p_.x.size(); ++j)
+      if (const int order = p_.d[j] - level; order >= 0) {
+        V& x = w_[p_.x[j] + static_cast<std::uint32_t>(order)];
+        x = T::fma(y[j] * use, T::broadcast(k_.inverse_factorial[order]), x);
+      }
+  }
+
+  void complete(int stage) override {
+    const V* y = w_ + k_.solution;
+    for (std::size_t j = 0; j < p_.x.size(); ++j) {
+      const std::uint32_t order = static_cast<std::uint32_t>(stage + p_.d[j]);
+      V& x = w_[p_.x[j] + order];
+      const V change = y[j] * T::broadcast(k_.factorial[stage] * k_.inverse_factorial[order]);
+      x = stage > 0 ? change : x + change;
+    }
+    for (const Completion& c : p_.completions) {
+      V& w = w_[c.out.at + static_cast<std::uint32_t>(stage + c.lead)];
+      V change = y[c.column];
+      if (c.lead > 0 ) change *= T::broadcast(k_.factorial[stage] * k_.inverse_factorial[stage + c.lead]);
+      w = stage > 0 && c.fresh ? change : w + change;
+    }
+    run(p_.weigh_again, stage);
+  }
+
+  void extend() override {
+    V* rhs = w_ + k_.rhs;
+    for (int stage = 1; stage <= p_.stages; ++stage) {
+      run(p_.stage, stage);
+      for (std::size_t i = 0; i < p_.roots.size(); ++i) {
+        const Place r = p_.roots[i];
+        const int order = stage + p_.c[i];
+        rhs[i] = p_.root_is_zero[i] ? T::broadcast(0) : *at(r, static_cast<std::uint32_t>(order)) * T::broadcast(-k_.factorial[order] * k_.inverse_factorial[stage]);
+      }
+      solve();
+      complete(stage);
+    }
+    if (!p_.after.empty())
+      for (int stage = 0; stage <= p_.stages; ++stage) run(p_.after, stage);
+  }
+
+  // x_j^(k) at h beyond the point, without its term of order 0.
+  void advance(const double* h, double* increments) override {
+    V step;
+    for (int lane = 0; lane < L; ++lane) T::set(step, lane, h[lane]);
+    V* out = reinterpret_cast<V*>(increments);
+    for (std::size_t j = 0; j < p_.x.size(); ++j) {
+      const V* x = w_ + p_.x[j];
+      for (int k = 0; k <= p_.d[j]; ++k) {
+        V s = T::broadcast(0);
+        for (int i = p_.stages + p_.d[j] - k; i >= 1; --i)
+          s = T::fma(x[k + i], T::broadcast(k_.factorial[k + i] * k_.inverse_factorial[i]), s) * step;
+        *out++ = s;
+      }
+    }
+  }
+
+ private:
+  V* at(const Place& place, std::uint32_t order) { return w_ + place.at + (place.series ? order : 0); }
+
+  // Sum of a_j b_(p-j), j = low..high, from the middle outwards: the newest coefficients come last.
+  V convolution(const V* a, const V* b, std::int64_t p, std::int64_t low, std::int64_t high) const {
+    V s = T::broadcast(0), t = s;
+    const std::int64_t middle = p / 2;
+    for (std::int64_t j = middle; j >= low; --j) s = T::fma(a[j], b[p - j], s);
+    for (std::int64_t j = middle + 1; j <= high; ++j) t = T::fma(a[j], b[p - j], t);
+    return s + t;
+  }
+
+  V squares(const V* a, std::int64_t p, std::int64_t low) const {
+    V s = T::broadcast(0);
+    for (std::int64_t j = (p - 1) / 2; j >= low; --j) s = T::fma(a[j], a[p - j], s);
+    s = s + s;
+    return p % 2 == 0 && p / 2 >= low ? T::fma(a[p / 2], a[p / 2], s) : s;
+  }
+
+  template <class F>
+  static V each(V v, F f) {
+    V r;
+    for (int lane = 0; lane < L; ++lane) T::set(r, lane, f(T::get(v, lane)));
+    return r;
+  }
+
+  V partial(const Partial& d) {
+    using K = Partial::Kind;
+    const V a = w_[d.a], one = T::broadcast(1);
+    switch (d.kind) {
+      case K::twice: return a + a;
+      case K::half_reciprocal: return T::broadcast(0.5) / a;
+      case K::quotient: return a * w_[d.b];
+      case K::power: return T::broadcast(d.value) * a / w_[d.b];
+      case K::chosen: return each(a, [](double x) { return x < 0 ? 0.0 : 1.0; });
+      case K::not_chosen: return each(a, [](double x) { return x < 0 ? 1.0 : 0.0; });
+    }
+    return one;
+  }
+
+  void run(const std::vector<Step>& steps, int stage) {
+    for (const Step& s : steps)
+      if (const int p = stage + s.lead; p >= 0) {
+        if (p == 0) value(s);
+        else coefficient(s, static_cast<std::uint32_t>(p));
+      }
+  }
+
+  void value(const Step& s) {
+    V& out = w_[s.out.at];
+    const V a = w_[s.a.at];
+    switch (s.act) {
+      case Act::input: out = w_[s.a.at + s.index] * T::broadcast(k_.factorial[s.index]); break;
+      case Act::linear: out = sum(s, 0, s.count + s.constants); break;
+      case Act::multiply: out = a * w_[s.b.at]; break;
+      case Act::square: out = a * a; break;
+      case Act::divide: {
+        const V r = T::broadcast(1) / w_[s.b.at];
+        w_[s.c.at] = r;
+        out = a * r;
+        break;
+      }
+      case Act::square_root: out = each(a, [](double x) { return std::sqrt(x); }); break;
+      case Act::power: out = each(a, [&](double x) { return power_of(x, s.value); }); break;
+      case Act::sine_cosine:
+        for (int lane = 0; lane < L; ++lane) {
+          double sine, cosine;
+          sine_and_cosine(T::get(a, lane), sine, cosine);
+          T::set(out, lane, sine);
+          T::set(w_[s.c.at], lane, cosine);
+        }
+        break;
+      case Act::function: out = each(a, [&](double x) { return function_of(s.index, x); }); break;
+      case Act::arctan2:
+        for (int lane = 0; lane < L; ++lane) T::set(out, lane, std::atan2(T::get(a, lane), T::get(w_[s.b.at], lane)));
+        break;
+      case Act::weigh: out = T::broadcast(0); break;
+      case Act::select: out = chosen(s, 0); break;
+      case Act::lookup: out = each(a, [&](double x) { return k_.lookup(s.index, x); }); break;
+    }
+  }
+
+  V sum(const Step& s, std::uint32_t p, std::uint32_t count) {
+    const PlanTerm* term = &p_.terms[s.first];
+    V r = T::broadcast(0);
+    for (std::uint32_t k = 0; k < count; ++k) r = T::fma(w_[term[k].coefficient], k < s.count ? *at(term[k].x, p) : T::broadcast(1), r);
+    return r;
+  }
+
+  V chosen(const Step& s, std::uint32_t p) {
+    V r;
+    for (int lane = 0; lane < L; ++lane) {
+      const bool first = !(T::get(w_[s.c.at], lane) < 0), none = p > 0 && (first ? s.a_constant : s.b_constant);
+      T::set(r, lane, none ? 0.0 : T::get(*at(first ? s.a : s.b, p), lane));
+    }
+    return r;
+  }
+
+  void coefficient(const Step& s, std::uint32_t p) {
+    V* const a = w_ + s.a.at;
+    V* const b = w_ + s.b.at;
+    V* const w = w_ + s.out.at;
+    V& out = *at(s.out, p);
+    const std::int64_t n = p, newest = s.a_unknown ? n - 1 : n;
+    switch (s.act) {
+      case Act::input: out = a[p + s.index] * T::broadcast(k_.factorial[p + s.index] * k_.inverse_factorial[p]); break;
+      case Act::linear: out = sum(s, p, s.count); break;
+      case Act::multiply: out = convolution(a, b, n, s.b_unknown ? 1 : 0, newest); break;
+      case Act::square: out = squares(a, n, s.a_unknown ? 1 : 0); break;
+      case Act::divide: {
+        V r = -convolution(b, w, n, 1, s.b_unknown ? n - 1 : n);
+        if (!s.a_constant && !s.a_unknown) r += *at(s.a, p);
+        out = r * w_[s.c.at];
+        break;
+      }
+      case Act::square_root: {
+        V r = -squares(w, n, 1);
+        if (!s.a_unknown) r += *at(s.a, p);
+        out = r * (T::broadcast(0.5) / w[0]);
+        break;
+      }
+      case Act::power: {
+        V r = T::broadcast(0);
+        for (std::int64_t j = n - 1; j >= (s.a_unknown ? 1 : 0); --j)
+          r = T::fma(T::broadcast(s.value * static_cast<double>(n - j) - static_cast<double>(j)) * a[n - j], w[j], r);
+        out = r / (T::broadcast(static_cast<double>(n)) * a[0]);
+        break;
+      }
+      case Act::sine_cosine: {
+        const V r = T::broadcast(k_.reciprocal_of[p]);
+        V* const c = w_ + s.c.at;
+        const V sine = convolution(b, c, n, 1, newest) * r, cosine = convolution(b, w, n, 1, newest) * r;
+        w[p] = sine;
+        c[p] = -cosine;
+        break;
+      }
+      case Act::function: {
+        V* const c = w_ + s.c.at;
+        if (s.b_constant) out = s.a_unknown ? T::broadcast(0) : V(b[0] * a[p]);
+        else out = convolution(c, b, n, 1, newest) * T::broadcast(k_.reciprocal_of[p]);
+        break;
+      }
+      case Act::arctan2: {
+        V r = T::broadcast(0);
+        if (!s.a_constant) r += convolution(w_ + s.e.at, w_ + s.c.at, n, 1, newest);
+        if (!s.b_constant) r += convolution(w_ + s.f.at, w_ + s.d.at, n, 1, s.b_unknown ? n - 1 : n);
+        out = r * T::broadcast(k_.reciprocal_of[p]);
+        break;
+      }
+      case Act::weigh: out = *at(s.a, p) * T::broadcast(static_cast<double>(n)); break;
+      case Act::select: out = chosen(s, p); break;
+      case Act::lookup: out = T::broadcast(0); break;
+    }
+  }
+
+  void solve() {
+    const SparseLu& e = *k_.elimination;
+    const V* lu = w_ + k_.lu;
+    const V* reciprocal = w_ + k_.reciprocal;
+    V* rhs = w_ + k_.rhs;
+    V* y = w_ + k_.solution;
+    const V zero = T::broadcast(0);
+    for (std::size_t i = p_.roots.size(); i < p_.rows; ++i) rhs[i] = zero;
+    for (const SparseLu::Forward& f : e.forward) rhs[f.to] = T::fma(-lu[f.entry], rhs[f.from], rhs[f.to]);
+    for (const SparseLu::Backward& b : e.backward) {
+      V s = b.zero_side ? zero : rhs[b.row];
+      for (std::uint32_t i = b.first; i < b.first + b.count; ++i) s = T::fma(-lu[e.terms[i].entry], y[e.terms[i].column], s);
+      y[b.column] = e.pivots[b.pivot].one ? s : s * reciprocal[b.pivot];
+    }
+  }
+
+  const KernelTables& k_;
+  const Plan& p_;
+  V* w_;
+};
+
+}  // namespace
+}  // namespace anholon

@@ -1,0 +1,78 @@
+// One body, all backends: the Taylor coefficients of every shipped model at its start and on its way, by the interpreted tape (the reference), by the kernel
+// in every tier of this machine, and in lanes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernel/kernel.h"
+#include "run/simulate.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+constexpr int kStages = 12;
+
+struct Reference {
+  explicit Reference(const std::string& name) {
+    const Outcome o = make_scenario(test::shipped(name), *find_formulation("routh"), {}, scenario);
+    if (!o.ok() || not_integrated(*scenario.model)) return;
+    stepping = std::make_unique<Program>(program(scenario.system, scenario.structure));
+    parameters = parameter_values<long double>(*scenario.model);
+    if (!initial_state(scenario, {}, start).ok()) stepping.reset();
+  }
+  std::shared_ptr<const KernelPlan> plan() const { return KernelPlan::make(*stepping, kStages, parameters, static_cast<double>(start.t), narrow(start.state)); }
+  static std::vector<double> narrow(const std::vector<long double>& v) { return {v.begin(), v.end()}; }
+
+  Scenario scenario;
+  std::unique_ptr<Program> stepping;
+  std::vector<long double> parameters;
+  Start<long double> start;
+};
+
+// All coefficients of one lane, order by order in relation to the largest of that order (of the terms they are made of there is no word).
+double difference(const Kernel& kernel, int lane, const Expansion<long double>& reference) {
+  const Plan& p = kernel.plan().plan();
+  double worst = 0;
+  for (int k = 0; k <= p.stages; ++k) {
+    double size = 1e-300, off = 0;
+    for (std::size_t j = 0; j < p.x.size(); ++j) {
+      const int order = k + p.d[j];
+      const double want = static_cast<double>(reference.coefficient(j, order)), have = kernel.coefficient(j, order, lane);
+      size = std::max(size, std::abs(want) * kernel.plan().tables().factorial[static_cast<std::size_t>(order)] / kernel.plan().tables().factorial[static_cast<std::size_t>(k)]);
+      off = std::max(off, std::abs(have - want) * kernel.plan().tables().factorial[static_cast<std::size_t>(order)] / kernel.plan().tables().factorial[static_cast<std::size_t>(k)]);
+      if (!(off == off)) return 1e300;
+    }
+    if (size > 1e-9) worst = std::max(worst, off / size);
+  }
+  return worst;
+}
+
+class KernelOf : public testing::TestWithParam<std::string> {};
+
+TEST_P(KernelOf, EqualsTheInterpretedTape) {
+  const Reference r(GetParam());
+  if (!r.stepping) GTEST_SKIP() << "not integrated";
+  if (!no_plan(*r.stepping).empty()) GTEST_SKIP() << no_plan(*r.stepping);
+  const auto plan = r.plan();
+  ASSERT_TRUE(plan);
+  Expansion<long double> reference(*r.stepping, r.parameters, kStages);
+  reference.load(r.start.t, r.start.state, r.start.leading);
+  ASSERT_TRUE(reference.prepare().ok());
+  ASSERT_TRUE(reference.solve().ok());
+  ASSERT_TRUE(reference.extend().ok());
+  std::vector<double> first;
+  for (const Tier& tier : tiers()) {
+    Kernel kernel(plan, 1, &tier);
+    kernel.set_parameters(0, r.parameters);
+    kernel.load(0, static_cast<double>(r.start.t), Reference::narrow(r.start.state), Reference::narrow(r.start.leading));
+    kernel.expand();
+    std::cout << GetParam() << " " << tier.name << " difference " << difference(kernel, 0, reference) << " health " << kernel.health(0) << " drift " << kernel.drift(0) << " rows " << plan->plan().rows << " steps " << plan->plan().stage.size() << " solve " << plan->elimination().work() << "\n";
+    EXPECT_LT(difference(kernel, 0, reference), 1e-11) << tier.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Model, KernelOf, testing::ValuesIn(test::shipped_models()), [](const auto& p) { return test::test_name(p.param); });
+
+}  // namespace
+}  // namespace anholon
