@@ -113,6 +113,8 @@ Outcome Stepper<N>::resume(const StepperState<N>& b) {
   expansion_.set_weakest_direction(b.direction);
   sigma_before_ = b.sigma_before;
   last_step_ = b.last_step;
+  least_health_ = b.least_health;
+  careful_ = b.careful;
   if (!b.sides.empty()) events_.set_sides(b.sides);
   return expand(leading_);
 }
@@ -136,10 +138,10 @@ static void convert_all(const std::vector<From>& from, std::vector<To>& to) {
 
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
-  const StepperState<N> last = begun_;
+  std::swap(begun_before_, begun_);
   const bool again = expansions_ > 0;
   Outcome o = expand_here(guess);
-  if (!o.ok() && again) expand_again(last);
+  if (!o.ok() && again) expand_again(StepperState<N>(begun_before_));
   return o;
 }
 
@@ -161,10 +163,37 @@ void Stepper<N>::expand_again(const StepperState<N>& last) {
 }
 
 template <Number N>
+void Stepper<N>::note_begun(const std::vector<W>& guess) {
+  StepperState<N>& b = begun_;
+  b.t = t_;
+  b.state = state_;
+  b.carry = carry_;
+  b.leading = guess;
+  b.integrals = integrals_;
+  b.integral_carry = integral_carry_;
+  b.branch_step = branch_step_;
+  b.steps = steps_;
+  b.worst_constraint = worst_constraint_;
+  b.worst_equation = worst_equation_;
+  b.first_sigma = first_sigma_;
+  b.smallest_sigma = smallest_sigma_;
+  b.smallest_sigma_t = smallest_sigma_t_;
+  b.weakest = weakest_;
+  b.direction = expansion_.weakest_direction();
+  b.sigma_before = sigma_before_;
+  b.last_step = last_step_;
+  b.sides = events_.sides();
+  b.least_health = least_health_;
+  b.careful = careful_;
+}
+
+template <Number N>
 Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
-  begun_ = {t_, state_, carry_, guess, integrals_, integral_carry_, branch_step_, steps_, worst_constraint_, worst_equation_,
-            first_sigma_, smallest_sigma_, smallest_sigma_t_, weakest_, expansion_.weakest_direction(), sigma_before_, last_step_, events_.sides()};
+  note_begun(guess);
   ++expansions_;
+  if (expand_by_kernel(guess)) return {};
+  by_kernel_ = false;
+  point_loaded_ = point_valued_ = true;
   convert_all(state_, narrow_state_);
   convert_all(guess, narrow_leading_);
   expansion_.load(convert<N>(t_), narrow_state_, narrow_leading_);
@@ -265,6 +294,28 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
   const Program& p = *program_;
   increments.assign(expansion_.state_size(), W(0));
   leading.assign(p.unknowns(), W(0));
+  if constexpr (std::same_as<N, double>)
+    if (by_kernel_) {
+      std::vector<double>& change = increments_;
+      change.resize(expansion_.state_size() + p.unknowns());
+      const double step = convert<double>(h);
+      kernel_->advance(&step, change.data());
+      std::size_t from = 0, to = 0;
+      for (std::size_t j = 0; j < p.unknowns(); ++j) {
+        for (int k = 0; k < p.d[j]; ++k, ++to) {
+          // What the kernel does not see of a wider state: t_i h^(i-k) / (i-k)!.
+          W s(0), power(1);
+          for (int i = k + 1; i < p.d[j]; ++i) {
+            power = power * h / W(i - k);
+            const std::size_t at = to + static_cast<std::size_t>(i - k);
+            s += (base_state_[at] - W(kernel_->derivative(j, i))) * power;
+          }
+          increments[to] = s + change[from++];
+        }
+        leading[j] = kernel_->derivative(j, p.d[j]) + change[from++];
+      }
+      return;
+    }
   for (std::size_t j = 0; j < p.unknowns(); ++j) {
     const int d = p.d[j], top = degree(j);
     for (int k = 0; k <= d; ++k) {
@@ -288,7 +339,7 @@ Expansion<N>* Stepper<N>::ahead(const W& h) {
   if (!ahead_) ahead_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
   std::vector<W> increments, leading, state;
   polynomial(h, increments, leading);
-  point_.state(state);
+  point().state(state);
   for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
   std::vector<N> narrow_state, narrow_leading;
   convert_all(state, narrow_state);
@@ -406,7 +457,7 @@ Outcome Stepper<N>::step(const W& end) {
   } else {
     short_kinks_ = 0;
   }
-  if (const std::optional<W> met = singular_within(h)) {
+  if (const std::optional<W> met = by_kernel_ ? std::nullopt : singular_within(h)) {
     // Up to where J is still regular.
     constexpr double kShortOf = 1 - 1e-7;
     h = *met * W(kShortOf);
@@ -426,40 +477,37 @@ Outcome Stepper<N>::step(const W& end) {
   last_step_ = abs(h);
   sigma_before_ = sigma_;
 
-  std::vector<W> increments;
-  polynomial(h, increments, leading_);
-  std::vector<W> next = state_;
-  for (std::size_t i = 0; i < next.size(); ++i) {
-    add_compensated(next[i], carry_[i], increments[i]);
-    if (!is_finite(next[i]) || std::abs(to_double(next[i])) > kBlowUp)
+  polynomial(h, change_, leading_);
+  next_ = state_;
+  for (std::size_t i = 0; i < next_.size(); ++i) {
+    add_compensated(next_[i], carry_[i], change_[i]);
+    if (!is_finite(next_[i]) || std::abs(to_double(next_[i])) > kBlowUp)
       return {OutcomeKind::blow_up, "the motion grows without bound", "look at the last good state: a velocity or position diverges"};
   }
   for (std::size_t i = 0; i < integrals_.size(); ++i) {
-    const N* series = expansion_.quadrature(i);
     W s(0);
-    for (int k = order_ - 1; k >= 0; --k) s = (s + convert<W>(series[k]) / W(k + 1)) * h;
+    for (int k = order_ - 1; k >= 0; --k) s = (s + convert<W>(quadrature_coefficient(i, k)) / W(k + 1)) * h;
     add_compensated(integrals_[i], integral_carry_[i], s);
   }
   before_ = t_;
   t_ = reached;
   expanded_ = false;
-  state_ = std::move(next);
+  std::swap(state_, next_);
   ++steps_;
   return {};
 }
 
 template <Number N>
 typename Stepper<N>::W Stepper<N>::quadrature(std::size_t i, const W& dt) const {
-  const N* series = expansion_.quadrature(i);
   W s(0);
-  for (int k = order_ - 1; k >= 0; --k) s = s * dt + convert<W>(series[k]);
+  for (int k = order_ - 1; k >= 0; --k) s = s * dt + convert<W>(quadrature_coefficient(i, k));
   return s;
 }
 
 template <Number N>
 Outcome Stepper<N>::at(const W& t, Expansion<W>& point) const {
   std::vector<W> state, increments, leading;
-  point_.state(state);
+  this->point().state(state);
   polynomial(t - before_, increments, leading);
   for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
   point.load(t, state, leading);

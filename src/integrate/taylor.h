@@ -7,6 +7,7 @@
 
 #include "integrate/events.h"
 #include "integrate/regular.h"
+#include "kernel/kernel.h"
 
 namespace anholon {
 
@@ -15,6 +16,7 @@ struct StepSettings {
   int order = 0;                     // of the Taylor polynomials; 0: from the tolerance
   std::size_t most_steps = 50'000'000;
   std::function<bool()> cancelled;   // asked between steps
+  bool kernel = true;                // where there is one
 };
 
 // ceil(-ln(tolerance)/2 + 1): the order that makes the least work for the tolerance.
@@ -36,6 +38,8 @@ struct StepperState {
   N sigma_before{0};         // where the last step began
   W last_step{0};            // its length
   std::vector<int> sides;    // of the series watched for events
+  N least_health{1};         // of the kernel's pivots
+  bool careful = false;      // the step that follows was, or has to be, made without the kernel
 };
 
 // Taylor coefficients are computed in N; the state, the projection on the constraints and the
@@ -54,6 +58,11 @@ class Stepper {
   Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
   // Goes on where another stepper for the same unknowns is, with its sums and counts.
   Outcome take_over(const Stepper& other);
+  // Makes the expansions by a kernel wherever that serves (double only): not where its pivots have become small, nor for motions with kinks or
+  // events. Before the start.
+  void accelerate(std::shared_ptr<const KernelPlan> plan);
+  bool accelerated() const { return kernel_ != nullptr; }
+  std::size_t expansions_by_kernel() const { return by_kernel_count_; }
   // Series to be watched for changes of sign; a step ends where one does that asks for it.
   void watch(std::vector<WatchedSeries> series) { events_ = EventWatch<N>(std::move(series)); }
   // What fired in the last step, in order.
@@ -76,8 +85,8 @@ class Stepper {
   std::size_t steps() const { return steps_; }
   int order() const { return order_; }
 
-  // The solution where the last step began, or at the start: projected and solved.
-  const Expansion<W>& point() const { return point_; }
+  // The solution where the last step began, or at the start: projected and solved. Its derivatives; with `values` those of all formulas, too.
+  const Expansion<W>& point(bool values = false) const;
   // … and anywhere in the last step, in an expansion of the caller.
   Outcome at(const W& t, Expansion<W>& point) const;
 
@@ -85,7 +94,7 @@ class Stepper {
   // to that of the leading derivative come from the wider point.
   std::size_t unknowns() const { return program_->unknowns(); }
   int degree(std::size_t j) const { return order_ - 1 + program_->d[j]; }
-  W dense(std::size_t j, int k) const { return k <= program_->d[j] ? point_.coefficient(j, k) : convert<W>(expansion_.coefficient(j, k)); }
+  W dense(std::size_t j, int k) const { return k <= program_->d[j] ? point().coefficient(j, k) : convert<W>(coefficient(j, k)); }
 
   // Quadrature i as a polynomial in t - before() over the last step: its value there.
   W quadrature(std::size_t i, const W& dt) const;
@@ -102,11 +111,25 @@ class Stepper {
  private:
   Outcome expand(const std::vector<W>& guess);
   Outcome expand_here(const std::vector<W>& guess);
+  void note_begun(const std::vector<W>& guess);
+  bool expand_by_kernel(const std::vector<W>& guess);
+  N coefficient(std::size_t j, int k) const {
+    if constexpr (std::same_as<N, double>)
+      if (by_kernel_) return kernel_->coefficient(j, k);
+    return expansion_.coefficient(j, k);
+  }
   void expand_again(const StepperState<N>& last);
   void note_sigma(const N& sigma);
   // The slots that may have kinks: also those of what is watched for events.
   std::uint32_t kinks_end() const { return events_.empty() ? program_->tape.main_end : static_cast<std::uint32_t>(program_->tape.code.size()); }
+  N quadrature_coefficient(std::size_t i, int k) const {
+    if constexpr (std::same_as<N, double>)
+      if (by_kernel_) return kernel_->quadrature(i, k);
+    return expansion_.quadrature(i)[k];
+  }
   N step_size() const;
+  N horizon_by_kernel() const;
+  std::vector<W> leading_at_base() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
   Expansion<N>* ahead(const W& h);
@@ -121,7 +144,16 @@ class Stepper {
   int order_;
   std::vector<N> parameters_;
   Expansion<N> expansion_;
-  Expansion<W> point_;
+  mutable Expansion<W> point_;
+  mutable bool point_loaded_ = true, point_valued_ = true;
+  std::unique_ptr<Kernel> kernel_;
+  std::vector<std::pair<std::uint32_t, Place>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
+  bool by_kernel_ = false;                                    // the present expansion
+  bool careful_ = false;                                      // the next one is to be made without the kernel
+  N least_health_{1};
+  std::size_t by_kernel_count_ = 0;
+  std::vector<W> base_state_;                                 // where the present expansion of the kernel was made
+  mutable std::vector<double> increments_;
   std::unique_ptr<Expansion<N>> ahead_;  // for looks at J further on the polynomial
   N sigma_{0}, sigma_before_{0};         // where the last two steps began
   W last_step_{0};
@@ -140,7 +172,8 @@ class Stepper {
   N first_sigma_{0}, smallest_sigma_{1};
   W smallest_sigma_t_{0};
   std::size_t weakest_ = 0;
-  StepperState<N> begun_;
+  StepperState<N> begun_, begun_before_;
+  std::vector<W> change_, next_;
   std::size_t expansions_ = 0;
 };
 

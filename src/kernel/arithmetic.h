@@ -17,7 +17,8 @@ struct KernelTables {
     std::vector<double> at, values;
   };
   std::vector<Knots> knots;
-  std::uint32_t lu = 0, reciprocal = 0, rhs = 0, solution = 0, size = 0;  // of the arena
+  std::uint32_t lu = 0, reciprocal = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, size = 0;  // of the arena
+  bool refine = false;  // solutions, by one step of iterative refinement
   std::vector<double> factorial, inverse_factorial, reciprocal_of;
 
   double lookup(std::uint32_t function, double x) const;

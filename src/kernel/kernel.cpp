@@ -15,6 +15,8 @@ namespace {
 constexpr double kQuiet = 8 * 0x1p-53;
 // The samples for the choice of pivots lie so far around the state given.
 constexpr double kAround = 0.7;
+// Solutions are refined where that changes them by more.
+constexpr double kRefined = 64 * 0x1p-53;
 
 // Numbers in [-1, 1) from a counter (a step of splitmix64).
 double scattered(std::uint64_t i) {
@@ -79,16 +81,26 @@ void KernelPlan::lay_out() {
   tables_.lu = even(plan_.arena);
   tables_.reciprocal = tables_.lu + elimination_.entries;
   tables_.rhs = tables_.reciprocal + static_cast<std::uint32_t>(elimination_.pivots.size());
-  tables_.solution = tables_.rhs + plan_.rows;
-  tables_.size = even(tables_.solution + plan_.rows);
+  tables_.side = tables_.rhs + plan_.rows;
+  tables_.solution = tables_.side + static_cast<std::uint32_t>(plan_.roots.size());
+  tables_.refined = tables_.solution + plan_.rows;
+  tables_.entries = tables_.refined + plan_.rows;
+  tables_.size = even(tables_.entries + (tables_.refine ? static_cast<std::uint32_t>(plan_.entries.size()) : 0));
 }
 
 std::shared_ptr<const KernelPlan> KernelPlan::make(const Program& program, int stages, const std::vector<long double>& parameters, double t,
                                                    const std::vector<double>& state) {
   if (!no_plan(program).empty()) return nullptr;
   std::shared_ptr<KernelPlan> p(new KernelPlan(program, stages));
+  // Whether solutions need a second look is seen at the state itself.
+  p->tables_.refine = true;
   if (!p->choose_pivots(parameters, t, state)) return nullptr;
-  return p;
+  Kernel probe(p);
+  probe.set_parameters(0, parameters);
+  probe.load(0, t, state, {});
+  if (probe.correction_of_solution() > kRefined) return p;
+  p->tables_.refine = false;
+  return p->choose_pivots(parameters, t, state) ? p : nullptr;
 }
 
 // At the state and at some around it, so that a pivot is not one that vanishes when the machine has moved on.
@@ -123,7 +135,7 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
     if (good) ++samples;
     else if (attempt == 0) return false;
   }
-  std::vector<bool> needed(plan_.rows, false);
+  std::vector<bool> needed(plan_.rows, tables_.refine);
   for (std::size_t j = 0; j < plan_.d.size(); ++j) needed[j] = true;
   for (const Completion& c : plan_.completions) needed[c.column] = true;
   const std::uint32_t sides = static_cast<std::uint32_t>(plan_.roots.size());
@@ -178,6 +190,19 @@ void Kernel::expand() {
   arithmetic_->residual(0);
   arithmetic_->complete(0);
   arithmetic_->extend();
+}
+
+double Kernel::correction_of_solution() {
+  const KernelTables& t = plan_->tables();
+  arithmetic_->values(-plan_->plan().largest_lead);
+  arithmetic_->factor();
+  arithmetic_->residual(0);
+  double size = 0, change = 0;
+  for (std::uint32_t j = 0; j < plan_->plan().rows; ++j) {
+    size = std::max(size, std::abs(number(t.solution + j, 0)));
+    change = std::max(change, std::abs(number(t.refined + j, 0)));
+  }
+  return size > 0 ? change / size : 0;
 }
 
 void Kernel::judge_pivots() {

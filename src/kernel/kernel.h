@@ -53,6 +53,9 @@ class Kernel {
   // Projects the state on the hidden constraints where it has left them, solves for the leading derivatives, and computes all coefficients.
   void expand();
 
+  // By how much refinement changes the solution for the leading derivatives, in relation to it.
+  double correction_of_solution();
+
   // Of the last expansion. The smallest pivot in relation to what it was where the pivots were chosen: below 0 it has changed sign.
   double health(int lane) const { return health_[static_cast<std::size_t>(lane)]; }
   bool finite(int lane) const;
@@ -67,6 +70,7 @@ class Kernel {
     const Place q = plan_->plan().quadratures[i];
     return q.series ? number(q.at + static_cast<std::uint32_t>(order), lane) : order == 0 ? number(q.at, lane) : 0;
   }
+  double series(const Place& place, int order, int lane = 0) const { return number(place.at + static_cast<std::uint32_t>(order), lane); }
   // increments [x_j^(k), k = 0..d_j][lane] at h[lane], without the value at the point.
   void advance(const double* h, double* increments) { arithmetic_->advance(h, increments); }
 

@@ -473,6 +473,9 @@ class Planner {
   }
 
   void finish() {
+    for (std::uint32_t s = 0; s < code_.size(); ++s)
+      if (live_[s] && !code_[s].constant && code_[s].op == Op::power && tape_.rationals[code_[s].index].get_den() % 2 == 0)
+        plan_.roots_of_even_powers.push_back({code_[s].a, at(code_[s].a)});
     for (std::uint32_t s = 0; s < tape_.main_end; ++s) {
       if (!live_[s] || !tainted_[s] || !series_[s]) continue;
       if (code_[s].op == Op::input) {

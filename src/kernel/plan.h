@@ -100,6 +100,7 @@ struct Plan {
   std::vector<Place> roots;           // of the equations; the right side of row i is that of root i
   std::vector<char> root_is_zero;     // beyond stage 0, before the unknowns of the stage are known
   std::vector<Place> quadratures;
+  std::vector<std::pair<std::uint32_t, Place>> roots_of_even_powers;  // slot of the tape of what roots are taken of: they may pass zero
   std::uint32_t rows = 0;             // of the linearized tape
   int largest_lead = 0, largest_d = 0;
   std::vector<int> c, d;

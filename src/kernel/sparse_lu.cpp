@@ -209,6 +209,7 @@ SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entr
     side[f.to] = true;
     forward.push_back(f);
   }
+  out.forward_all = std::move(out.forward);
   out.forward = std::move(forward);
 
   std::vector<bool> wanted = needed;

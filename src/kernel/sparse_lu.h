@@ -52,7 +52,7 @@ struct SparseLu {
   struct Term {
     std::uint32_t entry, column;
   };
-  std::vector<Forward> forward;
+  std::vector<Forward> forward, forward_all;  // all: for right sides in every row
   std::vector<Backward> backward;
   std::vector<Term> terms;
 

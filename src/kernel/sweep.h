@@ -2,6 +2,7 @@
 //
 // Everything lies in an unnamed namespace: each of those files has its own copy, compiled for its machine.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -73,8 +74,9 @@ class Sweep final : public Arithmetic {
     for (std::uint32_t i = 0; i < e.entries; ++i) lu[i] = zero;
     for (std::size_t i = 0; i < p_.entries.size(); ++i) {
       const Entry& entry = p_.entries[i];
-      V& to = lu[e.place[i]];
-      to = T::fma(T::broadcast(entry.sign), w_[entry.from], to);
+      const V value = T::broadcast(entry.sign) * w_[entry.from];
+      lu[e.place[i]] += value;
+      if (k_.refine) w_[k_.entries + i] = value;
     }
     V* reciprocal = w_ + k_.reciprocal;
     const V one = T::broadcast(1);
@@ -93,11 +95,11 @@ class Sweep final : public Arithmetic {
   }
 
   void residual(int level) override {
-    V* rhs = w_ + k_.rhs;
+    V* side = w_ + k_.side;
     for (std::size_t i = 0; i < p_.roots.size(); ++i) {
       const int order = p_.c[i] - level;
       const Place r = p_.roots[i];
-      rhs[i] = order < 0 ? T::broadcast(0) : *at(r, static_cast<std::uint32_t>(order)) * T::broadcast(-k_.factorial[order]);
+      side[i] = order < 0 ? T::broadcast(0) : *at(r, static_cast<std::uint32_t>(order)) * T::broadcast(-k_.factorial[order]);
     }
     solve();
   }
@@ -131,13 +133,13 @@ class Sweep final : public Arithmetic {
   }
 
   void extend() override {
-    V* rhs = w_ + k_.rhs;
+    V* side = w_ + k_.side;
     for (int stage = 1; stage <= p_.stages; ++stage) {
       run(p_.stage, stage);
       for (std::size_t i = 0; i < p_.roots.size(); ++i) {
         const Place r = p_.roots[i];
         const int order = stage + p_.c[i];
-        rhs[i] = p_.root_is_zero[i] ? T::broadcast(0) : *at(r, static_cast<std::uint32_t>(order)) * T::broadcast(-k_.factorial[order] * k_.inverse_factorial[stage]);
+        side[i] = p_.root_is_zero[i] ? T::broadcast(0) : *at(r, static_cast<std::uint32_t>(order)) * T::broadcast(-k_.factorial[order] * k_.inverse_factorial[stage]);
       }
       solve();
       complete(stage);
@@ -317,17 +319,35 @@ class Sweep final : public Arithmetic {
     }
   }
 
+  // Of the right sides in `side`; with `refine` once more for what the solution leaves of them. What is left comes from the linearized tape, not
+  // from J: where J is nearly singular, that still knows the small difference of two rates whose squares J has rounded away.
   void solve() {
+    V* const side = w_ + k_.side;
+    V* const rhs = w_ + k_.rhs;
+    V* const y = w_ + k_.solution;
+    const std::size_t n = p_.roots.size();
+    std::copy(side, side + n, rhs);
+    std::fill(rhs + n, rhs + p_.rows, T::broadcast(0));
+    substitute(y);
+    if (!k_.refine) return;
+    const V* entries = w_ + k_.entries;
+    std::copy(side, side + n, rhs);
+    std::fill(rhs + n, rhs + p_.rows, T::broadcast(0));
+    for (std::size_t i = 0; i < p_.entries.size(); ++i) rhs[p_.entries[i].row] = T::fma(-entries[i], y[p_.entries[i].column], rhs[p_.entries[i].row]);
+    V* const change = w_ + k_.refined;
+    substitute(change, true);
+    for (std::uint32_t i = 0; i < p_.rows; ++i) y[i] += change[i];
+  }
+
+  void substitute(V* y, bool all_sides = false) {
     const SparseLu& e = *k_.elimination;
     const V* lu = w_ + k_.lu;
     const V* reciprocal = w_ + k_.reciprocal;
     V* rhs = w_ + k_.rhs;
-    V* y = w_ + k_.solution;
     const V zero = T::broadcast(0);
-    for (std::size_t i = p_.roots.size(); i < p_.rows; ++i) rhs[i] = zero;
-    for (const SparseLu::Forward& f : e.forward) rhs[f.to] = T::fma(-lu[f.entry], rhs[f.from], rhs[f.to]);
+    for (const SparseLu::Forward& f : all_sides ? e.forward_all : e.forward) rhs[f.to] = T::fma(-lu[f.entry], rhs[f.from], rhs[f.to]);
     for (const SparseLu::Backward& b : e.backward) {
-      V s = b.zero_side ? zero : rhs[b.row];
+      V s = b.zero_side && !all_sides ? zero : rhs[b.row];
       for (std::uint32_t i = b.first; i < b.first + b.count; ++i) s = T::fma(-lu[e.terms[i].entry], y[e.terms[i].column], s);
       y[b.column] = e.pivots[b.pivot].one ? s : s * reciprocal[b.pivot];
     }

@@ -20,7 +20,7 @@ constexpr int kSingularRoundoffs = 50;
 
 template <Number N>
 Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters, int stages)
-    : program_(&program), stages_(stages), machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters) {
+    : program_(&program), parameters_(parameters), stages_(stages), machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters) {
   const int largest_d = *std::max_element(program.d.begin(), program.d.end());
   stride_ = static_cast<std::size_t>(stages + largest_d + 2);
   x_.assign(program.unknowns() * stride_, N(0));

@@ -59,6 +59,9 @@ class Expansion {
       for (int p = 0; p <= in.lead; ++p) machine_.series(s)[p] = convert<N>(wide.machine().series(s)[p]);
     }
   }
+  // A coefficient that was computed elsewhere, for those who look at slots.
+  void adopt_coefficient(std::uint32_t slot, int order, const N& value) { machine_.series(slot)[order] = value; }
+  const std::vector<N>& parameters() const { return parameters_; }
   const Machine<N>& machine() const { return machine_; }
   const Matrix<N>& system_jacobian() const { return j_; }
   const Lu<N>& lu() const { return lu_; }
@@ -108,6 +111,7 @@ class Expansion {
   void add_leading(int stage);
 
   const Program* program_;
+  std::vector<N> parameters_;
   int stages_;
   std::size_t stride_;
   std::vector<std::size_t> offset_;

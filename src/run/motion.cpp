@@ -19,9 +19,22 @@ Motion<N>::Motion(const Scenario& s, const StepSettings& settings, std::vector<E
 
 template <Number N>
 Outcome Motion<N>::start(const StateChoice& choice) {
-  Start<W> start;
-  if (Outcome o = initial_state(s_, choice, start); !o.ok()) return o;
-  return leg_->stepper.start(start.t, start.state, start.leading);
+  if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
+  accelerate(*leg_);
+  return leg_->stepper.start(start_.t, start_.state, start_.leading);
+}
+
+// Pivots are chosen at the start of the whole motion, so that a run that goes on has the same.
+template <Number N>
+void Motion<N>::accelerate(Leg& leg) const {
+  if constexpr (std::same_as<N, double>) {
+    if (!settings_.kernel || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return;
+    std::vector<double> state;
+    for (const W& x : start_.state) state.push_back(to_double(x));
+    leg.stepper.accelerate(KernelPlan::make(leg.program, leg.stepper.order() - 1, parameters_, to_double(start_.t), state));
+  } else {
+    (void)leg;
+  }
 }
 
 static bool can_go_on(OutcomeKind kind) {
@@ -129,6 +142,7 @@ template <Number N>
 bool Motion<N>::eliminate_again() {
   choices_.push_back({here(), false});
   auto next = eliminate_at(choices_.back().here);
+  if (next) accelerate(*next);
   if (!next || !next->stepper.take_over(leg_->stepper).ok()) return false;
   leg_ = std::move(next);
   choices_.back().taken = true;
@@ -147,9 +161,9 @@ void Motion<N>::save(SavedRun& to) const {
   to.set_numbers("integrals", b.integrals);
   to.set_numbers("integral_carry", b.integral_carry);
   to.set_numbers<W>("stepper", {b.branch_step, b.worst_constraint, b.worst_equation, b.smallest_sigma_t, b.last_step});
-  to.set_numbers<N>("sigma", {b.first_sigma, b.smallest_sigma, b.sigma_before});
+  to.set_numbers<N>("sigma", {b.first_sigma, b.smallest_sigma, b.sigma_before, b.least_health});
   to.set_numbers("direction", b.direction);
-  to.set("counts", {std::to_string(b.steps), std::to_string(b.weakest)});
+  to.set("counts", {std::to_string(b.steps), std::to_string(b.weakest), b.careful ? "1" : "0"});
   std::vector<double> choices;
   for (std::size_t i = 0; i < mark_.choices; ++i) {
     const Choice& c = choices_[i];
@@ -171,8 +185,7 @@ void Motion<N>::save(SavedRun& to) const {
 template <Number N>
 Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   // As at the start, for what it leaves in the graph.
-  Start<W> start;
-  if (Outcome o = initial_state(s_, choice, start); !o.ok()) return o;
+  if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
   if (const std::vector<W> modes = from.numbers<W>("modes", parameters_.size()); modes != parameters_) {
     set_modes(modes);
     leg_ = std::make_unique<Leg>(*this, s_.system, s_.structure);
@@ -207,8 +220,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   const Program& p = leg_->program;
   const std::size_t size = leg_->point.state_size();
   const std::vector<W> more = from.numbers<W>("stepper", 5);
-  const std::vector<N> sigma = from.numbers<N>("sigma", 3);
-  const std::vector<long double> counts = from.numbers<long double>("counts", 2);
+  const std::vector<N> sigma = from.numbers<N>("sigma", 4);
+  const std::vector<long double> counts = from.numbers<long double>("counts", 3);
   StepperState<N> b;
   b.t = from.number<W>("t");
   b.state = from.numbers<W>("state", size);
@@ -225,11 +238,14 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   b.first_sigma = sigma[0];
   b.smallest_sigma = sigma[1];
   b.sigma_before = sigma[2];
+  b.least_health = sigma[3];
   b.steps = static_cast<std::size_t>(counts[0]);
   b.weakest = static_cast<std::size_t>(counts[1]);
+  b.careful = counts[2] != 0;
   b.direction = from.numbers<N>("direction");
   for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(static_cast<int>(to_double(side)));
   if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns())) SavedRun::unfit("direction");
+  accelerate(*leg_);
   return leg_->stepper.resume(b);
 }
 

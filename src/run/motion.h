@@ -82,6 +82,7 @@ class Motion {
   void watch_pivots(const Elimination& e);
   bool pivot_is_small();
   InitialState<double> here() const;
+  void accelerate(Leg& leg) const;
   std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
   bool eliminate_again();
   std::size_t levels() const { return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0); }
@@ -97,6 +98,7 @@ class Motion {
   int stages_;
   std::vector<W> parameters_;
   std::vector<N> narrow_parameters_;
+  Start<W> start_;
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;
   bool stepped_ = false;

@@ -30,17 +30,18 @@ struct Reference {
   Start<long double> start;
 };
 
-// All coefficients of one lane, order by order in relation to the largest of that order (of the terms they are made of there is no word).
-double difference(const Kernel& kernel, int lane, const Expansion<long double>& reference) {
-  const Plan& p = kernel.plan().plan();
+// All coefficients, order by order in relation to the largest of that order (of the terms they are made of there is no word).
+template <class Coefficient>
+double difference(const KernelPlan& plan, const Expansion<long double>& reference, const Coefficient& coefficient) {
+  const Plan& p = plan.plan();
   double worst = 0;
   for (int k = 0; k <= p.stages; ++k) {
     double size = 1e-300, off = 0;
     for (std::size_t j = 0; j < p.x.size(); ++j) {
       const int order = k + p.d[j];
-      const double want = static_cast<double>(reference.coefficient(j, order)), have = kernel.coefficient(j, order, lane);
-      size = std::max(size, std::abs(want) * kernel.plan().tables().factorial[static_cast<std::size_t>(order)] / kernel.plan().tables().factorial[static_cast<std::size_t>(k)]);
-      off = std::max(off, std::abs(have - want) * kernel.plan().tables().factorial[static_cast<std::size_t>(order)] / kernel.plan().tables().factorial[static_cast<std::size_t>(k)]);
+      const double want = static_cast<double>(reference.coefficient(j, order)), have = coefficient(j, order);
+      size = std::max(size, std::abs(want) * plan.tables().factorial[static_cast<std::size_t>(order)] / plan.tables().factorial[static_cast<std::size_t>(k)]);
+      off = std::max(off, std::abs(have - want) * plan.tables().factorial[static_cast<std::size_t>(order)] / plan.tables().factorial[static_cast<std::size_t>(k)]);
       if (!(off == off)) return 1e300;
     }
     if (size > 1e-9) worst = std::max(worst, off / size);
@@ -57,18 +58,27 @@ TEST_P(KernelOf, EqualsTheInterpretedTape) {
   const auto plan = r.plan();
   ASSERT_TRUE(plan);
   Expansion<long double> reference(*r.stepping, r.parameters, kStages);
-  reference.load(r.start.t, r.start.state, r.start.leading);
+  // From the same numbers.
+  const std::vector<double> state = Reference::narrow(r.start.state);
+  reference.load(static_cast<double>(r.start.t), {state.begin(), state.end()}, r.start.leading);
   ASSERT_TRUE(reference.prepare().ok());
   ASSERT_TRUE(reference.solve().ok());
   ASSERT_TRUE(reference.extend().ok());
-  std::vector<double> first;
+  // What the interpreter itself loses in double.
+  Expansion<double> plain(*r.stepping, Reference::narrow(r.parameters), kStages);
+  plain.load(static_cast<double>(r.start.t), state, Reference::narrow(r.start.leading));
+  ASSERT_TRUE(plain.prepare().ok());
+  ASSERT_TRUE(plain.solve().ok());
+  ASSERT_TRUE(plain.extend().ok());
+  const double unavoidable = difference(*plan, reference, [&](std::size_t j, int order) { return plain.coefficient(j, order); });
   for (const Tier& tier : tiers()) {
     Kernel kernel(plan, 1, &tier);
     kernel.set_parameters(0, r.parameters);
     kernel.load(0, static_cast<double>(r.start.t), Reference::narrow(r.start.state), Reference::narrow(r.start.leading));
     kernel.expand();
-    std::cout << GetParam() << " " << tier.name << " difference " << difference(kernel, 0, reference) << " health " << kernel.health(0) << " drift " << kernel.drift(0) << " rows " << plan->plan().rows << " steps " << plan->plan().stage.size() << " solve " << plan->elimination().work() << "\n";
-    EXPECT_LT(difference(kernel, 0, reference), 1e-11) << tier.name;
+    const double off = difference(*plan, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); });
+    EXPECT_LT(off, 1e-13 + 10 * unavoidable) << tier.name;
+    std::cout << GetParam() << " " << tier.name << " " << off << " " << unavoidable << "\n";
   }
 }
 
