@@ -13,8 +13,8 @@ namespace {
 
 // A state this many round-offs off its hidden constraints is left alone: it is not known better.
 constexpr double kQuiet = 8 * 0x1p-53;
-// The samples for the choice of pivots lie so far around the state given.
-constexpr double kAround = 0.7;
+// The samples for the choice of pivots lie so far around the state given: an angle may take any value.
+constexpr double kAround = 3.3;
 // Solutions are refined where that changes them by more.
 constexpr double kRefined = 64 * 0x1p-53;
 

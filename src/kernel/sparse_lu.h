@@ -10,7 +10,7 @@
 
 namespace anholon {
 
-inline constexpr std::size_t kSamples = 4;
+inline constexpr std::size_t kSamples = 8;
 
 // An entry of a square matrix with its value at the samples; `exact`: it always has this value.
 struct SampledEntry {

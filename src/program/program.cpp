@@ -6,7 +6,7 @@
 
 namespace anholon {
 
-Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures) {
+Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures, bool shared) {
   Program p;
   p.system = &system;
   p.c = structure.c;
@@ -14,7 +14,7 @@ Program program(const System& system, const Structure& structure, std::span<cons
   Column es = system.equations;
   es.insert(es.end(), quadratures.begin(), quadratures.end());
   p.quadratures = quadratures.size();
-  p.tape = compile(es, structure.c);
+  p.tape = compile(es, structure.c, shared);
 
   const Graph& g = *system.model->graph;
   p.tangent_row.assign(p.tape.code.size(), Program::kUntainted);

@@ -41,7 +41,8 @@ struct Program {
 
 // `quadratures`: expressions whose Taylor series follow from the solution (powers to integrate,
 // energies to watch).
-Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {});
+// `shared`: of the tape (tape/tape.h).
+Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {}, bool shared = false);
 
 // Counts for tests and `--show program`.
 struct ProgramSize {

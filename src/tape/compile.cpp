@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <map>
+#include <set>
 #include <unordered_map>
 
 #include "base/assert.h"
@@ -10,7 +12,7 @@ namespace {
 
 class Compiler {
  public:
-  explicit Compiler(Graph& g) : g_(g) {}
+  Compiler(Graph& g, bool shared) : g_(g), shared_(shared) {}
 
   Tape run(std::span<const Expr> es, std::span<const int> leads) {
     const auto part = [&](std::span<const Expr> roots) {
@@ -35,6 +37,7 @@ class Compiler {
         }
         all.insert(all.end(), derivatives.begin(), derivatives.end());
       }
+      if (shared_) share(all);
       for (NodeId id : reachable(all)) emit(id);
     };
     part(es.first(leads.size()));
@@ -106,7 +109,125 @@ class Compiler {
     return whole_power_[key] = r;
   }
 
+  // Whether a node varies in time, before it has a slot.
+  bool varies(NodeId id) {
+    const auto [it, fresh] = varies_.try_emplace(id, false);
+    if (!fresh) return it->second;
+    const Kind kind = g_.node(id).kind;
+    bool v = kind == Kind::time || kind == Kind::jet || kind == Kind::multiplier || kind == Kind::state;
+    if (kind == Kind::sum) {
+      for (const Term& t : g_.summands(id)) v = varies(t.node) || v;
+    } else if (kind == Kind::product || kind == Kind::function || kind == Kind::atan2 || kind == Kind::select || kind == Kind::lookup) {
+      for (const Term& t : g_.terms(id)) v = varies(t.node) || v;
+    }
+    return varies_[id] = v;
+  }
+
+  // Which pairs of factors are multiplied first: always the one that most products still have in common.
+  void share(const Column& roots) {
+    using Pair = std::pair<std::uint64_t, std::uint64_t>;
+    constexpr std::size_t kMostProducts = 4000;
+    constexpr long kMostRepeats = 4;
+    std::vector<std::pair<NodeId, std::vector<std::uint64_t>>> products;
+    for (NodeId id : reachable(roots)) {
+      if (g_.node(id).kind != Kind::product || factors_.count(id)) continue;
+      std::vector<std::uint64_t> list;
+      for (const Term& t : g_.terms(id)) {
+        const Rational& e = g_.rational(t.weight);
+        if (e.get_den() != 1 || e <= 0 || e > kMostRepeats || !varies(t.node)) continue;
+        list.insert(list.end(), static_cast<std::size_t>(e.get_num().get_si()), t.node);
+      }
+      if (list.size() > 1) products.push_back({id, std::move(list)});
+    }
+    if (products.size() <= kMostProducts)
+      for (;;) {
+        std::map<Pair, std::size_t> count;
+        for (auto& [id, list] : products) {
+          std::sort(list.begin(), list.end());
+          std::set<Pair> seen;
+          for (std::size_t i = 0; i < list.size(); ++i)
+            for (std::size_t j = i + 1; j < list.size(); ++j)
+              if (seen.insert({list[i], list[j]}).second) ++count[{list[i], list[j]}];
+        }
+        const auto best = std::max_element(count.begin(), count.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+        if (best == count.end() || best->second < 2) break;
+        const Pair pair = best->first;
+        const std::uint64_t made = kPair + pairs_.size();
+        pairs_.push_back(pair);
+        for (auto& [id, list] : products)
+          for (;;) {
+            const auto first = std::find(list.begin(), list.end(), pair.first);
+            if (first == list.end()) break;
+            const auto second = std::find(pair.first == pair.second ? first + 1 : list.begin(), list.end(), pair.second);
+            if (second == list.end()) break;
+            const std::size_t i = static_cast<std::size_t>(first - list.begin()), j = static_cast<std::size_t>(second - list.begin());
+            list[i] = made;
+            list.erase(list.begin() + static_cast<std::ptrdiff_t>(j));
+          }
+      }
+    for (auto& [id, list] : products) factors_[id] = std::move(list);
+  }
+
+  std::uint32_t factor_slot(std::uint64_t f) {
+    if (f < kPair) return slot_.at(static_cast<NodeId>(f));
+    const std::uint64_t k = f - kPair;
+    if (pair_slot_.size() < pairs_.size()) pair_slot_.resize(pairs_.size());
+    if (!pair_slot_[k]) {
+      const std::uint32_t a = factor_slot(pairs_[k].first), b = factor_slot(pairs_[k].second);
+      pair_slot_[k] = times(a, b);
+    }
+    return *pair_slot_[k];
+  }
+
+  std::uint32_t shared_product(NodeId id) {
+    std::vector<std::uint32_t> varying, constants, below;
+    const auto shared = factors_.find(id);
+    if (shared != factors_.end())
+      for (std::uint64_t f : shared->second) varying.push_back(factor_slot(f));
+    for (const Term& t : g_.terms(id)) {
+      const Rational& e = g_.rational(t.weight);
+      const std::uint32_t x = slot_.at(t.node);
+      const bool whole = e.get_den() == 1 && abs(e) <= 1000;
+      if (shared != factors_.end() && whole && e > 0 && e <= 4 && !constant(x)) continue;
+      if (whole) {
+        const std::uint32_t p = whole_power(x, static_cast<unsigned long>(std::labs(e.get_num().get_si())));
+        (constant(x) && e > 0 ? constants : e > 0 ? varying : below).push_back(p);
+      } else {
+        Instruction in{Op::power};
+        in.constant = constant(x);
+        in.a = x;
+        in.index = rational(e);
+        (in.constant ? constants : varying).push_back(push(in));
+      }
+    }
+    const auto fold = [&](const std::vector<std::uint32_t>& list) {
+      std::uint32_t r = list[0];
+      for (std::size_t i = 1; i < list.size(); ++i) r = times(r, list[i]);
+      return r;
+    };
+    const auto quotient = [&](std::uint32_t above, const std::vector<std::uint32_t>& list) {
+      if (list.empty()) return above;
+      Instruction in{Op::divide};
+      in.a = above;
+      in.b = fold(list);
+      in.constant = constant(in.a) && constant(in.b);
+      return push(in);
+    };
+    std::vector<std::uint32_t> constant_below;
+    for (std::size_t i = 0; i < below.size();) {
+      if (constant(below[i])) constant_below.push_back(below[i]), below.erase(below.begin() + static_cast<std::ptrdiff_t>(i));
+      else ++i;
+    }
+    std::optional<std::uint32_t> front;
+    if (!constants.empty() || !constant_below.empty()) front = quotient(constants.empty() ? one() : fold(constants), constant_below);
+    if (varying.empty() && below.empty()) return *front;
+    if (varying.empty()) return quotient(front ? *front : one(), below);
+    const std::uint32_t r = quotient(fold(varying), below);
+    return front ? times(*front, r) : r;
+  }
+
   std::uint32_t product(NodeId id) {
+    if (shared_) return shared_product(id);
     std::vector<std::uint32_t> top, bottom;
     for (const Term& t : g_.terms(id)) {
       const Rational& e = g_.rational(t.weight);
@@ -254,7 +375,14 @@ class Compiler {
     }
   }
 
+  static constexpr std::uint64_t kPair = 1ULL << 32;
+
   Graph& g_;
+  bool shared_;
+  std::unordered_map<NodeId, bool> varies_;
+  std::unordered_map<NodeId, std::vector<std::uint64_t>> factors_;  // of products: nodes, or pairs
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> pairs_;
+  std::vector<std::optional<std::uint32_t>> pair_slot_;
   Tape tape_;
   std::unordered_map<NodeId, std::uint32_t> slot_;
   std::unordered_map<NodeId, bool> expanded_;
@@ -268,9 +396,9 @@ class Compiler {
 
 }  // namespace
 
-Tape compile(std::span<const Expr> es, std::span<const int> leads) {
+Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared) {
   ANHOLON_ASSERT(!es.empty() && leads.size() <= es.size());
-  return Compiler(*es[0].graph).run(es, leads);
+  return Compiler(*es[0].graph, shared).run(es, leads);
 }
 
 Tape compile(std::span<const Expr> es) {

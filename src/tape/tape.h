@@ -75,7 +75,9 @@ struct Tape {
 // Compiles the expressions. The first `leads.size()` of them are the main roots, with these leads;
 // those that follow have lead 0 and do not influence the slots of the main part.
 // REQUIRES: no frozen mass and no unknown given function occurs.
-Tape compile(std::span<const Expr> es, std::span<const int> leads);
+// `shared`: products of factors that vary in time are made of pairs that several of them have in common, and what is constant in time comes
+// last. Fewer products, and another order of rounding.
+Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared = false);
 Tape compile(std::span<const Expr> es);
 
 // What a formula met that has no value there; slot 0.. for the message.
