@@ -1,0 +1,66 @@
+// Fused multiply-adds per second of one core, in doubles alone and in vectors: twelve independent chains hide the latency.
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <utility>
+#include <vector>
+
+struct Peak {
+  const char* name;
+  double gigaflops;
+};
+
+namespace fma_peak_detail {
+
+// The chains are named by constants, or they would not stay in registers.
+template <class V, std::size_t... chain>
+[[gnu::always_inline]] inline double sweep(long times, std::index_sequence<chain...>) {
+  V sum[sizeof...(chain)] = {};
+  V factor{}, addend{};
+  factor += 0.999999999;
+  addend += 1e-9;
+  for (long i = 0; i < times; ++i) ((sum[chain] = sum[chain] * factor + addend), ...);
+  V total{};
+  ((total += sum[chain]), ...);
+  double result = 0;
+  for (std::size_t k = 0; k < sizeof(V) / sizeof(double); ++k) result += total[k];
+  return result;
+}
+using Chains = std::make_index_sequence<12>;
+
+typedef double Four __attribute__((vector_size(32)));
+typedef double Eight __attribute__((vector_size(64)));
+typedef double One __attribute__((vector_size(8)));
+
+#ifdef __x86_64__
+[[gnu::target("fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double one(long times) { return sweep<One>(times, Chains()); }
+[[gnu::target("avx2,fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double four(long times) { return sweep<Four>(times, Chains()); }
+[[gnu::target("avx512f,prefer-vector-width=512"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double eight(long times) { return sweep<Eight>(times, Chains()); }
+#endif
+
+inline double gigaflops(double (*kernel)(long), int lanes) {
+  using Clock = std::chrono::steady_clock;
+  constexpr long kTimes = 4'000'000;
+  double best = 0;
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    const auto begin = Clock::now();
+    volatile double keep = kernel(kTimes);
+    (void)keep;
+    const double s = std::chrono::duration<double>(Clock::now() - begin).count();
+    best = std::max(best, 2.0 * 12 * lanes * static_cast<double>(kTimes) / s / 1e9);
+  }
+  return best;
+}
+
+}  // namespace fma_peak_detail
+
+inline std::vector<Peak> fma_peaks() {
+  using namespace fma_peak_detail;
+  std::vector<Peak> peaks;
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("fma")) peaks.push_back({"scalar", gigaflops(one, 1)});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) peaks.push_back({"avx2", gigaflops(four, 4)});
+  if (__builtin_cpu_supports("avx512f")) peaks.push_back({"avx512", gigaflops(eight, 8)});
+#endif
+  return peaks;
+}
