@@ -1,7 +1,9 @@
-// Fused multiply-adds per second of one core, in doubles alone and in vectors: twelve independent chains hide the latency.
+// Fused multiply-adds per second of one core, in doubles alone and in vectors: twelve independent
+// chains hide the latency.
 #pragma once
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -14,7 +16,8 @@ namespace fma_peak_detail {
 
 // The chains are named by constants, or they would not stay in registers.
 template <class V, std::size_t... chain>
-[[gnu::always_inline]] inline double sweep(long times, std::index_sequence<chain...>) {
+[[gnu::always_inline]] inline void sweep(long times, double& result,
+                                         std::index_sequence<chain...>) {
   V sum[sizeof...(chain)] = {};
   V factor{}, addend{};
   factor += 0.999999999;
@@ -22,20 +25,32 @@ template <class V, std::size_t... chain>
   for (long i = 0; i < times; ++i) ((sum[chain] = sum[chain] * factor + addend), ...);
   V total{};
   ((total += sum[chain]), ...);
-  double result = 0;
-  for (std::size_t k = 0; k < sizeof(V) / sizeof(double); ++k) result += total[k];
-  return result;
+  std::memcpy(&result, &total, sizeof result);  // one of them will do: it is only to be needed
 }
-using Chains = std::make_index_sequence<12>;
 
 typedef double Four __attribute__((vector_size(32)));
 typedef double Eight __attribute__((vector_size(64)));
-typedef double One __attribute__((vector_size(8)));
 
 #ifdef __x86_64__
-[[gnu::target("fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double one(long times) { return sweep<One>(times, Chains()); }
-[[gnu::target("avx2,fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double four(long times) { return sweep<Four>(times, Chains()); }
-[[gnu::target("avx512f,prefer-vector-width=512"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double eight(long times) { return sweep<Eight>(times, Chains()); }
+[[gnu::target("fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double
+one(long times) {
+  double result;
+  sweep<double>(times, result, std::make_index_sequence<12>());
+  return result;
+}
+[[gnu::target("avx2,fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double
+four(long times) {
+  double result;
+  sweep<Four>(times, result, std::make_index_sequence<12>());
+  return result;
+}
+[[gnu::target("avx512f,prefer-vector-width=512"), gnu::optimize("fp-contract=fast"),
+  gnu::noinline]] inline double
+eight(long times) {
+  double result;
+  sweep<Eight>(times, result, std::make_index_sequence<12>());
+  return result;
+}
 #endif
 
 inline double gigaflops(double (*kernel)(long), int lanes) {
@@ -59,7 +74,8 @@ inline std::vector<Peak> fma_peaks() {
   std::vector<Peak> peaks;
 #ifdef __x86_64__
   if (__builtin_cpu_supports("fma")) peaks.push_back({"scalar", gigaflops(one, 1)});
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) peaks.push_back({"avx2", gigaflops(four, 4)});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    peaks.push_back({"avx2", gigaflops(four, 4)});
   if (__builtin_cpu_supports("avx512f")) peaks.push_back({"avx512", gigaflops(eight, 8)});
 #endif
   return peaks;

@@ -1,19 +1,20 @@
-// One model as the driver of the speed table (bench/speed.py) asks for it: made ready, then integrated to the end of its
-// [simulate] with the tolerances that come on the standard input. Each answer is a line of JSON.
+// One model as the driver of the speed table (bench/speed.py) asks for it: made ready, then
+// integrated to the end of its [simulate] with the tolerances that come on the standard input. Each
+// answer is a line of JSON.
 //
-//   speed_bench MODEL [--set NAME=VALUE]... [--form NAME]     answers with the times of making ready
-//   start                       positions and velocities at the start, coordinate by coordinate, in 36 digits
-//   exact DIGITS                those at the end, so many digits to be trusted
-//   run TOLERANCE SECONDS [STEPS]   as many motions as fit the time, at least one; STEPS: no more of each
-//   speed_bench --peak          no model: what the core can do, in GF/s
-#include <sys/resource.h>
-
+//   speed_bench MODEL [--set NAME=VALUE]... [--form NAME]     answers with the times of making
+//   ready start                       positions and velocities at the start, coordinate by
+//   coordinate, in 36 digits exact DIGITS                those at the end, so many digits to be
+//   trusted run TOLERANCE SECONDS [STEPS]   as many motions as fit the time, at least one; STEPS:
+//   no more of each speed_bench --peak          no model: what the core can do, in GF/s
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <sstream>
+
+#include <sys/resource.h>
 
 #include "base/json.h"
 #include "base/read_file.h"
@@ -25,7 +26,9 @@ namespace {
 using namespace anholon;
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 struct Failed {
   std::string why;
@@ -55,7 +58,8 @@ std::unique_ptr<Ready> make_ready(const Request& request) {
     return s;
   };
   SourceText source{request.model, {}};
-  if (std::string why; !read_file(request.model, source.text, &why)) throw Failed{request.model + ": " + why};
+  if (std::string why; !read_file(request.model, source.text, &why))
+    throw Failed{request.model + ": " + why};
   Diagnostics diagnostics;
   std::optional<Model> m = read_model(source, diagnostics, request.set);
   if (!m) throw Failed{diagnostics.print(source)};
@@ -79,7 +83,8 @@ std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& 
   return values;
 }
 
-// The only place that knows how a stepper is made and driven. `timed`: from the start of the motion to its end.
+// The only place that knows how a stepper is made and driven. `timed`: from the start of the motion
+// to its end.
 template <Number N>
 struct Motion {
   using W = Wider<N>;
@@ -153,7 +158,8 @@ void answer_exact(const Ready& r, int digits, JsonWriter& json) {
   write(json, "seconds", seconds_since(begin));
 }
 
-void answer_run(const Ready& r, double tolerance, double seconds, std::size_t most_steps, JsonWriter& json) {
+void answer_run(const Ready& r, double tolerance, double seconds, std::size_t most_steps,
+                JsonWriter& json) {
   using W = Wider<double>;
   Start<W> start;
   must(initial_state(r.scenario, {}, start));
@@ -161,12 +167,14 @@ void answer_run(const Ready& r, double tolerance, double seconds, std::size_t mo
   std::vector<double> times;
   std::unique_ptr<Motion<double>> motion;
   for (const auto begin = Clock::now(); times.empty() || seconds_since(begin) < seconds;) {
-    motion = std::make_unique<Motion<double>>(r, StepSettings{std::log(tolerance), 0, kMostSteps, {}});
+    motion =
+        std::make_unique<Motion<double>>(r, StepSettings{std::log(tolerance), 0, kMostSteps, {}});
     const auto started = Clock::now();
     motion->go(start, end, most_steps);
     times.push_back(seconds_since(started));
   }
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
+                   times.end());
   write(json, "us", 1e6 * times[times.size() / 2]);
   json.key("runs").integer(static_cast<long long>(times.size()));
   json.key("steps").integer(static_cast<long long>(motion->stepper.steps()));
@@ -194,7 +202,8 @@ void serve(const Ready& ready, const std::string& line) {
       answer_start(ready, json);
     } else if (int digits = 0; command == "exact" && words >> digits) {
       answer_exact(ready, digits, json);
-    } else if (double tolerance = 0, seconds = 0; command == "run" && words >> tolerance >> seconds) {
+    } else if (double tolerance = 0, seconds = 0;
+               command == "run" && words >> tolerance >> seconds) {
       std::size_t most_steps = kMostSteps;
       words >> most_steps;
       answer_run(ready, tolerance, seconds, words ? most_steps : kMostSteps, json);

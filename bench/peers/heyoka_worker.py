@@ -3,12 +3,12 @@
 
     heyoka_worker.py SYSTEM N END      then one line: JSON list of positions and velocities at the start, coordinate by coordinate
     modes                              the names of the modes of compilation
-    compile TOLERANCE MODE             the seconds it took; 0 where it is compiled already (from the cache: what it took then)
+    compile TOLERANCE MODE             the seconds of its first compilation, and those of now
     run TOLERANCE MODE SECONDS         as many motions as fit the time, at least one
     batch TOLERANCE MODE LANES SECONDS motions of so many neighbours at once
 
-Every answer is a line of JSON. Compiled integrators are kept in HEYOKA_CACHE, a folder, if that is set: the unrolled ones of long
-chains take a minute each. The time of a run is that of propagate_until less that of a call of it that has nowhere to go.
+Every answer is a line of JSON. What is compiled stays in heyoka's cache on the disk, HEYOKA_CACHE_DIR. The time of a run is that of
+propagate_until less that of a call of it that has nowhere to go.
 
 The forms of the equations are those of odeint.cpp: quasi-velocities, the trailers' speed times the root of their inertia, the
 tensions of the chain's rods by elimination in their tridiagonal equations.
@@ -17,7 +17,6 @@ tensions of the chain's rods by elimination in their tridiagonal equations.
 import hashlib
 import json
 import os
-import pickle
 import statistics
 import sys
 import time
@@ -79,8 +78,8 @@ class Trailers:
         self.n = n
         self.names = ["x", "y", "ph", *(f"th{i}" for i in range(n + 1)), "p", "s"]
 
-    def speed(self, f, th, p_or_v, t, inverse=False):
-        """The root of 1/I, cosines and sines at the hitches."""
+    def root(self, f, th, t):
+        """The root of 1/I from the last trailer on, cosines and sines at the hitches."""
         M0, J0, M, J, d = 10.0, 2.0, 3.0, 0.75, 0.875
         c, s, behind = [], [], 0.0
         for i in range(1, self.n + 1):
@@ -94,14 +93,14 @@ class Trailers:
     def reduce(self, g):
         th = g[6::2]
         v = g[1] * np.cos(th[0]) + g[3] * np.sin(th[0])
-        r, _, _ = self.speed(np, th, v, np.tan(g[4]))
+        r, _, _ = self.root(np, th, np.tan(g[4]))
         return [g[0], g[2], g[4], *th, v / r, g[7] + g[5]]
 
     def rates(self, f, s, time_):
         L, Jp, d, drive = 1.0, 0.125, 0.875, 5.0
         ph, th, p, total = s[2], s[3:-2], s[-2], s[-1]
-        t = f.sin(ph) / f.cos(ph) / L if TAN_BY_QUOTIENT else f.tan(ph) / L
-        r, c, sn = self.speed(f, th, p, t)
+        t = f.tan(ph) / L
+        r, c, sn = self.root(f, th, t)
         v = p * r
         turn = v * t
         w = total - turn
@@ -112,9 +111,6 @@ class Trailers:
             rates.append(u * sn[i] * (1 / d))
             u = u * c[i]
         return [*rates, (drive - t * steer) * r, steer * (1 / Jp)]
-
-
-TAN_BY_QUOTIENT = False  # measured: heyoka's tan is the faster
 
 
 class Chain:
@@ -160,46 +156,50 @@ class Worker:
         self.start = np.array(self.system.reduce(np.array(given)), dtype=float)
         variables = hy.make_vars(*self.system.names)
         self.equations = list(zip(variables, self.system.rates(hy, list(variables), hy.time)))
-        self.made = {}
+        self.integrators = {}
 
-    def cached(self, key, make):
-        """An integrator and the seconds of its compilation."""
-        if key in self.made:
-            return self.made[key]
-        folder = os.environ.get("HEYOKA_CACHE")
-        path = None
-        if folder:
-            text = f"{hy.__version__} {key} {self.equations} {cpu()}"
-            path = os.path.join(folder, hashlib.sha256(text.encode()).hexdigest() + ".pickle")
-            if os.path.exists(path):
-                with open(path, "rb") as file:
-                    self.made[key] = pickle.load(file)
-                return self.made[key]
-        begin = time.perf_counter()
-        integrator = make()
-        self.made[key] = (integrator, time.perf_counter() - begin)
-        if path:
+    def made(self, key, make):
+        """An integrator, the seconds of its first compilation, and of making it now."""
+        if key not in self.integrators:
+            begin = time.perf_counter()
+            integrator = make()
+            now = time.perf_counter() - begin
+            self.integrators[key] = (integrator, self.first_seconds(key, now), now)
+        return self.integrators[key]
+
+    def first_seconds(self, key, now):
+        """heyoka keeps what it compiled in a folder; how long that took is kept beside it."""
+        folder = os.environ.get("HEYOKA_CACHE_DIR")
+        if not folder:
+            return now
+        path = os.path.join(folder, f"seconds-{self.name}-{self.n}.json")
+        seconds = {}
+        if os.path.exists(path):
+            with open(path, encoding="utf-8") as file:
+                seconds = json.load(file)
+        name = hashlib.sha256(f"{hy.__version__} {key} {self.equations}".encode()).hexdigest()[:16]
+        if name not in seconds:
+            seconds[name] = now
             os.makedirs(folder, exist_ok=True)
-            with open(path + ".new", "wb") as file:
-                pickle.dump(self.made[key], file)
-            os.replace(path + ".new", path)
-        return self.made[key]
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump(seconds, file, indent=1)
+        return seconds[name]
 
     def single(self, tolerance, mode):
         def make():
             return hy.taylor_adaptive(self.equations, self.start, tol=tolerance, **MODES[mode])
 
-        return self.cached((self.name, self.n, tolerance, mode), make)
+        return self.made((self.name, self.n, tolerance, mode), make)
 
     def several(self, tolerance, mode, lanes):
         def make():
             state = np.repeat(self.start[:, None], lanes, axis=1)
             return hy.taylor_adaptive_batch(self.equations, state, tol=tolerance, force_avx512=lanes == 8, **MODES[mode])
 
-        return self.cached((self.name, self.n, tolerance, mode, lanes), make)
+        return self.made((self.name, self.n, tolerance, mode, lanes), make)
 
     def positions_and_velocities(self, state):
-        rates = np.array(self.system.rates(np, list(state), self.end), dtype=float)
+        rates = self.system.rates(np, list(state), self.end)
         if self.name == "chain":
             x, v = state[: self.n], state[self.n :]
         else:
@@ -208,10 +208,10 @@ class Worker:
         return [repr(float(a)) for pair in zip(x, v) for a in pair]
 
     def compile(self, tolerance, mode):
-        return {"seconds": self.single(tolerance, mode)[1]}
+        return dict(zip(("first", "now"), self.single(tolerance, mode)[1:]))
 
     def run(self, tolerance, mode, seconds):
-        ta, jit = self.single(tolerance, mode)
+        ta, jit, _ = self.single(tolerance, mode)
 
         def reset():
             ta.time = 0.0
@@ -224,7 +224,7 @@ class Worker:
         }  # fmt: skip
 
     def batch(self, tolerance, mode, lanes, seconds):
-        ta, jit = self.several(tolerance, mode, lanes)
+        ta, jit, _ = self.several(tolerance, mode, lanes)
         # Neighbours: velocities that differ by parts in a thousand.
         start = np.repeat(self.start[:, None], lanes, axis=1) * (1 + 1e-3 * np.arange(lanes) / lanes)
 
@@ -236,26 +236,21 @@ class Worker:
         return {"us": 1e6 * times / lanes, "jit": jit, "steps": sum(steps) / lanes, "order": ta.order}
 
 
-def cpu():
-    with open("/proc/cpuinfo", encoding="utf-8") as file:
-        return next((line for line in file if line.startswith("model name")), "")
-
-
 def measure(reset, go, seconds, steps_of):
     """Median seconds of a run, less those of a call that finds itself at the end."""
-    times, begin = [], time.perf_counter()
+    times, calls, begin = [], [], time.perf_counter()
     while not times or time.perf_counter() - begin < seconds:
         reset()
         started = time.perf_counter()
         result = go()
-        times.append(time.perf_counter() - started)
-    steps = steps_of(result)
-    calls = []
-    for _ in range(min(len(times), 200)):
+        ended = time.perf_counter()
+        steps = steps_of(result)
+        times.append(ended - started)
         started = time.perf_counter()
         go()
         calls.append(time.perf_counter() - started)
-    return statistics.median(times) - statistics.median(calls), steps
+    # The least of the calls: a disturbed one would make the run look shorter than it is.
+    return statistics.median(times) - min(calls), steps
 
 
 def main():

@@ -1,20 +1,22 @@
-// Runge-Kutta-Fehlberg 7(8) of Boost's odeint on the systems of the speed table, their right-hand sides reduced and written by
-// hand, O(n) in the links of a chain and in the trailers; in __float128 also the check of the reference.
+// Runge-Kutta-Fehlberg 7(8) of Boost's odeint on the systems of the speed table, their right-hand
+// sides reduced and written by hand, O(n) in the links of a chain and in the trailers; in
+// __float128 also the check of the reference.
 //
-//   odeint SYSTEM N END        (N = 1 where there is none) then one position or velocity per line of standard input, 36 digits each, coordinate by
-//                              coordinate (of the chain: th[1], th[1]', …; as anholon's models in bench/models have them)
+//   odeint SYSTEM N END        (N = 1 where there is none) then one position or velocity per line
+//   of standard input, 36 digits each, coordinate by
+//                              coordinate (of the chain: th[1], th[1]', …; as anholon's models in
+//                              bench/models have them)
 //   run TOLERANCE SECONDS      as many motions as fit the time; answers with a line of JSON
-//   exact STEPS                the end in __float128 by extrapolation of order 24, in so many equal steps
+//   exact STEPS                the end in __float128 by extrapolation of order 24, in so many equal
+//   steps
 // The systems, reduced:
 //   sleigh    x, y, th, v (along the blade), w
-//   disc      x, y, psi, theta, phi and the angular velocities w1 (lean), w2, w3 (axle) along lean.x, lean.y, lean.z
-//   trailers  x, y, ph, th[0..n], p = v sqrt(I) with 2T = I v^2 + Jp s^2, s = th[0]' + ph': then p' = (drive - tan(ph) steer/L)/sqrt(I)
-//   chain     th, w; the tensions of the rods from their tridiagonal equations (acceleration along a rod = -l w^2), then w'
-#include <quadmath.h>
-
+//   disc      x, y, psi, theta, phi and the angular velocities w1 (lean), w2, w3 (axle) along
+//   lean.x, lean.y, lean.z trailers  x, y, ph, th[0..n], p = v sqrt(I) with 2T = I v^2 + Jp s^2, s
+//   = th[0]' + ph': then p' = (drive - tan(ph) steer/L)/sqrt(I) chain     th, w; the tensions of
+//   the rods from their tridiagonal equations (acceleration along a rod = -l w^2), then w'
 #include <algorithm>
 #include <array>
-#include <boost/numeric/odeint.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +24,9 @@
 #include <iostream>
 #include <string>
 #include <vector>
+
+#include <boost/numeric/odeint.hpp>
+#include <quadmath.h>
 
 namespace {
 
@@ -42,8 +47,12 @@ struct Sleigh {
   using State = Vec<N, 5>;
   using Given = Vec<N, 6>;
   static constexpr N m = 2, a = N(1) / 2, J = N(1) / 2;
-  State reduce(const Given& g) const { return {g[0], g[2], g[4], g[1] * cos(g[4]) + g[3] * sin(g[4]), g[5]}; }
-  Given expand(const State& x) const { return {x[0], x[3] * cos(x[2]), x[1], x[3] * sin(x[2]), x[2], x[4]}; }
+  State reduce(const Given& g) const {
+    return {g[0], g[2], g[4], g[1] * cos(g[4]) + g[3] * sin(g[4]), g[5]};
+  }
+  Given expand(const State& x) const {
+    return {x[0], x[3] * cos(x[2]), x[1], x[3] * sin(x[2]), x[2], x[4]};
+  }
   void operator()(const State& x, State& d, const N&) const {
     constexpr N k = m * a / (J + m * a * a);
     d[0] = x[3] * cos(x[2]);
@@ -65,7 +74,8 @@ struct Disc {
   }
   Given expand(const State& x) const {
     const N c = cos(x[3]), s = sin(x[3]), turn = x[6] / s, spin = x[7] - turn * c;
-    return {x[0], -R * spin * cos(x[2]), x[1], -R * spin * sin(x[2]), x[2], turn, x[3], x[5], x[4], spin};
+    return {x[0], -R * spin * cos(x[2]), x[1], -R * spin * sin(x[2]), x[2], turn, x[3], x[5], x[4],
+            spin};
   }
   void operator()(const State& x, State& d, const N&) const {
     const N c = cos(x[3]), s = sin(x[3]), w1 = x[5], w2 = x[6], w3 = x[7];
@@ -85,9 +95,11 @@ template <class N, std::size_t n>
 struct Trailers {
   using State = Vec<N, n + 6>;
   using Given = Vec<N, 2 * (n + 4)>;
-  static constexpr N M0 = 10, J0 = 2, Jp = N(1) / 8, L = 1, M = 3, J = N(3) / 4, d = N(7) / 8, drive = 5;
+  static constexpr N M0 = 10, J0 = 2, Jp = N(1) / 8, L = 1, M = 3, J = N(3) / 4, d = N(7) / 8,
+                     drive = 5;
   using Bends = Vec<N, n + 1>;
-  // 1/sqrt of the inertia of the whole train by the speed of the car; cosines and sines of the angles at the hitches.
+  // 1/sqrt of the inertia of the whole train by the speed of the car; cosines and sines of the
+  // angles at the hitches.
   N root(const State& x, const N& t, Bends& c, Bends& s) const {
     for (std::size_t i = 1; i <= n; ++i) {
       const N bend = x[2 + i] - x[3 + i];
@@ -95,7 +107,8 @@ struct Trailers {
       s[i] = sin(bend);
     }
     N behind(0);
-    for (std::size_t i = n; i >= 1; --i) behind = J / (d * d) + c[i] * c[i] * (M - J / (d * d) + behind);
+    for (std::size_t i = n; i >= 1; --i)
+      behind = J / (d * d) + c[i] * c[i] * (M - J / (d * d) + behind);
     return 1 / sqrt(M0 + J0 * t * t + behind);
   }
   State reduce(const Given& g) const {
@@ -119,7 +132,8 @@ struct Trailers {
   void operator()(const State& x, State& rate, const N& time) const {
     constexpr std::size_t at = n + 4;
     Bends c, s;
-    const N t = sin(x[2]) / cos(x[2]) / L, r = root(x, t, c, s), v = x[at] * r, turn = v * t, w = x[at + 1] - turn;
+    const N t = sin(x[2]) / cos(x[2]) / L, r = root(x, t, c, s), v = x[at] * r, turn = v * t,
+            w = x[at + 1] - turn;
     const N steer = -2 * x[2] + sin(time) - w / 2;
     rate[0] = v * cos(x[3]);
     rate[1] = v * sin(x[3]);
@@ -173,7 +187,8 @@ struct Chain {
     for (std::size_t i = 0; i < n; ++i) d[i] = w[i];
     s[n] = 0;
     d[n] = s[1] * tension[1] - (g / l) * s0;
-    for (std::size_t i = 1; i < n; ++i) d[n + i] = s[i + 1] * tension[i + 1] - s[i] * tension[i - 1];
+    for (std::size_t i = 1; i < n; ++i)
+      d[n + i] = s[i + 1] * tension[i + 1] - s[i] * tension[i - 1];
   }
 };
 
@@ -185,8 +200,9 @@ template <class System, class State>
 std::size_t go(const System& system, State& x, double tolerance, double end) {
   namespace ode = boost::numeric::odeint;
   std::size_t steps = 0;
-  ode::integrate_adaptive(ode::make_controlled<ode::runge_kutta_fehlberg78<State>>(tolerance, tolerance), std::cref(system), x, 0.0, end,
-                          end / 1000, [&steps](const State&, double) { ++steps; });
+  ode::integrate_adaptive(
+      ode::make_controlled<ode::runge_kutta_fehlberg78<State>>(tolerance, tolerance),
+      std::cref(system), x, 0.0, end, end / 1000, [&steps](const State&, double) { ++steps; });
   return steps - 1;
 }
 
@@ -252,7 +268,8 @@ int serve(double end) {
   const Exact exact;
   const auto begin = exact.reduce(given);
   typename Narrow::State start;
-  std::transform(begin.begin(), begin.end(), start.begin(), [](const Quad& x) { return static_cast<double>(x); });
+  std::transform(begin.begin(), begin.end(), start.begin(),
+                 [](const Quad& x) { return static_cast<double>(x); });
   while (std::getline(std::cin, line)) {
     double tolerance = 0, seconds = 0;
     int quad_steps = 0;
@@ -265,16 +282,19 @@ int serve(double end) {
       std::vector<double> times;
       auto x = start;
       std::size_t steps = 0;
-      for (const auto all = std::chrono::steady_clock::now(); times.empty() || seconds_since(all) < seconds;) {
+      for (const auto all = std::chrono::steady_clock::now();
+           times.empty() || seconds_since(all) < seconds;) {
         x = start;
         const auto started = std::chrono::steady_clock::now();
         steps = go(system, x, tolerance, end);
         times.push_back(seconds_since(started));
       }
-      std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+      std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
+                       times.end());
       typename Exact::State last;
       std::copy(x.begin(), x.end(), last.begin());
-      std::printf("{\"us\": %.6g, \"runs\": %zu, \"steps\": %zu, ", 1e6 * times[times.size() / 2], times.size(), steps);
+      std::printf("{\"us\": %.6g, \"runs\": %zu, \"steps\": %zu, ", 1e6 * times[times.size() / 2],
+                  times.size(), steps);
       print(exact.expand(last));
     }
   }
