@@ -259,8 +259,9 @@ def measure_growth(limit):
             rows.append({"n": n, "failed": problem.stderr.strip() or f"ended with {problem.returncode}"})
             break
         setup, run = map(json.loads, done.stdout.splitlines())
+        run.pop("state", None)
         rows.append({"n": n, "setup": setup, "run": run})
-        say(f"  chain {n}: {run.get('us', 0) / max(run.get('steps', 1), 1):.0f} us per step, {run.get('megabytes', 0):.0f} MB")
+        say(f"  chain {n}: " + (run.get("failed") or f"{run['us'] / run['steps']:.0f} us per step, {run['megabytes']:.0f} MB"))
     return rows
 
 
@@ -272,7 +273,8 @@ def measure_startup(program, repeat=3):
         best, code = float("inf"), 0
         for _ in range(repeat):
             begin = time.perf_counter()
-            code = subprocess.run([program, "simulate", model], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode
+            nowhere = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+            code = subprocess.run([program, "simulate", model], **nowhere, check=False).returncode
             best = min(best, time.perf_counter() - begin)
         rows.append({"model": model, "seconds": best, "exit": code})
     return rows
@@ -283,8 +285,8 @@ def machine():
         model = re.search(r"^model name\s*:\s*(.*)$", file.read(), re.MULTILINE)
     compiler = subprocess.run(["g++", "-dumpfullversion"], capture_output=True, text=True, check=False).stdout.strip()
     return {
-        "cpu": model[1] if model else platform.machine(), "cores": os.cpu_count(), "load": os.getloadavg()[0], "compiler": "g++ " + compiler,
-        "python": platform.python_version(), "date": time.strftime("%Y-%m-%d"),
+        "cpu": model[1] if model else platform.machine(), "cores": os.cpu_count(), "load": os.getloadavg()[0],
+        "compiler": "g++ " + compiler, "python": platform.python_version(), "date": time.strftime("%Y-%m-%d"),
     }  # fmt: skip
 
 

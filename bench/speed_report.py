@@ -80,8 +80,8 @@ def times(result):
                 number(equal), ratio(equal_error(s, "heyoka", level)), ratio(equal_error(s, "odeint", level)),
             ])  # fmt: skip
     return table(
-        ["system", "tolerance", "anholon, us (error)", "heyoka", "odeint", "us per step: anholon", "heyoka", "heyoka / anholon, equal tolerance",
-         "equal error", "odeint / anholon, equal error"], rows,
+        ["system", "tolerance", "anholon, us (error)", "heyoka", "odeint", "us per step: anholon", "heyoka",
+         "heyoka / anholon, equal tolerance", "equal error", "odeint / anholon, equal error"], rows,
     )  # fmt: skip
 
 
@@ -135,9 +135,13 @@ def setups(result):
             jit.append(f"{cell['jit']:.2g} ({cell['mode']})" if cell and "jit" in cell else "–")
         looks = [m for looks in s.get("heyoka_modes", {}).values() for m in looks.values()]
         again = [1e3 * m["again"] for m in looks if m.get("again")]
-        rows.append([title, *(number(1e3 * u[k]) for k in ("read", "scenario", "program")), *jit, number(min((m["jit"] for m in looks), default=None)),
+        shortest = min((m["jit"] for m in looks), default=None)
+        rows.append([title, *(number(1e3 * u[k]) for k in ("read", "scenario", "program")), *jit, number(shortest),
                      f"{number(min(again))} to {number(max(again))}" if again else "–"])  # fmt: skip
-    return table(["system", "read, ms", "equations, start, structure, ms", "program, ms", *(f"heyoka compiles, s: {level}" for level in LEVELS), "its shortest", "again, from its disk cache, ms"], rows)
+    return table(
+        ["system", "read, ms", "equations, start, structure, ms", "program, ms", *(f"heyoka compiles, s: {level}" for level in LEVELS),
+         "its shortest", "again, from its disk cache, ms"], rows,
+    )  # fmt: skip
 
 
 def batches(result):
@@ -148,9 +152,10 @@ def batches(result):
             if not math.isfinite(h["us"]):
                 continue
             alone = s["cells"]["own"].get(level, {})
-            rows.append([title, level, number(h["us"]), number(h["us"] / h["steps"]), number(own and own["us"]), ratio(own and h["us"] / own["us"]),
-                         number(alone.get("us"))])  # fmt: skip
-    return table(["system", "tolerance", "heyoka, us per trajectory", "per step", "anholon, us per trajectory", "ratio", "anholon, one alone"], rows)
+            rows.append([title, level, number(h["us"]), number(h["us"] / h["steps"]), number(own and own["us"]),
+                         ratio(own and h["us"] / own["us"]), number(alone.get("us"))])  # fmt: skip
+    head = ["system", "tolerance", "heyoka, us per trajectory", "per step", "anholon, us per trajectory", "ratio", "anholon, one alone"]
+    return table(head, rows)
 
 
 def growth(result):
@@ -166,20 +171,32 @@ def growth(result):
     return table(["links", "us per step", "per step and link", "made ready, ms", "memory, MB"], rows)
 
 
+TWINS = {"chaplygin-sleigh": "sleigh", "disc": "disc", "trailers": "trailers 3", "chain": "chain 4"}  # shipped models with a system above
+
+
+def compilation(system, level="1e-12"):
+    """The shortest of heyoka's at the tolerance that `simulate` has without being told."""
+    return min((m["jit"] for m in system.get("heyoka_modes", {}).get(level, {}).values()), default=None)
+
+
 def startup(result):
-    shortest = min((m["jit"] for s in result["systems"].values() for looks in s.get("heyoka_modes", {}).values() for m in looks.values()), default=None)
-    rows = result.get("startup", [])
+    rows = sorted(result.get("startup", []), key=lambda r: r["seconds"])
     if not rows:
-        return "Not measured."
-    ordered = sorted(rows, key=lambda r: r["seconds"])
-    text = f"{len(rows)} models, {number(1e3 * ordered[0]['seconds'])} to {number(1e3 * ordered[-1]['seconds'])} ms, median {number(1e3 * ordered[len(rows) // 2]['seconds'])} ms. "
-    ended = [r["model"] for r in rows if r["exit"] not in (0, 1)]
-    if ended:
-        text += f"Without a run, by their exit codes: {', '.join(ended)}. "
-    if shortest is None:
-        return text
-    longer = [f"{r['model']} ({r['seconds']:.2g} s)" for r in ordered if r["seconds"] > shortest]
-    text += f"heyoka's shortest compilation, of all systems, modes and tolerances above, took {number(1e3 * shortest)} ms: "
+        return "not measured."
+    ms = [1e3 * r["seconds"] for r in rows]
+    text = f"{len(rows)} models, {number(ms[0])} to {number(ms[-1])} ms, median {number(ms[len(ms) // 2])} ms"
+    bad = [r["model"] for r in rows if r["exit"] not in (0, 1)]
+    if bad:
+        text += f" (no run, by the exit code: {', '.join(bad)})"
+    seconds = {r["model"]: r["seconds"] for r in rows}
+    both = [(m, compilation(result["systems"][t])) for m, t in TWINS.items() if t in result["systems"] and m in seconds]
+    pairs = [f"{model} {number(1e3 * seconds[model])} ({number(1e3 * c)})" for model, c in both if c]
+    if not pairs:
+        return text + "."
+    text += f". Ours, and in brackets heyoka's shortest compilation of the like at 1e-12, ms: {', '.join(pairs)}. "
+    least = min(c for t in result["systems"].values() if (c := compilation(t)) is not None)
+    longer = [f"{r['model']} ({number(1e3 * r['seconds'])})" for r in rows if r["seconds"] > least]
+    text += f"Of all systems above the shortest is {number(1e3 * least)} ms: "
     return text + ("every model was through before it." if not longer else "longer than that took " + ", ".join(longer) + ".")
 
 
@@ -258,3 +275,32 @@ def put(text, path):
     after = rest.partition(END)[2] if mark else "\n"
     with open(path, "w", encoding="utf-8") as file:
         file.write(before.rstrip("\n") + f"\n\n{BEGIN}\n{text}{END}{after}")
+
+
+def self_test():
+    """The rules of comparison on curves known in closed form: time = 100 error^(-1/10)."""
+    import os
+    import tempfile
+
+    curve = {f"1e-{k:02}": {"us": 100 * 10 ** (k / 10), "error": 10.0**-k} for k in (6, 8, 10)}
+    assert abs(time_at(curve, 1e-9) / (100 * 10**0.9) - 1) < 1e-12, "between two tolerances"
+    assert abs(time_at(curve, 1e-5) / (100 * 10**0.6) - 1) < 1e-12, "the cheapest run, where all reach the error"
+    assert time_at(curve, 1e-11) is None, "an error that is not reached has no time"
+    slow_and_bad = {**curve, "1e-12": {"us": 1.0, "error": 1.0}, "1e-13": {"failed": "singular"}}
+    assert abs(time_at(slow_and_bad, 1e-9) / (100 * 10**0.9) - 1) < 1e-12, "a fast run with a large error, or none, is no help"
+    peer = {"1e-09": {"us": 200.0, "error": 1e-8}}
+    ratio_here = equal_error({"cells": {"own": curve, "peer": peer}}, "peer", "1e-09")
+    assert abs(ratio_here - 2 / 10**0.8) < 1e-12, "the peer's time over ours, both at the peer's error"
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "r.md")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("before\n\nafter\n")
+        for text in ("one\n", "two\n"):
+            put(text, path)
+        with open(path, encoding="utf-8") as file:
+            assert file.read() == f"before\n\nafter\n\n{BEGIN}\ntwo\n{END}\n", "the tables of a new run take the place of the old ones"
+    print("speed_report: all well")
+
+
+if __name__ == "__main__":
+    self_test()
