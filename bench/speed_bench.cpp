@@ -8,28 +8,21 @@
 //   trusted run TOLERANCE SECONDS [STEPS]   as many motions as fit the time, at least one; STEPS:
 //   no more of each speed_bench --peak          no model: what the core can do, in GF/s
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 #include <sstream>
-
-#include <sys/resource.h>
 
 #include "base/json.h"
 #include "base/read_file.h"
 #include "fma_peak.h"
 #include "run/simulate.h"
+#include "stopwatch.h"
 
 namespace {
 
 using namespace anholon;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 struct Failed {
   std::string why;
 };
@@ -51,10 +44,10 @@ struct Ready {
 
 std::unique_ptr<Ready> make_ready(const Request& request) {
   auto r = std::make_unique<Ready>();
-  auto begin = Clock::now();
-  const auto lap = [&begin] {
-    const double s = seconds_since(begin);
-    begin = Clock::now();
+  Stopwatch watch;
+  const auto lap = [&watch] {
+    const double s = watch.seconds();
+    watch = {};
     return s;
   };
   SourceText source{request.model, {}};
@@ -116,10 +109,12 @@ void write_state(JsonWriter& json, const Values& values, int digits = 0) {
 
 void write(JsonWriter& json, const char* key, double x) { json.key(key).number(number_text(x)); }
 
+// The most memory that the process has had.
 double megabytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (word == "VmHWM:" && status >> word) return std::stod(word) / 1024;
+  return 0;
 }
 
 void answer_ready(const Ready& r, JsonWriter& json) {
@@ -149,13 +144,13 @@ void answer_start(const Ready& r, JsonWriter& json) {
 
 void answer_exact(const Ready& r, int digits, JsonWriter& json) {
   const PrecisionScope precision(digits + 10);
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   Start<Multi> start;
   must(initial_state(r.scenario, {}, start));
   Motion<Multi> motion(r, {-digits * std::log(10.0), 0, kMostSteps, {}});
   motion.go(start, from_rational<Multi>(*r.scenario.model->simulate.to), kMostSteps);
   write_state(json, motion.last(), digits);
-  write(json, "seconds", seconds_since(begin));
+  write(json, "seconds", watch.seconds());
 }
 
 void answer_run(const Ready& r, double tolerance, double seconds, std::size_t most_steps,
@@ -166,16 +161,14 @@ void answer_run(const Ready& r, double tolerance, double seconds, std::size_t mo
   const W end = from_rational<W>(*r.scenario.model->simulate.to);
   std::vector<double> times;
   std::unique_ptr<Motion<double>> motion;
-  for (const auto begin = Clock::now(); times.empty() || seconds_since(begin) < seconds;) {
+  for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
     motion =
         std::make_unique<Motion<double>>(r, StepSettings{std::log(tolerance), 0, kMostSteps, {}});
-    const auto started = Clock::now();
+    const Stopwatch watch;
     motion->go(start, end, most_steps);
-    times.push_back(seconds_since(started));
+    times.push_back(watch.seconds());
   }
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
-                   times.end());
-  write(json, "us", 1e6 * times[times.size() / 2]);
+  write(json, "us", 1e6 * median(times));
   json.key("runs").integer(static_cast<long long>(times.size()));
   json.key("steps").integer(static_cast<long long>(motion->stepper.steps()));
   json.key("order").integer(motion->stepper.order());

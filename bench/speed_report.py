@@ -221,8 +221,8 @@ def markdown(result):
 `./dev bench speed` ({m["date"]}, {result["seconds"]:.0f} s, compilations of heyoka that were cached not counted): the models are in
 `bench/models`, read as they are; heyoka and odeint get the equations reduced by hand (`bench/peers`). heyoka's time is that of its
 best mode, unrolled or compact, with fast math or without; odeint's rkf78 that of the better of `-O3 -march=native` with and without
-`-ffast-math`, on arrays of fixed length, O(n) for chains and trailers. A time is the median of a round, and the best of
-{result["rounds"]} rounds in which all sides take turns on one core. Ratios above 1: anholon is ahead.
+`-ffast-math`, on arrays of fixed length, O(n) for chains and trailers. A time is the smaller of wall time and time on the core, the
+median of a round, and the best of {result["rounds"]} rounds in which all sides take turns. Ratios above 1: anholon is ahead.
 
 Machine: {m["cores"]} cores of {m["cpu"]}, shared, load {m["load"]:.1f}; {m["compiler"]}, release build; heyoka {heyoka or "not installed"}.
 Peak of fused multiply-adds on a core, GF/s: {", ".join(f"{k} {v:.1f}" for k, v in peak.items())}.

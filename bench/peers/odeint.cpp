@@ -17,7 +17,6 @@
 //   the rods from their tridiagonal equations (acceleration along a rod = -l w^2), then w'
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -27,6 +26,8 @@
 
 #include <boost/numeric/odeint.hpp>
 #include <quadmath.h>
+
+#include "../stopwatch.h"
 
 namespace {
 
@@ -171,19 +172,33 @@ struct Chain {
     const N s0 = sin(th[0]), c0 = cos(th[0]);
     for (std::size_t i = 1; i < n; ++i) c[i] = cos(th[i] - th[i - 1]);
     for (std::size_t i = 1; i < n; ++i) s[i] = sin(th[i] - th[i - 1]);
-    // T_0 - c_1 T_1 = w_0^2 + g cos(th_0)/l;  2 T_i - c_i T_(i-1) - c_(i+1) T_(i+1) = w_i^2
-    N pivot = 1;
+    // T_0 - c_1 T_1 = w_0^2 + g cos(th_0)/l;  2 T_i - c_i T_(i-1) - c_(i+1) T_(i+1) = w_i^2.
+    // Eliminated from both ends at once, which halves the chain of divisions that wait for each
+    // other.
+    constexpr std::size_t middle = n / 2;
+    N pivot = 1, pivot_back = 2;
     r[0] = w[0] * w[0] + (g / l) * c0;
-    for (std::size_t i = 1; i < n; ++i) {
-      q[i - 1] = 1 / pivot;
-      const N share = c[i] * q[i - 1];
-      pivot = 2 - c[i] * share;
-      r[i] = w[i] * w[i] + share * r[i - 1];
+    r[n - 1] = w[n - 1] * w[n - 1];
+    c[n] = 0;
+    for (std::size_t i = 1, j = n - 1; j > middle; ++i, --j) {
+      q[j] = 1 / pivot_back;
+      const N share_back = c[j] * q[j];
+      pivot_back = 2 - c[j] * share_back;
+      r[j - 1] = w[j - 1] * w[j - 1] + share_back * r[j];
+      if (i < middle) {
+        q[i - 1] = 1 / pivot;
+        const N share = c[i] * q[i - 1];
+        pivot = 2 - c[i] * share;
+        r[i] = w[i] * w[i] + share * r[i - 1];
+      }
     }
-    q[n - 1] = 1 / pivot;
-    tension[n] = 0;
-    tension[n - 1] = r[n - 1] * q[n - 1];
-    for (std::size_t i = n - 1; i-- > 0;) tension[i] = (r[i] + c[i + 1] * tension[i + 1]) * q[i];
+    q[middle - 1] = 1 / pivot;
+    const N share = c[middle] * q[middle - 1];
+    tension[middle] = (r[middle] + share * r[middle - 1]) / (pivot_back - c[middle] * share);
+    for (std::size_t i = middle, j = middle + 1; i-- > 0; ++j) {
+      tension[i] = (r[i] + c[i + 1] * tension[i + 1]) * q[i];
+      if (j < n) tension[j] = (r[j] + c[j] * tension[j - 1]) * q[j];
+    }
     for (std::size_t i = 0; i < n; ++i) d[i] = w[i];
     s[n] = 0;
     d[n] = s[1] * tension[1] - (g / l) * s0;
@@ -191,10 +206,6 @@ struct Chain {
       d[n + i] = s[i + 1] * tension[i + 1] - s[i] * tension[i - 1];
   }
 };
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 template <class System, class State>
 std::size_t go(const System& system, State& x, double tolerance, double end) {
@@ -274,26 +285,23 @@ int serve(double end) {
     double tolerance = 0, seconds = 0;
     int quad_steps = 0;
     if (std::sscanf(line.c_str(), "exact %d", &quad_steps) == 1) {
-      const auto started = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       const auto x = extrapolated(exact, begin, end, quad_steps);
-      std::printf("{\"seconds\": %.3g, ", seconds_since(started));
+      std::printf("{\"seconds\": %.3g, ", watch.seconds());
       print(exact.expand(x));
     } else if (std::sscanf(line.c_str(), "run %lf %lf", &tolerance, &seconds) == 2) {
       std::vector<double> times;
       auto x = start;
       std::size_t steps = 0;
-      for (const auto all = std::chrono::steady_clock::now();
-           times.empty() || seconds_since(all) < seconds;) {
+      for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
         x = start;
-        const auto started = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         steps = go(system, x, tolerance, end);
-        times.push_back(seconds_since(started));
+        times.push_back(watch.seconds());
       }
-      std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
-                       times.end());
       typename Exact::State last;
       std::copy(x.begin(), x.end(), last.begin());
-      std::printf("{\"us\": %.6g, \"runs\": %zu, \"steps\": %zu, ", 1e6 * times[times.size() / 2],
+      std::printf("{\"us\": %.6g, \"runs\": %zu, \"steps\": %zu, ", 1e6 * median(times),
                   times.size(), steps);
       print(exact.expand(last));
     }
