@@ -6,8 +6,9 @@
 
 One process per side and system answers to requests (bench/speed_bench.cpp, bench/peers/odeint.cpp, bench/peers/heyoka_worker.py);
 they are asked in turn, on the core that is idle, round after round. A time is the smaller of wall time and time on the core; the
-median of the motions of a round, and the best of the rounds, which was disturbed least; for every side alike. heyoka is installed into build/peers from PyPI, and
-left out with a line if that fails. What it compiled stays in build/peers/cache, with the seconds that took the first time.
+median of the motions of a round, and the best of the rounds, which was disturbed least; for every side alike. heyoka is installed
+into build/peers from PyPI, and left out with a line if that fails. What it compiled stays in build/peers/cache, with the seconds
+that took the first time: the first run lasts some ten minutes longer than the others.
 
 Errors: largest |x - x_ref| / (1 + |x_ref|) of positions and velocities at the end. The reference is an extrapolation in __float128
 of the equations reduced by hand (twice, in 100 and 200 steps), compared with anholon's own motion in 32 digits where that is short.

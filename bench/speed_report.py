@@ -95,7 +95,7 @@ def goals(result):
                 continue
             reached = [r for r in found.values() if r is not None]
             missed = [f"{t} {number(r)}" for t, r in found.items() if r is None or r < least]
-            span = f"{number(min(reached))} to {number(max(reached))}" if reached else "–"
+            span = " to ".join(dict.fromkeys(number(f(reached)) for f in (min, max))) if reached else "–"
             rows.append([what, level, f"≥ {least:g}", span, "met" if not missed else "missed: " + ", ".join(missed)])
     floors = []
     for title, s in result["systems"].items():
