@@ -2,10 +2,11 @@
 // chains hide the latency.
 #pragma once
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <utility>
 #include <vector>
+
+#include "stopwatch.h"
 
 struct Peak {
   const char* name;
@@ -54,14 +55,13 @@ eight(long times) {
 #endif
 
 inline double gigaflops(double (*kernel)(long), int lanes) {
-  using Clock = std::chrono::steady_clock;
-  constexpr long kTimes = 4'000'000;
+  constexpr long kTimes = 1'000'000;
   double best = 0;
-  for (int repeat = 0; repeat < 5; ++repeat) {
-    const auto begin = Clock::now();
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const Stopwatch watch;
     volatile double keep = kernel(kTimes);
     (void)keep;
-    const double s = std::chrono::duration<double>(Clock::now() - begin).count();
+    const double s = watch.seconds();
     best = std::max(best, 2.0 * 12 * lanes * static_cast<double>(kTimes) / s / 1e9);
   }
   return best;
