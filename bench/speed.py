@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The speed table: motions from plain model files against heyoka and odeint on equations reduced by hand.
 
-    speed.py [--only NAME...] [--rounds N] [--seconds S] [--jit-limit S] [--no-growth] [--no-startup] [--json FILE]
+    speed.py [--only NAME...] [--rounds N] [--seconds S] [--jit-limit S] [--form NAME] [--no-growth] [--no-startup] [--json FILE]
              [--markdown FILE] [--write RESULTS.md]
 
 One process per side and system answers to requests (bench/speed_bench.cpp, bench/peers/odeint.cpp, bench/peers/heyoka_worker.py);
@@ -176,7 +176,7 @@ def reference(odeint, own, n):
 def measure(title, python, options):
     name, n = SYSTEMS[title]
     build = os.path.join(ROOT, "build", "release")
-    model = [os.path.join(ROOT, "bench", "models", name + ".toml"), *(["--set", f"n={n}"] if n > 1 else [])]
+    model = [os.path.join(ROOT, "bench", "models", name + ".toml"), *(["--set", f"n={n}"] if n > 1 else []), *options.form]
     cold = [Worker([os.path.join(build, "speed_bench"), *model]) for _ in range(3)]
     ready = [w.answer() for w in cold]
     for w in cold[1:]:
@@ -245,11 +245,11 @@ def measure_batch(heyoka, own, modes, options):
 # ---- growth with n, and start-up --------------------------------------------------------------------
 
 
-def measure_growth(limit):
+def measure_growth(limit, form):
     """Chains of more and more links: five steps each, in a process of its own."""
     rows = []
     for n in GROWTH:
-        model = [os.path.join(ROOT, "bench", "models", "chain.toml"), "--set", f"n={n}"]
+        model = [os.path.join(ROOT, "bench", "models", "chain.toml"), "--set", f"n={n}", *form]
         command = [os.path.join(ROOT, "build", "release", "speed_bench"), *model]
         try:
             done = subprocess.run(command, input="run 1e-12 1 5\n", capture_output=True, text=True, timeout=limit, check=True)
@@ -298,6 +298,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=0.1, help="of each cell in each round")
     parser.add_argument("--jit-limit", type=float, default=300, help="seconds that one compilation by heyoka may be expected to take")
+    parser.add_argument("--form", type=lambda name: ["--form", name], default=[], help="of our equations; Routh's without it")
     parser.add_argument("--no-growth", action="store_true")
     parser.add_argument("--no-startup", action="store_true")
     parser.add_argument("--json", default=os.path.join(ROOT, "build", "bench-speed.json"))
@@ -313,7 +314,7 @@ def main():
         result["systems"][title] = measure(title, python, options)
         say(f"{time.perf_counter() - begin:5.0f} s  {title}")
     if not options.no_growth:
-        result["growth"] = measure_growth(60)
+        result["growth"] = measure_growth(60, options.form)
     if not options.no_startup:
         result["startup"] = measure_startup(os.path.join(ROOT, "build", "anholon"))
     result["seconds"] = time.perf_counter() - begin
