@@ -76,12 +76,12 @@ std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& 
   return values;
 }
 
-// The only place that knows how a stepper is made and driven. `timed`: from the start of the motion
-// to its end.
+// The only place that knows how a stepper is made and driven. Forms without multipliers go as far
+// as their elimination does: choosing another on the way is the business of run/motion. to its end.
 template <Number N>
-struct Motion {
+struct Trajectory {
   using W = Wider<N>;
-  Motion(const Ready& ready_, const StepSettings& settings)
+  Trajectory(const Ready& ready_, const StepSettings& settings)
       : ready(&ready_), wide(parameter_values<W>(*ready_.scenario.model)),
         stepper(*ready_.stepping, parameter_values<N>(*ready_.scenario.model), wide, settings) {}
   void go(const Start<W>& start, const W& end, std::size_t most_steps) {
@@ -137,7 +137,7 @@ void answer_start(const Ready& r, JsonWriter& json) {
   const PrecisionScope precision(40);
   Start<Multi> start;
   must(initial_state(r.scenario, {}, start));
-  Motion<Multi> motion(r, {-30 * std::log(10.0), 0, kMostSteps, {}});
+  Trajectory<Multi> motion(r, {-30 * std::log(10.0), 0, kMostSteps, {}});
   must(motion.stepper.start(start.t, start.state, start.leading));
   write_state(json, positions_and_velocities<Multi>(r, motion.stepper.point()), 36);
 }
@@ -147,7 +147,7 @@ void answer_exact(const Ready& r, int digits, JsonWriter& json) {
   const Stopwatch watch;
   Start<Multi> start;
   must(initial_state(r.scenario, {}, start));
-  Motion<Multi> motion(r, {-digits * std::log(10.0), 0, kMostSteps, {}});
+  Trajectory<Multi> motion(r, {-digits * std::log(10.0), 0, kMostSteps, {}});
   motion.go(start, from_rational<Multi>(*r.scenario.model->simulate.to), kMostSteps);
   write_state(json, motion.last(), digits);
   write(json, "seconds", watch.seconds());
@@ -160,10 +160,10 @@ void answer_run(const Ready& r, double tolerance, double seconds, std::size_t mo
   must(initial_state(r.scenario, {}, start));
   const W end = from_rational<W>(*r.scenario.model->simulate.to);
   std::vector<double> times;
-  std::unique_ptr<Motion<double>> motion;
+  std::unique_ptr<Trajectory<double>> motion;
   for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
-    motion =
-        std::make_unique<Motion<double>>(r, StepSettings{std::log(tolerance), 0, kMostSteps, {}});
+    motion = std::make_unique<Trajectory<double>>(
+        r, StepSettings{std::log(tolerance), 0, kMostSteps, {}});
     const Stopwatch watch;
     motion->go(start, end, most_steps);
     times.push_back(watch.seconds());
