@@ -77,7 +77,7 @@ std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& 
 }
 
 // The only place that knows how a stepper is made and driven. Forms without multipliers go as far
-// as their elimination does: choosing another on the way is the business of run/motion. to its end.
+// as their elimination does: choosing another on the way is the business of run/motion.
 template <Number N>
 struct Trajectory {
   using W = Wider<N>;
