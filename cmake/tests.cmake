@@ -94,6 +94,7 @@ anholon_script_test(layers_selftest tools/check_layers.py --self-test)
 anholon_script_test(refs            tools/check_refs.py)
 anholon_script_test(refs_selftest   tools/check_refs.py --self-test)
 anholon_script_test(golden_selftest tools/golden.py --self-test)
+anholon_script_test(speed_selftest  bench/speed_report.py)
 anholon_script_test(hostile_selftest test/hostile/run.py --self-test)
 
 if(TARGET anholon)

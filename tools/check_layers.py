@@ -49,6 +49,7 @@ OUTSIDE = [
     (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate"}, 1),
     (r"pybind11/", "pybind11", {"python"}, None),
     (r"nlohmann/", "nlohmann-json", {"proof"}, 1),
+    (r"boost/", "Boost, of a peer in bench/", set(), None),
     (r"(gtest|gmock|benchmark)/", "a test library", set(), None),
 ]  # fmt: skip
 

@@ -1,0 +1,333 @@
+#!/usr/bin/env python3
+"""The speed table: motions from plain model files against heyoka and odeint on equations reduced by hand.
+
+    speed.py [--only NAME...] [--rounds N] [--seconds S] [--jit-limit S] [--form NAME] [--no-growth] [--no-startup] [--json FILE]
+             [--markdown FILE] [--write RESULTS.md]
+
+One process per side and system answers to requests (bench/speed_bench.cpp, bench/peers/odeint.cpp, bench/peers/heyoka_worker.py);
+they are asked in turn, on the core that is idle, round after round. A time is the smaller of wall time and time on the core; the
+median of the motions of a round, and the best of the rounds, which was disturbed least; for every side alike. heyoka is installed
+into build/peers from PyPI, and left out with a line if that fails. What it compiled stays in build/peers/cache, with the seconds
+that took the first time: the first run lasts some ten minutes longer than the others.
+
+Errors: largest |x - x_ref| / (1 + |x_ref|) of positions and velocities at the end. The reference is an extrapolation in __float128
+of the equations reduced by hand (twice, in 100 and 200 steps), compared with anholon's own motion in 32 digits where that is short.
+"""
+
+import argparse
+import json
+import os
+import platform
+import re
+import subprocess
+import sys
+import time
+from decimal import Decimal
+
+import speed_report
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PEERS = os.path.join(ROOT, "build", "peers")
+HEYOKA = "heyoka==7.13.2"
+SYSTEMS = {
+    "sleigh": ("sleigh", 1), "disc": ("disc", 1), "trailers 3": ("trailers", 3), "trailers 10": ("trailers", 10),
+    **{f"chain {n}": ("chain", n) for n in (4, 8, 16, 32, 64)},
+}  # fmt: skip
+LEVELS = (1e-6, 1e-9, 1e-12, 1e-15)
+OWN_LEVELS = tuple(10.0**-k for k in range(4, 18))
+ODEINT_LEVELS = tuple(10.0**-k for k in range(5, 17))
+BATCHED = ("sleigh", "disc", "trailers 3", "trailers 10", "chain 4", "chain 8", "chain 16")
+LANES = 8
+OWN_REFERENCE = 16  # links and trailers up to which our own motion in many digits is compared, too
+GROWTH = (4, 8, 16, 32, 64, 128, 256, 500, 1000)
+
+
+def say(*words):
+    print(*words, file=sys.stderr, flush=True)
+
+
+class Worker:
+    """A process that answers each line by one of JSON."""
+
+    def __init__(self, command, **options):
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, **options)
+
+    def tell(self, line):
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+
+    def answer(self):
+        line = self.process.stdout.readline()
+        if not line:
+            return {"failed": f"the process ended with {self.process.wait()}"}
+        return json.loads(line)
+
+    def ask(self, *words):
+        self.tell(" ".join(str(w) for w in words))
+        return self.answer()
+
+    def ask_json(self, *words):
+        self.tell(json.dumps(words))
+        return self.answer()
+
+    def pin(self, cpu):
+        os.sched_setaffinity(self.process.pid, {cpu})
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
+
+
+def idle_cpu(seconds=0.1):
+    """The core that had most rest in the last moment."""
+
+    def rest():
+        with open("/proc/stat", encoding="ascii") as file:
+            return {int(w[0][3:]): int(w[4]) for w in map(str.split, file) if re.fullmatch(r"cpu\d+", w[0])}
+
+    before = rest()
+    time.sleep(seconds)
+    after = rest()
+    return max(sorted(os.sched_getaffinity(0)), key=lambda cpu: after[cpu] - before[cpu])
+
+
+def error(state, exact):
+    """In decimals, since a difference of doubles would be no better than what it measures."""
+    return max(float(abs(Decimal(x) - Decimal(y)) / (1 + abs(Decimal(y)))) for x, y in zip(state, exact, strict=True))
+
+
+# ---- peers ----------------------------------------------------------------------------------------
+
+
+def install_heyoka():
+    """The Python that has it, or nothing, with a line that says why."""
+    python = os.path.join(PEERS, "bin", "python")
+    try:
+        if not os.path.exists(python):
+            subprocess.run(["/usr/bin/python3", "-m", "venv", PEERS], check=True, capture_output=True, text=True)
+        if subprocess.run([python, "-c", "import heyoka"], capture_output=True, check=False).returncode != 0:
+            say(f"installing {HEYOKA} into {PEERS}")
+            subprocess.run([python, "-m", "pip", "install", "-q", HEYOKA, "numpy"], check=True, capture_output=True, text=True, timeout=300)
+        return python
+    except (OSError, subprocess.SubprocessError) as problem:
+        why = (getattr(problem, "stderr", None) or str(problem)).strip().splitlines()
+        say(f"heyoka skipped: {why[-1] if why else problem}")
+        return None
+
+
+class Heyoka:
+    """The modes of one system that can be compiled in the time allowed; the best for each tolerance."""
+
+    def __init__(self, python, name, n, end, start, jit_limit):
+        environment = {**os.environ, "HEYOKA_CACHE_DIR": os.path.join(PEERS, "cache")}
+        command = [python, os.path.join(ROOT, "bench", "peers", "heyoka_worker.py"), name, str(n), repr(end)]
+        self.worker, self.second = (Worker(command, env=environment) for _ in range(2))
+        for w in (self.worker, self.second):
+            w.tell(json.dumps([float(x) for x in start]))
+        about = self.worker.ask_json("modes")
+        self.modes, self.version = about["modes"], about["version"]
+        self.limit, self.expected, self.skipped = jit_limit, {}, []
+
+    def affordable(self, tolerance, mode):
+        """Compiling takes about 2.5 times as long from one tolerance to the next; without fast math it is hardly ever worth long."""
+        limit = self.limit if "compact" in mode or "fast" in mode else self.limit / 30
+        if self.expected.get(mode, 0) > limit:
+            self.skipped.append((tolerance, mode))
+            return False
+        return True
+
+    def choose(self, tolerance):
+        """mode -> first look at each; the best mode."""
+        looks = {}
+        for mode in self.modes:
+            if not self.affordable(tolerance, mode):
+                continue
+            look = min((self.worker.ask_json("run", tolerance, mode, 0.03) for _ in range(2)), key=lambda r: r.get("us", 0))
+            if "failed" in look:
+                say(f"  heyoka, {mode}: {look['failed']}")
+                continue
+            self.expected[mode] = 2.5 * look["jit"]
+            looks[mode] = {"us": look["us"], "jit": look["jit"]}
+        best = min(looks, key=lambda m: looks[m]["us"])
+        looks[best]["again"] = self.second.ask_json("compile", tolerance, best).get("now")  # from the cache on the disk
+        return best, looks
+
+
+# ---- one system -----------------------------------------------------------------------------------
+
+
+def better(old, new, state):
+    """The cell of the round that was disturbed least."""
+    if "failed" in new:
+        return old or {"failed": new["failed"]}
+    new = {**new, "error": error(new.pop("state"), state)}
+    return new if not old or "failed" in old or new["us"] < old["us"] else old
+
+
+def reference(odeint, own, n):
+    coarse, fine = odeint.ask("exact", 100), odeint.ask("exact", 200)
+    found = {"state": fine["state"], "change": error(coarse["state"], fine["state"]), "own": None}
+    if n <= OWN_REFERENCE:
+        own_end = own.ask("exact", 22)
+        found["own"] = None if "failed" in own_end else error(own_end["state"], fine["state"])
+    return found
+
+
+def measure(title, python, options):
+    name, n = SYSTEMS[title]
+    build = os.path.join(ROOT, "build", "release")
+    model = [os.path.join(ROOT, "bench", "models", name + ".toml"), *(["--set", f"n={n}"] if n > 1 else []), *options.form]
+    cold = [Worker([os.path.join(build, "speed_bench"), *model]) for _ in range(3)]
+    ready = [w.answer() for w in cold]
+    for w in cold[1:]:
+        w.close()
+    own, setup = cold[0], min(ready, key=lambda r: r["read"] + r["scenario"] + r["program"])
+    start = own.ask("start")["state"]
+
+    variants = {}
+    for variant in ("strict", "fast"):
+        w = Worker([os.path.join(build, "odeint_" + variant), name, str(n), repr(setup["end"])])
+        w.tell("\n".join(start))
+        variants[variant] = w
+    exact = reference(variants["strict"], own, n)
+    flags = min(variants, key=lambda v: variants[v].ask("run", 1e-9, 0.05)["us"])
+    odeint = variants[flags]
+
+    cells = {"own": {}, "odeint": {}, "heyoka": {}}
+    result = {"setup": setup, "reference": {k: v for k, v in exact.items() if k != "state"}, "odeint_flags": flags, "cells": cells}
+    workers, modes, heyoka = [own, *variants.values()], {}, None
+    if python:
+        heyoka = Heyoka(python, name, n, setup["end"], start, options.jit_limit)
+        workers.append(heyoka.worker)
+        result["heyoka_version"] = heyoka.version
+        result["heyoka_modes"] = {}
+        for level in LEVELS:
+            modes[level], result["heyoka_modes"][repr(level)] = heyoka.choose(level)
+        result["heyoka_skipped"] = heyoka.skipped
+        heyoka.second.close()
+    requests = [("own", level, lambda level=level: own.ask("run", level, options.seconds)) for level in OWN_LEVELS]
+    requests += [("odeint", level, lambda level=level: odeint.ask("run", level, options.seconds)) for level in ODEINT_LEVELS]
+    for level, mode in modes.items():
+        requests.append(("heyoka", level, lambda level=level, mode=mode: heyoka.worker.ask_json("run", level, mode, options.seconds)))
+    requests.sort(key=lambda r: (-r[1], r[0]))  # both sides of a cell one after the other
+
+    for _ in range(options.rounds):
+        cpu = idle_cpu()
+        for w in workers:
+            w.pin(cpu)
+        for side, level, run in requests:
+            cell = run()
+            if side == "heyoka" and "failed" not in cell:
+                cell["mode"] = modes[level]
+            cells[side][repr(level)] = better(cells[side].get(repr(level)), cell, exact["state"])
+    if heyoka and title in BATCHED:
+        result["batch"] = measure_batch(heyoka, own, modes, options)
+    for w in workers:
+        w.close()
+    return result
+
+
+def measure_batch(heyoka, own, modes, options):
+    """Neighbours in the lanes of one core; ours as soon as speed_bench knows the request."""
+    batch = {}
+    for level in (LEVELS[0], LEVELS[-1]):
+        mode = modes[level]
+        batch[repr(level)] = cell = {"mode": mode, "heyoka": {"us": float("inf")}, "own": None}
+        for _ in range(options.rounds):
+            found = heyoka.worker.ask_json("batch", level, mode, LANES, options.seconds)
+            cell["heyoka"] = min(cell["heyoka"], found if "failed" not in found else cell["heyoka"], key=lambda c: c["us"])
+            mine = own.ask("batch", level, LANES, options.seconds)
+            if "failed" not in mine:
+                cell["own"] = min(cell["own"] or mine, mine, key=lambda c: c["us"])
+    return batch
+
+
+# ---- growth with n, and start-up --------------------------------------------------------------------
+
+
+def measure_growth(limit, form):
+    """Chains of more and more links: five steps each, in a process of its own."""
+    rows = []
+    for n in GROWTH:
+        model = [os.path.join(ROOT, "bench", "models", "chain.toml"), "--set", f"n={n}", *form]
+        command = [os.path.join(ROOT, "build", "release", "speed_bench"), *model]
+        try:
+            done = subprocess.run(command, input="run 1e-12 1 5\n", capture_output=True, text=True, timeout=limit, check=True)
+        except subprocess.TimeoutExpired:
+            rows.append({"n": n, "failed": f"not in {limit:g} s"})
+            break
+        except subprocess.CalledProcessError as problem:
+            rows.append({"n": n, "failed": problem.stderr.strip() or f"ended with {problem.returncode}"})
+            break
+        setup, run = map(json.loads, done.stdout.splitlines())
+        run.pop("state", None)
+        rows.append({"n": n, "setup": setup, "run": run})
+        say(f"  chain {n}: " + (run.get("failed") or f"{run['us'] / run['steps']:.0f} us per step, {run['megabytes']:.0f} MB"))
+    return rows
+
+
+def measure_startup(program, repeat=3):
+    """From the start of the process to its end, of each shipped model."""
+    listing = json.loads(subprocess.run([program, "models", "--json"], capture_output=True, text=True, check=True).stdout)
+    rows = []
+    for model in [m["name"] for m in listing]:
+        best, code = float("inf"), 0
+        for _ in range(repeat):
+            begin = time.perf_counter()
+            process = subprocess.Popen([program, "simulate", model], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = code = os.waitstatus_to_exitcode(status)
+            best = min(best, time.perf_counter() - begin, used.ru_utime + used.ru_stime)
+        rows.append({"model": model, "seconds": best, "exit": code})
+    return rows
+
+
+def machine():
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        model = re.search(r"^model name\s*:\s*(.*)$", file.read(), re.MULTILINE)
+    compiler = subprocess.run(["g++", "-dumpfullversion"], capture_output=True, text=True, check=False).stdout.strip()
+    return {
+        "cpu": model[1] if model else platform.machine(), "cores": os.cpu_count(), "load": os.getloadavg()[0],
+        "compiler": "g++ " + compiler, "python": platform.python_version(), "date": time.strftime("%Y-%m-%d"),
+    }  # fmt: skip
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="+", choices=SYSTEMS, default=list(SYSTEMS), metavar="NAME")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=0.1, help="of each cell in each round")
+    parser.add_argument("--jit-limit", type=float, default=300, help="seconds that one compilation by heyoka may be expected to take")
+    parser.add_argument("--form", type=lambda name: ["--form", name], default=[], help="of our equations; Routh's without it")
+    parser.add_argument("--no-growth", action="store_true")
+    parser.add_argument("--no-startup", action="store_true")
+    parser.add_argument("--json", default=os.path.join(ROOT, "build", "bench-speed.json"))
+    parser.add_argument("--markdown", default=os.path.join(ROOT, "build", "bench-speed.md"))
+    parser.add_argument("--write", default="", metavar="RESULTS.md", help="put the tables between its marks there, too")
+    options = parser.parse_args()
+
+    begin = time.perf_counter()
+    python = install_heyoka()
+    peak = subprocess.run([os.path.join(ROOT, "build", "release", "speed_bench"), "--peak"], capture_output=True, text=True, check=True)
+    result = {"machine": machine(), "rounds": options.rounds, "peak": json.loads(peak.stdout), "systems": {}}
+    for title in options.only:
+        result["systems"][title] = measure(title, python, options)
+        say(f"{time.perf_counter() - begin:5.0f} s  {title}")
+    if not options.no_growth:
+        result["growth"] = measure_growth(60, options.form)
+    if not options.no_startup:
+        result["startup"] = measure_startup(os.path.join(ROOT, "build", "anholon"))
+    result["seconds"] = time.perf_counter() - begin
+    with open(options.json, "w", encoding="utf-8") as file:
+        json.dump(result, file, indent=1)
+    text = speed_report.markdown(result)
+    with open(options.markdown, "w", encoding="utf-8") as file:
+        file.write(text)
+    if options.write:
+        speed_report.put(text, options.write)
+    print(text)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,257 @@
+// One model as the driver of the speed table (bench/speed.py) asks for it: made ready, then
+// integrated to the end of its [simulate] with the tolerances that come on the standard input. Each
+// answer is a line of JSON.
+//
+//   speed_bench MODEL [--set NAME=VALUE]... [--form NAME]     answers with the times of making
+//   ready start                       positions and velocities at the start, coordinate by
+//   coordinate, in 36 digits exact DIGITS                those at the end, so many digits to be
+//   trusted run TOLERANCE SECONDS [STEPS]   as many motions as fit the time, at least one; STEPS:
+//   no more of each speed_bench --peak          no model: what the core can do, in GF/s
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "base/json.h"
+#include "base/read_file.h"
+#include "fma_peak.h"
+#include "run/simulate.h"
+#include "stopwatch.h"
+
+namespace {
+
+using namespace anholon;
+struct Failed {
+  std::string why;
+};
+
+void must(const Outcome& o) {
+  if (!o.ok()) throw Failed{std::string(name(o.kind)) + ": " + o.message};
+}
+
+struct Request {
+  std::string model, form = "routh";
+  Overrides set;
+};
+
+struct Ready {
+  Scenario scenario;
+  std::unique_ptr<Program> stepping;
+  double read = 0, scenario_made = 0, program_made = 0;  // seconds
+};
+
+std::unique_ptr<Ready> make_ready(const Request& request) {
+  auto r = std::make_unique<Ready>();
+  Stopwatch watch;
+  const auto lap = [&watch] {
+    const double s = watch.seconds();
+    watch = {};
+    return s;
+  };
+  SourceText source{request.model, {}};
+  if (std::string why; !read_file(request.model, source.text, &why))
+    throw Failed{request.model + ": " + why};
+  Diagnostics diagnostics;
+  std::optional<Model> m = read_model(source, diagnostics, request.set);
+  if (!m) throw Failed{diagnostics.print(source)};
+  auto model = std::make_shared<const Model>(std::move(*m));
+  r->read = lap();
+  const Formulation* form = find_formulation(request.form);
+  if (!form) throw Failed{"no form " + request.form};
+  must(make_scenario(model, *form, {}, r->scenario));
+  r->scenario_made = lap();
+  r->stepping = std::make_unique<Program>(program(r->scenario.system, r->scenario.structure));
+  r->program_made = lap();
+  if (!model->simulate.to) throw Failed{"the model has no [simulate] to"};
+  return r;
+}
+
+template <Number N>
+std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& point) {
+  std::vector<N> values;
+  for (std::size_t j = 0; j < ready.scenario.system.coordinates; ++j)
+    for (int k = 0; k < 2; ++k) values.push_back(point.derivative(j, k));
+  return values;
+}
+
+// The only place that knows how a stepper is made and driven. Forms without multipliers go as far
+// as their elimination does: choosing another on the way is the business of run/motion.
+template <Number N>
+struct Trajectory {
+  using W = Wider<N>;
+  Trajectory(const Ready& ready_, const StepSettings& settings)
+      : ready(&ready_), wide(parameter_values<W>(*ready_.scenario.model)),
+        stepper(*ready_.stepping, parameter_values<N>(*ready_.scenario.model), wide, settings) {}
+  void go(const Start<W>& start, const W& end, std::size_t most_steps) {
+    must(stepper.start(start.t, start.state, start.leading));
+    while (!(stepper.time() == end) && stepper.steps() < most_steps) must(stepper.step(end));
+  }
+  std::vector<W> last() const {
+    Expansion<W> point(*ready->stepping, wide, 1);
+    must(stepper.at(stepper.time(), point));
+    return positions_and_velocities<W>(*ready, point);
+  }
+  const Ready* ready;
+  std::vector<W> wide;
+  Stepper<N> stepper;
+};
+
+constexpr std::size_t kMostSteps = 50'000'000;
+
+template <class Values>
+void write_state(JsonWriter& json, const Values& values, int digits = 0) {
+  json.key("state").open_array();
+  for (const auto& x : values) json.string(number_text(x, digits));
+  json.close();
+}
+
+void write(JsonWriter& json, const char* key, double x) { json.key(key).number(number_text(x)); }
+
+// The most memory that the process has had.
+double megabytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (word == "VmHWM:" && status >> word) return std::stod(word) / 1024;
+  return 0;
+}
+
+void answer_ready(const Ready& r, JsonWriter& json) {
+  const ProgramSize n = size(*r.stepping);
+  write(json, "read", r.read);
+  write(json, "scenario", r.scenario_made);
+  write(json, "program", r.program_made);
+  write(json, "megabytes", megabytes());
+  write(json, "end", r.scenario.model->simulate.to->get_d());
+  json.key("unknowns").integer(static_cast<long long>(r.stepping->unknowns()));
+  json.key("coordinates").integer(static_cast<long long>(r.scenario.system.coordinates));
+  json.key("form").string(r.scenario.system.form->name);
+  json.key("slots").integer(static_cast<long long>(n.slots));
+  json.key("products").integer(static_cast<long long>(n.products));
+  json.key("linear").integer(static_cast<long long>(n.linear));
+  json.key("functions").integer(static_cast<long long>(n.functions));
+}
+
+void answer_start(const Ready& r, JsonWriter& json) {
+  const PrecisionScope precision(40);
+  Start<Multi> start;
+  must(initial_state(r.scenario, {}, start));
+  Trajectory<Multi> motion(r, {-30 * std::log(10.0), 0, kMostSteps, {}});
+  must(motion.stepper.start(start.t, start.state, start.leading));
+  write_state(json, positions_and_velocities<Multi>(r, motion.stepper.point()), 36);
+}
+
+void answer_exact(const Ready& r, int digits, JsonWriter& json) {
+  const PrecisionScope precision(digits + 10);
+  const Stopwatch watch;
+  Start<Multi> start;
+  must(initial_state(r.scenario, {}, start));
+  Trajectory<Multi> motion(r, {-digits * std::log(10.0), 0, kMostSteps, {}});
+  motion.go(start, from_rational<Multi>(*r.scenario.model->simulate.to), kMostSteps);
+  write_state(json, motion.last(), digits);
+  write(json, "seconds", watch.seconds());
+}
+
+void answer_run(const Ready& r, double tolerance, double seconds, std::size_t most_steps,
+                JsonWriter& json) {
+  using W = Wider<double>;
+  Start<W> start;
+  must(initial_state(r.scenario, {}, start));
+  const W end = from_rational<W>(*r.scenario.model->simulate.to);
+  std::vector<double> times;
+  std::unique_ptr<Trajectory<double>> motion;
+  for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
+    motion = std::make_unique<Trajectory<double>>(
+        r, StepSettings{std::log(tolerance), 0, kMostSteps, {}});
+    const Stopwatch watch;
+    motion->go(start, end, most_steps);
+    times.push_back(watch.seconds());
+  }
+  write(json, "us", 1e6 * median(times));
+  json.key("runs").integer(static_cast<long long>(times.size()));
+  json.key("steps").integer(static_cast<long long>(motion->stepper.steps()));
+  json.key("order").integer(motion->stepper.order());
+  write(json, "megabytes", megabytes());
+  write_state(json, motion->last());
+}
+
+void print(JsonWriter& json) {
+  json.close();
+  std::string line = json.text();
+  line.erase(std::remove(line.begin(), line.end(), '\n'), line.end());
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
+}
+
+void serve(const Ready& ready, const std::string& line) {
+  std::istringstream words(line);
+  std::string command;
+  words >> command;
+  JsonWriter json;
+  json.open_object();
+  try {
+    if (command == "start") {
+      answer_start(ready, json);
+    } else if (int digits = 0; command == "exact" && words >> digits) {
+      answer_exact(ready, digits, json);
+    } else if (double tolerance = 0, seconds = 0;
+               command == "run" && words >> tolerance >> seconds) {
+      std::size_t most_steps = kMostSteps;
+      words >> most_steps;
+      answer_run(ready, tolerance, seconds, words ? most_steps : kMostSteps, json);
+    } else {
+      throw Failed{"unknown request: " + line};
+    }
+  } catch (const Failed& f) {
+    json = {};
+    json.open_object().key("failed").string(f.why);
+  }
+  print(json);
+}
+
+Request request_of(const std::vector<std::string>& words) {
+  Request request;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool more = i + 1 < words.size();
+    if (words[i] == "--form" && more) {
+      request.form = words[++i];
+    } else if (words[i] == "--set" && more) {
+      const std::string& s = words[++i];
+      const std::size_t equals = std::min(s.find('='), s.size() - 1);
+      request.set[s.substr(0, equals)] = s.substr(equals + 1);
+    } else {
+      request.model = words[i];
+    }
+  }
+  return request;
+}
+
+void answer_peak() {
+  JsonWriter json;
+  json.open_object();
+  for (const Peak& p : fma_peaks()) write(json, p.name, p.gigaflops);
+  print(json);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words == std::vector<std::string>{"--peak"}) {
+    answer_peak();
+    return 0;
+  }
+  try {
+    const std::unique_ptr<Ready> ready = make_ready(request_of(words));
+    JsonWriter json;
+    json.open_object();
+    answer_ready(*ready, json);
+    print(json);
+    for (std::string line; std::getline(std::cin, line);) serve(*ready, line);
+  } catch (const Failed& f) {
+    std::fprintf(stderr, "speed_bench: %s\n", f.why.c_str());
+    return 1;
+  }
+  return 0;
+}

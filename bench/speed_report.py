@@ -1,0 +1,308 @@
+"""Markdown of what bench/speed.py measured: at equal tolerance, at equal error, against the goals."""
+
+import math
+
+BEGIN, END = "<!-- speed: begin (bench/speed.py --write) -->", "<!-- speed: end -->"
+LEVELS = ("1e-06", "1e-09", "1e-12", "1e-15")
+SMALL = ("sleigh", "disc", "trailers 3")
+CHAINS = tuple(f"chain {n}" for n in (4, 8, 16, 32, 64))
+# what, systems, peer, level -> least ratio of times at equal error
+GOALS = [
+    ("small systems against heyoka", SMALL, "heyoka", {"1e-06": 1.0, "1e-09": 1.2, "1e-12": 1.4, "1e-15": 1.4}),
+    ("trailers 10 against heyoka", ("trailers 10",), "heyoka", dict.fromkeys(LEVELS, 1.5)),
+    ("chains against heyoka", CHAINS, "heyoka", {"1e-06": 1.5, "1e-09": 4.0, "1e-12": 8.0}),
+    ("against odeint", (*SMALL, "trailers 10", *CHAINS), "odeint", {"1e-06": 1.0, "1e-12": 3.0}),
+]
+
+
+def good(cells):
+    """The points of a work-precision curve, by falling tolerance."""
+    points = [(float(level), c["us"], c["error"]) for level, c in cells.items() if "failed" not in c]
+    return sorted(points, reverse=True)
+
+
+def time_at(cells, error):
+    """Microseconds to an error: the cheapest run that reaches it, or between two neighbouring tolerances, on logarithmic scales."""
+    points = good(cells)
+    times = [us for _, us, e in points if e <= error]
+    for (_, us0, e0), (_, us1, e1) in zip(points, points[1:]):
+        if e0 > error >= e1 > 0:
+            part = math.log(e0 / error) / math.log(e0 / e1)
+            times.append(math.exp((1 - part) * math.log(us0) + part * math.log(us1)))
+    return min(times, default=None)
+
+
+def least_error(cells):
+    return min((e for _, _, e in good(cells)), default=math.inf)
+
+
+def equal_error(system, peer, level):
+    """Time of the peer over ours, where both have the error that the peer has at this tolerance; none: we do not get there."""
+    cell = system["cells"][peer].get(level)
+    if not cell or "failed" in cell:
+        return None
+    ours = time_at(system["cells"]["own"], cell["error"])
+    return cell["us"] / ours if ours else None
+
+
+def number(x):
+    if x is None:
+        return "–"
+    return f"{x:.0f}" if x >= 1000 else f"{x:.3g}"
+
+
+def ratio(x):
+    return "–" if x is None else f"**{x:.2g}**" if x < 10 else f"**{x:.0f}**"
+
+
+def cell_text(cell):
+    if not cell:
+        return "–"
+    return "failed" if "failed" in cell else f"{number(cell['us'])} ({cell['error']:.0e})"
+
+
+def table(head, rows):
+    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head), *("| " + " | ".join(map(str, r)) + " |" for r in rows)])
+
+
+def per_step(cell):
+    return number(cell["us"] / cell["steps"]) if cell and "failed" not in cell else "–"
+
+
+def times(result):
+    rows = []
+    for title, s in result["systems"].items():
+        for level in LEVELS:
+            own, heyoka, odeint = (s["cells"][side].get(level) for side in ("own", "heyoka", "odeint"))
+            equal = heyoka["us"] / own["us"] if heyoka and own and "us" in heyoka and "us" in own else None
+            rows.append([
+                title, level, cell_text(own), cell_text(heyoka), cell_text(odeint), per_step(own), per_step(heyoka),
+                number(equal), ratio(equal_error(s, "heyoka", level)), ratio(equal_error(s, "odeint", level)),
+            ])  # fmt: skip
+    return table(
+        ["system", "tolerance", "anholon, us (error)", "heyoka", "odeint", "us per step: anholon", "heyoka",
+         "heyoka / anholon, equal tolerance", "equal error", "odeint / anholon, equal error"], rows,
+    )  # fmt: skip
+
+
+def goals(result):
+    rows = []
+    for what, systems, peer, levels in GOALS:
+        there = [t for t in systems if t in result["systems"]]
+        for level, least in levels.items():
+            found = {t: equal_error(result["systems"][t], peer, level) for t in there if result["systems"][t]["cells"][peer].get(level)}
+            if not found:
+                continue
+            reached = [r for r in found.values() if r is not None]
+            missed = [f"{t} {number(r)}" for t, r in found.items() if r is None or r < least]
+            span = " to ".join(dict.fromkeys(number(f(reached)) for f in (min, max))) if reached else "–"
+            rows.append([what, level, f"≥ {least:g}", span, "met" if not missed else "missed: " + ", ".join(missed)])
+    floors, compared = [], False
+    for title, s in result["systems"].items():
+        own, heyoka = least_error(s["cells"]["own"]), least_error(s["cells"]["heyoka"])
+        compared = compared or math.isfinite(heyoka)
+        if math.isfinite(heyoka) and own > heyoka:
+            floors.append(f"{title} {own:.0e} > {heyoka:.0e}")
+    if compared:
+        rows.append(["least error of all tolerances", "", "≤ heyoka's", "", "met" if not floors else "missed: " + ", ".join(floors)])
+    return table(["goal", "tolerance of the peer", "ratio", "measured", ""], rows)
+
+
+def flops_per_step(setup, order):
+    """Multiplications and additions of a step, estimated from the counts of the program: a product of series of order p is
+    (p+1)(p+2)/2 of both, a function two products, a linear slot an addition per order. Solving is not counted."""
+    series = (order + 1) * (order + 2)
+    return (setup["products"] + 2 * setup["functions"]) * series + setup["linear"] * (order + 1)
+
+
+def fractions(result):
+    peak = result["peak"].get("avx512") or result["peak"].get("avx2")
+    rows = []
+    for title, s in result["systems"].items():
+        cell = s["cells"]["own"].get("1e-15")
+        if not cell or "failed" in cell or not peak:
+            continue
+        rate = flops_per_step(s["setup"], cell["order"]) * cell["steps"] / cell["us"] / 1e3  # GF/s
+        rows.append([title, cell["order"], number(rate), f"{100 * rate / peak:.1f} %", f"{100 * rate / result['peak']['scalar']:.0f} %"])
+    return table(["system", "order", "GF/s", "of the vector peak", "of the scalar peak"], rows)
+
+
+def setups(result):
+    rows = []
+    for title, s in result["systems"].items():
+        u = s["setup"]
+        jit = []
+        for level in LEVELS:
+            cell = s["cells"]["heyoka"].get(level)
+            jit.append(f"{cell['jit']:.2g} ({cell['mode']})" if cell and "jit" in cell else "–")
+        looks = [m for looks in s.get("heyoka_modes", {}).values() for m in looks.values()]
+        again = [1e3 * m["again"] for m in looks if m.get("again")]
+        shortest = min((m["jit"] for m in looks), default=None)
+        rows.append([title, *(number(1e3 * u[k]) for k in ("read", "scenario", "program")), *jit, number(shortest),
+                     f"{number(min(again))} to {number(max(again))}" if again else "–"])  # fmt: skip
+    return table(
+        ["system", "read, ms", "equations, start, structure, ms", "program, ms", *(f"heyoka compiles, s: {level}" for level in LEVELS),
+         "its shortest", "again, from its disk cache, ms"], rows,
+    )  # fmt: skip
+
+
+def batches(result):
+    rows = []
+    for title, s in result["systems"].items():
+        for level, b in s.get("batch", {}).items():
+            h, own = b["heyoka"], b["own"]
+            if not math.isfinite(h["us"]):
+                continue
+            alone = s["cells"]["own"].get(level, {})
+            rows.append([title, level, number(h["us"]), number(h["us"] / h["steps"]), number(own and own["us"]),
+                         ratio(own and h["us"] / own["us"]), number(alone.get("us"))])  # fmt: skip
+    head = ["system", "tolerance", "heyoka, us per trajectory", "per step", "anholon, us per trajectory", "ratio", "anholon, one alone"]
+    return table(head, rows)
+
+
+def growth(result):
+    rows = []
+    for r in result.get("growth", []):
+        if "failed" in r or "failed" in r["run"]:
+            rows.append([r["n"], r.get("failed") or r["run"]["failed"], "", "", ""])
+            continue
+        setup, run = r["setup"], r["run"]
+        step = run["us"] / run["steps"]
+        ready = setup["read"] + setup["scenario"] + setup["program"]
+        rows.append([r["n"], number(step), number(step / r["n"]), number(1e3 * ready), number(run["megabytes"])])
+    return table(["links", "us per step", "per step and link", "made ready, ms", "memory, MB"], rows)
+
+
+TWINS = {"chaplygin-sleigh": "sleigh", "disc": "disc", "trailers": "trailers 3", "chain": "chain 4"}  # shipped models with a system above
+
+
+def compilation(system, level="1e-12"):
+    """The shortest of heyoka's at the tolerance that `simulate` has without being told."""
+    return min((m["jit"] for m in system.get("heyoka_modes", {}).get(level, {}).values()), default=None)
+
+
+def startup(result):
+    rows = sorted(result.get("startup", []), key=lambda r: r["seconds"])
+    if not rows:
+        return "not measured."
+    ms = [1e3 * r["seconds"] for r in rows]
+    text = f"{len(rows)} models, {number(ms[0])} to {number(ms[-1])} ms, median {number(ms[len(ms) // 2])} ms"
+    bad = [r["model"] for r in rows if r["exit"] not in (0, 1)]
+    if bad:
+        text += f" (no run, by the exit code: {', '.join(bad)})"
+    seconds = {r["model"]: r["seconds"] for r in rows}
+    both = [(m, compilation(result["systems"][t])) for m, t in TWINS.items() if t in result["systems"] and m in seconds]
+    pairs = [f"{model} {number(1e3 * seconds[model])} ({number(1e3 * c)})" for model, c in both if c]
+    if not pairs:
+        return text + "."
+    text += f". Ours, and in brackets heyoka's shortest compilation of the like at 1e-12, ms: {', '.join(pairs)}. "
+    least = min(c for t in result["systems"].values() if (c := compilation(t)) is not None)
+    longer = [f"{r['model']} ({number(1e3 * r['seconds'])})" for r in rows if r["seconds"] > least]
+    text += f"Of all systems above the shortest is {number(1e3 * least)} ms: "
+    return text + ("every model was through before it." if not longer else "longer than that took " + ", ".join(longer) + ".")
+
+
+def checks(result):
+    rows = []
+    for title, s in result["systems"].items():
+        r = s["reference"]
+        rows.append(f"{title} {r['change']:.0e}" + (f" ({r['own']:.0e})" if r["own"] is not None else ""))
+    return ", ".join(rows)
+
+
+def skipped(result):
+    rows = [f"{t}: {mode} at {level:g}" for t, s in result["systems"].items() for level, mode in s.get("heyoka_skipped", [])]
+    return "; ".join(rows) if rows else "none"
+
+
+def markdown(result):
+    m, peak = result["machine"], result["peak"]
+    heyoka = next((s["heyoka_version"] for s in result["systems"].values() if "heyoka_version" in s), None)
+    return f"""## Speed: motions from model files against heyoka and odeint
+
+`./dev bench speed` ({m["date"]}, {result["seconds"]:.0f} s, compilations of heyoka that were cached not counted): the models are in
+`bench/models`, read as they are; heyoka and odeint get the equations reduced by hand (`bench/peers`). heyoka's time is that of its
+best mode, unrolled or compact, with fast math or without; odeint's rkf78 that of the better of `-O3 -march=native` with and without
+`-ffast-math`, on arrays of fixed length, O(n) for chains and trailers. A time is the smaller of wall time and time on the core, the
+median of a round, and the best of {result["rounds"]} rounds in which all sides take turns. Ratios above 1: anholon is ahead.
+
+Machine: {m["cores"]} cores of {m["cpu"]}, shared, load {m["load"]:.1f}; {m["compiler"]}, release build; heyoka {heyoka or "not installed"}.
+Peak of fused multiply-adds on a core, GF/s: {", ".join(f"{k} {v:.1f}" for k, v in peak.items())}.
+
+{times(result)}
+
+Equal error: the peer's time over ours where we reach its error, between our tolerances by logarithms; – where we do not.
+
+### Goals
+
+{goals(result)}
+
+### From the file to the first step
+
+Milliseconds of ours, cold; seconds that heyoka compiles (mode chosen).
+
+{setups(result)}
+
+Modes of heyoka left out because they were expected to compile for longer than the limit: {skipped(result)}.
+
+From the start of `anholon simulate MODEL` to its end, best of 3: {startup(result)}
+
+### Eight lanes on one core
+
+{batches(result)}
+
+### Distance to the limit
+
+At 1e-15; operations estimated from the counts of the program, solving not counted.
+
+{fractions(result)}
+
+### Growth with the links of a chain
+
+Five steps at 1e-12, a process each.
+
+{growth(result)}
+
+### The references
+
+Extrapolation in __float128, change from 100 to 200 steps (distance of our own motion in 32 digits): {checks(result)}.
+"""
+
+
+def put(text, path):
+    """Between the marks of the file, or at its end."""
+    with open(path, encoding="utf-8") as file:
+        old = file.read()
+    before, mark, rest = old.partition(BEGIN)
+    after = rest.partition(END)[2] if mark else "\n"
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(before.rstrip("\n") + f"\n\n{BEGIN}\n{text}{END}{after}")
+
+
+def self_test():
+    """The rules of comparison on curves known in closed form: time = 100 error^(-1/10)."""
+    import os
+    import tempfile
+
+    curve = {f"1e-{k:02}": {"us": 100 * 10 ** (k / 10), "error": 10.0**-k} for k in (6, 8, 10)}
+    assert abs(time_at(curve, 1e-9) / (100 * 10**0.9) - 1) < 1e-12, "between two tolerances"
+    assert abs(time_at(curve, 1e-5) / (100 * 10**0.6) - 1) < 1e-12, "the cheapest run, where all reach the error"
+    assert time_at(curve, 1e-11) is None, "an error that is not reached has no time"
+    slow_and_bad = {**curve, "1e-12": {"us": 1.0, "error": 1.0}, "1e-13": {"failed": "singular"}}
+    assert abs(time_at(slow_and_bad, 1e-9) / (100 * 10**0.9) - 1) < 1e-12, "a fast run with a large error, or none, is no help"
+    peer = {"1e-09": {"us": 200.0, "error": 1e-8}}
+    ratio_here = equal_error({"cells": {"own": curve, "peer": peer}}, "peer", "1e-09")
+    assert abs(ratio_here - 2 / 10**0.8) < 1e-12, "the peer's time over ours, both at the peer's error"
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "r.md")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("before\n\nafter\n")
+        for text in ("one\n", "two\n"):
+            put(text, path)
+        with open(path, encoding="utf-8") as file:
+            assert file.read() == f"before\n\nafter\n\n{BEGIN}\ntwo\n{END}\n", "the tables of a new run take the place of the old ones"
+    print("speed_report: all well")
+
+
+if __name__ == "__main__":
+    self_test()
