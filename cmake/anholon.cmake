@@ -58,6 +58,25 @@ function(anholon_kernel_tiers)
   endif()
 endfunction()
 
+# src/jit: a module of its own, loaded by the program when it wants machine code, so that LLVM costs nothing before that. It sees headers of
+# the kernel only. Left out where LLVM is not installed; everything works without it.
+function(anholon_compiler_module)
+  find_package(LLVM 19.1 QUIET CONFIG)
+  if(NOT LLVM_FOUND)
+    message(STATUS "LLVM 19 was not found: kernels are not compiled")
+    return()
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/jit/*.cpp")
+  add_library(anholon_jit MODULE ${sources})
+  set_target_properties(anholon_jit PROPERTIES PREFIX "" OUTPUT_NAME "anholon-compiler" LIBRARY_OUTPUT_DIRECTORY "${ANHOLON_PROGRAM_DIR}"
+    CXX_VISIBILITY_PRESET hidden)
+  target_compile_options(anholon_jit PRIVATE -ffp-contract=off)
+  target_include_directories(anholon_jit PRIVATE "${PROJECT_SOURCE_DIR}/src")
+  target_include_directories(anholon_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
+  target_link_libraries(anholon_jit PRIVATE LLVM anholon_options anholon_warnings)
+  install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon")
+endfunction()
+
 # The source folder is baked in here and nowhere else, so that ccache can serve the other layers
 # to a second checkout.
 function(anholon_cli_definitions target)

@@ -9,6 +9,10 @@
 
 namespace anholon {
 
+// Orders are computed in blocks of so many (sweep.h: convolution).
+inline constexpr int kBlock = 4;
+inline constexpr int kMostRising = 12;
+
 // Read only once made; shared by the kernels of all threads.
 struct KernelTables {
   const Plan* plan = nullptr;
@@ -19,7 +23,13 @@ struct KernelTables {
   std::vector<Knots> knots;
   std::uint32_t lu = 0, reciprocal = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, size = 0;  // of the arena
   bool refine = false;  // solutions, by one step of iterative refinement
-  std::vector<double> factorial, inverse_factorial, reciprocal_of;
+  std::vector<double> factorial, inverse_factorial, reciprocal_of, order;  // k!, 1 / k!, 1 / k, k
+
+  // (s + m)! / s! and its reciprocal, m up to kMostRising.
+  std::vector<double> rising_, falling_;
+  std::size_t orders = 0;
+  double rising(int m, int s) const { return rising_[static_cast<std::size_t>(m) * orders + static_cast<std::size_t>(s)]; }
+  double falling(int m, int s) const { return falling_[static_cast<std::size_t>(m) * orders + static_cast<std::size_t>(s)]; }
 
   double lookup(std::uint32_t function, double x) const;
 };

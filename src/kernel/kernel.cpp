@@ -73,7 +73,16 @@ KernelPlan::KernelPlan(const Program& program, int stages) : program_(&program),
     tables_.factorial.push_back(static_cast<double>(factorial));
     tables_.inverse_factorial.push_back(static_cast<double>(1 / factorial));
     tables_.reciprocal_of.push_back(k > 0 ? 1 / static_cast<double>(k) : 0);
+    tables_.order.push_back(static_cast<double>(k));
   }
+  tables_.orders = plan_.stride;
+  for (int m = 0; m <= kMostRising; ++m)
+    for (std::size_t s = 0; s < tables_.orders; ++s) {
+      long double r = 1;
+      for (int i = 1; i <= m; ++i) r *= static_cast<long double>(s) + i;
+      tables_.rising_.push_back(static_cast<double>(r));
+      tables_.falling_.push_back(static_cast<double>(1 / r));
+    }
 }
 
 void KernelPlan::lay_out() {
@@ -150,6 +159,22 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   return !elimination_.pivots.empty();
 }
 
+std::string KernelPlan::compile(const std::string& cache) const {
+  const CompilerModule* module = compiler();
+  if (!module) return "there is no compiler beside the program";
+  if (tables_.refine) return "solutions are refined";
+  for (const std::vector<Step>* list : {&plan_.point, &plan_.after})
+    for (const Step& s : *list)
+      if (s.act == Act::lookup) return "tables are looked up";
+  Code code;
+  std::string message;
+  module->compile(tables_, cache, code, message);
+  if (!code.values) return message;
+  code_made_ = std::move(code);
+  code_.store(&code_made_, std::memory_order_release);
+  return {};
+}
+
 void Kernel::Free::operator()(double* p) const { std::free(p); }
 
 Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* tier)
@@ -183,10 +208,16 @@ void Kernel::load(int lane, double t, std::span<const double> state, std::span<c
 }
 
 void Kernel::expand() {
-  arithmetic_->values(-plan_->plan().largest_lead);
-  arithmetic_->factor();
+  const Code* code = lanes_ == 1 ? plan_->code() : nullptr;
+  if (code) code->values(arena_), code->factor(arena_);
+  else arithmetic_->values(-plan_->plan().largest_lead), arithmetic_->factor();
   judge_pivots();
   project();
+  if (code) {
+    code->lead(arena_);
+    code->extend(arena_);
+    return;
+  }
   arithmetic_->residual(0);
   arithmetic_->complete(0);
   arithmetic_->extend();

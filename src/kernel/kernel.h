@@ -4,11 +4,12 @@
 // Expansion<double>, the reference: the same expansion to round-off, without refinement. The pivots are static: `health` says whether
 // they still serve; where it is small, the reference takes the step.
 #pragma once
+#include <atomic>
 #include <limits>
 #include <optional>
 #include <span>
 
-#include "kernel/arithmetic.h"
+#include "kernel/code.h"
 
 namespace anholon {
 
@@ -25,6 +26,10 @@ class KernelPlan {
   const KernelTables& tables() const { return tables_; }
   const Program& program() const { return *program_; }
   std::size_t state_size() const { return state_size_; }
+  // Makes machine code for one lane, with the same bits; kernels take it up at their next expansion. At most once, from any thread. Why there is
+  // none, or nothing.
+  std::string compile(const std::string& cache) const;
+  const Code* code() const { return code_.load(std::memory_order_acquire); }
   // Operations of one expansion.
   double work() const { return plan_.work() + elimination_.work() * (plan_.stages + 2) + static_cast<double>(elimination_.update_list.size()); }
 
@@ -38,6 +43,8 @@ class KernelPlan {
   SparseLu elimination_;
   KernelTables tables_;
   std::size_t state_size_ = 0;
+  mutable Code code_made_;
+  mutable std::atomic<const Code*> code_{nullptr};
 };
 
 class Kernel {

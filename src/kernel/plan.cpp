@@ -12,6 +12,8 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffffU;
 // A sum takes in the sums it is made of up to so many terms.
 constexpr std::size_t kLongestSum = 48;
+// The tables of a kernel reach so far (arithmetic.h: kMostRising).
+constexpr int kHighestOrder = 12;
 // In the slots of a coefficient: a divisor.
 constexpr std::uint32_t kReciprocal = 0x80000000U;
 
@@ -344,6 +346,12 @@ class Planner {
         case Op::power:
           step.act = tape_.rationals[in.index] == Rational(1, 2) ? Act::square_root : Act::power;
           step.value = tape_.rationals[in.index].get_d();
+          if (step.act == Act::power) {
+            step.c = weighted(same_as(in.a), after);
+            step.b = {take(1), false};
+            step.d = {take(plan_.stride), true};
+            if (tainted_[s]) again_ = true;
+          }
           break;
         case Op::function:
           if (sine_of_.count(s) || cosine_of_.count(s)) {
@@ -385,6 +393,15 @@ class Planner {
           step.b = place_[b];
           step.b_constant = code_[b].constant;
         }
+      }
+      if (again_) {
+        Step w;
+        w.act = Act::weigh;
+        w.lead = in.lead;
+        w.out = step.d;
+        w.a = step.out;
+        plan_.weigh_again.push_back(w);
+        again_ = false;
       }
       list(s, false).push_back(step);
       if (after) continue;
@@ -502,12 +519,17 @@ class Planner {
   std::map<std::uint32_t, std::uint32_t> reciprocal_;
   std::map<std::pair<std::uint32_t, bool>, Place> weighted_;
   std::uint32_t zero_ = 0;
+  bool again_ = false;  // the weighted series of a power depends on the unknowns of the stage
 };
 
 }  // namespace
 
 std::string no_plan(const Program& p) {
   if (p.nonlinear) return "the leading derivatives enter nonlinearly";
+  int highest = p.tape.largest_lead;
+  for (int d : p.d) highest = std::max(highest, d);
+  for (const ProgramInput& in : p.inputs) highest = std::max(highest, in.order);
+  if (highest > kHighestOrder) return "derivatives of order " + std::to_string(highest) + " occur";
   return {};
 }
 

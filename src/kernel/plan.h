@@ -28,7 +28,7 @@ enum class Act : std::uint8_t {
   square,       // a^2
   divide,       // a / b; c: 1 / b_0
   square_root,  // sqrt(a)
-  power,        // a^value
+  power,        // a^value; b: 1 / a_0, c, d = weighted series of a and of itself
   sine_cosine,  // out = sin a, c = cos a; b = weighted series of a
   function,     // elementary function `index` of a; b = its derivative, c = weighted series of a
   arctan2,      // atan2(a, b); c, d = derivatives by a and b; e, f = weighted series of a and b

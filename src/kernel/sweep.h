@@ -120,13 +120,13 @@ class Sweep final : public Arithmetic {
     for (std::size_t j = 0; j < p_.x.size(); ++j) {
       const std::uint32_t order = static_cast<std::uint32_t>(stage + p_.d[j]);
       V& x = w_[p_.x[j] + order];
-      const V change = y[j] * T::broadcast(k_.factorial[stage] * k_.inverse_factorial[order]);
+      const V change = y[j] * T::broadcast(k_.falling(p_.d[j], stage));
       x = stage > 0 ? change : x + change;
     }
     for (const Completion& c : p_.completions) {
       V& w = w_[c.out.at + static_cast<std::uint32_t>(stage + c.lead)];
       V change = y[c.column];
-      if (c.lead > 0 ) change *= T::broadcast(k_.factorial[stage] * k_.inverse_factorial[stage + c.lead]);
+      if (c.lead > 0) change *= T::broadcast(k_.falling(c.lead, stage));
       w = stage > 0 && c.fresh ? change : w + change;
     }
     run(p_.weigh_again, stage);
@@ -139,7 +139,7 @@ class Sweep final : public Arithmetic {
       for (std::size_t i = 0; i < p_.roots.size(); ++i) {
         const Place r = p_.roots[i];
         const int order = stage + p_.c[i];
-        side[i] = p_.root_is_zero[i] ? T::broadcast(0) : *at(r, static_cast<std::uint32_t>(order)) * T::broadcast(-k_.factorial[order] * k_.inverse_factorial[stage]);
+        side[i] = p_.root_is_zero[i] ? T::broadcast(0) : *at(r, static_cast<std::uint32_t>(order)) * T::broadcast(-k_.rising(p_.c[i], stage));
       }
       solve();
       complete(stage);
@@ -158,7 +158,7 @@ class Sweep final : public Arithmetic {
       for (int k = 0; k <= p_.d[j]; ++k) {
         V s = T::broadcast(0);
         for (int i = p_.stages + p_.d[j] - k; i >= 1; --i)
-          s = T::fma(x[k + i], T::broadcast(k_.factorial[k + i] * k_.inverse_factorial[i]), s) * step;
+          s = T::fma(x[k + i], T::broadcast(k_.rising(k, i)), s) * step;
         *out++ = s;
       }
     }
@@ -167,20 +167,17 @@ class Sweep final : public Arithmetic {
  private:
   V* at(const Place& place, std::uint32_t order) { return w_ + place.at + (place.series ? order : 0); }
 
-  // Sum of a_j b_(p-j), j = low..high, from the middle outwards: the newest coefficients come last.
-  V convolution(const V* a, const V* b, std::int64_t p, std::int64_t low, std::int64_t high) const {
+  // Sum of a_j b_(p-j), j = first..last; first is 0 or 1, last p or p - 1. Orders are computed in blocks of four: what was known before the block
+  // comes first (so that another tier may do that for four orders at once), then what is new of b, and of a, the newest last.
+  V convolution(const V* a, const V* b, std::int64_t p, bool first, bool last) const {
+    const std::int64_t known = block_ < p ? block_ : p, i = p - known;
     V s = T::broadcast(0), t = s;
-    const std::int64_t middle = p / 2;
-    for (std::int64_t j = middle; j >= low; --j) s = T::fma(a[j], b[p - j], s);
-    for (std::int64_t j = middle + 1; j <= high; ++j) t = T::fma(a[j], b[p - j], t);
+    for (std::int64_t j = i + 1; j < known; ++j) s = T::fma(a[j], b[p - j], s);
+    for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = T::fma(a[j], b[p - j], s);
+    if (first) s = T::fma(a[0], b[p], s);
+    for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = T::fma(a[j], b[p - j], t);
+    if (last) t = T::fma(a[p], b[0], t);
     return s + t;
-  }
-
-  V squares(const V* a, std::int64_t p, std::int64_t low) const {
-    V s = T::broadcast(0);
-    for (std::int64_t j = (p - 1) / 2; j >= low; --j) s = T::fma(a[j], a[p - j], s);
-    s = s + s;
-    return p % 2 == 0 && p / 2 >= low ? T::fma(a[p / 2], a[p / 2], s) : s;
   }
 
   template <class F>
@@ -207,6 +204,7 @@ class Sweep final : public Arithmetic {
   void run(const std::vector<Step>& steps, int stage) {
     for (const Step& s : steps)
       if (const int p = stage + s.lead; p >= 0) {
+        block_ = stage > 0 ? (stage - 1) / kBlock * kBlock + 1 + s.lead : 0;
         if (p == 0) value(s);
         else coefficient(s, static_cast<std::uint32_t>(p));
       }
@@ -227,7 +225,11 @@ class Sweep final : public Arithmetic {
         break;
       }
       case Act::square_root: out = each(a, [](double x) { return std::sqrt(x); }); break;
-      case Act::power: out = each(a, [&](double x) { return power_of(x, s.value); }); break;
+      case Act::power:
+        out = each(a, [&](double x) { return power_of(x, s.value); });
+        w_[s.b.at] = T::broadcast(1) / a;
+        w_[s.d.at] = T::broadcast(0);
+        break;
       case Act::sine_cosine:
         for (int lane = 0; lane < L; ++lane) {
           double sine, cosine;
@@ -267,35 +269,38 @@ class Sweep final : public Arithmetic {
     V* const b = w_ + s.b.at;
     V* const w = w_ + s.out.at;
     V& out = *at(s.out, p);
-    const std::int64_t n = p, newest = s.a_unknown ? n - 1 : n;
+    const std::int64_t n = p;
+    const bool newest = !s.a_unknown, newest_b = !s.b_unknown;
     switch (s.act) {
-      case Act::input: out = a[p + s.index] * T::broadcast(k_.factorial[p + s.index] * k_.inverse_factorial[p]); break;
+      case Act::input: out = a[p + s.index] * T::broadcast(k_.rising(static_cast<int>(s.index), static_cast<int>(p))); break;
       case Act::linear: out = sum(s, p, s.count); break;
-      case Act::multiply: out = convolution(a, b, n, s.b_unknown ? 1 : 0, newest); break;
-      case Act::square: out = squares(a, n, s.a_unknown ? 1 : 0); break;
+      case Act::multiply: out = convolution(a, b, n, newest_b, newest); break;
+      case Act::square: out = convolution(a, a, n, newest, newest); break;
       case Act::divide: {
-        V r = -convolution(b, w, n, 1, s.b_unknown ? n - 1 : n);
+        V r = -convolution(b, w, n, false, newest_b);
         if (!s.a_constant && !s.a_unknown) r += *at(s.a, p);
         out = r * w_[s.c.at];
         break;
       }
       case Act::square_root: {
-        V r = -squares(w, n, 1);
+        V r = -convolution(w, w, n, false, false);
         if (!s.a_unknown) r += *at(s.a, p);
         out = r * (T::broadcast(0.5) / w[0]);
         break;
       }
       case Act::power: {
-        V r = T::broadcast(0);
-        for (std::int64_t j = n - 1; j >= (s.a_unknown ? 1 : 0); --j)
-          r = T::fma(T::broadcast(s.value * static_cast<double>(n - j) - static_cast<double>(j)) * a[n - j], w[j], r);
-        out = r / (T::broadcast(static_cast<double>(n)) * a[0]);
+        // p u_0 w_p = r sum (j u_j) w_(p-j) - sum (j w_j) u_(p-j)
+        V* const c = w_ + s.c.at;
+        V* const d = w_ + s.d.at;
+        const V r = T::broadcast(s.value) * convolution(c, w, n, false, newest) - convolution(d, a, n, false, false);
+        out = r * T::broadcast(k_.reciprocal_of[p]) * w_[s.b.at];
+        d[p] = out * T::broadcast(static_cast<double>(n));
         break;
       }
       case Act::sine_cosine: {
         const V r = T::broadcast(k_.reciprocal_of[p]);
         V* const c = w_ + s.c.at;
-        const V sine = convolution(b, c, n, 1, newest) * r, cosine = convolution(b, w, n, 1, newest) * r;
+        const V sine = convolution(b, c, n, false, newest) * r, cosine = convolution(b, w, n, false, newest) * r;
         w[p] = sine;
         c[p] = -cosine;
         break;
@@ -303,13 +308,13 @@ class Sweep final : public Arithmetic {
       case Act::function: {
         V* const c = w_ + s.c.at;
         if (s.b_constant) out = s.a_unknown ? T::broadcast(0) : V(b[0] * a[p]);
-        else out = convolution(c, b, n, 1, newest) * T::broadcast(k_.reciprocal_of[p]);
+        else out = convolution(c, b, n, false, newest) * T::broadcast(k_.reciprocal_of[p]);
         break;
       }
       case Act::arctan2: {
         V r = T::broadcast(0);
-        if (!s.a_constant) r += convolution(w_ + s.e.at, w_ + s.c.at, n, 1, newest);
-        if (!s.b_constant) r += convolution(w_ + s.f.at, w_ + s.d.at, n, 1, s.b_unknown ? n - 1 : n);
+        if (!s.a_constant) r += convolution(w_ + s.e.at, w_ + s.c.at, n, false, newest);
+        if (!s.b_constant) r += convolution(w_ + s.f.at, w_ + s.d.at, n, false, newest_b);
         out = r * T::broadcast(k_.reciprocal_of[p]);
         break;
       }
@@ -356,6 +361,7 @@ class Sweep final : public Arithmetic {
   const KernelTables& k_;
   const Plan& p_;
   V* w_;
+  std::int64_t block_ = 0;  // coefficients below were known before the present block
 };
 
 }  // namespace

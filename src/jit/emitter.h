@@ -1,0 +1,81 @@
+// LLVM IR for a kernel of one lane: the arithmetic of kernel/sweep.h, operation by operation in the same order, so the bits are the same.
+//
+// Shape of the code: the first block of four stages straight, all further blocks as one loop whose body is four stages. What a
+// convolution knows before a block is summed for its four orders at once, eight convolutions side by side.
+#pragma once
+#include <llvm/IR/IRBuilder.h>
+#include <llvm/IR/Module.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kernel/code.h"
+
+namespace anholon::jit {
+
+class Emitter {
+ public:
+  Emitter(const KernelTables& tables, llvm::Module& module);
+  // Functions of one argument, the arena: "values", "factor", "lead" (residual and completion of stage 0), "extend".
+  void run();
+
+ private:
+  using Value = llvm::Value;
+  struct Convolution {
+    std::uint32_t a, b;
+    std::uint8_t lead;
+    bool operator<(const Convolution& o) const { return std::tie(lead, a, b) < std::tie(o.lead, o.a, o.b); }
+  };
+
+  void begin(const char* name);
+  void end();
+  void values();
+  void factor();
+  void lead();
+  void extend();
+  // All stages from 1 of a list, in blocks.
+  void stages(const std::vector<Step>& steps, bool solved);
+  void stage(const std::vector<Step>& steps, bool solved);
+  void bulk(const std::vector<Step>& steps);
+  void known_before(const Convolution* group, std::size_t count);
+
+  void value(const Step& s);
+  void coefficient(const Step& s);
+  void partial(const Partial& d);
+  Value* sum(const Step& s, std::uint32_t count);
+  Value* convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last);
+  void side(std::size_t root);
+  void solve();
+  void complete();
+  static std::vector<Convolution> convolutions(const Step& s);
+
+  // Orders are of the present stage: absolute, or relative to the stage where the block begins.
+  Value* number(double x) { return llvm::ConstantFP::get(b_.getDoubleTy(), x); }
+  Value* address(std::int64_t slot, bool relative);
+  Value* load(std::int64_t slot, bool relative = false) { return b_.CreateAlignedLoad(b_.getDoubleTy(), address(slot, relative), llvm::Align(8)); }
+  void store(Value* v, std::int64_t slot, bool relative = false) { b_.CreateAlignedStore(v, address(slot, relative), llvm::Align(8)); }
+  // The coefficient of order stage + lead.
+  Value* get(const Place& place, int lead);
+  void put(const Place& place, int lead, Value* v);
+  Value* newest(std::uint32_t at, int lead) { return get({at, true}, lead); }
+  // Element stage + offset of a table.
+  Value* table(const char* name, const std::vector<double>& row, int offset);
+  Value* fma(Value* a, Value* b, Value* c);
+  Value* call(const char* name, std::vector<Value*> arguments, llvm::Type* result = nullptr);
+
+  const KernelTables& k_;
+  const Plan& p_;
+  llvm::Module& m_;
+  llvm::IRBuilder<> b_;
+  llvm::Function* function_ = nullptr;
+  Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr;  // arena; arena + first stage of the block; that stage
+  bool relative_ = false;
+  int stage_ = 0, i_ = 0;  // absolute; in the block
+  std::map<std::pair<std::uint32_t, int>, Value*> known_;  // of the present stage
+  std::map<Convolution, unsigned> bulk_;                    // place in the scratch memory
+  std::map<std::string, llvm::GlobalVariable*> tables_;
+  std::vector<Value*> side_, solution_;
+};
+
+}  // namespace anholon::jit

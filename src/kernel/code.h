@@ -1,0 +1,33 @@
+// Machine code for a kernel of one lane, made while the program runs, and what makes it: a module that is loaded when it is first asked for,
+// as the compiler behind it is large. Without it everything works, slower.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "kernel/arithmetic.h"
+
+namespace anholon {
+
+// The parts of one expansion; each takes the arena. What they point to lives as long as `keeper`.
+struct Code {
+  using Part = void (*)(double*);
+  Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr;
+  std::shared_ptr<void> keeper;
+};
+
+// What the module exports, under the name anholon_compiler.
+struct CompilerModule {
+  int version;  // of this interface
+  // Empty `code.values` and a message where it fails. `cache`: a folder for compiled code, or empty.
+  void (*compile)(const KernelTables& tables, const std::string& cache, Code& code, std::string& message);
+};
+inline constexpr int kCompilerVersion = 1;
+
+// The module beside the program; null where there is none, or this machine cannot run what it makes.
+const CompilerModule* compiler();
+
+// The folder where compiled code is kept between runs: $ANHOLON_CACHE, else anholon in $XDG_CACHE_HOME or ~/.cache; empty if there is none, or
+// ANHOLON_CACHE is empty.
+std::string code_cache();
+
+}  // namespace anholon

@@ -1,0 +1,42 @@
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "kernel/code.h"
+
+namespace anholon {
+
+// Beside the program, in the folder above it (programs of a build tree), or among the libraries of an installation.
+static const CompilerModule* load() {
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return nullptr;
+  std::error_code none;
+  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
+  for (const std::filesystem::path& folder : {here, here.parent_path(), here.parent_path() / "lib" / "anholon"}) {
+    const std::filesystem::path file = folder / "anholon-compiler.so";
+    if (!std::filesystem::exists(file, none)) continue;
+    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) continue;
+    const auto* module = static_cast<const CompilerModule*>(dlsym(library, "anholon_compiler"));
+    if (module && module->version == kCompilerVersion) return module;
+  }
+  return nullptr;
+}
+
+const CompilerModule* compiler() {
+  static const CompilerModule* const module = load();
+  return module;
+}
+
+std::string code_cache() {
+  const auto set = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value ? value : "");
+  };
+  if (std::getenv("ANHOLON_CACHE")) return set("ANHOLON_CACHE");
+  if (const std::string cache = set("XDG_CACHE_HOME"); !cache.empty()) return cache + "/anholon";
+  if (const std::string home = set("HOME"); !home.empty()) return home + "/.cache/anholon";
+  return {};
+}
+
+}  // namespace anholon
