@@ -1,0 +1,81 @@
+#include "run/ensemble.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "run/cases.h"
+
+namespace anholon {
+
+namespace {
+
+// Cases that are integrated together. The number of threads has no say in it: who is beside whom may decide bits.
+std::size_t together(std::size_t cases) {
+  constexpr std::size_t kLanes = 8, kFew = 64;
+  return std::clamp<std::size_t>(cases / kFew, 1, kLanes);
+}
+
+// Groups of cases on their way for each thread: room for one that takes long while the others go on.
+constexpr std::size_t kWindow = 32;
+
+using Group = std::vector<CaseResult>;
+
+}  // namespace
+
+EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& sink) {
+  const auto start = std::chrono::steady_clock::now();
+  EnsembleReport report;
+  report.threads = o.threads > 0 ? o.threads : static_cast<std::size_t>(tbb::info::default_concurrency());
+  const EnsemblePlan plan(s, o);
+  const std::size_t group = together(o.cases);
+  const auto cancelled = [&] { return o.cancelled && o.cancelled(); };
+
+  tbb::enumerable_thread_specific<CaseWorker> workers([&] { return CaseWorker(plan); });
+  std::size_t next = 0;
+  std::atomic<std::size_t> held{0};
+  const auto begin = [&](tbb::flow_control& flow) -> Group* {
+    if (next >= o.cases || cancelled()) {
+      flow.stop();
+      return nullptr;
+    }
+    auto* g = new Group;
+    for (; next < o.cases && g->size() < group; ++next) g->emplace_back().number = next;
+    report.most_held = std::max(report.most_held, held += g->size());
+    return g;
+  };
+  const auto integrate = [&](Group* g) {
+    workers.local().integrate(*g);
+    return g;
+  };
+  const auto deliver = [&](Group* g) {
+    const std::unique_ptr<Group> owned(g);
+    for (const CaseResult& r : *g) {
+      // What Ctrl-C cut short is no result.
+      if (r.outcome.kind == OutcomeKind::interrupted && cancelled()) continue;
+      sink.result(r);
+      ++report.done;
+      if (r.outcome.ok()) ++report.finished;
+    }
+    held -= g->size();
+    if (o.progress) o.progress(report.done);
+  };
+
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, report.threads);
+  tbb::task_arena arena(static_cast<int>(report.threads));
+  arena.execute([&] {
+    tbb::parallel_pipeline(kWindow * report.threads, tbb::make_filter<void, Group*>(tbb::filter_mode::serial_in_order, begin) &
+                                                         tbb::make_filter<Group*, Group*>(tbb::filter_mode::parallel, integrate) &
+                                                         tbb::make_filter<Group*, void>(tbb::filter_mode::serial_in_order, deliver));
+  });
+  for (const CaseWorker& w : workers) report.again += w.again();
+  if (report.done < o.cases) report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+}  // namespace anholon
