@@ -178,13 +178,14 @@ int sweep(const Options& o) {
   options.threads = static_cast<std::size_t>(o.threads);
   options.again = in.again;
   Scenario s;
-  const Outcome start = ready(in, form(o, *in.model), options.state, s);
+  Outcome start = ready(in, form(o, *in.model), options.state, s);
   form(o, *in.model, s.mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
+  if (!start.ok()) start = scenario_of_cases(*s.system.form, options, s);
   if (!start.ok()) {
     print_outcome(start);
     return kStopped;

@@ -9,38 +9,17 @@ namespace anholon {
 
 namespace {
 
-// The parameters by those that are varied: what is derived from others follows.
-Tape parameter_tape(const Model& model, const std::vector<Varied>& varied) {
-  Graph& g = *model.graph;
-  Column values;
-  for (const Parameter& p : model.parameters) values.push_back(p.value);
-  for (const Varied& v : varied)
-    if (v.kind == Varied::Kind::parameter) values[v.index] = g.parameter(static_cast<std::uint32_t>(v.index));
-  Column es = values;
-  for (std::size_t depth = 0; depth <= values.size(); ++depth)
-    es = substitute(es, [&](NodeId id) {
-      const Node& n = g.node(id);
-      return n.kind == Kind::parameter ? values[n.index] : Expr{};
-    });
-  return compile(es);
-}
-
-std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const std::vector<Rational>* values) {
+// Without numbers: only which they are.
+std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
   std::vector<StateOverride> list = o.state.overrides;
   for (std::size_t i = 0; i < o.varied.size(); ++i)
-    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial) list.push_back({v.order, v.index, values ? (*values)[i] : Rational(0)});
+    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial) list.push_back({v.order, v.index, numbers ? numbers->values[i] : Rational(0)});
   return list;
 }
 
-template <Number N>
-std::vector<N> evaluated(const Tape& tape, const std::vector<Varied>& varied, const std::vector<Rational>& values, std::size_t parameters) {
-  std::vector<N> given(parameters, N(0));
-  for (std::size_t i = 0; i < varied.size(); ++i)
-    if (varied[i].kind == Varied::Kind::parameter) given[varied[i].index] = from_rational<N>(values[i]);
-  Machine<N> machine(tape, 0, given);
-  machine.evaluate();
-  for (std::size_t i = 0; i < parameters; ++i) given[i] = machine.value(i);
-  return given;
+void put_parameters(Model& model, const EnsembleOptions& o, const EnsembleCase& numbers) {
+  for (std::size_t i = 0; i < o.varied.size(); ++i)
+    if (o.varied[i].kind == Varied::Kind::parameter) model.parameters[o.varied[i].index].value = model.graph->number(numbers.values[i]);
 }
 
 }  // namespace
@@ -54,13 +33,12 @@ std::vector<std::string> ensemble_columns(const Model& model) {
   return names;
 }
 
-EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenario(s), options(o) {
+EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenario(s), options(o), parameters(s, o.varied) {
   const Model& model = *s.model;
   Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled};
   plain = !s.routh && s.redundant.empty() && s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
   if (!plain) return;
-  if (!model.parameters.empty()) parameters = parameter_tape(model, o.varied);
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
     for (int k = 0; k < s.structure.d[j]; ++k) entries.push_back(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
@@ -78,22 +56,51 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
   }
 }
 
-// Reading and deriving the model once more gives the same graph, in which a thread may build.
+// A model read once more, with a graph of its own in which a thread may build.
 struct CaseWorker::Own {
+  // With the numbers of a case, or those of the scenario of all cases.
+  Own(const EnsemblePlan& plan, const EnsembleCase* numbers) {
+    const EnsembleOptions& o = plan.options;
+    std::optional<EnsembleCase> like;
+    if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
+    outcome = scenario_of(*plan.scenario.system.form, o, numbers, scenario, model);
+  }
+  static Outcome scenario_of(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers, Scenario& scenario, std::shared_ptr<Model>& model) {
+    model = std::make_shared<Model>(*o.again());
+    StateChoice state = o.state;
+    if (numbers) put_parameters(*model, o, *numbers), state.overrides = overrides_of(o, numbers);
+    return make_scenario(model, form, state, scenario);
+  }
+
   std::shared_ptr<Model> model;
   Scenario scenario;
+  Outcome outcome;        // of its start
   std::size_t cases = 0;  // that were computed in it
 };
+
+Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& o, Scenario& scenario) {
+  constexpr std::size_t kMost = 64;
+  Outcome first;
+  for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
+    const EnsembleCase numbers = o.numbers(k);
+    std::shared_ptr<Model> model;
+    Scenario s;
+    const Outcome outcome = CaseWorker::Own::scenario_of(form, o, &numbers, s, model);
+    if (k == 0) first = outcome;
+    if (!outcome.ok()) continue;
+    scenario = std::move(s);
+    o.like = k;
+    return {};
+  }
+  return first;
+}
 
 void CaseWorker::integrate(std::span<CaseResult> results) {
   for (CaseResult& r : results) {
     const EnsembleCase numbers = plan_.options.numbers(r.number);
     for (const Rational& v : numbers.values) r.values.push_back(from_rational<double>(v));
     try {
-      if (plan_.plain && plainly(numbers, r)) continue;
-      r.last.clear();
-      r.rows.clear();
-      by_simulation(numbers, r);
+      integrate(numbers, r);
     } catch (const Failure& e) {
       r.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
     } catch (const std::bad_alloc&) {
@@ -102,35 +109,38 @@ void CaseWorker::integrate(std::span<CaseResult> results) {
   }
 }
 
-// The numbers of the case, in its workspaces; false if a parameter has no value.
-bool CaseWorker::set_parameters(const EnsembleCase& numbers) {
-  const std::size_t n = plan_.scenario.model->parameters.size();
-  const std::vector<Varied>& varied = plan_.options.varied;
-  if (n > 0) {
-    parameters_ = evaluated<W>(plan_.parameters, varied, numbers.values, n);
-    narrow_parameters_ = evaluated<double>(plan_.parameters, varied, numbers.values, n);
+void CaseWorker::integrate(const EnsembleCase& numbers, CaseResult& r) {
+  std::vector<W> parameters = plan_.parameters.values<W>(numbers.values);
+  ready_ = ready_ && parameters == parameters_;
+  if (!ready_) {
+    parameters_ = std::move(parameters);
+    narrow_parameters_ = plan_.parameters.values<double>(numbers.values);
   }
-  const bool same = point_ && parameters_ == given_;
-  given_ = parameters_;
-  // A stepper begins anew: what it met with other numbers must leave no trace.
-  stepper_.emplace(*plan_.program, narrow_parameters_, parameters_, plan_.settings);
-  if (!same) {
-    point_.emplace(*plan_.program, parameters_, std::max(1, plan_.stages));
-    if (plan_.outputs) outputs_.emplace(*plan_.outputs, 0, parameters_);
+  r.t = plan_.scenario.state.t;
+  if (r.outcome = plan_.parameters.possible(narrow_parameters_); !r.outcome.ok()) return;
+  if (!ready_) same_structure_ = plan_.parameters.same_structure(narrow_parameters_);
+  Way way = !same_structure_ ? Way::derivation : plan_.plain ? plainly(numbers, r) : Way::simulation;
+  if (way == Way::simulation) {
+    by_simulation(numbers, r);
+    // What fails where it begins may have another structure there, or other redundant constraints.
+    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent && r.outcome.kind != OutcomeKind::interrupted) way = Way::derivation;
   }
-  return std::all_of(parameters_.begin(), parameters_.end(), [](const W& p) { return is_finite(p); });
+  if (way == Way::derivation) by_derivation(numbers, r);
 }
 
-// False if the case has to go the other way.
-bool CaseWorker::plainly(const EnsembleCase& numbers, CaseResult& r) {
-  if (!set_parameters(numbers)) {
-    r.outcome = {OutcomeKind::not_a_number, "a parameter has no value", "look for roots of negative numbers and divisions by zero among the parameters"};
-    return true;
+// The way that is left, if this one does not go to the end.
+CaseWorker::Way CaseWorker::plainly(const EnsembleCase& numbers, CaseResult& r) {
+  // A stepper begins anew: what it met before must leave no trace.
+  stepper_.emplace(*plan_.program, narrow_parameters_, parameters_, plan_.settings);
+  if (!ready_) {
+    point_.emplace(*plan_.program, parameters_, std::max(1, plan_.stages));
+    if (plan_.outputs) outputs_.emplace(*plan_.outputs, 0, parameters_);
+    ready_ = true;
   }
-  const InitialProblem<W> problem{plan_.scenario.mechanics.get(), parameters_, overrides_of(plan_.options, &numbers.values), plan_.options.state.t, nullptr, &*plan_.start};
+  const InitialProblem<W> problem{plan_.scenario.mechanics.get(), parameters_, overrides_of(plan_.options, &numbers), plan_.options.state.t, nullptr, &*plan_.start};
   r.outcome = consistent_state(problem, named_);
   r.t = to_double(named_.t);
-  if (!r.outcome.ok()) return true;
+  if (!r.outcome.ok()) return Way::plain;
   std::vector<W> state;
   for (const Node& n : plan_.entries) {
     const W* known = named_.value(n);
@@ -139,17 +149,18 @@ bool CaseWorker::plainly(const EnsembleCase& numbers, CaseResult& r) {
   return walk(named_.t, state, numbers, r);
 }
 
-bool CaseWorker::walk(const W& t0, const std::vector<W>& state, const EnsembleCase& numbers, CaseResult& r) {
+CaseWorker::Way CaseWorker::walk(const W& t0, const std::vector<W>& state, const EnsembleCase& numbers, CaseResult& r) {
   const EnsembleOptions& o = plan_.options;
-  if (!stepper_->start(t0, state).ok()) return false;
+  if (!stepper_->start(t0, state).ok()) return Way::derivation;
   const W end = from_rational<W>(numbers.to ? *numbers.to : o.to);
   const bool forward = !(end < t0);
   std::vector<W> times;
   for (const Rational& t : o.at)
     if (const W at = from_rational<W>(t); forward ? at <= end : at >= end) times.push_back(at);
   if (!forward) std::reverse(times.begin(), times.end());
+  // Those that lie in the last step.
   const auto rows = [&] {
-    for (; r.rows.size() < times.size(); ) {
+    while (r.rows.size() < times.size()) {
       const W& t = times[r.rows.size()];
       if (forward ? t > stepper_->time() : t < stepper_->time()) break;
       std::vector<double> row = {to_double(t)};
@@ -158,16 +169,20 @@ bool CaseWorker::walk(const W& t0, const std::vector<W>& state, const EnsembleCa
     }
     return true;
   };
-  if (!rows()) return false;
+  if (!rows()) return Way::simulation;
   while (!(stepper_->time() == end)) {
-    if (!stepper_->step(end).ok()) return false;
+    if (const Outcome step = stepper_->step(end); !step.ok()) {
+      if (step.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled()) return stepper_->steps() == 0 ? Way::derivation : Way::simulation;
+      r.outcome = step;
+      return Way::plain;
+    }
     for (std::size_t i = 0; i < plan_.program->quadratures; ++i)
-      if (!plan_.scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)) return false;
-    if (!rows()) return false;
+      if (!plan_.scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)) return Way::simulation;
+    if (!rows()) return Way::simulation;
   }
   r.t = to_double(end);
   r.steps = stepper_->steps();
-  return keep(end, r.last);
+  return keep(end, r.last) ? Way::plain : Way::simulation;
 }
 
 // What is kept of the state at t, which lies in the last step.
@@ -219,11 +234,17 @@ class Kept final : public RowSink {
 
 }  // namespace
 
-void CaseWorker::simulate_in(Own& own, const Rational& to, std::vector<StateOverride> overrides, CaseResult& r) {
+// Without numbers: those of the scenario.
+void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& r) {
   const EnsembleOptions& o = plan_.options;
+  r.rows.clear();
+  r.last.clear();
+  std::optional<EnsembleCase> like;
+  if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
+  const Rational to = numbers && numbers->to ? *numbers->to : o.to;
   SimulationOptions options;
   options.state = o.state;
-  options.state.overrides = std::move(overrides);
+  if (numbers) options.state.overrides = overrides_of(o, numbers);
   for (const Rational& t : o.at)
     if (to < Rational(own.scenario.state.t) ? t > to : t < to) options.at.push_back(t);
   options.at.push_back(to);
@@ -239,37 +260,33 @@ void CaseWorker::simulate_in(Own& own, const Rational& to, std::vector<StateOver
   r.t = std::strtod(report.t.c_str(), nullptr);
 }
 
-std::shared_ptr<CaseWorker::Own> CaseWorker::make_own() {
-  const EnsembleOptions& o = plan_.options;
-  const Scenario& s = plan_.scenario;
-  auto own = std::make_shared<Own>();
-  own->model = std::make_shared<Model>(*o.again());
-  make_scenario(own->model, *s.system.form, o.state, own->scenario);
-  // What all cases build, the motion of the file builds first.
-  CaseResult nothing;
-  simulate_in(*own, o.to, o.state.overrides, nothing);
-  return own;
-}
-
 // Expressions that a case builds stand before those of later cases, and their order is that of sums. So no case may be computed
 // where another one has left some: a graph that has grown is thrown away, and a case that made it grow is computed in a new one.
 void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {
-  const EnsembleOptions& o = plan_.options;
   ++again_;
   for (;;) {
-    if (!own_) own_ = make_own();
-    const std::shared_ptr<Own> own = std::exchange(own_, nullptr);
-    Graph& g = *own->model->graph;
-    for (std::size_t i = 0; i < o.varied.size(); ++i)
-      if (o.varied[i].kind == Varied::Kind::parameter) own->model->parameters[o.varied[i].index].value = g.number(numbers.values[i]);
-    const std::size_t before = g.size();
-    r.rows.clear();
-    r.last.clear();
-    simulate_in(*own, numbers.to ? *numbers.to : o.to, overrides_of(o, &numbers.values), r);
-    const bool first = own->cases++ == 0, grown = g.size() != before;
-    if (!grown) own_ = own;
+    std::shared_ptr<Own> own = std::exchange(own_, nullptr);
+    if (!own) {
+      own = std::make_shared<Own>(plan_, nullptr);
+      // What all cases build, the motion of the scenario builds first.
+      CaseResult nothing;
+      simulate_in(*own, nullptr, nothing);
+    }
+    put_parameters(*own->model, plan_.options, numbers);
+    const std::size_t before = own->model->graph->size();
+    simulate_in(*own, &numbers, r);
+    const bool first = own->cases++ == 0, grown = own->model->graph->size() != before;
+    if (!grown) own_ = std::move(own);
     if (!grown || first) return;
   }
+}
+
+void CaseWorker::by_derivation(const EnsembleCase& numbers, CaseResult& r) {
+  ++again_;
+  Own own(plan_, &numbers);
+  r.outcome = own.outcome;
+  r.t = own.scenario.state.t;
+  if (own.outcome.ok()) simulate_in(own, &numbers, r);
 }
 
 }  // namespace anholon

@@ -3,9 +3,9 @@
 // The plain way reads tapes that were compiled before: parameters, consistent positions and velocities, the stepping program,
 // outputs. It builds no expressions, so all threads share one graph. It only finishes: what stops on the way, or needs events,
 // completed states, redundant constraints or another elimination, goes the way of `simulate` in a graph of the thread's own, so that its
-// outcome is that of `simulate`.
+// outcome is that of `simulate`. A case with which the equations have another structure is derived anew.
 #pragma once
-#include "run/ensemble.h"
+#include "run/case_parameters.h"
 
 namespace anholon {
 
@@ -18,7 +18,7 @@ class EnsemblePlan {
   const EnsembleOptions& options;
   bool plain = false;               // the plain way goes for this model
   std::optional<StartPlan> start;
-  Tape parameters;                  // of all parameters by those that are varied
+  CaseParameters parameters;
   std::vector<Node> entries;        // of the state, in the order of an Expansion's
   std::optional<Program> program;   // varying masses are its quadratures
   std::optional<Tape> outputs;
@@ -41,21 +41,24 @@ class CaseWorker {
   void integrate(std::span<CaseResult> results);
   std::size_t again() const { return again_; }
 
- private:
-  using W = Wider<double>;
   struct Own;  // a graph of its own
 
-  bool plainly(const EnsembleCase& numbers, CaseResult& result);
-  bool set_parameters(const EnsembleCase& numbers);
-  bool walk(const W& t, const std::vector<W>& state, const EnsembleCase& numbers, CaseResult& result);
+ private:
+  using W = Wider<double>;
+
+  enum class Way : std::uint8_t { plain, simulation, derivation };
+  void integrate(const EnsembleCase& numbers, CaseResult& result);
+  Way plainly(const EnsembleCase& numbers, CaseResult& result);
+  Way walk(const W& t, const std::vector<W>& state, const EnsembleCase& numbers, CaseResult& result);
   bool keep(const W& t, std::vector<double>& values);
   void by_simulation(const EnsembleCase& numbers, CaseResult& result);
-  void simulate_in(Own& own, const Rational& to, std::vector<StateOverride> overrides, CaseResult& result);
-  std::shared_ptr<Own> make_own();
+  void by_derivation(const EnsembleCase& numbers, CaseResult& result);
+  void simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& result);
 
   const EnsemblePlan& plan_;
-  std::vector<W> parameters_, given_;
+  std::vector<W> parameters_;
   std::vector<double> narrow_parameters_;
+  bool ready_ = false, same_structure_ = true;  // for these parameters
   InitialState<W> named_;
   std::optional<Stepper<double>> stepper_;
   std::optional<Expansion<W>> point_;

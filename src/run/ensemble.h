@@ -41,6 +41,7 @@ struct EnsembleOptions {
   // The same model again, with a graph of its own: events, completed states and what stopped on the way build expressions, which
   // threads cannot do in one graph.
   std::function<std::shared_ptr<const Model>()> again;
+  std::optional<std::size_t> like;                  // the case with whose numbers the scenario was made; none: those of the model
 };
 
 struct CaseResult {
@@ -72,7 +73,11 @@ struct EnsembleReport {
 // What is kept of a state: coordinates, velocities, the model's states, outputs.
 std::vector<std::string> ensemble_columns(const Model& model);
 
-// The scenario is that of the file, or of any case; it is only read.
+// Where the model's own numbers have no consistent start: the scenario of the first case that has one, which `options` remember.
+// Not ok if none of the first cases has.
+Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& options, Scenario& scenario);
+
+// The scenario is that of the model's own numbers, or of `options.like`; threads only read it.
 EnsembleReport ensemble(const Scenario& scenario, const EnsembleOptions& options, CaseSink& sink);
 
 }  // namespace anholon
