@@ -12,7 +12,7 @@
 namespace anholon {
 namespace {
 
-const char* const kPendulum = R"(
+const char* const kPendulum = R"toml(
 coordinates = ["x", "y"]
 [parameters]
 m = 1
@@ -35,9 +35,9 @@ x = 1
 guess = {y = -1}
 [monitor]
 energy = "m*(x'^2 + y'^2)/2 + weight*y"
-)";
+)toml";
 
-const char* const kBall = R"(
+const char* const kBall = R"toml(
 coordinates = ["y"]
 [parameters]
 e = 0.5
@@ -56,7 +56,7 @@ direction = "down"
 set = {"y'" = "-e*y'"}
 [initial]
 y = 1
-)";
+)toml";
 
 class Results final : public CaseSink {
  public:
@@ -71,8 +71,8 @@ Varied parameter(const Model& m, const std::string& name) {
 }
 Varied initial(std::size_t coordinate, unsigned order) { return {Varied::Kind::initial, coordinate, order, ""}; }
 
-struct Run {
-  explicit Run(std::string text, const char* form = "routh") : text_(std::move(text)) {
+struct Sweep {
+  explicit Sweep(std::string text, const char* form = "routh") : text_(std::move(text)) {
     EXPECT_TRUE(make_scenario(test::model_of(text_), *find_formulation(form), {}, scenario).ok());
     options.to = 1;
     options.again = [text = text_] { return test::model_of(text); };
@@ -136,7 +136,7 @@ std::vector<std::vector<Rational>> lengths(int count) {
 }
 
 TEST(Ensemble, EveryCaseIsWhatSimulateMakesOfIt) {
-  Run run(kPendulum);
+  Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "l"), parameter(run.model(), "m")};
   run.cases({{Rational(3, 2), Rational(2)}, {Rational(5, 2), Rational(1)}});
   const auto list = run.go();
@@ -153,7 +153,7 @@ TEST(Ensemble, EveryCaseIsWhatSimulateMakesOfIt) {
 }
 
 TEST(Ensemble, OneInconsistentCaseStopsNoOther) {
-  Run run(kPendulum);
+  Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "l"), parameter(run.model(), "m")};
   run.cases(lengths(5));
   const auto list = run.go();
@@ -168,14 +168,14 @@ TEST(Ensemble, OneInconsistentCaseStopsNoOther) {
 }
 
 TEST(Ensemble, NumbersThatNoBodyHasAreRefused) {
-  Run run(kPendulum);
+  Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "m"), parameter(run.model(), "l")};
   run.cases({{Rational(-1), Rational(2)}, {Rational(1), Rational(2)}});
   const auto list = run.go();
   EXPECT_EQ(list[0].outcome.kind, OutcomeKind::negative_mass);
   EXPECT_TRUE(list[1].outcome.ok());
 
-  Run top(R"(
+  Sweep top(R"toml(
 coordinates = ["psi", "theta", "phi"]
 [parameters]
 A = 1
@@ -189,7 +189,7 @@ inertia = ["A", "A", "C"]
 [initial]
 theta = 1
 "psi'" = 1
-)");
+)toml");
   top.options.varied = {parameter(top.model(), "C")};
   top.cases({{Rational(19, 10)}, {Rational(21, 10)}, {Rational(-1)}});
   const auto tops = top.go();
@@ -198,29 +198,30 @@ theta = 1
   EXPECT_EQ(tops[2].outcome.kind, OutcomeKind::negative_mass);
 }
 
-struct Kind {
+struct Of {
   const char* name;
   const char* text;
   const char* vary;
   const char* form;
+  int cases;
 };
 
-class Threads : public testing::TestWithParam<Kind> {};
+class Threads : public testing::TestWithParam<Of> {};
 
 TEST_P(Threads, HaveNoInfluenceOnAnyBit) {
-  const Kind& kind = GetParam();
-  Run run(kind.text, kind.form);
+  const Of& kind = GetParam();
+  Sweep run(kind.text, kind.form);
   run.options.varied = {parameter(run.model(), kind.vary), initial(0, 1)};
   run.options.at = {Rational(1, 4), Rational(1, 2), Rational(3, 4)};
   std::vector<std::vector<Rational>> values;
-  for (int k = 0; k < 48; ++k) values.push_back({Rational(k, 50), Rational(k % 7, 9)});
+  for (int k = 0; k < kind.cases; ++k) values.push_back({Rational(k, 50), Rational(k % 7, 9)});
   run.cases(values);
   const std::string one = bits(run.go(1));
   EXPECT_FALSE(one.empty());
   for (const std::size_t threads : {2U, 3U, 4U, 5U, 6U, 7U, 8U}) EXPECT_EQ(bits(run.go(threads)) == one, true) << threads << " threads";
   // Alone, every case is the same as among others.
   const auto all = run.go(2);
-  for (const std::size_t k : {0U, 17U, 47U}) {
+  for (const std::size_t k : {std::size_t{0}, values.size() / 3, values.size() - 1}) {
     run.cases({values[k]});
     auto alone = run.go(1);
     ASSERT_EQ(alone.size(), 1U);
@@ -230,7 +231,7 @@ TEST_P(Threads, HaveNoInfluenceOnAnyBit) {
 }
 
 // The elimination changes on the way: the last of these choose again, and build expressions.
-const char* const kTurning = R"(
+const char* const kTurning = R"toml(
 coordinates = ["x", "y", "theta"]
 [parameters]
 drive = 0.5
@@ -250,15 +251,15 @@ torque = "drive*ez"
 [initial]
 "theta'" = 2
 conditions = ["x' = cos(theta)"]
-)";
+)toml";
 
 INSTANTIATE_TEST_SUITE_P(Of, Threads,
-                         testing::Values(Kind{"Constraints", kPendulum, "g", "routh"}, Kind{"Events", kBall, "e", "routh"},
-                                         Kind{"Eliminations", kTurning, "drive", "chaplygin"}),
+                         testing::Values(Of{"Constraints", kPendulum, "g", "routh", 100}, Of{"Events", kBall, "e", "routh", 48},
+                                         Of{"Eliminations", kTurning, "drive", "chaplygin", 16}),
                          [](const auto& p) { return std::string(p.param.name); });
 
 TEST(Ensemble, AChangedCaseChangesItsLineOnly) {
-  Run run(kPendulum);
+  Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "l"), parameter(run.model(), "m")};
   auto values = lengths(20);
   run.cases(values);
@@ -270,7 +271,7 @@ TEST(Ensemble, AChangedCaseChangesItsLineOnly) {
 }
 
 TEST(Ensemble, EventsEndAndAccumulateAsInSimulate) {
-  Run run(kBall);
+  Sweep run(kBall);
   run.options.varied = {parameter(run.model(), "e")};
   run.cases({{Rational(1, 5)}, {Rational(4, 5)}});
   const auto list = run.go();
@@ -285,7 +286,7 @@ TEST(Ensemble, EventsEndAndAccumulateAsInSimulate) {
 
 // Without the coefficient of the file the equations have another structure: the case is derived anew.
 TEST(Ensemble, AnotherStructureIsDerivedAnew) {
-  const char* const text = R"(
+  const char* const text = R"toml(
 coordinates = ["x", "y"]
 [parameters]
 m = 0
@@ -308,8 +309,8 @@ on = "b"
 vector = "-y'*ex"
 [initial]
 x = 1
-)";
-  Run run(text);
+)toml";
+  Sweep run(text);
   run.options.varied = {parameter(run.model(), "m")};
   run.cases({{Rational(0)}, {Rational(1)}, {Rational(0)}});
   const auto list = run.go();
@@ -322,7 +323,7 @@ x = 1
 }
 
 TEST(Ensemble, RowsAreThoseOfTheTimes) {
-  Run run(kPendulum);
+  Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "g")};
   run.options.at = {Rational(0), Rational(1, 3), Rational(1)};
   run.cases({{Rational(9)}});
@@ -336,7 +337,7 @@ TEST(Ensemble, RowsAreThoseOfTheTimes) {
 }
 
 TEST(Ensemble, EndsAndDirectionsMayDiffer) {
-  Run run(kPendulum);
+  Sweep run(kPendulum);
   run.options.cases = 3;
   run.options.numbers = [](std::size_t k) { return EnsembleCase{{}, Rational(static_cast<long>(k) - 1)}; };
   const auto list = run.go();
@@ -346,7 +347,7 @@ TEST(Ensemble, EndsAndDirectionsMayDiffer) {
 }
 
 TEST(Ensemble, CancelledKeepsWhatIsComputed) {
-  Run run(kPendulum);
+  Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "g")};
   run.options.cases = 100000;
   run.options.numbers = [](std::size_t k) { return EnsembleCase{{Rational(static_cast<long>(k % 100))}, {}}; };
@@ -359,12 +360,12 @@ TEST(Ensemble, CancelledKeepsWhatIsComputed) {
   EXPECT_LT(list.size(), 5000U) << "at most what was on its way";
   for (std::size_t k = 0; k < list.size(); ++k) {
     EXPECT_TRUE(list[k].outcome.ok());
-    if (k > 0) EXPECT_GT(list[k].number, list[k - 1].number);
+    EXPECT_TRUE(k == 0 || list[k].number > list[k - 1].number) << "in order";
   }
 }
 
 TEST(Ensemble, HoldsAWindowOfResultsOnly) {
-  Run run(kPendulum);
+  Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "g")};
   run.options.to = Rational(1, 100);
   run.options.tolerance = Rational(1, 1000);
