@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -131,7 +132,7 @@ std::vector<double> simulated(const std::string& text, const Overrides& set, con
 // Grids of lengths, some of which are too short for x = 1, and masses.
 std::vector<std::vector<Rational>> lengths(int count) {
   std::vector<std::vector<Rational>> list;
-  for (int k = 0; k < count; ++k) list.push_back({Rational(4 + k, 5), Rational(1 + k % 3)});
+  for (int k = 0; k < count; ++k) list.push_back({Rational(4 + k) / 5, Rational(1 + k % 3)});
   return list;
 }
 
@@ -214,7 +215,7 @@ TEST_P(Threads, HaveNoInfluenceOnAnyBit) {
   run.options.varied = {parameter(run.model(), kind.vary), initial(0, 1)};
   run.options.at = {Rational(1, 4), Rational(1, 2), Rational(3, 4)};
   std::vector<std::vector<Rational>> values;
-  for (int k = 0; k < kind.cases; ++k) values.push_back({Rational(k, 50), Rational(k % 7, 9)});
+  for (int k = 0; k < kind.cases; ++k) values.push_back({Rational(k) / 50, Rational(k % 7) / 9});
   run.cases(values);
   const std::string one = bits(run.go(1));
   EXPECT_FALSE(one.empty());
@@ -230,33 +231,29 @@ TEST_P(Threads, HaveNoInfluenceOnAnyBit) {
   }
 }
 
-// The elimination changes on the way: the last of these choose again, and build expressions.
-const char* const kTurning = R"toml(
-coordinates = ["x", "y", "theta"]
-[parameters]
-drive = 0.5
-[[body]]
-name = "sleigh"
-mass = 1
-center = "x*ex + y*ey"
-orientation = "rotz(theta)"
-inertia = 1
-[[constraint]]
-name = "blade"
-equation = "x'*sin(theta) - y'*cos(theta) = 0"
-[[force]]
-name = "drive"
-on = "sleigh"
-torque = "drive*ez"
-[initial]
-"theta'" = 2
-conditions = ["x' = cos(theta)"]
-)toml";
-
 INSTANTIATE_TEST_SUITE_P(Of, Threads,
-                         testing::Values(Of{"Constraints", kPendulum, "g", "routh", 100}, Of{"Events", kBall, "e", "routh", 48},
-                                         Of{"Eliminations", kTurning, "drive", "chaplygin", 16}),
+                         testing::Values(Of{"Constraints", kPendulum, "g", "routh", 100}, Of{"Events", kBall, "e", "routh", 48}),
                          [](const auto& p) { return std::string(p.param.name); });
+
+// Other coordinates are eliminated on the way, which builds expressions: computed in graphs where others have left theirs, some of
+// these cases have other last bits.
+TEST(Ensemble, WhatOneCaseBuildsIsNotSeenByAnother) {
+  Sweep run(test::shipped_text("zoo/double-pendulum-cartesian"), "chaplygin");
+  run.options.varied = {initial(0, 1)};
+  run.options.to = 2;
+  std::vector<std::vector<Rational>> values;
+  for (int k = 0; k < 7; ++k) values.push_back({Rational(3 * k) / 2});
+  run.cases(values);
+  const auto one = run.go(1);
+  EXPECT_EQ(run.report.again, 7U);
+  EXPECT_EQ(bits(run.go(3)) == bits(one), true);
+  std::reverse(values.begin(), values.end());
+  run.cases(values);
+  auto turned = run.go(1);
+  std::reverse(turned.begin(), turned.end());
+  for (std::size_t k = 0; k < turned.size(); ++k) turned[k].number = k;
+  EXPECT_EQ(bits(turned) == bits(one), true);
+}
 
 TEST(Ensemble, AChangedCaseChangesItsLineOnly) {
   Sweep run(kPendulum);
