@@ -21,7 +21,8 @@ void catch_stop() {
 
 bool stop_requested() { return stop_flag != 0; }
 
-Progress::Progress(bool quiet, const char* where, const char* unit) : quiet_(quiet), terminal_(isatty(2) != 0), where_(where), unit_(unit) {}
+Progress::Progress(bool quiet, const char* where, const char* unit)
+    : quiet_(quiet), terminal_(isatty(2) != 0), where_(where), unit_(unit) {}
 
 void Progress::operator()(double fraction, double place, std::size_t count) {
   if (quiet_) return;
@@ -36,8 +37,8 @@ void Progress::operator()(double fraction, double place, std::size_t count) {
   any_ = terminal_;
   const int bar = static_cast<int>(done * 30);
   const std::string filled(static_cast<std::size_t>(bar), '#'), empty(static_cast<std::size_t>(30 - bar), '.');
-  std::fprintf(stderr, "%s[%s%s] %3.0f %%  %s = %.6g  %.3g %s/s  %.0f s left%s", terminal_ ? "\r" : "", filled.c_str(), empty.c_str(), 100 * done, where_,
-               place, static_cast<double>(count) / elapsed, unit_, left, terminal_ ? "\033[K" : "\n");
+  std::fprintf(stderr, "%s[%s%s] %3.0f %%  %s = %.6g  %.3g %s/s  %.0f s left%s", terminal_ ? "\r" : "", filled.c_str(), empty.c_str(),
+               100 * done, where_, place, static_cast<double>(count) / elapsed, unit_, left, terminal_ ? "\033[K" : "\n");
 }
 
 Progress::~Progress() {

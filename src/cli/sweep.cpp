@@ -89,12 +89,14 @@ class Csv final : public Output {
 // Written line by line: there may be more cases than memory holds.
 class Json final : public Output {
  public:
-  Json(const std::string& path, const Scenario& s, const Variation& v, const std::vector<std::string>& columns) : Output(columns), path_(path) {
+  Json(const std::string& path, const Scenario& s, const Variation& v, const std::vector<std::string>& columns)
+      : Output(columns), path_(path) {
     file_ = path.empty() || path == "-" ? stdout : std::fopen(path.c_str(), "w");
     if (!file_) throw UsageError{"error: cannot write " + path + ": " + std::strerror(errno) + "\n"};
     std::string names;
     for (const std::string& n : header(v, columns)) names += (names.empty() ? "\"" : ", \"") + json_escape(n) + "\"";
-    std::fprintf(file_, "{\n  \"model\": \"%s\",\n  \"form\": \"%s\",\n  \"columns\": [%s],\n  \"rows\": [", json_escape(s.model->title).c_str(), s.system.form->name, names.c_str());
+    std::fprintf(file_, "{\n  \"model\": \"%s\",\n  \"form\": \"%s\",\n  \"columns\": [%s],\n  \"rows\": [",
+                 json_escape(s.model->title).c_str(), s.system.form->name, names.c_str());
   }
   ~Json() override {
     if (file_ && file_ != stdout) std::fclose(file_);
@@ -106,11 +108,13 @@ class Json final : public Output {
     std::fprintf(file_, "%s],\n  \"stopped\": [", any_ ? "\n  " : "");
     bool first = true;
     for (const auto& [kind, s] : stopped()) {
-      std::fprintf(file_, "%s\n    {\"outcome\": \"%s\", \"cases\": %zu, \"first\": %zu, \"message\": \"%s\", \"hint\": \"%s\"}", first ? "" : ",", name(kind), s.count, s.first,
-                   json_escape(s.outcome.message).c_str(), json_escape(s.outcome.hint).c_str());
+      std::fprintf(file_, "%s\n    {\"outcome\": \"%s\", \"cases\": %zu, \"first\": %zu, \"message\": \"%s\", \"hint\": \"%s\"}",
+                   first ? "" : ",", name(kind), s.count, s.first, json_escape(s.outcome.message).c_str(),
+                   json_escape(s.outcome.hint).c_str());
       first = false;
     }
-    std::fprintf(file_, "%s],\n  \"cases\": %zu,\n  \"finished\": %zu,\n  \"outcome\": \"%s\"\n}\n", first ? "" : "\n  ", report.done, report.finished, name(report.outcome.kind));
+    std::fprintf(file_, "%s],\n  \"cases\": %zu,\n  \"finished\": %zu,\n  \"outcome\": \"%s\"\n}\n", first ? "" : "\n  ", report.done,
+                 report.finished, name(report.outcome.kind));
     const bool written = std::fflush(file_) == 0 && std::ferror(file_) == 0;
     return written ? "" : "cannot write " + (path_.empty() ? "the output" : path_) + ": " + std::strerror(errno);
   }
@@ -134,7 +138,9 @@ class Json final : public Output {
 
 Rational tolerance_of(const Options& o, const Model& model) {
   const Rational least = exact("2e-16", "");
-  Rational t = !o.tolerance.empty() ? exact(o.tolerance, "--tolerance") : model.simulate.tolerance ? *model.simulate.tolerance : Rational(1, 1000000000000);
+  Rational t = !o.tolerance.empty()       ? exact(o.tolerance, "--tolerance")
+               : model.simulate.tolerance ? *model.simulate.tolerance
+                                          : Rational(1, 1000000000000);
   if (t <= 0 || t >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
   if (t >= least) return t;
   std::fprintf(stderr, "note: a tolerance below 2e-16 means 2e-16 in these numbers\n");
@@ -154,13 +160,15 @@ Rational end_of(const Options& o, const Model& model) {
 void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
-  std::fprintf(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(), r.seconds, r.threads, r.threads == 1 ? "thread" : "threads");
+  std::fprintf(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(), r.seconds,
+               r.threads, r.threads == 1 ? "thread" : "threads");
 }
 
 }  // namespace
 
 int sweep(const Options& o) {
-  if (ends_with(o.output, ".h5") || ends_with(o.output, ".db")) throw UsageError{"error: " + o.output.substr(o.output.rfind('.') + 1) + " is not written yet\nhint: -o cases.csv or -o cases.json\n"};
+  for (const std::string end : {".h5", ".db"})
+    if (ends_with(o.output, end)) throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
   const Reader in = read(o);
   const Variation variation(o, *in.model);
   EnsembleOptions options;
@@ -190,6 +198,10 @@ int sweep(const Options& o) {
     print_outcome(start);
     return kStopped;
   }
+  const bool reset = std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  if (reset && options.to < Rational(s.state.t))
+    throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after the start, t = " +
+                     number_text(s.state.t) + "\n"};
   catch_stop();
   options.cancelled = stop_requested;
   const bool json = o.json || ends_with(o.output, ".json");
@@ -200,14 +212,16 @@ int sweep(const Options& o) {
   EnsembleReport r;
   {
     Progress progress(o.quiet, "case", "cases");
-    options.progress = [&](std::size_t done) { progress(static_cast<double>(done) / static_cast<double>(options.cases), static_cast<double>(done), done); };
+    options.progress = [&](std::size_t done) {
+      progress(static_cast<double>(done) / static_cast<double>(options.cases), static_cast<double>(done), done);
+    };
     r = ensemble(s, options, *out);
   }
   const std::string write_error = out->close(r);
   if (!o.quiet) report(r, options, *out);
   for (const auto& [kind, stopped] : out->stopped())
-    std::fprintf(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count, stopped.count == 1 ? "case" : "cases", stopped.first,
-                 stopped.outcome.message.c_str(), stopped.outcome.hint.c_str());
+    std::fprintf(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
+                 stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(), stopped.outcome.hint.c_str());
   if (!r.outcome.ok()) {
     print_outcome(r.outcome);
     if (!o.output.empty()) std::fprintf(stderr, "the %zu cases before that are in %s\n", r.done, o.output.c_str());

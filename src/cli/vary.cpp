@@ -58,7 +58,9 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
     unsigned highest = 2;  // derivatives of this order follow from the state
     for (const Constraint& c : model.constraints) highest = std::max(highest, static_cast<unsigned>(c.order));
     if (primes >= highest)
-      wrong(word, 0, text.size(), highest == 2 ? "accelerations follow from the state" : "derivatives of order " + std::to_string(primes) + " follow from the state",
+      wrong(word, 0, text.size(),
+            highest == 2 ? "accelerations follow from the state"
+                         : "derivatives of order " + std::to_string(primes) + " follow from the state",
             "vary " + name + ", " + name + "' or a parameter");
     return {Varied::Kind::initial, static_cast<std::size_t>(q - coordinates.begin()), primes, derivative_name(name, primes, Format::text)};
   }
@@ -69,8 +71,10 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
   }
   known.insert(known.end(), coordinates.begin(), coordinates.end());
   const std::string near = did_you_mean(name, known);
-  wrong(word, 0, text.size(), "there is no parameter and no coordinate '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-        "the names in [parameters], coordinates, and velocities such as " + (coordinates.empty() ? std::string("x") : coordinates[0]) + "'");
+  wrong(word, 0, text.size(),
+        "there is no parameter and no coordinate '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+        "the names in [parameters], coordinates, and velocities such as " + (coordinates.empty() ? std::string("x") : coordinates[0]) +
+            "'");
 }
 
 }  // namespace
@@ -91,24 +95,31 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
       const std::string law = word.substr(sign + 1, (open == std::string::npos ? word.size() : open) - sign - 1);
       if (law != "normal" && law != "uniform") {
         const std::string near = did_you_mean(law, {"normal", "uniform"});
-        wrong(word, sign + 1, law.size(), "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+        wrong(word, sign + 1, law.size(), "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+              "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
       }
-      if (open == std::string::npos || word.back() != ')') wrong(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+      if (open == std::string::npos || word.back() != ')')
+        wrong(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
       const auto list = parts(word, open + 1, word.size() - 1, ',');
-      if (list.size() != 2) wrong(word, open, word.size() - open, "two numbers are expected here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+      if (list.size() != 2)
+        wrong(word, open, word.size() - open, "two numbers are expected here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
       const Rational a = number(word, list[0]), b = number(word, list[1]);
       values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
       if (values.law == Values::Law::normal ? b < 0 : b < a)
-        wrong(word, list[1].at, list[1].text.size(), law == "normal" ? "a deviation is not negative" : "the range ends before it begins", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+        wrong(word, list[1].at, list[1].text.size(), law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
+              "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
       values.a = from_rational<double>(a);
       values.b = from_rational<double>(b);
       values.stream = streams++;
     } else if (word.find(':', sign) != std::string::npos) {
       const auto list = parts(word, sign + 1, word.size(), ':');
-      if (list.size() != 3) wrong(word, sign + 1, word.size() - sign - 1, "a grid has three numbers", "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
+      if (list.size() != 3)
+        wrong(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
+              "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
       const Rational from = number(word, list[0]), to = number(word, list[1]), count = number(word, list[2]);
       if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) || (count == 1 && from != to))
-        wrong(word, list[2].at, list[2].text.size(), "a grid has between 2 and " + std::to_string(kMostPoints) + " points", "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
+        wrong(word, list[2].at, list[2].text.size(), "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
+              "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
       const unsigned long n = count.get_num().get_ui();
       for (unsigned long k = 0; k < n; ++k) {
         Rational part(k, std::max(n - 1, 1UL));
@@ -119,7 +130,8 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
       for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p));
     }
     if (!values.list.empty()) {
-      if (values.list.size() > kMostCases / grid_) throw UsageError{"error: the grids have more than " + std::to_string(kMostCases) + " points\nhint: fewer values\n"};
+      if (values.list.size() > kMostCases / grid_)
+        throw UsageError{"error: the grids have more than " + std::to_string(kMostCases) + " points\nhint: fewer values\n"};
       grid_ *= values.list.size();
     }
     values_.push_back(std::move(values));
@@ -131,11 +143,15 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
   }
   const auto n = parse_rational(o.case_count);
   if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(kMostCases))
-    throw UsageError{"error: -n takes a number of cases up to " + std::to_string(kMostCases) + ", not '" + o.case_count + "'\nhint: -n 1000\n"};
+    throw UsageError{"error: -n takes a number of cases up to " + std::to_string(kMostCases) + ", not '" + o.case_count +
+                     "'\nhint: -n 1000\n"};
   cases_ = n->get_num().get_ui();
   if (streams == 0 && cases_ != grid_)
-    throw UsageError{"error: nothing is random, and the grid has " + std::to_string(grid_) + (grid_ == 1 ? " point" : " points") + "\nhint: leave out -n\n"};
-  if (cases_ < grid_) throw UsageError{"error: -n " + std::to_string(cases_) + " leaves out points of the grid, which has " + std::to_string(grid_) + "\nhint: -n " + std::to_string(grid_) + " or more\n"};
+    throw UsageError{"error: nothing is random, and the grid has " + std::to_string(grid_) + (grid_ == 1 ? " point" : " points") +
+                     "\nhint: leave out -n\n"};
+  if (cases_ < grid_)
+    throw UsageError{"error: -n " + std::to_string(cases_) + " leaves out points of the grid, which has " + std::to_string(grid_) +
+                     "\nhint: -n " + std::to_string(grid_) + " or more\n"};
 }
 
 std::vector<Rational> Variation::operator()(std::size_t number) const {

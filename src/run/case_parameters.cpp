@@ -47,7 +47,9 @@ CaseParameters::CaseParameters(const Scenario& s, const std::vector<Varied>& var
         checks_.push_back({"a size of the shape of '" + b.name + "'", es.size(), {}});
         es.push_back(size);
       }
-    const auto known = [](const Axis& a) { return a.own.size() == 3 && of_parameters(a.weight) && std::all_of(a.own.begin(), a.own.end(), is_number); };
+    const auto known = [](const Axis& a) {
+      return a.own.size() == 3 && of_parameters(a.weight) && std::all_of(a.own.begin(), a.own.end(), is_number);
+    };
     if (b.axes.empty() || !std::all_of(b.axes.begin(), b.axes.end(), known)) continue;
     checks_.push_back({"the inertia of '" + b.name + "'", es.size(), {}});
     for (const Axis& a : b.axes) checks_.back().axes.push_back(a.own), es.push_back(a.weight);
@@ -82,7 +84,8 @@ Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
   machine.evaluate();
   for (const Check& c : checks_) {
     if (c.axes.empty()) {
-      if (const double v = machine.value(c.root); !(v >= 0)) return {OutcomeKind::negative_mass, c.what + " is " + number_text(v, 6), "it is not negative: leave out such values"};
+      if (const double v = machine.value(c.root); !(v >= 0))
+        return {OutcomeKind::negative_mass, c.what + " is " + number_text(v, 6), "it is not negative: leave out such values"};
       continue;
     }
     // E = sum w u u' has no negative eigenvalue: no principal minor of E + slack is negative.
@@ -98,10 +101,12 @@ Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
       const std::size_t k = (i + 1) % 3;
       wrong = wrong || !(e[i][i] >= -slack) || !((e[i][i] + slack) * (e[k][k] + slack) - e[i][k] * e[k][i] >= -slack * slack);
     }
-    const double det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) + e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+    const double det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+                       e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
     const double size = std::abs(e[0][0]) + std::abs(e[1][1]) + std::abs(e[2][2]);
     if (wrong || !(det >= -slack * size * size))
-      return {OutcomeKind::negative_mass, c.what + " is that of no body", "each principal moment is at most the sum of the two others: leave out such values"};
+      return {OutcomeKind::negative_mass, c.what + " is that of no body",
+              "each principal moment is at most the sum of the two others: leave out such values"};
   }
   return {};
 }

@@ -13,7 +13,8 @@ namespace {
 std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
   std::vector<StateOverride> list = o.state.overrides;
   for (std::size_t i = 0; i < o.varied.size(); ++i)
-    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial) list.push_back({v.order, v.index, numbers ? numbers->values[i] : Rational(0)});
+    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial)
+      list.push_back({v.order, v.index, numbers ? numbers->values[i] : Rational(0)});
   return list;
 }
 
@@ -65,7 +66,8 @@ struct CaseWorker::Own {
     if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
     outcome = scenario_of(*plan.scenario.system.form, o, numbers, scenario, model);
   }
-  static Outcome scenario_of(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers, Scenario& scenario, std::shared_ptr<Model>& model) {
+  static Outcome scenario_of(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers, Scenario& scenario,
+                             std::shared_ptr<Model>& model) {
     model = std::make_shared<Model>(*o.again());
     StateChoice state = o.state;
     if (numbers) put_parameters(*model, o, *numbers), state.overrides = overrides_of(o, numbers);
@@ -123,7 +125,8 @@ void CaseWorker::integrate(const EnsembleCase& numbers, CaseResult& r) {
   if (way == Way::simulation) {
     by_simulation(numbers, r);
     // What fails where it begins may have another structure there, or other redundant constraints.
-    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent && r.outcome.kind != OutcomeKind::interrupted) way = Way::derivation;
+    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent && r.outcome.kind != OutcomeKind::interrupted)
+      way = Way::derivation;
   }
   if (way == Way::derivation) by_derivation(numbers, r);
 }
@@ -137,7 +140,8 @@ CaseWorker::Way CaseWorker::plainly(const EnsembleCase& numbers, CaseResult& r) 
     if (plan_.outputs) outputs_.emplace(*plan_.outputs, 0, parameters_);
     ready_ = true;
   }
-  const InitialProblem<W> problem{plan_.scenario.mechanics.get(), parameters_, overrides_of(plan_.options, &numbers), plan_.options.state.t, nullptr, &*plan_.start};
+  InitialProblem<W> problem{plan_.scenario.mechanics.get(), parameters_, overrides_of(plan_.options, &numbers), plan_.options.state.t};
+  problem.plan = &*plan_.start;
   r.outcome = consistent_state(problem, named_);
   r.t = to_double(named_.t);
   if (!r.outcome.ok()) return Way::plain;
@@ -172,12 +176,14 @@ CaseWorker::Way CaseWorker::walk(const W& t0, const std::vector<W>& state, const
   if (!rows()) return Way::simulation;
   while (!(stepper_->time() == end)) {
     if (const Outcome step = stepper_->step(end); !step.ok()) {
-      if (step.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled()) return stepper_->steps() == 0 ? Way::derivation : Way::simulation;
+      if (step.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled())
+        return stepper_->steps() == 0 ? Way::derivation : Way::simulation;
       r.outcome = step;
       return Way::plain;
     }
     for (std::size_t i = 0; i < plan_.program->quadratures; ++i)
-      if (!plan_.scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)) return Way::simulation;
+      if (!plan_.scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
+        return Way::simulation;
     if (!rows()) return Way::simulation;
   }
   r.t = to_double(end);
@@ -193,7 +199,8 @@ bool CaseWorker::keep(const W& t, std::vector<double>& values) {
     for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
   for (std::size_t j = system.mechanical(); j < system.size(); ++j) values.push_back(to_double(point_->derivative(j, 0)));
   if (!outputs_) return true;
-  for (const EnsemblePlan::Entry& e : plan_.output_inputs) outputs_->series(e.slot)[0] = e.variable ? point_->derivative(*e.variable, e.order) : point_->time();
+  for (const EnsemblePlan::Entry& e : plan_.output_inputs)
+    outputs_->series(e.slot)[0] = e.variable ? point_->derivative(*e.variable, e.order) : point_->time();
   outputs_->evaluate();
   for (std::size_t i = 0; i < plan_.outputs->roots.size(); ++i) values.push_back(to_double(outputs_->value(i)));
   return true;
@@ -286,6 +293,8 @@ void CaseWorker::by_derivation(const EnsembleCase& numbers, CaseResult& r) {
   Own own(plan_, &numbers);
   r.outcome = own.outcome;
   r.t = own.scenario.state.t;
+  r.rows.clear();
+  r.last.clear();
   if (own.outcome.ok()) simulate_in(own, &numbers, r);
 }
 

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "base/assert.h"
 #include "run/cases.h"
 
 namespace anholon {
@@ -28,6 +29,7 @@ using Group = std::vector<CaseResult>;
 }  // namespace
 
 EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& sink) {
+  ANHOLON_ASSERT(o.numbers && o.again);
   const auto start = std::chrono::steady_clock::now();
   EnsembleReport report;
   report.threads = o.threads > 0 ? o.threads : static_cast<std::size_t>(tbb::info::default_concurrency());

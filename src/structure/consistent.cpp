@@ -55,7 +55,8 @@ Tape values_of(const Model& model) {
 
 Equations conditions_of(const Model& model) {
   Equations list;
-  for (const Condition& c : model.initial.conditions) list.push_back({put_masses(model, c.residual), "condition \"" + c.text + "\"", c.span, true});
+  for (const Condition& c : model.initial.conditions)
+    list.push_back({put_masses(model, c.residual), "condition \"" + c.text + "\"", c.span, true});
   return list;
 }
 
@@ -73,7 +74,8 @@ Equations kept(const Equations& equations, const Column& unknowns, const std::ve
   return list;
 }
 
-StartPlan::Stages planned(const Mechanics& m, const Equations& equations, const Column& unknowns, unsigned metric, const std::vector<Column>* mass) {
+StartPlan::Stages planned(const Mechanics& m, const Equations& equations, const Column& unknowns, unsigned metric,
+                          const std::vector<Column>* mass) {
   return equations.empty() ? nullptr : std::make_shared<const StagePlan>(m, equations, unknowns, metric, mass);
 }
 
@@ -595,7 +597,8 @@ class Solver {
 
 }  // namespace
 
-StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass) : values(values_of(*m.model)) {
+StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass)
+    : values(values_of(*m.model)) {
   const Model& model = *m.model;
   std::vector<StageEquation> of_positions, of_velocities;
   for (const Constraint& c : model.constraints) {

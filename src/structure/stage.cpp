@@ -8,7 +8,8 @@ namespace {
 constexpr int kMostIterations = 60;
 }  // namespace
 
-static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equations, const Column& unknowns, const std::vector<Column>* mass) {
+static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equations, const Column& unknowns,
+                     const std::vector<Column>* mass) {
   Column es;
   for (const StageEquation& e : equations) es.push_back(e.residual);
   for (const StageEquation& e : equations) {

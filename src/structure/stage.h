@@ -22,7 +22,8 @@ inline constexpr double kDependent = 1e-9;
 // Equations in chosen unknowns with their partial derivatives, compiled: whoever has one needs to build no expressions.
 struct StagePlan {
   // `mass`: the mass matrix, where the caller has it already.
-  StagePlan(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric, const std::vector<Column>* mass = nullptr);
+  StagePlan(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric,
+            const std::vector<Column>* mass = nullptr);
 
   std::vector<StageEquation> equations;
   Column unknowns;

@@ -171,7 +171,8 @@ std::string without_inertia(const System& s, const std::vector<std::vector<int>>
 
 }  // namespace
 
-std::optional<std::vector<std::vector<int>>> signature(const System& s, const Tape& equations, const std::vector<double>& parameters, const ProbeHints& hints) {
+std::optional<std::vector<std::vector<int>>> signature(const System& s, const Tape& equations, const std::vector<double>& parameters,
+                                                       const ProbeHints& hints) {
   const std::size_t n = s.size();
   const Graph& g = *s.model->graph;
   Probe probe(s, equations, parameters);
