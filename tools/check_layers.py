@@ -47,6 +47,7 @@ OUTSIDE = [
     (r"(hdf5|H5\w*)(_hl)?\.h$", "HDF5", {"result"}, 1),
     (r"sqlite3\.h$", "SQLite", {"result"}, 1),
     (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate"}, 1),
+    (r"(tbb|oneapi)/", "oneTBB", {"run"}, 1),
     (r"pybind11/", "pybind11", {"python"}, None),
     (r"nlohmann/", "nlohmann-json", {"proof"}, 1),
     (r"boost/", "Boost, of a peer in bench/", set(), None),

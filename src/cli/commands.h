@@ -22,6 +22,9 @@ struct Options {
   std::string t, to, every, tolerance, rigorous;
   std::string save, resume;
   std::string vary, about;
+  std::vector<std::string> varied;  // of sweep
+  std::string case_count;
+  int threads = 0;
   std::string error_estimate = "short";
   int digits = 16;
   int proof_digits = 308;
@@ -38,6 +41,7 @@ int derive(const Options& o);
 int evaluate(const Options& o);
 int linearize(const Options& o);
 int simulate(const Options& o);
+int sweep(const Options& o);
 int forms(const Options& o);
 int models(const Options& o);
 int prove(const Options& o);

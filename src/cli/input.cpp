@@ -149,6 +149,12 @@ Reader read(const Options& o) {
     throw UsageError{diagnostics.print(r.source) + std::to_string(n) + (n == 1 ? " error\n" : " errors\n")};
   }
   std::fputs(diagnostics.print(r.source).c_str(), stderr);
+  r.again = [source = r.source, overrides, cases = o.cases, was = all_text(model->model->source_text)]() -> std::shared_ptr<const Model> {
+    Diagnostics ignored;
+    const auto copy = open_model(source, ignored, overrides, cases);
+    if (!copy || all_text(copy->model->source_text) != was) throw Failure({}, "the model's files have changed on the way", "leave them until the end");
+    return copy->model;
+  };
   r.model = model->model;
   r.source = r.model->source_text;
   r.names = model->names;

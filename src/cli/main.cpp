@@ -23,8 +23,8 @@ void rescue_model(Options& o) {
     }
 }
 
-constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "linearize", "forms", "models", "prove", "compare", "verify", "new", "fmt", "reference"};
-constexpr const char* kLater[] = {"sweep", "report", "plot", "render", "convert"};
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "sweep", "linearize", "forms", "models", "prove", "compare", "verify", "new", "fmt", "reference"};
+constexpr const char* kLater[] = {"report", "plot", "render", "convert"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {
@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
              "  anholon check disc                                  what kind of system it is\n"
              "  anholon derive luo-zhao-example-2 --format latex    its equations\n"
              "  anholon simulate disc --to 10 -o disc.csv           its motion\n"
+             "  anholon sweep disc --vary m=1:3:200 -o cases.csv    many motions, on all cores\n"
              "  anholon linearize whipple --vary v=0..10:1          eigenvalues over a range, weave and capsize speeds\n"
              "  anholon prove disc -o proof.json                    a proof that all forms of the equations agree\n"
              "Exit status: 0 ok, 1 the motion stopped early (what was computed is kept), 2 bad input, 3 internal fault.");
@@ -129,6 +130,23 @@ int run(int argc, char** argv) {
   simulate_command->add_option("--error-estimate", o.error_estimate, "digits to trust, by a second, sharper run: always, never, or of runs up to 5000 steps (short, the default)")
       ->type_name("WHEN")->check(CLI::IsMember({"always", "never", "short"}));
   simulate_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
+
+  CLI::App* sweep_command = model_command("sweep", "many motions with other parameters and initial values, on all cores", cli::sweep,
+                                          "NAME is a parameter, a coordinate x or a velocity x'. A grid is 0:10:101 (from, to, how many), a list 1,2,5; several grids make all\n"
+                                          "combinations. Random values are NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO), drawn for each of -n cases; where there are\n"
+                                          "grids too, the cases go round them. One line per case: what is varied, outcome, t, final state, outputs.\n"
+                                          "Exit status: 0 all motions finished, 1 some stopped early (their lines say why), 2 bad input.\n"
+                                          "Examples: anholon sweep rattleback --vary \"psi'=-10:10:200\" --to 5 -o cases.csv\n"
+                                          "          anholon sweep disc --vary m=1,2,5 --vary \"theta~normal(0.3,0.01)\" -n 3000 --seed 7");
+  parameters(sweep_command), state(sweep_command), form_option(sweep_command);
+  sweep_command->add_option("--vary", o.varied, "NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO)")->type_name("WHAT")->allow_extra_args(false);
+  sweep_command->add_option("-n,--cases", o.case_count, "how many, where values are random")->type_name("N");
+  sweep_command->add_option("--seed", o.seed, "other random values (default 0)")->type_name("N");
+  sweep_command->add_option("--threads", o.threads, "default: as many as the machine has; the numbers are the same for any")->type_name("N")->check(CLI::Range(1, 1024));
+  sweep_command->add_option("--to", o.to, "end time (absolute)")->type_name("T");
+  sweep_command->add_option("--tolerance", o.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
+  sweep_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
+  sweep_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
 
   CLI::App* linearize_command = model_command("linearize", "the linear model of a motion, its eigenvalues and modes, over a range of a parameter", cli::linearize,
                                               "About the initial state, which may be an equilibrium or a steady motion: [initial] conditions = [\"theta'' = 0\", …] finds one.\n"

@@ -1,14 +1,11 @@
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/progress.h"
 #include "cli/saved.h"
 #include "cli/show.h"
 #include "result/file.h"
@@ -17,39 +14,6 @@
 namespace anholon::cli {
 
 namespace {
-
-volatile std::sig_atomic_t stop_requested = 0;
-extern "C" void request_stop(int) { stop_requested = 1; }
-
-// Progress on stderr: a bar on a terminal, a plain line each ten per cent elsewhere.
-class Progress {
- public:
-  Progress(double from, double to, bool quiet) : from_(from), to_(to), quiet_(quiet), terminal_(isatty(2) != 0) {}
-  void operator()(double t, std::size_t steps) {
-    if (quiet_ || to_ == from_) return;
-    const auto now = std::chrono::steady_clock::now();
-    const double elapsed = std::chrono::duration<double>(now - start_).count();
-    if (elapsed < 0.5 || std::chrono::duration<double>(now - shown_).count() < (terminal_ ? 0.1 : 1.0)) return;
-    const double done = std::clamp((t - from_) / (to_ - from_), 0.0, 1.0);
-    const double left = done > 0 ? elapsed * (1 - done) / done : 0;
-    if (!terminal_ && done < next_line_) return;
-    next_line_ = done + 0.1;
-    shown_ = now;
-    any_ = terminal_;
-    const int bar = static_cast<int>(done * 30);
-    const std::string filled(static_cast<std::size_t>(bar), '#'), empty(static_cast<std::size_t>(30 - bar), '.');
-    std::fprintf(stderr, "%s[%s%s] %3.0f %%  t = %.6g  %.3g steps/s  %.0f s left%s", terminal_ ? "\r" : "", filled.c_str(),
-                 empty.c_str(), 100 * done, t, static_cast<double>(steps) / elapsed, left, terminal_ ? "\033[K" : "\n");
-  }
-  ~Progress() {
-    if (any_) std::fputs("\r\033[K", stderr);
-  }
-
- private:
-  double from_, to_, next_line_ = 0;
-  bool quiet_, terminal_, any_ = false;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_ = start_;
-};
 
 // More rows than this are refused before they fill memory or disk; JSON, which is held in memory, has less room.
 constexpr long kMostRows = 5'000'000, kMostJsonNumbers = 5'000'000;
@@ -357,17 +321,16 @@ int simulate_motion(const Options& o, const SavedRun* resume) {
   integrator(o, *in.model, options);
   if (!reset) options.conserved = conserved(*s.mechanics);
   Saver saver(o, in, *s.system.form, options);
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
-  options.cancelled = [] { return stop_requested != 0; };
+  catch_stop();
+  options.cancelled = stop_requested;
 
   const bool json = o.json || ends_with(o.output, ".json");
   SimulationReport r;
   std::string write_error;
   {
     const double end = options.at.empty() ? options.to->get_d() : std::max(options.at.back().get_d(), options.to ? options.to->get_d() : options.at.back().get_d());
-    Progress progress(s.state.t, end, o.quiet);
-    options.progress = [&](double t, std::size_t steps) { progress(t, steps); };
+    Progress progress(o.quiet || end == s.state.t, "t", "steps");
+    options.progress = [&](double t, std::size_t steps) { progress((t - s.state.t) / (end - s.state.t), t, steps); };
     if (json) {
       MemorySink rows;
       std::FILE* file = o.output.empty() || o.output == "-" ? stdout : std::fopen(o.output.c_str(), "w");

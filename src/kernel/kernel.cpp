@@ -57,11 +57,11 @@ const std::vector<Tier>& tiers() {
   return list;
 }
 
-KernelPlan::KernelPlan(const Program& program, int stages) : program_(&program), plan_(anholon::plan(program, stages)) {
+KernelPlan::KernelPlan(std::shared_ptr<const Program> program, int stages) : program_(std::move(program)), plan_(anholon::plan(*program_, stages)) {
   for (int d : plan_.d) state_size_ += static_cast<std::size_t>(d);
   tables_.plan = &plan_;
   tables_.elimination = &elimination_;
-  for (const StepFunction& f : program.tape.step_functions) {
+  for (const StepFunction& f : program_->tape.step_functions) {
     KernelTables::Knots k;
     for (const Rational& r : f.knots) k.at.push_back(from_rational<double>(r));
     for (const Rational& r : f.values) k.values.push_back(from_rational<double>(r));
@@ -97,10 +97,10 @@ void KernelPlan::lay_out() {
   tables_.size = even(tables_.entries + (tables_.refine ? static_cast<std::uint32_t>(plan_.entries.size()) : 0));
 }
 
-std::shared_ptr<const KernelPlan> KernelPlan::make(const Program& program, int stages, const std::vector<long double>& parameters, double t,
+std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
                                                    const std::vector<double>& state) {
-  if (!no_plan(program).empty()) return nullptr;
-  std::shared_ptr<KernelPlan> p(new KernelPlan(program, stages));
+  if (!no_plan(*program).empty()) return nullptr;
+  std::shared_ptr<KernelPlan> p(new KernelPlan(std::move(program), stages));
   // Whether solutions need a second look is seen at the state itself.
   p->tables_.refine = true;
   if (!p->choose_pivots(parameters, t, state)) return nullptr;

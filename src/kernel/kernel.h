@@ -16,7 +16,7 @@ namespace anholon {
 class KernelPlan {
  public:
   // `state`: where the pivots are chosen, and around it. Nothing if the program has no plan, or the equations are singular there.
-  static std::shared_ptr<const KernelPlan> make(const Program& program, int stages, const std::vector<long double>& parameters, double t,
+  static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
                                                 const std::vector<double>& state);
   KernelPlan(const KernelPlan&) = delete;
   KernelPlan& operator=(const KernelPlan&) = delete;
@@ -34,11 +34,11 @@ class KernelPlan {
   double work() const { return plan_.work() + elimination_.work() * (plan_.stages + 2) + static_cast<double>(elimination_.update_list.size()); }
 
  private:
-  KernelPlan(const Program& program, int stages);
+  KernelPlan(std::shared_ptr<const Program> program, int stages);
   bool choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state);
   void lay_out();
 
-  const Program* program_;
+  std::shared_ptr<const Program> program_;
   Plan plan_;
   SparseLu elimination_;
   KernelTables tables_;

@@ -31,7 +31,7 @@ void Motion<N>::accelerate(Leg& leg) const {
     if (!settings_.kernel || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return;
     std::vector<double> state;
     for (const W& x : start_.state) state.push_back(to_double(x));
-    leg.stepper.accelerate(KernelPlan::make(leg.program, leg.stepper.order() - 1, parameters_, to_double(start_.t), state));
+    leg.stepper.accelerate(KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, to_double(start_.t), state));
   } else {
     (void)leg;
   }

@@ -123,7 +123,7 @@ Outcome regular_at_start(const Scenario& s) {
   return Redundant<W>(s, parameters).hold(wide, true, missed);
 }
 
-static ProbeHints hints_at(const InitialState<double>& state) {
+ProbeHints hints_at(const InitialState<double>& state) {
   ProbeHints hints;
   if (state.q.empty()) return hints;
   hints.t = state.t;

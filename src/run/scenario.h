@@ -58,6 +58,9 @@ int multiplier_orders(const Scenario& scenario);
 int largest_order(const Scenario& scenario, const std::vector<int>& d);
 int orders_beyond(const Scenario& scenario, const std::vector<int>& d);
 
+// Where the structure of its system is probed.
+ProbeHints hints_at(const InitialState<double>& state);
+
 // Singular if the accelerations are not determined at the initial state.
 Outcome regular_at_start(const Scenario& scenario);
 

@@ -36,6 +36,49 @@ bool holds_higher(Expr e) {
   return false;
 }
 
+bool same_entry(const StateOverride& v, const Node& n) {
+  return v.multiplier == (n.kind == Kind::multiplier) && v.order == n.order && v.coordinate == n.index;
+}
+
+bool overridden(const std::vector<StateOverride>& overrides, const Node& n) {
+  return std::any_of(overrides.begin(), overrides.end(), [&](const StateOverride& v) { return same_entry(v, n); });
+}
+
+// The numbers of the file: t, the states, then guesses and given values.
+Tape values_of(const Model& model) {
+  Column es = {model.initial.t};
+  for (const StateVariable& z : model.states) es.push_back(z.initial);
+  for (const std::vector<GivenValue>* list : {&model.initial.guess, &model.initial.given})
+    for (const GivenValue& v : *list) es.push_back(v.value);
+  return compile(es);
+}
+
+Equations conditions_of(const Model& model) {
+  Equations list;
+  for (const Condition& c : model.initial.conditions)
+    list.push_back({put_masses(model, c.residual), "condition \"" + c.text + "\"", c.span, true});
+  return list;
+}
+
+// Of equations, those that overrides leave: all laws, and the conditions that say something about what is still open.
+Equations kept(const Equations& equations, const Column& unknowns, const std::vector<StateOverride>& overrides, Graph& g) {
+  Equations list;
+  for (const StageEquation& e : equations) {
+    bool open = !e.condition;
+    for (NodeId id : symbols({&e.residual, 1})) {
+      const Expr symbol{&g, id};
+      open = open || (std::find(unknowns.begin(), unknowns.end(), symbol) != unknowns.end() && !overridden(overrides, g.node(id)));
+    }
+    if (open) list.push_back(e);
+  }
+  return list;
+}
+
+StartPlan::Stages planned(const Mechanics& m, const Equations& equations, const Column& unknowns, unsigned metric,
+                          const std::vector<Column>* mass) {
+  return equations.empty() ? nullptr : std::make_shared<const StagePlan>(m, equations, unknowns, metric, mass);
+}
+
 template <Number N>
 class Solver {
  public:
@@ -50,23 +93,13 @@ class Solver {
     state_.qd_origin.assign(n, Origin::chosen);
     states();
     start_values([](const Node& s) { return !is_higher(s); });
-    Equations positions, velocities;
-    for (std::size_t r = 0; r < model_.constraints.size(); ++r) {
-      const Constraint& c = model_.constraints[r];
-      if (c.order > 1) continue;
-      const Expr phi = put_masses(model_, c.phi);
-      const std::string what = "constraint '" + c.name + "'";
-      if (c.order == 0) {
-        positions.push_back({phi, what, c.span});
-        velocities.push_back({put_state_rates(model_, total_derivative(phi), 1), "the derivative of " + what, c.span});
-      } else {
-        velocities.push_back({phi, what, c.span});
-      }
+    if (p_.plan) {
+      if (Outcome o = solve(p_.plan->positions, [&] { return p_.plan->kept_positions; }); !o.ok()) return o;
+      return solve(p_.plan->velocities, [&] { return p_.plan->kept_velocities; });
     }
-    for (const StageEquation& e : conditions())
-      if (!holds_higher(e.residual)) (jet_order(e.residual) == 0 ? positions : velocities).push_back(e);
-    if (Outcome o = solve(positions, m_.q, 1U); !o.ok()) return o;
-    return solve(velocities, m_.qd, 2U);
+    const StartPlan plan(m_, {}, p_.mass);
+    if (Outcome o = solve(plan.positions, [&] { return kept_of(plan.positions); }); !o.ok()) return o;
+    return solve(plan.velocities, [&] { return kept_of(plan.velocities); });
   }
 
   Outcome complete(const System& s, const Structure& t) {
@@ -97,25 +130,9 @@ class Solver {
     state_.state_rates.assign(n, N(0));
     state_.states_origin.assign(n, Origin::given);
     state_.state_rates_origin.assign(n, Origin::derived);
-    std::vector<GivenValue> list;
-    for (const StateVariable& z : model_.states) list.push_back({z.initial, z.initial, z.span});
-    const std::vector<N> start = values(list);
-    for (std::size_t i = 0; i < n; ++i) state_.states[i] = start[i];
   }
 
   const Node& node(Expr e) const { return m_.graph().node(e.id); }
-
-  std::vector<N> values(const std::vector<GivenValue>& list) {
-    Column es;
-    for (const GivenValue& v : list) es.push_back(v.value);
-    if (es.empty()) return {};
-    const Tape tape = compile(es);
-    Machine<N> machine(tape, 0, p_.parameters);
-    machine.evaluate();
-    std::vector<N> out;
-    for (std::size_t i = 0; i < es.size(); ++i) out.push_back(machine.value(i));
-    return out;
-  }
 
   Expr symbol(const StateOverride& o) const {
     Graph& g = m_.graph();
@@ -123,61 +140,61 @@ class Solver {
     return o.multiplier ? g.multiplier(index, o.order) : g.jet(index, o.order);
   }
 
-  // Guesses, then values of the file, then those that override them.
+  // Guesses, then values of the file, then those that override them; the model's states start where the file says.
   void start_values(const std::function<bool(const Node&)>& wanted) {
     const InitialData& in = model_.initial;
-    const std::vector<N> t = values({{in.t, in.t, {}}}), guess = values(in.guess), given = values(in.given);
-    state_.t = p_.t ? from_rational<N>(*p_.t) : t[0];
-    const auto place = [&](Expr symbol, const N& value, Origin origin) {
-      const Node& n = node(symbol);
+    const Tape own = p_.plan ? Tape() : values_of(model_);
+    Machine<N> machine(p_.plan ? p_.plan->values : own, 0, p_.parameters);
+    machine.evaluate();
+    std::size_t at = 0;
+    const N t = machine.value(at++);
+    state_.t = p_.t ? from_rational<N>(*p_.t) : t;
+    for (N& z : state_.states) z = machine.value(at++);
+    const auto place = [&](const Node& n, const N& value, Origin origin) {
       if (!wanted(n) || !state_.value(n)) return;
       *state_.value(n) = value;
       *state_.origin(n) = origin;
     };
-    for (std::size_t i = 0; i < guess.size(); ++i) place(in.guess[i].symbol, guess[i], Origin::guessed);
-    for (std::size_t i = 0; i < given.size(); ++i) place(in.given[i].symbol, given[i], Origin::given);
-    for (const StateOverride& o : p_.overrides) place(symbol(o), from_rational<N>(o.value), Origin::given);
+    for (const GivenValue& v : in.guess) place(node(v.symbol), machine.value(at++), Origin::guessed);
+    for (const GivenValue& v : in.given) place(node(v.symbol), machine.value(at++), Origin::given);
+    for (const StateOverride& o : p_.overrides) {
+      Node n{o.multiplier ? Kind::multiplier : Kind::jet};
+      n.order = static_cast<std::uint8_t>(o.order);
+      n.index = static_cast<std::uint32_t>(o.coordinate);
+      place(n, from_rational<N>(o.value), Origin::given);
+    }
   }
 
-  Equations conditions() const {
-    Equations list;
-    for (const Condition& c : model_.initial.conditions)
-      list.push_back({put_masses(model_, c.residual), "condition \"" + c.text + "\"", c.span, true});
-    return list;
-  }
-
-  bool overridden(const Node& n) const {
-    return std::any_of(p_.overrides.begin(), p_.overrides.end(), [&](const StateOverride& v) {
-      return v.multiplier == (n.kind == Kind::multiplier) && v.order == n.order && v.coordinate == n.index;
-    });
-  }
+  Equations conditions() const { return conditions_of(model_); }
+  bool overridden(const Node& n) const { return anholon::overridden(p_.overrides, n); }
 
   // As the data say; where overrides clash with values or conditions of the file, the overrides hold
   // and the file's values are only where the least change starts from.
-  Outcome solve(const Equations& equations, const Column& unknowns, unsigned metric) {
+  Outcome solve(const StartPlan::Stages& stages, const std::function<StartPlan::Stages()>& without) {
     const InitialState<N> before = state_;
-    const Outcome o = attempt(equations, unknowns, metric);
+    const Outcome o = attempt(stages);
     if (o.ok() || p_.overrides.empty()) return o;
     const InitialState<N> failed = std::exchange(state_, before);
-    for (Expr u : unknowns)
+    for (Expr u : stages->unknowns)
       if (Origin& origin = *state_.origin(node(u)); origin == Origin::given && !overridden(node(u))) origin = Origin::guessed;
-    Equations kept;
-    for (const StageEquation& e : equations) {
-      bool open = !e.condition;  // a condition stays while it says something about what is still open
-      for (NodeId id : symbols({&e.residual, 1})) {
-        const Expr symbol{&m_.graph(), id};
-        open = open || (std::find(unknowns.begin(), unknowns.end(), symbol) != unknowns.end() && !overridden(node(symbol)));
-      }
-      if (open) kept.push_back(e);
-    }
-    if (attempt(kept, unknowns, metric).ok()) return {};
+    if (attempt(without()).ok()) return {};
     state_ = failed;
     return o;
   }
 
-  Outcome attempt(const Equations& equations, const Column& unknowns, unsigned metric) {
-    if (equations.empty()) return {};
-    Stage<N> stage(m_, equations, unknowns, metric, p_.parameters, p_.mass);
+  Outcome solve(const Equations& equations, const Column& unknowns, unsigned metric) {
+    const StartPlan::Stages stages = planned(m_, equations, unknowns, metric, p_.mass);
+    return solve(stages, [&] { return kept_of(stages); });
+  }
+
+  StartPlan::Stages kept_of(const StartPlan::Stages& s) const {
+    return planned(m_, kept(s->equations, s->unknowns, p_.overrides, m_.graph()), s->unknowns, s->metric, p_.mass);
+  }
+
+  Outcome attempt(const StartPlan::Stages& stages) {
+    if (!stages) return {};
+    const Column& unknowns = stages->unknowns;
+    Stage<N> stage(m_, stages, p_.parameters);
     std::vector<std::size_t> free, all;
     std::vector<N> before;
     for (std::size_t j = 0; j < unknowns.size(); ++j) {
@@ -528,6 +545,7 @@ class Solver {
   std::string asked(const Stage<N>& stage, std::size_t row) const {
     constexpr std::size_t kMostUnknowns = 2, kLongest = 60;
     constexpr long kMostWork = 2000;
+    if (p_.plan) return {};  // it would take an expression
     const Graph& g = m_.graph();
     const Expr residual = stage.equation(row).residual;
     std::size_t open = 0;
@@ -578,6 +596,31 @@ class Solver {
 };
 
 }  // namespace
+
+StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass)
+    : values(values_of(*m.model)) {
+  const Model& model = *m.model;
+  std::vector<StageEquation> of_positions, of_velocities;
+  for (const Constraint& c : model.constraints) {
+    if (c.order > 1) continue;
+    const Expr phi = put_masses(model, c.phi);
+    const std::string what = "constraint '" + c.name + "'";
+    if (c.order == 0) {
+      of_positions.push_back({phi, what, c.span});
+      of_velocities.push_back({put_state_rates(model, total_derivative(phi), 1), "the derivative of " + what, c.span});
+    } else {
+      of_velocities.push_back({phi, what, c.span});
+    }
+  }
+  for (const StageEquation& e : conditions_of(model))
+    if (!holds_higher(e.residual)) (jet_order(e.residual) == 0 ? of_positions : of_velocities).push_back(e);
+  constexpr unsigned kPositions = 1U, kVelocities = 2U;
+  positions = planned(m, of_positions, m.q, kPositions, mass);
+  velocities = planned(m, of_velocities, m.qd, kVelocities, mass);
+  if (overrides.empty()) return;
+  kept_positions = planned(m, kept(of_positions, m.q, overrides, m.graph()), m.q, kPositions, mass);
+  kept_velocities = planned(m, kept(of_velocities, m.qd, overrides, m.graph()), m.qd, kVelocities, mass);
+}
 
 template <Number N>
 Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& state) {

@@ -10,6 +10,7 @@
 
 #include "base/outcome.h"
 #include "numeric/linear.h"
+#include "structure/stage.h"
 #include "structure/state.h"
 #include "structure/structure.h"
 #include "tape/tape.h"
@@ -24,6 +25,17 @@ struct StateOverride {
   bool multiplier = false;
 };
 
+// All that positions and velocities need of the expressions, made once for many states: with a plan `consistent_state` builds none,
+// so many threads may ask at the same time. Overrides are then those of the plan, with other values.
+struct StartPlan {
+  StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass = nullptr);
+
+  Tape values;  // t, the states, then guesses and given values
+  using Stages = std::shared_ptr<const StagePlan>;
+  Stages positions, velocities;            // null where there is nothing to solve
+  Stages kept_positions, kept_velocities;  // without conditions that are only about what is overridden
+};
+
 template <Number N>
 struct InitialProblem {
   const Mechanics* mechanics;
@@ -31,6 +43,7 @@ struct InitialProblem {
   std::vector<StateOverride> overrides;
   std::optional<Rational> t;
   const std::vector<Column>* mass = nullptr;  // the mass matrix, where the caller solves for many states
+  const StartPlan* plan = nullptr;
 };
 
 // Positions and velocities, from the constraints of orders 0 and 1 and the conditions on them.

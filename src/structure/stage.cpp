@@ -8,28 +8,29 @@ namespace {
 constexpr int kMostIterations = 60;
 }  // namespace
 
-template <Number N>
-Stage<N>::Stage(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned measured, const std::vector<N>& parameters,
-                const std::vector<Column>* mass)
-    : m_(m), equations_(std::move(equations)), unknowns_(std::move(unknowns)), measured_(measured), tape_(build(mass ? *mass : std::vector<Column>())),
-      machine_(tape_, 0, parameters) {}
-
-template <Number N>
-Tape Stage<N>::build(const std::vector<Column>& mass) {
+static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equations, const Column& unknowns,
+                     const std::vector<Column>* mass) {
   Column es;
-  for (const StageEquation& e : equations_) es.push_back(e.residual);
-  for (const StageEquation& e : equations_) {
-    const Column d = gradient(e.residual, unknowns_);
+  for (const StageEquation& e : equations) es.push_back(e.residual);
+  for (const StageEquation& e : equations) {
+    const Column d = gradient(e.residual, unknowns);
     es.insert(es.end(), d.begin(), d.end());
   }
-  for (const Column& row : mass.empty() ? mass_matrix(m_) : mass) es.insert(es.end(), row.begin(), row.end());
+  for (const Column& row : mass && !mass->empty() ? *mass : mass_matrix(m)) es.insert(es.end(), row.begin(), row.end());
   return compile(es);
 }
+
+StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column in, unsigned measured, const std::vector<Column>* mass)
+    : equations(std::move(of)), unknowns(std::move(in)), metric(measured), tape(compiled(m, equations, unknowns, mass)) {}
+
+template <Number N>
+Stage<N>::Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const std::vector<N>& parameters)
+    : m_(m), plan_(std::move(plan)), machine_(plan_->tape, 0, parameters) {}
 
 template <Number N>
 bool Stage<N>::evaluate(const InitialState<N>& s) {
   const Graph& g = m_.graph();
-  for (const Input& in : tape_.inputs) {
+  for (const Input& in : plan_->tape.inputs) {
     const Node& n = g.node(in.symbol);
     const N* known = s.value(n);
     machine_.series(in.slot)[0] = n.kind == Kind::time ? s.t : known ? *known : N(0);
@@ -67,7 +68,7 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
     }
   // A coordinate without inertia still has a least change.
   if (!(largest > N(0))) largest = N(1);
-  const auto measured = [&](const Node& u) { return u.kind == Kind::jet && (measured_ >> u.order & 1U) != 0; };
+  const auto measured = [&](const Node& u) { return u.kind == Kind::jet && (plan_->metric >> u.order & 1U) != 0; };
   for (std::size_t i = 0; i < n; ++i) {
     const Node &a = unknown(i);
     if (measured(a))

@@ -1,5 +1,7 @@
 // One stage of consistent initial data: equations in some entries of the state, and how these are found by least change.
 #pragma once
+#include <memory>
+
 #include "base/diagnostic.h"
 #include "mechanics/mechanics.h"
 #include "structure/state.h"
@@ -17,19 +19,32 @@ struct StageEquation {
 // Rows of a constraint Jacobian count as dependent below this fraction of their size.
 inline constexpr double kDependent = 1e-9;
 
-// Equations in chosen unknowns and their partial derivatives. The metric of least change is the mass matrix at each order of
-// the coordinates in `metric` (bit k: order k); the other unknowns are found, not measured.
+// Equations in chosen unknowns with their partial derivatives, compiled: whoever has one needs to build no expressions.
+struct StagePlan {
+  // `mass`: the mass matrix, where the caller has it already.
+  StagePlan(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric,
+            const std::vector<Column>* mass = nullptr);
+
+  std::vector<StageEquation> equations;
+  Column unknowns;
+  unsigned metric;
+  Tape tape;
+};
+
+// Such equations with their numbers. The metric of least change is the mass matrix at each order of the coordinates in `metric`
+// (bit k: order k); the other unknowns are found, not measured.
 template <Number N>
 class Stage {
  public:
-  // `mass`: the mass matrix, where the caller has it already.
-  Stage(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric, const std::vector<N>& parameters,
-        const std::vector<Column>* mass = nullptr);
+  Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const std::vector<N>& parameters);
+  Stage(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned measured, const std::vector<N>& parameters,
+        const std::vector<Column>* mass = nullptr)
+      : Stage(m, std::make_shared<const StagePlan>(m, std::move(equations), std::move(unknowns), measured, mass), parameters) {}
 
-  std::size_t size() const { return equations_.size(); }
-  std::size_t unknowns() const { return unknowns_.size(); }
-  const StageEquation& equation(std::size_t i) const { return equations_[i]; }
-  const Node& unknown(std::size_t j) const { return m_.graph().node(unknowns_[j].id); }
+  std::size_t size() const { return plan_->equations.size(); }
+  std::size_t unknowns() const { return plan_->unknowns.size(); }
+  const StageEquation& equation(std::size_t i) const { return plan_->equations[i]; }
+  const Node& unknown(std::size_t j) const { return m_.graph().node(plan_->unknowns[j].id); }
   N& x(InitialState<N>& s, std::size_t j) const { return *s.value(unknown(j)); }
 
   // Values, scales and partial derivatives at a state; false if a formula has no value there.
@@ -49,15 +64,10 @@ class Stage {
   Matrix<N> jacobian, metric;
 
  private:
-  Tape build(const std::vector<Column>& mass);
-
   std::vector<N> floor_;
 
   const Mechanics& m_;
-  std::vector<StageEquation> equations_;
-  Column unknowns_;
-  unsigned measured_;
-  Tape tape_;
+  std::shared_ptr<const StagePlan> plan_;
   Machine<N> machine_;
 };
 

@@ -20,8 +20,8 @@ constexpr double kNoDependence = 1e-11;
 // Forward tangents of all equations by all inputs at one point: |dE_i / d input_k|.
 class Probe {
  public:
-  Probe(const System& s, const std::vector<double>& parameters)
-      : tape_(compile(s.equations)), machine_(tape_, 0, parameters), system_(s) {}
+  Probe(const System& s, const Tape& equations, const std::vector<double>& parameters)
+      : tape_(equations), machine_(tape_, 0, parameters), system_(s) {}
 
   const std::vector<Input>& inputs() const { return tape_.inputs; }
 
@@ -96,7 +96,7 @@ class Probe {
     return true;
   }
 
-  Tape tape_;
+  const Tape& tape_;
   Machine<double> machine_;
   std::vector<Machine<double>::Partials> partials_;
   const System& system_;
@@ -171,10 +171,11 @@ std::string without_inertia(const System& s, const std::vector<std::vector<int>>
 
 }  // namespace
 
-Outcome analyse(const System& s, const std::vector<double>& parameters, const ProbeHints& hints, Structure& out) {
+std::optional<std::vector<std::vector<int>>> signature(const System& s, const Tape& equations, const std::vector<double>& parameters,
+                                                       const ProbeHints& hints) {
   const std::size_t n = s.size();
   const Graph& g = *s.model->graph;
-  Probe probe(s, parameters);
+  Probe probe(s, equations, parameters);
   std::vector<std::vector<double>> largest(n, std::vector<double>(probe.inputs().size(), 0));
   std::mt19937_64 random(20261121);
   int measured = 0;
@@ -182,18 +183,24 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
     auto trial = largest;
     if (probe.measure(hints, random, trial)) largest = std::move(trial), ++measured;
   }
-  if (measured == 0)
-    return {OutcomeKind::not_a_number, "the equations have no value near the initial data",
-            "look for roots or logarithms of negative numbers and divisions by zero at the start"};
-
-  out.sigma.assign(n, std::vector<int>(n, kAbsent));
-  for (std::size_t i = 0; i < n; ++i) {
+  if (measured == 0) return std::nullopt;
+  std::vector<std::vector<int>> sigma(n, std::vector<int>(n, kAbsent));
+  for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < probe.inputs().size(); ++k) {
       const auto j = s.variable(probe.inputs()[k].symbol);
       if (!j || !(largest[i][k] > 0)) continue;
-      out.sigma[i][*j] = std::max(out.sigma[i][*j], static_cast<int>(g.node(probe.inputs()[k].symbol).order));
+      sigma[i][*j] = std::max(sigma[i][*j], static_cast<int>(g.node(probe.inputs()[k].symbol).order));
     }
-  }
+  return sigma;
+}
+
+Outcome analyse(const System& s, const std::vector<double>& parameters, const ProbeHints& hints, Structure& out) {
+  const std::size_t n = s.size();
+  const auto sigma = signature(s, compile(s.equations), parameters, hints);
+  if (!sigma)
+    return {OutcomeKind::not_a_number, "the equations have no value near the initial data",
+            "look for roots or logarithms of negative numbers and divisions by zero at the start"};
+  out.sigma = *sigma;
   out.transversal = highest_transversal(out.sigma);
   if (out.transversal.empty()) {
     if (const std::string list = without_inertia(s, out.sigma); !list.empty())

@@ -10,11 +10,13 @@
 // "Truly" is decided by numbers, not by symbols: a derivative counts if the partial derivative by it
 // is not zero at random points (theory: dae-view, the jet trap).
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/outcome.h"
 #include "system/system.h"
+#include "tape/tape.h"
 
 namespace anholon {
 
@@ -37,6 +39,11 @@ struct ProbeHints {
   std::vector<double> states;
   double t = 0;
 };
+
+// Sigma by probing near the hints; nothing if the equations have no value there. `equations`: compiled from those of the system.
+// Builds no expressions, so many threads may ask at the same time.
+std::optional<std::vector<std::vector<int>>> signature(const System& system, const Tape& equations, const std::vector<double>& parameters,
+                                                       const ProbeHints& hints);
 
 // Outcome `singular` if the system has no transversal (an unknown that no equation determines).
 Outcome analyse(const System& system, const std::vector<double>& parameters, const ProbeHints& hints,

@@ -17,15 +17,15 @@ struct Reference {
   explicit Reference(const std::string& name) {
     const Outcome o = make_scenario(test::shipped(name), *find_formulation("routh"), {}, scenario);
     if (!o.ok() || not_integrated(*scenario.model)) return;
-    stepping = std::make_unique<Program>(program(scenario.system, scenario.structure));
+    stepping = std::make_shared<const Program>(program(scenario.system, scenario.structure));
     parameters = parameter_values<long double>(*scenario.model);
     if (!initial_state(scenario, {}, start).ok()) stepping.reset();
   }
-  std::shared_ptr<const KernelPlan> plan() const { return KernelPlan::make(*stepping, kStages, parameters, static_cast<double>(start.t), narrow(start.state)); }
+  std::shared_ptr<const KernelPlan> plan() const { return KernelPlan::make(stepping, kStages, parameters, static_cast<double>(start.t), narrow(start.state)); }
   static std::vector<double> narrow(const std::vector<long double>& v) { return {v.begin(), v.end()}; }
 
   Scenario scenario;
-  std::unique_ptr<Program> stepping;
+  std::shared_ptr<const Program> stepping;
   std::vector<long double> parameters;
   Start<long double> start;
 };

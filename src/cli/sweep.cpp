@@ -1,0 +1,236 @@
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <map>
+
+#include "base/json.h"
+#include "cli/input.h"
+#include "cli/progress.h"
+#include "cli/show.h"
+#include "cli/vary.h"
+#include "run/ensemble.h"
+
+namespace anholon::cli {
+
+namespace {
+
+bool ends_with(const std::string& s, const std::string& end) {
+  return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
+}
+
+// Cases that ended in the same way, of which the first is told.
+struct Stopped {
+  std::size_t count = 0, first = 0;
+  Outcome outcome;
+};
+
+class Output : public CaseSink {
+ public:
+  explicit Output(const std::vector<std::string>& columns) : width_(columns.size()) {}
+  void result(const CaseResult& r) override {
+    if (!r.outcome.ok()) {
+      Stopped& s = stopped_[r.outcome.kind];
+      if (s.count++ == 0) s.first = r.number, s.outcome = r.outcome;
+    }
+    write(r);
+  }
+  const std::map<OutcomeKind, Stopped>& stopped() const { return stopped_; }
+  // Empty, or why the file could not be written.
+  virtual std::string close(const EnsembleReport& report) = 0;
+
+ protected:
+  virtual void write(const CaseResult& r) = 0;
+  // The numbers of a line after its outcome; those that there are not are not-a-number.
+  std::vector<double> numbers(const CaseResult& r) const {
+    std::vector<double> list = {r.t};
+    list.insert(list.end(), r.last.begin(), r.last.end());
+    list.resize(1 + width_, std::numeric_limits<double>::quiet_NaN());
+    return list;
+  }
+
+ private:
+  std::size_t width_;
+  std::map<OutcomeKind, Stopped> stopped_;
+};
+
+std::vector<std::string> header(const Variation& v, const std::vector<std::string>& columns) {
+  std::vector<std::string> names = {"case"};
+  // An initial value that is varied is not the final one.
+  for (const Varied& each : v.varied()) names.push_back(each.kind == Varied::Kind::initial ? each.name + "(0)" : each.name);
+  names.insert(names.end(), {"outcome", "t"});
+  names.insert(names.end(), columns.begin(), columns.end());
+  return names;
+}
+
+class Csv final : public Output {
+ public:
+  Csv(const std::string& path, const Variation& v, const std::vector<std::string>& columns) : Output(columns), sink_(path) {
+    if (!sink_.error().empty()) throw UsageError{"error: " + sink_.error() + "\n"};
+    sink_.columns(header(v, columns));
+  }
+  std::string close(const EnsembleReport&) override { return sink_.close(); }
+
+ protected:
+  void write(const CaseResult& r) override {
+    std::vector<std::string> line = {std::to_string(r.number)};
+    for (double v : r.values) line.push_back(number_text(v));
+    line.emplace_back(name(r.outcome.kind));
+    for (double v : numbers(r)) line.push_back(std::isnan(v) ? "" : number_text(v));
+    sink_.row(line);
+  }
+
+ private:
+  CsvSink sink_;
+};
+
+// Written line by line: there may be more cases than memory holds.
+class Json final : public Output {
+ public:
+  Json(const std::string& path, const Scenario& s, const Variation& v, const std::vector<std::string>& columns)
+      : Output(columns), path_(path) {
+    file_ = path.empty() || path == "-" ? stdout : std::fopen(path.c_str(), "w");
+    if (!file_) throw UsageError{"error: cannot write " + path + ": " + std::strerror(errno) + "\n"};
+    std::string names;
+    for (const std::string& n : header(v, columns)) names += (names.empty() ? "\"" : ", \"") + json_escape(n) + "\"";
+    std::fprintf(file_, "{\n  \"model\": \"%s\",\n  \"form\": \"%s\",\n  \"columns\": [%s],\n  \"rows\": [",
+                 json_escape(s.model->title).c_str(), s.system.form->name, names.c_str());
+  }
+  ~Json() override {
+    if (file_ && file_ != stdout) std::fclose(file_);
+  }
+  Json(const Json&) = delete;
+  Json& operator=(const Json&) = delete;
+
+  std::string close(const EnsembleReport& report) override {
+    std::fprintf(file_, "%s],\n  \"stopped\": [", any_ ? "\n  " : "");
+    bool first = true;
+    for (const auto& [kind, s] : stopped()) {
+      std::fprintf(file_, "%s\n    {\"outcome\": \"%s\", \"cases\": %zu, \"first\": %zu, \"message\": \"%s\", \"hint\": \"%s\"}",
+                   first ? "" : ",", name(kind), s.count, s.first, json_escape(s.outcome.message).c_str(),
+                   json_escape(s.outcome.hint).c_str());
+      first = false;
+    }
+    std::fprintf(file_, "%s],\n  \"cases\": %zu,\n  \"finished\": %zu,\n  \"outcome\": \"%s\"\n}\n", first ? "" : "\n  ", report.done,
+                 report.finished, name(report.outcome.kind));
+    const bool written = std::fflush(file_) == 0 && std::ferror(file_) == 0;
+    return written ? "" : "cannot write " + (path_.empty() ? "the output" : path_) + ": " + std::strerror(errno);
+  }
+
+ protected:
+  void write(const CaseResult& r) override {
+    JsonWriter j;
+    j.open_array().integer(static_cast<long long>(r.number));
+    for (double v : r.values) j.number(number_text(v));
+    j.string(name(r.outcome.kind));
+    for (double v : numbers(r)) j.number(number_text(v));
+    std::fprintf(file_, "%s\n    %s", any_ ? "," : "", j.close().text().c_str());
+    any_ = true;
+  }
+
+ private:
+  std::string path_;
+  std::FILE* file_ = nullptr;
+  bool any_ = false;
+};
+
+Rational tolerance_of(const Options& o, const Model& model) {
+  const Rational least = exact("2e-16", "");
+  Rational t = !o.tolerance.empty()       ? exact(o.tolerance, "--tolerance")
+               : model.simulate.tolerance ? *model.simulate.tolerance
+                                          : Rational(1, 1000000000000);
+  if (t <= 0 || t >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
+  if (t >= least) return t;
+  std::fprintf(stderr, "note: a tolerance below 2e-16 means 2e-16 in these numbers\n");
+  return least;
+}
+
+Rational end_of(const Options& o, const Model& model) {
+  Rational to;
+  if (!o.to.empty()) to = exact(o.to, "--to");
+  else if (model.simulate.to) to = *model.simulate.to;
+  else if (!model.simulate.at.empty()) to = *std::max_element(model.simulate.at.begin(), model.simulate.at.end());
+  else throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
+  if (abs(to) > Rational(mpz_class("1000000000000000000"))) throw UsageError{"error: an end time beyond 1e18\n"};
+  return to;
+}
+
+void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
+  std::string list;
+  for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
+  std::fprintf(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(), r.seconds,
+               r.threads, r.threads == 1 ? "thread" : "threads");
+}
+
+}  // namespace
+
+int sweep(const Options& o) {
+  for (const std::string end : {".h5", ".db"})
+    if (ends_with(o.output, end)) throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
+  const Reader in = read(o);
+  const Variation variation(o, *in.model);
+  EnsembleOptions options;
+  options.state = state_choice(o, *in.model);
+  for (const StateOverride& given : options.state.overrides)
+    for (const Varied& v : variation.varied())
+      if (v.kind == Varied::Kind::initial && !given.multiplier && given.coordinate == v.index && given.order == v.order)
+        throw UsageError{"error: '" + v.name + "' is both given and varied\nhint: leave out one of them\n"};
+  options.varied = variation.varied();
+  options.cases = variation.cases();
+  options.numbers = [&](std::size_t k) { return EnsembleCase{variation(k), {}}; };
+  options.to = end_of(o, *in.model);
+  options.tolerance = tolerance_of(o, *in.model);
+  options.order = o.order;
+  options.threads = static_cast<std::size_t>(o.threads);
+  options.again = in.again;
+  Scenario s;
+  Outcome start = ready(in, form(o, *in.model), options.state, s);
+  form(o, *in.model, s.mechanics.get());
+  if (const auto d = not_integrated(*in.model)) {
+    print_diagnostic(*d, in.source);
+    return kBadInput;
+  }
+  if (!o.show.empty()) return show(o, s);
+  if (!start.ok()) start = scenario_of_cases(*s.system.form, options, s);
+  if (!start.ok()) {
+    print_outcome(start);
+    return kStopped;
+  }
+  const bool reset = std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  if (reset && options.to < Rational(s.state.t))
+    throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after the start, t = " +
+                     number_text(s.state.t) + "\n"};
+  catch_stop();
+  options.cancelled = stop_requested;
+  const bool json = o.json || ends_with(o.output, ".json");
+  const std::vector<std::string> columns = ensemble_columns(*in.model);
+  std::unique_ptr<Output> out;
+  if (json) out = std::make_unique<Json>(o.output, s, variation, columns);
+  else out = std::make_unique<Csv>(o.output, variation, columns);
+  EnsembleReport r;
+  {
+    Progress progress(o.quiet, "case", "cases");
+    options.progress = [&](std::size_t done) {
+      progress(static_cast<double>(done) / static_cast<double>(options.cases), static_cast<double>(done), done);
+    };
+    r = ensemble(s, options, *out);
+  }
+  const std::string write_error = out->close(r);
+  if (!o.quiet) report(r, options, *out);
+  for (const auto& [kind, stopped] : out->stopped())
+    std::fprintf(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
+                 stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(), stopped.outcome.hint.c_str());
+  if (!r.outcome.ok()) {
+    print_outcome(r.outcome);
+    if (!o.output.empty()) std::fprintf(stderr, "the %zu cases before that are in %s\n", r.done, o.output.c_str());
+  }
+  if (!write_error.empty()) {
+    std::fprintf(stderr, "error: %s\n", write_error.c_str());
+    return kBadInput;
+  }
+  return r.outcome.ok() && r.finished == r.done ? kOk : kStopped;
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,173 @@
+#include "cli/vary.h"
+
+#include <algorithm>
+
+#include "numeric/philox.h"
+
+namespace anholon::cli {
+
+namespace {
+
+constexpr std::size_t kMostPoints = 1'000'000;            // of one grid
+constexpr std::size_t kMostCases = 1'000'000'000'000;
+
+// The word after --vary with a part of it marked, as positioned errors of files are shown.
+[[noreturn]] void wrong(const std::string& word, std::size_t at, std::size_t length, const std::string& message, const std::string& hint) {
+  const SourceText source{"--vary", word};
+  Span span;
+  span.line = 1;
+  span.column = static_cast<decltype(span.column)>(at + 1);
+  span.length = static_cast<decltype(span.length)>(std::max<std::size_t>(length, 1));
+  throw UsageError{print({Severity::error, span, message, hint}, source)};
+}
+
+// A part of the word, with its place.
+struct Part {
+  std::size_t at;
+  std::string text;
+};
+
+std::vector<Part> parts(const std::string& word, std::size_t from, std::size_t to, char separator) {
+  std::vector<Part> list;
+  for (std::size_t at = from; at <= to;) {
+    const std::size_t next = std::min(word.find(separator, at), to);
+    list.push_back({at, word.substr(at, next - at)});
+    at = next + 1;
+  }
+  return list;
+}
+
+constexpr const char* kHint = "--vary m=1:3:5 (from, to, how many), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
+
+Rational number(const std::string& word, const Part& p) {
+  std::size_t skip = 0;
+  while (skip < p.text.size() && p.text[skip] == ' ') ++skip;
+  std::string text = p.text.substr(skip);
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  if (const auto r = parse_rational(text)) return *r;
+  wrong(word, p.at + skip, text.size(), text.empty() ? "a number is missing here" : "'" + text + "' is not a number", kHint);
+}
+
+Varied named(const std::string& word, const std::string& text, const Model& model) {
+  std::string name = text;
+  unsigned primes = 0;
+  while (!name.empty() && name.back() == '\'') name.pop_back(), ++primes;
+  name = normal_name(name);
+  const auto& coordinates = model.names.coordinates;
+  if (const auto q = std::find(coordinates.begin(), coordinates.end(), name); q != coordinates.end()) {
+    unsigned highest = 2;  // derivatives of this order follow from the state
+    for (const Constraint& c : model.constraints) highest = std::max(highest, static_cast<unsigned>(c.order));
+    if (primes >= highest)
+      wrong(word, 0, text.size(),
+            highest == 2 ? "accelerations follow from the state"
+                         : "derivatives of order " + std::to_string(primes) + " follow from the state",
+            "vary " + name + ", " + name + "' or a parameter");
+    return {Varied::Kind::initial, static_cast<std::size_t>(q - coordinates.begin()), primes, derivative_name(name, primes, Format::text)};
+  }
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    if (model.parameters[i].name == name && primes == 0) return {Varied::Kind::parameter, i, 0, name};
+    known.push_back(model.parameters[i].name);
+  }
+  known.insert(known.end(), coordinates.begin(), coordinates.end());
+  const std::string near = did_you_mean(name, known);
+  wrong(word, 0, text.size(),
+        "there is no parameter and no coordinate '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+        "the names in [parameters], coordinates, and velocities such as " + (coordinates.empty() ? std::string("x") : coordinates[0]) +
+            "'");
+}
+
+}  // namespace
+
+Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
+  if (o.varied.empty()) throw UsageError{std::string("error: nothing is varied\nhint: ") + kHint + "\n"};
+  std::uint32_t streams = 0;
+  for (const std::string& word : o.varied) {
+    const std::size_t sign = word.find_first_of("=~");
+    if (sign == std::string::npos || sign == 0) wrong(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
+    const Varied v = named(word, word.substr(0, sign), model);
+    for (const Varied& before : varied_)
+      if (before.name == v.name) wrong(word, 0, sign, "'" + v.name + "' is varied twice", "one --vary for each name");
+    varied_.push_back(v);
+    Values values;
+    if (word[sign] == '~') {
+      const std::size_t open = word.find('(', sign);
+      const std::string law = word.substr(sign + 1, (open == std::string::npos ? word.size() : open) - sign - 1);
+      if (law != "normal" && law != "uniform") {
+        const std::string near = did_you_mean(law, {"normal", "uniform"});
+        wrong(word, sign + 1, law.size(), "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+              "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+      }
+      if (open == std::string::npos || word.back() != ')')
+        wrong(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+      const auto list = parts(word, open + 1, word.size() - 1, ',');
+      if (list.size() != 2)
+        wrong(word, open, word.size() - open, "two numbers are expected here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+      const Rational a = number(word, list[0]), b = number(word, list[1]);
+      values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
+      if (values.law == Values::Law::normal ? b < 0 : b < a)
+        wrong(word, list[1].at, list[1].text.size(), law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
+              "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+      values.a = from_rational<double>(a);
+      values.b = from_rational<double>(b);
+      values.stream = streams++;
+    } else if (word.find(':', sign) != std::string::npos) {
+      const auto list = parts(word, sign + 1, word.size(), ':');
+      if (list.size() != 3)
+        wrong(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
+              "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
+      const Rational from = number(word, list[0]), to = number(word, list[1]), count = number(word, list[2]);
+      if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) || (count == 1 && from != to))
+        wrong(word, list[2].at, list[2].text.size(), "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
+              "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
+      const unsigned long n = count.get_num().get_ui();
+      for (unsigned long k = 0; k < n; ++k) {
+        Rational part(k, std::max(n - 1, 1UL));
+        part.canonicalize();
+        values.list.push_back(from + (to - from) * part);
+      }
+    } else {
+      for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p));
+    }
+    if (!values.list.empty()) {
+      if (values.list.size() > kMostCases / grid_)
+        throw UsageError{"error: the grids have more than " + std::to_string(kMostCases) + " points\nhint: fewer values\n"};
+      grid_ *= values.list.size();
+    }
+    values_.push_back(std::move(values));
+  }
+  if (o.case_count.empty()) {
+    if (streams > 0) throw UsageError{"error: how many cases are to be drawn?\nhint: -n 1000\n"};
+    cases_ = grid_;
+    return;
+  }
+  const auto n = parse_rational(o.case_count);
+  if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(kMostCases))
+    throw UsageError{"error: -n takes a number of cases up to " + std::to_string(kMostCases) + ", not '" + o.case_count +
+                     "'\nhint: -n 1000\n"};
+  cases_ = n->get_num().get_ui();
+  if (streams == 0 && cases_ != grid_)
+    throw UsageError{"error: nothing is random, and the grid has " + std::to_string(grid_) + (grid_ == 1 ? " point" : " points") +
+                     "\nhint: leave out -n\n"};
+  if (cases_ < grid_)
+    throw UsageError{"error: -n " + std::to_string(cases_) + " leaves out points of the grid, which has " + std::to_string(grid_) +
+                     "\nhint: -n " + std::to_string(grid_) + " or more\n"};
+}
+
+std::vector<Rational> Variation::operator()(std::size_t number) const {
+  std::vector<Rational> out(values_.size());
+  std::size_t point = number % grid_;
+  for (std::size_t i = values_.size(); i-- > 0;) {
+    const Values& v = values_[i];
+    if (!v.list.empty()) {
+      out[i] = v.list[point % v.list.size()];
+      point /= v.list.size();
+      continue;
+    }
+    const Draw draw(seed_, number, v.stream);
+    out[i] = Rational(v.law == Values::Law::normal ? v.a + v.b * draw.normal() : v.a + (v.b - v.a) * draw.uniform());
+  }
+  return out;
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,31 @@
+// --vary: which numbers differ from case to case, and which they are.
+#pragma once
+#include "cli/input.h"
+#include "run/ensemble.h"
+
+namespace anholon::cli {
+
+class Variation {
+ public:
+  // Throws UsageError with the place in the text.
+  Variation(const Options& o, const Model& model);
+
+  const std::vector<Varied>& varied() const { return varied_; }
+  std::size_t cases() const { return cases_; }
+  // By the number of the case alone. Cases go round the grid, the last --vary fastest.
+  std::vector<Rational> operator()(std::size_t number) const;
+
+ private:
+  struct Values {
+    std::vector<Rational> list;                 // of a grid; else
+    enum class Law : std::uint8_t { normal, uniform } law = Law::normal;
+    double a = 0, b = 0;                        // its parameters
+    std::uint32_t stream = 0;
+  };
+  std::vector<Varied> varied_;
+  std::vector<Values> values_;
+  std::size_t grid_ = 1, cases_ = 0;
+  std::uint64_t seed_ = 0;
+};
+
+}  // namespace anholon::cli

@@ -1,0 +1,301 @@
+#include "run/cases.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "run/watch.h"
+
+namespace anholon {
+
+namespace {
+
+// Without numbers: only which they are.
+std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
+  std::vector<StateOverride> list = o.state.overrides;
+  for (std::size_t i = 0; i < o.varied.size(); ++i)
+    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial)
+      list.push_back({v.order, v.index, numbers ? numbers->values[i] : Rational(0)});
+  return list;
+}
+
+void put_parameters(Model& model, const EnsembleOptions& o, const EnsembleCase& numbers) {
+  for (std::size_t i = 0; i < o.varied.size(); ++i)
+    if (o.varied[i].kind == Varied::Kind::parameter) model.parameters[o.varied[i].index].value = model.graph->number(numbers.values[i]);
+}
+
+}  // namespace
+
+std::vector<std::string> ensemble_columns(const Model& model) {
+  std::vector<std::string> names;
+  for (const unsigned k : {0U, 1U})
+    for (const Coordinate& c : model.coordinates) names.push_back(derivative_name(c.name, k, Format::text));
+  for (const StateVariable& z : model.states) names.push_back(z.name);
+  for (const Monitor& m : model.monitors) names.push_back(m.name);
+  return names;
+}
+
+EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenario(s), options(o), parameters(s, o.varied) {
+  const Model& model = *s.model;
+  Graph& g = *model.graph;
+  settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled};
+  plain = !s.routh && s.redundant.empty() && s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
+  if (!plain) return;
+  start.emplace(*s.mechanics, overrides_of(o, nullptr));
+  for (std::size_t j = 0; j < s.system.size(); ++j)
+    for (int k = 0; k < s.structure.d[j]; ++k) entries.push_back(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
+  Column masses;
+  for (const VaryingMass& m : model.masses) masses.push_back(m.value);
+  program = anholon::program(s.system, s.structure, masses);
+  Column watched;
+  for (const Monitor& m : model.monitors) watched.push_back(m.value);
+  stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, watched));
+  if (watched.empty()) return;
+  outputs = compile(OutputTape<Wider<double>>::put(s, watched));
+  for (const Input& in : outputs->inputs) {
+    const Node& n = g.node(in.symbol);
+    output_inputs.push_back({in.slot, s.system.variable(in.symbol), n.kind == Kind::time ? 0 : n.order});
+  }
+}
+
+// A model read once more, with a graph of its own in which a thread may build.
+struct CaseWorker::Own {
+  // With the numbers of a case, or those of the scenario of all cases.
+  Own(const EnsemblePlan& plan, const EnsembleCase* numbers) {
+    const EnsembleOptions& o = plan.options;
+    std::optional<EnsembleCase> like;
+    if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
+    outcome = scenario_of(*plan.scenario.system.form, o, numbers, scenario, model);
+  }
+  static Outcome scenario_of(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers, Scenario& scenario,
+                             std::shared_ptr<Model>& model) {
+    model = std::make_shared<Model>(*o.again());
+    StateChoice state = o.state;
+    if (numbers) put_parameters(*model, o, *numbers), state.overrides = overrides_of(o, numbers);
+    return make_scenario(model, form, state, scenario);
+  }
+
+  std::shared_ptr<Model> model;
+  Scenario scenario;
+  Outcome outcome;        // of its start
+  std::size_t cases = 0;  // that were computed in it
+};
+
+Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& o, Scenario& scenario) {
+  constexpr std::size_t kMost = 64;
+  Outcome first;
+  for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
+    const EnsembleCase numbers = o.numbers(k);
+    std::shared_ptr<Model> model;
+    Scenario s;
+    const Outcome outcome = CaseWorker::Own::scenario_of(form, o, &numbers, s, model);
+    if (k == 0) first = outcome;
+    if (!outcome.ok()) continue;
+    scenario = std::move(s);
+    o.like = k;
+    return {};
+  }
+  return first;
+}
+
+void CaseWorker::integrate(std::span<CaseResult> results) {
+  for (CaseResult& r : results) {
+    const EnsembleCase numbers = plan_.options.numbers(r.number);
+    for (const Rational& v : numbers.values) r.values.push_back(from_rational<double>(v));
+    try {
+      integrate(numbers, r);
+    } catch (const Failure& e) {
+      r.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
+    } catch (const std::bad_alloc&) {
+      r.outcome = {OutcomeKind::too_large, "out of memory", "fewer threads need less"};
+    }
+  }
+}
+
+void CaseWorker::integrate(const EnsembleCase& numbers, CaseResult& r) {
+  std::vector<W> parameters = plan_.parameters.values<W>(numbers.values);
+  ready_ = ready_ && parameters == parameters_;
+  if (!ready_) {
+    parameters_ = std::move(parameters);
+    narrow_parameters_ = plan_.parameters.values<double>(numbers.values);
+  }
+  r.t = plan_.scenario.state.t;
+  if (r.outcome = plan_.parameters.possible(narrow_parameters_); !r.outcome.ok()) return;
+  if (!ready_) same_structure_ = plan_.parameters.same_structure(narrow_parameters_);
+  Way way = !same_structure_ ? Way::derivation : plan_.plain ? plainly(numbers, r) : Way::simulation;
+  if (way == Way::simulation) {
+    by_simulation(numbers, r);
+    // What fails where it begins may have another structure there, or other redundant constraints.
+    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent && r.outcome.kind != OutcomeKind::interrupted)
+      way = Way::derivation;
+  }
+  if (way == Way::derivation) by_derivation(numbers, r);
+}
+
+// The way that is left, if this one does not go to the end.
+CaseWorker::Way CaseWorker::plainly(const EnsembleCase& numbers, CaseResult& r) {
+  // A stepper begins anew: what it met before must leave no trace.
+  stepper_.emplace(*plan_.program, narrow_parameters_, parameters_, plan_.settings);
+  if (!ready_) {
+    point_.emplace(*plan_.program, parameters_, std::max(1, plan_.stages));
+    if (plan_.outputs) outputs_.emplace(*plan_.outputs, 0, parameters_);
+    ready_ = true;
+  }
+  InitialProblem<W> problem{plan_.scenario.mechanics.get(), parameters_, overrides_of(plan_.options, &numbers), plan_.options.state.t};
+  problem.plan = &*plan_.start;
+  r.outcome = consistent_state(problem, named_);
+  r.t = to_double(named_.t);
+  if (!r.outcome.ok()) return Way::plain;
+  std::vector<W> state;
+  for (const Node& n : plan_.entries) {
+    const W* known = named_.value(n);
+    state.push_back(known ? *known : W(0));
+  }
+  return walk(named_.t, state, numbers, r);
+}
+
+CaseWorker::Way CaseWorker::walk(const W& t0, const std::vector<W>& state, const EnsembleCase& numbers, CaseResult& r) {
+  const EnsembleOptions& o = plan_.options;
+  if (!stepper_->start(t0, state).ok()) return Way::derivation;
+  const W end = from_rational<W>(numbers.to ? *numbers.to : o.to);
+  const bool forward = !(end < t0);
+  std::vector<W> times;
+  for (const Rational& t : o.at)
+    if (const W at = from_rational<W>(t); forward ? at <= end : at >= end) times.push_back(at);
+  if (!forward) std::reverse(times.begin(), times.end());
+  // Those that lie in the last step.
+  const auto rows = [&] {
+    while (r.rows.size() < times.size()) {
+      const W& t = times[r.rows.size()];
+      if (forward ? t > stepper_->time() : t < stepper_->time()) break;
+      std::vector<double> row = {to_double(t)};
+      if (!keep(t, row)) return false;
+      r.rows.push_back(std::move(row));
+    }
+    return true;
+  };
+  if (!rows()) return Way::simulation;
+  while (!(stepper_->time() == end)) {
+    if (const Outcome step = stepper_->step(end); !step.ok()) {
+      if (step.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled())
+        return stepper_->steps() == 0 ? Way::derivation : Way::simulation;
+      r.outcome = step;
+      return Way::plain;
+    }
+    for (std::size_t i = 0; i < plan_.program->quadratures; ++i)
+      if (!plan_.scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
+        return Way::simulation;
+    if (!rows()) return Way::simulation;
+  }
+  r.t = to_double(end);
+  r.steps = stepper_->steps();
+  return keep(end, r.last) ? Way::plain : Way::simulation;
+}
+
+// What is kept of the state at t, which lies in the last step.
+bool CaseWorker::keep(const W& t, std::vector<double>& values) {
+  const System& system = plan_.scenario.system;
+  if (!stepper_->at(t, *point_).ok() || (plan_.stages > 0 && !point_->extend().ok())) return false;
+  for (const int k : {0, 1})
+    for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
+  for (std::size_t j = system.mechanical(); j < system.size(); ++j) values.push_back(to_double(point_->derivative(j, 0)));
+  if (!outputs_) return true;
+  for (const EnsemblePlan::Entry& e : plan_.output_inputs)
+    outputs_->series(e.slot)[0] = e.variable ? point_->derivative(*e.variable, e.order) : point_->time();
+  outputs_->evaluate();
+  for (std::size_t i = 0; i < plan_.outputs->roots.size(); ++i) values.push_back(to_double(outputs_->value(i)));
+  return true;
+}
+
+namespace {
+
+// Rows of `simulate`, of which the columns of an ensemble are kept.
+class Kept final : public RowSink {
+ public:
+  Kept(const Scenario& s, const std::vector<Rational>& times, CaseResult& result) : s_(s), times_(times), result_(result) {}
+  void columns(const std::vector<std::string>& names) override {
+    const Model& model = *s_.model;
+    const std::size_t n = model.coordinates.size();
+    for (std::size_t i = 1; i <= 2 * n; ++i) columns_.push_back(i);
+    const std::size_t monitors = names.size() - model.monitors.size(), states = monitors - n - model.states.size();
+    for (std::size_t i = states; i < monitors - n; ++i) columns_.push_back(i);
+    for (std::size_t i = monitors; i < names.size(); ++i) columns_.push_back(i);
+  }
+  void row(const std::vector<std::string>& texts) override {
+    const double t = std::strtod(texts[0].c_str(), nullptr);
+    result_.t = t;
+    result_.last.clear();
+    for (std::size_t c : columns_) result_.last.push_back(std::strtod(texts[c].c_str(), nullptr));
+    const auto wanted = [&](const Rational& at) { return from_rational<double>(at) == t; };
+    if (std::none_of(times_.begin(), times_.end(), wanted)) return;
+    std::vector<double> row = {t};
+    row.insert(row.end(), result_.last.begin(), result_.last.end());
+    result_.rows.push_back(std::move(row));
+  }
+
+ private:
+  const Scenario& s_;
+  const std::vector<Rational>& times_;
+  CaseResult& result_;
+  std::vector<std::size_t> columns_;
+};
+
+}  // namespace
+
+// Without numbers: those of the scenario.
+void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& r) {
+  const EnsembleOptions& o = plan_.options;
+  r.rows.clear();
+  r.last.clear();
+  std::optional<EnsembleCase> like;
+  if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
+  const Rational to = numbers && numbers->to ? *numbers->to : o.to;
+  SimulationOptions options;
+  options.state = o.state;
+  if (numbers) options.state.overrides = overrides_of(o, numbers);
+  for (const Rational& t : o.at)
+    if (to < Rational(own.scenario.state.t) ? t > to : t < to) options.at.push_back(t);
+  options.at.push_back(to);
+  std::sort(options.at.begin(), options.at.end());
+  options.tolerance = o.tolerance;
+  options.order = o.order;
+  options.most_steps = o.most_steps;
+  options.cancelled = o.cancelled;
+  Kept rows(own.scenario, o.at, r);
+  const SimulationReport report = simulate(own.scenario, options, rows);
+  r.outcome = report.outcome;
+  r.steps = report.steps;
+  r.t = std::strtod(report.t.c_str(), nullptr);
+}
+
+// Expressions that a case builds stand before those of later cases, and their order is that of sums. So no case may be computed
+// where another one has left some: a graph that has grown is thrown away, and a case that made it grow is computed in a new one.
+void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {
+  ++again_;
+  for (;;) {
+    std::shared_ptr<Own> own = std::exchange(own_, nullptr);
+    if (!own) {
+      own = std::make_shared<Own>(plan_, nullptr);
+      // What all cases build, the motion of the scenario builds first.
+      CaseResult nothing;
+      simulate_in(*own, nullptr, nothing);
+    }
+    put_parameters(*own->model, plan_.options, numbers);
+    const std::size_t before = own->model->graph->size();
+    simulate_in(*own, &numbers, r);
+    const bool first = own->cases++ == 0, grown = own->model->graph->size() != before;
+    if (!grown) own_ = std::move(own);
+    if (!grown || first) return;
+  }
+}
+
+void CaseWorker::by_derivation(const EnsembleCase& numbers, CaseResult& r) {
+  ++again_;
+  Own own(plan_, &numbers);
+  r.outcome = own.outcome;
+  r.t = own.scenario.state.t;
+  r.rows.clear();
+  r.last.clear();
+  if (own.outcome.ok()) simulate_in(own, &numbers, r);
+}
+
+}  // namespace anholon

@@ -1,0 +1,70 @@
+// What threads do with the cases of an ensemble.
+//
+// The plain way reads tapes that were compiled before: parameters, consistent positions and velocities, the stepping program,
+// outputs. It builds no expressions, so all threads share one graph. It only finishes: what stops on the way, or needs events,
+// completed states, redundant constraints or another elimination, goes the way of `simulate` in a graph of the thread's own, so that its
+// outcome is that of `simulate`. A case with which the equations have another structure is derived anew.
+#pragma once
+#include "run/case_parameters.h"
+
+namespace anholon {
+
+// Read by all threads, changed by none.
+class EnsemblePlan {
+ public:
+  EnsemblePlan(const Scenario& scenario, const EnsembleOptions& options);
+
+  const Scenario& scenario;
+  const EnsembleOptions& options;
+  bool plain = false;               // the plain way goes for this model
+  std::optional<StartPlan> start;
+  CaseParameters parameters;
+  std::vector<Node> entries;        // of the state, in the order of an Expansion's
+  std::optional<Program> program;   // varying masses are its quadratures
+  std::optional<Tape> outputs;
+  struct Entry {
+    std::uint32_t slot;
+    std::optional<std::size_t> variable;  // else t
+    int order;
+  };
+  std::vector<Entry> output_inputs;
+  int stages = 0;
+  StepSettings settings;
+};
+
+// The workspaces of one thread.
+class CaseWorker {
+ public:
+  explicit CaseWorker(const EnsemblePlan& plan) : plan_(plan) {}
+
+  // These cases, whose numbers stand in the results.
+  void integrate(std::span<CaseResult> results);
+  std::size_t again() const { return again_; }
+
+  struct Own;  // a graph of its own
+
+ private:
+  using W = Wider<double>;
+
+  enum class Way : std::uint8_t { plain, simulation, derivation };
+  void integrate(const EnsembleCase& numbers, CaseResult& result);
+  Way plainly(const EnsembleCase& numbers, CaseResult& result);
+  Way walk(const W& t, const std::vector<W>& state, const EnsembleCase& numbers, CaseResult& result);
+  bool keep(const W& t, std::vector<double>& values);
+  void by_simulation(const EnsembleCase& numbers, CaseResult& result);
+  void by_derivation(const EnsembleCase& numbers, CaseResult& result);
+  void simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& result);
+
+  const EnsemblePlan& plan_;
+  std::vector<W> parameters_;
+  std::vector<double> narrow_parameters_;
+  bool ready_ = false, same_structure_ = true;  // for these parameters
+  InitialState<W> named_;
+  std::optional<Stepper<double>> stepper_;
+  std::optional<Expansion<W>> point_;
+  std::optional<Machine<W>> outputs_;
+  std::shared_ptr<Own> own_;
+  std::size_t again_ = 0;
+};
+
+}  // namespace anholon
