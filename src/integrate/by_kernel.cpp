@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "integrate/taylor.h"
+#include "kernel/kernel.h"
 
 namespace anholon {
 
@@ -28,7 +29,7 @@ void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan> plan) {
     if (!plan || kinks || !events_.empty()) return;
     kernel_ = std::make_unique<Kernel>(plan);
     kernel_->set_parameters(0, point_.parameters());
-    for (const auto& [slot, place] : plan->plan().roots_of_even_powers) kink_series_.push_back({slot, place});
+    for (const auto& [slot, place] : plan->plan().roots_of_even_powers) kink_series_.push_back({slot, place.at});
   } else {
     (void)plan;
   }
@@ -68,8 +69,8 @@ bool Stepper<N>::expand_by_kernel(const std::vector<W>& guess) {
     base_state_ = state_;
     point_loaded_ = point_valued_ = false;
     worst_constraint_ = std::max(worst_constraint_, W(kernel_->drift(0)));
-    for (const auto& [slot, place] : kink_series_)
-      for (int k = 0; k < order_; ++k) expansion_.adopt_coefficient(slot, k, kernel_->series(place, k));
+    for (const auto& [slot, at] : kink_series_)
+      for (int k = 0; k < order_; ++k) expansion_.adopt_coefficient(slot, k, kernel_->series({at, true}, k));
     horizon_ = horizon_by_kernel();
     expanded_ = true;
     return true;
@@ -85,8 +86,10 @@ N Stepper<N>::horizon_by_kernel() const {
   if constexpr (std::same_as<N, double>) {
     const Program& p = *program_;
     const int levels = *std::max_element(p.d.begin(), p.d.end());
-    double log_rho = 300;
+    // How much the last two orders weigh in relation to the size of what they are orders of.
+    double last_weight = 0, before_weight = 0, pole = 0, factor = 1, factor_before = 1;
     for (int k = 0; k < levels; ++k) {
+      if (k > 0) factor *= order_ + k, factor_before *= order_ - 1 + k;
       double size = 1, last = 0, before_last = 0;
       for (std::size_t j = 0; j < p.unknowns(); ++j) {
         if (k >= p.d[j]) continue;
@@ -94,16 +97,16 @@ N Stepper<N>::horizon_by_kernel() const {
         last = std::max(last, std::abs(kernel_->coefficient(j, order_ + k)));
         before_last = std::max(before_last, std::abs(kernel_->coefficient(j, order_ - 1 + k)));
       }
-      double factor = 1, factor_before = 1;
-      for (int i = 1; i <= k; ++i) factor *= order_ + i, factor_before *= order_ - 1 + i;
-      if (last > 0) log_rho = std::min(log_rho, std::log(size / (last * factor)) / order_);
-      if (before_last > 0) log_rho = std::min(log_rho, std::log(size / (before_last * factor_before)) / (order_ - 1));
+      last_weight = std::max(last_weight, last * factor / size);
+      before_weight = std::max(before_weight, before_last * factor_before / size);
     }
-    double pole = 0;
     for (std::size_t j = 0; j < p.unknowns(); ++j)
       if (p.d[j] == 0)
         if (const double value = std::abs(kernel_->coefficient(j, 0)); value > 0) pole = std::max(pole, std::abs(kernel_->coefficient(j, order_ - 1)) / std::max(1.0, value));
-    const double log_pole = pole > 0 ? -std::log(pole) / (order_ - 1) : 300;
+    double log_rho = 300, log_pole = 300;
+    if (last_weight > 0) log_rho = std::min(log_rho, -std::log(last_weight) / order_);
+    if (before_weight > 0) log_rho = std::min(log_rho, -std::log(before_weight) / (order_ - 1));
+    if (pole > 0) log_pole = -std::log(pole) / (order_ - 1);
     const double shrink = settings_.order > 0 ? -settings_.log_tolerance / order_ : 2.0;
     return std::exp(std::min(log_rho - shrink - 0.7 / (order_ - 1), log_pole - 0.7));
   } else {
@@ -131,7 +134,63 @@ std::vector<typename Stepper<N>::W> Stepper<N>::leading_at_base() const {
   return leading;
 }
 
+template <Number N>
+N Stepper<N>::coefficient(std::size_t j, int k) const {
+  if constexpr (std::same_as<N, double>)
+    if (by_kernel_) return kernel_->coefficient(j, k);
+  return expansion_.coefficient(j, k);
+}
+
+template <Number N>
+N Stepper<N>::quadrature_coefficient(std::size_t i, int k) const {
+  if constexpr (std::same_as<N, double>)
+    if (by_kernel_) return kernel_->quadrature(i, k);
+  return expansion_.quadrature(i)[k];
+}
+
+// Of the polynomial over h; what the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
+template <Number N>
+bool Stepper<N>::polynomial_by_kernel(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
+  if constexpr (std::same_as<N, double>) {
+    if (!by_kernel_) return false;
+    const Program& p = *program_;
+    increments.resize(expansion_.state_size());
+    leading.resize(p.unknowns());
+    kernel_->set_step(0, convert<double>(h));
+    kernel_->advance();
+    std::size_t from = 0, to = 0;
+    for (std::size_t j = 0; j < p.unknowns(); ++j) {
+      for (int k = 0; k < p.d[j]; ++k, ++to) {
+        W s(0), power(1);
+        for (int i = k + 1; i < p.d[j]; ++i) {
+          power = i - k == 1 ? h : power * h / W(i - k);
+          s += (base_state_[to + static_cast<std::size_t>(i - k)] - W(kernel_->derivative(j, i))) * power;
+        }
+        increments[to] = s + kernel_->increment(from++);
+      }
+      leading[j] = kernel_->derivative(j, p.d[j]) + kernel_->increment(from++);
+    }
+    return true;
+  } else {
+    (void)h, (void)increments, (void)leading;
+    return false;
+  }
+}
+
+template <Number N>
+Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters, const StepSettings& settings)
+    : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
+      parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {}
+
+template <Number N>
+Stepper<N>::~Stepper() = default;
+
 #define INSTANTIATE(N)                                                     \
+  template Stepper<N>::Stepper(const Program&, const std::vector<N>&, const std::vector<W>&, const StepSettings&); \
+  template Stepper<N>::~Stepper();                                         \
+  template N Stepper<N>::coefficient(std::size_t, int) const;              \
+  template N Stepper<N>::quadrature_coefficient(std::size_t, int) const;   \
+  template bool Stepper<N>::polynomial_by_kernel(const W&, std::vector<W>&, std::vector<W>&) const; \
   template void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan>); \
   template bool Stepper<N>::expand_by_kernel(const std::vector<W>&);       \
   template N Stepper<N>::horizon_by_kernel() const;                        \

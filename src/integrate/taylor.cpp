@@ -35,13 +35,6 @@ int taylor_order(double log_tolerance) {
 }
 
 template <Number N>
-Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
-                    const StepSettings& settings)
-    : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
-      parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {
-}
-
-template <Number N>
 Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
   started_ = t_ = before_ = t;
   state_ = state;
@@ -291,31 +284,10 @@ N Stepper<N>::step_size() const {
 
 template <Number N>
 void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
+  if (polynomial_by_kernel(h, increments, leading)) return;
   const Program& p = *program_;
   increments.assign(expansion_.state_size(), W(0));
   leading.assign(p.unknowns(), W(0));
-  if constexpr (std::same_as<N, double>)
-    if (by_kernel_) {
-      std::vector<double>& change = increments_;
-      change.resize(expansion_.state_size() + p.unknowns());
-      const double step = convert<double>(h);
-      kernel_->advance(&step, change.data());
-      std::size_t from = 0, to = 0;
-      for (std::size_t j = 0; j < p.unknowns(); ++j) {
-        for (int k = 0; k < p.d[j]; ++k, ++to) {
-          // What the kernel does not see of a wider state: t_i h^(i-k) / (i-k)!.
-          W s(0), power(1);
-          for (int i = k + 1; i < p.d[j]; ++i) {
-            power = power * h / W(i - k);
-            const std::size_t at = to + static_cast<std::size_t>(i - k);
-            s += (base_state_[at] - W(kernel_->derivative(j, i))) * power;
-          }
-          increments[to] = s + change[from++];
-        }
-        leading[j] = kernel_->derivative(j, p.d[j]) + change[from++];
-      }
-      return;
-    }
   for (std::size_t j = 0; j < p.unknowns(); ++j) {
     const int d = p.d[j], top = degree(j);
     for (int k = 0; k <= d; ++k) {
@@ -441,7 +413,7 @@ Outcome Stepper<N>::step(const W& end) {
   const bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
-  const Kink<N> kink = first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
+  const Kink<N> kink = by_kernel_ && kink_series_.empty() ? Kink<N>{} : first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
   bool cut = false;
   if (kink.at_start || kink.ahead) {
     // At a kink functions are taken one-sided along the motion: a very short step finds the side.

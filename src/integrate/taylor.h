@@ -7,9 +7,11 @@
 
 #include "integrate/events.h"
 #include "integrate/regular.h"
-#include "kernel/kernel.h"
 
 namespace anholon {
+
+class Kernel;
+class KernelPlan;
 
 struct StepSettings {
   double log_tolerance = -27.6310211159;  // natural logarithm: 1e-400 is a tolerance too
@@ -53,6 +55,7 @@ class Stepper {
 
   Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
           const StepSettings& settings);
+  ~Stepper();
 
   // Starts at a consistent state; `leading` is a first guess and names the branch.
   Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
@@ -113,20 +116,12 @@ class Stepper {
   Outcome expand_here(const std::vector<W>& guess);
   void note_begun(const std::vector<W>& guess);
   bool expand_by_kernel(const std::vector<W>& guess);
-  N coefficient(std::size_t j, int k) const {
-    if constexpr (std::same_as<N, double>)
-      if (by_kernel_) return kernel_->coefficient(j, k);
-    return expansion_.coefficient(j, k);
-  }
+  N coefficient(std::size_t j, int k) const;
   void expand_again(const StepperState<N>& last);
   void note_sigma(const N& sigma);
   // The slots that may have kinks: also those of what is watched for events.
   std::uint32_t kinks_end() const { return events_.empty() ? program_->tape.main_end : static_cast<std::uint32_t>(program_->tape.code.size()); }
-  N quadrature_coefficient(std::size_t i, int k) const {
-    if constexpr (std::same_as<N, double>)
-      if (by_kernel_) return kernel_->quadrature(i, k);
-    return expansion_.quadrature(i)[k];
-  }
+  N quadrature_coefficient(std::size_t i, int k) const;
   N step_size() const;
   N horizon_by_kernel() const;
   std::vector<W> leading_at_base() const;
@@ -137,6 +132,7 @@ class Stepper {
   std::optional<Mode<N>> mode_ahead(const W& h);
   std::optional<W> singular_within(const W& h);
   bool end_out_of_reach(const W& h, const W& left) const;
+  bool polynomial_by_kernel(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
@@ -147,13 +143,12 @@ class Stepper {
   mutable Expansion<W> point_;
   mutable bool point_loaded_ = true, point_valued_ = true;
   std::unique_ptr<Kernel> kernel_;
-  std::vector<std::pair<std::uint32_t, Place>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
   bool by_kernel_ = false;                                    // the present expansion
   bool careful_ = false;                                      // the next one is to be made without the kernel
   N least_health_{1};
   std::size_t by_kernel_count_ = 0;
   std::vector<W> base_state_;                                 // where the present expansion of the kernel was made
-  mutable std::vector<double> increments_;
   std::unique_ptr<Expansion<N>> ahead_;  // for looks at J further on the polynomial
   N sigma_{0}, sigma_before_{0};         // where the last two steps began
   W last_step_{0};

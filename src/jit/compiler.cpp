@@ -135,8 +135,14 @@ void compile(const KernelTables& tables, const std::string& cache, Code& code, s
     }
     return symbol->toPtr<Code::Part>();
   };
-  Code made{find("values"), find("factor"), find("lead"), find("extend"), nullptr};
-  if (!made.values || !made.factor || !made.lead || !made.extend) return;
+  Code made;
+  made.values = find("values");
+  made.factor = find("factor");
+  made.lead = find("lead");
+  made.extend = find("extend");
+  made.advance = find("advance");
+  for (int level = 1; level <= Emitter::levels(tables); ++level) made.level.push_back(find(Emitter::level_name(level).c_str()));
+  if (!message.empty()) return;
   made.keeper = std::shared_ptr<void>(jit->release(), [](void* p) { delete static_cast<llvm::orc::LLJIT*>(p); });
   code = std::move(made);
 }

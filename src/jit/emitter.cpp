@@ -18,6 +18,8 @@ void Emitter::run() {
   factor();
   lead();
   extend();
+  advance();
+  for (int l = 1; l <= levels(k_); ++l) level(l);
 }
 
 void Emitter::begin(const char* name) {
@@ -303,10 +305,13 @@ void Emitter::side(std::size_t i) {
   side_.push_back(b_.CreateFMul(get(p_.roots[i], c), factor));
 }
 
-void Emitter::solve() {
-  const SparseLu& e = *k_.elimination;
+void Emitter::sides() {
   side_.clear();
   for (std::size_t i = 0; i < p_.roots.size(); ++i) side(i);
+}
+
+void Emitter::solve() {
+  const SparseLu& e = *k_.elimination;
   side_.resize(p_.rows, nullptr);
   for (Value*& v : side_)
     if (!v) v = number(0);
@@ -344,8 +349,40 @@ void Emitter::complete() {
 void Emitter::lead() {
   begin("lead");
   stage_ = 0;
+  sides();
   solve();
   complete();
+  end();
+}
+
+void Emitter::level(int level) {
+  begin(level_name(level).c_str());
+  side_.clear();
+  for (std::size_t i = 0; i < p_.roots.size(); ++i) {
+    const int order = p_.c[i] - level;
+    const Place r = p_.roots[i];
+    side_.push_back(order < 0 ? number(0) : b_.CreateFMul(load(r.at + (r.series ? order : 0)), number(-k_.factorial[static_cast<std::size_t>(order)])));
+  }
+  solve();
+  // All are asked for: they are looked at before they are used.
+  for (std::uint32_t j = 0; j < p_.x.size(); ++j) store(solution_[j], k_.solution + j);
+  end();
+}
+
+void Emitter::advance() {
+  begin("advance");
+  Value* step = load(k_.step);
+  std::int64_t out = k_.increments;
+  for (std::size_t j = 0; j < p_.x.size(); ++j)
+    for (int k = 0; k <= p_.d[j]; ++k) {
+      Value* s = number(0);
+      for (int i = p_.stages + p_.d[j] - k; i >= 1; --i) {
+        Value* x = load(std::int64_t{p_.x[j]} + k + i);
+        const double rising = k_.rising(k, i);
+        s = b_.CreateFMul(rising == 1 ? b_.CreateFAdd(x, s) : fma(x, number(rising), s), step);
+      }
+      store(s, out++);
+    }
   end();
 }
 
@@ -353,6 +390,7 @@ void Emitter::stage(const std::vector<Step>& steps, bool solved) {
   known_.clear();
   for (const Step& s : steps) coefficient(s);
   if (!solved) return;
+  sides();
   solve();
   complete();
 }

@@ -6,6 +6,7 @@
 #include <llvm/IR/IRBuilder.h>
 #include <llvm/IR/Module.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,8 +18,11 @@ namespace anholon::jit {
 class Emitter {
  public:
   Emitter(const KernelTables& tables, llvm::Module& module);
-  // Functions of one argument, the arena: "values", "factor", "lead" (residual and completion of stage 0), "extend".
+  // Functions of one argument, the arena: "values", "factor", "lead" (residual and completion of stage 0), "extend", "advance",
+  // and "level1", …: the solution for the residuals of hidden constraints.
   void run();
+  static int levels(const KernelTables& tables) { return *std::max_element(tables.plan->c.begin(), tables.plan->c.end()); }
+  static std::string level_name(int level) { return "level" + std::to_string(level); }
 
  private:
   using Value = llvm::Value;
@@ -33,6 +37,8 @@ class Emitter {
   void values();
   void factor();
   void lead();
+  void level(int level);
+  void advance();
   void extend();
   // All stages from 1 of a list, in blocks.
   void stages(const std::vector<Step>& steps, bool solved);
@@ -46,6 +52,7 @@ class Emitter {
   Value* sum(const Step& s, std::uint32_t count);
   Value* convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last);
   void side(std::size_t root);
+  void sides();
   void solve();
   void complete();
   static std::vector<Convolution> convolutions(const Step& s);

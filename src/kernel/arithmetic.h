@@ -21,7 +21,7 @@ struct KernelTables {
     std::vector<double> at, values;
   };
   std::vector<Knots> knots;
-  std::uint32_t lu = 0, reciprocal = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, size = 0;  // of the arena
+  std::uint32_t lu = 0, reciprocal = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, step = 0, increments = 0, size = 0;  // of the arena
   bool refine = false;  // solutions, by one step of iterative refinement
   std::vector<double> factorial, inverse_factorial, reciprocal_of, order;  // k!, 1 / k!, 1 / k, k
 
@@ -49,8 +49,8 @@ class Arithmetic {
   virtual void complete(int stage) = 0;
   // Stages 1.. and the quadratures.
   virtual void extend() = 0;
-  // increments [state and leading derivatives][lane]: of x_j^(k), k = 0..d_j, at h[lane].
-  virtual void advance(const double* h, double* increments) = 0;
+  // By what x_j^(k), k = 0..d_j, one after the other, change over `step`, into `increments`.
+  virtual void advance() = 0;
 };
 
 // Functions of the C library, in one place for every tier.

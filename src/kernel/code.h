@@ -11,7 +11,8 @@ namespace anholon {
 // The parts of one expansion; each takes the arena. What they point to lives as long as `keeper`.
 struct Code {
   using Part = void (*)(double*);
-  Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr;
+  Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr, advance = nullptr;
+  std::vector<Part> level;  // [l - 1]: the solution for the residuals at derivative order c_i - l
   std::shared_ptr<void> keeper;
 };
 

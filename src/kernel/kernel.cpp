@@ -94,7 +94,9 @@ void KernelPlan::lay_out() {
   tables_.solution = tables_.side + static_cast<std::uint32_t>(plan_.roots.size());
   tables_.refined = tables_.solution + plan_.rows;
   tables_.entries = tables_.refined + plan_.rows;
-  tables_.size = even(tables_.entries + (tables_.refine ? static_cast<std::uint32_t>(plan_.entries.size()) : 0));
+  tables_.step = tables_.entries + (tables_.refine ? static_cast<std::uint32_t>(plan_.entries.size()) : 0);
+  tables_.increments = tables_.step + 1;
+  tables_.size = even(tables_.increments + static_cast<std::uint32_t>(state_size_ + plan_.x.size()));
 }
 
 std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
@@ -208,11 +210,11 @@ void Kernel::load(int lane, double t, std::span<const double> state, std::span<c
 }
 
 void Kernel::expand() {
-  const Code* code = lanes_ == 1 ? plan_->code() : nullptr;
+  const Code* code = this->code();
   if (code) code->values(arena_), code->factor(arena_);
   else arithmetic_->values(-plan_->plan().largest_lead), arithmetic_->factor();
   judge_pivots();
-  project();
+  project(code);
   if (code) {
     code->lead(arena_);
     code->extend(arena_);
@@ -252,13 +254,14 @@ void Kernel::judge_pivots() {
   }
 }
 
-void Kernel::project() {
+void Kernel::project(const Code* code) {
   const Plan& p = plan_->plan();
   const KernelTables& t = plan_->tables();
   std::fill(drift_.begin(), drift_.end(), 0.0);
   std::fill(moved_.begin(), moved_.end(), 0);
   for (int level = *std::max_element(p.c.begin(), p.c.end()); level >= 1; --level) {
-    arithmetic_->residual(level);
+    if (code) code->level[static_cast<std::size_t>(level - 1)](arena_);
+    else arithmetic_->residual(level);
     bool any = false;
     for (int lane = 0; lane < lanes_; ++lane) {
       const std::size_t i = static_cast<std::size_t>(lane);
@@ -276,8 +279,14 @@ void Kernel::project() {
     }
     if (!any) continue;
     arithmetic_->correct(level, weight_.data());
-    arithmetic_->values(-level);
+    if (code) code->values(arena_);
+    else arithmetic_->values(-plan_->plan().largest_lead);
   }
+}
+
+void Kernel::advance() {
+  if (const Code* code = this->code()) code->advance(arena_);
+  else arithmetic_->advance();
 }
 
 bool Kernel::finite(int lane) const {

@@ -78,13 +78,16 @@ class Kernel {
     return q.series ? number(q.at + static_cast<std::uint32_t>(order), lane) : order == 0 ? number(q.at, lane) : 0;
   }
   double series(const Place& place, int order, int lane = 0) const { return number(place.at + static_cast<std::uint32_t>(order), lane); }
-  // increments [x_j^(k), k = 0..d_j][lane] at h[lane], without the value at the point.
-  void advance(const double* h, double* increments) { arithmetic_->advance(h, increments); }
+  // After set_step in every lane: the changes of x_j^(k), k = 0..d_j, one after the other, over the steps.
+  void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
+  void advance();
+  double increment(std::size_t i, int lane = 0) const { return number(plan_->tables().increments + static_cast<std::uint32_t>(i), lane); }
 
  private:
   double number(std::uint32_t slot, int lane) const { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
   double& number(std::uint32_t slot, int lane) { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
-  void project();
+  void project(const Code* code);
+  const Code* code() const { return lanes_ == 1 ? plan_->code() : nullptr; }
   void judge_pivots();
 
   struct Free {

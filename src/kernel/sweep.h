@@ -148,17 +148,14 @@ class Sweep final : public Arithmetic {
       for (int stage = 0; stage <= p_.stages; ++stage) run(p_.after, stage);
   }
 
-  // x_j^(k) at h beyond the point, without its term of order 0.
-  void advance(const double* h, double* increments) override {
-    V step;
-    for (int lane = 0; lane < L; ++lane) T::set(step, lane, h[lane]);
-    V* out = reinterpret_cast<V*>(increments);
+  void advance() override {
+    const V step = w_[k_.step];
+    V* out = w_ + k_.increments;
     for (std::size_t j = 0; j < p_.x.size(); ++j) {
       const V* x = w_ + p_.x[j];
       for (int k = 0; k <= p_.d[j]; ++k) {
         V s = T::broadcast(0);
-        for (int i = p_.stages + p_.d[j] - k; i >= 1; --i)
-          s = T::fma(x[k + i], T::broadcast(k_.rising(k, i)), s) * step;
+        for (int i = p_.stages + p_.d[j] - k; i >= 1; --i) s = T::fma(x[k + i], T::broadcast(k_.rising(k, i)), s) * step;
         *out++ = s;
       }
     }

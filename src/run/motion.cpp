@@ -1,5 +1,7 @@
 #include "run/motion.h"
 
+#include "kernel/kernel.h"
+
 namespace anholon {
 
 template <Number N>
