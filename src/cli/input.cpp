@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <sstream>
 
+#include "run/form_choice.h"
+
 namespace anholon::cli {
 
 namespace fs = std::filesystem;
@@ -187,13 +189,22 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
       list += (list.empty() ? "" : ", ") + std::string(k->name);
     }
     const std::string near = did_you_mean(wanted, names);
-    const std::string message = "there is no form '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), hint = "the forms are " + list;
+    const std::string message = wanted == "auto" ? std::string("'auto' is a form for motions, to simulate, sweep and check") : "there is no form '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), hint = "the forms are " + list;
     if (!o.form_given && model.simulate.form)
       throw UsageError{print({Severity::error, model.simulate.form_span, message, hint}, model.source_text)};
     throw UsageError{"error: " + message + "\nhint: " + hint + "\n"};
   }
   if (mechanics) must_apply(*f, *mechanics);
   return *f;
+}
+
+Options with_form(Options o, const Reader& in) {
+  if ((o.form_given || !in.model->simulate.form ? o.form : *in.model->simulate.form) != "auto") return o;
+  const FormChoice choice = choose_form(in.again, state_choice(o, *in.model));
+  o.form = choice.form->name;
+  o.form_given = true;
+  if (!o.quiet) std::fprintf(stderr, "form %s: %s\n", choice.form->name, choice.why.c_str());
+  return o;
 }
 
 Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice, Scenario& s) {

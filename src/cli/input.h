@@ -30,6 +30,8 @@ std::string all_text(const SourceText& source);
 Reader read(const Options& o);
 // The form asked for: --form, else [simulate] form, else Routh's; throws if it does not apply.
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics = nullptr);
+// The options with --form auto, or that of the file, replaced by the form it comes to; says which, unless quiet.
+Options with_form(Options o, const Reader& in);
 StateChoice state_choice(const Options& o, const Model& model);
 Rational exact(const std::string& text, const std::string& option);
 // The numbers asked for by --numbers and --digits; `usual` where neither asks for others.

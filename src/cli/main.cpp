@@ -90,9 +90,9 @@ int run(int argc, char** argv) {
     c->add_option("--lambdadot", o.lambdadot, "initial rates of multipliers (order 4 and more)")->type_name("NAME=VALUE");
   };
   const auto form_option = [&](CLI::App* c) {
-    c->add_option("--form", o.form, "form of the equations (see `anholon forms`; derive: also all)")->type_name("NAME")->each([&o](const std::string&) { o.form_given = true; });
+    c->add_option("--form", o.form, "form of the equations (see `anholon forms`; derive: also all; motions: also auto)")->type_name("NAME")->each([&o](const std::string&) { o.form_given = true; });
     c->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers: y,z (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
-    c->add_option("--show", o.show, "print one stage instead: mechanics, system, structure, program")->type_name("STAGE");
+    c->add_option("--show", o.show, "print one stage instead: mechanics, system, structure, program; check: also cost")->type_name("STAGE");
   };
 
   CLI::App* check_command = model_command("check", "classify the constraints, show structure and initial data", cli::check,

@@ -1,8 +1,10 @@
 #include "cli/show.h"
 
+#include <cmath>
 #include <cstdio>
 
-#include "cli/input.h"
+#include "base/json.h"
+#include "run/form_choice.h"
 #include "structure/blocks.h"
 
 namespace anholon::cli {
@@ -51,8 +53,45 @@ int show(const Options& o, const Scenario& s) {
   } else if (o.show == "program") {
     std::fputs(print(program(s.system, s.structure)).c_str(), stdout);
   } else {
-    throw UsageError{"error: --show: there is no stage '" + o.show + "'\nhint: mechanics, system, structure, program\n"};
+    throw UsageError{"error: --show: there is no stage '" + o.show + "'\nhint: mechanics, system, structure, program; of check also cost\n"};
   }
+  return kOk;
+}
+
+static void cost_json(const FormChoice& c) {
+  JsonWriter j;
+  j.open_object().key("forms").open_array();
+  for (const FormCost& f : c.costs) {
+    j.open_object().key("form").string(f.form->name);
+    if (f.writings.empty()) j.key("reason").string(f.why);
+    j.key("writings").open_array();
+    for (const WritingCost& w : f.writings) {
+      j.open_object().key("writing").string(name(w.writing)).key("products").integer(static_cast<long long>(w.work.products));
+      j.key("sums").integer(static_cast<long long>(w.work.sums)).key("solve").integer(static_cast<long long>(w.work.solve));
+      j.key("operations").number(number_text(std::round(w.work.total))).key("after_steps");
+      w.after ? j.integer(static_cast<long long>(*w.after)) : j.null();
+      j.close();
+    }
+    j.close().close();
+  }
+  j.close().key("auto").string(c.form->name).key("reason").string(c.why).close();
+  std::printf("%s\n", j.text().c_str());
+}
+
+int show_cost(const Options& o, const Reader& in) {
+  const FormChoice c = choose_form(in.again, state_choice(o, *in.model));
+  if (o.json) return cost_json(c), kOk;
+  std::puts("one expansion at tolerance 1e-12\n");
+  std::printf("%-8s  %-9s  %8s  %6s  %6s  %10s  taken\n", "form", "writing", "products", "sums", "solve", "operations");
+  for (const FormCost& f : c.costs) {
+    if (f.writings.empty()) std::printf("%-8s  no kernel: %s\n", f.form->name, f.why.c_str());
+    for (const WritingCost& w : f.writings) {
+      const std::string taken = !w.after ? "" : *w.after == 0 ? "at once" : "after " + std::to_string(*w.after) + " steps";
+      std::printf("%-8s  %-9s  %8zu  %6zu  %6zu  %10.0f%s%s\n", f.form->name, name(w.writing), w.work.products, w.work.sums, w.work.solve, w.work.total,
+                  taken.empty() ? "" : "  ", taken.c_str());
+    }
+  }
+  std::printf("\n--form auto takes %s: %s\n", c.form->name, c.why.c_str());
   return kOk;
 }
 

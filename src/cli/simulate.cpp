@@ -293,9 +293,10 @@ SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSin
   }
 }
 
-int simulate_motion(const Options& o, const SavedRun* resume) {
-  if (ends_with(o.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
-  const Reader in = read(o);
+int simulate_motion(const Options& asked, const SavedRun* resume) {
+  if (ends_with(asked.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
+  const Reader in = read(asked);
+  const Options o = with_form(asked, in);
   if (resume) same_model(*resume, in);
   SimulationOptions options;
   options.resume = resume;

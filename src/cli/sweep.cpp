@@ -166,10 +166,11 @@ void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out
 
 }  // namespace
 
-int sweep(const Options& o) {
+int sweep(const Options& asked) {
   for (const std::string end : {".h5", ".db"})
-    if (ends_with(o.output, end)) throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
-  const Reader in = read(o);
+    if (ends_with(asked.output, end)) throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
+  const Reader in = read(asked);
+  const Options o = with_form(asked, in);
   const Variation variation(o, *in.model);
   EnsembleOptions options;
   options.state = state_choice(o, *in.model);

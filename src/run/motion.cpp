@@ -28,15 +28,38 @@ Outcome Motion<N>::start(const StateChoice& choice) {
 
 // Pivots are chosen at the start of the whole motion, so that a run that goes on has the same.
 template <Number N>
-void Motion<N>::accelerate(Leg& leg) const {
+Writing Motion<N>::accelerate(Leg& leg) const {
   if constexpr (std::same_as<N, double>) {
-    if (!settings_.kernel || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return;
+    if (!settings_.kernel || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return Writing::derived;
     std::vector<double> state;
     for (const W& x : start_.state) state.push_back(to_double(x));
-    leg.stepper.accelerate(KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, to_double(start_.t), state));
+    const double t = to_double(start_.t);
+    const auto derived = KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, t, state);
+    leg.stepper.accelerate(derived);
+    if (!leg.stepper.accelerated()) return Writing::derived;
+    const std::vector<Expr> quadratures = with_events();
+    const std::vector<Representation> list = representations({derived, leg.structure, quadratures, parameters_, t, state}, effort_);
+    const Representation& best = cheapest(list);
+    if (best.plan != derived) leg.stepper.accelerate(best.plan);
+    return best.writing;
   } else {
     (void)leg;
+    return Writing::derived;
   }
+}
+
+// The effort depends on the steps made alone, so that a run that goes on makes the same. Where coordinates are eliminated anew on the way, no writing
+// lasts long enough.
+template <Number N>
+void Motion<N>::write_anew() {
+  const WritingEffort effort = effort_after(leg_->stepper.steps());
+  if (effort == effort_ || pivots_ || !leg_->stepper.accelerated()) return;
+  effort_ = effort;
+  auto next = std::make_unique<Leg>(*this, leg_->system, leg_->structure);
+  if (accelerate(*next) <= Writing::paired || !next->stepper.take_over(leg_->stepper).ok()) return;
+  leg_ = std::move(next);
+  mark_ = {choices_.size(), chosen_};
+  begun_parameters_ = parameters_;
 }
 
 static bool can_go_on(OutcomeKind kind) {
@@ -47,6 +70,7 @@ static bool can_go_on(OutcomeKind kind) {
 template <Number N>
 Outcome Motion<N>::step(const W& end) {
   if (stepped_ && pivot_is_small()) eliminate_again();
+  if (stepped_) write_anew();
   const Mark before{choices_.size(), chosen_};
   const std::size_t expansions = leg_->stepper.expansions();
   Outcome o = leg_->stepper.step(end);
@@ -247,6 +271,7 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   b.direction = from.numbers<N>("direction");
   for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(static_cast<int>(to_double(side)));
   if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns())) SavedRun::unfit("direction");
+  if (!pivots_) effort_ = effort_after(b.steps);
   accelerate(*leg_);
   return leg_->stepper.resume(b);
 }

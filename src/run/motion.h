@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "run/representation.h"
 #include "run/saved.h"
 #include "run/scenario.h"
 
@@ -82,7 +83,8 @@ class Motion {
   void watch_pivots(const Elimination& e);
   bool pivot_is_small();
   InitialState<double> here() const;
-  void accelerate(Leg& leg) const;
+  Writing accelerate(Leg& leg) const;
+  void write_anew();
   std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
   bool eliminate_again();
   std::size_t levels() const { return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0); }
@@ -108,6 +110,7 @@ class Motion {
   std::vector<Choice> choices_;
   Mark mark_;
   std::size_t eliminations_ = 0;
+  WritingEffort effort_ = WritingEffort::at_once;  // that went into how the equations of the kernel are written
 };
 
 extern template class Motion<double>;

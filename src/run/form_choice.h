@@ -1,0 +1,35 @@
+// Which form of the equations makes a motion with the fewest operations, and what each of them costs.
+//
+// Counted, not measured, at the order of tolerance 1e-12, so that the answer depends on the model and its initial state alone. Forms without
+// multipliers eliminate anew where a pivot becomes small and recover lambda for every row: they are taken where they save enough to pay for that.
+#pragma once
+#include <functional>
+
+#include "run/representation.h"
+#include "run/scenario.h"
+
+namespace anholon {
+
+struct WritingCost {
+  Writing writing;
+  ExpansionWork work;
+  std::optional<std::size_t> after;  // so many steps a motion takes it
+};
+
+struct FormCost {
+  const Formulation* form = nullptr;
+  std::vector<WritingCost> writings;  // empty: `why`
+  double total = 0;                   // of a long motion
+  std::string why;                    // no kernel computes its motion
+};
+FormCost cost_of(const Scenario& scenario, const StateChoice& choice);
+
+struct FormChoice {
+  std::vector<FormCost> costs;  // Routh's first
+  const Formulation* form = nullptr;
+  std::string why;
+};
+// `again`: the model, each time in a graph of its own, in which nothing else is made.
+FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& again, const StateChoice& choice);
+
+}  // namespace anholon

@@ -1,0 +1,154 @@
+#include "run/representation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "expr/arrange.h"
+#include "expr/copy.h"
+#include "expr/normal.h"
+
+namespace anholon {
+
+namespace {
+
+// Beyond these, as in chains, there are few pairs, and equations written out are longer than they were.
+constexpr std::size_t kMostUnknowns = 12, kMostNodes = 2000;
+// Products of terms for one equation, a fraction of a millisecond.
+constexpr long kMostProducts = 4000;
+// Two writings of one equation agree to this, in relation to the largest coefficient of the order, or one of them loses digits.
+constexpr double kAgree = 1e-11;
+
+// A program with the system it stands on, in a graph of its own.
+struct Rewritten {
+  System system;
+  Program program;
+};
+
+System names_and_graph(const System& from) {
+  auto model = std::make_shared<Model>();
+  model->graph = std::make_shared<Graph>();
+  model->names = from.model->names;
+  model->names.defined.clear();
+  System s = from;
+  s.equations.clear();
+  s.model = std::move(model);
+  return s;
+}
+
+// No derivative beyond those solved for: they had cancelled before, and a program could not know their values.
+bool same_offsets(const System& s, const Structure& structure) {
+  for (std::size_t i = 0; i < s.equations.size(); ++i)
+    for (NodeId id : symbols({&s.equations[i], 1}))
+      if (const auto j = s.variable(id); j && s.model->graph->node(id).order + structure.c[i] > structure.d[*j]) return false;
+  return true;
+}
+
+std::shared_ptr<const Program> rewritten(const ToRepresent& e, Writing writing) {
+  const System& derived = *e.derived->program().system;
+  Column all = derived.equations;
+  all.insert(all.end(), e.quadratures.begin(), e.quadratures.end());
+  if (reachable(all).size() > kMostNodes) return nullptr;
+  auto r = std::make_shared<Rewritten>();
+  r->system = names_and_graph(derived);
+  Graph& g = *r->system.model->graph;
+  Column written;
+  for (Expr x : copied(all, g)) {
+    const std::optional<Expr> out = expanded(x, kMostProducts);
+    written.push_back(!out ? x : writing == Writing::expanded ? *out : arranged(x, r->system.model->names));
+  }
+  const auto equations = static_cast<std::ptrdiff_t>(derived.size());
+  r->system.equations.assign(written.begin(), written.begin() + equations);
+  if (!same_offsets(r->system, e.structure)) return nullptr;
+  r->program = program(r->system, e.structure, std::span(written).subspan(derived.size()), true);
+  return {r, &r->program};
+}
+
+// Largest difference of two expansions at one state, order by order.
+double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b) {
+  Kernel one(a), other(b);
+  for (Kernel* k : {&one, &other}) {
+    k->set_parameters(0, e.parameters);
+    k->load(0, e.t, e.state, std::vector<double>(a->plan().d.size(), 0.0));
+    k->expand();
+    if (!k->finite(0)) return std::numeric_limits<double>::infinity();
+  }
+  double worst = 0;
+  for (int k = 0; k <= a->plan().stages; ++k) {
+    double size = 1e-9, off = 0;
+    for (std::size_t j = 0; j < a->plan().d.size(); ++j) {
+      const int order = k + a->plan().d[j];
+      size = std::max(size, std::abs(one.coefficient(j, order)));
+      off = std::max(off, std::abs(one.coefficient(j, order) - other.coefficient(j, order)));
+    }
+    worst = std::max(worst, off / size);
+  }
+  return worst;
+}
+
+}  // namespace
+
+const char* name(Writing writing) {
+  switch (writing) {
+    case Writing::derived: return "derived";
+    case Writing::paired: return "paired";
+    case Writing::expanded: return "expanded";
+    case Writing::arranged: return "arranged";
+  }
+  return "";
+}
+
+std::vector<Representation> representations(const ToRepresent& e, WritingEffort effort) {
+  std::vector<Representation> list{{Writing::derived, e.derived}};
+  const auto& first = e.derived;
+  const Program& derived = first->program();
+  // The stepper follows such roots by the slots of the derived tape.
+  if (!first->plan().roots_of_even_powers.empty()) return list;
+  const auto add = [&](Writing writing, std::shared_ptr<const Program> p) {
+    auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state) : nullptr;
+    if (plan && plan->tables().refine == first->tables().refine && plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
+      list.push_back({writing, std::move(plan)});
+  };
+  if (derived.unknowns() > kMostUnknowns) return list;
+  add(Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)));
+  if (first->tables().refine) return list;
+  if (effort >= WritingEffort::long_motion) add(Writing::expanded, rewritten(e, Writing::expanded));
+  if (effort >= WritingEffort::very_long_motion) add(Writing::arranged, rewritten(e, Writing::arranged));
+  return list;
+}
+
+std::size_t steps_before(WritingEffort effort) {
+  switch (effort) {
+    case WritingEffort::at_once: return 0;
+    case WritingEffort::long_motion: return 2000;
+    case WritingEffort::very_long_motion: return 200'000;
+  }
+  return 0;
+}
+
+WritingEffort effort_after(std::size_t steps) {
+  WritingEffort most = WritingEffort::at_once;
+  for (const WritingEffort e : kWritingEfforts)
+    if (steps >= steps_before(e)) most = e;
+  return most;
+}
+
+const Representation& cheapest(const std::vector<Representation>& list) {
+  return *std::min_element(list.begin(), list.end(), [](const Representation& a, const Representation& b) { return a.plan->work() < b.plan->work(); });
+}
+
+ExpansionWork work_of(const KernelPlan& plan) {
+  ExpansionWork w;
+  for (const std::vector<Step>* list : {&plan.plan().stage, &plan.plan().after})
+    for (const Step& s : *list) switch (s.act) {
+        case Act::linear: w.sums += s.count; break;
+        case Act::multiply: case Act::divide: case Act::function: case Act::square: case Act::square_root: case Act::power: case Act::sine_cosine:
+        case Act::arctan2: ++w.products; break;
+        case Act::input: case Act::weigh: case Act::select: case Act::lookup: break;
+      }
+  w.solve = static_cast<std::size_t>(plan.elimination().work());
+  w.total = plan.work();
+  return w;
+}
+
+}  // namespace anholon
