@@ -12,11 +12,13 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <sstream>
 
 #include "base/json.h"
 #include "base/read_file.h"
 #include "fma_peak.h"
+#include "run/representation.h"
 #include "run/simulate.h"
 #include "stopwatch.h"
 
@@ -39,6 +41,8 @@ struct Request {
 struct Ready {
   Scenario scenario;
   std::unique_ptr<Program> stepping;
+  std::map<double, std::shared_ptr<const KernelPlan>> plans;  // by tolerance
+  double plan_made = 0, compiled = 0;                         // seconds, of the last of them
   double read = 0, scenario_made = 0, program_made = 0;  // seconds
 };
 
@@ -74,6 +78,24 @@ std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& 
   for (std::size_t j = 0; j < ready.scenario.system.coordinates; ++j)
     for (int k = 0; k < 2; ++k) values.push_back(point.derivative(j, k));
   return values;
+}
+
+// The kernel of a motion that is long enough for the dearest writing and for machine code.
+const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, const Start<long double>& start) {
+  auto& plan = r.plans[tolerance];
+  if (plan) return plan;
+  Stopwatch watch;
+  const std::vector<long double> parameters = parameter_values<long double>(*r.scenario.model);
+  const std::vector<double> state(start.state.begin(), start.state.end());
+  const double t = static_cast<double>(start.t);
+  const auto derived = KernelPlan::make(std::make_shared<const Program>(*r.stepping), taylor_order(std::log(tolerance)) - 1, parameters, t, state);
+  if (!derived) return plan;
+  plan = cheapest(representations({derived, r.scenario.structure, {}, parameters, t, state}, WritingEffort::very_long_motion)).plan;
+  r.plan_made = watch.seconds();
+  watch = {};
+  plan->compile({});
+  r.compiled = watch.seconds();
+  return plan;
 }
 
 // The only place that knows how a stepper is made and driven. Forms without multipliers go as far
@@ -153,22 +175,28 @@ void answer_exact(const Ready& r, int digits, JsonWriter& json) {
   write(json, "seconds", watch.seconds());
 }
 
-void answer_run(const Ready& r, double tolerance, double seconds, std::size_t most_steps,
+void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_steps,
                 JsonWriter& json) {
   using W = Wider<double>;
   Start<W> start;
   must(initial_state(r.scenario, {}, start));
   const W end = from_rational<W>(*r.scenario.model->simulate.to);
+  const auto plan = plan_of(r, tolerance, start);
   std::vector<double> times;
   std::unique_ptr<Trajectory<double>> motion;
   for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
     motion = std::make_unique<Trajectory<double>>(
-        r, StepSettings{std::log(tolerance), 0, kMostSteps, {}});
+        r, StepSettings{std::log(tolerance), 0, kMostSteps, {}, true, false});
+    motion->stepper.accelerate(plan);
     const Stopwatch watch;
     motion->go(start, end, most_steps);
     times.push_back(watch.seconds());
   }
   write(json, "us", 1e6 * median(times));
+  write(json, "plan", r.plan_made);
+  write(json, "compile", r.compiled);
+  if (plan) write(json, "work", plan->work());
+  json.key("by_kernel").integer(static_cast<long long>(motion->stepper.expansions_by_kernel()));
   json.key("runs").integer(static_cast<long long>(times.size()));
   json.key("steps").integer(static_cast<long long>(motion->stepper.steps()));
   json.key("order").integer(motion->stepper.order());
@@ -184,7 +212,7 @@ void print(JsonWriter& json) {
   std::fflush(stdout);
 }
 
-void serve(const Ready& ready, const std::string& line) {
+void serve(Ready& ready, const std::string& line) {
   std::istringstream words(line);
   std::string command;
   words >> command;

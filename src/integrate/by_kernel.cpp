@@ -40,7 +40,7 @@ template <Number N>
 bool Stepper<N>::expand_by_kernel(const std::vector<W>& guess) {
   if constexpr (std::same_as<N, double>) {
     // The first expansion is the reference's, for the measure of how regular J is.
-    if (!kernel_ || first_sigma_ == 0 || careful_) {
+    if (!kernel_ || (settings_.measure && first_sigma_ == 0) || careful_) {
       careful_ = false;
       return false;
     }

@@ -19,6 +19,7 @@ struct StepSettings {
   std::size_t most_steps = 50'000'000;
   std::function<bool()> cancelled;   // asked between steps
   bool kernel = true;                // where there is one
+  bool measure = true;               // how regular J is, where the kernel does not ask for it
 };
 
 // ceil(-ln(tolerance)/2 + 1): the order that makes the least work for the tolerance.

@@ -41,6 +41,7 @@ Writing Motion<N>::accelerate(Leg& leg) const {
     const std::vector<Representation> list = representations({derived, leg.structure, quadratures, parameters_, t, state}, effort_);
     const Representation& best = cheapest(list);
     if (best.plan != derived) leg.stepper.accelerate(best.plan);
+    leg.plan = best.plan;
     return best.writing;
   } else {
     (void)leg;
@@ -62,6 +63,21 @@ void Motion<N>::write_anew() {
   begun_parameters_ = parameters_;
 }
 
+template <Number N>
+void Motion<N>::compile_if_long() {
+  // A compilation takes 0.1 to 1 s, on another core if there is one.
+  constexpr std::chrono::milliseconds kLong(150);
+  constexpr std::size_t kSometimes = 64;
+  if (!leg_->plan || ++asked_ % kSometimes != 0 || (compilation_ && (compilation_->plan == leg_->plan || !*compilation_->done))) return;
+  if (std::chrono::steady_clock::now() - since_ < kLong) return;
+  const auto done = std::make_shared<std::atomic<bool>>(false);
+  compilation_.reset();
+  compilation_.emplace(leg_->plan, done, std::jthread([plan = leg_->plan, done] {
+                         plan->compile(code_cache());
+                         *done = true;
+                       }));
+}
+
 static bool can_go_on(OutcomeKind kind) {
   return kind == OutcomeKind::singular || kind == OutcomeKind::step_collapse || kind == OutcomeKind::not_a_number ||
          kind == OutcomeKind::no_convergence;
@@ -71,6 +87,7 @@ template <Number N>
 Outcome Motion<N>::step(const W& end) {
   if (stepped_ && pivot_is_small()) eliminate_again();
   if (stepped_) write_anew();
+  compile_if_long();
   const Mark before{choices_.size(), chosen_};
   const std::size_t expansions = leg_->stepper.expansions();
   Outcome o = leg_->stepper.step(end);

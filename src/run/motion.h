@@ -4,7 +4,11 @@
 // are then made again with other dependent coordinates, and the motion goes on from the same state (theory: elimination).
 #pragma once
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <functional>
+#include <optional>
+#include <thread>
 
 #include "run/representation.h"
 #include "run/saved.h"
@@ -66,6 +70,7 @@ class Motion {
     Program program;
     Stepper<N> stepper;
     Expansion<W> point;
+    std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
   };
 
   // Every choice of dependent coordinates on the way. The graph grows with each of them, and the order of its nodes decides
@@ -89,6 +94,8 @@ class Motion {
   bool eliminate_again();
   std::size_t levels() const { return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0); }
 
+  void compile_if_long();
+
   const Scenario& s_;
   StepSettings settings_;
   void set_modes(const std::vector<W>& parameters);
@@ -110,6 +117,15 @@ class Motion {
   std::vector<Choice> choices_;
   Mark mark_;
   std::size_t eliminations_ = 0;
+  // Machine code for a kernel that has been at work for a while is made beside the motion; its bits are the same.
+  struct Compilation {
+    std::shared_ptr<const KernelPlan> plan;
+    std::shared_ptr<std::atomic<bool>> done;
+    std::jthread thread;
+  };
+  std::optional<Compilation> compilation_;
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  std::size_t asked_ = 0;
   WritingEffort effort_ = WritingEffort::at_once;  // that went into how the equations of the kernel are written
 };
 
