@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernel/kernel.h"
+#include "run/representation.h"
 #include "run/simulate.h"
 #include "support/models.h"
 
@@ -79,6 +80,31 @@ TEST_P(KernelOf, EqualsTheInterpretedTape) {
     const double off = difference(*plan, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); });
     EXPECT_LT(off, 1e-13 + 10 * unavoidable) << tier.name;
   }
+}
+
+// The same coefficients from every writing of the equations.
+TEST_P(KernelOf, EveryWritingEqualsTheInterpretedTape) {
+  const Reference r(GetParam());
+  if (!r.stepping || !no_plan(*r.stepping).empty()) GTEST_SKIP() << "no kernel";
+  const auto plan = r.plan();
+  ASSERT_TRUE(plan);
+  const std::vector<double> state = Reference::narrow(r.start.state), leading = Reference::narrow(r.start.leading);
+  const double t = static_cast<double>(r.start.t);
+  Expansion<long double> reference(*r.stepping, r.parameters, kStages);
+  reference.load(t, {state.begin(), state.end()}, r.start.leading);
+  ASSERT_TRUE(reference.prepare().ok());
+  ASSERT_TRUE(reference.solve().ok());
+  ASSERT_TRUE(reference.extend().ok());
+  const auto off_by = [&](const std::shared_ptr<const KernelPlan>& p) {
+    Kernel kernel(p);
+    kernel.set_parameters(0, r.parameters);
+    kernel.load(0, t, state, leading);
+    kernel.expand();
+    return difference(*p, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); });
+  };
+  const double derived = off_by(plan);
+  const std::vector<Representation> list = representations({plan, r.scenario.structure, {}, r.parameters, t, state}, WritingEffort::long_motion);
+  for (const Representation& w : list) EXPECT_LT(off_by(w.plan), 1e-12 + 10 * derived) << name(w.writing);
 }
 
 // Machine code against the table-driven arithmetic: the same bits, from the same numbers, also where the arena holds another expansion's.
