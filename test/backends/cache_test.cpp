@@ -235,7 +235,10 @@ TEST(CacheFolder, ComesFromTheEnvironment) {
   setenv("XDG_CACHE_HOME", "/b", 1);
   EXPECT_EQ(code_cache(), "/b/anholon");
   setenv("HOME", "/c", 1);
-  for (const char* none : {"", "relative"}) setenv("XDG_CACHE_HOME", none, 1), EXPECT_EQ(code_cache(), "/c/.cache/anholon");
+  for (const char* none : {"", "relative"}) {
+    setenv("XDG_CACHE_HOME", none, 1);
+    EXPECT_EQ(code_cache(), "/c/.cache/anholon");
+  }
   unsetenv("XDG_CACHE_HOME");
   unsetenv("HOME");
   EXPECT_EQ(code_cache(), "");
