@@ -61,6 +61,20 @@ endfunction()
 # src/jit: a module of its own, loaded by the program when it wants machine code, so that LLVM costs nothing before that. It sees headers of
 # the kernel only. Left out where LLVM is not installed; everything works without it.
 function(anholon_compiler_module)
+  # Program and module share these types. A hash of the headers tells the program that the module beside it is of another build.
+  set(layout "")
+  foreach(header arithmetic code plan sparse_lu)
+    set(file "${PROJECT_SOURCE_DIR}/src/kernel/${header}.h")
+    file(SHA256 "${file}" hash)
+    string(APPEND layout "${hash}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+  endforeach()
+  string(SHA256 layout "${layout}")
+  set(layout "ANHOLON_KERNEL_LAYOUT=\"${layout}\"")
+  set_source_files_properties("${PROJECT_SOURCE_DIR}/src/kernel/compiler.cpp" PROPERTIES COMPILE_DEFINITIONS "${layout}")
+  if(NOT ANHOLON_JIT)
+    return()
+  endif()
   find_package(LLVM 19.1 QUIET CONFIG)
   if(NOT LLVM_FOUND)
     message(STATUS "LLVM 19 was not found: kernels are not compiled")
@@ -71,9 +85,12 @@ function(anholon_compiler_module)
   set_target_properties(anholon_jit PROPERTIES PREFIX "" OUTPUT_NAME "anholon-compiler" LIBRARY_OUTPUT_DIRECTORY "${ANHOLON_PROGRAM_DIR}"
     CXX_VISIBILITY_PRESET hidden)
   target_compile_options(anholon_jit PRIVATE -ffp-contract=off)
+  target_compile_definitions(anholon_jit PRIVATE "${layout}")
   target_include_directories(anholon_jit PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_include_directories(anholon_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
   target_link_libraries(anholon_jit PRIVATE LLVM anholon_options anholon_warnings)
+  # The name of the build is part of the key of what is kept on disk.
+  target_link_options(anholon_jit PRIVATE -Wl,--build-id=sha1)
   install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon")
 endfunction()
 

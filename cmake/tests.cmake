@@ -4,6 +4,9 @@ find_package(GTest REQUIRED)
 find_package(nlohmann_json REQUIRED)
 include(GoogleTest)
 
+# No test keeps compiled code in the user's home.
+set(no_cache "ANHOLON_CACHE=")
+
 # The system's python first: a version manager's shim costs ten times its start-up.
 find_program(ANHOLON_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(ANHOLON_PYTHON python3 REQUIRED)
@@ -29,7 +32,7 @@ foreach(layer IN LISTS layers)
     anholon_test_executable(test_${layer} ${sources})
     # A test may use anything declared up to its layer: a test of mechanics may read a model file.
     target_link_libraries(test_${layer} PRIVATE ${upto})
-    gtest_discover_tests(test_${layer} TEST_PREFIX "unit.${layer}." PROPERTIES LABELS unit
+    gtest_discover_tests(test_${layer} TEST_PREFIX "unit.${layer}." PROPERTIES LABELS unit ENVIRONMENT "${no_cache}"
       DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
   endif()
 endforeach()
@@ -40,7 +43,7 @@ file(GLOB new_form "${PROJECT_SOURCE_DIR}/test/house/forms/*.cpp")
 anholon_formulation_registry(registry_with_new_form NAME new_ EXTRA ${new_form})
 anholon_test_executable(test_new_form test/house/new_form_test.cpp ${new_form} ${registry_with_new_form})
 anholon_link_layers(test_new_form)
-gtest_discover_tests(test_new_form TEST_PREFIX "house." PROPERTIES LABELS unit DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+gtest_discover_tests(test_new_form TEST_PREFIX "house." PROPERTIES LABELS unit ENVIRONMENT "${no_cache}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
 
 # test/<set>/*_test.cpp: one executable over all layers, run in shards
 # Their tests share costly derivations within a process; shards keep that and fill the cores.
@@ -70,7 +73,7 @@ function(anholon_test_set set)
   foreach(shard RANGE ${last})
     add_test(NAME "${set}.${shard}" COMMAND test_${set} --gtest_brief=1)
     set_tests_properties("${set}.${shard}" PROPERTIES LABELS "${arg_LABELS}"
-      ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard}")
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${shard};${no_cache}")
   endforeach()
 endfunction()
 
@@ -86,7 +89,7 @@ anholon_test_set(long        SHARDS 4 LABELS long-only)
 
 function(anholon_script_test name)
   add_test(NAME "script.${name}" COMMAND ${ANHOLON_PYTHON} ${ARGN} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
-  set_tests_properties("script.${name}" PROPERTIES LABELS script ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+  set_tests_properties("script.${name}" PROPERTIES LABELS script ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;${no_cache}")
 endfunction()
 
 anholon_script_test(layers          tools/check_layers.py)
@@ -122,7 +125,7 @@ if(TARGET anholon)
     string(REPLACE "/" "." name "${name}")
     add_test(NAME "golden.${name}" WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
       COMMAND ${ANHOLON_PYTHON} tools/golden.py --program $<TARGET_FILE:anholon> "test/golden/${case}")
-    set_tests_properties("golden.${name}" PROPERTIES LABELS golden ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+    set_tests_properties("golden.${name}" PROPERTIES LABELS golden ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;${no_cache}")
   endforeach()
 
   if(ANHOLON_SAME_BITS_WITH)

@@ -21,6 +21,7 @@ LEVEL = {
 # Layers that may see less than everything below them.
 ONLY = {
     "result": {"base", "numeric"},
+    "jit": {"kernel", "expr"},  # a module of its own; of expr/ the table of elementary functions
 }
 NOT = {
     "formulation": {"spec"},
@@ -123,6 +124,7 @@ GOOD = {
     "src/report/html.cpp": '#include "result/columns.h"\n#include "program/program.h"\n',
     "src/proof/verify.cpp": '#include "numeric/ball.h"\n#include "proof/certificate.h"\n',
     "src/proof/certificate.cpp": '#include <nlohmann/json.hpp>\n#include "base/json.h"\n',
+    "src/jit/emitter.cpp": '#include <llvm/IR/Module.h>\n#include "kernel/code.h"\n#include "expr/elementary.def"\n',
     "src/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "run/run.h"\n',
     "include/anholon/api.h": "#include <vector>\n",
 }
@@ -132,6 +134,9 @@ MUTANTS = {
     "across, below": ("src/formulation/forms/bad.cpp", '  #  include "spec/read.h"\n'),
     "result sees numbers only": ("src/result/bad.cpp", '#include "model/model.h"\n'),
     "report does not integrate": ("src/report/bad.cpp", '#include "integrate/taylor.h"\n'),
+    "the compiler sees kernels only": ("src/jit/bad.cpp", '#include "program/program.h"\n'),
+    "kernels do without their compiler": ("src/kernel/bad.cpp", '#include "jit/emitter.h"\n'),
+    "kernels do not integrate": ("src/kernel/bad.cpp", '#include "integrate/taylor.h"\n'),
     "program does not prove": ("src/program/bad.cpp", '#include "proof/certificate.h"\n'),
     "verify trusts the simplifier": ("src/proof/verify.cpp", '#include "expr/graph.h"\n'),
     "verify trusts the prover": ("src/proof/verify_zero.cpp", '#include "proof/prove.h"\n'),

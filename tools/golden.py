@@ -113,7 +113,7 @@ class Scratch:
             "PATH": f"{self.folder / 'bin'}:{os.environ.get('PATH', '/usr/bin:/bin')}",
             "HOME": str(self.folder / "home"), "TMPDIR": str(self.folder / "home"),
             "LC_ALL": "C.UTF-8", "TERM": "dumb", "NO_COLOR": "1", "COLUMNS": "100",
-            "ANHOLON_MODELS": "models",
+            "ANHOLON_MODELS": "models", "ANHOLON_CACHE": "",
         }  # fmt: skip
 
     def run(self, command):

@@ -104,7 +104,7 @@ Outcome Stepper<N>::resume(const StepperState<N>& b) {
   smallest_sigma_t_ = b.smallest_sigma_t;
   weakest_ = b.weakest;
   expansion_.set_weakest_direction(b.direction);
-  sigma_before_ = b.sigma_before;
+  sigma_ = sigma_before_ = b.sigma_before;
   last_step_ = b.last_step;
   least_health_ = b.least_health;
   careful_ = b.careful;

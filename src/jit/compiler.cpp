@@ -1,28 +1,25 @@
 // The module behind kernel/code.h: LLVM IR by the Emitter, machine code by ORC, kept on disk between runs.
 #include <llvm/ExecutionEngine/Orc/LLJIT.h>
-#include <llvm/Support/MemoryBuffer.h>
+#include <llvm/IR/LegacyPassManager.h>
 #include <llvm/Support/TargetSelect.h>
 #include <llvm/Support/xxhash.h>
 #include <llvm/Target/TargetMachine.h>
-#include <llvm/IR/LegacyPassManager.h>
-#include <llvm/TargetParser/Host.h>
 
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <mutex>
-#include <system_error>
 
-#include <unistd.h>
+#include <elf.h>
+#include <link.h>
 
 #include "jit/emitter.h"
+#include "jit/store.h"
+
+extern "C" __attribute__((visibility("default"))) const anholon::CompilerModule anholon_compiler;
+extern "C" __attribute__((visibility("default"))) const char anholon_compiler_layout[];
 
 namespace anholon::jit {
 
 namespace {
-
-// Raise it when the code for one and the same plan changes.
-constexpr int kCodeVersion = 1;
 
 extern "C" {
 static void anholon_sincos(double x, double* sine, double* cosine) { __builtin_sincos(x, sine, cosine); }
@@ -42,81 +39,76 @@ static double anholon_function(int function, double u) {
 }
 }
 
+using Builder = llvm::orc::JITTargetMachineBuilder;
+
 std::string text_of(llvm::Error error) { return llvm::toString(std::move(error)); }
 
-std::unique_ptr<llvm::TargetMachine> machine(llvm::orc::JITTargetMachineBuilder& builder) {
-  builder.setCodeGenOptLevel(llvm::CodeGenOptLevel::Default);
-  builder.setRelocationModel(llvm::Reloc::PIC_);
-  auto made = builder.createTargetMachine();
-  if (!made) return nullptr;
-  return std::move(*made);
+// Which build of a library holds an address: the note that the linker made of its contents. Empty if it made none.
+std::string build_of(const void* address) {
+  struct Question {
+    std::uintptr_t address;
+    std::string answer;
+  } question{reinterpret_cast<std::uintptr_t>(address), {}};
+  dl_iterate_phdr(
+      [](dl_phdr_info* library, std::size_t, void* data) -> int {
+        auto& q = *static_cast<Question*>(data);
+        bool here = false;
+        for (int i = 0; i < library->dlpi_phnum; ++i) {
+          const ElfW(Phdr)& part = library->dlpi_phdr[i];
+          here = here || (part.p_type == PT_LOAD && q.address - (library->dlpi_addr + part.p_vaddr) < part.p_memsz);
+        }
+        if (!here) return 0;
+        for (int i = 0; i < library->dlpi_phnum; ++i) {
+          const ElfW(Phdr)& part = library->dlpi_phdr[i];
+          if (part.p_type != PT_NOTE) continue;
+          const auto padded = [](std::size_t n) { return (n + 3) / 4 * 4; };
+          const char* at = reinterpret_cast<const char*>(library->dlpi_addr + part.p_vaddr);
+          for (const char* end = at + part.p_memsz; at + sizeof(ElfW(Nhdr)) <= end;) {
+            const auto* note = reinterpret_cast<const ElfW(Nhdr)*>(at);
+            const char *name = at + sizeof *note, *text = name + padded(note->n_namesz);
+            if (note->n_type == NT_GNU_BUILD_ID && std::string(name, note->n_namesz) == std::string("GNU", 4)) q.answer.assign(text, note->n_descsz);
+            at = text + padded(note->n_descsz);
+          }
+        }
+        return 1;
+      },
+      &question);
+  return question.answer;
 }
 
-std::unique_ptr<llvm::MemoryBuffer> object_of(llvm::Module& module, llvm::TargetMachine& target) {
+// All that decides the code: this compiler, LLVM, the machine, the plan. Nothing if the builds have no names: no code of another one, then.
+bool name(const KernelTables& tables, const Builder& builder, Key& key) {
+  static const std::string ours = build_of(&anholon_compiler), llvms = build_of(reinterpret_cast<const void*>(&llvm::xxh3_128bits));
+  if (ours.empty() || llvms.empty()) return false;
+  Writer w;
+  w.add(ours), w.add(llvms);
+  w.add(builder.getTargetTriple().str()), w.add(builder.getCPU()), w.add(builder.getFeatures().getString());
+  w.add(tables);
+  key = w.key();
+  return true;
+}
+
+std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, Builder& builder, std::string& message) {
+  auto target = builder.createTargetMachine();
+  if (!target) return message = text_of(target.takeError()), nullptr;
+  llvm::LLVMContext context;
+  llvm::Module module("kernel", context);
+  module.setDataLayout((*target)->createDataLayout());
+  module.setTargetTriple((*target)->getTargetTriple().str());
+  Emitter(tables, module).run();
   llvm::SmallVector<char, 0> bytes;
   llvm::raw_svector_ostream out(bytes);
   llvm::legacy::PassManager passes;
-  if (target.addPassesToEmitFile(passes, out, nullptr, llvm::CodeGenFileType::ObjectFile)) return nullptr;
+  if ((*target)->addPassesToEmitFile(passes, out, nullptr, llvm::CodeGenFileType::ObjectFile)) return message = "the compiler makes no object files", nullptr;
   passes.run(module);
   return llvm::MemoryBuffer::getMemBufferCopy(llvm::StringRef(bytes.data(), bytes.size()), "kernel");
 }
 
-// An object file is followed by its own hash: a file cut short, or written by somebody else, is not taken.
-std::unique_ptr<llvm::MemoryBuffer> read(const std::filesystem::path& file) {
-  auto buffer = llvm::MemoryBuffer::getFile(file.string(), false, false);
-  if (!buffer || (*buffer)->getBufferSize() < sizeof(std::uint64_t)) return nullptr;
-  const llvm::StringRef all = (*buffer)->getBuffer(), body = all.drop_back(sizeof(std::uint64_t));
-  std::uint64_t hash = 0;
-  std::memcpy(&hash, all.end() - sizeof hash, sizeof hash);
-  if (hash != llvm::xxh3_64bits(body)) return nullptr;
-  return llvm::MemoryBuffer::getMemBufferCopy(body, "kernel");
-}
-
-// Under a name of its own first, then renamed: whoever looks finds all of it or nothing, however many write at once.
-void write(const std::filesystem::path& file, const llvm::MemoryBuffer& object) {
-  std::error_code none;
-  std::filesystem::create_directories(file.parent_path(), none);
-  const std::filesystem::path part = file.string() + "." + std::to_string(getpid()) + "." + std::to_string(reinterpret_cast<std::uintptr_t>(&object));
-  std::FILE* out = std::fopen(part.c_str(), "wb");
-  if (!out) return;
-  const std::uint64_t hash = llvm::xxh3_64bits(object.getBuffer());
-  const bool good = std::fwrite(object.getBufferStart(), 1, object.getBufferSize(), out) == object.getBufferSize() && std::fwrite(&hash, sizeof hash, 1, out) == 1;
-  if (std::fclose(out) == 0 && good) std::filesystem::rename(part, file, none);
-  else std::filesystem::remove(part, none);
-}
-
-void compile(const KernelTables& tables, const std::string& cache, Code& code, std::string& message) {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    llvm::InitializeNativeTarget();
-    llvm::InitializeNativeTargetAsmPrinter();
-  });
-  auto builder = llvm::orc::JITTargetMachineBuilder::detectHost();
-  if (!builder) return void(message = text_of(builder.takeError()));
-  const std::unique_ptr<llvm::TargetMachine> target = machine(*builder);
-  if (!target) return void(message = "no compiler for this machine");
-
-  auto context = std::make_unique<llvm::LLVMContext>();
-  llvm::Module module("kernel", *context);
-  module.setDataLayout(target->createDataLayout());
-  module.setTargetTriple(target->getTargetTriple().str());
-  Emitter(tables, module).run();
-
-  // The key is all that decides the code: the IR itself, the machine, the version.
-  std::string text;
-  llvm::raw_string_ostream(text) << module << target->getTargetCPU() << target->getTargetFeatureString() << LLVM_VERSION_STRING << kCodeVersion;
-  char name[32];
-  std::snprintf(name, sizeof name, "%016llx", static_cast<unsigned long long>(llvm::xxh3_64bits(text)));
-  const std::filesystem::path file = cache.empty() ? std::filesystem::path() : std::filesystem::path(cache) / (std::string("kernel-") + name + ".o");
-  std::unique_ptr<llvm::MemoryBuffer> object = cache.empty() ? nullptr : read(file);
-  if (!object) {
-    object = object_of(module, *target);
-    if (!object) return void(message = "the compiler made nothing");
-    if (!cache.empty()) write(file, *object);
-  }
-
-  auto jit = llvm::orc::LLJITBuilder().setJITTargetMachineBuilder(*builder).create();
-  if (!jit) return void(message = text_of(jit.takeError()));
+Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, int levels, std::string& message) {
+  // No platform: there are no initializers to run, and the general one compiles a module of its own.
+  auto jit = llvm::orc::LLJITBuilder().setJITTargetMachineBuilder(builder).setPlatformSetUp(llvm::orc::setUpInactivePlatform).create();
+  if (!jit) return message = text_of(jit.takeError()), Code{};
+  (*jit)->getExecutionSession().setErrorReporter([](llvm::Error error) { llvm::consumeError(std::move(error)); });  // what fails, fails at lookup
   llvm::orc::SymbolMap symbols;
   const auto add = [&](const char* symbol, auto* function) {
     symbols[(*jit)->mangleAndIntern(symbol)] = {llvm::orc::ExecutorAddr::fromPtr(function), llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
@@ -125,14 +117,11 @@ void compile(const KernelTables& tables, const std::string& cache, Code& code, s
   add("anholon_power", &anholon_power);
   add("anholon_function", &anholon_function);
   add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
-  if (auto error = (*jit)->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(symbols)))) return void(message = text_of(std::move(error)));
-  if (auto error = (*jit)->addObjectFile(std::move(object))) return void(message = text_of(std::move(error)));
+  if (auto error = (*jit)->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(symbols)))) return message = text_of(std::move(error)), Code{};
+  if (auto error = (*jit)->addObjectFile(std::move(object))) return message = text_of(std::move(error)), Code{};
   const auto find = [&](const char* part) -> Code::Part {
     auto symbol = (*jit)->lookup(part);
-    if (!symbol) {
-      message = text_of(symbol.takeError());
-      return nullptr;
-    }
+    if (!symbol) return message = text_of(symbol.takeError()), nullptr;
     return symbol->toPtr<Code::Part>();
   };
   Code made;
@@ -141,15 +130,40 @@ void compile(const KernelTables& tables, const std::string& cache, Code& code, s
   made.lead = find("lead");
   made.extend = find("extend");
   made.advance = find("advance");
-  for (int level = 1; level <= Emitter::levels(tables); ++level) made.level.push_back(find(Emitter::level_name(level).c_str()));
-  if (!message.empty()) return;
+  for (int level = 1; level <= levels; ++level) made.level.push_back(find(Emitter::level_name(level).c_str()));
+  if (!message.empty()) return {};
   made.keeper = std::shared_ptr<void>(jit->release(), [](void* p) { delete static_cast<llvm::orc::LLJIT*>(p); });
-  code = std::move(made);
+  return made;
+}
+
+void compile(const KernelTables& tables, const std::string& cache, Code& code, std::string& message) {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    llvm::InitializeNativeTarget();
+    llvm::InitializeNativeTargetAsmPrinter();
+  });
+  auto builder = Builder::detectHost();
+  if (!builder) return void(message = text_of(builder.takeError()));
+  // Twice as fast to compile as Default where that takes long, and no slower to run; a simpler register allocator gains nothing more.
+  builder->setCodeGenOptLevel(llvm::CodeGenOptLevel::Less);
+  builder->setRelocationModel(llvm::Reloc::PIC_);
+
+  Key key;
+  const Store store(!cache.empty() && name(tables, *builder, key) ? cache : std::string());
+  if (auto kept = store.read(key)) {
+    std::string why;
+    code = linked(std::move(kept), *builder, Emitter::levels(tables), why);
+    if (code.values) return;
+  }
+  auto object = compiled(tables, *builder, message);
+  if (!object) return;
+  store.write(key, *object);
+  code = linked(std::move(object), *builder, Emitter::levels(tables), message);
 }
 
 }  // namespace
 
 }  // namespace anholon::jit
 
-extern "C" __attribute__((visibility("default"))) const anholon::CompilerModule anholon_compiler;
 const anholon::CompilerModule anholon_compiler{anholon::kCompilerVersion, anholon::jit::compile};
+const char anholon_compiler_layout[] = ANHOLON_KERNEL_LAYOUT;

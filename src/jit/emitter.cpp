@@ -32,6 +32,20 @@ void Emitter::begin(const char* name) {
   known_.clear();
 }
 
+// Functions of moderate size: what the compiler does grows faster than they.
+llvm::Function* Emitter::begin_part(const std::string& name) {
+  auto* type = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt64Ty()}, false);
+  function_ = llvm::Function::Create(type, llvm::Function::PrivateLinkage, name, m_);
+  function_->addFnAttr(llvm::Attribute::NoUnwind);
+  w_ = function_->getArg(0);
+  scratch_ = function_->getArg(1);
+  k0_ = function_->getArg(2);
+  b_.SetInsertPoint(llvm::BasicBlock::Create(m_.getContext(), "entry", function_));
+  block_ = b_.CreateInBoundsGEP(b_.getDoubleTy(), w_, k0_);
+  known_.clear();
+  return function_;
+}
+
 void Emitter::end() { b_.CreateRetVoid(); }
 
 llvm::Value* Emitter::address(std::int64_t slot, bool relative) {
@@ -445,10 +459,9 @@ void Emitter::known_before(const Convolution* group, std::size_t count) {
   }
 }
 
-void Emitter::bulk(const std::vector<Step>& steps) {
+void Emitter::bulk() {
   std::vector<Convolution> all;
   for (const auto& [c, place] : bulk_) all.push_back(c);
-  (void)steps;
   for (std::size_t from = 0; from < all.size();) {
     std::size_t to = from + 1;
     while (to < all.size() && to - from < kSideBySide && all[to].lead == all[from].lead) ++to;
@@ -457,23 +470,54 @@ void Emitter::bulk(const std::vector<Step>& steps) {
   }
 }
 
+// Each stage is a function of its own.
 void Emitter::stages(const std::vector<Step>& steps, bool solved) {
   const int last = p_.stages;
+  llvm::Function* const whole = function_;
+  Value* const arena = w_;
+  const std::string list = solved ? "stage" : "after";
+  const auto back = b_.saveIP();
+
+  std::vector<llvm::Function*> first, later;
   relative_ = false;
-  for (stage_ = 1; stage_ <= std::min(last, kBlock); ++stage_) stage(steps, solved);
-  if (last <= kBlock) return;
-  bulk_.clear();
-  for (const Step& s : steps)
-    for (const Convolution& c : convolutions(s)) bulk_.try_emplace(c, 0U);
-  unsigned place = 0;
-  for (auto& [c, where] : bulk_) where = place++;
-  auto* entry = &function_->getEntryBlock();
-  {
-    llvm::IRBuilder<> top(entry, entry->begin());
-    auto* memory = top.CreateAlloca(llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock), top.getInt32(std::max(1U, place)));
-    memory->setAlignment(llvm::Align(32));
-    scratch_ = memory;
+  for (stage_ = 1; stage_ <= std::min(last, kBlock); ++stage_) {
+    first.push_back(begin_part(list + std::to_string(stage_)));
+    stage(steps, solved);
+    end();
   }
+  bulk_.clear();
+  llvm::Function* before_block = nullptr;
+  if (last > kBlock) {
+    for (const Step& s : steps)
+      for (const Convolution& c : convolutions(s)) bulk_.try_emplace(c, 0U);
+    unsigned place = 0;
+    for (auto& [c, where] : bulk_) where = place++;
+    before_block = begin_part(list + "_known");
+    bulk();
+    end();
+    relative_ = true;
+    for (i_ = 0; i_ < kBlock; ++i_) {
+      later.push_back(begin_part(list + "_later" + std::to_string(i_)));
+      stage(steps, solved);
+      end();
+    }
+    relative_ = false;
+  }
+
+  function_ = whole;
+  w_ = arena;
+  b_.restoreIP(back);
+  known_.clear();
+  Value* scratch = nullptr;
+  {
+    llvm::BasicBlock& entry = function_->getEntryBlock();
+    llvm::IRBuilder<> top(&entry, entry.begin());
+    auto* memory = top.CreateAlloca(llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock), top.getInt32(static_cast<std::uint32_t>(bulk_.size() + 1)));
+    memory->setAlignment(llvm::Align(32));
+    scratch = memory;
+  }
+  for (llvm::Function* f : first) b_.CreateCall(f, {w_, scratch, b_.getInt64(1)});
+  if (!before_block) return;
   llvm::BasicBlock* before = b_.GetInsertBlock();
   auto* loop = llvm::BasicBlock::Create(m_.getContext(), "block", function_);
   auto* done = llvm::BasicBlock::Create(m_.getContext(), "done", function_);
@@ -481,24 +525,19 @@ void Emitter::stages(const std::vector<Step>& steps, bool solved) {
   b_.SetInsertPoint(loop);
   llvm::PHINode* k0 = b_.CreatePHI(b_.getInt64Ty(), 2);
   k0->addIncoming(b_.getInt64(kBlock + 1), before);
-  k0_ = k0;
-  block_ = b_.CreateInBoundsGEP(b_.getDoubleTy(), w_, k0);
-  bulk(steps);
-  relative_ = true;
-  for (i_ = 0; i_ < kBlock; ++i_) {
-    if (i_ > 0) {
+  b_.CreateCall(before_block, {w_, scratch, k0});
+  for (int i = 0; i < kBlock; ++i) {
+    if (i > 0) {
       auto* next = llvm::BasicBlock::Create(m_.getContext(), "stage", function_);
-      b_.CreateCondBr(b_.CreateICmpSLE(b_.CreateAdd(k0_, b_.getInt64(static_cast<std::uint64_t>(i_))), b_.getInt64(static_cast<std::uint64_t>(last))), next, done);
+      b_.CreateCondBr(b_.CreateICmpSLE(b_.CreateAdd(k0, b_.getInt64(static_cast<std::uint64_t>(i))), b_.getInt64(static_cast<std::uint64_t>(last))), next, done);
       b_.SetInsertPoint(next);
     }
-    stage(steps, solved);
+    b_.CreateCall(later[static_cast<std::size_t>(i)], {w_, scratch, k0});
   }
-  Value* next = b_.CreateAdd(k0_, b_.getInt64(kBlock));
+  Value* next = b_.CreateAdd(k0, b_.getInt64(kBlock));
   k0->addIncoming(next, b_.GetInsertBlock());
   b_.CreateCondBr(b_.CreateICmpSLE(next, b_.getInt64(static_cast<std::uint64_t>(last))), loop, done);
   b_.SetInsertPoint(done);
-  relative_ = false;
-  known_.clear();
 }
 
 void Emitter::extend() {

@@ -33,6 +33,8 @@ class Emitter {
   };
 
   void begin(const char* name);
+  // A part of another function: of the arena, the scratch memory and the first stage of the block.
+  llvm::Function* begin_part(const std::string& name);
   void end();
   void values();
   void factor();
@@ -43,7 +45,7 @@ class Emitter {
   // All stages from 1 of a list, in blocks.
   void stages(const std::vector<Step>& steps, bool solved);
   void stage(const std::vector<Step>& steps, bool solved);
-  void bulk(const std::vector<Step>& steps);
+  void bulk();
   void known_before(const Convolution* group, std::size_t count);
 
   void value(const Step& s);

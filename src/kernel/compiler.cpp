@@ -1,6 +1,7 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 
 #include "kernel/code.h"
@@ -18,7 +19,10 @@ static const CompilerModule* load() {
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) continue;
     const auto* module = static_cast<const CompilerModule*>(dlsym(library, "anholon_compiler"));
-    if (module && module->version == kCompilerVersion) return module;
+    // It reads our plans: one that was built from other headers is left alone.
+    const auto* layout = static_cast<const char*>(dlsym(library, "anholon_compiler_layout"));
+    if (module && module->version == kCompilerVersion && layout && std::strcmp(layout, ANHOLON_KERNEL_LAYOUT) == 0) return module;
+    dlclose(library);
   }
   return nullptr;
 }
@@ -34,7 +38,8 @@ std::string code_cache() {
     return std::string(value ? value : "");
   };
   if (std::getenv("ANHOLON_CACHE")) return set("ANHOLON_CACHE");
-  if (const std::string cache = set("XDG_CACHE_HOME"); !cache.empty()) return cache + "/anholon";
+  // A relative path there is to be ignored (XDG Base Directory Specification).
+  if (const std::string cache = set("XDG_CACHE_HOME"); cache.rfind('/', 0) == 0) return cache + "/anholon";
   if (const std::string home = set("HOME"); !home.empty()) return home + "/.cache/anholon";
   return {};
 }

@@ -23,6 +23,8 @@ import types
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+os.environ.setdefault("ANHOLON_CACHE", "")  # nothing is kept in the user's home
+
 try:
     import numpy
 except ImportError:

@@ -30,6 +30,8 @@ import sys
 import tempfile
 import threading
 
+os.environ.setdefault("ANHOLON_CACHE", "")  # nothing is kept in the user's home
+
 FOLDER = pathlib.Path(__file__).resolve().parent
 SECONDS = 2  # of processor time, for each command
 MEMORY = 1 << 30  # bytes of address space

@@ -21,6 +21,8 @@ from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal, getcontext
 from pathlib import Path
 
+os.environ.setdefault("ANHOLON_CACHE", "")  # nothing is kept in the user's home
+
 HERE = Path(__file__).resolve().parent
 FORCES = ["Q", "QR", "Qomega", "minus_dVO", "minus_dVomega", "Gamma", "inertia_term", "N"]
 ENERGIES = ["T_r", "S_r", "V_O", "V_omega", "h"]

@@ -1,0 +1,99 @@
+#include "jit/key.h"
+
+#include <llvm/Support/xxhash.h>
+
+#include <cstdio>
+
+namespace anholon::jit {
+
+std::string Key::text() const {
+  char digits[33];
+  std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(half[0]), static_cast<unsigned long long>(half[1]));
+  return digits;
+}
+
+Key hash(llvm::StringRef bytes) {
+  const auto h = llvm::xxh3_128bits({bytes.bytes_begin(), bytes.bytes_end()});
+  return {{h.low64, h.high64}};
+}
+
+// By structured bindings: a member that is added later and forgotten here does not compile.
+
+void Writer::add(const Place& place) {
+  const auto& [at, series] = place;
+  all(at, series);
+}
+
+void Writer::add(const Step& step) {
+  const auto& [act, lead, a_constant, b_constant, a_unknown, b_unknown, out, a, b, c, d, e, f, first, count, constants, index, value] = step;
+  all(act, lead, a_constant, b_constant, a_unknown, b_unknown, out, a, b, c, d, e, f, first, count, constants, index, value);
+}
+
+void Writer::add(const PlanTerm& term) {
+  const auto& [coefficient, x] = term;
+  all(coefficient, x);
+}
+
+// Values are numbers of the arena; the code knows only which of them are 1 and -1.
+void Writer::add(const Coefficient& coefficient) { all(coefficient.one(), coefficient.minus_one()); }
+
+void Writer::add(const Partial& partial) {
+  const auto& [kind, out, a, b, value] = partial;
+  all(kind, out, a, b, value);
+}
+
+void Writer::add(const Entry& entry) {
+  const auto& [row, column, from, sign] = entry;
+  all(row, column, from, sign);
+}
+
+void Writer::add(const Completion& completion) {
+  const auto& [out, lead, column, fresh] = completion;
+  all(out, lead, column, fresh);
+}
+
+// The values at the samples have chosen the pivots and are not looked at again.
+void Writer::add(const SparseLu::Pivot& pivot) {
+  [[maybe_unused]] const auto& [row, column, entry, one, minus_one, first_scaled, scaled, first_update, updates, value] = pivot;
+  all(row, column, entry, one, minus_one, first_scaled, scaled, first_update, updates);
+}
+
+void Writer::add(const SparseLu::Update& update) {
+  const auto& [to, l, u] = update;
+  all(to, l, u);
+}
+
+void Writer::add(const SparseLu::Forward& forward) {
+  const auto& [to, entry, from] = forward;
+  all(to, entry, from);
+}
+
+void Writer::add(const SparseLu::Backward& backward) {
+  const auto& [column, row, pivot, first, count, zero_side] = backward;
+  all(column, row, pivot, first, count, zero_side);
+}
+
+void Writer::add(const SparseLu::Term& term) {
+  const auto& [entry, column] = term;
+  all(entry, column);
+}
+
+void Writer::add(const Plan& plan) {
+  // What roots of even powers are is for whoever chooses steps.
+  [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, quadratures,
+                                roots_of_even_powers, rows, largest_lead, largest_d, c, d] = plan;
+  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, quadratures, rows, largest_lead, largest_d, c, d);
+}
+
+void Writer::add(const SparseLu& elimination) {
+  const auto& [entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms] = elimination;
+  all(entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms);
+}
+
+void Writer::add(const KernelTables& tables) {
+  // Knots: models that look tables up are not compiled.
+  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, rhs, side, solution, refined, entries, step, increments, size, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders] = tables;
+  all(*plan, *elimination, lu, reciprocal, rhs, side, solution, refined, entries, step, increments, size, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders);
+}
+
+}  // namespace anholon::jit

@@ -1,0 +1,63 @@
+// What names compiled code on disk: a hash of all that decides it. The plan's numbers and not the IR, which takes long to build and to print.
+#pragma once
+#include <llvm/ADT/StringRef.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "kernel/code.h"
+
+namespace anholon::jit {
+
+struct Key {
+  std::array<std::uint64_t, 2> half{};
+  bool operator==(const Key&) const = default;
+  std::string text() const;
+};
+
+Key hash(llvm::StringRef bytes);
+
+// Numbers one after the other.
+class Writer {
+ public:
+  template <class T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void add(T x) {
+    bytes_.append(reinterpret_cast<const char*>(&x), sizeof x);
+  }
+  void add(const std::string& text) { add(text.size()), bytes_ += text; }
+  void add(const Key& key) { add(key.half[0]), add(key.half[1]); }
+  template <class T>
+  void add(const std::vector<T>& list) {
+    add(list.size());
+    for (const auto& x : list) add(x);
+  }
+  void add(const Place& place);
+  void add(const Step& step);
+  void add(const PlanTerm& term);
+  void add(const Coefficient& coefficient);
+  void add(const Partial& partial);
+  void add(const Entry& entry);
+  void add(const Completion& completion);
+  void add(const SparseLu::Pivot& pivot);
+  void add(const SparseLu::Update& update);
+  void add(const SparseLu::Forward& forward);
+  void add(const SparseLu::Backward& backward);
+  void add(const SparseLu::Term& term);
+  void add(const Plan& plan);
+  void add(const SparseLu& elimination);
+  void add(const KernelTables& tables);
+  Key key() const { return hash(bytes_); }
+
+ private:
+  template <class... T>
+  void all(const T&... x) {
+    (add(x), ...);
+  }
+  std::string bytes_;
+};
+
+}  // namespace anholon::jit

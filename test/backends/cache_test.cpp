@@ -1,0 +1,250 @@
+// Compiled code on disk: whatever happens to the folder, the code is right, and nobody is told of trouble.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "kernel/kernel.h"
+#include "run/simulate.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+struct Subject {
+  explicit Subject(const std::string& name) {
+    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, scenario).ok()) throw std::runtime_error(name);
+    stepping = std::make_shared<const Program>(program(scenario.system, scenario.structure));
+    parameters = parameter_values<long double>(*scenario.model);
+    Start<long double> start;
+    if (!initial_state(scenario, {}, start).ok()) throw std::runtime_error(name);
+    state.assign(start.state.begin(), start.state.end());
+    leading.assign(start.leading.begin(), start.leading.end());
+  }
+  std::shared_ptr<const KernelPlan> plan(int stages = 6) const { return KernelPlan::make(stepping, stages, parameters, 0, state); }
+
+  // Compiled with this folder, the coefficients are those of the tables. Empty, or what is wrong.
+  std::string check(const std::string& cache, int stages = 6) const {
+    const auto plain = plan(stages), compiled = plan(stages);
+    if (const std::string why = compiled->compile(cache); !why.empty()) return why;
+    Kernel a(plain), b(compiled);
+    for (Kernel* k : {&a, &b}) {
+      k->set_parameters(0, parameters);
+      k->load(0, 0, state, leading);
+      k->expand();
+    }
+    const Plan& p = plain->plan();
+    for (std::size_t j = 0; j < p.x.size(); ++j)
+      for (int k = 0; k <= p.stages + p.d[j]; ++k)
+        if (a.coefficient(j, k) != b.coefficient(j, k)) return "another coefficient";
+    return {};
+  }
+
+  Scenario scenario;
+  std::shared_ptr<const Program> stepping;
+  std::vector<long double> parameters;
+  std::vector<double> state, leading;
+};
+
+const Subject& sleigh() {
+  static const Subject s("zoo/chaplygin-sleigh");
+  return s;
+}
+
+class Cache : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!compiler()) GTEST_SKIP() << "no compiler";
+    std::string name = (fs::temp_directory_path() / "anholon-cache-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  void TearDown() override {
+    std::error_code none;
+    if (!folder_.empty()) fs::permissions(folder_, fs::perms::owner_all, none), fs::remove_all(folder_, none);
+  }
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> all;
+    for (const auto& e : fs::directory_iterator(folder_)) all.push_back(e.path());
+    return all;
+  }
+  // The one entry, made now.
+  fs::path entry() const {
+    EXPECT_EQ(sleigh().check(folder_), "");
+    const auto all = files();
+    EXPECT_EQ(all.size(), 1U);
+    return all.at(0);
+  }
+  std::string folder_;
+};
+
+void put(const fs::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+fs::file_time_type ago(std::chrono::hours t) { return fs::file_time_type::clock::now() - t; }
+
+TEST_F(Cache, IsUsed) {
+  const fs::path file = entry();
+  const auto inode = [&] {
+    struct stat about {};
+    stat(file.c_str(), &about);
+    return about.st_ino;
+  };
+  const auto before = inode();
+  EXPECT_EQ(sleigh().check(folder_), "");
+  EXPECT_EQ(inode(), before) << "written again";
+  EXPECT_EQ(files().size(), 1U);
+  EXPECT_EQ(sleigh().check(folder_, 9), "");
+  EXPECT_EQ(files().size(), 2U) << "other stages, other code";
+}
+
+TEST_F(Cache, TakesNoFileThatIsNotWhole) {
+  const fs::path file = entry();
+  const std::string good = test::file_text(file);
+  std::vector<std::string> bad{"", "x", std::string(good.size(), '\0'), good.substr(0, good.size() / 2), good.substr(0, good.size() - 1), good + "x", "x" + good};
+  for (const std::size_t at : {std::size_t{0}, good.size() / 3, good.size() - 20, good.size() - 1}) bad.push_back(good), bad.back()[at] ^= 1;
+  for (const std::string& bytes : bad) {
+    put(file, bytes);
+    EXPECT_EQ(sleigh().check(folder_), "");
+    EXPECT_EQ(test::file_text(file), good) << "not made anew";
+  }
+}
+
+// A whole file under another's name: of other stages, as a stale version would be.
+TEST_F(Cache, TakesNoCodeOfAnotherKey) {
+  const fs::path file = entry();
+  const std::string good = test::file_text(file);
+  EXPECT_EQ(sleigh().check(folder_, 9), "");
+  for (const fs::path& other : files())
+    if (other != file) put(file, test::file_text(other));
+  EXPECT_EQ(sleigh().check(folder_), "");
+  EXPECT_EQ(test::file_text(file), good);
+}
+
+TEST_F(Cache, TakesNoCodeThatOthersMayWrite) {
+  const fs::path file = entry();
+  fs::permissions(file, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_EQ(sleigh().check(folder_), "");
+  EXPECT_EQ(fs::status(file).permissions() & fs::perms::others_write, fs::perms::none) << "not made anew";
+}
+
+TEST_F(Cache, DoesWithoutAFolder) {
+  put(folder_ + "/file", "x");
+  for (const std::string& place : {folder_ + "/file", folder_ + "/file/below", std::string("/dev/full"), std::string("/proc/none"), folder_ + "/" + std::string(5000, 'x')})
+    EXPECT_EQ(sleigh().check(place), "") << place;
+  EXPECT_EQ(sleigh().check(folder_ + "/made/when/needed"), "");
+  EXPECT_TRUE(fs::is_directory(folder_ + "/made/when/needed"));
+  fs::create_directory(folder_ + "/locked");
+  fs::permissions(folder_ + "/locked", fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_EQ(sleigh().check(folder_ + "/locked"), "");
+  // Things that are no files, under the name of the entry.
+  const fs::path file = files().empty() ? fs::path() : *fs::directory_iterator(folder_ + "/made/when/needed");
+  fs::remove(file);
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  EXPECT_EQ(sleigh().check(folder_ + "/made/when/needed"), "") << "a pipe";
+  fs::remove(file);
+  fs::create_directory(file);
+  EXPECT_EQ(sleigh().check(folder_ + "/made/when/needed"), "") << "a folder";
+}
+
+// A limit on the size of files ends a write in the middle, as a full disk does.
+TEST_F(Cache, LeavesNothingOnAFullDisk) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit little{3000, 3000};
+    setrlimit(RLIMIT_FSIZE, &little);
+    _exit(sleigh().check(folder_).empty() ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(files().empty());
+}
+
+// Some write and read the same entry for a while, some of them are killed at any moment, and somebody spoils the file in between.
+TEST_F(Cache, SurvivesWritersAndKills) {
+  const fs::path file = entry();
+  std::vector<pid_t> children;
+  for (int i = 0; i < 6; ++i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      std::error_code none;
+      for (int k = 0; k < 3; ++k) {
+        if (!sleigh().check(folder_).empty()) _exit(1);
+        if (i % 2 == 0) fs::resize_file(file, 100 + 1000 * static_cast<unsigned>(k), none);
+        else unlink(file.c_str());
+      }
+      _exit(0);
+    }
+    children.push_back(child);
+  }
+  for (int i = 0; i < 2; ++i) usleep(static_cast<useconds_t>(40000 + 70000 * i)), kill(children[static_cast<std::size_t>(i)], SIGKILL);
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    int status = 0;
+    ASSERT_EQ(waitpid(children[i], &status, 0), children[i]);
+    EXPECT_TRUE(status == 0 || (i < 2 && WIFSIGNALED(status))) << i;
+  }
+  EXPECT_EQ(sleigh().check(folder_), "");
+  EXPECT_EQ(sleigh().check(folder_), "");
+}
+
+// Sparse files: large, and no burden.
+TEST_F(Cache, IsBounded) {
+  const auto make = [&](const std::string& name, std::uintmax_t size, std::chrono::hours age) {
+    const fs::path file = folder_ + "/" + name;
+    put(file, "");
+    fs::resize_file(file, size);
+    fs::last_write_time(file, ago(age));
+    return file;
+  };
+  const fs::path oldest = make("kernel-1.o", 100 << 20, 30h), old = make("kernel-2.o", 100 << 20, 20h), recent = make("kernel-3.o", 100 << 20, 10h);
+  const fs::path foreign = make("thesis.tex", 300 << 20, 1000h), part = make("kernel-4.o.abcdef", 10, 5h), fresh = make("kernel-5.o.abcdef", 10, 0h);
+  EXPECT_EQ(sleigh().check(folder_), "");
+  EXPECT_FALSE(fs::exists(oldest));
+  EXPECT_FALSE(fs::exists(old)) << "a quarter is left free";
+  EXPECT_TRUE(fs::exists(recent));
+  EXPECT_TRUE(fs::exists(foreign));
+  EXPECT_FALSE(fs::exists(part)) << "of a process that is gone";
+  EXPECT_TRUE(fs::exists(fresh)) << "of a process that may be writing";
+}
+
+// What is used counts as new.
+TEST_F(Cache, KeepsWhatIsUsed) {
+  const fs::path file = entry();
+  fs::last_write_time(file, ago(1000h));
+  EXPECT_EQ(sleigh().check(folder_), "");
+  EXPECT_GT(fs::last_write_time(file), ago(1h));
+}
+
+TEST(CacheFolder, ComesFromTheEnvironment) {
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  setenv("ANHOLON_CACHE", "/a", 1);
+  EXPECT_EQ(code_cache(), "/a");
+  setenv("ANHOLON_CACHE", "", 1);
+  EXPECT_EQ(code_cache(), "");
+  unsetenv("ANHOLON_CACHE");
+  setenv("XDG_CACHE_HOME", "/b", 1);
+  EXPECT_EQ(code_cache(), "/b/anholon");
+  setenv("HOME", "/c", 1);
+  for (const char* none : {"", "relative"}) {
+    setenv("XDG_CACHE_HOME", none, 1);
+    EXPECT_EQ(code_cache(), "/c/.cache/anholon");
+  }
+  unsetenv("XDG_CACHE_HOME");
+  unsetenv("HOME");
+  EXPECT_EQ(code_cache(), "");
+  setenv("ANHOLON_CACHE", "", 1);
+  setenv("HOME", home.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace anholon
