@@ -14,6 +14,9 @@ constexpr double kHealthy = 0.02;
 // The smallest singular value is looked at again whenever the pivots have become this much smaller.
 constexpr double kNews = 0.8;
 
+// … and every so many steps.
+constexpr std::size_t kLook = 256;
+
 bool may_turn(const Instruction& in) {
   return in.op == Op::select || in.op == Op::lookup ||
          (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign)));
@@ -39,8 +42,9 @@ void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan> plan) {
 template <Number N>
 bool Stepper<N>::expand_by_kernel(const std::vector<W>& guess) {
   if constexpr (std::same_as<N, double>) {
-    // The first expansion is the reference's, for the measure of how regular J is.
-    if (!kernel_ || (settings_.measure && first_sigma_ == 0) || careful_) {
+    // Some expansions are the reference's, for the measure of how regular J is: the first, others ever more rarely, and see below.
+    const bool look = settings_.measure && (first_sigma_ == 0 || steps_ % kLook == 0 || (steps_ & (steps_ - 1)) == 0);
+    if (!kernel_ || look || careful_) {
       careful_ = false;
       return false;
     }
