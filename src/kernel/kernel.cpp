@@ -15,6 +15,8 @@ namespace {
 constexpr double kQuiet = 8 * 0x1p-53;
 // The samples for the choice of pivots lie so far around the state given: an angle may take any value.
 constexpr double kAround = 3.3;
+// Steps of a stage: more would be compiled for many seconds.
+constexpr std::size_t kMostCompiled = 400;
 // Solutions are refined where that changes them by more.
 constexpr double kRefined = 64 * 0x1p-53;
 
@@ -165,6 +167,7 @@ std::string KernelPlan::compile(const std::string& cache) const {
   const CompilerModule* module = compiler();
   if (!module) return "there is no compiler beside the program";
   if (tables_.refine) return "solutions are refined";
+  if (plan_.stage.size() + plan_.after.size() > kMostCompiled) return "it is too large to be compiled in a short time";
   for (const std::vector<Step>* list : {&plan_.point, &plan_.after})
     for (const Step& s : *list)
       if (s.act == Act::lookup) return "tables are looked up";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "run/representation.h"
 #include "run/watch.h"
 
 namespace anholon {
@@ -46,6 +47,15 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
   Column masses;
   for (const VaryingMass& m : model.masses) masses.push_back(m.value);
   program = anholon::program(s.system, s.structure, masses);
+  settings.measure = false;
+  if (Start<long double> at; initial_state(s, o.state, at).ok()) {
+    const std::vector<long double> numbers = parameter_values<long double>(model);
+    const std::vector<double> state(at.state.begin(), at.state.end());
+    const double t = static_cast<double>(at.t);
+    const int order = o.order > 0 ? o.order : taylor_order(settings.log_tolerance);
+    if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state))
+      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state}, WritingEffort::long_motion)).plan;
+  }
   Column watched;
   for (const Monitor& m : model.monitors) watched.push_back(m.value);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, watched));
@@ -55,6 +65,12 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
     const Node& n = g.node(in.symbol);
     output_inputs.push_back({in.slot, s.system.variable(in.symbol), n.kind == Kind::time ? 0 : n.order});
   }
+}
+
+void EnsemblePlan::compile_if_long() const {
+  constexpr std::chrono::milliseconds kLong(150);
+  if (!kernel || std::chrono::steady_clock::now() - since_ < kLong) return;
+  std::call_once(once_, [this] { compiler_ = std::jthread([plan = kernel] { plan->compile(code_cache()); }); });
 }
 
 // A model read once more, with a graph of its own in which a thread may build.
@@ -134,7 +150,9 @@ void CaseWorker::integrate(const EnsembleCase& numbers, CaseResult& r) {
 // The way that is left, if this one does not go to the end.
 CaseWorker::Way CaseWorker::plainly(const EnsembleCase& numbers, CaseResult& r) {
   // A stepper begins anew: what it met before must leave no trace.
+  plan_.compile_if_long();
   stepper_.emplace(*plan_.program, narrow_parameters_, parameters_, plan_.settings);
+  if (plan_.kernel) stepper_->accelerate(plan_.kernel);
   if (!ready_) {
     point_.emplace(*plan_.program, parameters_, std::max(1, plan_.stages));
     if (plan_.outputs) outputs_.emplace(*plan_.outputs, 0, parameters_);

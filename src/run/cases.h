@@ -5,6 +5,10 @@
 // completed states, redundant constraints or another elimination, goes the way of `simulate` in a graph of the thread's own, so that its
 // outcome is that of `simulate`. A case with which the equations have another structure is derived anew.
 #pragma once
+#include <chrono>
+#include <mutex>
+#include <thread>
+
 #include "run/case_parameters.h"
 
 namespace anholon {
@@ -21,6 +25,10 @@ class EnsemblePlan {
   CaseParameters parameters;
   std::vector<Node> entries;        // of the state, in the order of an Expansion's
   std::optional<Program> program;   // varying masses are its quadratures
+  // For the expansions of all cases, its pivots chosen at the start of the scenario; may be null. `simulate` chooses them at its own start, so the last
+  // digits may differ. Machine code, with the same bits, is made beside the cases when they have taken a while.
+  std::shared_ptr<const KernelPlan> kernel;
+  void compile_if_long() const;
   std::optional<Tape> outputs;
   struct Entry {
     std::uint32_t slot;
@@ -30,6 +38,11 @@ class EnsemblePlan {
   std::vector<Entry> output_inputs;
   int stages = 0;
   StepSettings settings;
+
+ private:
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  mutable std::once_flag once_;
+  mutable std::jthread compiler_;
 };
 
 // The workspaces of one thread.
