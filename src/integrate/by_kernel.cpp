@@ -10,7 +10,7 @@ namespace anholon {
 namespace {
 
 // Below this part of what they were where they were chosen, the pivots are no longer trusted.
-constexpr double kHealthy = 0.02;
+constexpr double kHealthy = 2e-3;
 // The smallest singular value is looked at again whenever the pivots have become this much smaller.
 constexpr double kNews = 0.8;
 

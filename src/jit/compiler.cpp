@@ -22,7 +22,7 @@ namespace anholon::jit {
 namespace {
 
 extern "C" {
-static void anholon_sincos(double x, double* sine, double* cosine) { __builtin_sincos(x, sine, cosine); }
+static void anholon_sincos(double x, double* sine, double* cosine) { ::sincos(x, sine, cosine); }
 static double anholon_power(double x, double exponent) {
   return exponent == -0.5 ? 1 / std::sqrt(x) : exponent == 1.5 ? x * std::sqrt(x) : exponent == -1.5 ? 1 / (x * std::sqrt(x)) : std::pow(x, exponent);
 }

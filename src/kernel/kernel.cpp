@@ -47,7 +47,7 @@ double function_of(std::uint32_t function, double x) {
   return x;
 }
 
-void sine_and_cosine(double x, double& sine, double& cosine) { __builtin_sincos(x, &sine, &cosine); }
+void sine_and_cosine(double x, double& sine, double& cosine) { ::sincos(x, &sine, &cosine); }
 
 const std::vector<Tier>& tiers() {
   static const std::vector<Tier> list = [] {
