@@ -56,6 +56,7 @@ bool Stepper<N>::expand_by_kernel(const std::vector<W>& guess) {
     kernel_->expand();
     const double health = kernel_->health(0);
     if (!(health > kHealthy) || health < least_health_ * kNews || !kernel_->finite(0)) {
+      turned_ = by_kernel_ && !(health > 0);
       if (health < least_health_) least_health_ = std::max(health, 0.0);
       return false;
     }

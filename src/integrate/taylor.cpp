@@ -134,7 +134,27 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
   std::swap(begun_before_, begun_);
   const bool again = expansions_ > 0;
   Outcome o = expand_here(guess);
+  if (o.ok() && turned_) return look_back();
   if (!o.ok() && again) expand_again(StepperState<N>(begun_before_));
+  return o;
+}
+
+// A pivot of the kernel has changed its sign in the last step: whether J was singular on the way is asked of the reference.
+template <Number N>
+Outcome Stepper<N>::look_back() {
+  turned_ = false;
+  const StepperState<N> now = begun_, last = begun_before_;
+  const W length = last_step_;
+  careful_ = true;
+  expand_again(last);
+  last_step_ = W(0);
+  const std::optional<W> met = singular_within(now.t - last.t);
+  last_step_ = length;
+  if (met) return {OutcomeKind::singular, "the system Jacobian becomes singular at t = " + number_text(to_double(W(last.t + *met)), 12), "end the motion before"};
+  careful_ = true;
+  const Outcome o = expand_here(now.leading);
+  begun_ = now;
+  begun_before_ = last;
   return o;
 }
 

@@ -119,6 +119,7 @@ class Stepper {
   bool expand_by_kernel(const std::vector<W>& guess);
   N coefficient(std::size_t j, int k) const;
   void expand_again(const StepperState<N>& last);
+  Outcome look_back();
   void note_sigma(const N& sigma);
   // The slots that may have kinks: also those of what is watched for events.
   std::uint32_t kinks_end() const { return events_.empty() ? program_->tape.main_end : static_cast<std::uint32_t>(program_->tape.code.size()); }
@@ -146,6 +147,7 @@ class Stepper {
   std::unique_ptr<Kernel> kernel_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
   bool by_kernel_ = false;                                    // the present expansion
+  bool turned_ = false;                                       // a pivot has changed its sign in a step by the kernel
   bool careful_ = false;                                      // the next one is to be made without the kernel
   N least_health_{1};
   std::size_t by_kernel_count_ = 0;

@@ -68,7 +68,7 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
 }
 
 void EnsemblePlan::compile_if_long() const {
-  constexpr std::chrono::milliseconds kLong(150);
+  constexpr std::chrono::milliseconds kLong(400);
   if (!kernel || std::chrono::steady_clock::now() - since_ < kLong) return;
   std::call_once(once_, [this] { compiler_ = std::jthread([plan = kernel] { plan->compile(code_cache()); }); });
 }

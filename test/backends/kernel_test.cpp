@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "kernel/kernel.h"
 #include "run/representation.h"
@@ -105,6 +106,43 @@ TEST_P(KernelOf, EveryWritingEqualsTheInterpretedTape) {
   const double derived = off_by(plan);
   const std::vector<Representation> list = representations({plan, r.scenario.structure, {}, r.parameters, t, state}, WritingEffort::long_motion);
   for (const Representation& w : list) EXPECT_LT(off_by(w.plan), 1e-12 + 10 * derived) << name(w.writing);
+}
+
+// Every lane has the bits of a kernel of one lane, whatever its neighbours do: other states, one of them without a value, one far from the constraints.
+TEST_P(KernelOf, LanesHaveTheSameBits) {
+  const Reference r(GetParam());
+  if (!r.stepping || !no_plan(*r.stepping).empty()) GTEST_SKIP() << "no kernel";
+  const auto plan = r.plan();
+  ASSERT_TRUE(plan);
+  const Plan& p = plan->plan();
+  for (const Tier& tier : tiers()) {
+    if (tier.lanes == 1) continue;
+    Kernel lanes(plan, tier.lanes, &tier), one(plan, 1, &tier);
+    one.set_parameters(0, r.parameters);
+    const auto state_of = [&](int lane) {
+      std::vector<double> state = Reference::narrow(r.start.state);
+      if (lane == 1) state[0] = std::numeric_limits<double>::quiet_NaN();
+      else if (lane == 2) state[0] += 0.1;
+      else state[0] += 1e-16 * lane;
+      return state;
+    };
+    for (int lane = 0; lane < tier.lanes; ++lane) {
+      lanes.set_parameters(lane, r.parameters);
+      lanes.load(lane, static_cast<double>(r.start.t) + 0.01 * lane, state_of(lane), Reference::narrow(r.start.leading));
+    }
+    lanes.expand();
+    for (int lane = 0; lane < tier.lanes; ++lane) {
+      if (lane == 1) continue;
+      one.load(0, static_cast<double>(r.start.t) + 0.01 * lane, state_of(lane), Reference::narrow(r.start.leading));
+      one.expand();
+      for (std::size_t j = 0; j < p.x.size(); ++j)
+        for (int k = 0; k <= p.stages + p.d[j]; ++k) {
+          const double want = one.coefficient(j, k);
+          if (want != want) continue;
+          EXPECT_EQ(lanes.coefficient(j, k, lane), want) << tier.name << " lane " << lane << " order " << k;
+        }
+    }
+  }
 }
 
 // Machine code against the table-driven arithmetic: the same bits, from the same numbers, also where the arena holds another expansion's.
