@@ -90,7 +90,7 @@ const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, con
   const double t = static_cast<double>(start.t);
   const auto derived = KernelPlan::make(std::make_shared<const Program>(*r.stepping), taylor_order(std::log(tolerance)) - 1, parameters, t, state);
   if (!derived) return plan;
-  plan = cheapest(representations({derived, r.scenario.structure, {}, parameters, t, state}, WritingEffort::very_long_motion)).plan;
+  plan = cheapest(representations({derived, r.scenario.structure, {}, parameters, t, state, r.scenario.mechanics.get()}, WritingEffort::very_long_motion)).plan;
   r.plan_made = watch.seconds();
   watch = {};
   plan->compile({});

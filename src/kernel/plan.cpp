@@ -76,7 +76,7 @@ class Planner {
         for (std::uint32_t k = in.first; k < in.first + in.count; ++k) r.push_back(tape_.linear_terms[k].slot);
         break;
       case Op::multiply: case Op::scale: case Op::divide: r = {in.a, in.b}; break;
-      case Op::square: case Op::power: case Op::lookup: r = {in.a}; break;
+      case Op::square: case Op::power: case Op::lookup: case Op::rate: r = {in.a}; break;
       case Op::function:
         r = {in.a};
         if (!cosine_of_.count(s) && !sine_of_.count(s)) r.push_back(in.b);
@@ -186,6 +186,12 @@ class Planner {
       if (!live_[s] || in.constant || in.op == Op::lookup) continue;
       if (in.op == Op::input) {
         tainted_[s] = pure_[s] = inputs_[s]->leading;
+        continue;
+      }
+      if (in.op == Op::rate) {
+        const std::uint32_t a = same_as(in.a);
+        tainted_[s] = unknown(a, static_cast<std::uint8_t>(in.lead + in.index));
+        pure_[s] = tainted_[s] && pure_[a];
         continue;
       }
       if (sum_like(s)) {
@@ -336,6 +342,10 @@ class Planner {
           step.a = {plan_.x[inputs_[s]->variable], true};
           step.index = static_cast<std::uint32_t>(inputs_[s]->order);
           break;
+        case Op::rate:
+          step.act = Act::input;
+          step.index = in.index;
+          break;
         case Op::multiply: step.act = Act::multiply; break;
         case Op::square: step.act = Act::square; break;
         case Op::divide:
@@ -406,6 +416,7 @@ class Planner {
       list(s, false).push_back(step);
       if (after) continue;
       if (in.op == Op::input && inputs_[s]->leading) continue;
+      if (in.op == Op::rate && pure_[s]) continue;
       const std::uint32_t a = same_as(in.a);
       step.a_unknown = in.op != Op::input && unknown(a, in.lead) && pure_[a];
       if (in.op == Op::multiply || in.op == Op::divide || in.op == Op::arctan2) {
@@ -417,6 +428,7 @@ class Planner {
   }
 
   std::uint32_t column(std::uint32_t s) const {
+    if (code_[s].op == Op::rate) return column(same_as(code_[s].a));
     return code_[s].op == Op::input ? static_cast<std::uint32_t>(inputs_[s]->variable) : column_[s];
   }
 
@@ -432,7 +444,7 @@ class Planner {
     column_.assign(code_.size(), kNone);
     plan_.rows = n;
     for (std::uint32_t s = 0; s < tape_.main_end; ++s)
-      if (live_[s] && tainted_[s] && code_[s].op != Op::input) column_[s] = plan_.rows++;
+      if (live_[s] && tainted_[s] && code_[s].op != Op::input && code_[s].op != Op::rate) column_[s] = plan_.rows++;
     const auto enter = [&](std::uint32_t s, std::uint32_t o, std::uint32_t from, double sign) {
       plan_.entries.push_back({column_[s], column(o), from, sign});
     };
@@ -498,7 +510,7 @@ class Planner {
       if (code_[s].op == Op::input) {
         if (inputs_[s]->order > 0) plan_.completions.push_back({place_[s], code_[s].lead, column(s), true});
       } else {
-        plan_.completions.push_back({place_[s], code_[s].lead, column_[s], pure_[s]});
+        plan_.completions.push_back({place_[s], code_[s].lead, column(s), pure_[s]});
       }
     }
   }

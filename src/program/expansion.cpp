@@ -380,6 +380,9 @@ void Expansion<N>::add_leading(int stage) {
       }
     } else if (in.op == Op::select) {
       if (const bool first = partials_[k].a > N(0); first ? t.a : t.b) change = delta_[first ? in.a : in.b];
+    } else if (in.op == Op::rate) {
+      const std::size_t order = static_cast<std::size_t>(stage + in.lead);
+      change = delta_[in.a] * (factorial_[order + in.index] / factorial_[order]);
     } else {
       if (t.a) addmul(change, partials_[k].a, delta_[in.a]);
       if (t.b) addmul(change, partials_[k].b, delta_[in.b]);

@@ -14,7 +14,7 @@ Program program(const System& system, const Structure& structure, std::span<cons
   Column es = system.equations;
   es.insert(es.end(), quadratures.begin(), quadratures.end());
   p.quadratures = quadratures.size();
-  p.tape = compile(es, structure.c, shared);
+  p.tape = compile(es, structure.c, shared, system.rates, static_cast<std::uint32_t>(system.coordinates));
 
   const Graph& g = *system.model->graph;
   p.tangent_row.assign(p.tape.code.size(), Program::kUntainted);
@@ -53,11 +53,12 @@ Program program(const System& system, const Structure& structure, std::span<cons
         t.b = tainted(in.b, in.lead);
         break;
       case Op::square: case Op::power: case Op::function: t.a = tainted(in.a, in.lead); break;
+      case Op::rate: t.a = tainted(in.a, static_cast<std::uint8_t>(in.lead + in.index)); break;
     }
     if (!t.a && !t.b) continue;
     // At higher orders of the series (leads above 0) they enter linearly whatever the operation.
     const bool product = in.op == Op::multiply || in.op == Op::scale;
-    if (in.lead == 0 && in.op != Op::linear && in.op != Op::select && (product ? t.a && t.b : in.op != Op::divide || t.b)) p.nonlinear = true;
+    if (in.lead == 0 && in.op != Op::linear && in.op != Op::select && in.op != Op::rate && (product ? t.a && t.b : in.op != Op::divide || t.b)) p.nonlinear = true;
     t.row = static_cast<std::uint32_t>(p.tangent_rows++);
     p.tangent_row[s] = t.row;
     p.tainted.push_back(t);
@@ -71,7 +72,7 @@ ProgramSize size(const Program& p) {
     if (in.constant) continue;
     switch (in.op) {
       case Op::constant: case Op::pi: case Op::input: case Op::parameter: break;
-      case Op::linear: case Op::scale: case Op::select: case Op::lookup: ++r.linear; break;
+      case Op::linear: case Op::scale: case Op::select: case Op::lookup: case Op::rate: ++r.linear; break;
       case Op::multiply: case Op::square: case Op::divide: ++r.products; break;
       case Op::power: case Op::function: case Op::arctan2: ++r.functions; break;
     }
@@ -105,6 +106,7 @@ static std::string line(const Program& p, std::uint32_t s) {
     case Op::arctan2: return "atan2(" + slot(in.a) + ", " + slot(in.b) + ")";
     case Op::select: return slot(in.first) + " >= 0 ? " + slot(in.a) + " : " + slot(in.b);
     case Op::lookup: return p.tape.step_functions[in.index].name + "(" + slot(in.a) + ")";
+    case Op::rate: return "D^" + std::to_string(in.index) + " " + slot(in.a);
   }
   return {};
 }

@@ -39,11 +39,11 @@ FormCost cost_of(const Scenario& s, const StateChoice& choice) {
     cost.why = "its equations are singular at the start";
     return cost;
   }
-  const ToRepresent equations{derived, s.structure, {}, parameters, t, state};
+  const ToRepresent equations{derived, s.structure, {}, parameters, t, state, s.mechanics.get()};
   const bool stays = s.elimination.pivots().empty();
   for (const Representation& r : representations(equations, stays ? WritingEffort::very_long_motion : WritingEffort::at_once)) cost.writings.push_back({r.writing, work_of(*r.plan), {}});
   // The writings of less effort come first.
-  const std::size_t known[] = {2, 3, 4};
+  const std::size_t known[] = {3, 4, 5};
   for (const WritingEffort effort : kWritingEfforts) {
     WritingCost* best = nullptr;
     for (WritingCost& w : cost.writings)

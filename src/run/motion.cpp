@@ -40,7 +40,7 @@ Writing Motion<N>::accelerate(Leg& leg) const {
     leg.stepper.accelerate(derived);
     if (!leg.stepper.accelerated()) return Writing::derived;
     const std::vector<Expr> quadratures = with_events();
-    const std::vector<Representation> list = representations({derived, leg.structure, quadratures, parameters_, t, state}, effort_);
+    const std::vector<Representation> list = representations({derived, leg.structure, quadratures, parameters_, t, state, s_.mechanics.get()}, effort_);
     const Representation& best = cheapest(list);
     if (best.plan != derived) leg.stepper.accelerate(best.plan);
     leg.plan = best.plan;
@@ -59,7 +59,7 @@ void Motion<N>::write_anew() {
   if (effort == effort_ || pivots_ || !leg_->stepper.accelerated()) return;
   effort_ = effort;
   auto next = std::make_unique<Leg>(*this, leg_->system, leg_->structure);
-  if (accelerate(*next) <= Writing::paired || !next->stepper.take_over(leg_->stepper).ok()) return;
+  if (accelerate(*next) <= Writing::rates || !next->stepper.take_over(leg_->stepper).ok()) return;
   leg_ = std::move(next);
   mark_ = {choices_.size(), chosen_};
   begun_parameters_ = parameters_;

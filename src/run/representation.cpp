@@ -7,6 +7,7 @@
 #include "expr/arrange.h"
 #include "expr/copy.h"
 #include "expr/normal.h"
+#include "system/by_rates.h"
 
 namespace anholon {
 
@@ -64,6 +65,15 @@ std::shared_ptr<const Program> rewritten(const ToRepresent& e, Writing writing) 
   return {r, &r->program};
 }
 
+std::shared_ptr<const Program> left_to_series(const ToRepresent& e) {
+  if (!e.mechanics) return nullptr;
+  std::optional<ByRates> by = by_rates(*e.derived->program().system, *e.mechanics, e.quadratures);
+  if (!by || !same_offsets(by->system, e.structure)) return nullptr;
+  auto r = std::make_shared<Rewritten>(Rewritten{std::move(by->system), {}});
+  r->program = program(r->system, e.structure, by->others, true);
+  return {r, &r->program};
+}
+
 // Largest difference of two expansions at one state, order by order.
 double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b) {
   Kernel one(a), other(b);
@@ -92,6 +102,7 @@ const char* name(Writing writing) {
   switch (writing) {
     case Writing::derived: return "derived";
     case Writing::paired: return "paired";
+    case Writing::rates: return "rates";
     case Writing::expanded: return "expanded";
     case Writing::arranged: return "arranged";
   }
@@ -109,6 +120,7 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
     if (plan && plan->tables().refine == first->tables().refine && plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
       list.push_back({writing, std::move(plan)});
   };
+  if (!first->tables().refine) add(Writing::rates, left_to_series(e));
   if (derived.unknowns() > kMostUnknowns) return list;
   add(Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)));
   if (first->tables().refine) return list;

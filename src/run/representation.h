@@ -11,6 +11,7 @@ namespace anholon {
 enum class Writing : std::uint8_t {
   derived,   // as the form gave them
   paired,    // with products of common pairs (tape.h)
+  rates,     // total derivatives left to the series (by_rates.h), paired
   expanded,  // as reduced sums of monomials, paired
   arranged,  // common factors in front, paired
 };
@@ -29,6 +30,7 @@ struct ToRepresent {
   const std::vector<long double>& parameters;
   double t;
   const std::vector<double>& state;
+  const Mechanics* mechanics = nullptr;  // what the equations were derived from
 };
 
 // What a motion puts into its writing grows with its length: the steps saved have to pay for it.

@@ -85,6 +85,7 @@ class Probe {
           add(in.b, partials.b);
           break;
         case Op::square: case Op::power: case Op::function: add(in.a, partials.a); break;
+        case Op::rate: break;  // systems are analysed with their derivatives written out
       }
     }
     for (std::size_t i = 0; i < tape_.roots.size(); ++i)

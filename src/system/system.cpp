@@ -13,7 +13,7 @@ Expr System::symbol(std::size_t j, unsigned k) const {
 
 std::optional<std::size_t> System::variable(NodeId symbol) const {
   const Node& n = model->graph->node(symbol);
-  if (n.kind == Kind::jet) return n.index;
+  if (n.kind == Kind::jet) return n.index < coordinates ? std::optional<std::size_t>(n.index) : std::nullopt;
   if (n.kind == Kind::state) return mechanical() + n.index;
   if (n.kind != Kind::multiplier) return std::nullopt;
   const auto it = std::find(constraints.begin(), constraints.end(), n.index);

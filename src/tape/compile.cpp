@@ -12,11 +12,12 @@ namespace {
 
 class Compiler {
  public:
-  Compiler(Graph& g, bool shared) : g_(g), shared_(shared) {}
+  Compiler(Graph& g, bool shared, std::span<const Expr> rates, std::uint32_t rates_from) : g_(g), shared_(shared), rates_(rates), rates_from_(rates_from) {}
 
   Tape run(std::span<const Expr> es, std::span<const int> leads) {
     const auto part = [&](std::span<const Expr> roots) {
       Column all(roots.begin(), roots.end());
+      all.insert(all.end(), rates_.begin(), rates_.end());
       // A function needs its derivative as a slot of its own; that may bring in more functions.
       for (std::size_t before = 0; before != all.size();) {
         before = all.size();
@@ -273,6 +274,16 @@ class Compiler {
         in.index = n.index;
         break;
       case Kind::time: case Kind::jet: case Kind::multiplier: case Kind::state: {
+        if (n.kind == Kind::jet && n.index >= rates_from_ && n.index - rates_from_ < rates_.size()) {
+          const Expr of = rates_[n.index - rates_from_];
+          for (NodeId below : reachable({&of, 1})) emit(below);
+          in.op = Op::rate;
+          in.a = slot_.at(of.id);
+          in.index = n.order;
+          in.constant = constant(in.a) && n.order == 0;
+          slot_[id] = push(in);
+          return;
+        }
         in.op = Op::input;
         in.index = static_cast<std::uint32_t>(tape_.inputs.size());
         slot_[id] = push(in);
@@ -337,7 +348,6 @@ class Compiler {
     std::vector<Instruction>& code = tape_.code;
     for (std::size_t i = 0; i < leads.size(); ++i) {
       code[tape_.roots[i]].lead = static_cast<std::uint8_t>(leads[i]);
-      tape_.largest_lead = std::max(tape_.largest_lead, leads[i]);
     }
     const auto raise = [&](std::uint32_t slot, std::uint8_t lead) {
       bool changed = code[slot].lead < lead;
@@ -355,6 +365,7 @@ class Compiler {
             for (std::uint32_t k = in.first; k < in.first + in.count; ++k) raise(tape_.linear_terms[k].slot, in.lead);
             break;
           case Op::square: case Op::power: case Op::lookup: raise(in.a, in.lead); break;
+          case Op::rate: raise(in.a, static_cast<std::uint8_t>(in.lead + in.index)); break;
           case Op::select:
             raise(in.a, in.lead), raise(in.b, in.lead), raise(in.first, in.lead);
             break;
@@ -373,12 +384,15 @@ class Compiler {
         }
       }
     }
+    for (const Instruction& in : code) tape_.largest_lead = std::max<int>(tape_.largest_lead, in.lead);
   }
 
   static constexpr std::uint64_t kPair = 1ULL << 32;
 
   Graph& g_;
   bool shared_;
+  std::span<const Expr> rates_;
+  std::uint32_t rates_from_;
   std::unordered_map<NodeId, bool> varies_;
   std::unordered_map<NodeId, std::vector<std::uint64_t>> factors_;  // of products: nodes, or pairs
   std::vector<std::pair<std::uint64_t, std::uint64_t>> pairs_;
@@ -396,9 +410,9 @@ class Compiler {
 
 }  // namespace
 
-Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared) {
+Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared, std::span<const Expr> rates, std::uint32_t rates_from) {
   ANHOLON_ASSERT(!es.empty() && leads.size() <= es.size());
-  return Compiler(*es[0].graph, shared).run(es, leads);
+  return Compiler(*es[0].graph, shared, rates, rates_from).run(es, leads);
 }
 
 Tape compile(std::span<const Expr> es) {

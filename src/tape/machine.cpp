@@ -221,6 +221,12 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
       w[0] = sure ? steps_[in.index].values[k] : unknown<N>();
       return;
     }
+    case Op::rate: {
+      N s = series(in.a)[p + in.index];
+      for (std::uint32_t k = 1; k <= in.index; ++k) s = s * N(static_cast<int>(p + k));
+      w[p] = s;
+      return;
+    }
   }
 }
 
@@ -253,6 +259,7 @@ typename Machine<N>::Partials Machine<N>::partials(std::uint32_t slot) const {
       return {N(first ? 1 : 0), N(first ? 0 : 1)};
     }
     case Op::lookup: break;
+    case Op::rate: return {N(1), N(0)};
   }
   return {N(0), N(0)};
 }

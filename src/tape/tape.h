@@ -39,6 +39,7 @@ enum class Op : std::uint8_t {
   arctan2,    // atan2(a, b); `first` and `second` = slots of the derivatives by a and b
   select,     // a where slot `first` >= 0, else b: of all orders, as the value at the point says
   lookup,     // step function `index` of a: the value there; a constant of its series
+  rate,       // the derivative of order `index` of a
 };
 
 struct Instruction {
@@ -77,7 +78,9 @@ struct Tape {
 // REQUIRES: no frozen mass and no unknown given function occurs.
 // `shared`: products of factors that vary in time are made of pairs that several of them have in common, and what is constant in time comes
 // last. Fewer products, and another order of rounding.
-Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared = false);
+//
+// `rates`: the jets of coordinates from `rates_from` on stand for the derivatives of these expressions, which the tape takes from their series.
+Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared = false, std::span<const Expr> rates = {}, std::uint32_t rates_from = 0);
 Tape compile(std::span<const Expr> es);
 
 // What a formula met that has no value there; slot 0.. for the message.

@@ -104,7 +104,7 @@ TEST_P(KernelOf, EveryWritingEqualsTheInterpretedTape) {
     return difference(*p, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); });
   };
   const double derived = off_by(plan);
-  const std::vector<Representation> list = representations({plan, r.scenario.structure, {}, r.parameters, t, state}, WritingEffort::long_motion);
+  const std::vector<Representation> list = representations({plan, r.scenario.structure, {}, r.parameters, t, state, r.scenario.mechanics.get()}, WritingEffort::long_motion);
   for (const Representation& w : list) EXPECT_LT(off_by(w.plan), 1e-12 + 10 * derived) << name(w.writing);
 }
 

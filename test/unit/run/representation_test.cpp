@@ -17,7 +17,7 @@ struct Written {
     state.assign(start.state.begin(), start.state.end());
     derived = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), 14, parameters, static_cast<double>(start.t), state);
     const std::size_t before = scenario.model->graph->size();
-    list = representations({derived, scenario.structure, {}, parameters, static_cast<double>(start.t), state}, WritingEffort::long_motion);
+    list = representations({derived, scenario.structure, {}, parameters, static_cast<double>(start.t), state, scenario.mechanics.get()}, WritingEffort::long_motion);
     grown = scenario.model->graph->size() != before;
   }
   Scenario scenario;
