@@ -30,6 +30,7 @@ class Planner {
     pair_functions();
     mark_live();
     gather_sums();
+    share_sums();
     mark_series();
     inline_sums();
     taint();
@@ -134,6 +135,55 @@ class Planner {
       }
     }
     for (std::uint32_t r : tape_.roots) ++uses_[same_as(r)];
+  }
+
+  static bool same_up_to_sign(const Coefficient& a, const Coefficient& b, int sign) { return a.slots == b.slots && a.rational == sign * b.rational; }
+
+  // Where all terms of `part` are in `whole`, with the same sign or the opposite one: which. Else 0. Terms are ordered by their slots.
+  static int contained(const std::vector<Summand>& part, const std::vector<Summand>& whole) {
+    int sign = 0;
+    std::size_t at = 0;
+    for (const Summand& t : part) {
+      while (at < whole.size() && whole[at].slot < t.slot) ++at;
+      if (at == whole.size() || whole[at].slot != t.slot) return 0;
+      if (sign == 0) sign = same_up_to_sign(whole[at].c, t.c, 1) ? 1 : -1;
+      if (!same_up_to_sign(whole[at].c, t.c, sign)) return 0;
+    }
+    return sign;
+  }
+
+  // A sum takes over what an earlier one has added already, the longest first: along a chain of links every sum is the last one and a term.
+  void share_sums() {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> sums_with;  // by their first term
+    for (std::uint32_t s = 0; s < code_.size(); ++s) {
+      std::vector<Summand>& terms = sums_[s];
+      const auto unfit = [](const Summand& t) { return t.slot == kNone; };
+      if (terms.size() < 2 || std::any_of(terms.begin(), terms.end(), unfit)) continue;
+      std::sort(terms.begin(), terms.end(), [](const Summand& a, const Summand& b) { return a.slot < b.slot; });
+      const auto twice = [](const Summand& a, const Summand& b) { return a.slot == b.slot; };
+      if (std::adjacent_find(terms.begin(), terms.end(), twice) != terms.end()) continue;
+      for (bool again = true; again;) {
+        again = false;
+        std::uint32_t longest = kNone;
+        for (const Summand& t : terms)
+          if (const auto with = sums_with.find(t.slot); with != sums_with.end())
+            for (const std::uint32_t r : with->second)
+              if (code_[r].lead == code_[s].lead && in_main(r) == in_main(s) && sums_[r].size() < terms.size() && (longest == kNone || sums_[r].size() > sums_[longest].size()) &&
+                  contained(sums_[r], terms) != 0)
+                longest = r;
+        if (longest == kNone) break;
+        const Rational sign(contained(sums_[longest], terms));
+        for (const Summand& t : sums_[longest]) {
+          --uses_[t.slot];
+          terms.erase(std::find_if(terms.begin(), terms.end(), [&](const Summand& u) { return u.slot == t.slot; }));
+        }
+        const Summand taken{{sign, {}}, longest};
+        ++uses_[longest];
+        terms.insert(std::upper_bound(terms.begin(), terms.end(), taken, [](const Summand& a, const Summand& b) { return a.slot < b.slot; }), taken);
+        again = true;
+      }
+      if (terms.size() > 1) sums_with[terms.front().slot].push_back(s);
+    }
   }
 
   void mark_series() {

@@ -86,7 +86,7 @@ static std::string line(const Program& p, std::uint32_t s) {
   switch (in.op) {
     case Op::constant: return p.tape.rationals[in.index].get_str();
     case Op::pi: return "pi";
-    case Op::parameter: return p.system->model->parameters[in.index].name;
+    case Op::parameter: return p.system->model->names.parameters[in.index];
     case Op::input:
       return print(Expr{p.system->model->graph.get(), p.tape.inputs[in.index].symbol}, p.system->model->names, Format::text);
     case Op::linear: {

@@ -1,5 +1,7 @@
 #include "system/by_rates.h"
 
+#include <algorithm>
+
 #include "expr/copy.h"
 
 namespace anholon {
@@ -72,12 +74,12 @@ class Writer {
   ByRates run() {
     const std::size_t n = derived_.coordinates;
     q_ = jets(*c_.model, 0), qd_ = jets(*c_.model, 1);
-    Expr held = kinetic_energy();
+    const Expr held = kinetic_energy();
     // The same of T with V held. Momenta that depend on the place are differentiated by their series.
     Column rows = -gradient(held, q_);
     const Column momenta = gradient(held, qd_);
     for (std::size_t a = 0; a < n; ++a) rows[a] += c_.model->masses.empty() && depends_on_place(momenta[a]) ? rate(put_masses(*c_.model, momenta[a]), 1) : total_derivative(momenta[a]);
-    rows = rows - with_rates(put_masses(*c_.model, c_.forces)) - reactions();
+    rows = rows - by_rates(put_masses(*c_.model, c_.forces)) - reactions();
     rows = rows + pullback(places_, forces_at_places_, q_);
     ByRates r;
     r.system = derived_;
@@ -85,17 +87,30 @@ class Writer {
     r.system.equations = put_masses(*c_.model, rows);
     r.system.equations.insert(r.system.equations.end(), constraints_.begin(), constraints_.end());
     for (std::size_t i = 0; i < c_.state_rates.size(); ++i)
-      r.system.equations.push_back(g_.state(static_cast<std::uint32_t>(i), 1) - with_rates(put_masses(*c_.model, {&c_.state_rates[i], 1}))[0]);
+      r.system.equations.push_back(g_.state(static_cast<std::uint32_t>(i), 1) - by_rates(put_masses(*c_.model, {&c_.state_rates[i], 1}))[0]);
     r.system.rates = rates_;
     r.others = c_.others;
     return r;
   }
 
  private:
+  // The derivative of this order, by the series; constant factors in front. Sums are not taken apart: of those that bodies of a chain have in common
+  // one series serves all.
   Expr rate(Expr of, unsigned order) {
-    const auto [it, fresh] = rate_.try_emplace(of.id, rates_.size());
+    if (is_symbol(of)) return total_derivative(of, order);
+    std::vector<std::pair<Expr, Rational>> constant, varying;
+    if (g_.node(of.id).kind == Kind::product)
+      for (const Term& t : g_.terms(of.id)) (is_constant({&g_, t.node}) ? constant : varying).push_back({Expr{&g_, t.node}, g_.rational(t.weight)});
+    if (!constant.empty()) return g_.product(constant) * rate(g_.product(varying), order);
+    const auto [base, fresh] = base_.try_emplace(of.id, rates_.size());
     if (fresh) rates_.push_back(of);
-    return g_.jet(static_cast<std::uint32_t>(derived_.coordinates + it->second), order);
+    return g_.jet(static_cast<std::uint32_t>(derived_.coordinates + base->second), order);
+  }
+
+  bool is_constant(Expr e) const {
+    for (NodeId id : symbols({&e, 1}))
+      if (const Kind k = g_.node(id).kind; k != Kind::number && k != Kind::pi && k != Kind::parameter) return false;
+    return true;
   }
 
   // T with the velocities of mass centres by their places, as far as that is worth a series; what remains is held.
@@ -109,10 +124,6 @@ class Writer {
       for (int i = 0; i < 3; ++i) {
         const Expr v = total_derivative(p.place[i]);
         if (is_zero(v)) continue;
-        if (is_symbol(p.place[i])) {
-          held.push_back({Rational(1, 2), p.weight * pow(v, 2)});
-          continue;
-        }
         places_.push_back(p.place[i]);
         forces_at_places_.push_back(p.weight * rate(p.place[i], 2));
         by_rate_.insert({v.id, rate(p.place[i], 1)});
@@ -122,9 +133,36 @@ class Writer {
     return g_.sum(held);
   }
 
-  Column with_rates(const Column& es) const { return replace_nodes(es, by_rate_); }
+  // u' times the sine or cosine of u is a derivative of the other one: where that is asked for anyway.
+  void find_rates(const Column& es) {
+    for (NodeId id : reachable(es)) {
+      if (g_.node(id).kind != Kind::product || by_rate_.count(id)) continue;
+      const std::vector<Term> factors(g_.terms(id).begin(), g_.terms(id).end());
+      for (const Term& f : factors) {
+        const Node node = g_.node(f.node);
+        if (node.kind != Kind::function || g_.rational(f.weight) != 1) continue;
+        const auto kind = static_cast<Function>(node.index);
+        if (kind != Function::sin && kind != Function::cos) continue;
+        const Expr u{&g_, g_.terms(f.node)[0].node}, du = total_derivative(u);
+        const auto speed = std::find_if(factors.begin(), factors.end(), [&](const Term& t) { return t.node == du.id && g_.rational(t.weight) == 1; });
+        if (speed == factors.end()) continue;
+        std::vector<std::pair<Expr, Rational>> rest;
+        for (const Term& t : factors)
+          if (t.node != f.node && t.node != du.id) rest.push_back({Expr{&g_, t.node}, g_.rational(t.weight)});
+        const Expr other = kind == Function::sin ? cos(u) : sin(u);
+        if (!base_.count(other.id)) continue;
+        by_rate_.insert({id, Rational(kind == Function::sin ? -1 : 1) * (g_.product(rest) * rate(other, 1))});
+        break;
+      }
+    }
+  }
 
-  // sum lambda dphi/dq^(m). Of constraints on velocities V is held first, and what falls to it acts at the places.
+  Column by_rates(const Column& es) {
+    find_rates(es);
+    return replace_nodes(es, by_rate_);
+  }
+
+  // sum lambda dphi/dq^(m). Of constraints on velocities the rates are held first, and what falls to them acts on what they are rates of.
   Column reactions() {
     Column sum(q_.size(), g_.zero()), velocity_constraints, multipliers;
     for (std::size_t i = 0; i < derived_.constraints.size(); ++i) {
@@ -132,7 +170,7 @@ class Writer {
       const Expr phi = put_masses(*c_.model, c_.constraints[i]), lambda = g_.multiplier(static_cast<std::uint32_t>(r), 0);
       const bool acts = !m_.model->constraints[r].by;
       if (m_.order[r] == 1) {
-        constraints_.push_back(with_rates({phi})[0]);
+        constraints_.push_back(by_rates({phi})[0]);
         if (acts) velocity_constraints.push_back(constraints_.back()), multipliers.push_back(lambda);
       } else {
         constraints_.push_back(phi);
@@ -141,10 +179,12 @@ class Writer {
     }
     if (velocity_constraints.empty()) return sum;
     Column wanted = qd_;
-    for (Expr place : places_) wanted.push_back(rate(place, 1));
+    const Column bases = rates_;
+    for (Expr base : bases) wanted.push_back(rate(base, 1));
     const Column found = pullback(velocity_constraints, multipliers, wanted);
     for (std::size_t a = 0; a < q_.size(); ++a) sum[a] += found[a];
-    for (std::size_t c = 0; c < places_.size(); ++c) forces_at_places_[c] = forces_at_places_[c] - found[q_.size() + c];
+    for (std::size_t c = 0; c < bases.size(); ++c)
+      if (const Expr& f = found[q_.size() + c]; !is_zero(f)) places_.push_back(bases[c]), forces_at_places_.push_back(-f);
     return sum;
   }
 
@@ -154,7 +194,7 @@ class Writer {
   Graph& g_;
   Column q_, qd_;
   Column rates_;
-  std::unordered_map<NodeId, std::size_t> rate_;
+  std::unordered_map<NodeId, std::size_t> base_;
   std::unordered_map<NodeId, Expr> by_rate_;  // velocities and accelerations written out
   Column places_, forces_at_places_, constraints_;
 };
