@@ -55,7 +55,7 @@ bool Stepper<N>::expand_by_kernel(const std::vector<W>& guess) {
     kernel_->load(0, static_cast<double>(t_), narrow_state_, narrow_leading_);
     kernel_->expand();
     const double health = kernel_->health(0);
-    if (!(health > kHealthy) || health < least_health_ * kNews || !kernel_->finite(0)) {
+    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNews) || !kernel_->finite(0)) {
       turned_ = by_kernel_ && !(health > 0);
       if (health < least_health_) least_health_ = std::max(health, 0.0);
       return false;

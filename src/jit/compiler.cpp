@@ -1,6 +1,7 @@
 // The module behind kernel/code.h: LLVM IR by the Emitter, machine code by ORC, kept on disk between runs.
 #include <llvm/ExecutionEngine/Orc/LLJIT.h>
 #include <llvm/IR/LegacyPassManager.h>
+#include <llvm/Support/CommandLine.h>
 #include <llvm/Support/TargetSelect.h>
 #include <llvm/Support/xxhash.h>
 #include <llvm/Target/TargetMachine.h>
@@ -77,25 +78,26 @@ std::string build_of(const void* address) {
 }
 
 // All that decides the code: this compiler, LLVM, the machine, the plan. Nothing if the builds have no names: no code of another one, then.
-bool name(const KernelTables& tables, const Builder& builder, Key& key) {
+bool name(const KernelTables& tables, int lanes, const Builder& builder, Key& key) {
   static const std::string ours = build_of(&anholon_compiler), llvms = build_of(reinterpret_cast<const void*>(&llvm::xxh3_128bits));
   if (ours.empty() || llvms.empty()) return false;
   Writer w;
   w.add(ours), w.add(llvms);
   w.add(builder.getTargetTriple().str()), w.add(builder.getCPU()), w.add(builder.getFeatures().getString());
+  w.add(std::to_string(lanes));
   w.add(tables);
   key = w.key();
   return true;
 }
 
-std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, Builder& builder, std::string& message) {
+std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, Builder& builder, std::string& message) {
   auto target = builder.createTargetMachine();
   if (!target) return message = text_of(target.takeError()), nullptr;
   llvm::LLVMContext context;
   llvm::Module module("kernel", context);
   module.setDataLayout((*target)->createDataLayout());
   module.setTargetTriple((*target)->getTargetTriple().str());
-  Emitter(tables, module).run();
+  Emitter(tables, module, lanes).run();
   llvm::SmallVector<char, 0> bytes;
   llvm::raw_svector_ostream out(bytes);
   llvm::legacy::PassManager passes;
@@ -136,11 +138,14 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
   return made;
 }
 
-void compile(const KernelTables& tables, const std::string& cache, Code& code, std::string& message) {
+void compile(const KernelTables& tables, int lanes, const std::string& cache, Code& code, std::string& message) {
   static std::once_flag once;
   std::call_once(once, [] {
     llvm::InitializeNativeTarget();
     llvm::InitializeNativeTargetAsmPrinter();
+    // The order of operations is ours; what reorders them looks at every pair of loads and stores.
+    const auto& options = llvm::cl::getRegisteredOptions();
+    if (const auto o = options.find("enable-misched"); o != options.end()) o->second->addOccurrence(1, o->first(), "false");
   });
   auto builder = Builder::detectHost();
   if (!builder) return void(message = text_of(builder.takeError()));
@@ -149,13 +154,13 @@ void compile(const KernelTables& tables, const std::string& cache, Code& code, s
   builder->setRelocationModel(llvm::Reloc::PIC_);
 
   Key key;
-  const Store store(!cache.empty() && name(tables, *builder, key) ? cache : std::string());
+  const Store store(!cache.empty() && name(tables, lanes, *builder, key) ? cache : std::string());
   if (auto kept = store.read(key)) {
     std::string why;
     code = linked(std::move(kept), *builder, Emitter::levels(tables), why);
     if (code.values) return;
   }
-  auto object = compiled(tables, *builder, message);
+  auto object = compiled(tables, lanes, *builder, message);
   if (!object) return;
   store.write(key, *object);
   code = linked(std::move(object), *builder, Emitter::levels(tables), message);

@@ -9,11 +9,21 @@ namespace anholon::jit {
 namespace {
 // Convolutions summed side by side: enough to hide the latency of a fused multiplication, few enough for the registers.
 constexpr std::size_t kSideBySide = 8;
+// The same where four orders of a convolution are four sums of lanes.
+constexpr std::size_t kSideBySideInLanes = 3;
+// A longer elimination than this is a function of its own: it would be most of the code of every stage.
+constexpr double kLongElimination = 100;
 }  // namespace
 
-Emitter::Emitter(const KernelTables& tables, llvm::Module& module) : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()) {}
+Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes)
+    : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes),
+      lane_(lanes == 1 ? b_.getDoubleTy() : static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(lanes)))), asked_(p_.rows, false) {
+  for (std::size_t j = 0; j < p_.x.size(); ++j) asked_[j] = true;
+  for (const Completion& c : p_.completions) asked_[c.column] = true;
+}
 
 void Emitter::run() {
+  if (k_.elimination->work() > kLongElimination) substitution();
   values();
   factor();
   lead();
@@ -41,7 +51,7 @@ llvm::Function* Emitter::begin_part(const std::string& name) {
   scratch_ = function_->getArg(1);
   k0_ = function_->getArg(2);
   b_.SetInsertPoint(llvm::BasicBlock::Create(m_.getContext(), "entry", function_));
-  block_ = b_.CreateInBoundsGEP(b_.getDoubleTy(), w_, k0_);
+  block_ = b_.CreateInBoundsGEP(lane_, w_, k0_);
   known_.clear();
   return function_;
 }
@@ -49,7 +59,7 @@ llvm::Function* Emitter::begin_part(const std::string& name) {
 void Emitter::end() { b_.CreateRetVoid(); }
 
 llvm::Value* Emitter::address(std::int64_t slot, bool relative) {
-  return b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), relative ? block_ : w_, static_cast<std::uint64_t>(slot));
+  return b_.CreateConstInBoundsGEP1_64(lane_, relative ? block_ : w_, static_cast<std::uint64_t>(slot));
 }
 
 llvm::Value* Emitter::get(const Place& place, int lead) {
@@ -79,16 +89,28 @@ llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, in
   }
   Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), t, k0_);
   at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at, static_cast<std::uint64_t>(static_cast<std::int64_t>(i_ + offset)));
-  return b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8));
+  Value* x = b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8));
+  return lanes_ == 1 ? x : b_.CreateVectorSplat(static_cast<unsigned>(lanes_), x);
 }
 
 llvm::Value* Emitter::fma(Value* a, Value* b, Value* c) { return b_.CreateIntrinsic(llvm::Intrinsic::fma, {c->getType()}, {a, b, c}); }
 
-llvm::Value* Emitter::call(const char* name, std::vector<Value*> arguments, llvm::Type* result) {
+llvm::Value* Emitter::call_scalar(const char* name, const std::vector<Value*>& arguments, llvm::Type* result) {
   std::vector<llvm::Type*> types;
   for (Value* v : arguments) types.push_back(v->getType());
-  const auto callee = m_.getOrInsertFunction(name, llvm::FunctionType::get(result ? result : b_.getDoubleTy(), types, false));
-  return b_.CreateCall(callee, arguments);
+  return b_.CreateCall(m_.getOrInsertFunction(name, llvm::FunctionType::get(result, types, false)), arguments);
+}
+
+llvm::Value* Emitter::call(const char* name, const std::vector<Value*>& arguments) {
+  Value* all = llvm::PoisonValue::get(lane_);
+  for (int lane = 0; lane < lanes_; ++lane) {
+    std::vector<Value*> of;
+    for (Value* v : arguments) of.push_back(of_lane(v, lane));
+    Value* r = call_scalar(name, of, b_.getDoubleTy());
+    if (lanes_ == 1) return r;
+    all = b_.CreateInsertElement(all, r, static_cast<std::uint64_t>(lane));
+  }
+  return all;
 }
 
 llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
@@ -107,7 +129,7 @@ llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
 llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last) {
   Value *s, *t = number(0);
   if (relative_) {
-    s = b_.CreateAlignedLoad(b_.getDoubleTy(), b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), scratch_, kBlock * bulk_.at({a, b, lead}) + static_cast<unsigned>(i_)), llvm::Align(8));
+    s = b_.CreateAlignedLoad(lane_, scratch(bulk_.at({a, b, lead}), static_cast<unsigned>(i_)), align());
     const auto recent = [&](std::uint32_t x, int m) { return m == i_ ? newest(x, lead) : load(std::int64_t{x} + lead + m, true); };
     for (int j = i_; j >= 1; --j) s = fma(load(a + j), recent(b, i_ - j), s);
     if (first) s = fma(load(a), newest(b, lead), s);
@@ -223,15 +245,18 @@ void Emitter::value(const Step& s) {
       put(s.out, l, b_.CreateFMul(a, r));
       break;
     }
-    case Act::square_root: put(s.out, l, b_.CreateIntrinsic(llvm::Intrinsic::sqrt, {b_.getDoubleTy()}, {a})); break;
+    case Act::square_root: put(s.out, l, b_.CreateIntrinsic(llvm::Intrinsic::sqrt, {lane_}, {a})); break;
     case Act::power:
-      put(s.out, l, call("anholon_power", {a, number(s.value)}));
+      put(s.out, l, call("anholon_power", {a, llvm::ConstantFP::get(b_.getDoubleTy(), s.value)}));
       store(b_.CreateFDiv(number(1), a), s.b.at);
       put(s.d, l, number(0));
       break;
     case Act::sine_cosine: {
       Value *sine = address(s.out.at, false), *cosine = address(s.c.at, false);
-      call("anholon_sincos", {a, sine, cosine}, b_.getVoidTy());
+      for (int lane = 0; lane < lanes_; ++lane) {
+        const auto at = [&](Value* all) { return b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), all, static_cast<std::uint64_t>(lane)); };
+        call_scalar("anholon_sincos", {of_lane(a, lane), at(sine), at(cosine)}, b_.getVoidTy());
+      }
       known_.erase({s.out.at, l});
       known_.erase({s.c.at, l});
       break;
@@ -325,8 +350,17 @@ void Emitter::sides() {
 }
 
 void Emitter::solve() {
-  const SparseLu& e = *k_.elimination;
   side_.resize(p_.rows, nullptr);
+  if (!substitution_) return substitute();
+  for (std::size_t i = 0; i < p_.roots.size(); ++i) store(side_[i], k_.side + static_cast<std::int64_t>(i));
+  b_.CreateCall(substitution_, {w_});
+  solution_.clear();
+  for (std::uint32_t j = 0; j < p_.rows; ++j) solution_.push_back(asked_[j] ? load(k_.solution + j) : nullptr);
+}
+
+// Forward and backward, from side_ to solution_.
+void Emitter::substitute() {
+  const SparseLu& e = *k_.elimination;
   for (Value*& v : side_)
     if (!v) v = number(0);
   for (const SparseLu::Forward& f : e.forward) side_[f.to] = fma(b_.CreateFNeg(load(k_.lu + f.entry)), side_[f.from], side_[f.to]);
@@ -336,6 +370,19 @@ void Emitter::solve() {
     for (std::uint32_t i = back.first; i < back.first + back.count; ++i) s = fma(b_.CreateFNeg(load(k_.lu + e.terms[i].entry)), solution_[e.terms[i].column], s);
     solution_[back.column] = e.pivots[back.pivot].one ? s : b_.CreateFMul(s, load(k_.reciprocal + back.pivot));
   }
+}
+
+void Emitter::substitution() {
+  begin("substitution");
+  function_->setLinkage(llvm::Function::PrivateLinkage);
+  side_.clear();
+  for (std::size_t i = 0; i < p_.roots.size(); ++i) side_.push_back(load(k_.side + static_cast<std::int64_t>(i)));
+  side_.resize(p_.rows, nullptr);
+  substitute();
+  for (std::uint32_t j = 0; j < p_.rows; ++j)
+    if (asked_[j]) store(solution_[j], k_.solution + j);
+  end();
+  substitution_ = function_;
 }
 
 void Emitter::complete() {
@@ -409,6 +456,30 @@ void Emitter::stage(const std::vector<Step>& steps, bool solved) {
   complete();
 }
 
+std::vector<llvm::Value*> Emitter::over_known(std::uint8_t lead, const std::vector<Value*>& sums, const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body) {
+  // A block begins at stage 5 or later, so there is at least one.
+  llvm::BasicBlock* before = b_.GetInsertBlock();
+  auto* loop = llvm::BasicBlock::Create(m_.getContext(), "known", function_);
+  auto* after = llvm::BasicBlock::Create(m_.getContext(), "new", function_);
+  Value* last = b_.CreateAdd(k0_, b_.getInt64(lead));
+  b_.CreateBr(loop);
+  b_.SetInsertPoint(loop);
+  llvm::PHINode* j = b_.CreatePHI(b_.getInt64Ty(), 2);
+  j->addIncoming(b_.getInt64(kBlock), before);
+  std::vector<llvm::PHINode*> running;
+  for (Value* s : sums) {
+    running.push_back(b_.CreatePHI(s->getType(), 2));
+    running.back()->addIncoming(s, before);
+  }
+  const std::vector<Value*> next_sums = body(j, {running.begin(), running.end()});
+  for (std::size_t k = 0; k < sums.size(); ++k) running[k]->addIncoming(next_sums[k], loop);
+  Value* next = b_.CreateAdd(j, b_.getInt64(1));
+  j->addIncoming(next, loop);
+  b_.CreateCondBr(b_.CreateICmpSLT(next, last), loop, after);
+  b_.SetInsertPoint(after);
+  return next_sums;
+}
+
 // For the four orders of a block at once: sum over j of a_j b_(p-j) with both known before the block.
 void Emitter::known_before(const Convolution* group, std::size_t count) {
   auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock);
@@ -431,32 +502,45 @@ void Emitter::known_before(const Convolution* group, std::size_t count) {
       Value* b = b_.CreateShuffleVector(b_at(group[k].b, b_.getInt64(static_cast<std::uint64_t>(j))), zero, mask);
       sums[k] = fma(a_at(group[k].a, b_.getInt64(static_cast<std::uint64_t>(j))), b, sums[k]);
     }
-  // j = 4 .. K - 1; a block begins at stage 5 or later, so there is at least one.
-  llvm::BasicBlock* before = b_.GetInsertBlock();
-  auto* loop = llvm::BasicBlock::Create(m_.getContext(), "known", function_);
-  auto* after = llvm::BasicBlock::Create(m_.getContext(), "new", function_);
-  Value* last = b_.CreateAdd(k0_, b_.getInt64(l));
-  b_.CreateBr(loop);
-  b_.SetInsertPoint(loop);
-  llvm::PHINode* j = b_.CreatePHI(b_.getInt64Ty(), 2);
-  j->addIncoming(b_.getInt64(kBlock), before);
-  std::vector<llvm::PHINode*> running;
-  for (std::size_t k = 0; k < count; ++k) {
-    running.push_back(b_.CreatePHI(four, 2));
-    running[k]->addIncoming(sums[k], before);
-  }
-  for (std::size_t k = 0; k < count; ++k) {
-    sums[k] = fma(a_at(group[k].a, j), b_at(group[k].b, j), running[k]);
-    running[k]->addIncoming(sums[k], loop);
-  }
-  Value* next = b_.CreateAdd(j, b_.getInt64(1));
-  j->addIncoming(next, loop);
-  b_.CreateCondBr(b_.CreateICmpSLT(next, last), loop, after);
-  b_.SetInsertPoint(after);
-  for (std::size_t k = 0; k < count; ++k) {
-    const unsigned place = bulk_.at(group[k]);
-    b_.CreateAlignedStore(sums[k], b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), scratch_, std::uint64_t{kBlock} * place), llvm::Align(32));
-  }
+  sums = over_known(l, sums, [&](Value* j, const std::vector<Value*>& so_far) {
+    std::vector<Value*> r;
+    for (std::size_t k = 0; k < count; ++k) r.push_back(fma(a_at(group[k].a, j), b_at(group[k].b, j), so_far[k]));
+    return r;
+  });
+  for (std::size_t k = 0; k < count; ++k) b_.CreateAlignedStore(sums[k], scratch(bulk_.at(group[k]), 0), llvm::Align(32));
+}
+
+// The same where every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move on by one with j.
+void Emitter::known_before_in_lanes(const Convolution* group, std::size_t count) {
+  const std::uint8_t l = group[0].lead;
+  constexpr std::size_t n = kBlock;
+  std::vector<Value*> sums(count * n, number(0));
+  const auto b_at = [&](std::uint32_t b, Value* j, int i) {
+    return b_.CreateAlignedLoad(lane_, b_.CreateInBoundsGEP(lane_, address(std::int64_t{b} + l + i, true), b_.CreateNeg(j)), align());
+  };
+  const auto a_at = [&](std::uint32_t a, Value* j) { return b_.CreateAlignedLoad(lane_, b_.CreateInBoundsGEP(lane_, address(a, false), j), align()); };
+  for (int j = 1; j < kBlock; ++j)
+    for (std::size_t k = 0; k < count; ++k) {
+      Value* at = b_.getInt64(static_cast<std::uint64_t>(j));
+      Value* a = a_at(group[k].a, at);
+      for (int i = 0; i < j; ++i) sums[k * n + static_cast<std::size_t>(i)] = fma(a, b_at(group[k].b, at, i), sums[k * n + static_cast<std::size_t>(i)]);
+    }
+  // After the sums: b of the orders 0 .. 2 of the block for the present j.
+  for (std::size_t k = 0; k < count; ++k)
+    for (int i = 0; i + 1 < kBlock; ++i) sums.push_back(b_at(group[k].b, b_.getInt64(kBlock), i + 1));
+  sums = over_known(l, sums, [&](Value* j, const std::vector<Value*>& so_far) {
+    std::vector<Value*> r(so_far.size(), nullptr);
+    for (std::size_t k = 0; k < count; ++k) {
+      Value* a = a_at(group[k].a, j);
+      Value* const* window = &so_far[count * n + k * (n - 1)];
+      Value* newest = b_at(group[k].b, j, 0);
+      for (std::size_t i = 0; i < n; ++i) r[k * n + i] = fma(a, i == 0 ? newest : window[i - 1], so_far[k * n + i]);
+      for (std::size_t i = 0; i + 1 < n; ++i) r[count * n + k * (n - 1) + i] = i == 0 ? newest : window[i - 1];
+    }
+    return r;
+  });
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t i = 0; i < n; ++i) b_.CreateAlignedStore(sums[k * n + i], scratch(bulk_.at(group[k]), static_cast<unsigned>(i)), align());
 }
 
 void Emitter::bulk() {
@@ -464,8 +548,9 @@ void Emitter::bulk() {
   for (const auto& [c, place] : bulk_) all.push_back(c);
   for (std::size_t from = 0; from < all.size();) {
     std::size_t to = from + 1;
-    while (to < all.size() && to - from < kSideBySide && all[to].lead == all[from].lead) ++to;
-    known_before(&all[from], to - from);
+    while (to < all.size() && to - from < (lanes_ == 1 ? kSideBySide : kSideBySideInLanes) && all[to].lead == all[from].lead) ++to;
+    if (lanes_ == 1) known_before(&all[from], to - from);
+    else known_before_in_lanes(&all[from], to - from);
     from = to;
   }
 }
@@ -512,8 +597,8 @@ void Emitter::stages(const std::vector<Step>& steps, bool solved) {
   {
     llvm::BasicBlock& entry = function_->getEntryBlock();
     llvm::IRBuilder<> top(&entry, entry.begin());
-    auto* memory = top.CreateAlloca(llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock), top.getInt32(static_cast<std::uint32_t>(bulk_.size() + 1)));
-    memory->setAlignment(llvm::Align(32));
+    auto* memory = top.CreateAlloca(lane_, top.getInt32(static_cast<std::uint32_t>(kBlock * (bulk_.size() + 1))));
+    memory->setAlignment(llvm::Align(64));
     scratch = memory;
   }
   for (llvm::Function* f : first) b_.CreateCall(f, {w_, scratch, b_.getInt64(1)});

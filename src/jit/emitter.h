@@ -1,12 +1,14 @@
-// LLVM IR for a kernel of one lane: the arithmetic of kernel/sweep.h, operation by operation in the same order, so the bits are the same.
+// LLVM IR for a kernel of one lane or several: the arithmetic of kernel/sweep.h, operation by operation in the same order, so the bits are the same.
 //
 // Shape of the code: the first block of four stages straight, all further blocks as one loop whose body is four stages. What a
-// convolution knows before a block is summed for its four orders at once, eight convolutions side by side.
+// convolution knows before a block is summed for its four orders at once, several convolutions side by side. Where the elimination is long it is
+// a function of its own, called by every stage.
 #pragma once
 #include <llvm/IR/IRBuilder.h>
 #include <llvm/IR/Module.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,7 +19,7 @@ namespace anholon::jit {
 
 class Emitter {
  public:
-  Emitter(const KernelTables& tables, llvm::Module& module);
+  Emitter(const KernelTables& tables, llvm::Module& module, int lanes);
   // Functions of one argument, the arena: "values", "factor", "lead" (residual and completion of stage 0), "extend", "advance",
   // and "level1", …: the solution for the residuals of hidden constraints.
   void run();
@@ -47,6 +49,9 @@ class Emitter {
   void stage(const std::vector<Step>& steps, bool solved);
   void bulk();
   void known_before(const Convolution* group, std::size_t count);
+  void known_before_in_lanes(const Convolution* group, std::size_t count);
+  // A loop over j = 4 .. order of the block - 1; `body` takes j and the sums so far, and gives the new ones.
+  std::vector<Value*> over_known(std::uint8_t lead, const std::vector<Value*>& sums, const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body);
 
   void value(const Step& s);
   void coefficient(const Step& s);
@@ -56,14 +61,19 @@ class Emitter {
   void side(std::size_t root);
   void sides();
   void solve();
+  void substitute();
+  void substitution();
   void complete();
   static std::vector<Convolution> convolutions(const Step& s);
 
   // Orders are of the present stage: absolute, or relative to the stage where the block begins.
-  Value* number(double x) { return llvm::ConstantFP::get(b_.getDoubleTy(), x); }
+  Value* number(double x) { return llvm::ConstantFP::get(lane_, x); }
   Value* address(std::int64_t slot, bool relative);
-  Value* load(std::int64_t slot, bool relative = false) { return b_.CreateAlignedLoad(b_.getDoubleTy(), address(slot, relative), llvm::Align(8)); }
-  void store(Value* v, std::int64_t slot, bool relative = false) { b_.CreateAlignedStore(v, address(slot, relative), llvm::Align(8)); }
+  Value* load(std::int64_t slot, bool relative = false) { return b_.CreateAlignedLoad(lane_, address(slot, relative), align()); }
+  void store(Value* v, std::int64_t slot, bool relative = false) { b_.CreateAlignedStore(v, address(slot, relative), align()); }
+  llvm::Align align() const { return llvm::Align(8 * static_cast<std::uint64_t>(lanes_)); }
+  // The sum that known_before has left for a convolution and an order of the block.
+  Value* scratch(unsigned place, unsigned order) { return b_.CreateConstInBoundsGEP1_64(lane_, scratch_, std::uint64_t{kBlock} * place + order); }
   // The coefficient of order stage + lead.
   Value* get(const Place& place, int lead);
   void put(const Place& place, int lead, Value* v);
@@ -71,12 +81,19 @@ class Emitter {
   // Element stage + offset of a table.
   Value* table(const char* name, const std::vector<double>& row, int offset);
   Value* fma(Value* a, Value* b, Value* c);
-  Value* call(const char* name, std::vector<Value*> arguments, llvm::Type* result = nullptr);
+  // A function of doubles, lane by lane.
+  Value* call(const char* name, const std::vector<Value*>& arguments);
+  Value* call_scalar(const char* name, const std::vector<Value*>& arguments, llvm::Type* result);
+  Value* of_lane(Value* v, int lane) { return lanes_ == 1 || !v->getType()->isVectorTy() ? v : b_.CreateExtractElement(v, static_cast<std::uint64_t>(lane)); }
 
   const KernelTables& k_;
   const Plan& p_;
   llvm::Module& m_;
   llvm::IRBuilder<> b_;
+  const int lanes_;
+  llvm::Type* const lane_;  // double, or a vector of them
+  std::vector<bool> asked_;      // columns of the solution
+  llvm::Function* substitution_ = nullptr;
   llvm::Function* function_ = nullptr;
   Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr;  // arena; arena + first stage of the block; that stage
   bool relative_ = false;

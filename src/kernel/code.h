@@ -1,4 +1,4 @@
-// Machine code for a kernel of one lane, made while the program runs, and what makes it: a module that is loaded when it is first asked for,
+// Machine code for a kernel of one lane or several, made while the program runs, and what makes it: a module that is loaded when it is first asked for,
 // as the compiler behind it is large. Without it everything works, slower.
 #pragma once
 #include <memory>
@@ -20,9 +20,9 @@ struct Code {
 struct CompilerModule {
   int version;  // of this interface
   // Empty `code.values` and a message where it fails. `cache`: a folder for compiled code, or empty.
-  void (*compile)(const KernelTables& tables, const std::string& cache, Code& code, std::string& message);
+  void (*compile)(const KernelTables& tables, int lanes, const std::string& cache, Code& code, std::string& message);
 };
-inline constexpr int kCompilerVersion = 1;
+inline constexpr int kCompilerVersion = 2;
 
 // The module beside the program; null where there is none, or this machine cannot run what it makes.
 const CompilerModule* compiler();

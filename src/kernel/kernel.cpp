@@ -163,7 +163,7 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   return !elimination_.pivots.empty();
 }
 
-std::string KernelPlan::compile(const std::string& cache) const {
+std::string KernelPlan::compile(const std::string& cache, int lanes) const {
   const CompilerModule* module = compiler();
   if (!module) return "there is no compiler beside the program";
   if (tables_.refine) return "solutions are refined";
@@ -173,10 +173,12 @@ std::string KernelPlan::compile(const std::string& cache) const {
       if (s.act == Act::lookup) return "tables are looked up";
   Code code;
   std::string message;
-  module->compile(tables_, cache, code, message);
+  module->compile(tables_, lanes, cache, code, message);
   if (!code.values) return message;
-  code_made_ = std::move(code);
-  code_.store(&code_made_, std::memory_order_release);
+  Compiled& made = lanes == 1 ? one_ : several_;
+  made.code = std::move(code);
+  made.lanes = lanes;
+  made.ready.store(&made.code, std::memory_order_release);
   return {};
 }
 

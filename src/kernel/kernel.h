@@ -26,10 +26,14 @@ class KernelPlan {
   const KernelTables& tables() const { return tables_; }
   const Program& program() const { return *program_; }
   std::size_t state_size() const { return state_size_; }
-  // Makes machine code for one lane, with the same bits; kernels take it up at their next expansion. At most once, from any thread. Why there is
-  // none, or nothing.
-  std::string compile(const std::string& cache) const;
-  const Code* code() const { return code_.load(std::memory_order_acquire); }
+  // Makes machine code for one lane, or for so many, with the same bits; such kernels take it up at their next expansion. At most once for each, from
+  // any thread. Why there is none, or nothing.
+  std::string compile(const std::string& cache, int lanes = 1) const;
+  const Code* code(int lanes = 1) const {
+    const Compiled& c = lanes == 1 ? one_ : several_;
+    const Code* ready = c.ready.load(std::memory_order_acquire);
+    return ready && c.lanes == lanes ? ready : nullptr;
+  }
   // Operations of one expansion.
   double work() const { return plan_.work() + elimination_.work() * (plan_.stages + 2) + static_cast<double>(elimination_.update_list.size()); }
 
@@ -43,8 +47,12 @@ class KernelPlan {
   SparseLu elimination_;
   KernelTables tables_;
   std::size_t state_size_ = 0;
-  mutable Code code_made_;
-  mutable std::atomic<const Code*> code_{nullptr};
+  struct Compiled {
+    Code code;
+    int lanes = 1;
+    std::atomic<const Code*> ready{nullptr};
+  };
+  mutable Compiled one_, several_;  // lanes
 };
 
 class Kernel {
@@ -87,7 +95,7 @@ class Kernel {
   double number(std::uint32_t slot, int lane) const { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
   double& number(std::uint32_t slot, int lane) { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
   void project(const Code* code);
-  const Code* code() const { return lanes_ == 1 ? plan_->code() : nullptr; }
+  const Code* code() const { return plan_->code(lanes_); }
   void judge_pivots();
 
   struct Free {
