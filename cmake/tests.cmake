@@ -116,6 +116,7 @@ if(TARGET anholon)
     set(no_limits --no-limits)
   endif()
   anholon_script_test(hostile test/hostile/run.py --program $<TARGET_FILE:anholon> ${no_limits})
+  set_tests_properties(script.hostile PROPERTIES PROCESSORS 2)
   anholon_script_test(mathml tools/check_mathml.py --program $<TARGET_FILE:anholon>)
 
   file(GLOB cases CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/test/golden"

@@ -492,12 +492,9 @@ Expr arranged(Expr e, const SymbolNames& names) {
   Expr best = e;
   std::size_t shortest = length(e);
   const std::optional<NormalForm> written_out = normal_form(e, {}, kMostWork);
-  if (written_out) {
-    // Without a denominator this is `expanded(e)`.
-    const std::optional<Expr> full = one(as_sum(written_out->denominator)) ? expression(written_out->numerator, written_out->generators) : expanded(e);
-    if (full)
+  if (written_out)
+    if (const std::optional<Expr> full = expression(*written_out))  // `expanded(e)`
       if (const std::size_t n = length(*full); n <= shortest) best = *full, shortest = n;
-  }
 
   std::vector<Written> seen;
   std::size_t least = std::numeric_limits<std::size_t>::max();
