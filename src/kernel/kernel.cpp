@@ -173,7 +173,7 @@ std::string KernelPlan::compile(const std::string& cache) const {
       if (s.act == Act::lookup) return "tables are looked up";
   Code code;
   std::string message;
-  module->compile(tables_, cache, code, message);
+  module->compile(tables_, {power_of, function_of, sine_and_cosine}, cache, code, message);
   if (!code.values) return message;
   code_made_ = std::move(code);
   code_.store(&code_made_, std::memory_order_release);
