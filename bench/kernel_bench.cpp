@@ -1,9 +1,10 @@
-// One Taylor expansion of the systems of the speed table, by every backend: the interpreted tape, the kernel's tables with one lane and with
-// all, machine code. For lanes the time is of all of them. And what machine code costs: made anew, and found on disk.
+// One Taylor expansion of systems of each shape, by every backend: the interpreted tape, the kernel's tables in every tier of this machine with one
+// lane and with all, machine code. For lanes the time is of all of them. And what machine code costs: made anew, and found on disk.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include <unistd.h>
 
@@ -17,12 +18,19 @@ using namespace anholon;
 
 constexpr int kStages = 20;
 
+struct Shape {
+  const char *model, *count;  // of links or trailers
+  std::string name() const { return std::string(model) + (*count ? "-" : "") + count; }
+};
+// A single knife edge, a rolling body, a constraint for each trailer, no constraints but links that are coupled with all others.
+constexpr Shape kShapes[] = {{"sleigh", ""}, {"disc", ""}, {"trailers", "3"}, {"trailers", "10"}, {"chain", "4"}, {"chain", "16"}};
+
 struct Subject {
-  explicit Subject(const std::string& name) {
-    SourceText source{std::string(ANHOLON_SOURCE_DIR) + "/bench/models/" + name + ".toml", {}};
+  explicit Subject(const Shape& shape) {
+    SourceText source{std::string(ANHOLON_SOURCE_DIR) + "/bench/models/" + shape.model + ".toml", {}};
     if (!read_file(source.name, source.text)) std::abort();
     Diagnostics diagnostics;
-    const auto model = std::make_shared<const Model>(*read_model(source, diagnostics));
+    const auto model = std::make_shared<const Model>(*read_model(source, diagnostics, *shape.count ? Overrides{{"n", shape.count}} : Overrides{}));
     Start<long double> start;
     if (!make_scenario(model, *find_formulation("routh"), {}, scenario).ok() || !initial_state(scenario, {}, start).ok()) std::abort();
     stepping = std::make_shared<const Program>(program(scenario.system, scenario.structure));
@@ -41,13 +49,13 @@ struct Subject {
 };
 
 // Derived once, however often the clock starts anew.
-const Subject& subject(const std::string& name) {
+const Subject& subject(const Shape& shape) {
   static std::map<std::string, Subject> all;
-  return all.try_emplace(name, name).first->second;
+  return all.try_emplace(shape.name(), shape).first->second;
 }
 
-void interpreted(benchmark::State& clock, const std::string& name) {
-  const Subject& s = subject(name);
+void interpreted(benchmark::State& clock, const Shape& shape) {
+  const Subject& s = subject(shape);
   Expansion<double> expansion(*s.stepping, {s.parameters.begin(), s.parameters.end()}, kStages);
   for (auto _ : clock) {
     expansion.load(s.t, s.state, s.leading);
@@ -55,8 +63,8 @@ void interpreted(benchmark::State& clock, const std::string& name) {
   }
 }
 
-void expand(benchmark::State& clock, const Subject& s, const std::shared_ptr<const KernelPlan>& plan, int lanes) {
-  Kernel kernel(plan, lanes);
+void expand(benchmark::State& clock, const Subject& s, const std::shared_ptr<const KernelPlan>& plan, int lanes, const Tier* tier) {
+  Kernel kernel(plan, lanes, tier);
   for (int lane = 0; lane < lanes; ++lane) kernel.set_parameters(lane, s.parameters);
   for (auto _ : clock) {
     for (int lane = 0; lane < lanes; ++lane) kernel.load(lane, s.t, s.state, s.leading);
@@ -65,23 +73,19 @@ void expand(benchmark::State& clock, const Subject& s, const std::shared_ptr<con
   }
 }
 
-void tables(benchmark::State& clock, const std::string& name) { expand(clock, subject(name), subject(name).plan(), 1); }
-
-void lanes(benchmark::State& clock, const std::string& name) { expand(clock, subject(name), subject(name).plan(), tiers().back().lanes); }
-
-void compiled(benchmark::State& clock, const std::string& name) {
-  const auto plan = subject(name).plan();
+void compiled(benchmark::State& clock, const Shape& shape) {
+  const auto plan = subject(shape).plan();
   if (const std::string why = plan->compile({}); !why.empty()) return clock.SkipWithError(why.c_str());
-  expand(clock, subject(name), plan, 1);
+  expand(clock, subject(shape), plan, 1, nullptr);
 }
 
-void compile(benchmark::State& clock, const std::string& name, bool kept) {
+void compile(benchmark::State& clock, const Shape& shape, bool kept) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("anholon-kernel-bench-" + std::to_string(getpid()));
   const std::string cache = kept ? folder.string() : std::string();
-  if (const std::string why = subject(name).plan()->compile(cache); !why.empty()) return clock.SkipWithError(why.c_str());
+  if (const std::string why = subject(shape).plan()->compile(cache); !why.empty()) return clock.SkipWithError(why.c_str());
   for (auto _ : clock) {
     clock.PauseTiming();
-    const auto plan = subject(name).plan();
+    const auto plan = subject(shape).plan();
     clock.ResumeTiming();
     plan->compile(cache);
   }
@@ -89,16 +93,19 @@ void compile(benchmark::State& clock, const std::string& name, bool kept) {
 }
 
 const bool registered = [] {
-  for (const char* model : {"sleigh", "disc", "trailers", "chain"}) {
-    const auto add = [model](const char* backend, auto* function) {
-      return benchmark::RegisterBenchmark((std::string("kernel/") + model + "/" + backend).c_str(), [=](benchmark::State& s) { function(s, model); });
+  for (const Shape& shape : kShapes) {
+    const auto add = [&shape](const std::string& backend, auto function) {
+      return benchmark::RegisterBenchmark(("kernel/" + shape.name() + "/" + backend).c_str(), [=](benchmark::State& s) { function(s, shape); });
     };
     add("interpreted", interpreted)->Unit(benchmark::kMicrosecond);
-    add("tables", tables)->Unit(benchmark::kMicrosecond);
-    add("lanes", lanes)->Unit(benchmark::kMicrosecond);
+    for (const Tier& tier : tiers())
+      for (int lanes : std::set<int>{1, tier.lanes})
+        add(std::string(tier.name) + "/" + std::to_string(lanes),
+            [&tier, lanes](benchmark::State& s, const Shape& of) { expand(s, subject(of), subject(of).plan(), lanes, &tier); })
+            ->Unit(benchmark::kMicrosecond);
     add("compiled", compiled)->Unit(benchmark::kMicrosecond);
-    add("make", +[](benchmark::State& s, const std::string& name) { compile(s, name, false); })->Unit(benchmark::kMillisecond);
-    add("find", +[](benchmark::State& s, const std::string& name) { compile(s, name, true); })->Unit(benchmark::kMillisecond);
+    add("make", [](benchmark::State& s, const Shape& of) { compile(s, of, false); })->Unit(benchmark::kMillisecond);
+    add("find", [](benchmark::State& s, const Shape& of) { compile(s, of, true); })->Unit(benchmark::kMillisecond);
   }
   return true;
 }();

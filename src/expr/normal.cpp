@@ -15,6 +15,7 @@ namespace {
 
 // Largest multiple of an angle that is expanded into powers of its sine and cosine.
 constexpr long kLargestMultiple = 40;
+constexpr std::size_t kPrintedTerms = 2000;
 
 struct Fraction {
   Poly num, den;
@@ -32,6 +33,7 @@ class Normalizer {
     find_nodes();
     collect();
     ring_ = std::make_unique<Ring>(std::max<long>(1, generators_), most_work);
+    relations_ = std::make_unique<Relations>(*ring_);
   }
 
   bool zero() {
@@ -41,18 +43,20 @@ class Normalizer {
 
   Expr expand() {
     if (zero()) return g_.zero();
-    Fraction f = fractions_.at(root_.id);
-    if (!f.den.one() && f.num.length() <= kDividedTerms && f.den.length() <= kDividedTerms) {
-      const Poly divisor = common(f.num, f.den);
-      f = {quotient(f.num, divisor), quotient(f.den, divisor)};
-    }
-    const std::vector<Expr> meaning = meanings();
-    const Expr top = expression(printed(f.num), meaning);
-    return f.den.one() ? top : top / expression(printed(f.den), meaning);
+    const std::optional<Expr> e = expression(lowest());
+    if (!e) throw TooLarge{};
+    return *e;
   }
 
   NormalForm form() {
     zero();
+    return lowest();
+  }
+
+ private:
+  static constexpr long kDividedTerms = 300;  // longer fractions are not brought to lowest terms
+
+  NormalForm lowest() {
     const Fraction& f = fractions_.at(root_.id);
     NormalForm out;
     out.generators = meanings();
@@ -68,12 +72,8 @@ class Normalizer {
     return out;
   }
 
- private:
-  static constexpr long kPrintedTerms = 2000;
-  static constexpr long kDividedTerms = 300;  // longer fractions are not brought to lowest terms
-
   static Monomials printed(const Poly& p) {
-    if (p.length() > kPrintedTerms) throw TooLarge{};
+    if (static_cast<std::size_t>(p.length()) > kPrintedTerms) throw TooLarge{};
     return p.terms();
   }
 
@@ -175,7 +175,7 @@ class Normalizer {
 
   Poly constant(const Rational& r) const { return Poly::constant(*ring_, r); }
   Poly generator(long k) const { return Poly::generator(*ring_, k); }
-  Poly reduce(const Poly& p) const { return p.reduced(relations_); }
+  Poly reduce(const Poly& p) const { return relations_->remainder(p); }
   Fraction plain(Poly p) const { return {std::move(p), constant(1)}; }
 
   Fraction multiply(const Fraction& a, const Fraction& b) const {
@@ -205,7 +205,7 @@ class Normalizer {
       const long k = multiple.get_num().get_si();
       if (pythagoras_.insert(node).second) {
         const Poly a = generator(sine_.at(node)), b = generator(cosine_.at(node));
-        relations_.push_back(a * a + b * b - constant(1));
+        relations_->add(a * a + b * b - constant(1));
       }
       const Poly s1 = k >= 0 ? generator(sine_.at(node)) : constant(-1) * generator(sine_.at(node));
       const Poly c1 = generator(cosine_.at(node));
@@ -226,7 +226,7 @@ class Normalizer {
       Poly power = constant(1), radicand = x.num;
       for (unsigned long i = 0; i < k; ++i) power = power * r;
       for (unsigned long i = 1; i < k; ++i) radicand = reduce(radicand * x.den);
-      relations_.insert(relations_.begin(), power - radicand);
+      relations_->add_first(power - radicand);
     }
     return {r, x.den};
   }
@@ -236,7 +236,7 @@ class Normalizer {
     const Poly r = generator(reciprocal_.at({node, k}));
     const Fraction& x = fractions_.at(node);
     if (k == 1 && x.num.length() == 1 && x.den.one() && reciprocal_known_.insert(node).second)
-      relations_.push_back(r * x.num - constant(1));
+      relations_->add(r * x.num - constant(1));
     return plain(r);
   }
 
@@ -297,7 +297,7 @@ class Normalizer {
   std::set<NodeId> pythagoras_, reciprocal_known_;
   std::set<std::pair<NodeId, unsigned long>> root_known_;
   std::unique_ptr<Ring> ring_;
-  std::vector<Poly> relations_;
+  std::unique_ptr<Relations> relations_;
   std::map<NodeId, Fraction> fractions_;
 };
 
@@ -313,6 +313,12 @@ Expr expression(const Monomials& terms, const std::vector<Expr>& generators) {
     sum.push_back({m.coefficient, g.product(factors)});
   }
   return g.sum(sum);
+}
+
+std::optional<Expr> expression(const NormalForm& f) {
+  if (std::max(f.numerator.size(), f.denominator.size()) > kPrintedTerms) return std::nullopt;
+  const Expr top = expression(f.numerator, f.generators), bottom = expression(f.denominator, f.generators);
+  return is_number(bottom) && number_value(bottom) == 1 ? top : top / bottom;
 }
 
 bool proved_zero(Expr e) {

@@ -43,6 +43,8 @@ struct Whole {
 std::optional<NormalForm> normal_form(Expr e, const Whole& whole, long most_work);
 
 Expr expression(const Monomials& terms, const std::vector<Expr>& generators);
+// The fraction itself; nothing if it is longer than anybody reads.
+std::optional<Expr> expression(const NormalForm& f);
 
 // A product of polynomials with more terms than this ends the test without a result.
 inline constexpr long kNormalTermLimit = 2'000'000;

@@ -48,7 +48,12 @@ class Poly {
     fmpq_mpoly_init(p_, ring_->context());
     fmpq_mpoly_set(p_, o.p_, ring_->context());
   }
+  Poly(Poly&& o) noexcept : ring_(o.ring_) {
+    fmpq_mpoly_init(p_, ring_->context());
+    fmpq_mpoly_swap(p_, o.p_, ring_->context());
+  }
   Poly& operator=(const Poly& o) { fmpq_mpoly_set(p_, o.p_, ring_->context()); return *this; }
+  Poly& operator=(Poly&& o) noexcept { fmpq_mpoly_swap(p_, o.p_, ring_->context()); return *this; }
   ~Poly() { fmpq_mpoly_clear(p_, ring_->context()); }
   static Poly constant(const Ring& ring, const Rational& r) {
     Poly p(ring);
@@ -113,20 +118,6 @@ class Poly {
     fmpq_mpoly_mul(r.p_, a.p_, b.p_, a.ring_->context());
     return r;
   }
-  // The remainder after division by all of `relations`.
-  Poly reduced(const std::vector<Poly>& relations) const {
-    if (relations.empty()) return *this;
-    ring_->spend(reduction_work(relations));
-    std::vector<Poly> quotients(relations.size(), Poly(*ring_));
-    std::vector<fmpq_mpoly_struct*> q, d;
-    for (std::size_t i = 0; i < relations.size(); ++i) {
-      q.push_back(quotients[i].p_);
-      d.push_back(const_cast<fmpq_mpoly_struct*>(relations[i].p_));
-    }
-    Poly r(*ring_);
-    fmpq_mpoly_divrem_ideal(q.data(), r.p_, p_, d.data(), static_cast<slong>(d.size()), ring_->context());
-    return r;
-  }
   // The greatest common divisor (1 if FLINT finds none), and the quotient by a divisor.
   friend Poly common(const Poly& a, const Poly& b) {
     Poly r(*a.ring_);
@@ -154,40 +145,34 @@ class Poly {
   }
 
  private:
-  // About how many terms a reduction makes: each relation g^k = (a tail of T terms) opens g^(mk + …) into as many as the m-th
-  // power of its tail has, at most binomial(m + T - 1, m).
-  long reduction_work(const std::vector<Poly>& relations) const {
-    struct Rule {
-      std::size_t generator;
-      unsigned long power;
-      long tail;
-    };
-    std::vector<Rule> rules;
-    std::vector<unsigned long> e(static_cast<std::size_t>(ring_->generators()));
-    for (const Poly& r : relations) {
-      fmpq_mpoly_get_term_exp_ui(e.data(), r.p_, 0, ring_->context());
-      for (std::size_t k = 0; k < e.size(); ++k)
-        if (e[k] > 0) {
-          rules.push_back({k, e[k], r.length() - 1});
-          break;
-        }
-    }
-    // In large rings each term is compared with many relations, over exponents of many words.
-    const std::size_t words = 1 + e.size() / 8;
-    double work = static_cast<double>(length()) * static_cast<double>(relations.size() * words / 16);
-    for (long i = 0; i < length() && work < 1e9; ++i) {
-      fmpq_mpoly_get_term_exp_ui(e.data(), p_, i, ring_->context());
-      double opened = 1;
-      for (const Rule& rule : rules)
-        for (unsigned long m = e[rule.generator] / rule.power, k = 1; k <= m && opened < 1e9; ++k)
-          opened *= static_cast<double>(rule.tail - 1 + static_cast<long>(k)) / static_cast<double>(k);
-      if (opened > 1) work += opened;
-    }
-    return static_cast<long>(std::min(work, 1e9));
-  }
-
+  friend class Relations;
   const Ring* ring_;
   fmpq_mpoly_t p_;
+};
+
+// Polynomials that are zero, each g^k = (a tail of later generators), in the order in which a division tries them.
+class Relations {
+ public:
+  explicit Relations(const Ring& ring) : ring_(&ring) {}
+  void add(Poly relation);
+  void add_first(Poly relation);
+  Poly remainder(const Poly& p) const;
+
+ private:
+  // What the leading monomial demands of a term that it divides, and which generators the tail brings in.
+  struct Rule {
+    Poly relation;
+    std::size_t generator;
+    unsigned long power;
+    long tail;
+    std::vector<std::size_t> opens;
+  };
+  Rule rule(Poly relation) const;
+  std::vector<const Rule*> needed(const std::vector<long>& degrees) const;
+  void pay(const Poly& p, const std::vector<const Rule*>& rules) const;
+
+  const Ring* ring_;
+  std::vector<Rule> rules_;
 };
 
 }  // namespace anholon

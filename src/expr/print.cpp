@@ -1,10 +1,9 @@
 #include "expr/print.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <map>
-#include <optional>
+
+#include "expr/print_names.h"
 
 namespace anholon {
 
@@ -19,44 +18,10 @@ struct Printed {
   int opposite_strength = kAtom;
 };
 
-const std::array kGreekNames = {
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda",
-    "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma",
-    "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Phi", "Psi", "Omega"};
-
-const std::array<const char*, kGreekNames.size()> kGreekLetters = {
-    "α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "ι", "κ", "λ", "μ", "ν", "ξ", "π", "ρ", "σ", "τ", "υ", "φ", "χ", "ψ", "ω", "Γ",
-    "Δ", "Θ", "Λ", "Ξ", "Π", "Σ", "Φ", "Ψ", "Ω"};
-
-bool is_greek(const std::string& s) {
-  return std::find(kGreekNames.begin(), kGreekNames.end(), s) != kGreekNames.end();
-}
-
-std::string latex_escape(const std::string& name) {
-  std::string escaped;
-  for (char c : name) escaped += c == '_' ? "\\_" : std::string(1, c);
-  return escaped;
-}
-
 // "\\sin" -> "sin", "\\operatorname{sgn}" -> "sgn".
 std::string function_name(const std::string& latex) {
   const std::size_t brace = latex.find('{');
   return brace == std::string::npos ? latex.substr(1) : latex.substr(brace + 1, latex.size() - brace - 2);
-}
-
-std::string xml_escape(const std::string& text) {
-  std::string escaped;
-  for (char c : text) escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return escaped;
-}
-
-std::string row(const std::string& mathml) { return "<mrow>" + mathml + "</mrow>"; }
-
-// "th[3]" is th with the index 3, "rolling[2].x" rolling.x with the index 2; nothing where there is no bracket.
-std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name) {
-  const std::size_t open = name.find('['), close = name.find(']');
-  if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
-  return std::pair{name.substr(0, open) + name.substr(close + 1), name.substr(open + 1, close - open - 1)};
 }
 
 std::string written_name(const std::string& name, Format format) {
@@ -396,104 +361,9 @@ class Printer {
 
 }  // namespace
 
-std::string latex_name(const std::string& name) {
-  if (const auto indexed = indexed_name(name)) {
-    const auto& [base, index] = *indexed;
-    const std::string written = latex_name(base);
-    // One subscript holds what the name had and the index: x_{1,3}.
-    if (written.find("_{") != std::string::npos && written.back() == '}') return written.substr(0, written.size() - 1) + "," + index + "}";
-    return written + "_{" + index + "}";
-  }
-  if (is_greek(name)) return "\\" + name;
-  if (name.size() == 1) return name;
-  std::size_t digits = name.size();
-  while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
-  const std::size_t underscore = name.find('_');
-  if (digits < name.size() && digits > 0 && underscore == std::string::npos)
-    return latex_name(name.substr(0, digits)) + "_{" + name.substr(digits) + "}";
-  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
-    return latex_name(name.substr(0, underscore)) + "_{" + latex_name(name.substr(underscore + 1)) + "}";
-  return "\\mathrm{" + latex_escape(name) + "}";
-}
-
-std::string mathml_name(const std::string& name) {
-  if (const auto indexed = indexed_name(name)) {
-    const auto& [base, index] = *indexed;
-    std::string own = "<mn>";
-    for (const char c : index) own += c == ',' ? std::string("</mn><mo>,</mo><mn>") : std::string(1, c);
-    own += "</mn>";
-    const std::string written = mathml_name(base), open = "<msub>", close = "</msub>";
-    if (written.rfind(open, 0) != 0) return open + written + (index.find(',') == std::string::npos ? own : row(own)) + close;
-    // Its second child, the subscript, goes before the index.
-    const std::size_t underscore = base.find('_'), digit = base.find_last_not_of("0123456789") + 1;
-    const std::string root = mathml_name(base.substr(0, underscore != std::string::npos ? underscore : digit));
-    const std::size_t start = open.size() + root.size();
-    return open + root + row(written.substr(start, written.size() - start - close.size()) + "<mo>,</mo>" + own) + close;
-  }
-  const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
-  if (greek != kGreekNames.end()) return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
-  if (name.size() == 1) return "<mi>" + xml_escape(name) + "</mi>";
-  std::size_t digits = name.size();
-  while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
-  if (digits == 0) return "<mn>" + name + "</mn>";
-  const std::size_t underscore = name.find('_');
-  if (digits < name.size() && underscore == std::string::npos)
-    return "<msub>" + mathml_name(name.substr(0, digits)) + "<mn>" + name.substr(digits) + "</mn></msub>";
-  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
-    return "<msub>" + mathml_name(name.substr(0, underscore)) + mathml_name(name.substr(underscore + 1)) + "</msub>";
-  return "<mi mathvariant=\"normal\">" + xml_escape(name) + "</mi>";
-}
-
-std::string derivative_name(const std::string& name, unsigned order, Format format) {
-  if (order == 0) return name;
-  switch (format) {
-    case Format::text:
-      if (order <= 3) return name + std::string(order, '\'');
-      return "D(" + name + "," + std::to_string(order) + ")";
-    case Format::latex: {
-      static const char* const kDots[] = {"\\dot{", "\\ddot{", "\\dddot{"};
-      if (order <= 3) return kDots[order - 1] + name + "}";
-      return name + "^{(" + std::to_string(order) + ")}";
-    }
-    case Format::mathml: {
-      static const char* const kDots[] = {"˙", "¨", "⃛"};
-      if (order <= 3) return "<mover accent=\"true\">" + name + "<mo>" + kDots[order - 1] + "</mo></mover>";
-      return "<msup>" + name + row("<mo>(</mo><mn>" + std::to_string(order) + "</mn><mo>)</mo>") + "</msup>";
-    }
-  }
-  return name;
-}
-
 std::vector<std::string> print_contents(std::span<const Expr> es, const SymbolNames& names, Format format) {
   if (es.empty()) return {};
   return Printer(*es[0].graph, names, format).contents(es);
-}
-
-std::vector<Expr> name_parts(std::span<const Expr> es, SymbolNames& names) {
-  std::vector<Expr> parts;
-  if (es.empty()) return parts;
-  Graph& g = *es[0].graph;
-  names.short_sums = true;
-  const std::vector<NodeId> ids = reachable(es);
-  std::unordered_map<NodeId, std::size_t> uses;
-  for (Expr e : es) ++uses[e.id];
-  for (NodeId id : ids)
-    for (const Term& t : g.summands(id)) ++uses[t.node];
-  std::string prefix = "w";
-  const auto taken = [&](const std::string& p) {
-    const auto begins = [&](const std::string& n) { return n.size() > p.size() && n.compare(0, p.size(), p) == 0 && std::isdigit(static_cast<unsigned char>(n[p.size()])); };
-    for (const auto* list : {&names.coordinates, &names.parameters, &names.masses, &names.given, &names.quasi, &names.states, &names.controls})
-      if (std::any_of(list->begin(), list->end(), begins)) return true;
-    return false;
-  };
-  while (taken(prefix)) prefix += "w";
-  for (NodeId id : ids) {
-    const Node& n = g.node(id);
-    if (uses[id] < 2 || n.view_count < 2 || (n.kind != Kind::sum && n.kind != Kind::product) || names.defined.count(id)) continue;
-    parts.push_back({&g, id});
-    names.defined.emplace(id, prefix + std::to_string(parts.size()));
-  }
-  return parts;
 }
 
 std::vector<std::string> print(std::span<const Expr> es, const SymbolNames& names, Format format) {

@@ -22,24 +22,6 @@ namespace anholon::jit {
 
 namespace {
 
-extern "C" {
-static void anholon_sincos(double x, double* sine, double* cosine) { ::sincos(x, sine, cosine); }
-static double anholon_power(double x, double exponent) {
-  return exponent == -0.5 ? 1 / std::sqrt(x) : exponent == 1.5 ? x * std::sqrt(x) : exponent == -1.5 ? 1 / (x * std::sqrt(x)) : std::pow(x, exponent);
-}
-static double anholon_function(int function, double u) {
-  using std::abs, std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh, std::tanh, std::asinh, std::acosh, std::atanh, std::exp, std::log;
-  const auto sign = [](double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; };
-  switch (static_cast<Function>(function)) {
-#define ROW(name, derivative, parity, latex, domain) \
-  case Function::name: return name(u);
-#include "expr/elementary.def"
-#undef ROW
-  }
-  return u;
-}
-}
-
 using Builder = llvm::orc::JITTargetMachineBuilder;
 
 std::string text_of(llvm::Error error) { return llvm::toString(std::move(error)); }
@@ -106,7 +88,7 @@ std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lan
   return llvm::MemoryBuffer::getMemBufferCopy(llvm::StringRef(bytes.data(), bytes.size()), "kernel");
 }
 
-Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, int levels, std::string& message) {
+Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, int levels, const CalledFunctions& called, std::string& message) {
   // No platform: there are no initializers to run, and the general one compiles a module of its own.
   auto jit = llvm::orc::LLJITBuilder().setJITTargetMachineBuilder(builder).setPlatformSetUp(llvm::orc::setUpInactivePlatform).create();
   if (!jit) return message = text_of(jit.takeError()), Code{};
@@ -115,9 +97,9 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
   const auto add = [&](const char* symbol, auto* function) {
     symbols[(*jit)->mangleAndIntern(symbol)] = {llvm::orc::ExecutorAddr::fromPtr(function), llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
   };
-  add("anholon_sincos", &anholon_sincos);
-  add("anholon_power", &anholon_power);
-  add("anholon_function", &anholon_function);
+  add("anholon_sincos", called.sincos);
+  add("anholon_power", called.power);
+  add("anholon_function", called.function);
   add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
   if (auto error = (*jit)->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(symbols)))) return message = text_of(std::move(error)), Code{};
   if (auto error = (*jit)->addObjectFile(std::move(object))) return message = text_of(std::move(error)), Code{};
@@ -138,7 +120,7 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
   return made;
 }
 
-void compile(const KernelTables& tables, int lanes, const std::string& cache, Code& code, std::string& message) {
+void compile(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache, Code& code, std::string& message) {
   static std::once_flag once;
   std::call_once(once, [] {
     llvm::InitializeNativeTarget();
@@ -157,13 +139,13 @@ void compile(const KernelTables& tables, int lanes, const std::string& cache, Co
   const Store store(!cache.empty() && name(tables, lanes, *builder, key) ? cache : std::string());
   if (auto kept = store.read(key)) {
     std::string why;
-    code = linked(std::move(kept), *builder, Emitter::levels(tables), why);
+    code = linked(std::move(kept), *builder, Emitter::levels(tables), called, why);
     if (code.values) return;
   }
   auto object = compiled(tables, lanes, *builder, message);
   if (!object) return;
   store.write(key, *object);
-  code = linked(std::move(object), *builder, Emitter::levels(tables), message);
+  code = linked(std::move(object), *builder, Emitter::levels(tables), called, message);
 }
 
 }  // namespace

@@ -16,11 +16,18 @@ struct Code {
   std::shared_ptr<void> keeper;
 };
 
+// What compiled code calls: the functions that the tiers call (arithmetic.h), so that the bits are theirs.
+struct CalledFunctions {
+  decltype(&power_of) power;
+  decltype(&function_of) function;
+  decltype(&sine_and_cosine) sincos;
+};
+
 // What the module exports, under the name anholon_compiler.
 struct CompilerModule {
   int version;  // of this interface
   // Empty `code.values` and a message where it fails. `cache`: a folder for compiled code, or empty.
-  void (*compile)(const KernelTables& tables, int lanes, const std::string& cache, Code& code, std::string& message);
+  void (*compile)(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache, Code& code, std::string& message);
 };
 inline constexpr int kCompilerVersion = 2;
 

@@ -38,7 +38,7 @@ std::vector<std::string> ensemble_columns(const Model& model) {
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenario(s), options(o), parameters(s, o.varied) {
   const Model& model = *s.model;
   Graph& g = *model.graph;
-  settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled};
+  settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   plain = !s.routh && s.redundant.empty() && s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
@@ -48,7 +48,7 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
   for (const VaryingMass& m : model.masses) masses.push_back(m.value);
   program = anholon::program(s.system, s.structure, masses);
   settings.measure = false;
-  if (Start<long double> at; initial_state(s, o.state, at).ok()) {
+  if (Start<long double> at; o.kernel && initial_state(s, o.state, at).ok()) {
     const std::vector<long double> numbers = parameter_values<long double>(model);
     const std::vector<double> state(at.state.begin(), at.state.end());
     const double t = static_cast<double>(at.t);
@@ -278,6 +278,7 @@ void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& 
   options.order = o.order;
   options.most_steps = o.most_steps;
   options.cancelled = o.cancelled;
+  options.kernel = o.kernel;
   Kept rows(own.scenario, o.at, r);
   const SimulationReport report = simulate(own.scenario, options, rows);
   r.outcome = report.outcome;

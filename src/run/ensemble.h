@@ -35,6 +35,7 @@ struct EnsembleOptions {
   Rational tolerance{1, 1000000000000};
   int order = 0;                                    // of the Taylor polynomials; 0: from the tolerance
   std::size_t most_steps = 50'000'000;              // of a case
+  bool kernel = true;                               // as in SimulationOptions; without, a case has the bits of `simulate`
   std::size_t threads = 0;                          // 0: as many as the machine has
   std::function<void(std::size_t done)> progress;   // by one thread at a time
   std::function<bool()> cancelled;                  // many threads ask at once

@@ -12,7 +12,7 @@ namespace anholon {
 namespace {
 
 StepSettings step_settings(const SimulationOptions& o) {
-  return {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled};
+  return {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
 }
 
 Column monitored(const Model& model) {

@@ -30,6 +30,7 @@ struct SimulationOptions {
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;
   std::size_t most_steps = 50'000'000;
+  bool kernel = true;              // where there is one: its pivots, chosen at the start, are seen in the last digits
   ErrorEstimate estimate = ErrorEstimate::never;
   std::vector<Conserved> conserved;  // to be watched
   // Called at the end, and every few seconds: what is needed to go on.

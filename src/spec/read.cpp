@@ -6,7 +6,6 @@
 #include "expr/indices.h"
 #include "expr/normal.h"
 #include "expr/units.h"
-#include "numeric/multi.h"
 #include "spec/bodies.h"
 #include "spec/constraints.h"
 #include "spec/control.h"
@@ -19,10 +18,11 @@
 #include "spec/names.h"
 #include "spec/notation.h"
 #include "spec/observer.h"
+#include "spec/potentials.h"
+#include "spec/simulate.h"
 #include "spec/tables.h"
+#include "spec/values.h"
 #include "spec/variants.h"
-#include "tape/point.h"
-#include "tape/tape.h"
 
 namespace anholon {
 
@@ -34,13 +34,6 @@ constexpr Span kTop{1, 1, 1};
 // What making the expressions of a file may cost: a formula that unfolds without end is refused where it stands. The chain of
 // a thousand links takes a tenth of this.
 constexpr std::size_t kWork = 700'000, kWorkPerByte = 1000, kWorkPerMember = 1000, kWorkLater = std::size_t{1} << 48;
-// Parameters are put into each other so many times.
-constexpr std::size_t kDeepestParameters = 400;
-
-// An end time, and a number of rows, beyond these are refused before they are tried.
-const Rational kLatest(mpz_class("1000000000000000000"));
-constexpr long kMostRows = 5'000'000;
-
 class Reader {  // what it refers to is asked only while it runs
  public:
   Reader(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides, const std::vector<std::string>& cases)
@@ -83,13 +76,13 @@ class Reader {  // what it refers to is asked only while it runs
     BodyReader bodies(scope_, model_, diagnostics_);
     bodies.declare(root);
     if (const Item* o = table(root, "observer")) guard([&] { read_observer(*o, scope_, model_, diagnostics_); }, o->span);
-    gravity(root);
+    read_gravity(root, scope_, diagnostics_);
     read_controls(root, scope_, model_, diagnostics_);
     // A name that does not stand for a value is worth one report, at the place of its use.
     bodies.read();
     bodies.read_forces(root);
-    potentials(root);
-    dissipation(root);
+    read_potentials(root, scope_, model_, diagnostics_);
+    read_dissipation(root, scope_, model_, diagnostics_);
     ConstraintReader constraints(scope_, model_, diagnostics_);
     constraints.read(root);
     check_kept(model_, diagnostics_);
@@ -107,10 +100,10 @@ class Reader {  // what it refers to is asked only while it runs
       for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
       read_notation(*n, model_, declared, diagnostics_);
     }
-    guard([&] { simulate(root); });
+    guard([&] { read_simulate(root, scope_, model_, diagnostics_); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
-    if (!diagnostics_.has_errors()) values();
+    if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
     // What is made of the model from here on grows in proportion to it.
     model_.graph->allow(kWorkLater);
@@ -294,150 +287,6 @@ class Reader {  // what it refers to is asked only while it runs
         else throw Failure(i.span, std::string("'") + i.key + "' in [" + key + "] is not a formula");
         scope_.declare(i.key, d);
       }, i);
-  }
-
-  void gravity(const Item& root) {
-    const Item* section = table(root, "gravity");
-    if (!section) return;
-    check_keys(*section, "[gravity]", "gravity", diagnostics_);
-    if (const Item* gradient = section->find("gradient")) {
-      if (gradient->kind != Item::Kind::boolean) diagnostics_.error(gradient->span, "'gradient' is true or false");
-      else scope_.gravity_gradient = gradient->truth;
-    }
-    if (const Item* field = section->find("field")) scope_.set_gravity(*field);
-    else diagnostics_.error(section->span, "[gravity] has no field", "field = \"-g*ez\"");
-  }
-
-  void potentials(const Item& root) {
-    const Item* section = table(root, "potential");
-    if (!section) return;
-    scope_.freeze_masses = true;
-    for (const Item& i : section->items)
-      guard([&] {
-        const Expr v = scope_.number(i);
-        if (jet_order(with_feedback(model_, v)) > 0)
-          throw Failure(i.span, "the potential '" + i.key + "' depends on a velocity",
-                        "give a force instead");
-        if (const auto name = too_rough(v, 1))
-          throw Failure(i.span, "the potential '" + i.key + "' holds the table '" + *name + "', which jumps: so would the energy, without a force", "fit = \"linear\", \"monotone\" or \"spline\"");
-        model_.potentials.push_back({i.key, with_feedback(model_, v), i.span});
-      }, i);
-    scope_.freeze_masses = false;
-  }
-
-  void dissipation(const Item& root) {
-    const Item* section = table(root, "dissipation");
-    if (!section) return;
-    scope_.freeze_masses = true;
-    for (const Item& i : section->items)
-      guard([&] {
-        const Expr r = with_feedback(model_, scope_.number(i));
-        const int order = jet_order(r);
-        if (order > 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on an acceleration");
-        if (order < 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on no velocity", "R = \"c/2*x'^2\" gives the force -c x'");
-        model_.dissipation.push_back({i.key, r, i.text(), i.span});
-      }, i.span);
-    scope_.freeze_masses = false;
-  }
-
-  // Parameters and initial values are numbers. Asked in double, node by node; where that finds none (it may only have
-  // overflowed), in numbers without such bounds.
-  void values() {
-    const Graph& g = *model_.graph;
-    std::vector<std::size_t> depth(model_.parameters.size(), 0);  // through how many others a value leads
-    const std::function<std::size_t(std::size_t)> deep = [&](std::size_t i) {
-      if (depth[i] > 0 || is_number(model_.parameters[i].value)) return depth[i];
-      std::size_t most = 0;
-      for (NodeId id : symbols({&model_.parameters[i].value, 1}))
-        if (g.node(id).kind == Kind::parameter) most = std::max(most, 1 + deep(g.node(id).index));
-      return depth[i] = most;
-    };
-    for (std::size_t i = 0; i < depth.size(); ++i)
-      if (deep(i) > kDeepestParameters) {
-        diagnostics_.error(model_.parameters[i].span, "the parameter '" + model_.parameters[i].name + "' leads through more than " + std::to_string(kDeepestParameters) + " others");
-        return;
-      }
-    std::vector<std::optional<double>> known(model_.parameters.size());
-    const std::function<double(Expr)> value = [&](Expr e) {
-      if (g.is_number(e.id)) return from_rational<double>(g.value(e.id));
-      return PointValues([&](const Node& n) {
-        std::optional<double>& v = known[n.index];
-        if (!v) v = value(model_.parameters[n.index].value);
-        return *v;
-      })(e);
-    };
-    const auto check = [&](Expr e, Span place, const std::string& what) {
-      return guard([&] {
-        if (is_number(e) || is_finite(value(e))) return;
-        std::string why = "a root or logarithm of a negative number, or a number beyond all bounds";
-        try {
-          const PrecisionScope precision(40);
-          Column all;
-          for (const Parameter& p : model_.parameters) all.push_back(p.value);
-          all.push_back(e);
-          if (is_finite(evaluate_parameters<Multi>(*model_.graph, all).back())) return;
-        } catch (const Failure& f) {
-          why = f.diagnostic.message;
-        }
-        throw Failure(place, what + " has no value: " + why);
-      });
-    };
-    for (const Parameter& p : model_.parameters)
-      if (!check(p.value, p.span, "the parameter '" + p.name + "'")) return;  // others may hold this one
-    for (const StateVariable& z : model_.states) check(z.initial, z.span, "the initial value of '" + z.name + "'");
-    for (const auto* list : {&model_.initial.given, &model_.initial.guess})
-      for (const GivenValue& v : *list) check(v.value, v.span, "this initial value");
-    check(model_.initial.t, {}, "the initial time");
-  }
-
-  Rational rational(const Item& i) {
-    const Expr e = scope_.number(i);
-    if (!is_number(e)) throw Failure(i.span, "'" + i.key + "' is a plain number");
-    return number_value(e);
-  }
-
-  void simulate(const Item& root) {
-    const Item* s = table(root, "simulate");
-    if (!s) return;
-    check_keys(*s, "[simulate]", "simulate", diagnostics_);
-    SimulationSettings& out = model_.simulate;
-    const Rational start = is_number(model_.initial.t) ? number_value(model_.initial.t) : Rational(0);
-    if (const Item* i = s->find("to")) {
-      out.to = rational(*i);
-      if (abs(*out.to) > kLatest) throw Failure(i->span, "an end time beyond 1e18");
-    }
-    if (const Item* i = s->find("tolerance")) {
-      out.tolerance = rational(*i);
-      if (*out.tolerance <= 0 || *out.tolerance >= 1) throw Failure(i->span, "the tolerance lies between 0 and 1");
-    }
-    if (const Item* i = s->find("every")) {
-      out.every = rational(*i);
-      if (*out.every <= 0) throw Failure(i->span, "'every' is a positive time");
-      if (out.to && abs(Rational(*out.to - start)) > kMostRows * *out.every)
-        throw Failure(i->span, "'every' asks for more than " + std::to_string(kMostRows) + " rows");
-    }
-    if (const Item* i = s->find("at")) {
-      if (i->kind != Item::Kind::array) throw Failure(i->span, "'at' is a list of times");
-      for (const Item& t : i->items) out.at.push_back(rational(t));
-      const auto side = [&](int sign) {
-        return std::any_of(out.at.begin(), out.at.end(), [&](const Rational& t) { return sgn(Rational(t - start)) == sign; });
-      };
-      if (side(-1) && side(1)) throw Failure(i->span, "some of these times lie before the start, others after it", "one run goes one way");
-    }
-    if (const Item* i = s->find("form")) {
-      if (i->kind != Item::Kind::string) throw Failure(i->span, "a form is a name in quotes", "form = \"routh\"");
-      out.form = i->text();
-      out.form_span = i->formula.whole();
-    }
-    if (const Item* i = s->find("integrator")) {
-      if (i->kind != Item::Kind::string) throw Failure(i->span, "an integrator is a name in quotes", "integrator = \"taylor\"");
-      out.integrator = find_integrator(i->text());
-      if (!out.integrator) {
-        const std::string near = did_you_mean(i->text(), integrator_names());
-        throw Failure(i->span, "there is no integrator '" + i->text() + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                      "integrator = \"taylor\", \"cvode\" or \"ida\"");
-      }
-    }
   }
 
   Diagnostics& diagnostics_;

@@ -33,7 +33,7 @@ import threading
 os.environ.setdefault("ANHOLON_CACHE", "")  # nothing is kept in the user's home
 
 FOLDER = pathlib.Path(__file__).resolve().parent
-SECONDS = 3  # of processor time, for each command; half of it is what a busy neighbour on the same core takes
+SECONDS = 2  # of processor time, for each command
 MEMORY = 1 << 30  # bytes of address space
 PATIENCE = 600  # seconds, for a command that sleeps
 COMMANDS = (
@@ -188,7 +188,7 @@ def faults(name, path, expected, program, limits, commands=COMMANDS):
             return f"{name}: {' '.join(command)}: {what}; exit {code}; {said}"
 
         if code not in (0, 1, 2) or "internal fault" in errors:
-            yield wrong("out of time" if code == -signal.SIGXCPU else "no end" if code == -signal.SIGKILL else "a crash")
+            yield wrong("out of processor time" if code == -signal.SIGXCPU else "no end" if code == -signal.SIGKILL else "a crash")
             continue
         if limits and took > SECONDS:
             yield wrong(f"took {took:.1f} s of processor time")
@@ -222,7 +222,7 @@ SICK = {
     "accepts all": "exit 0",
 }
 FAULTS = {
-    "crash": "a crash", "fault": "a crash", "hang": "out of time", "memory": "a crash", "no place": "without a place",
+    "crash": "a crash", "fault": "a crash", "hang": "out of processor time", "memory": "a crash", "no place": "without a place",
     "no name": "without a name", "no JSON": "not JSON", "accepts all": "expected error",
 }  # fmt: skip
 
@@ -270,8 +270,12 @@ def main():
             cases = [c for c in cases if any(n in c[0] for n in options.names)]
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             commands = [COMMANDS if c[1].parent.parent == FOLDER else FEW for c in cases]
-            found = pool.map(lambda c, many: list(faults(*c, program, not options.no_limits, many)), cases, commands)
-            wrong = [line for lines in found for line in lines]
+            found = list(pool.map(lambda c, many: list(faults(*c, program, not options.no_limits, many)), cases, commands))
+        # Two commands that share caches take longer than either alone, which is what the limit is for.
+        for k, lines in enumerate(found):
+            if any("processor time" in line for line in lines):
+                found[k] = list(faults(*cases[k], program, not options.no_limits, commands[k]))
+        wrong = [line for lines in found for line in lines]
     for line in wrong:
         print(line)
     print(f"{len(cases)} hostile models, {len(wrong)} faults")

@@ -1,0 +1,268 @@
+#include "proof/verify_modular_program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace anholon::verification {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kMostBits = 4096;  // of a coefficient inside an angle
+
+static Family family(const std::string& f) {
+  if (f == "sin" || f == "cos" || f == "tan") return Family::circle;
+  if (f == "exp" || f == "sinh" || f == "cosh" || f == "tanh") return Family::exponential;
+  return Family::none;
+}
+
+// Compiling
+
+void ModularProgram::add(Index node) {
+  if (local_[node] != kNone) return;
+  local_[node] = 0;
+  nodes_.push_back(node);
+}
+
+void ModularProgram::collect() {
+  for (const std::size_t k : claims_) {
+    const Certificate::Claim& claim = c_.claims[k];
+    add(claim.left);
+    for (const Certificate::Pair& p : claim.right) add(p.coefficient), add(p.node);
+  }
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Certificate::Node& n = c_.nodes[nodes_[i]];
+    work_.spend(1 + n.terms.size());
+    for (const Certificate::Term& t : n.terms)
+      if (n.operation != Operation::product || t.weight != 0) add(t.node);
+  }
+  std::sort(nodes_.begin(), nodes_.end());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) local_[nodes_[i]] = static_cast<std::uint32_t>(i);
+  steps_.resize(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    Step& s = steps_[i];
+    s.node = &c_.nodes[nodes_[i]];
+    const bool algebraic = s.node->operation == Operation::sum || s.node->operation == Operation::product;
+    s.constant = algebraic || s.node->operation == Operation::number || (s.node->operation == Operation::function && (s.node->function == "abs" || s.node->function == "sign"));
+    cost_ += 30 + (s.node->operation == Operation::sum ? 5 : 400) * s.node->terms.size();
+    for (const Certificate::Term& t : s.node->terms) {
+      const bool used = s.node->operation != Operation::product || t.weight != 0;
+      s.operands.push_back(used ? local_[t.node] : kNone);
+      if (used && !steps_[local_[t.node]].constant) s.constant = false;
+    }
+    if (s.node->operation == Operation::product) {
+      for (std::size_t k = 0; k < s.operands.size(); ++k)
+        if (s.operands[k] != kNone && mpz_even_p(s.node->terms[k].weight.get_den_mpz_t())) site(s.operands[k], true);
+    } else if (s.node->operation == Operation::function) {
+      const std::string& name = s.node->function;
+      s.family = family(name);
+      const auto& all = Certificate::functions();
+      s.name = static_cast<std::uint64_t>(std::find(all.begin(), all.end(), name) - all.begin());
+      if (name == "abs" || name == "sign") site(s.operands[0], false);
+    }
+  }
+}
+
+std::size_t ModularProgram::site(std::uint32_t local, bool root) {
+  const auto [it, is_new] = site_of_.emplace(std::pair{local, root}, static_cast<std::uint32_t>(sites_.size()));
+  if (is_new) sites_.push_back({local, root, steps_[local].constant, false});
+  return it->second;
+}
+
+// From the largest node down: all ways into a node are added up before it is opened.
+Angle ModularProgram::flatten(Index argument, bool circle) {
+  Angle angle;
+  Rational ones = 0, pis = 0;
+  std::map<Index, Rational, std::greater<>> open{{argument, 1}};
+  const auto check = [](const Rational& r) {
+    if (mpz_sizeinbase(r.get_num_mpz_t(), 2) + mpz_sizeinbase(r.get_den_mpz_t(), 2) > kMostBits) throw Unable{"an angle has a coefficient of too many digits"};
+  };
+  while (!open.empty()) {
+    const Index at = open.begin()->first;
+    const Rational coefficient = open.begin()->second;
+    open.erase(open.begin());
+    if (coefficient == 0) continue;
+    check(coefficient);
+    const Certificate::Node& n = c_.nodes[at];
+    if (!work_.spend(4 + 4 * n.terms.size())) throw Unable{"the limit of work is reached"};
+    switch (n.operation) {
+      case Operation::number: ones += coefficient * n.value; break;
+      case Operation::pi: pis += coefficient; break;
+      case Operation::sum:
+        for (const Certificate::Term& t : n.terms) open[t.node] += coefficient * t.weight;
+        break;
+      case Operation::product: {
+        Rational content = 1;
+        const Certificate::Term* other = nullptr;
+        std::size_t others = 0;
+        for (const Certificate::Term& t : n.terms) {
+          if (t.weight == 0) continue;
+          const Certificate::Node& factor = c_.nodes[t.node];
+          const bool number = factor.operation == Operation::number && factor.value != 0 && t.weight.get_den() == 1;
+          const auto power = number ? exact_power(factor.value, t.weight.get_num().get_si()) : std::nullopt;
+          if (power) content *= *power, check(content);
+          else other = &t, ++others;
+        }
+        if (others == 0) ones += coefficient * content;
+        else if (others == 1 && other->weight == 1) open[other->node] += coefficient * content;
+        else angle.parts.push_back({Part::Of::node, local_[at], content, coefficient * content});
+        break;
+      }
+      case Operation::symbol:
+      case Operation::function:
+      case Operation::atan2: angle.parts.push_back({Part::Of::node, local_[at], 1, coefficient}); break;
+    }
+  }
+  check(ones), check(pis);
+  if (circle && pis != 0) {
+    const Rational twelfths = pis * 12;
+    mpz_class whole;
+    mpz_fdiv_q(whole.get_mpz_t(), twelfths.get_num_mpz_t(), twelfths.get_den_mpz_t());
+    angle.twelfths = static_cast<unsigned>(mpz_fdiv_ui(whole.get_mpz_t(), 24));
+    pis = (twelfths - whole) / 12;
+  }
+  if (ones != 0) angle.parts.push_back({Part::Of::one, 0, 1, ones});
+  if (pis != 0) angle.parts.push_back({Part::Of::pi, 0, 1, pis});
+  return angle;
+}
+
+// Degrees
+
+// The bases of denominators.
+enum : std::uint64_t { kInverted = 0, kCircle = 1, kGrowth = 2, kQuotient = 3, kBases = 4 };
+
+double ModularProgram::total(const Degree& d) const {
+  double sum = d.numerator;
+  for (const auto& [base, exponent] : d.denominators) sum += exponent * base_degree_.at(base);
+  return std::isnan(sum) ? kInfinity : sum;
+}
+
+Degree ModularProgram::sum_degree(const std::vector<const Degree*>& terms) {
+  std::map<std::uint64_t, double> common;
+  for (const Degree* d : terms)
+    for (const auto& [base, exponent] : d->denominators) {
+      double& e = common[base];
+      e = std::max(e, exponent);
+    }
+  Degree sum;
+  double all = 0;
+  for (const auto& [base, exponent] : common) all += exponent * base_degree_.at(base), sum.denominators.emplace_back(base, exponent);
+  for (const Degree* d : terms) {
+    const double missing = all - (total(*d) - d->numerator);
+    sum.numerator = std::max(sum.numerator, std::isnan(missing) ? kInfinity : d->numerator + missing);
+  }
+  work_.spend(10 * common.size() + 10 * terms.size());
+  return sum;
+}
+
+void ModularProgram::multiply_degree(Degree& d, const Degree& by, double exponent, std::uint64_t base) {
+  if (exponent < 0) {
+    // 1 / (N/D) = D/N, N a new base.
+    d.numerator += -exponent * (total(by) - by.numerator);
+    if (by.numerator > 0) {
+      base_degree_[base] = by.numerator;
+      Degree inverse;
+      inverse.denominators.emplace_back(base, 1);
+      multiply_degree(d, inverse, -exponent, base);
+    }
+  } else {
+    d.numerator += exponent * by.numerator;
+    for (const auto& [b, e] : by.denominators) {
+      const auto it = std::lower_bound(d.denominators.begin(), d.denominators.end(), std::pair{b, -kInfinity});
+      if (it != d.denominators.end() && it->first == b) it->second += e * exponent;
+      else d.denominators.insert(it, {b, e * exponent});
+    }
+  }
+  if (std::isnan(d.numerator)) d.numerator = kInfinity;
+  work_.spend(4 * (1 + d.denominators.size()));
+}
+
+void ModularProgram::degrees() {
+  degree_.assign(steps_.size(), {});
+  const std::uint64_t special = static_cast<std::uint64_t>(steps_.size()) * kBases;  // of the atoms 1 and π
+  std::vector<std::pair<std::uint32_t, mpz_class>> roots;
+  const auto key = [&](double degree) { ++keyed_, largest_key_ = std::max(largest_key_, degree); };
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const Step& s = steps_[i];
+    Degree& d = degree_[i];
+    const auto operand = [&](std::size_t k) -> const Degree& { return degree_[s.operands[k]]; };
+    switch (s.node->operation) {
+      case Operation::number: break;
+      case Operation::pi:
+      case Operation::symbol: d.numerator = 1; break;
+      case Operation::sum: {
+        std::vector<const Degree*> terms;
+        for (std::size_t k = 0; k < s.operands.size(); ++k)
+          if (s.node->terms[k].weight != 0) terms.push_back(&operand(k));
+        d = sum_degree(terms);
+        break;
+      }
+      case Operation::product:
+        for (std::size_t k = 0; k < s.operands.size(); ++k) {
+          if (s.operands[k] == kNone) continue;
+          const Rational& weight = s.node->terms[k].weight;
+          multiply_degree(d, operand(k), weight.get_d(), s.operands[k] * kBases + kInverted);
+          if (weight.get_den() != 1) roots.emplace_back(s.operands[k], weight.get_den());
+        }
+        break;
+      case Operation::atan2:
+        d.numerator = 1;
+        key(std::max(total(operand(0)), total(operand(1))));
+        break;
+      case Operation::function: {
+        const std::string& name = s.node->function;
+        if (name == "abs") d = operand(0);
+        if (name == "abs" || name == "sign") break;
+        if (s.family == Family::none) {
+          d.numerator = 1;
+          key(total(operand(0)));
+          break;
+        }
+        const bool circle = s.family == Family::circle;
+        double sum = 0;
+        for (const Part& part : s.angle.parts) {
+          const double times = std::abs(Rational(part.coefficient * (circle ? circle_q_ : growth_q_)).get_d());
+          sum += 2 * times;
+          const std::uint64_t atom = part.of == Part::Of::node ? part.local * kBases : special + (part.of == Part::Of::pi ? 1 : 0) * kBases;
+          const std::uint64_t base = atom + (circle ? kCircle : kGrowth);
+          base_degree_[base] = 2;
+          Degree by;
+          if (name == "exp" && part.coefficient > 0) by.numerator = 2 * times;
+          else by.denominators.emplace_back(base, times);
+          multiply_degree(d, by, 1, base);
+          key(part.of == Part::Of::node ? total(degree_[part.local]) : 1);
+        }
+        if (circle) d.numerator += sum;
+        if (name == "sinh" || name == "cosh" || name == "tanh") d.numerator += 2 * sum;
+        if (name == "tan" || name == "tanh") {
+          const std::uint64_t base = i * kBases + kQuotient;
+          base_degree_[base] = name == "tan" ? sum : 2 * sum;
+          d = Degree{base_degree_[base], {{base, 1}}};
+        }
+        break;
+      }
+    }
+    if (std::isnan(d.numerator)) d.numerator = kInfinity;
+    if (work_.done()) throw Unable{"the limit of work is reached"};
+  }
+  // The norm down to the field without roots: one factor for each choice of all roots.
+  std::map<std::uint32_t, mpz_class> order;
+  for (const auto& [local, q] : roots) {
+    mpz_class& n = order.emplace(local, 1).first->second;
+    mpz_lcm(n.get_mpz_t(), n.get_mpz_t(), q.get_mpz_t());
+  }
+  for (const auto& [local, n] : order) log2_conjugates_ += std::log2(n.get_d());
+}
+
+double ModularProgram::difference_degree(const Certificate::Claim& claim) {
+  std::vector<Degree> products(claim.right.size());
+  std::vector<const Degree*> terms{&degree_[local_[claim.left]]};
+  for (std::size_t k = 0; k < products.size(); ++k) {
+    multiply_degree(products[k], degree_[local_[claim.right[k].coefficient]], 1, 0);
+    multiply_degree(products[k], degree_[local_[claim.right[k].node]], 1, 0);
+    terms.push_back(&products[k]);
+  }
+  return sum_degree(terms).numerator;
+}
+
+}  // namespace anholon::verification

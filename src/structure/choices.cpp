@@ -1,0 +1,110 @@
+// Entries that no equation determines, or that a reaction nobody asked for would: what is chosen, and how it is said.
+#include "structure/state_solver.h"
+
+namespace anholon {
+
+// Where linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the guess
+// is the acceleration without them. (A nonlinear one must have a reaction; there 0 is as good as any.)
+template <Number N>
+void StateSolver<N>::start_with_free_accelerations(const System& s) {
+  StageEquations laws;
+  Column unknowns = m_.qdd;
+  bool higher = false;
+  for (std::size_t i = 0; i < s.coordinates; ++i) {
+    if (jet_order(s.equations[i]) > 2) return;
+    laws.push_back({s.equations[i], "the equation of motion of '" + s.equation_names[i] + "'", {}});
+  }
+  for (std::size_t k = 0; k < s.constraints.size(); ++k) {
+    const std::size_t r = s.constraints[k];
+    higher = higher || m_.order[r] > 2;
+    if (may_branch(m_, s, r)) return;
+    if (m_.order[r] > 2) continue;
+    laws.push_back({total_derivative(s.equations[s.coordinates + k], static_cast<unsigned>(2 - m_.order[r])), "constraint '" + model_.constraints[r].name + "'", {}});
+    unknowns.push_back(m_.lambda[r]);
+  }
+  if (!higher) return;
+  const InitialState<N> before = state_;
+  Stage<N> stage(m_, laws, unknowns, 1U << 2, p_.parameters, p_.mass);
+  std::vector<std::size_t> every;
+  for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
+  if (!find_by_least_change(stage, state_, every)) state_ = before;
+  keep_said(before, unknowns);
+}
+
+// Values given or guessed stay what they were.
+template <Number N>
+void StateSolver<N>::keep_said(const InitialState<N>& before, const Column& unknowns) {
+  for (Expr u : unknowns)
+    if (const Node& n = node(u); *before.origin(n) == Origin::given || *before.origin(n) == Origin::guessed) *state_.value(n) = *before.value(n);
+}
+
+// The same for rates of multipliers and what goes with them: the guess for the other entries is what follows from none.
+template <Number N>
+void StateSolver<N>::start_unconstrained(const StageEquations& laws, const Column& unknowns, unsigned metric) {
+  if (std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return free_multiplier(node(u)); })) return;
+  const InitialState<N> before = state_;
+  Stage<N> stage(m_, laws, unknowns, metric, p_.parameters, p_.mass);
+  std::vector<std::size_t> free;
+  for (std::size_t j = 0; j < unknowns.size(); ++j)
+    if (!free_multiplier(stage.unknown(j))) free.push_back(j);
+  if (!find_by_least_change(stage, state_, free)) {
+    state_ = before;
+    return;
+  }
+  keep_said(before, unknowns);
+}
+
+// What no equation determines is a choice.
+template <Number N>
+void StateSolver<N>::mark_choices(const StageEquations& equations, const Column& unknowns, unsigned metric) {
+  std::vector<std::size_t> free;
+  for (std::size_t j = 0; j < unknowns.size(); ++j)
+    if (const Origin o = *state_.origin(node(unknowns[j])); o == Origin::derived || o == Origin::chosen) free.push_back(j);
+  std::size_t rank = 0;
+  if (!equations.empty() && !free.empty()) {
+    Stage<N> stage(m_, equations, unknowns, metric, p_.parameters, p_.mass);
+    if (!stage.evaluate(state_)) return;
+    Matrix<N> a(stage.size(), free.size());
+    for (std::size_t i = 0; i < stage.size(); ++i)
+      for (std::size_t j = 0; j < free.size(); ++j) a(i, j) = stage.jacobian(i, free[j]);
+    rank = choose_rows(a, N(kDependent)).independent.size();
+  }
+  if (rank >= free.size()) return;
+  std::vector<std::size_t> choices;
+  for (std::size_t j : free)
+    if (free_multiplier(node(unknowns[j]))) choices.push_back(j);
+  if (choices.empty())
+    for (std::size_t j : free)
+      if (*state_.origin(node(unknowns[j])) == Origin::chosen) choices.push_back(j);
+  for (std::size_t j : choices) *state_.origin(node(unknowns[j])) = Origin::chosen;
+}
+
+template <Number N>
+void StateSolver<N>::say_choices(const System& s, const Structure& t) {
+  for (const bool multipliers : {true, false}) {
+    std::string list;
+    for (std::size_t j = 0; j < s.size(); ++j)
+      for (int k = 0; k < t.d[j]; ++k) {
+        const Node& n = node(s.symbol(j, static_cast<unsigned>(k)));
+        if (!is_higher(n) || (n.kind == Kind::multiplier) != multipliers || *state_.origin(n) != Origin::chosen) continue;
+        list += (list.empty() ? "" : ", ") + entry_name(n) + " = " + number_text(to_double(*state_.value(n)), 6);
+      }
+    if (list.empty()) continue;
+    state_.notes.push_back("a choice: " + list + " at the start" +
+                           (multipliers ? ", which no equation determines: the motion starts as it would without the constraint; other values in [initial] lambda = {…}, or accelerations"
+                                        : ", which no equation determines: other values in [initial] qddot = {…}"));
+  }
+}
+
+#define INSTANTIATE(N)                                                                               \
+  template void StateSolver<N>::start_with_free_accelerations(const System&);                        \
+  template void StateSolver<N>::start_unconstrained(const StageEquations&, const Column&, unsigned); \
+  template void StateSolver<N>::mark_choices(const StageEquations&, const Column&, unsigned);        \
+  template void StateSolver<N>::say_choices(const System&, const Structure&);
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
+
+}  // namespace anholon

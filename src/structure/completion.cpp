@@ -1,0 +1,235 @@
+// What the structure asks for beyond positions and velocities.
+#include "structure/state_solver.h"
+
+namespace anholon {
+
+template <Number N>
+Outcome StateSolver<N>::complete(const System& s, const Structure& t) {
+  make_room(s, t);
+  start_values(is_higher);
+  std::vector<StageEquation> late;  // hold leading derivatives
+  start_with_free_accelerations(s);
+  const int deepest = *std::max_element(t.d.begin(), t.d.end());
+  for (int level = deepest; level >= 1; --level)
+    if (Outcome o = stage(s, t, level); !o.ok()) return o;
+  for (const StageEquation& e : conditions())
+    if (holds_higher(e.residual) && level_of(e.residual, s, t) <= 0) late.push_back(e);
+  if (Outcome o = given_beyond_the_state(s, t, late); !o.ok()) return o;
+  if (Outcome o = leading(s, t); !o.ok()) return o;
+  if (!late.empty())
+    if (Outcome o = together(s, t, late); !o.ok()) return o;
+  for (std::size_t j = 0; j < s.size(); ++j)
+    *state_.origin(node(s.symbol(j, static_cast<unsigned>(t.d[j])))) = Origin::derived;
+  say_choices(s, t);
+  return {};
+}
+
+template <Number N>
+void StateSolver<N>::make_room(const System& s, const Structure& t) {
+  int coordinates = 2, multipliers = 0;
+  for (std::size_t j = 0; j < s.mechanical(); ++j) (j < s.coordinates ? coordinates : multipliers) = std::max(j < s.coordinates ? coordinates : multipliers, t.d[j]);
+  const auto level = [](std::size_t n) { return Level<N>{std::vector<N>(n, N(0)), std::vector<Origin>(n, Origin::chosen)}; };
+  state_.higher.assign(static_cast<std::size_t>(coordinates) - 1, level(m_.q.size()));
+  state_.multipliers.assign(static_cast<std::size_t>(multipliers) + 1, level(m_.phi.size()));
+}
+
+// How far below the leading derivatives the highest entry of e lies; 0: e holds leading ones.
+template <Number N>
+int StateSolver<N>::level_of(Expr e, const System& s, const Structure& t) const {
+  int level = 1000;
+  for (NodeId id : symbols({&e, 1})) {
+    const Node& n = m_.graph().node(id);
+    if (!is_higher(n)) continue;
+    if (const auto j = s.variable(id)) level = std::min(level, t.d[*j] - static_cast<int>(n.order));
+  }
+  return level == 1000 ? 0 : level;
+}
+
+// Entries x_j^(d_j - level) from the equations E_i^(c_i - level), by least change.
+template <Number N>
+Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
+  Column unknowns;
+  unsigned metric = 0;
+  for (std::size_t j = 0; j < s.size(); ++j) {
+    const int k = t.d[j] - level;
+    if (k < 0) continue;
+    const Expr x = s.symbol(j, static_cast<unsigned>(k));
+    if (!is_higher(node(x))) continue;
+    unknowns.push_back(x);
+    if (node(x).kind == Kind::jet) metric |= 1U << k;
+  }
+  if (unknowns.empty()) return {};
+  StageEquations laws;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const int k = t.c[i] - level;
+    if (k < 0) continue;
+    const Expr e = total_derivative(s.equations[i], static_cast<unsigned>(k));
+    if (!holds_higher(e)) continue;  // a matter of positions and velocities
+    if (i < s.coordinates) laws.push_back({e, "the equation of motion of '" + s.equation_names[i] + "'", {}});
+    else if (i < s.mechanical()) laws.push_back({put_state_rates(model_, e, 2), (k ? "a derivative of constraint '" : "constraint '") + s.equation_names[i] + "'", model_.constraints[s.constraints[i - s.coordinates]].span});
+  }
+  StageEquations equations = laws;
+  for (const StageEquation& e : conditions())
+    if (holds_higher(e.residual) && level_of(e.residual, s, t) == level) equations.push_back(e);
+  if (!laws.empty()) start_unconstrained(laws, unknowns, metric);
+  const InitialState<N> before = state_;
+  if (Outcome o = solve(equations, unknowns, metric); !o.ok()) {
+    state_ = before;
+    if (!add_velocities(s, t, level, equations, unknowns, metric) || !solve(equations, unknowns, metric).ok()) return o;
+  }
+  mark_choices(equations, unknowns, metric);
+  return {};
+}
+
+// A servo constraint that its actuator does not act against asks for velocities by the equations of motion. They move along with
+// what else is of this level, on all that holds them. False where there are none.
+template <Number N>
+bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int level, StageEquations& equations, Column& unknowns, unsigned& metric) const {
+  const std::size_t higher = unknowns.size();
+  for (std::size_t j = 0; j < s.coordinates; ++j)
+    if (t.d[j] - level == 1) unknowns.push_back(s.symbol(j, 1)), metric |= 2U;
+  if (unknowns.size() == higher) return false;
+  for (std::size_t i = s.coordinates; i < s.mechanical(); ++i) {
+    const int k = t.c[i] - level;
+    if (k < 0) continue;
+    const Expr e = put_state_rates(model_, total_derivative(s.equations[i], static_cast<unsigned>(k)), 2);
+    if (!holds_higher(e)) equations.push_back({e, "a derivative of constraint '" + s.equation_names[i] + "'", model_.constraints[s.constraints[i - s.coordinates]].span});
+  }
+  for (const StageEquation& e : conditions())
+    if (!holds_higher(e.residual) && jet_order(e.residual) == 1) equations.push_back(e);
+  return true;
+}
+
+// Values given for derivatives that the state does not hold are conditions on it.
+template <Number N>
+Outcome StateSolver<N>::given_beyond_the_state(const System& s, const Structure& t, StageEquations& late) {
+  Outcome refused;
+  const auto beyond = [&](Expr x) {
+    const auto j = s.variable(x.id);
+    return is_higher(node(x)) && j && static_cast<int>(node(x).order) >= t.d[*j];
+  };
+  const auto add = [&](Expr x, Expr value, Span span) {
+    const auto j = s.variable(x.id);
+    if (static_cast<int>(node(x).order) > t.d[*j])
+      refused = {OutcomeKind::inconsistent, entry_name(node(x)) + " is given, but follows from the state", "leave it out"};
+    late.push_back({x - value, "the value given for " + entry_name(node(x)), span, !overridden(node(x))});
+  };
+  for (const GivenValue& v : model_.initial.given)
+    if (beyond(v.symbol) && !overridden(node(v.symbol))) add(v.symbol, v.value, v.span);
+  for (const StateOverride& o : p_.overrides)
+    if (beyond(symbol(o))) add(symbol(o), m_.graph().number(o.value), {});
+  return refused;
+}
+
+template <Number N>
+bool StateSolver<N>::branch_holds(const std::vector<N>& x, const System& s) const {
+  for (const BranchChoice& b : model_.initial.branches) {
+    const auto j = s.variable(m_.lambda[b.constraint].id);
+    if (j && !(b.positive ? x[*j] > N(0) : x[*j] < N(0))) return false;
+  }
+  return true;
+}
+
+template <Number N>
+bool StateSolver<N>::branch_was_named(const System& s, const Structure& t) const {
+  const auto leading_guess = [&](const GivenValue& v) {
+    const auto j = s.variable(v.symbol.id);
+    return j && is_higher(node(v.symbol)) && static_cast<int>(node(v.symbol).order) == t.d[*j];
+  };
+  return !model_.initial.branches.empty() || std::any_of(model_.initial.guess.begin(), model_.initial.guess.end(), leading_guess);
+}
+
+// The leading derivatives: one linear system, or the solution nearest to the guess.
+template <Number N>
+Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
+  const Column unknowns = leading_unknowns(s, t);
+  if (!may_branch(m_, s)) {
+    Stage<N> all(m_, leading_equations(s, t), unknowns, 0, p_.parameters, p_.mass);
+    std::vector<std::size_t> every;
+    for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
+    if (!find_by_least_change(all, state_, every)) return no_value(all);
+    return {};
+  }
+  const LeadingSolutions<N> solutions = leading_solutions(m_, s, t, p_.parameters, state_);
+  const std::vector<N>* taken = nullptr;
+  std::string others;
+  for (const std::vector<N>& x : solutions.found) {
+    if (!taken && branch_holds(x, s)) taken = &x;
+    else others += (others.empty() ? "" : "; ") + solution_text(x, s, t);
+  }
+  if (!taken) return no_leading(s, solutions, others);
+  for (std::size_t j = 0; j < unknowns.size(); ++j) *state_.value(node(unknowns[j])) = (*taken)[j];
+  if (!others.empty() && !branch_was_named(s, t))
+    state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s, t) + " is taken, there is also " + others +
+                           "; name one by [initial] branch = {…} or guess = {…}");
+  return {};
+}
+
+// Conditions on leading derivatives, with all laws: velocities move first, positions only if they must.
+template <Number N>
+Outcome StateSolver<N>::together(const System& s, const Structure& t, const StageEquations& late) {
+  StageEquations equations;
+  for (std::size_t i = 0; i < s.size(); ++i)
+    for (int k = 0; k <= t.c[i]; ++k)
+      equations.push_back(law(s, i, static_cast<unsigned>(k)));
+  for (const StageEquation& e : conditions())
+    if (!holds_higher(e.residual) || level_of(e.residual, s, t) > 0) equations.push_back(e);
+  equations.insert(equations.end(), late.begin(), late.end());
+  {  // They may hold already: a value that follows from the others was given too.
+    Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
+    if (!said.evaluate(state_)) return no_value(said);
+    if (to_double(said.worst()) <= kRounded && all_given(s, t)) return {};
+    if (!(said.worst() > stage_rounding<N>())) return {};
+  }
+  const InitialState<N> before = state_;
+  for (int lowest : {1, 0}) {
+    state_ = before;
+    Column unknowns;
+    unsigned metric = 0;
+    for (std::size_t j = 0; j < s.size(); ++j)
+      for (int k = j < s.coordinates ? lowest : 0; k <= t.d[j]; ++k) {
+        unknowns.push_back(s.symbol(j, static_cast<unsigned>(k)));
+        if (j < s.coordinates && k < t.d[j]) metric |= 1U << k;
+      }
+    for (Expr u : unknowns)  // values that followed may follow anew
+      if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j]) *state_.origin(node(u)) = Origin::derived;
+    if (solve(equations, unknowns, metric).ok()) return {};
+  }
+  state_ = before;
+  Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
+  std::size_t worst = 0;
+  if (!said.evaluate(state_)) return no_value(said);
+  said.worst(&worst);
+  const StageEquation& e = said.equation(worst);
+  return {OutcomeKind::inconsistent,
+          e.what + (e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "") + " does not hold: with the other initial data it is missed by " +
+              number_text(std::abs(to_double(said.residual[worst])), 3),
+          "leave it out, or leave out velocities and positions that it could determine; a guess near the wanted motion helps: [initial] guess = {…}"};
+}
+
+template <Number N>
+bool StateSolver<N>::all_given(const System& s, const Structure& t) const {
+  for (std::size_t j = 0; j < s.size(); ++j)
+    for (int k = 0; k < t.d[j]; ++k)
+      if (const Origin o = *state_.origin(node(s.symbol(j, static_cast<unsigned>(k)))); o == Origin::chosen || o == Origin::guessed) return false;
+  return true;
+}
+
+bool needs_completion(const Mechanics& m, const System& s, const Structure& t) {
+  for (std::size_t j = 0; j < s.mechanical(); ++j)
+    if (t.d[j] > (j < s.coordinates ? 2 : 0)) return true;
+  const auto high = [](const Condition& c) { return holds_higher(c.residual); };
+  return may_branch(m, s) || std::any_of(m.model->initial.conditions.begin(), m.model->initial.conditions.end(), high);
+}
+
+template <Number N>
+Outcome complete_state(const InitialProblem<N>& problem, const System& s, const Structure& t, InitialState<N>& state) {
+  return StateSolver<N>(problem, state).complete(s, t);
+}
+
+template Outcome complete_state<double>(const InitialProblem<double>&, const System&, const Structure&, InitialState<double>&);
+template Outcome complete_state<long double>(const InitialProblem<long double>&, const System&, const Structure&, InitialState<long double>&);
+template Outcome complete_state<Quad>(const InitialProblem<Quad>&, const System&, const Structure&, InitialState<Quad>&);
+template Outcome complete_state<Multi>(const InitialProblem<Multi>&, const System&, const Structure&, InitialState<Multi>&);
+
+}  // namespace anholon

@@ -1,0 +1,83 @@
+// How consistent initial data are found: the solver behind consistent.h, whose parts stand in rooms of their own.
+#pragma once
+#include <algorithm>
+#include <functional>
+
+#include "structure/branch.h"
+#include "structure/consistent.h"
+
+namespace anholon {
+
+// Given values may miss a constraint by this much of its scale: they are rounded numbers.
+inline constexpr double kRounded = 1e-8;
+
+using StageEquations = std::vector<StageEquation>;
+
+// q_a^(k) with k >= 2, or a multiplier: what positions and velocities do not hold.
+inline bool is_higher(const Node& n) { return n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1); }
+bool holds_higher(Expr e);
+bool overridden(const std::vector<StateOverride>& overrides, const Node& n);
+StageEquations conditions_of(const Model& model);
+
+template <Number N>
+class StateSolver {
+ public:
+  StateSolver(const InitialProblem<N>& p, InitialState<N>& state) : p_(p), m_(*p.mechanics), model_(*m_.model), state_(state) {}
+
+  Outcome positions_and_velocities();
+  Outcome complete(const System& s, const Structure& t);
+
+ private:
+  const Node& node(Expr e) const { return m_.graph().node(e.id); }
+  Expr symbol(const StateOverride& o) const {
+    Graph& g = m_.graph();
+    const auto index = static_cast<std::uint32_t>(o.coordinate);
+    return o.multiplier ? g.multiplier(index, o.order) : g.jet(index, o.order);
+  }
+  StageEquations conditions() const { return conditions_of(model_); }
+  bool overridden(const Node& n) const { return anholon::overridden(p_.overrides, n); }
+  bool free_multiplier(const Node& n) const { return n.kind == Kind::multiplier && m_.order[n.index] >= 3; }
+
+  // Positions and velocities (consistent.cpp).
+  void states();
+  void start_values(const std::function<bool(const Node&)>& wanted);
+  Outcome solve(const StartPlan::Stages& stages, const std::function<StartPlan::Stages()>& without);
+  Outcome solve(const StageEquations& equations, const Column& unknowns, unsigned metric);
+  StartPlan::Stages kept_of(const StartPlan::Stages& s) const;
+  Outcome attempt(const StartPlan::Stages& stages);
+
+  // Beyond velocities (completion.cpp).
+  void make_room(const System& s, const Structure& t);
+  int level_of(Expr e, const System& s, const Structure& t) const;
+  Outcome stage(const System& s, const Structure& t, int level);
+  bool add_velocities(const System& s, const Structure& t, int level, StageEquations& equations, Column& unknowns, unsigned& metric) const;
+  Outcome given_beyond_the_state(const System& s, const Structure& t, StageEquations& late);
+  bool branch_holds(const std::vector<N>& x, const System& s) const;
+  bool branch_was_named(const System& s, const Structure& t) const;
+  Outcome leading(const System& s, const Structure& t);
+  Outcome together(const System& s, const Structure& t, const StageEquations& late);
+  bool all_given(const System& s, const Structure& t) const;
+
+  // What no equation determines (choices.cpp).
+  void start_with_free_accelerations(const System& s);
+  void keep_said(const InitialState<N>& before, const Column& unknowns);
+  void start_unconstrained(const StageEquations& laws, const Column& unknowns, unsigned metric);
+  void mark_choices(const StageEquations& equations, const Column& unknowns, unsigned metric);
+  void say_choices(const System& s, const Structure& t);
+
+  // What went wrong, in words (clash.cpp).
+  std::string entry_name(const Node& n) const;
+  std::string solution_text(const std::vector<N>& x, const System& s, const Structure& t) const;
+  Outcome no_leading(const System& s, const LeadingSolutions<N>& solutions, const std::string& others) const;
+  std::string kind(const Stage<N>& stage) const;
+  Outcome no_value(const Stage<N>& stage);
+  std::string asked(const Stage<N>& stage, std::size_t row) const;
+  Outcome clash(const Stage<N>& stage, std::size_t row);
+
+  const InitialProblem<N>& p_;
+  const Mechanics& m_;
+  const Model& model_;
+  InitialState<N>& state_;
+};
+
+}  // namespace anholon
