@@ -183,11 +183,9 @@ void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_ste
   const W end = from_rational<W>(*r.scenario.model->simulate.to);
   const auto plan = plan_of(r, tolerance, start);
   std::vector<double> times;
-  std::unique_ptr<Trajectory<double>> motion;
+  const auto motion = std::make_unique<Trajectory<double>>(r, StepSettings{std::log(tolerance), 0, kMostSteps, {}, true, false});
+  motion->stepper.accelerate(plan);
   for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
-    motion = std::make_unique<Trajectory<double>>(
-        r, StepSettings{std::log(tolerance), 0, kMostSteps, {}, true, false});
-    motion->stepper.accelerate(plan);
     const Stopwatch watch;
     motion->go(start, end, most_steps);
     times.push_back(watch.seconds());

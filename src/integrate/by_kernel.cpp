@@ -27,20 +27,34 @@ bool may_turn(const Instruction& in) {
 template <Number N>
 void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan> plan) {
   if constexpr (std::same_as<N, double>) {
-    const Tape& tape = program_->tape;
-    const bool kinks = std::any_of(tape.code.begin(), tape.code.begin() + kinks_end(), [](const Instruction& in) { return !in.constant && may_turn(in); });
-    if (!plan || kinks || !events_.empty()) return;
-    kernel_ = std::make_unique<Kernel>(plan);
-    kernel_->set_parameters(0, point_.parameters());
-    for (const auto& [slot, place] : plan->plan().roots_of_even_powers) kink_series_.push_back({slot, place.at});
+    if (!plan) return;
+    auto kernel = std::make_shared<Kernel>(std::move(plan));
+    kernel->set_parameters(0, point_.parameters());
+    accelerate(std::move(kernel), 0);
   } else {
     (void)plan;
   }
 }
 
+template <Number N>
+void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane) {
+  if constexpr (std::same_as<N, double>) {
+    const Tape& tape = program_->tape;
+    const bool kinks = std::any_of(tape.code.begin(), tape.code.begin() + kinks_end(), [](const Instruction& in) { return !in.constant && may_turn(in); });
+    if (kinks || !events_.empty()) return;
+    kernel_ = std::move(kernel);
+    lane_ = lane;
+    alone_ = kernel_->lanes() == 1;
+    kink_series_.clear();
+    for (const auto& [slot, place] : kernel_->plan().plan().roots_of_even_powers) kink_series_.push_back({slot, place.at});
+  } else {
+    (void)kernel, (void)lane;
+  }
+}
+
 // False where the reference has to be asked.
 template <Number N>
-bool Stepper<N>::expand_by_kernel(const std::vector<W>& guess) {
+bool Stepper<N>::load_kernel(const std::vector<W>& guess) {
   if constexpr (std::same_as<N, double>) {
     // Some expansions are the reference's, for the measure of how regular J is: the first, others ever more rarely, and see below.
     const bool look = settings_.measure && (first_sigma_ == 0 || steps_ % kLook == 0 || (steps_ & (steps_ - 1)) == 0);
@@ -52,10 +66,19 @@ bool Stepper<N>::expand_by_kernel(const std::vector<W>& guess) {
     for (std::size_t i = 0; i < state_.size(); ++i) narrow_state_[i] = static_cast<double>(state_[i]);
     narrow_leading_.resize(guess.size());
     for (std::size_t i = 0; i < guess.size(); ++i) narrow_leading_[i] = static_cast<double>(guess[i]);
-    kernel_->load(0, static_cast<double>(t_), narrow_state_, narrow_leading_);
-    kernel_->expand();
-    const double health = kernel_->health(0);
-    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNews) || !kernel_->finite(0)) {
+    kernel_->load(lane_, static_cast<double>(t_), narrow_state_, narrow_leading_);
+    return true;
+  } else {
+    (void)guess;
+    return false;
+  }
+}
+
+template <Number N>
+bool Stepper<N>::take_from_kernel() {
+  if constexpr (std::same_as<N, double>) {
+    const double health = kernel_->health(lane_);
+    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNews) || !kernel_->finite(lane_)) {
       turned_ = by_kernel_ && !(health > 0);
       if (health < least_health_) least_health_ = std::max(health, 0.0);
       return false;
@@ -63,24 +86,23 @@ bool Stepper<N>::expand_by_kernel(const std::vector<W>& guess) {
     by_kernel_ = true;
     ++by_kernel_count_;
     const Program& p = *program_;
-    if (kernel_->moved(0)) {
+    if (kernel_->moved(lane_)) {
       std::size_t i = 0;
       for (std::size_t j = 0; j < p.unknowns(); ++j)
         for (int k = 0; k < p.d[j]; ++k, ++i)
-          if (const double moved = kernel_->derivative(j, k) - narrow_state_[i]; moved != 0) state_[i] += moved, carry_[i] = 0;
+          if (const double moved = kernel_->derivative(j, k, lane_) - narrow_state_[i]; moved != 0) state_[i] += moved, carry_[i] = 0;
     }
     leading_.resize(p.unknowns());
-    for (std::size_t j = 0; j < p.unknowns(); ++j) leading_[j] = kernel_->derivative(j, p.d[j]);
+    for (std::size_t j = 0; j < p.unknowns(); ++j) leading_[j] = kernel_->derivative(j, p.d[j], lane_);
     base_state_ = state_;
     point_loaded_ = point_valued_ = false;
-    worst_constraint_ = std::max(worst_constraint_, W(kernel_->drift(0)));
+    worst_constraint_ = std::max(worst_constraint_, W(kernel_->drift(lane_)));
     for (const auto& [slot, at] : kink_series_)
-      for (int k = 0; k < order_; ++k) expansion_.adopt_coefficient(slot, k, kernel_->series({at, true}, k));
+      for (int k = 0; k < order_; ++k) expansion_.adopt_coefficient(slot, k, kernel_->series({at, true}, k, lane_));
     horizon_ = horizon_by_kernel();
     expanded_ = true;
     return true;
   } else {
-    (void)guess;
     return false;
   }
 }
@@ -90,30 +112,28 @@ template <Number N>
 N Stepper<N>::horizon_by_kernel() const {
   if constexpr (std::same_as<N, double>) {
     const Program& p = *program_;
+    const std::vector<double>& factorial = kernel_->plan().tables().factorial;
+    const std::size_t stride = static_cast<std::size_t>(kernel_->lanes());
     const int levels = *std::max_element(p.d.begin(), p.d.end());
-    // How much the last two orders weigh in relation to the size of what they are orders of.
     double last_weight = 0, before_weight = 0, pole = 0, factor = 1, factor_before = 1;
     for (int k = 0; k < levels; ++k) {
       if (k > 0) factor *= order_ + k, factor_before *= order_ - 1 + k;
       double size = 1, last = 0, before_last = 0;
       for (std::size_t j = 0; j < p.unknowns(); ++j) {
         if (k >= p.d[j]) continue;
-        size = std::max(size, std::abs(kernel_->derivative(j, k)));
-        last = std::max(last, std::abs(kernel_->coefficient(j, order_ + k)));
-        before_last = std::max(before_last, std::abs(kernel_->coefficient(j, order_ - 1 + k)));
+        const double* x = kernel_->unknown(j, lane_) + static_cast<std::size_t>(k) * stride;
+        size = std::max(size, std::abs(*x) * factorial[static_cast<std::size_t>(k)]);
+        last = std::max(last, std::abs(x[static_cast<std::size_t>(order_) * stride]));
+        before_last = std::max(before_last, std::abs(x[static_cast<std::size_t>(order_ - 1) * stride]));
       }
       last_weight = std::max(last_weight, last * factor / size);
       before_weight = std::max(before_weight, before_last * factor_before / size);
     }
     for (std::size_t j = 0; j < p.unknowns(); ++j)
       if (p.d[j] == 0)
-        if (const double value = std::abs(kernel_->coefficient(j, 0)); value > 0) pole = std::max(pole, std::abs(kernel_->coefficient(j, order_ - 1)) / std::max(1.0, value));
-    double log_rho = 300, log_pole = 300;
-    if (last_weight > 0) log_rho = std::min(log_rho, -std::log(last_weight) / order_);
-    if (before_weight > 0) log_rho = std::min(log_rho, -std::log(before_weight) / (order_ - 1));
-    if (pole > 0) log_pole = -std::log(pole) / (order_ - 1);
-    const double shrink = settings_.order > 0 ? -settings_.log_tolerance / order_ : 2.0;
-    return std::exp(std::min(log_rho - shrink - 0.7 / (order_ - 1), log_pole - 0.7));
+        if (const double value = std::abs(kernel_->coefficient(j, 0, lane_)); value > 0)
+          pole = std::max(pole, std::abs(kernel_->coefficient(j, order_ - 1, lane_)) / std::max(1.0, value));
+    return horizon(std::log(last_weight), std::log(before_weight), std::log(pole));
   } else {
     return N(0);
   }
@@ -135,71 +155,70 @@ const Expansion<typename Stepper<N>::W>& Stepper<N>::point(bool values) const {
 template <Number N>
 std::vector<typename Stepper<N>::W> Stepper<N>::leading_at_base() const {
   std::vector<W> leading(program_->unknowns());
-  for (std::size_t j = 0; j < leading.size(); ++j) leading[j] = W(kernel_->derivative(j, program_->d[j]));
+  for (std::size_t j = 0; j < leading.size(); ++j) leading[j] = W(kernel_->derivative(j, program_->d[j], lane_));
   return leading;
 }
 
 template <Number N>
 N Stepper<N>::coefficient(std::size_t j, int k) const {
   if constexpr (std::same_as<N, double>)
-    if (by_kernel_) return kernel_->coefficient(j, k);
+    if (by_kernel_) return kernel_->coefficient(j, k, lane_);
   return expansion_.coefficient(j, k);
 }
 
 template <Number N>
 N Stepper<N>::quadrature_coefficient(std::size_t i, int k) const {
   if constexpr (std::same_as<N, double>)
-    if (by_kernel_) return kernel_->quadrature(i, k);
+    if (by_kernel_) return kernel_->quadrature(i, k, lane_);
   return expansion_.quadrature(i)[k];
 }
 
-// Of the polynomial over h; what the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
 template <Number N>
-bool Stepper<N>::polynomial_by_kernel(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
+void Stepper<N>::set_kernel_step(const W& h) const {
+  kernel_->set_step(lane_, to_double(h));
+}
+
+template <Number N>
+void Stepper<N>::advance_kernel() const {
+  kernel_->advance();
+}
+
+// What the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
+template <Number N>
+void Stepper<N>::increments_of_kernel(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
   if constexpr (std::same_as<N, double>) {
-    if (!by_kernel_) return false;
     const Program& p = *program_;
     increments.resize(expansion_.state_size());
     leading.resize(p.unknowns());
-    kernel_->set_step(0, convert<double>(h));
-    kernel_->advance();
     std::size_t from = 0, to = 0;
     for (std::size_t j = 0; j < p.unknowns(); ++j) {
       for (int k = 0; k < p.d[j]; ++k, ++to) {
         W s(0), power(1);
         for (int i = k + 1; i < p.d[j]; ++i) {
           power = i - k == 1 ? h : power * h / W(i - k);
-          s += (base_state_[to + static_cast<std::size_t>(i - k)] - W(kernel_->derivative(j, i))) * power;
+          s += (base_state_[to + static_cast<std::size_t>(i - k)] - W(kernel_->derivative(j, i, lane_))) * power;
         }
-        increments[to] = s + kernel_->increment(from++);
+        increments[to] = s + kernel_->increment(from++, lane_);
       }
-      leading[j] = kernel_->derivative(j, p.d[j]) + kernel_->increment(from++);
+      leading[j] = kernel_->derivative(j, p.d[j], lane_) + kernel_->increment(from++, lane_);
     }
-    return true;
   } else {
     (void)h, (void)increments, (void)leading;
-    return false;
   }
 }
 
-template <Number N>
-Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters, const StepSettings& settings)
-    : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
-      parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {}
-
-template <Number N>
-Stepper<N>::~Stepper() = default;
-
-#define INSTANTIATE(N)                                                     \
-  template Stepper<N>::Stepper(const Program&, const std::vector<N>&, const std::vector<W>&, const StepSettings&); \
-  template Stepper<N>::~Stepper();                                         \
-  template N Stepper<N>::coefficient(std::size_t, int) const;              \
-  template N Stepper<N>::quadrature_coefficient(std::size_t, int) const;   \
-  template bool Stepper<N>::polynomial_by_kernel(const W&, std::vector<W>&, std::vector<W>&) const; \
-  template void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan>); \
-  template bool Stepper<N>::expand_by_kernel(const std::vector<W>&);       \
-  template N Stepper<N>::horizon_by_kernel() const;                        \
-  template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;       \
+#define INSTANTIATE(N)                                                                        \
+  template N Stepper<N>::coefficient(std::size_t, int) const;                                 \
+  template N Stepper<N>::quadrature_coefficient(std::size_t, int) const;                      \
+  template void Stepper<N>::set_kernel_step(const W&) const;                                  \
+  template void Stepper<N>::advance_kernel() const;                                           \
+  template void Stepper<N>::increments_of_kernel(const W&, std::vector<W>&, std::vector<W>&) const; \
+  template void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan>);                    \
+  template void Stepper<N>::accelerate(std::shared_ptr<Kernel>, int);                         \
+  template bool Stepper<N>::load_kernel(const std::vector<W>&);                               \
+  template bool Stepper<N>::take_from_kernel();                                               \
+  template N Stepper<N>::horizon_by_kernel() const;                                           \
+  template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;                          \
   template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;
 INSTANTIATE(double)
 INSTANTIATE(long double)

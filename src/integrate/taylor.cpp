@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrate/kink.h"
+#include "kernel/kernel.h"
 
 namespace anholon {
 
@@ -35,15 +36,39 @@ int taylor_order(double log_tolerance) {
 }
 
 template <Number N>
-Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters, const StepSettings& settings)
+    : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
+      parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {}
+
+template <Number N>
+Stepper<N>::~Stepper() = default;
+
+template <Number N>
+void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
   started_ = t_ = before_ = t;
   state_ = state;
   carry_.assign(state.size(), W(0));
+  leading_ = leading;
   integrals_.assign(program_->quadratures, W(0));
   integral_carry_ = integrals_;
-  steps_ = 0;
+  steps_ = expansions_ = by_kernel_count_ = 0;
+  by_kernel_ = turned_ = careful_ = loaded_ = expanded_ = singular_ahead_ = false;
+  short_kinks_ = 0;
+  least_health_ = N(1);
+  sigma_ = sigma_before_ = first_sigma_ = N(0);
+  smallest_sigma_ = N(1);
   smallest_sigma_t_ = t;
-  leading_ = leading;
+  weakest_ = 0;
+  expansion_.set_weakest_direction({});
+  last_step_ = branch_step_ = worst_constraint_ = worst_equation_ = W(0);
+  fired_.clear();
+  events_.restart();
+  begun_ = begun_before_ = {};
+}
+
+template <Number N>
+Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+  place(t, state, leading);
   return expand(leading_);
 }
 
@@ -131,12 +156,39 @@ static void convert_all(const std::vector<From>& from, std::vector<To>& to) {
 
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
+  begin_expansion(guess);
+  if (loaded_) kernel_->expand();
+  return end_expansion(guess);
+}
+
+template <Number N>
+void Stepper<N>::begin_expansion(const std::vector<W>& guess) {
   std::swap(begun_before_, begun_);
-  const bool again = expansions_ > 0;
-  Outcome o = expand_here(guess);
+  note_begun(guess);
+  loaded_ = load_kernel(guess);
+}
+
+template <Number N>
+Outcome Stepper<N>::end_expansion(const std::vector<W>& guess) {
+  const bool again = expansions_++ > 0, by_kernel = loaded_ && take_from_kernel();
+  loaded_ = false;
+  if (by_kernel) return {};
+  Outcome o = expand_by_reference(guess);
   if (o.ok() && turned_) return look_back();
   if (!o.ok() && again) expand_again(StepperState<N>(begun_before_));
   return o;
+}
+
+// Where the kernel belongs to others, too, it is left in peace.
+template <Number N>
+Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
+  note_begun(guess);
+  ++expansions_;
+  if (alone_ && load_kernel(guess)) {
+    kernel_->expand();
+    if (take_from_kernel()) return {};
+  }
+  return expand_by_reference(guess);
 }
 
 // A pivot of the kernel has changed its sign in the last step: whether J was singular on the way is asked of the reference.
@@ -201,10 +253,7 @@ void Stepper<N>::note_begun(const std::vector<W>& guess) {
 }
 
 template <Number N>
-Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
-  note_begun(guess);
-  ++expansions_;
-  if (expand_by_kernel(guess)) return {};
+Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
   by_kernel_ = false;
   point_loaded_ = point_valued_ = true;
   convert_all(state_, narrow_state_);
@@ -268,7 +317,7 @@ template <Number N>
 N Stepper<N>::step_size() const {
   const Program& p = *program_;
   constexpr double kNothing = -1e300;  // the logarithm of zero
-  double log_rho = 300;
+  double last_weight = kNothing, before_weight = kNothing;
   const int levels = *std::max_element(p.d.begin(), p.d.end());
   for (int k = 0; k < levels; ++k) {
     double size = 1, last = kNothing, before_last = kNothing;
@@ -285,26 +334,37 @@ N Stepper<N>::step_size() const {
       last = std::max(last, coefficient(order_));
       before_last = std::max(before_last, coefficient(order_ - 1));
     }
-    const double ls = std::log(size);
-    log_rho = std::min({log_rho, (ls - last) / order_, (ls - before_last) / (order_ - 1)});
+    last_weight = std::max(last_weight, last - std::log(size));
+    before_weight = std::max(before_weight, before_last - std::log(size));
   }
   // Multipliers that are no states carry no error on, but a step must not pass a pole of theirs,
   // where a constraint loses its hold: it stays within half of their radius of convergence.
-  double log_pole = 300;
+  double pole = kNothing;
   for (std::size_t j = 0; j < p.unknowns(); ++j) {
     if (p.d[j] > 0) continue;
     const N top = abs(expansion_.coefficient(j, order_ - 1)), value = abs(expansion_.coefficient(j, 0));
     if (!(top > N(0)) || !(value > N(0))) continue;
-    log_pole = std::min(log_pole, (std::max(0.0, to_double(N(log(value)))) - to_double(N(log(top)))) / (order_ - 1));
+    pole = std::max(pole, to_double(N(log(top))) - std::max(0.0, to_double(N(log(value)))));
   }
+  return horizon(last_weight, before_weight, pole);
+}
+
+template <Number N>
+N Stepper<N>::horizon(double last, double before_last, double pole) const {
+  constexpr double kFar = 300;
   // e^-2 per order suits order = -ln(tol)/2 + 1; another order keeps h^p rho^-p = tol.
   const double shrink = settings_.order > 0 ? -settings_.log_tolerance / order_ : 2.0;
+  const double log_rho = std::min({kFar, -last / order_, -before_last / (order_ - 1)}), log_pole = std::min(kFar, -pole / (order_ - 1));
   return N(std::exp(std::min(log_rho - shrink - 0.7 / (order_ - 1), log_pole - 0.7)));
 }
 
 template <Number N>
 void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
-  if (polynomial_by_kernel(h, increments, leading)) return;
+  if (by_kernel_) {
+    set_kernel_step(h);
+    advance_kernel();
+    return increments_of_kernel(h, increments, leading);
+  }
   const Program& p = *program_;
   increments.assign(expansion_.state_size(), W(0));
   leading.assign(p.unknowns(), W(0));
@@ -411,12 +471,27 @@ bool Stepper<N>::end_out_of_reach(const W& h, const W& left) const {
 
 template <Number N>
 Outcome Stepper<N>::step(const W& end) {
+  if (Outcome o = begin_step(); !o.ok()) return o;
+  if (loaded_) kernel_->expand();
+  if (Outcome o = aim(end); !o.ok()) return o;
+  if (by_kernel_) advance_kernel();
+  return finish_step();
+}
+
+template <Number N>
+Outcome Stepper<N>::begin_step() {
   if (settings_.cancelled && settings_.cancelled())
     return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   if (steps_ >= settings_.most_steps)
     return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
+  if (!expanded_) begin_expansion(leading_);
+  return {};
+}
+
+template <Number N>
+Outcome Stepper<N>::aim(const W& end) {
   if (!expanded_)
-    if (Outcome o = expand(leading_); !o.ok()) return o;
+    if (Outcome o = end_expansion(leading_); !o.ok()) return o;
   const W left = end - t_;
   const bool forward = left > W(0);
   W h = convert<W>(horizon_);
@@ -466,10 +541,18 @@ Outcome Stepper<N>::step(const W& end) {
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
   const W reached = last && !cut ? end : convert<W>(convert<N>(W(t_ + h)));
   h = reached - t_;
+  aimed_ = reached;
+  if (by_kernel_) set_kernel_step(h);
+  return {};
+}
+
+template <Number N>
+Outcome Stepper<N>::finish_step() {
+  const W h = aimed_ - t_;
   last_step_ = abs(h);
   sigma_before_ = sigma_;
-
-  polynomial(h, change_, leading_);
+  if (by_kernel_) increments_of_kernel(h, change_, leading_);
+  else polynomial(h, change_, leading_);
   next_ = state_;
   for (std::size_t i = 0; i < next_.size(); ++i) {
     add_compensated(next_[i], carry_[i], change_[i]);
@@ -482,7 +565,7 @@ Outcome Stepper<N>::step(const W& end) {
     add_compensated(integrals_[i], integral_carry_[i], s);
   }
   before_ = t_;
-  t_ = reached;
+  t_ = aimed_;
   expanded_ = false;
   std::swap(state_, next_);
   ++steps_;

@@ -58,13 +58,17 @@ class Stepper {
           const StepSettings& settings);
   ~Stepper();
 
-  // Starts at a consistent state; `leading` is a first guess and names the branch.
+  // Starts at a consistent state; `leading` is a first guess and names the branch. What the stepper did before leaves no trace.
   Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
+  // The same, but for the expansion, which the first step makes.
+  void place(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
   // Goes on where another stepper for the same unknowns is, with its sums and counts.
   Outcome take_over(const Stepper& other);
   // Makes the expansions by a kernel wherever that serves (double only): not where its pivots have become small, nor for motions with kinks or
   // events. Before the start.
   void accelerate(std::shared_ptr<const KernelPlan> plan);
+  // The same by one lane of a kernel that others use, too; its parameters are those of this motion. Steps are then made side by side, see below.
+  void accelerate(std::shared_ptr<Kernel> kernel, int lane);
   bool accelerated() const { return kernel_ != nullptr; }
   std::size_t expansions_by_kernel() const { return by_kernel_count_; }
   // Series to be watched for changes of sign; a step ends where one does that asks for it.
@@ -83,6 +87,11 @@ class Stepper {
   Outcome resume(const StepperState<N>& begun);
   // One step towards `end`, at most up to it.
   Outcome step(const W& end);
+  // Its parts, for steppers in the lanes of one kernel: after `begin_step` of all of them the kernel is to be expanded, after `aim` of all it is to
+  // advance, and nothing else may happen to it in between.
+  Outcome begin_step();
+  Outcome aim(const W& end);
+  Outcome finish_step();
 
   const W& time() const { return t_; }
   const W& before() const { return before_; }
@@ -114,9 +123,13 @@ class Stepper {
 
  private:
   Outcome expand(const std::vector<W>& guess);
+  void begin_expansion(const std::vector<W>& guess);
+  Outcome end_expansion(const std::vector<W>& guess);
   Outcome expand_here(const std::vector<W>& guess);
+  Outcome expand_by_reference(const std::vector<W>& guess);
   void note_begun(const std::vector<W>& guess);
-  bool expand_by_kernel(const std::vector<W>& guess);
+  bool load_kernel(const std::vector<W>& guess);
+  bool take_from_kernel();
   N coefficient(std::size_t j, int k) const;
   void expand_again(const StepperState<N>& last);
   Outcome look_back();
@@ -126,6 +139,8 @@ class Stepper {
   N quadrature_coefficient(std::size_t i, int k) const;
   N step_size() const;
   N horizon_by_kernel() const;
+  // From the logarithms of how much the last order and the one before weigh, and of the growth of multipliers.
+  N horizon(double last, double before_last, double pole) const;
   std::vector<W> leading_at_base() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
@@ -134,7 +149,9 @@ class Stepper {
   std::optional<Mode<N>> mode_ahead(const W& h);
   std::optional<W> singular_within(const W& h);
   bool end_out_of_reach(const W& h, const W& left) const;
-  bool polynomial_by_kernel(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
+  void set_kernel_step(const W& h) const;
+  void advance_kernel() const;
+  void increments_of_kernel(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
@@ -144,7 +161,11 @@ class Stepper {
   Expansion<N> expansion_;
   mutable Expansion<W> point_;
   mutable bool point_loaded_ = true, point_valued_ = true;
-  std::unique_ptr<Kernel> kernel_;
+  std::shared_ptr<Kernel> kernel_;
+  int lane_ = 0;
+  bool alone_ = true;    // in the kernel
+  bool loaded_ = false;  // the kernel is to make the expansion that was begun
+  W aimed_{0};           // where the step ends
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
   bool by_kernel_ = false;                                    // the present expansion
   bool turned_ = false;                                       // a pivot has changed its sign in a step by the kernel

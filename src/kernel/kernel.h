@@ -78,6 +78,8 @@ class Kernel {
   double drift(int lane) const { return drift_[static_cast<std::size_t>(lane)]; }
   bool moved(int lane) const { return moved_[static_cast<std::size_t>(lane)]; }
 
+  // The series of unknown j in a lane: number k lies k * lanes() further on.
+  const double* unknown(std::size_t j, int lane) const { return arena_ + plan_->plan().x[j] * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane); }
   double coefficient(std::size_t j, int k, int lane = 0) const { return number(plan_->plan().x[j] + static_cast<std::uint32_t>(k), lane); }
   double derivative(std::size_t j, int k, int lane = 0) const { return coefficient(j, k, lane) * plan_->tables().factorial[static_cast<std::size_t>(k)]; }
   // Taylor coefficient of quadrature i.

@@ -56,6 +56,8 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
     if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state))
       kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion)).plan;
   }
+  constexpr std::size_t kMany = 32;
+  if (kernel && o.cases >= kMany) lanes = tiers().back().lanes;
   Column watched;
   for (const Monitor& m : model.monitors) watched.push_back(m.value);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, watched));
@@ -70,7 +72,7 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
 void EnsemblePlan::compile_if_long() const {
   constexpr std::chrono::milliseconds kLong(400);
   if (!kernel || std::chrono::steady_clock::now() - since_ < kLong) return;
-  std::call_once(once_, [this] { compiler_ = std::jthread([plan = kernel] { plan->compile(code_cache()); }); });
+  std::call_once(once_, [this] { compiler_ = std::jthread([plan = kernel, lanes = lanes] { plan->compile(code_cache(), lanes); }); });
 }
 
 // A model read once more, with a graph of its own in which a thread may build.
@@ -113,115 +115,189 @@ Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& o, Scenario&
   return first;
 }
 
-void CaseWorker::integrate(std::span<CaseResult> results) {
-  for (CaseResult& r : results) {
-    const EnsembleCase numbers = plan_.options.numbers(r.number);
-    for (const Rational& v : numbers.values) r.values.push_back(from_rational<double>(v));
-    try {
-      integrate(numbers, r);
-    } catch (const Failure& e) {
-      r.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
-    } catch (const std::bad_alloc&) {
-      r.outcome = {OutcomeKind::too_large, "out of memory", "fewer threads need less"};
-    }
-  }
-}
-
-void CaseWorker::integrate(const EnsembleCase& numbers, CaseResult& r) {
-  std::vector<W> parameters = plan_.parameters.values<W>(numbers.values);
+CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shared_ptr<Kernel>& kernel, int lane) {
+  plan_ = &plan;
+  result_ = nullptr;
+  numbers_ = plan.options.numbers(r.number);
+  for (const Rational& v : numbers_.values) r.values.push_back(from_rational<double>(v));
+  std::vector<W> parameters = plan.parameters.values<W>(numbers_.values);
   ready_ = ready_ && parameters == parameters_;
   if (!ready_) {
     parameters_ = std::move(parameters);
-    narrow_parameters_ = plan_.parameters.values<double>(numbers.values);
+    narrow_parameters_ = plan.parameters.values<double>(numbers_.values);
   }
-  r.t = plan_.scenario.state.t;
-  if (r.outcome = plan_.parameters.possible(narrow_parameters_); !r.outcome.ok()) return;
-  if (!ready_) same_structure_ = plan_.parameters.same_structure(narrow_parameters_);
-  Way way = !same_structure_ ? Way::derivation : plan_.plain ? plainly(numbers, r) : Way::simulation;
-  if (way == Way::simulation) {
-    by_simulation(numbers, r);
-    // What fails where it begins may have another structure there, or other redundant constraints.
-    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent && r.outcome.kind != OutcomeKind::interrupted)
-      way = Way::derivation;
-  }
-  if (way == Way::derivation) by_derivation(numbers, r);
-}
-
-// The way that is left, if this one does not go to the end.
-CaseWorker::Way CaseWorker::plainly(const EnsembleCase& numbers, CaseResult& r) {
-  // A stepper begins anew: what it met before must leave no trace.
-  plan_.compile_if_long();
-  stepper_.emplace(*plan_.program, narrow_parameters_, parameters_, plan_.settings);
-  if (plan_.kernel) stepper_->accelerate(plan_.kernel);
+  r.t = plan.scenario.state.t;
+  if (r.outcome = plan.parameters.possible(narrow_parameters_); !r.outcome.ok()) return CaseWay::plain;
+  if (!ready_) same_structure_ = plan.parameters.same_structure(narrow_parameters_);
+  if (!same_structure_) return CaseWay::derivation;
+  if (!plan.plain) return CaseWay::simulation;
   if (!ready_) {
-    point_.emplace(*plan_.program, parameters_, std::max(1, plan_.stages));
-    if (plan_.outputs) outputs_.emplace(*plan_.outputs, 0, parameters_);
+    stepper_.emplace(*plan.program, narrow_parameters_, parameters_, plan.settings);
+    if (kernel) {
+      kernel->set_parameters(lane, parameters_);
+      stepper_->accelerate(kernel, lane);
+    }
+    point_.emplace(*plan.program, parameters_, std::max(1, plan.stages));
+    if (plan.outputs) outputs_.emplace(*plan.outputs, 0, parameters_);
     ready_ = true;
   }
-  InitialProblem<W> problem{plan_.scenario.mechanics.get(), parameters_, overrides_of(plan_.options, &numbers), plan_.options.state.t};
-  problem.plan = &*plan_.start;
+  const EnsembleOptions& o = plan.options;
+  InitialProblem<W> problem{plan.scenario.mechanics.get(), parameters_, overrides_of(o, &numbers_), o.state.t};
+  problem.plan = &*plan.start;
   r.outcome = consistent_state(problem, named_);
   r.t = to_double(named_.t);
-  if (!r.outcome.ok()) return Way::plain;
+  if (!r.outcome.ok()) return CaseWay::plain;
   std::vector<W> state;
-  for (const Node& n : plan_.entries) {
+  for (const Node& n : plan.entries) {
     const W* known = named_.value(n);
     state.push_back(known ? *known : W(0));
   }
-  return walk(named_.t, state, numbers, r);
+  end_ = from_rational<W>(numbers_.to ? *numbers_.to : o.to);
+  const bool forward = !(end_ < named_.t);
+  times_.clear();
+  for (const Rational& t : o.at)
+    if (const W at = from_rational<W>(t); forward ? at <= end_ : at >= end_) times_.push_back(at);
+  if (!forward) std::reverse(times_.begin(), times_.end());
+  result_ = &r;
+  if (end_ == named_.t) return stepper_->start(named_.t, state).ok() ? after_expansion() : stop(CaseWay::derivation);
+  stepper_->place(named_.t, state);
+  return CaseWay::plain;
 }
 
-CaseWorker::Way CaseWorker::walk(const W& t0, const std::vector<W>& state, const EnsembleCase& numbers, CaseResult& r) {
-  const EnsembleOptions& o = plan_.options;
-  if (!stepper_->start(t0, state).ok()) return Way::derivation;
-  const W end = from_rational<W>(numbers.to ? *numbers.to : o.to);
-  const bool forward = !(end < t0);
-  std::vector<W> times;
-  for (const Rational& t : o.at)
-    if (const W at = from_rational<W>(t); forward ? at <= end : at >= end) times.push_back(at);
-  if (!forward) std::reverse(times.begin(), times.end());
-  // Those that lie in the last step.
-  const auto rows = [&] {
-    while (r.rows.size() < times.size()) {
-      const W& t = times[r.rows.size()];
-      if (forward ? t > stepper_->time() : t < stepper_->time()) break;
-      std::vector<double> row = {to_double(t)};
-      if (!keep(t, row)) return false;
-      r.rows.push_back(std::move(row));
-    }
-    return true;
-  };
-  if (!rows()) return Way::simulation;
-  while (!(stepper_->time() == end)) {
-    if (const Outcome step = stepper_->step(end); !step.ok()) {
-      if (step.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled())
-        return stepper_->steps() == 0 ? Way::derivation : Way::simulation;
-      r.outcome = step;
-      return Way::plain;
-    }
-    for (std::size_t i = 0; i < plan_.program->quadratures; ++i)
-      if (!plan_.scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
-        return Way::simulation;
-    if (!rows()) return Way::simulation;
+CaseWay CaseWalk::stop(CaseWay way) {
+  result_ = nullptr;
+  return way;
+}
+
+CaseWay CaseWalk::stopped(const Outcome& why) {
+  const EnsembleOptions& o = plan_->options;
+  if (why.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled()) return stop(stepper_->steps() == 0 ? CaseWay::derivation : CaseWay::simulation);
+  result_->outcome = why;
+  return stop(CaseWay::plain);
+}
+
+CaseWay CaseWalk::begin_step() {
+  const Outcome o = stepper_->begin_step();
+  return o.ok() ? CaseWay::plain : stopped(o);
+}
+
+CaseWay CaseWalk::aim() {
+  const Outcome o = stepper_->aim(end_);
+  return o.ok() ? CaseWay::plain : stopped(o);
+}
+
+CaseWay CaseWalk::finish_step() {
+  if (const Outcome o = stepper_->finish_step(); !o.ok()) return stopped(o);
+  return after_expansion();
+}
+
+CaseWay CaseWalk::step() {
+  if (const Outcome o = stepper_->step(end_); !o.ok()) return stopped(o);
+  return after_expansion();
+}
+
+// What the last step has to give, which may be the end.
+CaseWay CaseWalk::after_expansion() {
+  for (std::size_t i = 0; i < plan_->program->quadratures; ++i)
+    if (!plan_->scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)) return stop(CaseWay::simulation);
+  if (!rows()) return stop(CaseWay::simulation);
+  if (!(stepper_->time() == end_)) return CaseWay::plain;
+  result_->t = to_double(end_);
+  result_->steps = stepper_->steps();
+  return stop(keep(end_, result_->last) ? CaseWay::plain : CaseWay::simulation);
+}
+
+// Those that lie in the last step.
+bool CaseWalk::rows() {
+  const bool forward = !(end_ < stepper_->before());
+  while (result_->rows.size() < times_.size()) {
+    const W& t = times_[result_->rows.size()];
+    if (forward ? t > stepper_->time() : t < stepper_->time()) break;
+    std::vector<double> row = {to_double(t)};
+    if (!keep(t, row)) return false;
+    result_->rows.push_back(std::move(row));
   }
-  r.t = to_double(end);
-  r.steps = stepper_->steps();
-  return keep(end, r.last) ? Way::plain : Way::simulation;
+  return true;
 }
 
 // What is kept of the state at t, which lies in the last step.
-bool CaseWorker::keep(const W& t, std::vector<double>& values) {
-  const System& system = plan_.scenario.system;
-  if (!stepper_->at(t, *point_).ok() || (plan_.stages > 0 && !point_->extend().ok())) return false;
+bool CaseWalk::keep(const W& t, std::vector<double>& values) {
+  const System& system = plan_->scenario.system;
+  if (!stepper_->at(t, *point_).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
   for (const int k : {0, 1})
     for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
   for (std::size_t j = system.mechanical(); j < system.size(); ++j) values.push_back(to_double(point_->derivative(j, 0)));
   if (!outputs_) return true;
-  for (const EnsemblePlan::Entry& e : plan_.output_inputs)
+  for (const EnsemblePlan::Entry& e : plan_->output_inputs)
     outputs_->series(e.slot)[0] = e.variable ? point_->derivative(*e.variable, e.order) : point_->time();
   outputs_->evaluate();
-  for (std::size_t i = 0; i < plan_.outputs->roots.size(); ++i) values.push_back(to_double(outputs_->value(i)));
+  for (std::size_t i = 0; i < plan_->outputs->roots.size(); ++i) values.push_back(to_double(outputs_->value(i)));
   return true;
+}
+
+// A case never stops the others.
+template <class Work>
+static bool contained(CaseResult& r, const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const Failure& e) {
+    r.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
+  } catch (const std::bad_alloc&) {
+    r.outcome = {OutcomeKind::too_large, "out of memory", "fewer threads need less"};
+  }
+  return false;
+}
+
+// Each lane takes the next case when it has done one. A lane has the same bits whatever is beside it.
+void CaseWorker::integrate(std::span<CaseResult> results) {
+  plan_.compile_if_long();
+  if (plan_.kernel && !kernel_) kernel_ = std::make_shared<Kernel>(plan_.kernel, plan_.lanes);
+  while (walks_.size() < static_cast<std::size_t>(plan_.lanes)) walks_.emplace_back();
+  std::size_t next = 0, walking = 0;
+  const auto go = [&](CaseWalk& walk, CaseWay (CaseWalk::*part)()) {
+    if (!walk.walking()) return;
+    CaseResult& r = walk.result();
+    CaseWay way = CaseWay::plain;
+    const bool done = contained(r, [&] { way = (walk.*part)(); });
+    if (!done) walk.abandon();
+    if (walk.walking()) return;
+    --walking;
+    if (done) contained(r, [&] { end(way, walk.numbers(), r); });
+  };
+  for (;;) {
+    for (std::size_t lane = 0; lane < walks_.size(); ++lane)
+      while (!walks_[lane].walking() && next < results.size()) {
+        CaseResult& r = results[next++];
+        CaseWalk& walk = walks_[lane];
+        const bool done = contained(r, [&] {
+          const CaseWay way = walk.begin(plan_, r, kernel_, static_cast<int>(lane));
+          if (!walk.walking()) end(way, walk.numbers(), r);
+        });
+        if (!done) walk.abandon();
+        if (walk.walking()) ++walking;
+      }
+    if (walking == 0) return;
+    if (walks_.size() == 1) {
+      go(walks_[0], &CaseWalk::step);
+      continue;
+    }
+    for (CaseWalk& w : walks_) go(w, &CaseWalk::begin_step);
+    if (kernel_) kernel_->expand();
+    for (CaseWalk& w : walks_) go(w, &CaseWalk::aim);
+    if (kernel_) kernel_->advance();
+    for (CaseWalk& w : walks_) go(w, &CaseWalk::finish_step);
+  }
+}
+
+void CaseWorker::end(CaseWay way, const EnsembleCase& numbers, CaseResult& r) {
+  if (way == CaseWay::simulation) {
+    by_simulation(numbers, r);
+    // What fails where it begins may have another structure there, or other redundant constraints.
+    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent && r.outcome.kind != OutcomeKind::interrupted)
+      way = CaseWay::derivation;
+  }
+  if (way == CaseWay::derivation) by_derivation(numbers, r);
 }
 
 namespace {

@@ -6,9 +6,11 @@
 // outcome is that of `simulate`. A case with which the equations have another structure is derived anew.
 #pragma once
 #include <chrono>
+#include <deque>
 #include <mutex>
 #include <thread>
 
+#include "kernel/kernel.h"
 #include "run/case_parameters.h"
 
 namespace anholon {
@@ -29,6 +31,7 @@ class EnsemblePlan {
   // digits may differ. Machine code, with the same bits, is made beside the cases when they have taken a while.
   std::shared_ptr<const KernelPlan> kernel;
   void compile_if_long() const;
+  int lanes = 1;                    // of kernels of cases: all that this machine has
   std::optional<Tape> outputs;
   struct Entry {
     std::uint32_t slot;
@@ -45,6 +48,48 @@ class EnsemblePlan {
   mutable std::jthread compiler_;
 };
 
+// How a case is computed: by the tapes of the plan, or in a graph of its own, by the program of the scenario or one that is derived anew.
+enum class CaseWay : std::uint8_t { plain, simulation, derivation };
+
+// The plain way of one case after the other, in one lane of a kernel.
+class CaseWalk {
+ public:
+  using W = Wider<double>;
+
+  // The next case: its numbers, its consistent start. The way it has to go; `walking` if this one has steps to make.
+  CaseWay begin(const EnsemblePlan& plan, CaseResult& result, const std::shared_ptr<Kernel>& kernel, int lane);
+  bool walking() const { return result_ != nullptr; }
+  void abandon() { result_ = nullptr, ready_ = false; }
+  CaseResult& result() const { return *result_; }
+  const EnsembleCase& numbers() const { return numbers_; }
+  // One step, in the parts of Stepper::step; the kernel works in between. Whoever stops walking after one of them has come to its end on the way it returns.
+  CaseWay begin_step();
+  CaseWay aim();
+  CaseWay finish_step();
+  // The whole step, alone in its kernel.
+  CaseWay step();
+
+ private:
+  CaseWay after_expansion();
+  CaseWay stopped(const Outcome& why);
+  CaseWay stop(CaseWay way);
+  bool rows();
+  bool keep(const W& t, std::vector<double>& values);
+
+  const EnsemblePlan* plan_ = nullptr;
+  CaseResult* result_ = nullptr;
+  EnsembleCase numbers_;
+  std::vector<W> parameters_;
+  std::vector<double> narrow_parameters_;
+  bool ready_ = false, same_structure_ = true;  // for these parameters
+  W end_{0};
+  std::vector<W> times_;  // of rows
+  InitialState<W> named_;
+  std::optional<Stepper<double>> stepper_;
+  std::optional<Expansion<W>> point_;
+  std::optional<Machine<W>> outputs_;
+};
+
 // The workspaces of one thread.
 class CaseWorker {
  public:
@@ -59,23 +104,14 @@ class CaseWorker {
  private:
   using W = Wider<double>;
 
-  enum class Way : std::uint8_t { plain, simulation, derivation };
-  void integrate(const EnsembleCase& numbers, CaseResult& result);
-  Way plainly(const EnsembleCase& numbers, CaseResult& result);
-  Way walk(const W& t, const std::vector<W>& state, const EnsembleCase& numbers, CaseResult& result);
-  bool keep(const W& t, std::vector<double>& values);
+  void end(CaseWay way, const EnsembleCase& numbers, CaseResult& result);
   void by_simulation(const EnsembleCase& numbers, CaseResult& result);
   void by_derivation(const EnsembleCase& numbers, CaseResult& result);
   void simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& result);
 
   const EnsemblePlan& plan_;
-  std::vector<W> parameters_;
-  std::vector<double> narrow_parameters_;
-  bool ready_ = false, same_structure_ = true;  // for these parameters
-  InitialState<W> named_;
-  std::optional<Stepper<double>> stepper_;
-  std::optional<Expansion<W>> point_;
-  std::optional<Machine<W>> outputs_;
+  std::shared_ptr<Kernel> kernel_;
+  std::deque<CaseWalk> walks_;  // one for each lane
   std::shared_ptr<Own> own_;
   std::size_t again_ = 0;
 };

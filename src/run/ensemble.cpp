@@ -18,8 +18,8 @@ namespace {
 
 // Cases that are integrated together. The number of threads has no say in it: who is beside whom may decide bits.
 std::size_t together(std::size_t cases) {
-  constexpr std::size_t kLanes = 8, kFew = 64;
-  return std::clamp<std::size_t>(cases / kFew, 1, kLanes);
+  constexpr std::size_t kMost = 32, kFew = 8;
+  return std::clamp<std::size_t>(cases / kFew, 1, kMost);
 }
 
 // Groups of cases on their way for each thread: room for one that takes long while the others go on.
