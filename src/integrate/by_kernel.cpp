@@ -1,6 +1,7 @@
 // The part of the stepper that makes its expansions by a kernel: of doubles, where nothing has to be looked at closely.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integrate/taylor.h"
 #include "kernel/kernel.h"
@@ -62,11 +63,10 @@ bool Stepper<N>::load_kernel(const std::vector<W>& guess) {
       careful_ = false;
       return false;
     }
-    narrow_state_.resize(state_.size());
-    for (std::size_t i = 0; i < state_.size(); ++i) narrow_state_[i] = static_cast<double>(state_[i]);
-    narrow_leading_.resize(guess.size());
-    for (std::size_t i = 0; i < guess.size(); ++i) narrow_leading_[i] = static_cast<double>(guess[i]);
-    kernel_->load(lane_, static_cast<double>(t_), narrow_state_, narrow_leading_);
+    if (!carried_)
+      for (std::size_t i = 0; i < state_.size(); ++i) state_[i] += std::exchange(carry_[i], W(0));
+    carried_ = true;
+    kernel_->load(lane_, static_cast<double>(t_), state_, guess);
     return true;
   } else {
     (void)guess;
@@ -77,10 +77,12 @@ bool Stepper<N>::load_kernel(const std::vector<W>& guess) {
 template <Number N>
 bool Stepper<N>::take_from_kernel() {
   if constexpr (std::same_as<N, double>) {
-    const double health = kernel_->health(lane_);
-    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNews) || !kernel_->finite(lane_)) {
-      turned_ = by_kernel_ && !(health > 0);
-      if (health < least_health_) least_health_ = std::max(health, 0.0);
+    const double health = kernel_->health(lane_), side = kernel_->side(lane_);
+    const bool across = by_kernel_ && side != side_;
+    side_ = side;
+    if (!(health > kHealthy) || across || (settings_.measure && health < least_health_ * kNews) || !kernel_->finite(lane_)) {
+      turned_ = across;
+      least_health_ = std::min(least_health_, health);
       return false;
     }
     by_kernel_ = true;
@@ -90,11 +92,10 @@ bool Stepper<N>::take_from_kernel() {
       std::size_t i = 0;
       for (std::size_t j = 0; j < p.unknowns(); ++j)
         for (int k = 0; k < p.d[j]; ++k, ++i)
-          if (const double moved = kernel_->derivative(j, k, lane_) - narrow_state_[i]; moved != 0) state_[i] += moved, carry_[i] = 0;
+          if (const double moved = kernel_->derivative(j, k, lane_) - static_cast<double>(state_[i]); moved != 0) state_[i] += moved;
     }
     leading_.resize(p.unknowns());
     for (std::size_t j = 0; j < p.unknowns(); ++j) leading_[j] = kernel_->derivative(j, p.d[j], lane_);
-    base_state_ = state_;
     point_loaded_ = point_valued_ = false;
     worst_constraint_ = std::max(worst_constraint_, W(kernel_->drift(lane_)));
     for (const auto& [slot, at] : kink_series_)
@@ -142,7 +143,7 @@ N Stepper<N>::horizon_by_kernel() const {
 template <Number N>
 const Expansion<typename Stepper<N>::W>& Stepper<N>::point(bool values) const {
   if (!point_loaded_) {
-    point_.load(begun_.t, base_state_, leading_at_base());
+    point_.load(begun_[now_].t, expanded_ ? state_ : base_state_, leading_at_base());
     point_loaded_ = true;
   }
   if (values && !point_valued_) {
@@ -174,45 +175,48 @@ N Stepper<N>::quadrature_coefficient(std::size_t i, int k) const {
 }
 
 template <Number N>
-void Stepper<N>::set_kernel_step(const W& h) const {
+void Stepper<N>::advance_kernel(const W& h) const {
   kernel_->set_step(lane_, to_double(h));
-}
-
-template <Number N>
-void Stepper<N>::advance_kernel() const {
   kernel_->advance();
 }
 
-// What the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
+// The solution h beyond where the expansion was made. What the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
 template <Number N>
-void Stepper<N>::increments_of_kernel(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
+void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std::vector<W>& state, std::vector<W>& leading) const {
   if constexpr (std::same_as<N, double>) {
     const Program& p = *program_;
-    increments.resize(expansion_.state_size());
+    const std::size_t stride = static_cast<std::size_t>(kernel_->lanes());
+    const double *increment = kernel_->increments(lane_), *factorial = kernel_->plan().tables().factorial.data();
+    state.resize(base.size());
     leading.resize(p.unknowns());
-    std::size_t from = 0, to = 0;
+    const W* from = base.data();
+    W* to = state.data();
     for (std::size_t j = 0; j < p.unknowns(); ++j) {
-      for (int k = 0; k < p.d[j]; ++k, ++to) {
-        W s(0), power(1);
-        for (int i = k + 1; i < p.d[j]; ++i) {
-          power = i - k == 1 ? h : power * h / W(i - k);
-          s += (base_state_[to + static_cast<std::size_t>(i - k)] - W(kernel_->derivative(j, i, lane_))) * power;
+      const double* x = kernel_->unknown(j, lane_);
+      const int d = p.d[j];
+      for (int k = 0; k < d; ++k, increment += stride) {
+        W s = from[k] + *increment, power = h;
+        for (int i = k + 1; i < d; ++i) {
+          s += (from[i] - W(x[static_cast<std::size_t>(i) * stride] * factorial[i])) * power;
+          power *= h / W(i - k + 1);
         }
-        increments[to] = s + kernel_->increment(from++, lane_);
+        to[k] = s;
       }
-      leading[j] = kernel_->derivative(j, p.d[j], lane_) + kernel_->increment(from++, lane_);
+      leading[j] = x[static_cast<std::size_t>(d) * stride] * factorial[d] + *increment;
+      increment += stride;
+      from += d;
+      to += d;
     }
   } else {
-    (void)h, (void)increments, (void)leading;
+    (void)h, (void)base, (void)state, (void)leading;
   }
 }
 
 #define INSTANTIATE(N)                                                                        \
   template N Stepper<N>::coefficient(std::size_t, int) const;                                 \
   template N Stepper<N>::quadrature_coefficient(std::size_t, int) const;                      \
-  template void Stepper<N>::set_kernel_step(const W&) const;                                  \
-  template void Stepper<N>::advance_kernel() const;                                           \
-  template void Stepper<N>::increments_of_kernel(const W&, std::vector<W>&, std::vector<W>&) const; \
+  template void Stepper<N>::advance_kernel(const W&) const;                                   \
+  template void Stepper<N>::advanced_by_kernel(const W&, const std::vector<W>&, std::vector<W>&, std::vector<W>&) const; \
   template void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan>);                    \
   template void Stepper<N>::accelerate(std::shared_ptr<Kernel>, int);                         \
   template bool Stepper<N>::load_kernel(const std::vector<W>&);                               \

@@ -24,6 +24,8 @@ void add_compensated(N& s, N& carry, const N& x) {
   s = sum;
 }
 
+Outcome blow_up() { return {OutcomeKind::blow_up, "the motion grows without bound", "look at the last good state: a velocity or position diverges"}; }
+
 // A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other side.
 constexpr int kPastKink = 32;
 // Kinks met so soon after another one are other kinks, until they are too many.
@@ -63,7 +65,8 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
   last_step_ = branch_step_ = worst_constraint_ = worst_equation_ = W(0);
   fired_.clear();
   events_.restart();
-  begun_ = begun_before_ = {};
+  begun_[0] = begun_[1] = {};
+  carried_ = false;
 }
 
 template <Number N>
@@ -83,6 +86,7 @@ Outcome Stepper<N>::restart(const std::vector<W>& state) {
   before_ = t_;  // the last step's polynomial is not this state's
   state_ = state;
   carry_.assign(state.size(), W(0));
+  carried_ = false;
   events_.restart();
   fired_.clear();
   short_kinks_ = 0;
@@ -100,6 +104,7 @@ void Stepper<N>::adopt(const Stepper& other) {
   t_ = before_ = other.t_;
   state_ = other.state_;
   carry_ = other.carry_;
+  carried_ = false;
   leading_ = other.leading_;
   integrals_ = other.integrals_;
   integral_carry_ = other.integral_carry_;
@@ -117,6 +122,7 @@ Outcome Stepper<N>::resume(const StepperState<N>& b) {
   started_ = t_ = before_ = b.t;
   state_ = b.state;
   carry_ = b.carry;
+  carried_ = false;
   leading_ = b.leading;
   integrals_ = b.integrals;
   integral_carry_ = b.integral_carry;
@@ -163,7 +169,7 @@ Outcome Stepper<N>::expand(const std::vector<W>& guess) {
 
 template <Number N>
 void Stepper<N>::begin_expansion(const std::vector<W>& guess) {
-  std::swap(begun_before_, begun_);
+  now_ = 1 - now_;
   note_begun(guess);
   loaded_ = load_kernel(guess);
 }
@@ -175,7 +181,7 @@ Outcome Stepper<N>::end_expansion(const std::vector<W>& guess) {
   if (by_kernel) return {};
   Outcome o = expand_by_reference(guess);
   if (o.ok() && turned_) return look_back();
-  if (!o.ok() && again) expand_again(StepperState<N>(begun_before_));
+  if (!o.ok() && again) expand_again(StepperState<N>(begun_[1 - now_]));
   return o;
 }
 
@@ -191,11 +197,11 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   return expand_by_reference(guess);
 }
 
-// A pivot of the kernel has changed its sign in the last step: whether J was singular on the way is asked of the reference.
+// The determinant has changed its sign in the last step: whether J was singular on the way is asked of the reference.
 template <Number N>
 Outcome Stepper<N>::look_back() {
   turned_ = false;
-  const StepperState<N> now = begun_, last = begun_before_;
+  const StepperState<N> now = begun_[now_], last = begun_[1 - now_];
   const W length = last_step_;
   careful_ = true;
   expand_again(last);
@@ -205,8 +211,8 @@ Outcome Stepper<N>::look_back() {
   if (met) return {OutcomeKind::singular, "the system Jacobian becomes singular at t = " + number_text(to_double(W(last.t + *met)), 12), "end the motion before"};
   careful_ = true;
   const Outcome o = expand_here(now.leading);
-  begun_ = now;
-  begun_before_ = last;
+  begun_[now_] = now;
+  begun_[1 - now_] = last;
   return o;
 }
 
@@ -218,18 +224,20 @@ void Stepper<N>::expand_again(const StepperState<N>& last) {
   t_ = before_ = last.t;
   state_ = last.state;
   carry_ = last.carry;
+  carried_ = false;
   expand_here(last.leading);
-  begun_ = last;
+  begun_[now_] = last;
   t_ = t;
   state_ = state;
   carry_ = carry;
+  carried_ = false;
   leading_ = leading;
   expanded_ = false;
 }
 
 template <Number N>
 void Stepper<N>::note_begun(const std::vector<W>& guess) {
-  StepperState<N>& b = begun_;
+  StepperState<N>& b = begun_[now_];
   b.t = t_;
   b.state = state_;
   b.carry = carry_;
@@ -244,17 +252,24 @@ void Stepper<N>::note_begun(const std::vector<W>& guess) {
   b.smallest_sigma = smallest_sigma_;
   b.smallest_sigma_t = smallest_sigma_t_;
   b.weakest = weakest_;
-  b.direction = expansion_.weakest_direction();
   b.sigma_before = sigma_before_;
   b.last_step = last_step_;
-  b.sides = events_.sides();
   b.least_health = least_health_;
   b.careful = careful_;
 }
 
+// Expansions by the kernel change neither the direction nor the sides.
+template <Number N>
+const StepperState<N>& Stepper<N>::begun() const {
+  if (by_kernel_) begun_[now_].direction = expansion_.weakest_direction(), begun_[now_].sides = events_.sides();
+  return begun_[now_];
+}
+
 template <Number N>
 Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
-  by_kernel_ = false;
+  begun_[now_].direction = expansion_.weakest_direction();
+  begun_[now_].sides = events_.sides();
+  by_kernel_ = carried_ = false;
   point_loaded_ = point_valued_ = true;
   convert_all(state_, narrow_state_);
   convert_all(guess, narrow_leading_);
@@ -360,11 +375,6 @@ N Stepper<N>::horizon(double last, double before_last, double pole) const {
 
 template <Number N>
 void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
-  if (by_kernel_) {
-    set_kernel_step(h);
-    advance_kernel();
-    return increments_of_kernel(h, increments, leading);
-  }
   const Program& p = *program_;
   increments.assign(expansion_.state_size(), W(0));
   leading.assign(p.unknowns(), W(0));
@@ -384,15 +394,26 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
   }
 }
 
+// State and leading derivatives h beyond where the expansion was made.
+template <Number N>
+void Stepper<N>::on_polynomial(const W& h, std::vector<W>& state, std::vector<W>& leading) const {
+  if (by_kernel_) {
+    advance_kernel(h);
+    return advanced_by_kernel(h, expanded_ ? state_ : base_state_, state, leading);
+  }
+  std::vector<W> increments;
+  polynomial(h, increments, leading);
+  point().state(state);
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
+}
+
 // J and its LU at t + h on the polynomial, or nothing where it has none. What was met elsewhere says nothing there: the iteration
 // for the singular value starts anew, so that a run that goes on finds the same.
 template <Number N>
 Expansion<N>* Stepper<N>::ahead(const W& h) {
   if (!ahead_) ahead_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
-  std::vector<W> increments, leading, state;
-  polynomial(h, increments, leading);
-  point().state(state);
-  for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
+  std::vector<W> leading, state;
+  on_polynomial(h, state, leading);
   std::vector<N> narrow_state, narrow_leading;
   convert_all(state, narrow_state);
   convert_all(leading, narrow_leading);
@@ -474,7 +495,7 @@ Outcome Stepper<N>::step(const W& end) {
   if (Outcome o = begin_step(); !o.ok()) return o;
   if (loaded_) kernel_->expand();
   if (Outcome o = aim(end); !o.ok()) return o;
-  if (by_kernel_) advance_kernel();
+  if (by_kernel_) kernel_->advance();
   return finish_step();
 }
 
@@ -542,7 +563,7 @@ Outcome Stepper<N>::aim(const W& end) {
   const W reached = last && !cut ? end : convert<W>(convert<N>(W(t_ + h)));
   h = reached - t_;
   aimed_ = reached;
-  if (by_kernel_) set_kernel_step(h);
+  if (by_kernel_) kernel_->set_step(lane_, to_double(h));
   return {};
 }
 
@@ -551,13 +572,18 @@ Outcome Stepper<N>::finish_step() {
   const W h = aimed_ - t_;
   last_step_ = abs(h);
   sigma_before_ = sigma_;
-  if (by_kernel_) increments_of_kernel(h, change_, leading_);
-  else polynomial(h, change_, leading_);
-  next_ = state_;
-  for (std::size_t i = 0; i < next_.size(); ++i) {
-    add_compensated(next_[i], carry_[i], change_[i]);
-    if (!is_finite(next_[i]) || std::abs(to_double(next_[i])) > kBlowUp)
-      return {OutcomeKind::blow_up, "the motion grows without bound", "look at the last good state: a velocity or position diverges"};
+  if (by_kernel_) {
+    base_state_.swap(state_);
+    advanced_by_kernel(h, base_state_, state_, leading_);
+    if (!std::all_of(state_.begin(), state_.end(), [](const W& x) { return abs(x) < W(kBlowUp); })) return state_.swap(base_state_), blow_up();
+  } else {
+    polynomial(h, change_, leading_);
+    next_ = state_;
+    for (std::size_t i = 0; i < next_.size(); ++i) {
+      add_compensated(next_[i], carry_[i], change_[i]);
+      if (!is_finite(next_[i]) || std::abs(to_double(next_[i])) > kBlowUp) return blow_up();
+    }
+    std::swap(state_, next_);
   }
   for (std::size_t i = 0; i < integrals_.size(); ++i) {
     W s(0);
@@ -567,7 +593,6 @@ Outcome Stepper<N>::finish_step() {
   before_ = t_;
   t_ = aimed_;
   expanded_ = false;
-  std::swap(state_, next_);
   ++steps_;
   return {};
 }
@@ -581,10 +606,8 @@ typename Stepper<N>::W Stepper<N>::quadrature(std::size_t i, const W& dt) const 
 
 template <Number N>
 Outcome Stepper<N>::at(const W& t, Expansion<W>& point) const {
-  std::vector<W> state, increments, leading;
-  this->point().state(state);
-  polynomial(t - before_, increments, leading);
-  for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
+  std::vector<W> state, leading;
+  on_polynomial(t - before_, state, leading);
   point.load(t, state, leading);
   if (Outcome o = point.prepare(); !o.ok()) return o;
   if (Outcome o = point.project(); !o.ok()) return o;

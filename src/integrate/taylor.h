@@ -82,7 +82,7 @@ class Stepper {
   const std::vector<W>& state() const { return state_; }
   // Where the present expansion was made: the start of the last step, or of the next one if that is expanded already. A step
   // cut short by its end is thus repeated in full by whoever resumes.
-  const StepperState<N>& begun() const { return begun_; }
+  const StepperState<N>& begun() const;
   std::size_t expansions() const { return expansions_; }  // made so far
   Outcome resume(const StepperState<N>& begun);
   // One step towards `end`, at most up to it.
@@ -149,9 +149,9 @@ class Stepper {
   std::optional<Mode<N>> mode_ahead(const W& h);
   std::optional<W> singular_within(const W& h);
   bool end_out_of_reach(const W& h, const W& left) const;
-  void set_kernel_step(const W& h) const;
-  void advance_kernel() const;
-  void increments_of_kernel(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
+  void advance_kernel(const W& h) const;
+  void advanced_by_kernel(const W& h, const std::vector<W>& base, std::vector<W>& state, std::vector<W>& leading) const;
+  void on_polynomial(const W& h, std::vector<W>& state, std::vector<W>& leading) const;
   void polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const;
 
   const Program* program_;
@@ -168,11 +168,12 @@ class Stepper {
   W aimed_{0};           // where the step ends
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
   bool by_kernel_ = false;                                    // the present expansion
-  bool turned_ = false;                                       // a pivot has changed its sign in a step by the kernel
+  double side_ = 1;                                           // sign of the determinant of J, in relation to where the kernel's pivots were chosen
+  bool turned_ = false;                                       // it has changed in a step by the kernel
   bool careful_ = false;                                      // the next one is to be made without the kernel
   N least_health_{1};
   std::size_t by_kernel_count_ = 0;
-  std::vector<W> base_state_;                                 // where the present expansion of the kernel was made
+  std::vector<W> base_state_;                                 // where the kernel's expansion of the last step was made
   std::unique_ptr<Expansion<N>> ahead_;  // for looks at J further on the polynomial
   N sigma_{0}, sigma_before_{0};         // where the last two steps began
   W last_step_{0};
@@ -191,7 +192,9 @@ class Stepper {
   N first_sigma_{0}, smallest_sigma_{1};
   W smallest_sigma_t_{0};
   std::size_t weakest_ = 0;
-  StepperState<N> begun_, begun_before_;
+  mutable StepperState<N> begun_[2];  // of the present expansion and the one before
+  int now_ = 0;                       // which of them is the present one
+  bool carried_ = false;              // nothing is left in carry_
   std::vector<W> change_, next_;
   std::size_t expansions_ = 0;
 };

@@ -61,6 +61,7 @@ const std::vector<Tier>& tiers() {
 
 KernelPlan::KernelPlan(std::shared_ptr<const Program> program, int stages) : program_(std::move(program)), plan_(anholon::plan(*program_, stages)) {
   for (int d : plan_.d) state_size_ += static_cast<std::size_t>(d);
+  levels_ = *std::max_element(plan_.c.begin(), plan_.c.end());
   tables_.plan = &plan_;
   tables_.elimination = &elimination_;
   for (const StepFunction& f : program_->tape.step_functions) {
@@ -110,7 +111,7 @@ std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program
   if (!p->choose_pivots(parameters, t, state)) return nullptr;
   Kernel probe(p);
   probe.set_parameters(0, parameters);
-  probe.load(0, t, state, {});
+  probe.load<double>(0, t, state, {});
   if (probe.correction_of_solution() > kRefined) return p;
   p->tables_.refine = false;
   return p->choose_pivots(parameters, t, state) ? p : nullptr;
@@ -160,6 +161,9 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   for (SparseLu::Pivot& p : elimination_.pivots)
     for (std::size_t k = samples; k < kSamples; ++k) p.value[k] = p.value[0];
   lay_out();
+  judged_.clear();
+  for (const SparseLu::Pivot& p : elimination_.pivots)
+    if (!p.one && !p.minus_one) judged_.push_back({tables_.lu + p.entry, 1 / p.value[0]});
   return !elimination_.pivots.empty();
 }
 
@@ -185,8 +189,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
 void Kernel::Free::operator()(double* p) const { std::free(p); }
 
 Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* tier)
-    : plan_(std::move(plan)), lanes_(lanes), health_(static_cast<std::size_t>(lanes), 1.0), drift_(static_cast<std::size_t>(lanes), 0.0), weight_(static_cast<std::size_t>(lanes), 0.0),
-      moved_(static_cast<std::size_t>(lanes), 0) {
+    : plan_(std::move(plan)), lanes_(lanes), judged_(static_cast<std::size_t>(lanes)), weight_(static_cast<std::size_t>(lanes), 0.0) {
   if (!tier) tier = &tiers().back();
   ANHOLON_ASSERT(lanes == 1 || lanes == tier->lanes);
   const std::size_t bytes = plan_->tables().size * sizeof(double) * static_cast<std::size_t>(lanes);
@@ -200,18 +203,6 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
 void Kernel::set_parameters(int lane, const std::vector<long double>& parameters) {
   const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters);
   for (std::size_t i = 0; i < values.size(); ++i) number(static_cast<std::uint32_t>(i), lane) = values[i];
-}
-
-void Kernel::load(int lane, double t, std::span<const double> state, std::span<const double> leading) {
-  const Plan& p = plan_->plan();
-  const std::vector<double>& inverse = plan_->tables().inverse_factorial;
-  std::size_t i = 0;
-  for (std::size_t j = 0; j < p.x.size(); ++j) {
-    for (int k = 0; k < p.d[j]; ++k) number(p.x[j] + static_cast<std::uint32_t>(k), lane) = state[i++] * inverse[static_cast<std::size_t>(k)];
-    number(p.x[j] + static_cast<std::uint32_t>(p.d[j]), lane) = (leading.empty() ? 0 : leading[j]) * inverse[static_cast<std::size_t>(p.d[j])];
-  }
-  number(p.time, lane) = t;
-  number(p.time + 1, lane) = 1;
 }
 
 void Kernel::expand() {
@@ -244,48 +235,55 @@ double Kernel::correction_of_solution() {
 }
 
 void Kernel::judge_pivots() {
-  const SparseLu& e = plan_->elimination();
-  const KernelTables& t = plan_->tables();
-  for (int lane = 0; lane < lanes_; ++lane) {
-    double least = std::numeric_limits<double>::max();
-    for (std::size_t k = 0; k < e.pivots.size(); ++k) {
-      const SparseLu::Pivot& p = e.pivots[k];
-      if (p.one || p.minus_one) continue;
-      const double ratio = number(t.lu + p.entry, lane) / p.value[0];
-      least = ratio < least ? ratio : least;
-      if (!(ratio >= least)) least = -1;  // what is not a number
+  const std::size_t lanes = static_cast<std::size_t>(lanes_);
+  for (Judgement& j : judged_) j = {std::numeric_limits<double>::max(), 0, 1, 0, 0, 1, false};
+  for (const KernelPlan::Judged& p : plan_->judged_) {
+    const double* pivot = arena_ + p.at * lanes;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const double ratio = pivot[lane] * p.inverse;
+      Judgement& j = judged_[lane];
+      const double size = std::abs(ratio);
+      j.health = size < j.health ? size : j.health;
+      j.side = ratio < 0 ? -j.side : j.side;
+      j.invalid += ratio - ratio;
     }
-    health_[static_cast<std::size_t>(lane)] = least;
   }
+  for (Judgement& j : judged_)
+    if (j.invalid != 0) j.health = 0;  // what is not a number
 }
 
 void Kernel::project(const Code* code) {
   const Plan& p = plan_->plan();
   const KernelTables& t = plan_->tables();
-  std::fill(drift_.begin(), drift_.end(), 0.0);
-  std::fill(moved_.begin(), moved_.end(), 0);
-  for (int level = *std::max_element(p.c.begin(), p.c.end()); level >= 1; --level) {
+  const std::size_t lanes = static_cast<std::size_t>(lanes_);
+  for (int level = plan_->levels_; level >= 1; --level) {
     if (code) code->level[static_cast<std::size_t>(level - 1)](arena_);
     else arithmetic_->residual(level);
-    bool any = false;
-    for (int lane = 0; lane < lanes_; ++lane) {
-      const std::size_t i = static_cast<std::size_t>(lane);
-      double size = 1, most = 0;
-      for (std::size_t j = 0; j < p.x.size(); ++j) {
-        const int k = p.d[j] - level;
-        if (k < 0) continue;
-        size = std::max(size, std::abs(derivative(j, k, lane)));
-        most = std::max(most, std::abs(number(t.solution + static_cast<std::uint32_t>(j), lane)));
+    for (Judgement& j : judged_) j.size = 1, j.most = 0;
+    for (std::size_t j = 0; j < p.x.size(); ++j) {
+      const int k = p.d[j] - level;
+      if (k < 0) continue;
+      const double* x = arena_ + (p.x[j] + static_cast<std::uint32_t>(k)) * lanes;
+      const double* change = arena_ + (t.solution + j) * lanes;
+      const double factor = t.factorial[static_cast<std::size_t>(k)];
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        Judgement& of = judged_[lane];
+        of.size = std::max(of.size, std::abs(x[lane]) * factor);
+        of.most = std::max(of.most, std::abs(change[lane]));
       }
-      const double displacement = most / size;
-      if (!(displacement <= drift_[i])) drift_[i] = displacement;
-      weight_[i] = displacement > kQuiet ? 1 : 0;
-      if (weight_[i] > 0) any = true, moved_[i] = 1;
+    }
+    bool any = false;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      Judgement& of = judged_[lane];
+      const double displacement = of.most / of.size;
+      if (!(displacement <= of.drift)) of.drift = displacement;
+      weight_[lane] = displacement > kQuiet ? 1 : 0;
+      if (weight_[lane] > 0) any = of.moved = true;
     }
     if (!any) continue;
     arithmetic_->correct(level, weight_.data());
     if (code) code->values(arena_);
-    else arithmetic_->values(-plan_->plan().largest_lead);
+    else arithmetic_->values(-p.largest_lead);
   }
 }
 

@@ -47,6 +47,14 @@ class KernelPlan {
   SparseLu elimination_;
   KernelTables tables_;
   std::size_t state_size_ = 0;
+  int levels_ = 0;  // of hidden constraints
+  // Pivots whose size says how far they still serve: where they lie, and 1 / what they were.
+  struct Judged {
+    std::uint32_t at;
+    double inverse;
+  };
+  std::vector<Judged> judged_;
+  friend class Kernel;
   struct Compiled {
     Code code;
     int lanes = 1;
@@ -64,19 +72,35 @@ class Kernel {
   const KernelPlan& plan() const { return *plan_; }
   void set_parameters(int lane, const std::vector<long double>& parameters);
   // State: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
-  void load(int lane, double t, std::span<const double> state, std::span<const double> leading);
+  template <class State>
+  void load(int lane, double t, const std::vector<State>& state, const std::vector<State>& leading) {
+    const Plan& p = plan_->plan();
+    const double* inverse = plan_->tables().inverse_factorial.data();
+    const std::size_t stride = static_cast<std::size_t>(lanes_);
+    const State* from = state.data();
+    for (std::size_t j = 0; j < p.x.size(); ++j) {
+      double* x = &number(p.x[j], lane);
+      const int d = p.d[j];
+      for (int k = 0; k < d; ++k, x += stride) *x = static_cast<double>(*from++) * inverse[k];
+      *x = leading.empty() ? 0 : static_cast<double>(leading[j]) * inverse[d];
+    }
+    number(p.time, lane) = t;
+    number(p.time + 1, lane) = 1;
+  }
   // Projects the state on the hidden constraints where it has left them, solves for the leading derivatives, and computes all coefficients.
   void expand();
 
   // By how much refinement changes the solution for the leading derivatives, in relation to it.
   double correction_of_solution();
 
-  // Of the last expansion. The smallest pivot in relation to what it was where the pivots were chosen: below 0 it has changed sign.
-  double health(int lane) const { return health_[static_cast<std::size_t>(lane)]; }
+  // Of the last expansion. The smallest pivot in relation to what it was where the pivots were chosen; and the sign of their product in the same
+  // relation, which is that of the determinant: where it changes, J was singular on the way. Pivots that change their signs two by two mean nothing.
+  double health(int lane) const { return judged_[static_cast<std::size_t>(lane)].health; }
+  double side(int lane) const { return judged_[static_cast<std::size_t>(lane)].side; }
   bool finite(int lane) const;
   // How far the state was from the hidden constraints, in relation to its size, and whether it was moved.
-  double drift(int lane) const { return drift_[static_cast<std::size_t>(lane)]; }
-  bool moved(int lane) const { return moved_[static_cast<std::size_t>(lane)]; }
+  double drift(int lane) const { return judged_[static_cast<std::size_t>(lane)].drift; }
+  bool moved(int lane) const { return judged_[static_cast<std::size_t>(lane)].moved; }
 
   // The series of unknown j in a lane: number k lies k * lanes() further on.
   const double* unknown(std::size_t j, int lane) const { return arena_ + plan_->plan().x[j] * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane); }
@@ -91,7 +115,8 @@ class Kernel {
   // After set_step in every lane: the changes of x_j^(k), k = 0..d_j, one after the other, over the steps.
   void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
   void advance();
-  double increment(std::size_t i, int lane = 0) const { return number(plan_->tables().increments + static_cast<std::uint32_t>(i), lane); }
+  // Number i lies i * lanes() further on.
+  const double* increments(int lane) const { return arena_ + plan_->tables().increments * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane); }
 
  private:
   double number(std::uint32_t slot, int lane) const { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
@@ -108,8 +133,12 @@ class Kernel {
   std::unique_ptr<double[], Free> memory_;
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
-  std::vector<double> health_, drift_, weight_;
-  std::vector<char> moved_;
+  struct Judgement {
+    double health = 1, drift = 0, size = 1, most = 0, invalid = 0, side = 1;
+    bool moved = false;
+  };
+  std::vector<Judgement> judged_;  // of the lanes
+  std::vector<double> weight_;
 };
 
 }  // namespace anholon
