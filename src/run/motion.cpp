@@ -87,7 +87,7 @@ static bool can_go_on(OutcomeKind kind) {
 
 template <Number N>
 Outcome Motion<N>::step(const W& end) {
-  if (stepped_ && pivot_is_small()) eliminate_again();
+  if (stepped_ && pivot_is_small(leg_->stepper.point())) eliminate_again();
   if (stepped_) write_anew();
   compile_if_long();
   const Mark before{choices_.size(), chosen_};
@@ -119,10 +119,10 @@ void Motion<N>::watch_pivots(const Elimination& e) {
 }
 
 template <Number N>
-bool Motion<N>::pivot_is_small() {
+bool Motion<N>::pivot_is_small(const Expansion<W>& at) {
   constexpr double kSmall = 0.4;
   if (!pivots_) return false;
-  pivots_->evaluate(leg_->stepper.point());
+  pivots_->evaluate(at);
   bool small = false;
   const bool first = chosen_.empty();
   for (std::size_t i = 0; i < elimination_.pivots().size(); ++i) {

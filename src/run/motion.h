@@ -60,6 +60,11 @@ class Motion {
   const Program& program() const { return leg_->program; }
   const std::vector<W>& parameters() const { return parameters_; }
   std::size_t eliminations() const { return eliminations_; }  // how often other coordinates were eliminated on the way
+  // For another method (run/course.h): the plan of the kernel, if there is one; whether other coordinates should be eliminated at a point; Taylor
+  // steps from where it has come to.
+  const std::shared_ptr<const KernelPlan>& plan() const { return leg_->plan; }
+  bool pivot_is_small(const Expansion<W>& at);
+  Outcome go_on(const StepperState<N>& from) { return leg_->stepper.resume(from); }
 
  private:
   // A stretch of the motion with one elimination: its system and what steps through it.
@@ -86,7 +91,6 @@ class Motion {
   };
 
   void watch_pivots(const Elimination& e);
-  bool pivot_is_small();
   InitialState<double> here() const;
   Writing accelerate(Leg& leg) const;
   void write_anew();

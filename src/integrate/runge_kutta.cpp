@@ -1,0 +1,255 @@
+#include "integrate/runge_kutta.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.h"
+
+namespace anholon {
+
+namespace {
+
+namespace method = dormand_prince;
+
+// Steps smaller than this many round-offs of the time are a collapse.
+constexpr int kCollapsedRoundoffs = 16;
+constexpr double kBlowUp = 1e100;
+constexpr std::size_t kStepsToJudge = 1000;
+// Each makes a step five times shorter where f has no value.
+constexpr int kMostRefusals = 40;
+// PI controller (Hairer & Wanner, IV.2): exponents for an estimate of order 8, and the bounds of one change.
+constexpr double kProportional = 0.7 / method::kOrder, kIntegral = 0.4 / method::kOrder, kSafety = 0.9, kLeast = 0.2, kMost = 5;
+
+// The coefficients in double, those that vanish left out.
+struct Term {
+  std::size_t stage;
+  double factor;
+};
+using Row = std::vector<Term>;
+
+Row row(const std::array<long double, method::kStages>& from) {
+  Row r;
+  for (std::size_t j = 0; j < from.size(); ++j)
+    if (from[j] != 0) r.push_back({j, static_cast<double>(from[j])});
+  return r;
+}
+
+struct Table {
+  std::array<Row, method::kStages> a;
+  Row b, e5, e3;
+};
+
+const Table& table() {
+  static const Table made = [] {
+    Table t;
+    for (std::size_t i = 0; i < method::kStages; ++i) t.a[i] = row(method::a[i]);
+    t.b = row(method::b);
+    t.e5 = row(method::e5);
+    std::array<long double, method::kStages> e3{};
+    for (std::size_t i = 0; i < method::kStages; ++i) e3[i] = method::b[i] - method::b3[i];
+    t.e3 = row(e3);
+    return t;
+  }();
+  return made;
+}
+
+template <class Stages>
+void weigh(const Row& row, const Stages& k, std::size_t count, std::vector<double>& out) {
+  out.assign(count, 0.0);
+  for (const Term& term : row) {
+    const std::vector<double>& from = k[term.stage];
+    for (std::size_t i = 0; i < count; ++i) out[i] += term.factor * from[i];
+  }
+}
+
+void narrow(const std::vector<long double>& from, std::vector<double>& to) {
+  to.resize(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<double>(from[i]);
+}
+
+// s + x with the round-off kept in `carry`.
+void add(long double& s, long double& carry, double x) {
+  const long double y = x + carry, sum = s + y;
+  carry = std::abs(s) >= std::abs(y) ? (s - sum) + y : (y - sum) + s;
+  s = sum;
+}
+
+}  // namespace
+
+RungeKutta::RungeKutta(StateRate rate, const StepSettings& settings)
+    : rate_(std::move(rate)), settings_(settings), tolerance_(std::exp(settings.log_tolerance)) {
+  for (std::vector<double>& k : k_) k.resize(rate_.size() + rate_.integrands().size());
+}
+
+Outcome RungeKutta::start(const MotionPoint& from, long double end) {
+  now_ = before_ = from;
+  started_ = from.t;
+  carry_.assign(from.state.size(), 0);
+  integral_carry_.assign(from.integrals.size(), 0);
+  rate_.set_leading(from.leading);
+  error_before_ = 1;
+  if (Outcome o = first_rate(); !o.ok()) return o;
+  before_ = now_;
+  k_[0] = here_;
+  h_ = first_step(end < from.t ? -1 : 1);
+  return {};
+}
+
+// At now(), which it puts on the constraints.
+Outcome RungeKutta::first_rate() {
+  narrow(now_.state, y_);
+  if (Outcome o = rate_.evaluate(static_cast<double>(now_.t), y_); !o.ok()) return o;
+  health_ = rate_.health();
+  if (rate_.moved())
+    for (std::size_t i = 0; i < y_.size(); ++i)
+      if (const double moved = rate_.state()[i] - y_[i]; moved != 0) now_.state[i] += moved, carry_[i] = 0;
+  now_.leading = rate_.leading();
+  here_ = rate_.rate();
+  here_.insert(here_.end(), rate_.integrands().begin(), rate_.integrands().end());
+  worst_constraint_ = std::max(worst_constraint_, rate_.drift());
+  return {};
+}
+
+// From the sizes of x' and x'' (Hairer, Nørsett & Wanner 1993, II.4).
+double RungeKutta::first_step(double direction) {
+  narrow(now_.state, start_);
+  level_sizes(rate_, start_, sizes_);
+  const auto weight = [&](std::size_t i) { return 1 / (tolerance_ * sizes_[static_cast<std::size_t>(rate_.level()[i])]); };
+  double d0 = 1, d1 = 0, d2 = 0;
+  for (std::size_t i = 0; i < start_.size(); ++i) d0 = std::max(d0, std::abs(start_[i]) * weight(i)), d1 = std::max(d1, std::abs(here_[i]) * weight(i));
+  const double h0 = d1 > 0 ? 0.01 * d0 / d1 : 1;
+  y_ = start_;
+  for (std::size_t i = 0; i < y_.size(); ++i) y_[i] += direction * h0 * here_[i];
+  if (!rate_.evaluate(static_cast<double>(now_.t) + direction * h0, y_).ok()) return h0 * 1e-3;
+  for (std::size_t i = 0; i < y_.size(); ++i) d2 = std::max(d2, std::abs(rate_.rate()[i] - here_[i]) * weight(i) / h0);
+  const double largest = std::max(d1, d2);
+  return std::min(100 * h0, largest > 0 ? std::pow(0.01 / largest, 1.0 / method::kOrder) : 1.0);
+}
+
+// k_[1], … for a step of h; k_[0] is there.
+Outcome RungeKutta::stages(const MotionPoint& from, double h) {
+  const std::size_t n = rate_.size();
+  narrow(from.state, start_);
+  for (std::size_t s = 1; s < method::kStages; ++s) {
+    weigh(table().a[s], k_, n, y_);
+    for (std::size_t i = 0; i < n; ++i) y_[i] = start_[i] + h * y_[i];
+    if (Outcome o = rate_.evaluate(static_cast<double>(from.t + method::c[s] * h), y_); !o.ok()) return o;
+    std::copy(rate_.rate().begin(), rate_.rate().end(), k_[s].begin());
+    std::copy(rate_.integrands().begin(), rate_.integrands().end(), k_[s].begin() + static_cast<std::ptrdiff_t>(n));
+  }
+  return {};
+}
+
+// In units of the tolerance: the largest of any level.
+double RungeKutta::error(double h) {
+  const std::size_t n = rate_.size(), levels = sizes_.size();
+  weigh(table().e5, k_, n, e5_);
+  weigh(table().e3, k_, n, e3_);
+  std::array<double, 2> most{};
+  double worst = 0;
+  for (std::size_t level = 0; level < levels; ++level) {
+    most = {};
+    for (std::size_t i = 0; i < n; ++i)
+      if (rate_.level()[i] == static_cast<int>(level)) most = {std::max(most[0], std::abs(e5_[i])), std::max(most[1], std::abs(e3_[i]))};
+    const double five = most[0] * most[0], three = most[1] * most[1];
+    if (five > 0) worst = std::max(worst, std::abs(h) * five / std::sqrt(five + 0.01 * three) / (tolerance_ * sizes_[level]));
+    if (std::isnan(most[0]) || std::isnan(most[1])) return std::numeric_limits<double>::infinity();
+  }
+  return worst;
+}
+
+void RungeKutta::advance(MotionPoint& to, std::vector<long double>& carry, double h) {
+  const std::size_t n = rate_.size();
+  weigh(table().b, k_, k_[0].size(), change_);
+  for (std::size_t i = 0; i < n; ++i) add(to.state[i], carry[i], h * change_[i]);
+}
+
+Outcome RungeKutta::step(long double end) {
+  if (settings_.cancelled && settings_.cancelled()) return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
+  if (steps_ >= settings_.most_steps) return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
+  const long double left = end - now_.t;
+  const double floor = 0x1p-53 * kCollapsedRoundoffs * static_cast<double>(std::abs(now_.t));
+  if (steps_ >= kStepsToJudge) {
+    const double mean = static_cast<double>(std::abs(now_.t - started_)) / static_cast<double>(steps_);
+    if (static_cast<double>(std::abs(left)) > std::max(mean, h_) * static_cast<double>(settings_.most_steps - steps_))
+      return {OutcomeKind::interrupted, "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(h_, 2) + " long",
+              "end the motion earlier, or take what is very fast or very stiff out of the model"};
+  }
+  k_[0] = here_;
+  narrow(now_.state, start_);
+  level_sizes(rate_, start_, sizes_);
+  Outcome trouble;
+  for (int again = 0;; ++again) {
+    if (again > 0) ++refused_;
+    const bool last = !(h_ < std::abs(left));
+    // The step that t can show exactly.
+    const long double reached = last ? end : static_cast<long double>(static_cast<double>(now_.t + (left > 0 ? h_ : -h_)));
+    const double h = static_cast<double>(reached - now_.t);
+    if ((!(std::abs(h) > floor) && !last) || again > kMostRefusals) {
+      if (!trouble.ok()) return trouble;
+      return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
+              "the motion approaches a singularity: stop before it, or look at the last good state"};
+    }
+    trouble = stages(now_, h);
+    if (!trouble.ok()) {
+      h_ = kLeast * std::abs(h);
+      continue;
+    }
+    const double e = error(h);
+    if (!(e <= 1)) {
+      h_ = std::abs(h) * std::max(kLeast, std::isfinite(e) ? kSafety * std::pow(e, -1.0 / method::kOrder) : 0.0);
+      continue;
+    }
+    MotionPoint next = now_;
+    std::vector<long double> carry = carry_, integral_carry = integral_carry_;
+    advance(next, carry, h);
+    for (long double x : next.state)
+      if (!std::isfinite(x) || std::abs(x) > kBlowUp)
+        return {OutcomeKind::blow_up, "the motion grows without bound", "look at the last good state: a velocity or position diverges"};
+    for (std::size_t i = 0; i < next.integrals.size(); ++i) add(next.integrals[i], integral_carry[i], h * change_[rate_.size() + i]);
+    next.t = reached;
+    const double health = health_;
+    std::swap(before_, now_);
+    std::swap(now_, next);
+    std::swap(carry_, carry);
+    std::swap(integral_carry_, integral_carry);
+    trouble = first_rate();
+    if (trouble.ok() && health > 0 && !(health_ > 0))
+      trouble = {OutcomeKind::singular, "the system Jacobian may have become singular", "end the motion before"};
+    if (!trouble.ok()) {  // the step was too bold
+      std::swap(now_, before_);
+      std::swap(before_, next);
+      std::swap(carry_, carry);
+      std::swap(integral_carry_, integral_carry);
+      here_ = k_[0];
+      health_ = health;
+      rate_.set_leading(now_.leading);
+      h_ = kLeast * std::abs(h);
+      continue;
+    }
+    ++steps_;
+    const double grown = e > 0 ? kSafety * std::pow(e, -kProportional) * std::pow(error_before_, kIntegral) : kMost;
+    // What the end cut short says nothing of the steps beyond; after a refusal a step does not grow.
+    const double next_h = std::abs(h) * std::clamp(grown, kLeast, again > 0 ? 1.0 : kMost);
+    h_ = last ? std::max(h_, next_h) : next_h;
+    error_before_ = std::max(e, 1e-4);
+    return {};
+  }
+}
+
+Outcome RungeKutta::at(long double t, MotionPoint& point) {
+  if (t == now_.t || t == before_.t) {
+    point = t == now_.t ? now_ : before_;
+    return {};
+  }
+  const double h = static_cast<double>(t - before_.t);
+  if (Outcome o = stages(before_, h); !o.ok()) return o;
+  std::vector<long double> carry(before_.state.size(), 0);
+  point = before_;
+  point.t = t;
+  advance(point, carry, h);
+  for (std::size_t i = 0; i < point.integrals.size(); ++i) point.integrals[i] += h * change_[rate_.size() + i];
+  return {};
+}
+
+}  // namespace anholon

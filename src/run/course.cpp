@@ -1,0 +1,404 @@
+#include "run/course.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/runge_kutta.h"
+#include "integrate/sundials.h"
+#include "kernel/kernel.h"
+
+namespace anholon {
+
+namespace {
+
+const double kLoose = std::log(1e-5), kBdf = std::log(kLeastBdfTolerance);
+// Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps.
+constexpr double kCheaper = 1.3, kMuchCheaper = 2;
+constexpr std::size_t kFewSteps = 16, kStretch = 256;
+// When it is asked: Runge-Kutta at loose tolerances, once; where there are many kinks; BDF after many steps. Later, whenever they are twice as many.
+constexpr std::size_t kManyKinks = 32, kManySteps = 2048;
+// A trial that has spent this part of what it may spend has come this far, or is given up.
+constexpr double kEarly = 0.25, kFar = 0.05;
+// Where another method cannot go, Taylor makes some steps; if that happens too often, all that follow.
+constexpr std::size_t kHelp = 8, kMostRescues = 50;
+// The smallest singular value is looked at as often as along Taylor's steps.
+constexpr std::size_t kLook = 256;
+constexpr double kNews = 0.8;
+// The reference takes so many times the operations of a kernel.
+constexpr double kReference = 6;
+
+// Operations of an expansion by a plan; each step of it costs as much as a few of them beside.
+double work(const KernelPlan& plan) {
+  constexpr double kStep = 4;
+  const double steps = static_cast<double>(plan.plan().stage.size() + plan.plan().after.size());
+  return plan.work() + kStep * steps * (plan.plan().stages + 1);
+}
+
+std::shared_ptr<const Program> program_of(const std::shared_ptr<const KernelPlan>& plan, const Program& otherwise) {
+  if (plan) return {plan, &plan->program()};
+  return std::make_shared<const Program>(otherwise);
+}
+
+template <Number W>
+std::vector<W> widened(const std::vector<double>& from) {
+  return {from.begin(), from.end()};
+}
+
+}  // namespace
+
+const std::vector<std::string>& method_names() {
+  static const std::vector<std::string> names = {"auto", "taylor", "rk", "bdf"};
+  return names;
+}
+
+const char* name(Method method) { return method_names()[static_cast<std::size_t>(method)].c_str(); }
+
+std::optional<Method> find_method(const std::string& name) {
+  const auto& names = method_names();
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) return std::nullopt;
+  return static_cast<Method>(at - names.begin());
+}
+
+std::string only_taylor(const Model& model, const Program& program) {
+  if (!model.events.empty()) return "does not look for events";
+  if (program.nonlinear) return "cannot tell solutions that meet apart: the leading derivatives enter the equations nonlinearly";
+  return {};
+}
+
+template <Number N>
+Course<N>::Course(const Scenario& s, const StepSettings& settings, Method asked, std::vector<Expr> quadratures, int stages)
+    : s_(s), settings_(settings), motion_(s, settings, quadratures, stages), stages_(stages), next_kinks_(kManyKinks), next_stiff_(kManySteps) {
+  report_.asked = asked;
+  if (!std::same_as<N, double> || asked == Method::taylor || !only_taylor(*s.model, motion_.program()).empty()) return;
+  free_ = asked == Method::automatic && settings.order == 0;
+  if (asked != Method::automatic) wanted_ = report_.last = asked;
+  const Model& model = *s.model;
+  for (std::size_t i = 0; i < model.masses.size(); ++i)
+    if (!model.masses[i].weight) guards_.push_back({1 + i, {OutcomeKind::negative_mass, "the mass of '" + model.masses[i].name + "' is negative", "end the motion before"}});
+  for (std::size_t i = 0; i < model.bounds.size(); ++i)
+    guards_.push_back({quadratures.size() + model.events.size() + i, {OutcomeKind::not_a_number, model.bounds[i].fault, "end the motion before"}});
+}
+
+template <Number N>
+MotionPoint Course<N>::here() const {
+  MotionPoint p;
+  if constexpr (std::same_as<N, double>) {
+    const Stepper<N>& taylor = motion_.stepper();
+    p.t = taylor.time();
+    p.state = taylor.state();
+    p.integrals = taylor.integrals();
+    for (std::size_t j = 0; j < taylor.unknowns(); ++j) p.leading.push_back(to_double(taylor.point().derivative(j, motion_.program().d[j])));
+  }
+  return p;
+}
+
+template <Number N>
+std::unique_ptr<StateStepper> Course<N>::make(Method method) const {
+  if constexpr (std::same_as<N, double>) {
+    const MotionPoint from = here();
+    const Program& program = motion_.program();
+    const std::vector<double> state(from.state.begin(), from.state.end());
+    auto plan = settings_.kernel ? KernelPlan::make(program_of(motion_.plan(), program), 0, motion_.parameters(), static_cast<double>(from.t), state) : nullptr;
+    StateRate rate(program, parameter_values<double>(*s_.model), motion_.parameters(), std::move(plan), guards_);
+    StepSettings settings = settings_;
+    settings.log_tolerance = std::max(settings.log_tolerance, std::log(kLeastRungeKuttaTolerance));
+    if (method == Method::bdf) return std::make_unique<Bdf>(std::move(rate), settings);
+    return std::make_unique<RungeKutta>(std::move(rate), settings);
+  } else {
+    (void)method;
+    return nullptr;
+  }
+}
+
+template <Number N>
+double Course<N>::spent(StateStepper& stepper) const {
+  const KernelPlan* plan = stepper.rate().plan();
+  return plan ? static_cast<double>(stepper.rate().evaluations()) * work(*plan) + stepper.more_work() : std::numeric_limits<double>::infinity();
+}
+
+// Whether another method would come as far as Taylor's last steps did, from here on, with `factor` times fewer operations.
+template <Number N>
+bool Course<N>::pays(Method method, std::size_t steps, double factor, const W& end) {
+  if constexpr (std::same_as<N, double>) {
+    if (times_.size() <= steps) return false;
+    const MotionPoint from = here();
+    const W span = from.t - times_[times_.size() - 1 - steps], left = end - from.t;
+    const bool whole = abs(span) < abs(left);
+    const W to = whole ? W(from.t + span) : end;
+    auto trial = make(method);
+    std::shared_ptr<const KernelPlan> plan = motion_.plan();
+    double each = plan ? work(*plan) : 0;
+    if (!plan) {
+      const std::vector<double> state(from.state.begin(), from.state.end());
+      plan = KernelPlan::make(program_of(nullptr, motion_.program()), motion_.stepper().order() - 1, motion_.parameters(), static_cast<double>(from.t), state);
+      if (!plan) return false;
+      each = kReference * work(*plan);
+    }
+    pace_ = each * static_cast<double>(steps) / std::abs(static_cast<double>(span));
+    const double part = whole ? 1.0 : std::abs(static_cast<double>(left / span)), costs = each * static_cast<double>(steps) * part, most = costs / factor;
+    ++report_.trials;
+    bool good = trial->start(from, to).ok();
+    while (good && !(trial->now().t == to)) {
+      good = trial->step(to).ok() && !(spent(*trial) > most);
+      const double progress = std::abs(static_cast<double>((trial->now().t - from.t) / (to - from.t)));
+      if (spent(*trial) > kEarly * most && progress < kFar) good = false;
+    }
+    report_.trial_evaluations += trial->rate().evaluations();
+    ratio_ = spent(*trial) / costs;
+    return good;
+  } else {
+    (void)method, (void)steps, (void)factor, (void)end;
+    return false;
+  }
+}
+
+template <Number N>
+void Course<N>::turn(Method to, std::string why) {
+  wanted_ = report_.last = to;
+  report_.turns.push_back({to_double(time()), to, std::move(why)});
+}
+
+// Whether Taylor's steps, the last of which is made, are to go on.
+template <Number N>
+void Course<N>::choose(const W& end) {
+  const Stepper<N>& taylor = motion_.stepper();
+  const std::size_t steps = taylor.steps();
+  const auto percent = [&] { return number_text(100 * ratio_, 2) + " % of Taylor's operations on the same stretch"; };
+  if (settings_.log_tolerance >= kLoose && steps == kFewSteps && pays(Method::runge_kutta, kFewSteps, kCheaper, end))
+    return turn(Method::runge_kutta, "the tolerance is loose: " + percent());
+  if (taylor.kinks() >= next_kinks_ && times_.size() > kManyKinks) {
+    next_kinks_ = 2 * taylor.kinks();
+    if (pays(Method::runge_kutta, std::min(times_.size() - 1, kStretch), kCheaper, end)) return turn(Method::runge_kutta, "the motion has met many kinks: " + percent());
+  }
+  if (settings_.log_tolerance < kBdf || steps < next_stiff_ || times_.size() <= kStretch) return;
+  const W pace = (taylor.time() - times_[times_.size() - 1 - kStretch]) / W(static_cast<double>(kStretch));
+  // Where the end is near, nothing is won.
+  if (abs(W(end - taylor.time())) < abs(pace) * W(static_cast<double>(steps))) return;
+  next_stiff_ = 2 * steps;
+  if (pays(Method::bdf, kStretch, kMuchCheaper, end)) turn(Method::bdf, "the motion is stiff: " + percent());
+}
+
+template <Number N>
+Outcome Course<N>::step(const W& end) {
+  if (free_ && wanted_ == Method::taylor) choose(end);
+  if (wanted_ != Method::taylor && taylor_for_ == 0)
+    if (const std::optional<Outcome> o = step_by_other(end)) return *o;
+  by_other_ = false;
+  const Outcome o = motion_.step(end);
+  if (!o.ok()) return o;
+  if (taylor_for_ > 0) --taylor_for_;
+  if (free_) {
+    if (times_.size() > 2 * kStretch) times_.erase(times_.begin(), times_.end() - static_cast<std::ptrdiff_t>(kStretch + 1));
+    times_.push_back(motion_.stepper().time());
+  }
+  return o;
+}
+
+// Nothing where Taylor has to step.
+template <Number N>
+std::optional<Outcome> Course<N>::step_by_other(const W& end) {
+  if constexpr (std::same_as<N, double>) {
+    const auto by_taylor = [&](std::size_t steps) -> std::optional<Outcome> {
+      if (Outcome o = hand_over(); !o.ok()) return o;
+      taylor_for_ = steps;
+      return std::nullopt;
+    };
+    if (!other_) {
+      other_ = make(wanted_);
+      point_ = motion_.point();
+      begun_ = motion_.stepper().point();
+      look_.emplace(motion_.program(), parameter_values<N>(*s_.model), 1);
+      least_health_ = 1;
+      times_.clear();
+      window_steps_ = 0;
+      window_t_ = static_cast<double>(motion_.stepper().time());
+      window_spent_ = 0;
+      if (!other_->start(here(), end).ok()) return by_taylor(kHelp);
+    }
+    if (slower_than_taylor()) {
+      if (Outcome o = hand_over(); !o.ok()) return o;
+      turn(Method::taylor, "it had come to cost more than Taylor's steps before");
+      return std::nullopt;
+    }
+    begun_->load(other_->now().t, other_->now().state, widened<W>(other_->now().leading));
+    if (motion_.pivot_is_small(*begun_)) return by_taylor(1);
+    const std::size_t steps = other_->steps();
+    Outcome o = other_->step(end);
+    if (o.ok()) {
+      by_other_ = true;
+      report_.steps += other_->steps() - steps;
+      worst_constraint_ = std::max(worst_constraint_, W(other_->worst_constraint()));
+      look();
+      return o;
+    }
+    if (o.kind == OutcomeKind::interrupted) {
+      hand_over();
+      return o;
+    }
+    if (++rescues_ > kMostRescues) {
+      if (Outcome handed = hand_over(); !handed.ok()) return handed;
+      turn(Method::taylor, "Taylor's steps had to help " + std::to_string(kMostRescues) + " times");
+      return std::nullopt;
+    }
+    return by_taylor(kHelp);
+  } else {
+    (void)end;
+    return std::nullopt;
+  }
+}
+
+// Under auto alone: over a stretch of so many steps it has cost more than Taylor would.
+template <Number N>
+bool Course<N>::slower_than_taylor() {
+  if (!free_ || other_->steps() < window_steps_ + kStretch) return false;
+  const double now = static_cast<double>(other_->now().t), work = spent(*other_), pace = (work - window_spent_) / std::abs(now - window_t_);
+  window_steps_ = other_->steps();
+  window_t_ = now;
+  window_spent_ = work;
+  return pace > pace_;
+}
+
+// Taylor goes on from where the other method is.
+template <Number N>
+Outcome Course<N>::hand_over() {
+  if constexpr (std::same_as<N, double>) {
+    if (!other_) return {};
+    if (other_->steps() > 0) {
+      const MotionPoint& p = other_->now();
+      StepperState<N> b = motion_.stepper().begun();
+      b.t = p.t;
+      b.state = p.state;
+      b.carry.assign(p.state.size(), 0);
+      b.leading = widened<W>(p.leading);
+      b.integrals = p.integrals;
+      b.integral_carry.assign(p.integrals.size(), 0);
+      b.branch_step = b.last_step = 0;
+      b.steps = motion_.stepper().steps();
+      b.careful = true;
+      if (Outcome o = motion_.go_on(b); !o.ok()) return o;
+    }
+    report_.refused += other_->refused();
+    report_.evaluations += other_->rate().evaluations();
+    other_.reset();
+    by_other_ = false;
+  }
+  return {};
+}
+
+template <Number N>
+Outcome Course<N>::at(const W& t) {
+  if constexpr (std::same_as<N, double>) {
+    if (by_other_) {
+      MotionPoint p;
+      Outcome o = other_->at(t, p);
+      if (o.ok()) {
+        point_->load(t, p.state, widened<W>(p.leading));
+        o = point_->prepare();
+        if (o.ok()) o = point_->project();
+        if (o.ok()) o = point_->solve();
+      }
+      if (!o.ok()) o.message += " at t = " + number_text(to_double(t), 12);
+      else if (stages_ > 0) o = point_->extend();
+      return o;
+    }
+  }
+  return motion_.at(t);
+}
+
+// At the start of the last step, as Taylor's stepper does.
+template <Number N>
+void Course<N>::look() {
+  if constexpr (std::same_as<N, double>) {
+    const double health = other_->rate().health();
+    const std::size_t steps = other_->steps();
+    if (steps % kLook != 0 && (steps & (steps - 1)) != 0 && !(health < least_health_ * kNews)) return;
+    least_health_ = std::min(least_health_, health);
+    const MotionPoint& p = other_->before();
+    look_->load(static_cast<double>(p.t), std::vector<double>(p.state.begin(), p.state.end()), p.leading);
+    if (!look_->prepare().ok()) return;
+    const double sigma = look_->smallest_singular_value();
+    if (!(sigma < smallest_sigma_)) return;
+    smallest_sigma_ = sigma;
+    smallest_sigma_t_ = p.t;
+    const std::vector<double>& v = look_->weakest_direction();
+    for (std::size_t j = weakest_ = 0; j < v.size(); ++j)
+      if (std::abs(v[j]) > std::abs(v[weakest_])) weakest_ = j;
+  }
+}
+
+template <Number N>
+typename Course<N>::W Course<N>::time() const {
+  if constexpr (std::same_as<N, double>)
+    if (by_other_) return other_->now().t;
+  return motion_.stepper().time();
+}
+
+template <Number N>
+typename Course<N>::W Course<N>::before() const {
+  if constexpr (std::same_as<N, double>)
+    if (by_other_) return other_->before().t;
+  return motion_.stepper().before();
+}
+
+template <Number N>
+const std::vector<typename Course<N>::W>& Course<N>::integrals() const {
+  if constexpr (std::same_as<N, double>)
+    if (by_other_) return other_->now().integrals;
+  return motion_.stepper().integrals();
+}
+
+template <Number N>
+std::size_t Course<N>::steps() const {
+  return motion_.stepper().steps() + report_.steps;
+}
+
+template <Number N>
+int Course<N>::order() const {
+  switch (report_.last) {
+    case Method::runge_kutta: return dormand_prince::kOrder;
+    case Method::bdf: return 5;
+    case Method::automatic:
+    case Method::taylor: break;
+  }
+  return motion_.stepper().order();
+}
+
+template <Number N>
+typename Course<N>::W Course<N>::worst_constraint() const {
+  return std::max(worst_constraint_, motion_.stepper().worst_constraint());
+}
+
+template <Number N>
+const N& Course<N>::smallest_sigma() const {
+  return smallest_sigma_ < motion_.stepper().smallest_sigma() ? smallest_sigma_ : motion_.stepper().smallest_sigma();
+}
+
+template <Number N>
+const typename Course<N>::W& Course<N>::smallest_sigma_time() const {
+  return smallest_sigma_ < motion_.stepper().smallest_sigma() ? smallest_sigma_t_ : motion_.stepper().smallest_sigma_time();
+}
+
+template <Number N>
+std::size_t Course<N>::weakest_unknown() const {
+  return smallest_sigma_ < motion_.stepper().smallest_sigma() ? weakest_ : motion_.stepper().weakest_unknown();
+}
+
+template <Number N>
+MethodReport Course<N>::report() const {
+  MethodReport r = report_;
+  r.taylor_steps = motion_.stepper().steps();
+  r.expansions = motion_.stepper().expansions();
+  if (other_) {
+    r.refused += other_->refused();
+    r.evaluations += other_->rate().evaluations();
+  }
+  return r;
+}
+
+template class Course<double>;
+template class Course<long double>;
+template class Course<Quad>;
+template class Course<Multi>;
+
+}  // namespace anholon
