@@ -23,7 +23,8 @@ StateRate::StateRate(const Program& program, const std::vector<double>& paramete
   rate_.resize(level_.size());
 }
 
-Outcome StateRate::evaluate(double t, const std::vector<double>& state) {
+Outcome StateRate::evaluate(double t, const std::vector<double>& state, bool projected) {
+  projected = projected && constrained_;
   ++evaluations_;
   const auto finite = [](const std::vector<double>& list) { return std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); }); };
   const auto no_value = [&] {
@@ -31,9 +32,9 @@ Outcome StateRate::evaluate(double t, const std::vector<double>& state) {
                    "the motion leaves the region where the model is defined: stop it before, or change the formula"};
   };
   if (!finite(state)) return no_value();
-  if (!by_kernel(t, state)) {
+  if (!by_kernel(t, state, projected)) {
     ++by_reference_;
-    if (Outcome o = by_reference(t, state); !o.ok()) return o;
+    if (Outcome o = by_reference(t, state, projected); !o.ok()) return o;
   }
   std::size_t i = 0;
   for (std::size_t j = 0; j < program_->unknowns(); ++j)
@@ -44,15 +45,15 @@ Outcome StateRate::evaluate(double t, const std::vector<double>& state) {
   return {};
 }
 
-bool StateRate::by_kernel(double t, const std::vector<double>& state) {
+bool StateRate::by_kernel(double t, const std::vector<double>& state, bool projected) {
   if (!kernel_) return false;
   if (std::any_of(leading_.begin(), leading_.end(), [](double x) { return !std::isfinite(x); })) leading_.assign(leading_.size(), 0.0);
   kernel_->load(0, t, state, leading_);
-  kernel_->expand();
+  kernel_->expand(projected);
   health_ = kernel_->health(0);
   if (!(health_ > kHealthy)) return false;
-  moved_ = kernel_->moved(0);
-  drift_ = kernel_->drift(0);
+  moved_ = projected && kernel_->moved(0);
+  drift_ = projected ? kernel_->drift(0) : 0;
   state_.resize(state.size());
   std::size_t i = 0;
   for (std::size_t j = 0; j < program_->unknowns(); ++j) {
@@ -63,15 +64,16 @@ bool StateRate::by_kernel(double t, const std::vector<double>& state) {
   return true;
 }
 
-Outcome StateRate::by_reference(double t, const std::vector<double>& state) {
+Outcome StateRate::by_reference(double t, const std::vector<double>& state, bool projected) {
   point_.load(t, state, leading_);
   if (Outcome o = point_.prepare(); !o.ok()) return o;
-  if (Outcome o = point_.project(); !o.ok()) return o;
+  if (projected)
+    if (Outcome o = point_.project(); !o.ok()) return o;
   if (Outcome o = point_.solve(); !o.ok()) return o;
   point_.evaluate_quadratures();
   point_.state(state_);
-  moved_ = state_ != state;
-  drift_ = point_.drift();
+  moved_ = projected && state_ != state;
+  drift_ = projected ? point_.drift() : 0;
   point_.leading(leading_);
   for (std::size_t q = 0; q < integrands_.size(); ++q) integrands_[q] = point_.quadrature(q)[0];
   return {};

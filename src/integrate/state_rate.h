@@ -1,10 +1,10 @@
 // The motion as an ordinary differential equation x' = f(t, x) of its state, for methods that ask for no more than f.
 //
-//   x = (x_j^(k), k < d_j);  f takes the state to the nearest one on all hidden constraints, solves the equations for the leading
-//   derivatives there, and shifts: x_j^(k)' = x_j^(k+1).  (theory: methods)
+//   x = (x_j^(k), k < d_j);  f solves the equations for the leading derivatives and shifts: x_j^(k)' = x_j^(k+1)  (theory: methods)
 //
-// On the constraints f is the motion's own field; around them it is smooth, and does not see what leads off them. Evaluated by a kernel
-// without stages beyond the leading derivatives; by the reference where there is none or its pivots have become small.
+// On the hidden constraints f is the motion's own field, around them a smooth one; a state is taken back to them where that is asked
+// for. Evaluated by a kernel without stages beyond the leading derivatives; by the reference where there is none or its pivots have become
+// small.
 #pragma once
 #include <memory>
 
@@ -25,13 +25,14 @@ class StateRate {
   StateRate(const Program& program, const std::vector<double>& parameters, const std::vector<long double>& wide_parameters,
             std::shared_ptr<const KernelPlan> plan, std::vector<Guard> guards = {});
 
-  Outcome evaluate(double t, const std::vector<double>& state);
-  // At that point: the state on the constraints, f, the leading derivatives, the quadratures.
+  // At the state, or at the nearest one on the hidden constraints.
+  Outcome evaluate(double t, const std::vector<double>& state, bool projected = false);
+  // At that point: the state, f, the leading derivatives, the quadratures.
   const std::vector<double>& state() const { return state_; }
   const std::vector<double>& rate() const { return rate_; }
   const std::vector<double>& leading() const { return leading_; }
   const std::vector<double>& integrands() const { return integrands_; }
-  // How far the state was from the constraints, in relation to its size; whether it was moved.
+  // Where it was projected: how far it was from the constraints, in relation to its size; whether it was moved.
   double drift() const { return drift_; }
   bool moved() const { return moved_; }
   // Of the kernel's pivots; 1 where the reference was asked.
@@ -51,8 +52,8 @@ class StateRate {
   std::size_t by_reference() const { return by_reference_; }
 
  private:
-  bool by_kernel(double t, const std::vector<double>& state);
-  Outcome by_reference(double t, const std::vector<double>& state);
+  bool by_kernel(double t, const std::vector<double>& state, bool projected);
+  Outcome by_reference(double t, const std::vector<double>& state, bool projected);
 
   const Program* program_;
   std::unique_ptr<Kernel> kernel_;

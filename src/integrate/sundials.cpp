@@ -109,7 +109,7 @@ struct Sundials::Work {
   // To the nearest state on the hidden constraints.
   int project(double t, const double* from, double* correction) {
     now.assign(from, from + states());
-    if (Outcome o = field->evaluate(t, now); !o.ok()) return refuse(std::move(o));
+    if (Outcome o = field->evaluate(t, now, true); !o.ok()) return refuse(std::move(o));
     std::fill(correction, correction + size(), 0.0);
     for (std::size_t i = 0; i < states(); ++i) correction[i] = field->state()[i] - from[i];
     drift = std::max(drift, field->drift());
@@ -370,13 +370,17 @@ std::size_t Sundials::setups() const {
   return static_cast<std::size_t>(count);
 }
 
+// Errors of steps of low order add up over the many steps that they take: each may make but this part of the tolerance, for a motion that is as close
+// as by the other methods.
+constexpr double kOfTolerance = 0.01;
+
 Bdf::Bdf(StateRate rate, const StepSettings& settings) : rate_(std::move(rate)), settings_(settings) {}
 
 Outcome Bdf::start(const MotionPoint& from, long double end) {
   ANHOLON_ASSERT(rate_);
   const auto narrow = [](const std::vector<long double>& list) { return std::vector<double>(list.begin(), list.end()); };
   SundialsSettings settings;
-  settings.tolerance = std::exp(settings_.log_tolerance);
+  settings.tolerance = kOfTolerance * std::exp(settings_.log_tolerance);
   settings.most_steps = settings_.most_steps;
   settings.cancelled = settings_.cancelled;
   now_ = before_ = from;

@@ -212,12 +212,12 @@ void Kernel::load(int lane, double t, std::span<const double> state, std::span<c
   number(p.time + 1, lane) = 1;
 }
 
-void Kernel::expand() {
+void Kernel::expand(bool projected) {
   const Code* code = this->code();
   if (code) code->values(arena_), code->factor(arena_);
   else arithmetic_->values(-plan_->plan().largest_lead), arithmetic_->factor();
   judge_pivots();
-  project(code);
+  if (projected) project(code);
   if (code) {
     code->lead(arena_);
     code->extend(arena_);

@@ -57,8 +57,9 @@ class Kernel {
   void set_parameters(int lane, const std::vector<long double>& parameters);
   // State: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
   void load(int lane, double t, std::span<const double> state, std::span<const double> leading);
-  // Projects the state on the hidden constraints where it has left them, solves for the leading derivatives, and computes all coefficients.
-  void expand();
+  // Projects the state on the hidden constraints where it has left them (or leaves it as it is), solves for the leading derivatives, and computes
+  // all coefficients.
+  void expand(bool projected = true);
 
   // By how much refinement changes the solution for the leading derivatives, in relation to it.
   double correction_of_solution();

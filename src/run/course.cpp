@@ -27,11 +27,11 @@ constexpr double kNews = 0.8;
 // The reference takes so many times the operations of a kernel.
 constexpr double kReference = 6;
 
-// Operations of an expansion by a plan; each step of it costs as much as a few of them beside.
+// Operations of an expansion by a plan. What it takes to come to a step, and to an expansion, weighs as much as so many of them.
 double work(const KernelPlan& plan) {
-  constexpr double kStep = 4;
+  constexpr double kStep = 16, kExpansion = 300;
   const double steps = static_cast<double>(plan.plan().stage.size() + plan.plan().after.size());
-  return plan.work() + kStep * steps * (plan.plan().stages + 1);
+  return plan.work() + kStep * steps * (plan.plan().stages + 1) + kExpansion;
 }
 
 std::shared_ptr<const Program> program_of(const std::shared_ptr<const KernelPlan>& plan, const Program& otherwise) {
