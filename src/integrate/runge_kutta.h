@@ -37,9 +37,10 @@ class RungeKutta final : public StateStepper {
   Stages k_;                        // rates of the state, then the quadratures
   std::vector<double> here_;        // the first of them at now()
   std::vector<double> start_, y_, change_, sizes_, e5_, e3_;
+  std::vector<std::pair<double, double>> most_;
   std::vector<long double> carry_, integral_carry_;
   long double started_ = 0;
-  double h_ = 0, error_before_ = 1, health_ = 1;
+  double h_ = 0, error_before_ = 1;
   std::size_t refused_ = 0;
 };
 

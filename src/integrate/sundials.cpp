@@ -18,6 +18,10 @@ namespace anholon {
 
 namespace {
 
+// Errors of steps of low order add up over the many steps that BDF takes: each may make but this part of the tolerance, for a motion that is
+// as close as by the other methods.
+constexpr double kOfTolerance = 0.01;
+
 // What SUNDIALS makes and frees by functions of its own.
 struct Free {
   void operator()(N_Vector v) const { N_VDestroy(v); }
@@ -116,13 +120,12 @@ struct Sundials::Work {
     return 0;
   }
 
-  // Reciprocal sizes of errors. The integrals carry no error on.
+  // Reciprocals of the errors allowed. Integrals carry no error on: the whole tolerance is enough for them.
   int weights(const double* from, double* out) {
-    constexpr double kNoError = 1e-12;
     now.assign(from, from + states());
     level_sizes(*field, now, sizes);
     for (std::size_t i = 0; i < states(); ++i) out[i] = 1 / (settings.tolerance * sizes[static_cast<std::size_t>(field->level()[i])]);
-    for (std::size_t i = first_integral(); i < size(); ++i) out[i] = kNoError / (1 + std::abs(from[i]));
+    for (std::size_t i = first_integral(); i < size(); ++i) out[i] = kOfTolerance / (settings.tolerance * std::max(1.0, std::abs(from[i])));
     return 0;
   }
 
@@ -369,10 +372,6 @@ std::size_t Sundials::setups() const {
   if (work_->memory && work_->field) CVodeGetNumLinSolvSetups(work_->memory, &count);
   return static_cast<std::size_t>(count);
 }
-
-// Errors of steps of low order add up over the many steps that they take: each may make but this part of the tolerance, for a motion that is as close
-// as by the other methods.
-constexpr double kOfTolerance = 0.01;
 
 Bdf::Bdf(StateRate rate, const StepSettings& settings) : rate_(std::move(rate)), settings_(settings) {}
 

@@ -114,7 +114,9 @@ std::unique_ptr<StateStepper> Course<N>::make(Method method) const {
 template <Number N>
 double Course<N>::spent(StateStepper& stepper) const {
   const KernelPlan* plan = stepper.rate().plan();
-  return plan ? static_cast<double>(stepper.rate().evaluations()) * work(*plan) + stepper.more_work() : std::numeric_limits<double>::infinity();
+  const StateRate& f = stepper.rate();
+  const double evaluations = static_cast<double>(f.evaluations()) + (kReference - 1) * static_cast<double>(f.by_reference());
+  return plan ? evaluations * work(*plan) + stepper.more_work() : std::numeric_limits<double>::infinity();
 }
 
 // Whether another method would come as far as Taylor's last steps did, from here on, with `factor` times fewer operations.
@@ -200,7 +202,7 @@ template <Number N>
 std::optional<Outcome> Course<N>::step_by_other(const W& end) {
   if constexpr (std::same_as<N, double>) {
     const auto by_taylor = [&](std::size_t steps) -> std::optional<Outcome> {
-      if (Outcome o = hand_over(); !o.ok()) return o;
+      if (Outcome o = hand_over(other_->now()); !o.ok()) return o;
       taylor_for_ = steps;
       return std::nullopt;
     };
@@ -217,14 +219,21 @@ std::optional<Outcome> Course<N>::step_by_other(const W& end) {
       if (!other_->start(here(), end).ok()) return by_taylor(kHelp);
     }
     if (slower_than_taylor()) {
-      if (Outcome o = hand_over(); !o.ok()) return o;
+      if (Outcome o = hand_over(other_->now()); !o.ok()) return o;
       turn(Method::taylor, "it had come to cost more than Taylor's steps before");
       return std::nullopt;
     }
     begun_->load(other_->now().t, other_->now().state, widened<W>(other_->now().leading));
     if (motion_.pivot_is_small(*begun_)) return by_taylor(1);
     const std::size_t steps = other_->steps();
+    const double health = other_->rate().health();
     Outcome o = other_->step(end);
+    if (o.ok() && health > 0 && !(other_->rate().health() > 0) && passed_singular_point()) {
+      // Taylor stops there, or knows better.
+      if (o = hand_over(MotionPoint(other_->before())); !o.ok()) return o;
+      taylor_for_ = kHelp;
+      return std::nullopt;
+    }
     if (o.ok()) {
       by_other_ = true;
       report_.steps += other_->steps() - steps;
@@ -233,11 +242,11 @@ std::optional<Outcome> Course<N>::step_by_other(const W& end) {
       return o;
     }
     if (o.kind == OutcomeKind::interrupted) {
-      hand_over();
+      hand_over(other_->now());
       return o;
     }
     if (++rescues_ > kMostRescues) {
-      if (Outcome handed = hand_over(); !handed.ok()) return handed;
+      if (Outcome handed = hand_over(other_->now()); !handed.ok()) return handed;
       turn(Method::taylor, "Taylor's steps had to help " + std::to_string(kMostRescues) + " times");
       return std::nullopt;
     }
@@ -259,13 +268,28 @@ bool Course<N>::slower_than_taylor() {
   return pace > pace_;
 }
 
-// Taylor goes on from where the other method is.
+// A pivot of the kernel has changed its sign in the last step: whether J was singular on the way is asked of the reference.
 template <Number N>
-Outcome Course<N>::hand_over() {
+bool Course<N>::passed_singular_point() {
   if constexpr (std::same_as<N, double>) {
-    if (!other_) return {};
+    std::optional<Mode<N>> modes[2];
+    for (const bool after : {false, true}) {
+      const MotionPoint& p = after ? other_->now() : other_->before();
+      look_->load(static_cast<double>(p.t), std::vector<double>(p.state.begin(), p.state.end()), p.leading);
+      if (!look_->prepare().ok()) return true;
+      const double sigma = look_->smallest_singular_value();
+      modes[after] = weakest_mode(*look_, sigma);
+    }
+    return crossed(*modes[0], *modes[1], s_.system.coordinates);
+  }
+  return false;
+}
+
+// Taylor goes on from where the other method has come to.
+template <Number N>
+Outcome Course<N>::hand_over(const MotionPoint& p) {
+  if constexpr (std::same_as<N, double>) {
     if (other_->steps() > 0) {
-      const MotionPoint& p = other_->now();
       StepperState<N> b = motion_.stepper().begun();
       b.t = p.t;
       b.state = p.state;

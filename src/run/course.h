@@ -71,7 +71,8 @@ class Course {
   std::unique_ptr<StateStepper> make(Method method) const;
   MotionPoint here() const;
   std::optional<Outcome> step_by_other(const W& end);
-  Outcome hand_over();
+  bool passed_singular_point();
+  Outcome hand_over(const MotionPoint& p);
   bool slower_than_taylor();
   void look();
   double spent(StateStepper& stepper) const;
