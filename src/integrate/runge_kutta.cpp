@@ -201,6 +201,7 @@ Outcome RungeKutta::step(long double end) {
     }
     trouble = stages(now_, h);
     if (!trouble.ok()) {
+      if (rate_.guarded()) return trouble;  // shorter steps would come so close that nobody could tell the sides apart
       h_ = kLeast * std::abs(h);
       continue;
     }
@@ -229,6 +230,7 @@ Outcome RungeKutta::step(long double end) {
       std::swap(integral_carry_, integral_carry);
       here_ = k_[0];
       rate_.set_leading(now_.leading);
+      if (rate_.guarded()) return trouble;
       h_ = kLeast * std::abs(h);
       continue;
     }

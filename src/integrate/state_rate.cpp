@@ -26,6 +26,7 @@ StateRate::StateRate(const Program& program, const std::vector<double>& paramete
 Outcome StateRate::evaluate(double t, const std::vector<double>& state, bool projected) {
   projected = projected && constrained_;
   ++evaluations_;
+  guarded_ = false;
   const auto finite = [](const std::vector<double>& list) { return std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); }); };
   const auto no_value = [&] {
     return Outcome{OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero) at t = " + number_text(t, 12),
@@ -41,7 +42,10 @@ Outcome StateRate::evaluate(double t, const std::vector<double>& state, bool pro
     for (int k = 0; k < program_->d[j]; ++k, ++i) rate_[i] = k + 1 < program_->d[j] ? state_[i + 1] : leading_[j];
   if (!finite(rate_) || !finite(integrands_)) return no_value();
   for (const Guard& g : guards_)
-    if (integrands_[g.quadrature] < 0) return g.fault;
+    if (integrands_[g.quadrature] < 0) {
+      guarded_ = true;
+      return g.fault;
+    }
   return {};
 }
 

@@ -37,6 +37,8 @@ class StateRate {
   bool moved() const { return moved_; }
   // Of the kernel's pivots; 1 where the reference was asked.
   double health() const { return health_; }
+  // Whether the last evaluation failed at a guard.
+  bool guarded() const { return guarded_; }
   // The first guess of the leading derivatives of the next evaluation.
   void set_leading(const std::vector<double>& leading) { leading_ = leading; }
 
@@ -61,7 +63,7 @@ class StateRate {
   std::vector<Guard> guards_;
   std::vector<int> level_;
   int levels_ = 1;
-  bool constrained_ = false, moved_ = false;
+  bool constrained_ = false, moved_ = false, guarded_ = false;
   std::vector<double> state_, rate_, leading_, integrands_;
   double drift_ = 0, health_ = 1;
   std::size_t evaluations_ = 0, by_reference_ = 0;

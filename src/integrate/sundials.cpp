@@ -79,9 +79,9 @@ struct Sundials::Work {
     point.evaluate_quadratures();
     for (std::size_t i = 0; i < program.quadratures; ++i) out[i] = point.quadrature(i)[0];
   }
-  int refuse(Outcome why) {
+  int refuse(Outcome why, bool for_good = false) {
     trouble = std::move(why);
-    return 1;  // SUNDIALS then tries a smaller step
+    return for_good ? -1 : 1;  // otherwise SUNDIALS tries a smaller step
   }
   Outcome no_value() const {
     return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
@@ -95,7 +95,7 @@ struct Sundials::Work {
     now.assign(from, from + states());
     if (!all_finite(from, states())) return refuse(no_value());
     if (field) {
-      if (Outcome o = field->evaluate(t, now); !o.ok()) return refuse(std::move(o));
+      if (Outcome o = field->evaluate(t, now); !o.ok()) return refuse(std::move(o), field->guarded());
       found = field->leading();
       std::copy(field->rate().begin(), field->rate().end(), out);
       std::copy(field->integrands().begin(), field->integrands().end(), out + first_integral());
@@ -113,7 +113,7 @@ struct Sundials::Work {
   // To the nearest state on the hidden constraints.
   int project(double t, const double* from, double* correction) {
     now.assign(from, from + states());
-    if (Outcome o = field->evaluate(t, now, true); !o.ok()) return refuse(std::move(o));
+    if (Outcome o = field->evaluate(t, now, true); !o.ok()) return refuse(std::move(o), field->guarded());
     std::fill(correction, correction + size(), 0.0);
     for (std::size_t i = 0; i < states(); ++i) correction[i] = field->state()[i] - from[i];
     drift = std::max(drift, field->drift());

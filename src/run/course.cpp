@@ -166,19 +166,30 @@ template <Number N>
 void Course<N>::choose(const W& end) {
   const Stepper<N>& taylor = motion_.stepper();
   const std::size_t steps = taylor.steps();
-  const auto percent = [&] { return number_text(100 * ratio_, 2) + " % of Taylor's operations on the same stretch"; };
   if (settings_.log_tolerance >= kLoose && steps == kFewSteps && pays(Method::runge_kutta, kFewSteps, kCheaper, end))
     return turn(Method::runge_kutta, "the tolerance is loose: " + percent());
   if (taylor.kinks() >= next_kinks_ && times_.size() > kManyKinks) {
     next_kinks_ = 2 * taylor.kinks();
     if (pays(Method::runge_kutta, std::min(times_.size() - 1, kStretch), kCheaper, end)) return turn(Method::runge_kutta, "the motion has met many kinks: " + percent());
   }
-  if (settings_.log_tolerance < kBdf || steps < next_stiff_ || times_.size() <= kStretch) return;
+  if (steps < next_stiff_ || times_.size() <= kStretch) return;
   const W pace = (taylor.time() - times_[times_.size() - 1 - kStretch]) / W(static_cast<double>(kStretch));
   // Where the end is near, nothing is won.
   if (abs(W(end - taylor.time())) < abs(pace) * W(static_cast<double>(steps))) return;
-  next_stiff_ = 2 * steps;
-  if (pays(Method::bdf, kStretch, kMuchCheaper, end)) turn(Method::bdf, "the motion is stiff: " + percent());
+  try_bdf(end);
+}
+
+template <Number N>
+bool Course<N>::try_bdf(const W& end) {
+  next_stiff_ = 2 * motion_.stepper().steps();
+  if (settings_.log_tolerance < kBdf || !pays(Method::bdf, kStretch, kMuchCheaper, end)) return false;
+  turn(Method::bdf, "the motion is stiff: " + percent());
+  return true;
+}
+
+template <Number N>
+std::string Course<N>::percent() const {
+  return number_text(100 * ratio_, 2) + " % of Taylor's operations on the same stretch";
 }
 
 template <Number N>
@@ -188,6 +199,8 @@ Outcome Course<N>::step(const W& end) {
     if (const std::optional<Outcome> o = step_by_other(end)) return *o;
   by_other_ = false;
   const Outcome o = motion_.step(end);
+  // Steps so short that the end is out of reach may be those of a stiff motion.
+  if (o.kind == OutcomeKind::interrupted && free_ && wanted_ == Method::taylor && !(settings_.cancelled && settings_.cancelled()) && try_bdf(end)) return step(end);
   if (!o.ok()) return o;
   if (taylor_for_ > 0) --taylor_for_;
   if (free_) {

@@ -67,6 +67,8 @@ class Course {
 
  private:
   void choose(const W& end);
+  bool try_bdf(const W& end);
+  std::string percent() const;
   bool pays(Method method, std::size_t steps, double factor, const W& end);
   std::unique_ptr<StateStepper> make(Method method) const;
   MotionPoint here() const;
