@@ -48,7 +48,7 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
     std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastRungeKuttaTolerance).c_str(), small(kLeastRungeKuttaTolerance).c_str(), which.c_str());
 }
 
-bool worth_saying(const MethodReport& r) { return r.asked != Method::automatic || r.steps > 0 || r.trials > 0; }
+static bool worth_saying(const MethodReport& r) { return r.steps > 0 || r.trials > 0 || !r.turns.empty(); }
 
 void print_method(const MethodReport& r) {
   if (!worth_saying(r)) return;

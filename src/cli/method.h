@@ -9,8 +9,7 @@ namespace anholon::cli {
 // After tolerance, precision and integrator are known; throws UsageError where the method asked for cannot do what else is asked for.
 void choose_method(const Options& o, const Scenario& scenario, SimulationOptions& options);
 
-// Whether there is something to say: another method was asked for, taken, or tried.
-bool worth_saying(const MethodReport& report);
+// Nothing where all is Taylor's and nothing else was tried.
 void print_method(const MethodReport& report);
 void write_method(JsonWriter& j, const MethodReport& report);
 

@@ -12,8 +12,9 @@ namespace anholon {
 namespace {
 
 const double kLoose = std::log(1e-5), kBdf = std::log(kLeastBdfTolerance);
-// Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps.
-constexpr double kCheaper = 1.3, kMuchCheaper = 2;
+// Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps: BDF by more, as its errors grow faster. Where a
+// motion is stiff it is cheaper by far.
+constexpr double kCheaper = 1.3, kMuchCheaper = 4;
 constexpr std::size_t kFewSteps = 16, kStretch = 256;
 // When it is asked: Runge-Kutta at loose tolerances, once; where there are many kinks; BDF after many steps. Later, whenever they are twice as many.
 constexpr std::size_t kManyKinks = 32, kManySteps = 2048;
@@ -166,7 +167,7 @@ template <Number N>
 void Course<N>::choose(const W& end) {
   const Stepper<N>& taylor = motion_.stepper();
   const std::size_t steps = taylor.steps();
-  if (settings_.log_tolerance >= kLoose && steps == kFewSteps && pays(Method::runge_kutta, kFewSteps, kCheaper, end))
+  if (settings_.log_tolerance >= kLoose && steps == kFewSteps + 1 && pays(Method::runge_kutta, kFewSteps, kCheaper, end))
     return turn(Method::runge_kutta, "the tolerance is loose: " + percent());
   if (taylor.kinks() >= next_kinks_ && times_.size() > kManyKinks) {
     next_kinks_ = 2 * taylor.kinks();
