@@ -15,7 +15,7 @@ const double kLoose = std::log(1e-5), kBdf = std::log(kLeastBdfTolerance);
 // Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps: BDF by more, as its errors grow faster. Where a
 // motion is stiff it is cheaper by far.
 constexpr double kCheaper = 1.3, kMuchCheaper = 4;
-constexpr std::size_t kFewSteps = 16, kStretch = 256;
+constexpr std::size_t kFewSteps = 48, kStretch = 256;
 // When it is asked: Runge-Kutta at loose tolerances, once; where there are many kinks; BDF after many steps. Later, whenever they are twice as many.
 constexpr std::size_t kManyKinks = 32, kManySteps = 2048;
 // A trial that has spent this part of what it may spend has come this far, or is given up.
@@ -167,17 +167,19 @@ template <Number N>
 void Course<N>::choose(const W& end) {
   const Stepper<N>& taylor = motion_.stepper();
   const std::size_t steps = taylor.steps();
-  if (settings_.log_tolerance >= kLoose && steps == kFewSteps + 1 && pays(Method::runge_kutta, kFewSteps, kCheaper, end))
+  // Where the end is near, nothing is won by a trial.
+  const auto far = [&](std::size_t stretch, double times) {
+    if (times_.size() <= stretch) return false;
+    const W pace = (taylor.time() - times_[times_.size() - 1 - stretch]) / W(static_cast<double>(stretch));
+    return abs(W(end - taylor.time())) > abs(pace) * W(times * static_cast<double>(steps));
+  };
+  if (settings_.log_tolerance >= kLoose && steps == kFewSteps + 1 && far(kFewSteps, 4) && pays(Method::runge_kutta, kFewSteps, kCheaper, end))
     return turn(Method::runge_kutta, "the tolerance is loose: " + percent());
   if (taylor.kinks() >= next_kinks_ && times_.size() > kManyKinks) {
     next_kinks_ = 2 * taylor.kinks();
     if (pays(Method::runge_kutta, std::min(times_.size() - 1, kStretch), kCheaper, end)) return turn(Method::runge_kutta, "the motion has met many kinks: " + percent());
   }
-  if (steps < next_stiff_ || times_.size() <= kStretch) return;
-  const W pace = (taylor.time() - times_[times_.size() - 1 - kStretch]) / W(static_cast<double>(kStretch));
-  // Where the end is near, nothing is won.
-  if (abs(W(end - taylor.time())) < abs(pace) * W(static_cast<double>(steps))) return;
-  try_bdf(end);
+  if (steps >= next_stiff_ && far(kStretch, 1)) try_bdf(end);
 }
 
 template <Number N>
