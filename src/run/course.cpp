@@ -95,19 +95,26 @@ MotionPoint Course<N>::here() const {
 }
 
 template <Number N>
-std::unique_ptr<StateStepper> Course<N>::make(Method method) const {
+std::shared_ptr<const KernelPlan> Course<N>::plan_of_rates() const {
   if constexpr (std::same_as<N, double>) {
+    if (!settings_.kernel) return nullptr;
     const MotionPoint from = here();
+    return KernelPlan::make(program_of(motion_.plan(), motion_.program()), 0, motion_.parameters(), static_cast<double>(from.t), {from.state.begin(), from.state.end()});
+  }
+  return nullptr;
+}
+
+template <Number N>
+std::unique_ptr<StateStepper> Course<N>::make(Method method, std::shared_ptr<const KernelPlan> plan) const {
+  if constexpr (std::same_as<N, double>) {
     const Program& program = motion_.program();
-    const std::vector<double> state(from.state.begin(), from.state.end());
-    auto plan = settings_.kernel ? KernelPlan::make(program_of(motion_.plan(), program), 0, motion_.parameters(), static_cast<double>(from.t), state) : nullptr;
     StateRate rate(program, parameter_values<double>(*s_.model), motion_.parameters(), std::move(plan), guards_);
     StepSettings settings = settings_;
     settings.log_tolerance = std::max(settings.log_tolerance, std::log(kLeastRungeKuttaTolerance));
     if (method == Method::bdf) return std::make_unique<Bdf>(std::move(rate), settings);
     return std::make_unique<RungeKutta>(std::move(rate), settings);
   } else {
-    (void)method;
+    (void)method, (void)plan;
     return nullptr;
   }
 }
@@ -129,7 +136,7 @@ bool Course<N>::pays(Method method, std::size_t steps, double factor, const W& e
     const W span = from.t - times_[times_.size() - 1 - steps], left = end - from.t;
     const bool whole = abs(span) < abs(left);
     const W to = whole ? W(from.t + span) : end;
-    auto trial = make(method);
+    auto trial = make(method, plan_of_rates());
     std::shared_ptr<const KernelPlan> plan = motion_.plan();
     double each = plan ? work(*plan) : 0;
     if (!plan) {
@@ -223,7 +230,8 @@ std::optional<Outcome> Course<N>::step_by_other(const W& end) {
       return std::nullopt;
     };
     if (!other_) {
-      other_ = make(wanted_);
+      plan_ = plan_of_rates();
+      other_ = make(wanted_, plan_);
       point_ = motion_.point();
       begun_ = motion_.stepper().point();
       look_.emplace(motion_.program(), parameter_values<N>(*s_.model), 1);
@@ -241,6 +249,7 @@ std::optional<Outcome> Course<N>::step_by_other(const W& end) {
     }
     begun_->load(other_->now().t, other_->now().state, widened<W>(other_->now().leading));
     if (motion_.pivot_is_small(*begun_)) return by_taylor(1);
+    code_.step(plan_);
     const std::size_t steps = other_->steps();
     const double health = other_->rate().health();
     Outcome o = other_->step(end);

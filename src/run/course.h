@@ -5,6 +5,7 @@
 // counted in operations, never measured in time, so the same motion always takes the same course.
 #pragma once
 #include "integrate/state_rate.h"
+#include "run/code_for_long_runs.h"
 #include "run/motion.h"
 
 namespace anholon {
@@ -70,7 +71,8 @@ class Course {
   bool try_bdf(const W& end);
   std::string percent() const;
   bool pays(Method method, std::size_t steps, double factor, const W& end);
-  std::unique_ptr<StateStepper> make(Method method) const;
+  std::shared_ptr<const KernelPlan> plan_of_rates() const;
+  std::unique_ptr<StateStepper> make(Method method, std::shared_ptr<const KernelPlan> plan) const;
   MotionPoint here() const;
   std::optional<Outcome> step_by_other(const W& end);
   bool passed_singular_point();
@@ -88,6 +90,8 @@ class Course {
   bool free_ = false;               // to choose a method
   Method wanted_ = Method::taylor;  // by which the motion goes on
   std::unique_ptr<StateStepper> other_;
+  std::shared_ptr<const KernelPlan> plan_;    // of its rates
+  CodeForLongRuns code_;
   bool by_other_ = false;           // the last step
   std::size_t rescues_ = 0, taylor_for_ = 0;  // how often Taylor had to help; the steps it still makes
   std::optional<Expansion<W>> point_, begun_;
