@@ -17,6 +17,8 @@ constexpr double kBlowUp = 1e100;
 constexpr std::size_t kStepsToJudge = 1000;
 // Each makes a step five times shorter where f has no value.
 constexpr int kMostRefusals = 40;
+// Kinks met so soon after another one are other kinks, until they are too many.
+constexpr int kMostShortKinks = 20;
 // Taylor's steps miss by about this part of the tolerance; it is to mean the same here.
 constexpr double kOfTolerance = 0.1;
 // PI controller (Hairer & Wanner, IV.2): exponents for an estimate of order 8, and the bounds of one change.
@@ -105,6 +107,8 @@ Outcome RungeKutta::first_rate() {
     for (std::size_t i = 0; i < y_.size(); ++i)
       if (const double moved = rate_.state()[i] - y_[i]; moved != 0) now_.state[i] += moved, carry_[i] = 0;
   now_.leading = rate_.leading();
+  sides_ = rate_.sides();
+  arguments_ = rate_.arguments();
   here_ = rate_.rate();
   here_.insert(here_.end(), rate_.integrands().begin(), rate_.integrands().end());
   worst_constraint_ = std::max(worst_constraint_, rate_.drift());
@@ -139,6 +143,59 @@ Outcome RungeKutta::stages(const MotionPoint& from, double h) {
     std::copy(rate_.integrands().begin(), rate_.integrands().end(), k_[s].begin() + static_cast<std::ptrdiff_t>(n));
   }
   return {};
+}
+
+// The stages of a step from now(), and f at its end.
+Outcome RungeKutta::whole(double h) {
+  if (Outcome o = stages(now_, h); !o.ok()) return o;
+  weigh(table().b, k_, rate_.size(), y_);
+  for (std::size_t i = 0; i < y_.size(); ++i) y_[i] = start_[i] + h * y_[i];
+  return rate_.evaluate(static_cast<double>(now_.t) + h, y_, true);
+}
+
+// Whether f was evaluated beyond a kink.
+bool RungeKutta::turned() const { return rate_.sides().size() == sides_.size() && rate_.sides() != sides_; }
+
+// After a whole step of h that has gone beyond a kink: the step to just beyond the first one, with its stages. By secants (Illinois) through whole
+// steps that end on both sides of it.
+Outcome RungeKutta::cut_at_kink(double& h) {
+  constexpr int kPastKink = 32, kMostTries = 60;
+  struct End {
+    double h;
+    std::vector<double> arguments;
+    double weight = 1;
+  };
+  const double direction = h < 0 ? -1 : 1;
+  const double past = 0x1p-53 * kPastKink * std::max(std::abs(static_cast<double>(now_.t)), std::abs(h)) + tolerance_ * std::abs(h);
+  End low{0, arguments_}, high{std::abs(h), rate_.arguments()};
+  std::vector<int> ends = rate_.sides();
+  bool at_high = true;
+  for (int tries = 0; tries < kMostTries && high.h - low.h > past; ++tries) {
+    // Of those that have turned, the one that did so first, as far as straight lines tell.
+    double root = high.h;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (ends[i] == sides_[i]) continue;
+      const double before = low.weight * rate_.beyond(i, low.arguments[i], sides_[i], ends[i]), after = high.weight * rate_.beyond(i, high.arguments[i], sides_[i], ends[i]);
+      root = std::min(root, before < 0 && after > 0 ? low.h + (high.h - low.h) * before / (before - after) : before < 0 ? high.h : low.h);
+    }
+    const double there = std::clamp(root + past / 2, low.h + past / 4, high.h - past / 4);
+    if (Outcome o = whole(direction * there); !o.ok()) return o;
+    const bool beyond = turned();
+    // Too long even without the kink: it is refused as any other.
+    if (!beyond && error(direction * there) > 1) {
+      h = direction * there;
+      return {};
+    }
+    End& moved = beyond ? high : low;
+    End& other = beyond ? low : high;
+    other.weight = tries > 0 && at_high == beyond ? other.weight / 2 : 1;
+    moved = {there, rate_.arguments()};
+    at_high = beyond;
+    if (beyond) ends = rate_.sides();
+  }
+  h = direction * high.h;
+  short_kinks_ = high.h > 4 * past ? 0 : short_kinks_ + 1;
+  return at_high ? Outcome{} : whole(h);
 }
 
 // In units of the tolerance: the largest of any level.
@@ -192,14 +249,23 @@ Outcome RungeKutta::step(long double end) {
     if (again > 0) ++refused_;
     const bool last = !(h_ < std::abs(left));
     // The step that t can show exactly.
-    const long double reached = last ? end : static_cast<long double>(static_cast<double>(now_.t + (left > 0 ? h_ : -h_)));
-    const double h = static_cast<double>(reached - now_.t);
+    long double reached = last ? end : static_cast<long double>(static_cast<double>(now_.t + (left > 0 ? h_ : -h_)));
+    double h = static_cast<double>(reached - now_.t);
     if ((!(std::abs(h) > floor) && !last) || again > kMostRefusals) {
       if (!trouble.ok()) return trouble;
       return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
               "the motion approaches a singularity: stop before it, or look at the last good state"};
     }
-    trouble = stages(now_, h);
+    trouble = sides_.empty() ? stages(now_, h) : whole(h);
+    bool cut = false;
+    if (trouble.ok() && !sides_.empty() && turned()) {
+      trouble = cut_at_kink(h);
+      cut = true;
+      reached = static_cast<long double>(static_cast<double>(now_.t + h));
+      if (short_kinks_ > kMostShortKinks) return {OutcomeKind::step_collapse, "the motion stays at a kink", "put a smooth function in its place"};
+    } else {
+      short_kinks_ = 0;
+    }
     if (!trouble.ok()) {
       if (rate_.guarded()) return trouble;  // shorter steps would come so close that nobody could tell the sides apart
       h_ = kLeast * std::abs(h);
@@ -236,9 +302,9 @@ Outcome RungeKutta::step(long double end) {
     }
     ++steps_;
     const double grown = e > 0 ? kSafety * std::pow(e, -kProportional) * std::pow(error_before_, kIntegral) : kMost;
-    // What the end cut short says nothing of the steps beyond; after a refusal a step does not grow.
+    // What the end or a kink cut short says nothing of the steps beyond; after a refusal a step does not grow.
     const double next_h = std::abs(h) * std::clamp(grown, kLeast, again > 0 ? 1.0 : kMost);
-    h_ = last ? std::max(h_, next_h) : next_h;
+    h_ = last || cut ? std::max(h_, next_h) : next_h;
     error_before_ = std::max(e, 1e-4);
     return {};
   }

@@ -27,7 +27,9 @@ class RungeKutta final : public StateStepper {
   Outcome first_rate();
   double first_step(double direction);
   Outcome stages(const MotionPoint& from, double h);
-  void combine(double h, std::vector<double>& change) const;
+  Outcome whole(double h);
+  bool turned() const;
+  Outcome cut_at_kink(double& h);
   double error(double h);
   void advance(MotionPoint& to, std::vector<long double>& carry, double h);
 
@@ -42,6 +44,9 @@ class RungeKutta final : public StateStepper {
   long double started_ = 0;
   double h_ = 0, error_before_ = 1;
   std::size_t refused_ = 0;
+  std::vector<int> sides_;  // of the kinks, at now()
+  std::vector<double> arguments_;
+  int short_kinks_ = 0;     // steps in a row that were cut at their very start
 };
 
 }  // namespace anholon

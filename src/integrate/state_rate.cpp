@@ -14,6 +14,7 @@ StateRate::StateRate(const Program& program, const std::vector<double>& paramete
   if (plan) {
     kernel_ = std::make_unique<Kernel>(std::move(plan));
     kernel_->set_parameters(0, wide_parameters);
+    find_kinks();
   }
   for (int d : program.d) {
     for (int k = 0; k < d; ++k) level_.push_back(k);
@@ -21,6 +22,21 @@ StateRate::StateRate(const Program& program, const std::vector<double>& paramete
   }
   constrained_ = std::any_of(program.c.begin(), program.c.end(), [](int c) { return c > 0; });
   rate_.resize(level_.size());
+}
+
+void StateRate::find_kinks() {
+  for (const Step& s : kernel_->plan().plan().point) {
+    const bool turns = s.act == Act::function && (s.index == static_cast<std::uint32_t>(Function::abs) || s.index == static_cast<std::uint32_t>(Function::sign));
+    if (turns) kinks_.push_back({s.a});
+    else if (s.act == Act::select) kinks_.push_back({s.c});
+    else if (s.act == Act::lookup) kinks_.push_back({s.a, &kernel_->plan().tables().knots[s.index].at});
+  }
+}
+
+double StateRate::beyond(std::size_t kink, double x, int side, int other) const {
+  const Kink& k = kinks_[kink];
+  const double end = k.knots ? (*k.knots)[static_cast<std::size_t>(other > side ? side : side - 1)] : 0;
+  return other > side ? x - end : end - x;
 }
 
 Outcome StateRate::evaluate(double t, const std::vector<double>& state, bool projected) {
@@ -65,6 +81,13 @@ bool StateRate::by_kernel(double t, const std::vector<double>& state, bool proje
     leading_[j] = kernel_->derivative(j, program_->d[j]);
   }
   for (std::size_t q = 0; q < integrands_.size(); ++q) integrands_[q] = kernel_->quadrature(q, 0);
+  sides_.clear();
+  arguments_.clear();
+  for (const Kink& k : kinks_) {
+    const double x = kernel_->series(k.argument, 0);
+    arguments_.push_back(x);
+    sides_.push_back(k.knots ? static_cast<int>(std::upper_bound(k.knots->begin(), k.knots->end(), x) - k.knots->begin()) : x >= 0);
+  }
   return true;
 }
 
@@ -78,6 +101,7 @@ Outcome StateRate::by_reference(double t, const std::vector<double>& state, bool
   point_.state(state_);
   moved_ = projected && state_ != state;
   drift_ = projected ? point_.drift() : 0;
+  sides_.clear();
   point_.leading(leading_);
   for (std::size_t q = 0; q < integrands_.size(); ++q) integrands_[q] = point_.quadrature(q)[0];
   return {};

@@ -37,6 +37,12 @@ class StateRate {
   bool moved() const { return moved_; }
   // Of the kernel's pivots; 1 where the reference was asked.
   double health() const { return health_; }
+  // Where f may have a kink: on which side each abs, sign, piecewise or table was, the number of a piece or of an interval between knots.
+  // By a kernel alone.
+  const std::vector<int>& sides() const { return sides_; }
+  // Their arguments there; how far one is beyond the end of a side, in the direction of another one.
+  const std::vector<double>& arguments() const { return arguments_; }
+  double beyond(std::size_t kink, double argument, int side, int other) const;
   // Whether the last evaluation failed at a guard.
   bool guarded() const { return guarded_; }
   // The first guess of the leading derivatives of the next evaluation.
@@ -54,6 +60,11 @@ class StateRate {
   std::size_t by_reference() const { return by_reference_; }
 
  private:
+  struct Kink {
+    Place argument;
+    const std::vector<double>* knots = nullptr;  // of a table; otherwise zero is the end of either side
+  };
+  void find_kinks();
   bool by_kernel(double t, const std::vector<double>& state, bool projected);
   Outcome by_reference(double t, const std::vector<double>& state, bool projected);
 
@@ -61,10 +72,11 @@ class StateRate {
   std::unique_ptr<Kernel> kernel_;
   Expansion<double> point_;
   std::vector<Guard> guards_;
-  std::vector<int> level_;
+  std::vector<Kink> kinks_;
+  std::vector<int> level_, sides_;
   int levels_ = 1;
   bool constrained_ = false, moved_ = false, guarded_ = false;
-  std::vector<double> state_, rate_, leading_, integrands_;
+  std::vector<double> state_, rate_, leading_, integrands_, arguments_;
   double drift_ = 0, health_ = 1;
   std::size_t evaluations_ = 0, by_reference_ = 0;
 };

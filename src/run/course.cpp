@@ -16,8 +16,8 @@ const double kLoose = std::log(1e-5), kBdf = std::log(kLeastBdfTolerance);
 // motion is stiff it is cheaper by far.
 constexpr double kCheaper = 1.3, kMuchCheaper = 4;
 constexpr std::size_t kFewSteps = 48, kStretch = 256;
-// When it is asked: Runge-Kutta at loose tolerances, once; where there are many kinks; BDF after many steps. Later, whenever they are twice as many.
-constexpr std::size_t kManyKinks = 32, kManySteps = 2048;
+// When it is asked: Runge-Kutta at loose tolerances, once; where there are many kinks; BDF after many steps. Later, whenever they are so many times as many.
+constexpr std::size_t kManyKinks = 128, kOftener = 8, kManySteps = 2048;
 // A trial that has spent this part of what it may spend has come this far, or is given up.
 constexpr double kEarly = 0.25, kFar = 0.05;
 // Where another method cannot go, Taylor makes some steps; if that happens too often, all that follow.
@@ -94,27 +94,37 @@ MotionPoint Course<N>::here() const {
   return p;
 }
 
+// The plan of the rates, and what an expansion of Taylor's takes: as long as the equations are the same.
 template <Number N>
-std::shared_ptr<const KernelPlan> Course<N>::plan_of_rates() const {
+void Course<N>::make_plans() {
   if constexpr (std::same_as<N, double>) {
-    if (!settings_.kernel) return nullptr;
+    const Program* equations = motion_.plan() ? &motion_.plan()->program() : &motion_.program();
+    if (planned_ == equations) return;
+    planned_ = equations;
     const MotionPoint from = here();
-    return KernelPlan::make(program_of(motion_.plan(), motion_.program()), 0, motion_.parameters(), static_cast<double>(from.t), {from.state.begin(), from.state.end()});
+    const auto plan = [&](int stages) {
+      return KernelPlan::make(program_of(motion_.plan(), motion_.program()), stages, motion_.parameters(), static_cast<double>(from.t), {from.state.begin(), from.state.end()});
+    };
+    plan_ = settings_.kernel ? plan(0) : nullptr;
+    expansion_work_ = std::numeric_limits<double>::infinity();
+    if (!free_) return;
+    if (motion_.plan()) expansion_work_ = work(*motion_.plan());
+    else if (const auto all = plan(motion_.stepper().order() - 1)) expansion_work_ = kReference * work(*all);
   }
-  return nullptr;
 }
 
 template <Number N>
-std::unique_ptr<StateStepper> Course<N>::make(Method method, std::shared_ptr<const KernelPlan> plan) const {
+std::unique_ptr<StateStepper> Course<N>::make(Method method) {
   if constexpr (std::same_as<N, double>) {
+    make_plans();
     const Program& program = motion_.program();
-    StateRate rate(program, parameter_values<double>(*s_.model), motion_.parameters(), std::move(plan), guards_);
+    StateRate rate(program, parameter_values<double>(*s_.model), motion_.parameters(), plan_, guards_);
     StepSettings settings = settings_;
     settings.log_tolerance = std::max(settings.log_tolerance, std::log(kLeastRungeKuttaTolerance));
     if (method == Method::bdf) return std::make_unique<Bdf>(std::move(rate), settings);
     return std::make_unique<RungeKutta>(std::move(rate), settings);
   } else {
-    (void)method, (void)plan;
+    (void)method;
     return nullptr;
   }
 }
@@ -136,17 +146,11 @@ bool Course<N>::pays(Method method, std::size_t steps, double factor, const W& e
     const W span = from.t - times_[times_.size() - 1 - steps], left = end - from.t;
     const bool whole = abs(span) < abs(left);
     const W to = whole ? W(from.t + span) : end;
-    auto trial = make(method, plan_of_rates());
-    std::shared_ptr<const KernelPlan> plan = motion_.plan();
-    double each = plan ? work(*plan) : 0;
-    if (!plan) {
-      const std::vector<double> state(from.state.begin(), from.state.end());
-      plan = KernelPlan::make(program_of(nullptr, motion_.program()), motion_.stepper().order() - 1, motion_.parameters(), static_cast<double>(from.t), state);
-      if (!plan) return false;
-      each = kReference * work(*plan);
-    }
-    pace_ = each * static_cast<double>(steps) / std::abs(static_cast<double>(span));
-    const double part = whole ? 1.0 : std::abs(static_cast<double>(left / span)), costs = each * static_cast<double>(steps) * part, most = costs / factor;
+    auto trial = make(method);
+    if (!plan_ || !std::isfinite(expansion_work_)) return false;
+    const double all = expansion_work_ * static_cast<double>(steps), part = whole ? 1.0 : std::abs(static_cast<double>(left / span));
+    const double costs = all * part, most = costs / factor;
+    pace_ = all / std::abs(static_cast<double>(span));
     ++report_.trials;
     bool good = trial->start(from, to).ok();
     while (good && !(trial->now().t == to)) {
@@ -182,9 +186,9 @@ void Course<N>::choose(const W& end) {
   };
   if (settings_.log_tolerance >= kLoose && steps == kFewSteps + 1 && far(kFewSteps, 4) && pays(Method::runge_kutta, kFewSteps, kCheaper, end))
     return turn(Method::runge_kutta, "the tolerance is loose: " + percent());
-  if (taylor.kinks() >= next_kinks_ && times_.size() > kManyKinks) {
-    next_kinks_ = 2 * taylor.kinks();
-    if (pays(Method::runge_kutta, std::min(times_.size() - 1, kStretch), kCheaper, end)) return turn(Method::runge_kutta, "the motion has met many kinks: " + percent());
+  if (taylor.kinks() >= next_kinks_ && times_.size() > kFewSteps) {
+    next_kinks_ = kOftener * taylor.kinks();
+    if (pays(Method::runge_kutta, kFewSteps, kCheaper, end)) return turn(Method::runge_kutta, "the motion has met many kinks: " + percent());
   }
   if (steps >= next_stiff_ && far(kStretch, 1)) try_bdf(end);
 }
@@ -230,8 +234,7 @@ std::optional<Outcome> Course<N>::step_by_other(const W& end) {
       return std::nullopt;
     };
     if (!other_) {
-      plan_ = plan_of_rates();
-      other_ = make(wanted_, plan_);
+      other_ = make(wanted_);
       point_ = motion_.point();
       begun_ = motion_.stepper().point();
       look_.emplace(motion_.program(), parameter_values<N>(*s_.model), 1);

@@ -71,8 +71,8 @@ class Course {
   bool try_bdf(const W& end);
   std::string percent() const;
   bool pays(Method method, std::size_t steps, double factor, const W& end);
-  std::shared_ptr<const KernelPlan> plan_of_rates() const;
-  std::unique_ptr<StateStepper> make(Method method, std::shared_ptr<const KernelPlan> plan) const;
+  void make_plans();
+  std::unique_ptr<StateStepper> make(Method method);
   MotionPoint here() const;
   std::optional<Outcome> step_by_other(const W& end);
   bool passed_singular_point();
@@ -90,7 +90,9 @@ class Course {
   bool free_ = false;               // to choose a method
   Method wanted_ = Method::taylor;  // by which the motion goes on
   std::unique_ptr<StateStepper> other_;
+  const Program* planned_ = nullptr;
   std::shared_ptr<const KernelPlan> plan_;    // of its rates
+  double expansion_work_ = 0;                 // of Taylor's
   CodeForLongRuns code_;
   bool by_other_ = false;           // the last step
   std::size_t rescues_ = 0, taylor_for_ = 0;  // how often Taylor had to help; the steps it still makes
