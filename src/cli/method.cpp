@@ -34,13 +34,13 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
   if (options.method == Method::automatic || options.method == Method::taylor) return;
   const std::string which = name(options.method);
   const auto refuse = [&](const std::string& what, const std::string& remedy) {
-    throw UsageError{"error: the method '" + which + "' " + what + "\nhint: " + remedy + ", or use --method taylor\n"};
+    throw UsageError{"error: the method '" + which + "' " + what + "\nhint: " + (remedy.empty() ? "" : remedy + ", or ") + "use --method taylor\n"};
   };
   if (options.precision != Precision::real) refuse("computes in double", std::string("leave out ") + (o.digits > 16 ? "--digits" : "--numbers"));
   if (!o.save.empty() || options.resume) refuse("cannot go on with the same bits", std::string("leave out ") + (o.save.empty() ? "--continue" : "--save"));
   if (options.rigorous) refuse("has no dense output that is enclosed", "leave out --rigorous");
   if (options.order > 0) refuse("has no order to choose", "leave out --order");
-  if (const std::string why = only_taylor(*s.model, program(s.system, s.structure)); !why.empty()) refuse(why, "leave out --method");
+  if (const std::string why = only_taylor(*s.model, program(s.system, s.structure)); !why.empty()) refuse(why, "");
   const double tolerance = options.tolerance.get_d();
   if (options.method == Method::bdf && tolerance < kLeastBdfTolerance)
     refuse("is of order 5 at most, for tolerances of " + small(kLeastBdfTolerance) + " and more", "--tolerance 1e-8");

@@ -176,6 +176,25 @@ TEST(Course, KinksAreMetToTheTolerance) {
   }
 }
 
+// Left to the error test alone, each kink costs a dozen refusals and as many short steps.
+TEST(Course, StepsEndAtKinks) {
+  const Result rk = motion(kTable, 20, {Method::runge_kutta, power_of_ten(8)});
+  EXPECT_LT(rk.report.method.refused, rk.report.method.steps / 10);
+}
+
+TEST(Course, LooseTolerancesGoByRungeKutta) {
+  const std::string coin = test::shipped_text("zoo/rolling-coin");
+  const Result found = motion(coin, 10, {Method::automatic, power_of_ten(5)}), taylor = motion(coin, 10, {Method::taylor, power_of_ten(5)});
+  const Result exact = motion(coin, 10, {Method::taylor, power_of_ten(12)});
+  ASSERT_TRUE(found.report.outcome.ok()) << found.report.outcome.message;
+  ASSERT_EQ(found.report.method.turns.size(), 1U);
+  EXPECT_EQ(found.report.method.turns[0].to, Method::runge_kutta);
+  EXPECT_LT(found.report.method.taylor_steps, 100U);
+  EXPECT_LT(difference(found, exact), 10 * difference(taylor, exact)) << "cheaper, not worse";
+  const Result sharp = motion(coin, 10, {Method::automatic, power_of_ten(7)});
+  EXPECT_EQ(sharp.report.method.steps, 0U);
+}
+
 // Where another method cannot go, Taylor does, and stops where it always stopped.
 TEST(Course, TheEndsOfAMotionAreTaylors) {
   const std::string table = test::replaced(kTable, "outside = \"linear\"", "outside = \"error\"");
