@@ -29,6 +29,7 @@ struct SundialsSettings {
   double tolerance = 1e-12;                   // relative and absolute, of each step
   std::size_t most_steps = 50'000'000;
   std::function<bool()> cancelled;            // asked between steps
+  double integral_tolerance = 1e-12;          // of BDF: integrals carry no error on
 };
 
 // Not copied, and used by one thread at a time; several may be used at once.
@@ -69,28 +70,6 @@ class Sundials {
 
   struct Work;
   std::unique_ptr<Work> work_;
-};
-
-// BDF as a stepper of its own.
-class Bdf final : public StateStepper {
- public:
-  Bdf(StateRate rate, const StepSettings& settings);
-
-  const char* title() const override { return "BDF"; }
-  // Once.
-  Outcome start(const MotionPoint& from, long double end) override;
-  Outcome step(long double end) override;
-  Outcome at(long double t, MotionPoint& point) override;
-  std::size_t refused() const override { return motion_ ? motion_->refused() : 0; }
-  StateRate& rate() override { return motion_ ? motion_->rate() : *rate_; }
-  double more_work() const override;
-
- private:
-  void put(MotionPoint& point) const;
-
-  std::optional<StateRate> rate_;
-  std::optional<Sundials> motion_;
-  StepSettings settings_;
 };
 
 }  // namespace anholon

@@ -69,7 +69,7 @@ class Course {
  private:
   void choose(const W& end);
   bool try_bdf(const W& end);
-  std::string percent() const;
+  std::string percent() const { return number_text(100 * ratio_, 2) + " % of Taylor's operations on the same stretch"; }
   bool pays(Method method, std::size_t steps, double factor, const W& end);
   void make_plans();
   std::unique_ptr<StateStepper> make(Method method);
@@ -104,7 +104,8 @@ class Course {
   double least_health_ = 1;
   // Taylor's last steps, and when it is asked next whether another method pays.
   std::vector<W> times_;
-  std::size_t next_kinks_, next_stiff_;
+  static constexpr std::size_t kStretch = 256;  // steps that are remembered
+  std::size_t next_kinks_ = 128, next_stiff_ = 2048;
   double pace_ = 0, ratio_ = 0;     // operations for a unit of time by Taylor where it was left; what the trial took of them
   double window_t_ = 0, window_spent_ = 0;
   std::size_t window_steps_ = 0;
