@@ -10,10 +10,13 @@ namespace {
 
 std::string title(Method m) {
   switch (m) {
-    case Method::runge_kutta: return "Runge-Kutta 8";
-    case Method::bdf: return "BDF";
-    case Method::automatic:
-    case Method::taylor: break;
+  case Method::runge_kutta:
+    return "Runge-Kutta 8";
+  case Method::bdf:
+    return "BDF";
+  case Method::automatic:
+  case Method::taylor:
+    break;
   }
   return "Taylor";
 }
@@ -27,7 +30,8 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
     const auto wanted = find_method(o.method);
     if (!wanted) {
       const std::string near = did_you_mean(o.method, method_names());
-      throw UsageError{"error: there is no method '" + o.method + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: --method auto, taylor, rk or bdf\n"};
+      throw UsageError{"error: there is no method '" + o.method + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                       "\nhint: --method auto, taylor, rk or bdf\n"};
     }
     options.method = *wanted;
   }
@@ -37,7 +41,8 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
     throw UsageError{"error: the method '" + which + "' " + what + "\nhint: " + (remedy.empty() ? "" : remedy + ", or ") + "use --method taylor\n"};
   };
   if (options.precision != Precision::real) refuse("computes in double", std::string("leave out ") + (o.digits > 16 ? "--digits" : "--numbers"));
-  if (!o.save.empty() || options.resume) refuse("cannot go on with the same bits", std::string("leave out ") + (o.save.empty() ? "--continue" : "--save"));
+  if (!o.save.empty() || options.resume)
+    refuse("cannot go on with the same bits", std::string("leave out ") + (o.save.empty() ? "--continue" : "--save"));
   if (options.rigorous) refuse("has no dense output that is enclosed", "leave out --rigorous");
   if (options.order > 0) refuse("has no order to choose", "leave out --order");
   if (const std::string why = only_taylor(*s.model, program(s.system, s.structure)); !why.empty()) refuse(why, "");
@@ -45,7 +50,8 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
   if (options.method == Method::bdf && tolerance < kLeastBdfTolerance)
     refuse("is of order 5 at most, for tolerances of " + small(kLeastBdfTolerance) + " and more", "--tolerance 1e-8");
   if (tolerance < kLeastRungeKuttaTolerance)
-    std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastRungeKuttaTolerance).c_str(), small(kLeastRungeKuttaTolerance).c_str(), which.c_str());
+    std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastRungeKuttaTolerance).c_str(),
+                 small(kLeastRungeKuttaTolerance).c_str(), which.c_str());
 }
 
 static bool worth_saying(const MethodReport& r) { return r.steps > 0 || r.trials > 0 || !r.turns.empty(); }
@@ -77,7 +83,8 @@ void write_method(JsonWriter& j, const MethodReport& r) {
   j.key("trials").integer(static_cast<long long>(r.trials)).key("trial_evaluations").integer(static_cast<long long>(r.trial_evaluations));
   if (!r.turns.empty()) {
     j.key("turns").open_array();
-    for (const MethodReport::Turn& turn : r.turns) j.open_object().key("t").number(number_text(turn.t)).key("to").string(name(turn.to)).key("why").string(turn.why).close();
+    for (const MethodReport::Turn& turn : r.turns)
+      j.open_object().key("t").number(number_text(turn.t)).key("to").string(name(turn.to)).key("why").string(turn.why).close();
     j.close();
   }
   j.close();

@@ -21,7 +21,8 @@ Outcome Bdf::start(const MotionPoint& from, long double end) {
   settings.most_steps = settings_.most_steps;
   settings.cancelled = settings_.cancelled;
   now_ = before_ = from;
-  motion_.emplace(std::move(*rate_), settings, static_cast<double>(from.t), static_cast<double>(end), narrow(from.state), from.leading, narrow(from.integrals));
+  motion_.emplace(std::move(*rate_), settings, static_cast<double>(from.t), static_cast<double>(end), narrow(from.state), from.leading,
+                  narrow(from.integrals));
   rate_.reset();
   return {};
 }

@@ -121,7 +121,8 @@ double RungeKutta::first_step(double direction) {
   level_sizes(rate_, start_, sizes_);
   const auto weight = [&](std::size_t i) { return 1 / (tolerance_ * sizes_[static_cast<std::size_t>(rate_.level()[i])]); };
   double d0 = 1, d1 = 0, d2 = 0;
-  for (std::size_t i = 0; i < start_.size(); ++i) d0 = std::max(d0, std::abs(start_[i]) * weight(i)), d1 = std::max(d1, std::abs(here_[i]) * weight(i));
+  for (std::size_t i = 0; i < start_.size(); ++i)
+    d0 = std::max(d0, std::abs(start_[i]) * weight(i)), d1 = std::max(d1, std::abs(here_[i]) * weight(i));
   const double h0 = d1 > 0 ? 0.01 * d0 / d1 : 1;
   y_ = start_;
   for (std::size_t i = 0; i < y_.size(); ++i) y_[i] += direction * h0 * here_[i];
@@ -175,7 +176,8 @@ Outcome RungeKutta::cut_at_kink(double& h) {
     double root = high.h;
     for (std::size_t i = 0; i < ends.size(); ++i) {
       if (ends[i] == sides_[i]) continue;
-      const double before = low.weight * rate_.beyond(i, low.arguments[i], sides_[i], ends[i]), after = high.weight * rate_.beyond(i, high.arguments[i], sides_[i], ends[i]);
+      const double before = low.weight * rate_.beyond(i, low.arguments[i], sides_[i], ends[i]),
+                   after = high.weight * rate_.beyond(i, high.arguments[i], sides_[i], ends[i]);
       root = std::min(root, before < 0 && after > 0 ? low.h + (high.h - low.h) * before / (before - after) : before < 0 ? high.h : low.h);
     }
     const double there = std::clamp(root + past / 2, low.h + past / 4, high.h - past / 4);
@@ -217,8 +219,9 @@ double RungeKutta::error(double h) {
     const double five = e5 * e5, three = e3 * e3;
     if (!(five > 0)) continue;
     // Integrals carry no error on: the tolerance itself is enough for them.
-    const double allowed = k < sizes_.size() ? tolerance_ * sizes_[k]
-                                             : tolerance_ / kOfTolerance * std::max(1.0, static_cast<double>(std::abs(now_.integrals[k - sizes_.size()])));
+    const double allowed = k < sizes_.size()
+                               ? tolerance_ * sizes_[k]
+                               : tolerance_ / kOfTolerance * std::max(1.0, static_cast<double>(std::abs(now_.integrals[k - sizes_.size()])));
     worst = std::max(worst, std::abs(h) * five / std::sqrt(five + 0.01 * three) / allowed);
   }
   return worst;
@@ -238,7 +241,8 @@ Outcome RungeKutta::step(long double end) {
   if (steps_ >= kStepsToJudge) {
     const double mean = static_cast<double>(std::abs(now_.t - started_)) / static_cast<double>(steps_);
     if (static_cast<double>(std::abs(left)) > std::max(mean, h_) * static_cast<double>(settings_.most_steps - steps_))
-      return {OutcomeKind::interrupted, "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(h_, 2) + " long",
+      return {OutcomeKind::interrupted,
+              "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(h_, 2) + " long",
               "end the motion earlier, or take what is very fast or very stiff out of the model"};
   }
   k_[0] = here_;

@@ -10,7 +10,8 @@ constexpr double kHealthy = 2e-3;
 
 StateRate::StateRate(const Program& program, const std::vector<double>& parameters, const std::vector<long double>& wide_parameters,
                      std::shared_ptr<const KernelPlan> plan, std::vector<Guard> guards)
-    : program_(&program), point_(program, parameters, 0), guards_(std::move(guards)), leading_(program.unknowns(), 0.0), integrands_(program.quadratures, 0.0) {
+    : program_(&program), point_(program, parameters, 0), guards_(std::move(guards)), leading_(program.unknowns(), 0.0),
+      integrands_(program.quadratures, 0.0) {
   if (plan) {
     kernel_ = std::make_unique<Kernel>(std::move(plan));
     kernel_->set_parameters(0, wide_parameters);
@@ -26,10 +27,14 @@ StateRate::StateRate(const Program& program, const std::vector<double>& paramete
 
 void StateRate::find_kinks() {
   for (const Step& s : kernel_->plan().plan().point) {
-    const bool turns = s.act == Act::function && (s.index == static_cast<std::uint32_t>(Function::abs) || s.index == static_cast<std::uint32_t>(Function::sign));
-    if (turns) kinks_.push_back({s.a});
-    else if (s.act == Act::select) kinks_.push_back({s.c});
-    else if (s.act == Act::lookup) kinks_.push_back({s.a, &kernel_->plan().tables().knots[s.index].at});
+    const bool turns =
+        s.act == Act::function && (s.index == static_cast<std::uint32_t>(Function::abs) || s.index == static_cast<std::uint32_t>(Function::sign));
+    if (turns)
+      kinks_.push_back({s.a});
+    else if (s.act == Act::select)
+      kinks_.push_back({s.c});
+    else if (s.act == Act::lookup)
+      kinks_.push_back({s.a, &kernel_->plan().tables().knots[s.index].at});
   }
 }
 
@@ -43,9 +48,12 @@ Outcome StateRate::evaluate(double t, const std::vector<double>& state, bool pro
   projected = projected && constrained_;
   ++evaluations_;
   guarded_ = false;
-  const auto finite = [](const std::vector<double>& list) { return std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); }); };
+  const auto finite = [](const std::vector<double>& list) {
+    return std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); });
+  };
   const auto no_value = [&] {
-    return Outcome{OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero) at t = " + number_text(t, 12),
+    return Outcome{OutcomeKind::not_a_number,
+                   "a formula has no value (a root or logarithm of a negative number, or a division by zero) at t = " + number_text(t, 12),
                    "the motion leaves the region where the model is defined: stop it before, or change the formula"};
   };
   if (!finite(state)) return no_value();

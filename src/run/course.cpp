@@ -51,7 +51,8 @@ Course<N>::Course(const Scenario& s, const StepSettings& settings, Method asked,
   if (asked != Method::automatic) wanted_ = report_.last = asked;
   const Model& model = *s.model;
   for (std::size_t i = 0; i < model.masses.size(); ++i)
-    if (!model.masses[i].weight) guards_.push_back({1 + i, {OutcomeKind::negative_mass, "the mass of '" + model.masses[i].name + "' is negative", "end the motion before"}});
+    if (!model.masses[i].weight)
+      guards_.push_back({1 + i, {OutcomeKind::negative_mass, "the mass of '" + model.masses[i].name + "' is negative", "end the motion before"}});
   for (std::size_t i = 0; i < model.bounds.size(); ++i)
     guards_.push_back({quadratures.size() + model.events.size() + i, {OutcomeKind::not_a_number, model.bounds[i].fault, "end the motion before"}});
 }
@@ -64,7 +65,8 @@ Outcome Course<N>::step(const W& end) {
   by_other_ = false;
   const Outcome o = motion_.step(end);
   // Steps so short that the end is out of reach may be those of a stiff motion.
-  if (o.kind == OutcomeKind::interrupted && free_ && wanted_ == Method::taylor && !(settings_.cancelled && settings_.cancelled()) && try_bdf(end)) return step(end);
+  if (o.kind == OutcomeKind::interrupted && free_ && wanted_ == Method::taylor && !(settings_.cancelled && settings_.cancelled()) && try_bdf(end))
+    return step(end);
   if (!o.ok()) return o;
   if (taylor_for_ > 0) --taylor_for_;
   if (free_) {
@@ -189,8 +191,10 @@ Outcome Course<N>::at(const W& t) {
         if (o.ok()) o = point_->project();
         if (o.ok()) o = point_->solve();
       }
-      if (!o.ok()) o.message += " at t = " + number_text(to_double(t), 12);
-      else if (stages_ > 0) o = point_->extend();
+      if (!o.ok())
+        o.message += " at t = " + number_text(to_double(t), 12);
+      else if (stages_ > 0)
+        o = point_->extend();
       return o;
     }
   }
@@ -247,10 +251,13 @@ std::size_t Course<N>::steps() const {
 template <Number N>
 int Course<N>::order() const {
   switch (report_.last) {
-    case Method::runge_kutta: return dormand_prince::kOrder;
-    case Method::bdf: return 5;
-    case Method::automatic:
-    case Method::taylor: break;
+  case Method::runge_kutta:
+    return dormand_prince::kOrder;
+  case Method::bdf:
+    return 5;
+  case Method::automatic:
+  case Method::taylor:
+    break;
   }
   return motion_.stepper().order();
 }

@@ -59,13 +59,16 @@ void Course<N>::make_plans() {
     planned_ = equations;
     const MotionPoint from = here();
     const auto plan = [&](int stages) {
-      return KernelPlan::make(program_of(motion_.plan(), motion_.program()), stages, motion_.parameters(), static_cast<double>(from.t), {from.state.begin(), from.state.end()});
+      return KernelPlan::make(program_of(motion_.plan(), motion_.program()), stages, motion_.parameters(), static_cast<double>(from.t),
+                              {from.state.begin(), from.state.end()});
     };
     plan_ = settings_.kernel ? plan(0) : nullptr;
     expansion_work_ = std::numeric_limits<double>::infinity();
     if (!free_) return;
-    if (motion_.plan()) expansion_work_ = work(*motion_.plan());
-    else if (const auto all = plan(motion_.stepper().order() - 1)) expansion_work_ = kReference * work(*all);
+    if (motion_.plan())
+      expansion_work_ = work(*motion_.plan());
+    else if (const auto all = plan(motion_.stepper().order() - 1))
+      expansion_work_ = kReference * work(*all);
   }
 }
 
@@ -168,15 +171,15 @@ bool Course<N>::slower_than_taylor() {
   return pace > pace_;
 }
 
-#define INSTANTIATE(N)                                                  \
-  template MotionPoint Course<N>::here() const; \
-  template void Course<N>::make_plans(); \
-  template std::unique_ptr<StateStepper> Course<N>::make(Method); \
-  template double Course<N>::spent(StateStepper&) const; \
-  template void Course<N>::turn(Method, std::string); \
-  template bool Course<N>::pays(Method, std::size_t, double, const Wider<N>&); \
-  template void Course<N>::choose(const Wider<N>&); \
-  template bool Course<N>::try_bdf(const Wider<N>&); \
+#define INSTANTIATE(N)                                                                                                                               \
+  template MotionPoint Course<N>::here() const;                                                                                                      \
+  template void Course<N>::make_plans();                                                                                                             \
+  template std::unique_ptr<StateStepper> Course<N>::make(Method);                                                                                    \
+  template double Course<N>::spent(StateStepper&) const;                                                                                             \
+  template void Course<N>::turn(Method, std::string);                                                                                                \
+  template bool Course<N>::pays(Method, std::size_t, double, const Wider<N>&);                                                                       \
+  template void Course<N>::choose(const Wider<N>&);                                                                                                  \
+  template bool Course<N>::try_bdf(const Wider<N>&);                                                                                                 \
   template bool Course<N>::slower_than_taylor();
 INSTANTIATE(double)
 INSTANTIATE(long double)
