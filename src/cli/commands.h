@@ -17,6 +17,7 @@ struct Options {
   std::string show;
   std::string output;
   std::string numbers = "double";
+  std::string method;      // of the motion; empty: auto
   std::string integrator;  // empty: of the file, or Taylor series
   std::vector<std::string> set, cases, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance, rigorous;

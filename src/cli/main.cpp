@@ -3,11 +3,13 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
 
 #include "base/diagnostic.h"
 #include "cli/input.h"
+#include "run/code_for_long_runs.h"
 
 using namespace anholon;
 using namespace anholon::cli;
@@ -114,7 +116,8 @@ int run(int argc, char** argv) {
   evaluate_command->add_option("--numbers", o.numbers, "long-double (default) or quad (33 digits)")->check(CLI::IsMember({"long-double", "quad"}));
 
   CLI::App* simulate_command = model_command("simulate", "integrate the motion", cli::simulate,
-                                             "Example: anholon simulate disc --to 10 --every 0.01 -o disc.csv");
+                                             "Examples: anholon simulate disc --to 10 --every 0.01 -o disc.csv\n"
+                                             "          anholon simulate disc --to 1000 --tolerance 1e-6 --method rk");
   parameters(simulate_command), state(simulate_command), form_option(simulate_command);
   simulate_command->add_option("--to", o.to, "end time (absolute)")->type_name("T");
   simulate_command->add_option("--at", o.at, "rows at exactly these times: 0.25,0.5")->type_name("T,…");
@@ -124,6 +127,7 @@ int run(int argc, char** argv) {
   simulate_command->add_option("--numbers", o.numbers, "double, long-double or quad (33 digits, tolerance 1e-32 unless given; faster than --digits)")->check(CLI::IsMember({"double", "long-double", "quad"}));
   simulate_command->add_option("--rigorous", o.rigorous, "bound the residuals of the dense output by ball arithmetic: at so many times, or all")->type_name("N");
   simulate_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
+  simulate_command->add_option("--method", o.method, "taylor; rk: Runge-Kutta of order 8, for loose tolerances and kinks; bdf, for stiff motions; auto (default): Taylor\nunless another one is found to be much cheaper on the way")->type_name("NAME");
   simulate_command->add_option("--integrator", o.integrator, "taylor, or a second opinion by SUNDIALS: cvode, ida; with its difference")->type_name("NAME");
   simulate_command->add_option("--save", o.save, "FILE that holds the run's state at the end, after Ctrl-C, and every few seconds")->type_name("FILE");
   simulate_command->add_option("--continue", o.resume, "FILE that --save wrote: the run goes on with the same bits, rows after its last")->type_name("FILE");
@@ -227,7 +231,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return finish(run(argc, argv));
+    const int status = finish(run(argc, argv));
+    if (!compiling_for_nobody()) return status;
+    std::fflush(nullptr);
+    std::_Exit(status);
   } catch (const UsageError& e) {
     std::fflush(stdout);
     std::fputs(e.text.c_str(), stderr);

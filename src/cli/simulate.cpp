@@ -5,6 +5,7 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/method.h"
 #include "cli/progress.h"
 #include "cli/saved.h"
 #include "cli/show.h"
@@ -195,6 +196,7 @@ void write_json(const Scenario& s, const MemorySink& rows, const SimulationRepor
     j.key("bits").integer(r.rigorous->bits);
     j.close();
   }
+  write_method(j, r.method);
   j.key("steps").integer(static_cast<long long>(r.steps));
   j.key("order").integer(r.order);
   if (s.system.form->eliminates()) j.key("eliminations").integer(static_cast<long long>(r.eliminations));
@@ -215,9 +217,13 @@ std::string worst_constraint(const SimulationReport& r) {
   return name.empty() ? "" : ", worst '" + name + "'";
 }
 
-void second_opinion(const Scenario& s, const SecondOpinion& o) {
-  std::fprintf(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from Taylor's motion by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
-               name(o.integrator), o.form == s.system.form->name ? "" : " on Routh's equations", o.steps, o.evaluations, o.seconds,
+// What a second opinion is compared with.
+std::string beside(const SimulationReport& r) { return r.method.steps > 0 ? "the motion by method " + std::string(name(r.method.last)) : "Taylor's motion"; }
+
+void second_opinion(const Scenario& s, const SimulationReport& r) {
+  const SecondOpinion& o = *r.second;
+  std::fprintf(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from %s by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
+               name(o.integrator), o.form == s.system.form->name ? "" : " on Routh's equations", o.steps, o.evaluations, o.seconds, beside(r).c_str(),
                small(o.difference).c_str(), o.of.c_str(), number_text(o.t, 6).c_str(), o.of.c_str());
 }
 
@@ -257,9 +263,10 @@ void report(const Scenario& s, const SimulationReport& r) {
     std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, constraints %s, steps join within %s\n",
                  (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
-  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", r.second ? "Taylor's motion: " : "",
+  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", (r.second ? beside(r) + ": " : "").c_str(),
                r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
-  if (r.second) second_opinion(s, *r.second);
+  print_method(r.method);
+  if (r.second) second_opinion(s, r);
   for (const Warning& w : r.warnings) std::fprintf(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
 }
 
@@ -320,6 +327,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume) {
   if (options.rigorous && reset) throw UsageError{"error: --rigorous encloses motions without events that set something\nhint: leave out --rigorous\n"};
   accuracy(o, *in.model, options);
   integrator(o, *in.model, options);
+  choose_method(o, s, options);
   if (!reset) options.conserved = conserved(*s.mechanics);
   Saver saver(o, in, *s.system.form, options);
   catch_stop();

@@ -9,6 +9,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 
 #include "base/assert.h"
@@ -45,8 +46,8 @@ bool all_finite(const double* x, std::size_t count) {
 }  // namespace
 
 struct Sundials::Work {
-  Work(const Program& p, const std::vector<double>& parameters, const SundialsSettings& s)
-      : program(p), settings(s), point(p, parameters, 0), ida(s.integrator == Integrator::ida) {
+  Work(const Program& p, const std::vector<double>& parameters, const SundialsSettings& s, std::optional<StateRate> f = std::nullopt)
+      : program(p), settings(s), field(std::move(f)), point(p, parameters, 0), ida(!field && s.integrator == Integrator::ida) {
     for (std::size_t j = 0; j < p.unknowns(); ++j)
       if (ida && p.d[j] == 0) algebraic.push_back(j);
     if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
@@ -59,7 +60,7 @@ struct Sundials::Work {
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  const char* title() const { return ida ? "IDA" : "CVODE"; }
+  const char* title() const { return field ? "BDF" : ida ? "IDA" : "CVODE"; }
   std::size_t states() const { return point.state_size(); }
   std::size_t first_integral() const { return states() + algebraic.size(); }
   std::size_t size() const { return first_integral() + program.quadratures; }
@@ -74,9 +75,9 @@ struct Sundials::Work {
     point.evaluate_quadratures();
     for (std::size_t i = 0; i < program.quadratures; ++i) out[i] = point.quadrature(i)[0];
   }
-  int refuse(Outcome why) {
+  int refuse(Outcome why, bool for_good = false) {
     trouble = std::move(why);
-    return 1;  // SUNDIALS then tries a smaller step
+    return for_good ? -1 : 1;  // otherwise SUNDIALS tries a smaller step
   }
   Outcome no_value() const {
     return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
@@ -89,6 +90,13 @@ struct Sundials::Work {
     ++evaluations;
     now.assign(from, from + states());
     if (!all_finite(from, states())) return refuse(no_value());
+    if (field) {
+      if (Outcome o = field->evaluate(t, now); !o.ok()) return refuse(std::move(o), field->guarded());
+      found = field->leading();
+      std::copy(field->rate().begin(), field->rate().end(), out);
+      std::copy(field->integrands().begin(), field->integrands().end(), out + first_integral());
+      return 0;
+    }
     point.load(t, now, branch);
     if (Outcome o = point.prepare(); !o.ok()) return refuse(std::move(o));
     if (Outcome o = point.solve(); !o.ok()) return refuse(std::move(o));
@@ -96,6 +104,25 @@ struct Sundials::Work {
     put_rates(from, found, out);
     put_integrands(out + first_integral());
     return all_finite(out, size()) ? 0 : refuse(no_value());
+  }
+
+  // To the nearest state on the hidden constraints.
+  int project(double t, const double* from, double* correction) {
+    now.assign(from, from + states());
+    if (Outcome o = field->evaluate(t, now, true); !o.ok()) return refuse(std::move(o), field->guarded());
+    std::fill(correction, correction + size(), 0.0);
+    for (std::size_t i = 0; i < states(); ++i) correction[i] = field->state()[i] - from[i];
+    drift = std::max(drift, field->drift());
+    return 0;
+  }
+
+  // Reciprocals of the errors allowed.
+  int weights(const double* from, double* out) {
+    now.assign(from, from + states());
+    level_sizes(*field, now, sizes);
+    for (std::size_t i = 0; i < states(); ++i) out[i] = 1 / (settings.tolerance * sizes[static_cast<std::size_t>(field->level()[i])]);
+    for (std::size_t i = first_integral(); i < size(); ++i) out[i] = 1 / (settings.integral_tolerance * std::max(1.0, std::abs(from[i])));
+    return 0;
   }
 
   // F(t, y, z, y', z')
@@ -126,12 +153,14 @@ struct Sundials::Work {
   }
 
   void start(double t, const std::vector<double>& leading_guess);
+  bool start_stiff();
   Outcome step();
   Outcome interpolate(double t);
   Outcome failed(int flag) const;
 
   const Program& program;
   SundialsSettings settings;
+  std::optional<StateRate> field;  // of BDF
   Expansion<double> point;
   bool ida;
   std::vector<std::size_t> algebraic;  // unknowns of IDA that are no states
@@ -146,7 +175,8 @@ struct Sundials::Work {
   Outcome trouble;                         // the last one inside f or F
   std::string last_error;                  // in the words of SUNDIALS
   std::size_t steps = 0, evaluations = 0;
-  std::vector<double> now, found, equations, branch;
+  double drift = 0;
+  std::vector<double> now, found, equations, branch, sizes;
   std::vector<double> state, leading, integrals;
 };
 
@@ -174,7 +204,7 @@ void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
   const double tolerance = settings.tolerance;
   bool good = true;
   const auto set = [&](int flag) { good = good && flag == 0; };
-  memory = ida ? IDACreate(context) : CVodeCreate(CV_ADAMS, context);
+  memory = ida ? IDACreate(context) : CVodeCreate(field ? CV_BDF : CV_ADAMS, context);
   if (!memory) throw std::bad_alloc();
   if (ida) {
     const auto f = [](realtype time, N_Vector from, N_Vector from_rate, N_Vector out, void* work) {
@@ -199,15 +229,33 @@ void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
     const auto f = [](realtype time, N_Vector from, N_Vector out, void* work) {
       return static_cast<Work*>(work)->rates(time, N_VGetArrayPointer(from), N_VGetArrayPointer(out));
     };
-    fixed_point = owned(SUNNonlinSol_FixedPoint(y.get(), 0, context));
     set(CVodeSetErrHandlerFn(memory, keep_message, this));
     set(CVodeInit(memory, f, t, y.get()));
     set(CVodeSetUserData(memory, this));
-    set(CVodeSStolerances(memory, tolerance, tolerance));
-    set(CVodeSetNonlinearSolver(memory, fixed_point.get()));
     set(CVodeSetStopTime(memory, end));
+    if (field) {
+      good = good && start_stiff();
+    } else {
+      fixed_point = owned(SUNNonlinSol_FixedPoint(y.get(), 0, context));
+      set(CVodeSStolerances(memory, tolerance, tolerance));
+      set(CVodeSetNonlinearSolver(memory, fixed_point.get()));
+    }
   }
   ANHOLON_ASSERT(good);
+}
+
+bool Sundials::Work::start_stiff() {
+  const auto n = static_cast<sunindextype>(size());
+  const auto weigh = [](N_Vector from, N_Vector out, void* work) { return static_cast<Work*>(work)->weights(N_VGetArrayPointer(from), N_VGetArrayPointer(out)); };
+  const auto onto = [](realtype time, N_Vector from, N_Vector correction, realtype, N_Vector, void* work) {
+    return static_cast<Work*>(work)->project(time, N_VGetArrayPointer(from), N_VGetArrayPointer(correction));
+  };
+  matrix = owned(SUNDenseMatrix(n, n, context));
+  linear = owned(SUNLinSol_Dense(y.get(), matrix.get(), context));
+  bool good = CVodeWFtolerances(memory, weigh) == 0 && CVodeSetLinearSolver(memory, linear.get(), matrix.get()) == 0;
+  if (field->constrained()) good = good && CVodeSetProjFn(memory, onto) == 0 && CVodeSetProjErrEst(memory, 0) == 0;
+  // The limit is ours, on all steps.
+  return good && CVodeSetMaxNumSteps(memory, -1) == 0;
 }
 
 Outcome Sundials::Work::step() {
@@ -260,14 +308,26 @@ Outcome Sundials::Work::interpolate(double t) {
 Sundials::Sundials(const Program& program, const std::vector<double>& parameters, const SundialsSettings& settings, double t, double end,
                    const std::vector<double>& state, const std::vector<double>& leading, const std::vector<double>& integrals)
     : work_(std::make_unique<Work>(program, parameters, settings)) {
+  begin(t, end, state, leading, integrals);
+}
+
+Sundials::Sundials(StateRate rate, const SundialsSettings& settings, double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
+                   const std::vector<double>& integrals) {
+  const Program& program = rate.program();
+  const std::vector<double> parameters = rate.parameters();
+  work_ = std::make_unique<Work>(program, parameters, settings, std::move(rate));
+  begin(t, end, state, leading, integrals);
+}
+
+void Sundials::begin(double t, double end, const std::vector<double>& state, const std::vector<double>& leading, const std::vector<double>& integrals) {
   Work& w = *work_;
-  w.settings.tolerance = std::max(settings.tolerance, kLeastSundialsTolerance);
+  w.settings.tolerance = std::max(w.settings.tolerance, kLeastSundialsTolerance);
   w.end = end;
   w.forward = end > t;
   w.reached = w.shown = t;
   w.state = state;
   w.integrals = integrals;
-  w.integrals.resize(program.quadratures, 0);
+  w.integrals.resize(w.program.quadratures, 0);
   w.start(t, leading);
 }
 
@@ -281,11 +341,32 @@ Outcome Sundials::advance(double t) {
   return w.interpolate(t);
 }
 
+Outcome Sundials::step() {
+  if (Outcome o = work_->step(); !o.ok()) return o;
+  return work_->interpolate(work_->reached);
+}
+
+std::size_t Sundials::refused() const {
+  long tests = 0, newton = 0;
+  if (work_->memory && work_->field) CVodeGetNumErrTestFails(work_->memory, &tests), CVodeGetNumStepSolveFails(work_->memory, &newton);
+  return static_cast<std::size_t>(tests + newton);
+}
+
+StateRate& Sundials::rate() { return *work_->field; }
+
 double Sundials::time() const { return work_->shown; }
 const std::vector<double>& Sundials::state() const { return work_->state; }
 const std::vector<double>& Sundials::leading() const { return work_->leading; }
 const std::vector<double>& Sundials::integrals() const { return work_->integrals; }
 std::size_t Sundials::steps() const { return work_->steps; }
 std::size_t Sundials::evaluations() const { return work_->evaluations; }
+double Sundials::drift() const { return work_->drift; }
+
+// Each makes the LU of a dense matrix.
+std::size_t Sundials::setups() const {
+  long count = 0;
+  if (work_->memory && work_->field) CVodeGetNumLinSolvSetups(work_->memory, &count);
+  return static_cast<std::size_t>(count);
+}
 
 }  // namespace anholon

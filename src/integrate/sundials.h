@@ -6,15 +6,18 @@
 //   IDA    F(t, y, z, y', z') = 0, z = (x_j, d_j = 0): x_j^(k)' = x_j^(k+1), and E_i^(c_i) = 0 with y' in place of the leading
 //                                  derivatives; BDF, Newton's method with difference quotients for dF/dy + alpha dF/dy'
 //
+//   BDF    as CVODE, for stiff motions in earnest (theory: methods): BDF, Newton's method with difference quotients; f is that of
+//          StateRate, every step is taken back to the hidden constraints, and each level of derivatives is measured by its own size
+//
 // and the integrals W of the program's quadratures, W' = P. Hypothesis: J = dE_i^(c_i) / dx_j^(d_j) is regular, so F has index 1
-// (theory: dae-view). The hidden constraints E_i^(k) = 0, k < c_i, are what the start satisfies; nothing holds them, they drift
-// with the error of the integration (theory: second-opinion). Source: Hindmarsh et al. 2005.
+// (theory: dae-view). The hidden constraints E_i^(k) = 0, k < c_i, are what the start satisfies; for CVODE and IDA nothing holds them, they
+// drift with the error of the integration (theory: second-opinion). Source: Hindmarsh et al. 2005.
 #pragma once
 #include <functional>
 #include <memory>
 
+#include "integrate/state_rate.h"
 #include "model/model.h"
-#include "program/expansion.h"
 
 namespace anholon {
 
@@ -26,6 +29,7 @@ struct SundialsSettings {
   double tolerance = 1e-12;                   // relative and absolute, of each step
   std::size_t most_steps = 50'000'000;
   std::function<bool()> cancelled;            // asked between steps
+  double integral_tolerance = 1e-12;          // of BDF: integrals carry no error on
 };
 
 // Not copied, and used by one thread at a time; several may be used at once.
@@ -38,8 +42,14 @@ class Sundials {
   Sundials(const Sundials&) = delete;
   Sundials& operator=(const Sundials&) = delete;
 
+  // BDF with `rate`, of the same program.
+  Sundials(StateRate rate, const SundialsSettings& settings, double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
+           const std::vector<double>& integrals);
+
   // Goes on until the step in which t lies, and interpolates there; t never goes back by more than a step.
   Outcome advance(double t);
+  // One step of its own choice; state() and the others are then at its end.
+  Outcome step();
 
   // At the time of the last advance, or at the start: the state as integrated, the leading derivatives roughly.
   double time() const;
@@ -49,8 +59,15 @@ class Sundials {
 
   std::size_t steps() const;
   std::size_t evaluations() const;  // of f or F
+  std::size_t refused() const;      // steps of BDF: by the error test, or where Newton's method failed
+  std::size_t setups() const;       // of Newton's method, each of which solves for size^3 numbers
+  StateRate& rate();                // of BDF
+
+  double drift() const;             // from the hidden constraints, of its steps
 
  private:
+  void begin(double t, double end, const std::vector<double>& state, const std::vector<double>& leading, const std::vector<double>& integrals);
+
   struct Work;
   std::unique_ptr<Work> work_;
 };

@@ -541,7 +541,7 @@ Outcome Stepper<N>::aim(const W& end) {
       return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
               "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such as tanh(x/0.01) for sign(x)"};
     const W beyond = where + (forward ? past : W(-past));
-    if (abs(beyond) < abs(h)) h = beyond, cut = true;
+    if (abs(beyond) < abs(h)) h = beyond, cut = true, ++kinks_;
   } else {
     short_kinks_ = 0;
   }

@@ -96,6 +96,7 @@ class Stepper {
   const W& time() const { return t_; }
   const W& before() const { return before_; }
   std::size_t steps() const { return steps_; }
+  std::size_t kinks() const { return kinks_; }  // steps that one has cut short
   int order() const { return order_; }
 
   // The solution where the last step began, or at the start: projected and solved. Its derivatives; with `values` those of all formulas, too.
@@ -178,6 +179,7 @@ class Stepper {
   N sigma_{0}, sigma_before_{0};         // where the last two steps began
   W last_step_{0};
   bool singular_ahead_ = false;          // right after the present state
+  std::size_t kinks_ = 0;
   int short_kinks_ = 0;                  // steps in a row that were cut by a kink at their very start
   EventWatch<N> events_{{}};
   std::vector<Fired<N>> fired_;

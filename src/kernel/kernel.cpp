@@ -205,12 +205,12 @@ void Kernel::set_parameters(int lane, const std::vector<long double>& parameters
   for (std::size_t i = 0; i < values.size(); ++i) number(static_cast<std::uint32_t>(i), lane) = values[i];
 }
 
-void Kernel::expand() {
+void Kernel::expand(bool projected) {
   const Code* code = this->code();
   if (code) code->values(arena_), code->factor(arena_);
   else arithmetic_->values(-plan_->plan().largest_lead), arithmetic_->factor();
   judge_pivots();
-  project(code);
+  if (projected) project(code);
   if (code) {
     code->lead(arena_);
     code->extend(arena_);

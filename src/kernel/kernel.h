@@ -87,8 +87,9 @@ class Kernel {
     number(p.time, lane) = t;
     number(p.time + 1, lane) = 1;
   }
-  // Projects the state on the hidden constraints where it has left them, solves for the leading derivatives, and computes all coefficients.
-  void expand();
+  // Projects the state on the hidden constraints where it has left them (or leaves it as it is), solves for the leading derivatives, and computes
+  // all coefficients.
+  void expand(bool projected = true);
 
   // By how much refinement changes the solution for the leading derivatives, in relation to it.
   double correction_of_solution();

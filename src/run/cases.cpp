@@ -70,9 +70,7 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
 }
 
 void EnsemblePlan::compile_if_long() const {
-  constexpr std::chrono::milliseconds kLong(400);
-  if (!kernel || std::chrono::steady_clock::now() - since_ < kLong) return;
-  std::call_once(once_, [this] { compiler_ = std::jthread([plan = kernel, lanes = lanes] { plan->compile(code_cache(), lanes); }); });
+  if (const std::unique_lock lock(compiling_, std::try_to_lock); lock) code_.step(kernel, lanes);
 }
 
 // A model read once more, with a graph of its own in which a thread may build.

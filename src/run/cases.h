@@ -5,13 +5,12 @@
 // completed states, redundant constraints or another elimination, goes the way of `simulate` in a graph of the thread's own, so that its
 // outcome is that of `simulate`. A case with which the equations have another structure is derived anew.
 #pragma once
-#include <chrono>
 #include <deque>
 #include <mutex>
-#include <thread>
 
 #include "kernel/kernel.h"
 #include "run/case_parameters.h"
+#include "run/code_for_long_runs.h"
 
 namespace anholon {
 
@@ -43,9 +42,8 @@ class EnsemblePlan {
   StepSettings settings;
 
  private:
-  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
-  mutable std::once_flag once_;
-  mutable std::jthread compiler_;
+  mutable std::mutex compiling_;
+  mutable CodeForLongRuns code_;
 };
 
 // How a case is computed: by the tapes of the plan, or in a graph of its own, by the program of the scenario or one that is derived anew.

@@ -11,6 +11,7 @@ namespace {
 // The error between the times that are compared may be somewhat larger.
 constexpr double kSafety = 2;
 constexpr int kSharper = 100;
+constexpr std::size_t kMostTimesLonger = 10;
 constexpr int kMoreDigits = 10;
 
 // By runs in numbers M, of a motion computed in numbers N.
@@ -74,6 +75,8 @@ void estimate_error(const Scenario& s, const SimulationOptions& o, const std::ve
   }
   const Rational tolerance = o.tolerance / kSharper;
   StepSettings settings{natural_logarithm(tolerance), 0, o.most_steps, o.cancelled};
+  // A stiff motion that is short by another method is long for Taylor.
+  if (o.estimate == ErrorEstimate::short_runs) settings.most_steps = std::min(settings.most_steps, kMostTimesLonger * kShortRun);
   settings.order = taylor_order(settings.log_tolerance) + 2;
   if constexpr (std::same_as<N, Multi>) {
     const PrecisionScope precision(o.digits + 12 + kMoreDigits);

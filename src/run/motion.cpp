@@ -65,21 +65,6 @@ void Motion<N>::write_anew() {
   begun_parameters_ = parameters_;
 }
 
-template <Number N>
-void Motion<N>::compile_if_long() {
-  // A compilation takes 0.1 to 1 s, on another core if there is one.
-  constexpr std::chrono::milliseconds kLong(400);
-  constexpr std::size_t kSometimes = 64;
-  if (!leg_->plan || ++asked_ % kSometimes != 0 || (compilation_ && (compilation_->plan == leg_->plan || !*compilation_->done))) return;
-  if (std::chrono::steady_clock::now() - since_ < kLong) return;
-  const auto done = std::make_shared<std::atomic<bool>>(false);
-  compilation_.reset();
-  compilation_.emplace(leg_->plan, done, std::jthread([plan = leg_->plan, done] {
-                         plan->compile(code_cache());
-                         *done = true;
-                       }));
-}
-
 static bool can_go_on(OutcomeKind kind) {
   return kind == OutcomeKind::singular || kind == OutcomeKind::step_collapse || kind == OutcomeKind::not_a_number ||
          kind == OutcomeKind::no_convergence;
@@ -87,9 +72,9 @@ static bool can_go_on(OutcomeKind kind) {
 
 template <Number N>
 Outcome Motion<N>::step(const W& end) {
-  if (stepped_ && pivot_is_small()) eliminate_again();
+  if (stepped_ && pivot_is_small(leg_->stepper.point())) eliminate_again();
   if (stepped_) write_anew();
-  compile_if_long();
+  code_.step(leg_->plan);
   const Mark before{choices_.size(), chosen_};
   const std::size_t expansions = leg_->stepper.expansions();
   Outcome o = leg_->stepper.step(end);
@@ -119,10 +104,10 @@ void Motion<N>::watch_pivots(const Elimination& e) {
 }
 
 template <Number N>
-bool Motion<N>::pivot_is_small() {
+bool Motion<N>::pivot_is_small(const Expansion<W>& at) {
   constexpr double kSmall = 0.4;
   if (!pivots_) return false;
-  pivots_->evaluate(leg_->stepper.point());
+  pivots_->evaluate(at);
   bool small = false;
   const bool first = chosen_.empty();
   for (std::size_t i = 0; i < elimination_.pivots().size(); ++i) {

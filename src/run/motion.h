@@ -4,12 +4,10 @@
 // are then made again with other dependent coordinates, and the motion goes on from the same state (theory: elimination).
 #pragma once
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <functional>
 #include <optional>
-#include <thread>
 
+#include "run/code_for_long_runs.h"
 #include "run/representation.h"
 #include "run/saved.h"
 #include "run/scenario.h"
@@ -60,6 +58,11 @@ class Motion {
   const Program& program() const { return leg_->program; }
   const std::vector<W>& parameters() const { return parameters_; }
   std::size_t eliminations() const { return eliminations_; }  // how often other coordinates were eliminated on the way
+  // For another method (run/course.h): the plan of the kernel, if there is one; whether other coordinates should be eliminated at a point; Taylor
+  // steps from where it has come to.
+  const std::shared_ptr<const KernelPlan>& plan() const { return leg_->plan; }
+  bool pivot_is_small(const Expansion<W>& at);
+  Outcome go_on(const StepperState<N>& from) { return leg_->stepper.resume(from); }
 
  private:
   // A stretch of the motion with one elimination: its system and what steps through it.
@@ -86,15 +89,12 @@ class Motion {
   };
 
   void watch_pivots(const Elimination& e);
-  bool pivot_is_small();
   InitialState<double> here() const;
   Writing accelerate(Leg& leg) const;
   void write_anew();
   std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
   bool eliminate_again();
   std::size_t levels() const { return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0); }
-
-  void compile_if_long();
 
   const Scenario& s_;
   StepSettings settings_;
@@ -117,15 +117,7 @@ class Motion {
   std::vector<Choice> choices_;
   Mark mark_;
   std::size_t eliminations_ = 0;
-  // Machine code for a kernel that has been at work for a while is made beside the motion; its bits are the same.
-  struct Compilation {
-    std::shared_ptr<const KernelPlan> plan;
-    std::shared_ptr<std::atomic<bool>> done;
-    std::jthread thread;
-  };
-  std::optional<Compilation> compilation_;
-  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
-  std::size_t asked_ = 0;
+  CodeForLongRuns code_;
   WritingEffort effort_ = WritingEffort::at_once;  // that went into how the equations of the kernel are written
 };
 

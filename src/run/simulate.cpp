@@ -15,6 +15,11 @@ StepSettings step_settings(const SimulationOptions& o) {
   return {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
 }
 
+// What is to go on with the same bits, to be enclosed or to be compared with is Taylor's.
+Method method(const SimulationOptions& o) {
+  return o.method == Method::automatic && (o.save || o.resume || o.rigorous || o.integrator != Integrator::taylor) ? Method::taylor : o.method;
+}
+
 Column monitored(const Model& model) {
   Column es;
   for (const Monitor& m : model.monitors) es.push_back(m.value);
@@ -27,13 +32,12 @@ class Run {
   using W = Wider<N>;
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), power_(anholon::power(*s.mechanics)),
-        motion_(s, step_settings(o), watched_quadratures(s, power_), std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
-        watch_(s, power_, o.conserved, motion_.parameters()), angles_(s, motion_.parameters()) {
+        course_(s, step_settings(o), method(o), watched_quadratures(s, power_), std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
+        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()) {
     report_.constraints_each = constraint_reports(s);
   }
 
   SimulationReport go() {
-    report_.order = motion_.stepper().order();
     if (o_.resume) report_.outcome = resume(*o_.resume);
     else begin();
     if (report_.outcome.ok()) {
@@ -41,13 +45,14 @@ class Run {
       sink_.columns(column_names());
       run();
     }
-    const Stepper<N>& stepper = motion_.stepper();
-    report_.t = number_text(to_double(reached_ ? *reached_ : stepper.time()));
-    report_.steps = stepper.steps();
-    report_.constraints = to_double(stepper.worst_constraint());
-    report_.smallest_sigma = to_double(stepper.smallest_sigma());
-    report_.smallest_sigma_t = number_text(to_double(stepper.smallest_sigma_time()), 6);
-    report_.eliminations = motion_.eliminations();
+    report_.order = course_.order();
+    report_.method = course_.report();
+    report_.t = number_text(to_double(reached_ ? *reached_ : course_.time()));
+    report_.steps = course_.steps();
+    report_.constraints = to_double(course_.worst_constraint());
+    report_.smallest_sigma = to_double(course_.smallest_sigma());
+    report_.smallest_sigma_t = number_text(to_double(course_.smallest_sigma_time()), 6);
+    report_.eliminations = motion().eliminations();
     if (second_) {
       report_.second = second_->report();
       report_.constraints = report_.second->drift;
@@ -65,7 +70,11 @@ class Run {
   }
 
  private:
-  int highest() const { return largest_order(s_, motion_.program().d); }
+  // Taylor's part of it.
+  Motion<N>& motion() { return course_.taylor(); }
+  const Motion<N>& motion() const { return course_.taylor(); }
+
+  int highest() const { return largest_order(s_, motion().program().d); }
 
   std::vector<std::string> column_names() const {
     std::vector<std::string> names = {"t"};
@@ -89,12 +98,12 @@ class Run {
   }
 
   void begin() {
-    report_.outcome = motion_.start(o_.state);
+    report_.outcome = course_.start(o_.state);
     if (!report_.outcome.ok()) return;
-    t0_ = motion_.stepper().time();
+    t0_ = course_.time();
     schedule();
-    if (motion_.at(t0_).ok()) watch_.start(motion_.point());
-    report_.outcome = motion_.within_bounds();
+    if (course_.at(t0_).ok()) watch_.start(course_.point());
+    report_.outcome = motion().within_bounds();
   }
 
   // Another integrator, whose motion is then the one that is written.
@@ -107,26 +116,26 @@ class Run {
 
   // The motion that was asked for, at t.
   Outcome at(const W& t) {
-    Outcome o = motion_.at(t);
+    Outcome o = course_.at(t);
     if constexpr (std::same_as<N, double>)
-      if (o.ok() && second_) o = second_->at(t, motion_.point());
+      if (o.ok() && second_) o = second_->at(t, course_.point());
     return o;
   }
 
   const Expansion<W>& point() const {
     if constexpr (std::same_as<N, double>)
       if (second_) return second_->point();
-    return motion_.point();
+    return course_.point();
   }
 
   const W& work() const {
     if constexpr (std::same_as<N, double>)
       if (second_) return second_->work();
-    return motion_.stepper().integrals()[0];
+    return course_.integrals()[0];
   }
 
   Outcome resume(const SavedRun& from) {
-    if (Outcome o = motion_.resume(o_.state, from); !o.ok()) return o;
+    if (Outcome o = motion().resume(o_.state, from); !o.ok()) return o;
     t0_ = from.number<W>("start");
     done_ = from.number<W>("rows");
     watch_.resume(from);
@@ -150,7 +159,7 @@ class Run {
   // From here a run goes on with the same bits.
   void save() {
     SavedRun to;
-    motion_.save(to);
+    motion().save(to);
     watch_.save(to);
     to.set_numbers<W>("start", {t0_});
     to.set_numbers<W>("rows", {*done_});
@@ -208,34 +217,32 @@ class Run {
     }
     if (o_.rigorous) defect_.emplace(s_, *o_.rigorous, Ball(*done_), Ball(end_), significand_bits<W>());
     auto saved = std::chrono::steady_clock::now();
-    while (report_.outcome.ok() && !(motion_.stepper().time() == end_)) {
-      report_.outcome = motion_.step(end_);
+    while (report_.outcome.ok() && !(course_.time() == end_)) {
+      report_.outcome = course_.step(end_);
       if (!report_.outcome.ok()) break;
-      const Stepper<N>& stepper = motion_.stepper();
-      angles_.see(stepper.point());
-      if (report_.outcome = watch_.still_redundant(stepper.point(), report_); !report_.outcome.ok()) break;
+      angles_.see(course_.begun());
+      if (report_.outcome = watch_.still_redundant(course_.begun(), report_); !report_.outcome.ok()) break;
       const W stop = masses_positive_until();
-      if (defect_) defect_->step(dense_step(stepper, stop));
-      if (o_.progress) o_.progress(to_double(stepper.time()), stepper.steps());
+      if (defect_) defect_->step(dense_step(motion().stepper(), stop));
+      if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
       rows_until(stop);
-      if (report_.outcome.ok() && !(stop == stepper.time())) negative_mass(stop);
-      if (report_.outcome.ok() && motion_.fired() && !events()) break;
+      if (report_.outcome.ok() && !(stop == course_.time())) negative_mass(stop);
+      if (report_.outcome.ok() && course_.by_taylor() && motion().fired() && !events()) break;
       if (!o_.save || std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() < o_.save_seconds) continue;
       save();
       saved = std::chrono::steady_clock::now();
     }
-    const Stepper<N>& stepper = motion_.stepper();
-    if (report_.outcome.ok() && stepper.steps() > 0 && at(stepper.time()).ok()) watch_.end(point(), work(), report_);
+    if (report_.outcome.ok() && course_.steps() > 0 && at(course_.time()).ok()) watch_.end(point(), work(), report_);
     if (o_.save) save();
     if (!report_.outcome.ok()) stopped();
   }
 
   // What fired in the last step; false if it ends the motion.
   bool events() {
-    if (Outcome o = motion_.at(motion_.stepper().time()); o.ok()) watch_.leave(motion_.point());
+    if (Outcome o = motion().at(motion().stepper().time()); o.ok()) watch_.leave(motion().point());
     std::vector<Occurrence<W>> occurrences;
     bool goes_on = true;
-    report_.outcome = motion_.settle(occurrences, goes_on);
+    report_.outcome = motion().settle(occurrences, goes_on);
     for (const Occurrence<W>& o : occurrences) {
       const Event& e = s_.model->events[o.event];
       EventReport r{e.name, text(o.t), {}, to_double(o.correction), e.stop};
@@ -244,18 +251,18 @@ class Run {
       accumulate(o);
     }
     if (!report_.outcome.ok()) {
-      reached_ = motion_.stepper().time();
+      reached_ = motion().stepper().time();
       return false;
     }
-    angles_.set_parameters(motion_.parameters());
-    if (motion_.at(motion_.stepper().time()).ok()) watch_.enter(motion_.point(), motion_.parameters());
+    angles_.set_parameters(motion().parameters());
+    if (motion().at(motion().stepper().time()).ok()) watch_.enter(motion().point(), motion().parameters());
     if (!goes_on) ended();
     return goes_on && report_.outcome.ok();
   }
 
   // By an event: the state there is worth a row of its own.
   void ended() {
-    const W t = motion_.stepper().time();
+    const W t = course_.time();
     reached_ = t;
     if (!every_step_ && !(next_ > 0 && times_[next_ - 1] == t)) row(t, "");
   }
@@ -283,34 +290,32 @@ class Run {
     for (; report_.outcome.ok() && next_ < times_.size() && reaches(stop, times_[next_]); ++next_) row(times_[next_], labels_[next_]);
     if (every_step_ && report_.outcome.ok() && !reaches(*done_, stop)) row(stop, "");
     for (; next_sample_ < samples_.size() && reaches(stop, samples_[next_sample_].t); ++next_sample_)
-      if (motion_.at(samples_[next_sample_].t).ok()) samples_[next_sample_].values = sampled(s_, motion_.program(), motion_.point());
+      if (course_.at(samples_[next_sample_].t).ok()) samples_[next_sample_].values = sampled(s_, motion().program(), course_.point());
       else return;
     if (!reaches(*done_, stop)) done_ = stop;
   }
 
   void stopped() {
-    const Stepper<N>& stepper = motion_.stepper();
     if (report_.outcome.message.find(" t = ") != std::string::npos) return;
-    report_.outcome.message += " at t = " + number_text(to_double(stepper.time()), 12);
+    report_.outcome.message += " at t = " + number_text(to_double(course_.time()), 12);
     // Nobody asked for an end here.
     const bool stopped_by_itself = report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
     if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
         report_.outcome.kind == OutcomeKind::no_convergence || stopped_by_itself)
-      explain_stop(s_, motion_, report_.outcome);
+      explain_stop(s_, motion(), report_.outcome);
     // The last good state is worth a row of its own.
-    if (stepper.steps() > 0 && !every_step_) {
+    if (course_.steps() > 0 && !every_step_) {
       const Outcome why = report_.outcome;
-      row(stepper.before(), "");
+      row(course_.before(), "");
       report_.outcome = why;
     }
   }
 
   void warn() {
     constexpr double kNearSingular = 1e-3;
-    const Stepper<N>& stepper = motion_.stepper();
-    if (stepper.smallest_sigma() < stepper.first_sigma() * N(kNearSingular)) {
-      const std::size_t j = stepper.weakest_unknown(), n = s_.system.coordinates;
-      const std::string what = j < n ? derivative_name(s_.system.variable_names[j], static_cast<unsigned>(motion_.program().d[j]), Format::text) + " is hardly determined"
+    if (course_.smallest_sigma() < course_.first_sigma() * N(kNearSingular)) {
+      const std::size_t j = course_.weakest_unknown(), n = s_.system.coordinates;
+      const std::string what = j < n ? derivative_name(s_.system.variable_names[j], static_cast<unsigned>(motion().program().d[j]), Format::text) + " is hardly determined"
                                      : "the constraint '" + s_.system.equation_names[j] + "' hardly holds";
       report_.warnings.push_back({"the motion passes near a singular configuration at t = " + report_.smallest_sigma_t + ": " + what,
                                   "trust what follows less; write the constraint or the coordinates so that they are regular there"});
@@ -339,7 +344,8 @@ class Run {
 
   // The end of the last step, or the earlier time at which a mass passes zero.
   W masses_positive_until() {
-    const Stepper<N>& stepper = motion_.stepper();
+    if (!course_.by_taylor()) return course_.time();  // Taylor's steps go to where one vanishes
+    const Stepper<N>& stepper = motion().stepper();
     const W whole = stepper.time() - stepper.before();
     W good = whole;
     for (std::size_t i = 0; i < s_.model->masses.size(); ++i) {
@@ -398,7 +404,7 @@ class Run {
   const SimulationOptions& o_;
   RowSink& sink_;
   Power power_;
-  Motion<N> motion_;
+  Course<N> course_;
   std::unique_ptr<SecondMotion> second_;  // what another integrator makes of it
   Watch<W> watch_;
   AngleWatch<W> angles_;

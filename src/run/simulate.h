@@ -4,6 +4,7 @@
 
 #include "mechanics/conserved.h"
 #include "result/rows.h"
+#include "run/course.h"
 #include "run/defect.h"
 #include "run/saved.h"
 #include "run/scenario.h"
@@ -23,6 +24,9 @@ struct SimulationOptions {
   Rational tolerance{1, 1000000000000};
   int order = 0;                   // of the Taylor polynomials; 0: from the tolerance
   Integrator integrator = Integrator::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
+  // Whose motion it is. Where only Taylor's can give what is asked for, automatic means that; others by name compute in double, do not save,
+  // and know neither events nor enclosures.
+  Method method = Method::automatic;
   Precision precision = Precision::real;
   int digits = 16;                 // of the numbers written, where more than 16 (multi: also of the computation)
   std::optional<std::size_t> rigorous;  // the defect of the dense output, enclosed at so many times; at all times: 0
@@ -95,7 +99,8 @@ struct SimulationReport {
   std::vector<EventReport> events;
   std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
-  std::optional<SecondOpinion> second;  // where another integrator was asked for; steps, order and sigma are Taylor's
+  MethodReport method;
+  std::optional<SecondOpinion> second;  // where another integrator was asked for; steps, order and sigma are those of the motion beside it
   std::vector<WatchedReport> monitors;   // of the model's [monitor]
   std::vector<WatchedReport> conserved;  // integrals of the motion
 };

@@ -152,7 +152,7 @@ class Oracle : public testing::TestWithParam<Pair> {
     return worst;
   }
 
-  Worst simulate_all(Precision numbers, double tolerance, int digits) const {
+  Worst simulate_all(Precision numbers, double tolerance, int digits, Method method = Method::automatic) const {
     Worst worst;
     const json& path = data["trajectory"];
     Scenario s;
@@ -163,6 +163,7 @@ class Oracle : public testing::TestWithParam<Pair> {
     options.tolerance = tolerance;
     options.precision = numbers;
     options.digits = digits;
+    options.method = method;
     MemorySink sink;
     const SimulationReport report = simulate(s, options, sink);
     EXPECT_EQ(report.outcome.kind, OutcomeKind::finished) << report.outcome.message;
@@ -199,6 +200,20 @@ TEST_P(UnstableOracle, TrajectoryInLongDouble) {
   EXPECT_TRUE(simulate_all(Precision::long_real, 1e-18, 19).within(kSimulate));
 }
 INSTANTIATE_TEST_SUITE_P(Model, UnstableOracle, testing::Values(Pair{"zoo/rattleback", kUnstableSystem}),
+                         [](const auto& p) { return test::test_name(p.param.model); });
+
+// Other methods: errors of steps add up, and accelerations follow the state.
+class OracleByMethod : public Oracle {};
+TEST_P(OracleByMethod, Trajectory) {
+  for (const double tolerance : {1e-6, 1e-9}) {
+    EXPECT_TRUE(simulate_all(Precision::real, tolerance, 16, Method::runge_kutta).within(30 * tolerance)) << tolerance;
+    EXPECT_FALSE(simulate_all(Precision::real, tolerance, 16, Method::runge_kutta).within(1e-6 * tolerance)) << "that is another method";
+    EXPECT_TRUE(simulate_all(Precision::real, tolerance, 16, Method::bdf).within(1000 * tolerance)) << tolerance;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Model, OracleByMethod,
+                         testing::Values(Pair{"zoo/chaplygin-sleigh", "s03_chaplygin_sleigh"}, Pair{"zoo/double-pendulum-cartesian", "s15_double_pendulum_cartesian"},
+                                         Pair{"zoo/second-order-linear", "s12b_second_order_linear"}, Pair{"zoo/rocket", "s14_rocket"}),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
 // The quick systems in multiprecision; all of them under ANHOLON_LONG=1.

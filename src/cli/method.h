@@ -1,0 +1,16 @@
+// --method: by which method a motion is computed, and what was done about it.
+#pragma once
+#include "base/json.h"
+#include "cli/commands.h"
+#include "run/simulate.h"
+
+namespace anholon::cli {
+
+// After tolerance, precision and integrator are known; throws UsageError where the method asked for cannot do what else is asked for.
+void choose_method(const Options& o, const Scenario& scenario, SimulationOptions& options);
+
+// Nothing where all is Taylor's and nothing else was tried.
+void print_method(const MethodReport& report);
+void write_method(JsonWriter& j, const MethodReport& report);
+
+}  // namespace anholon::cli

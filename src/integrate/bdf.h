@@ -1,0 +1,30 @@
+// The motion by BDF, for stiff motions: CVODE's (sundials.h), with steps that end on all hidden constraints (theory: methods).
+#pragma once
+#include <optional>
+
+#include "integrate/sundials.h"
+
+namespace anholon {
+
+class Bdf final : public StateStepper {
+ public:
+  Bdf(StateRate rate, const StepSettings& settings);
+
+  const char* title() const override { return "BDF"; }
+  // Once.
+  Outcome start(const MotionPoint& from, long double end) override;
+  Outcome step(long double end) override;
+  Outcome at(long double t, MotionPoint& point) override;
+  std::size_t refused() const override { return motion_ ? motion_->refused() : 0; }
+  StateRate& rate() override { return motion_ ? motion_->rate() : *rate_; }
+  double more_work() const override;
+
+ private:
+  void put(MotionPoint& point) const;
+
+  std::optional<StateRate> rate_;
+  std::optional<Sundials> motion_;
+  StepSettings settings_;
+};
+
+}  // namespace anholon

@@ -1,0 +1,332 @@
+#include "integrate/runge_kutta.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.h"
+
+namespace anholon {
+
+namespace {
+
+namespace method = dormand_prince;
+
+// Steps smaller than this many round-offs of the time are a collapse.
+constexpr int kCollapsedRoundoffs = 16;
+constexpr double kBlowUp = 1e100;
+constexpr std::size_t kStepsToJudge = 1000;
+// Each makes a step five times shorter where f has no value.
+constexpr int kMostRefusals = 40;
+// Kinks met so soon after another one are other kinks, until they are too many.
+constexpr int kMostShortKinks = 20;
+// Taylor's steps miss by about this part of the tolerance; it is to mean the same here.
+constexpr double kOfTolerance = 0.1;
+// PI controller (Hairer & Wanner, IV.2): exponents for an estimate of order 8, and the bounds of one change.
+constexpr double kProportional = 0.7 / method::kOrder, kIntegral = 0.4 / method::kOrder, kSafety = 0.9, kLeast = 0.2, kMost = 5;
+
+// The coefficients in double, those that vanish left out.
+struct Term {
+  std::size_t stage;
+  double factor;
+};
+using Row = std::vector<Term>;
+
+Row row(const std::array<long double, method::kStages>& from) {
+  Row r;
+  for (std::size_t j = 0; j < from.size(); ++j)
+    if (from[j] != 0) r.push_back({j, static_cast<double>(from[j])});
+  return r;
+}
+
+struct Table {
+  std::array<Row, method::kStages> a;
+  Row b, e5, e3;
+};
+
+const Table& table() {
+  static const Table made = [] {
+    Table t;
+    for (std::size_t i = 0; i < method::kStages; ++i) t.a[i] = row(method::a[i]);
+    t.b = row(method::b);
+    t.e5 = row(method::e5);
+    std::array<long double, method::kStages> e3{};
+    for (std::size_t i = 0; i < method::kStages; ++i) e3[i] = method::b[i] - method::b3[i];
+    t.e3 = row(e3);
+    return t;
+  }();
+  return made;
+}
+
+template <class Stages>
+void weigh(const Row& row, const Stages& k, std::size_t count, std::vector<double>& out) {
+  out.assign(count, 0.0);
+  for (const Term& term : row) {
+    const std::vector<double>& from = k[term.stage];
+    for (std::size_t i = 0; i < count; ++i) out[i] += term.factor * from[i];
+  }
+}
+
+void narrow(const std::vector<long double>& from, std::vector<double>& to) {
+  to.resize(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<double>(from[i]);
+}
+
+// s + x with the round-off kept in `carry`.
+void add(long double& s, long double& carry, double x) {
+  const long double y = x + carry, sum = s + y;
+  carry = std::abs(s) >= std::abs(y) ? (s - sum) + y : (y - sum) + s;
+  s = sum;
+}
+
+}  // namespace
+
+RungeKutta::RungeKutta(StateRate rate, const StepSettings& settings)
+    : rate_(std::move(rate)), settings_(settings), tolerance_(kOfTolerance * std::exp(settings.log_tolerance)) {
+  for (std::vector<double>& k : k_) k.resize(rate_.size() + rate_.integrands().size());
+}
+
+Outcome RungeKutta::start(const MotionPoint& from, long double end) {
+  now_ = before_ = from;
+  started_ = from.t;
+  carry_.assign(from.state.size(), 0);
+  integral_carry_.assign(from.integrals.size(), 0);
+  rate_.set_leading(from.leading);
+  error_before_ = 1;
+  if (Outcome o = first_rate(); !o.ok()) return o;
+  before_ = now_;
+  k_[0] = here_;
+  h_ = first_step(end < from.t ? -1 : 1);
+  return {};
+}
+
+// At now(), which it puts on the constraints.
+Outcome RungeKutta::first_rate() {
+  narrow(now_.state, y_);
+  if (Outcome o = rate_.evaluate(static_cast<double>(now_.t), y_, true); !o.ok()) return o;
+  if (rate_.moved())
+    for (std::size_t i = 0; i < y_.size(); ++i)
+      if (const double moved = rate_.state()[i] - y_[i]; moved != 0) now_.state[i] += moved, carry_[i] = 0;
+  now_.leading = rate_.leading();
+  sides_ = rate_.sides();
+  arguments_ = rate_.arguments();
+  here_ = rate_.rate();
+  here_.insert(here_.end(), rate_.integrands().begin(), rate_.integrands().end());
+  worst_constraint_ = std::max(worst_constraint_, rate_.drift());
+  return {};
+}
+
+// From the sizes of x' and x'' (Hairer, Nørsett & Wanner 1993, II.4).
+double RungeKutta::first_step(double direction) {
+  narrow(now_.state, start_);
+  level_sizes(rate_, start_, sizes_);
+  const auto weight = [&](std::size_t i) { return 1 / (tolerance_ * sizes_[static_cast<std::size_t>(rate_.level()[i])]); };
+  double d0 = 1, d1 = 0, d2 = 0;
+  for (std::size_t i = 0; i < start_.size(); ++i)
+    d0 = std::max(d0, std::abs(start_[i]) * weight(i)), d1 = std::max(d1, std::abs(here_[i]) * weight(i));
+  const double h0 = d1 > 0 ? 0.01 * d0 / d1 : 1;
+  y_ = start_;
+  for (std::size_t i = 0; i < y_.size(); ++i) y_[i] += direction * h0 * here_[i];
+  if (!rate_.evaluate(static_cast<double>(now_.t) + direction * h0, y_).ok()) return h0 * 1e-3;
+  for (std::size_t i = 0; i < y_.size(); ++i) d2 = std::max(d2, std::abs(rate_.rate()[i] - here_[i]) * weight(i) / h0);
+  const double largest = std::max(d1, d2);
+  return std::min(100 * h0, largest > 0 ? std::pow(0.01 / largest, 1.0 / method::kOrder) : 1.0);
+}
+
+// k_[1], … for a step of h; k_[0] is there.
+Outcome RungeKutta::stages(const MotionPoint& from, double h) {
+  const std::size_t n = rate_.size();
+  narrow(from.state, start_);
+  for (std::size_t s = 1; s < method::kStages; ++s) {
+    weigh(table().a[s], k_, n, y_);
+    for (std::size_t i = 0; i < n; ++i) y_[i] = start_[i] + h * y_[i];
+    if (Outcome o = rate_.evaluate(static_cast<double>(from.t + method::c[s] * h), y_); !o.ok()) return o;
+    std::copy(rate_.rate().begin(), rate_.rate().end(), k_[s].begin());
+    std::copy(rate_.integrands().begin(), rate_.integrands().end(), k_[s].begin() + static_cast<std::ptrdiff_t>(n));
+  }
+  return {};
+}
+
+// The stages of a step from now(), and f at its end.
+Outcome RungeKutta::whole(double h) {
+  if (Outcome o = stages(now_, h); !o.ok()) return o;
+  weigh(table().b, k_, rate_.size(), y_);
+  for (std::size_t i = 0; i < y_.size(); ++i) y_[i] = start_[i] + h * y_[i];
+  return rate_.evaluate(static_cast<double>(now_.t) + h, y_, true);
+}
+
+// Whether f was evaluated beyond a kink.
+bool RungeKutta::turned() const { return rate_.sides().size() == sides_.size() && rate_.sides() != sides_; }
+
+// After a whole step of h that has gone beyond a kink: the step to just beyond the first one, with its stages. By secants (Illinois) through whole
+// steps that end on both sides of it.
+Outcome RungeKutta::cut_at_kink(double& h) {
+  constexpr int kPastKink = 32, kMostTries = 60;
+  struct End {
+    double h;
+    std::vector<double> arguments;
+    double weight = 1;
+  };
+  const double direction = h < 0 ? -1 : 1;
+  const double past = 0x1p-53 * kPastKink * std::max(std::abs(static_cast<double>(now_.t)), std::abs(h)) + tolerance_ * std::abs(h);
+  End low{0, arguments_}, high{std::abs(h), rate_.arguments()};
+  std::vector<int> ends = rate_.sides();
+  bool at_high = true;
+  for (int tries = 0; tries < kMostTries && high.h - low.h > past; ++tries) {
+    // Of those that have turned, the one that did so first, as far as straight lines tell.
+    double root = high.h;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (ends[i] == sides_[i]) continue;
+      const double before = low.weight * rate_.beyond(i, low.arguments[i], sides_[i], ends[i]),
+                   after = high.weight * rate_.beyond(i, high.arguments[i], sides_[i], ends[i]);
+      root = std::min(root, before < 0 && after > 0 ? low.h + (high.h - low.h) * before / (before - after) : before < 0 ? high.h : low.h);
+    }
+    const double there = std::clamp(root + past / 2, low.h + past / 4, high.h - past / 4);
+    if (Outcome o = whole(direction * there); !o.ok()) return o;
+    const bool beyond = turned();
+    // Too long even without the kink: it is refused as any other.
+    if (!beyond && error(direction * there) > 1) {
+      h = direction * there;
+      return {};
+    }
+    End& moved = beyond ? high : low;
+    End& other = beyond ? low : high;
+    other.weight = tries > 0 && at_high == beyond ? other.weight / 2 : 1;
+    moved = {there, rate_.arguments()};
+    at_high = beyond;
+    if (beyond) ends = rate_.sides();
+  }
+  h = direction * high.h;
+  short_kinks_ = high.h > 4 * past ? 0 : short_kinks_ + 1;
+  return at_high ? Outcome{} : whole(h);
+}
+
+// In units of the tolerance: the largest of any level.
+double RungeKutta::error(double h) {
+  const std::size_t n = rate_.size(), all = k_[0].size();
+  weigh(table().e5, k_, all, e5_);
+  weigh(table().e3, k_, all, e3_);
+  // Of each level, and of each integral.
+  most_.assign(sizes_.size() + all - n, {0.0, 0.0});
+  for (std::size_t i = 0; i < all; ++i) {
+    auto& [five, three] = most_[i < n ? static_cast<std::size_t>(rate_.level()[i]) : sizes_.size() + i - n];
+    if (!std::isfinite(e5_[i]) || !std::isfinite(e3_[i])) return std::numeric_limits<double>::infinity();
+    five = std::max(five, std::abs(e5_[i]));
+    three = std::max(three, std::abs(e3_[i]));
+  }
+  double worst = 0;
+  for (std::size_t k = 0; k < most_.size(); ++k) {
+    const auto [e5, e3] = most_[k];
+    const double five = e5 * e5, three = e3 * e3;
+    if (!(five > 0)) continue;
+    // Integrals carry no error on: the tolerance itself is enough for them.
+    const double allowed = k < sizes_.size()
+                               ? tolerance_ * sizes_[k]
+                               : tolerance_ / kOfTolerance * std::max(1.0, static_cast<double>(std::abs(now_.integrals[k - sizes_.size()])));
+    worst = std::max(worst, std::abs(h) * five / std::sqrt(five + 0.01 * three) / allowed);
+  }
+  return worst;
+}
+
+void RungeKutta::advance(MotionPoint& to, std::vector<long double>& carry, double h) {
+  const std::size_t n = rate_.size();
+  weigh(table().b, k_, k_[0].size(), change_);
+  for (std::size_t i = 0; i < n; ++i) add(to.state[i], carry[i], h * change_[i]);
+}
+
+Outcome RungeKutta::step(long double end) {
+  if (settings_.cancelled && settings_.cancelled()) return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
+  if (steps_ >= settings_.most_steps) return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
+  const long double left = end - now_.t;
+  const double floor = 0x1p-53 * kCollapsedRoundoffs * static_cast<double>(std::abs(now_.t));
+  if (steps_ >= kStepsToJudge) {
+    const double mean = static_cast<double>(std::abs(now_.t - started_)) / static_cast<double>(steps_);
+    if (static_cast<double>(std::abs(left)) > std::max(mean, h_) * static_cast<double>(settings_.most_steps - steps_))
+      return {OutcomeKind::interrupted,
+              "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(h_, 2) + " long",
+              "end the motion earlier, or take what is very fast or very stiff out of the model"};
+  }
+  k_[0] = here_;
+  narrow(now_.state, start_);
+  level_sizes(rate_, start_, sizes_);
+  Outcome trouble;
+  for (int again = 0;; ++again) {
+    if (again > 0) ++refused_;
+    const bool last = !(h_ < std::abs(left));
+    // The step that t can show exactly.
+    long double reached = last ? end : static_cast<long double>(static_cast<double>(now_.t + (left > 0 ? h_ : -h_)));
+    double h = static_cast<double>(reached - now_.t);
+    if ((!(std::abs(h) > floor) && !last) || again > kMostRefusals) {
+      if (!trouble.ok()) return trouble;
+      return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
+              "the motion approaches a singularity: stop before it, or look at the last good state"};
+    }
+    trouble = sides_.empty() ? stages(now_, h) : whole(h);
+    bool cut = false;
+    if (trouble.ok() && !sides_.empty() && turned()) {
+      trouble = cut_at_kink(h);
+      cut = true;
+      reached = static_cast<long double>(static_cast<double>(now_.t + h));
+      if (short_kinks_ > kMostShortKinks) return {OutcomeKind::step_collapse, "the motion stays at a kink", "put a smooth function in its place"};
+    } else {
+      short_kinks_ = 0;
+    }
+    if (!trouble.ok()) {
+      if (rate_.guarded()) return trouble;  // shorter steps would come so close that nobody could tell the sides apart
+      h_ = kLeast * std::abs(h);
+      continue;
+    }
+    const double e = error(h);
+    if (!(e <= 1)) {
+      h_ = std::abs(h) * std::max(kLeast, std::isfinite(e) ? kSafety * std::pow(e, -1.0 / method::kOrder) : 0.0);
+      continue;
+    }
+    MotionPoint next = now_;
+    std::vector<long double> carry = carry_, integral_carry = integral_carry_;
+    advance(next, carry, h);
+    for (long double x : next.state)
+      if (!std::isfinite(x) || std::abs(x) > kBlowUp)
+        return {OutcomeKind::blow_up, "the motion grows without bound", "look at the last good state: a velocity or position diverges"};
+    for (std::size_t i = 0; i < next.integrals.size(); ++i) add(next.integrals[i], integral_carry[i], h * change_[rate_.size() + i]);
+    next.t = reached;
+    std::swap(before_, now_);
+    std::swap(now_, next);
+    std::swap(carry_, carry);
+    std::swap(integral_carry_, integral_carry);
+    trouble = first_rate();
+    if (!trouble.ok()) {  // the step was too bold
+      std::swap(now_, before_);
+      std::swap(before_, next);
+      std::swap(carry_, carry);
+      std::swap(integral_carry_, integral_carry);
+      here_ = k_[0];
+      rate_.set_leading(now_.leading);
+      if (rate_.guarded()) return trouble;
+      h_ = kLeast * std::abs(h);
+      continue;
+    }
+    ++steps_;
+    const double grown = e > 0 ? kSafety * std::pow(e, -kProportional) * std::pow(error_before_, kIntegral) : kMost;
+    // What the end or a kink cut short says nothing of the steps beyond; after a refusal a step does not grow.
+    const double next_h = std::abs(h) * std::clamp(grown, kLeast, again > 0 ? 1.0 : kMost);
+    h_ = last || cut ? std::max(h_, next_h) : next_h;
+    error_before_ = std::max(e, 1e-4);
+    return {};
+  }
+}
+
+Outcome RungeKutta::at(long double t, MotionPoint& point) {
+  if (t == now_.t || t == before_.t) {
+    point = t == now_.t ? now_ : before_;
+    return {};
+  }
+  const double h = static_cast<double>(t - before_.t);
+  if (Outcome o = stages(before_, h); !o.ok()) return o;
+  std::vector<long double> carry(before_.state.size(), 0);
+  point = before_;
+  point.t = t;
+  advance(point, carry, h);
+  for (std::size_t i = 0; i < point.integrals.size(); ++i) point.integrals[i] += h * change_[rate_.size() + i];
+  return {};
+}
+
+}  // namespace anholon

@@ -1,0 +1,52 @@
+// The motion by Dormand and Prince's explicit Runge-Kutta method of order 8 (dormand_prince.h): for tolerances so loose, or forces so little
+// smooth, that Taylor's polynomials do not pay.
+//
+// The state is kept wider than its rates and summed up with its round-off carried along; every step ends on all hidden constraints, by the
+// first evaluation of the next one. Step sizes follow the error estimate by a PI controller (theory: methods).
+#pragma once
+#include "integrate/dormand_prince.h"
+#include "integrate/state_rate.h"
+
+namespace anholon {
+
+class RungeKutta final : public StateStepper {
+ public:
+  RungeKutta(StateRate rate, const StepSettings& settings);
+
+  const char* title() const override { return "Runge-Kutta 8"; }
+  Outcome start(const MotionPoint& from, long double end) override;
+  Outcome step(long double end) override;
+  // By a step of its own.
+  Outcome at(long double t, MotionPoint& point) override;
+  std::size_t refused() const override { return refused_; }
+  StateRate& rate() override { return rate_; }
+
+ private:
+  using Stages = std::array<std::vector<double>, dormand_prince::kStages>;
+
+  Outcome first_rate();
+  double first_step(double direction);
+  Outcome stages(const MotionPoint& from, double h);
+  Outcome whole(double h);
+  bool turned() const;
+  Outcome cut_at_kink(double& h);
+  double error(double h);
+  void advance(MotionPoint& to, std::vector<long double>& carry, double h);
+
+  StateRate rate_;
+  StepSettings settings_;
+  double tolerance_;
+  Stages k_;                        // rates of the state, then the quadratures
+  std::vector<double> here_;        // the first of them at now()
+  std::vector<double> start_, y_, change_, sizes_, e5_, e3_;
+  std::vector<std::pair<double, double>> most_;
+  std::vector<long double> carry_, integral_carry_;
+  long double started_ = 0;
+  double h_ = 0, error_before_ = 1;
+  std::size_t refused_ = 0;
+  std::vector<int> sides_;  // of the kinks, at now()
+  std::vector<double> arguments_;
+  int short_kinks_ = 0;     // steps in a row that were cut at their very start
+};
+
+}  // namespace anholon

@@ -1,0 +1,120 @@
+// The motion as an ordinary differential equation x' = f(t, x) of its state, for methods that ask for no more than f.
+//
+//   x = (x_j^(k), k < d_j);  f solves the equations for the leading derivatives and shifts: x_j^(k)' = x_j^(k+1)  (theory: methods)
+//
+// On the hidden constraints f is the motion's own field, around them a smooth one; a state is taken back to them where that is asked
+// for. Evaluated by a kernel without stages beyond the leading derivatives; by the reference where there is none or its pivots have become
+// small.
+#pragma once
+#include <memory>
+
+#include "integrate/taylor.h"
+#include "kernel/kernel.h"
+
+namespace anholon {
+
+// A quadrature of the program that is not to become negative: a mass, how far the argument of a table is inside of it.
+struct Guard {
+  std::size_t quadrature = 0;
+  Outcome fault;
+};
+
+class StateRate {
+ public:
+  // `plan`: of a program for the same unknowns and quadratures, or null.
+  StateRate(const Program& program, const std::vector<double>& parameters, const std::vector<long double>& wide_parameters,
+            std::shared_ptr<const KernelPlan> plan, std::vector<Guard> guards = {});
+
+  // At the state, or at the nearest one on the hidden constraints.
+  Outcome evaluate(double t, const std::vector<double>& state, bool projected = false);
+  // At that point: the state, f, the leading derivatives, the quadratures.
+  const std::vector<double>& state() const { return state_; }
+  const std::vector<double>& rate() const { return rate_; }
+  const std::vector<double>& leading() const { return leading_; }
+  const std::vector<double>& integrands() const { return integrands_; }
+  // Where it was projected: how far it was from the constraints, in relation to its size; whether it was moved.
+  double drift() const { return drift_; }
+  bool moved() const { return moved_; }
+  // Of the kernel's pivots; 1 where the reference was asked.
+  double health() const { return health_; }
+  // Where f may have a kink: on which side each abs, sign, piecewise or table was, the number of a piece or of an interval between knots.
+  // By a kernel alone.
+  const std::vector<int>& sides() const { return sides_; }
+  // Their arguments there; how far one is beyond the end of a side, in the direction of another one.
+  const std::vector<double>& arguments() const { return arguments_; }
+  double beyond(std::size_t kink, double argument, int side, int other) const;
+  // Whether the last evaluation failed at a guard.
+  bool guarded() const { return guarded_; }
+  // The first guess of the leading derivatives of the next evaluation.
+  void set_leading(const std::vector<double>& leading) { leading_ = leading; }
+
+  const Program& program() const { return *program_; }
+  const std::vector<double>& parameters() const { return point_.parameters(); }
+  std::size_t size() const { return level_.size(); }
+  // Of each entry of the state: k of x_j^(k).
+  const std::vector<int>& level() const { return level_; }
+  int levels() const { return levels_; }
+  bool constrained() const { return constrained_; }
+  const KernelPlan* plan() const { return kernel_ ? &kernel_->plan() : nullptr; }
+  std::size_t evaluations() const { return evaluations_; }
+  std::size_t by_reference() const { return by_reference_; }
+
+ private:
+  struct Kink {
+    Place argument;
+    const std::vector<double>* knots = nullptr;  // of a table; otherwise zero is the end of either side
+  };
+  void find_kinks();
+  bool by_kernel(double t, const std::vector<double>& state, bool projected);
+  Outcome by_reference(double t, const std::vector<double>& state, bool projected);
+
+  const Program* program_;
+  std::unique_ptr<Kernel> kernel_;
+  Expansion<double> point_;
+  std::vector<Guard> guards_;
+  std::vector<Kink> kinks_;
+  std::vector<int> level_, sides_;
+  int levels_ = 1;
+  bool constrained_ = false, moved_ = false, guarded_ = false;
+  std::vector<double> state_, rate_, leading_, integrands_, arguments_;
+  double drift_ = 0, health_ = 1;
+  std::size_t evaluations_ = 0, by_reference_ = 0;
+};
+
+// A consistent state on a motion, what follows from it, and the integrals up to there.
+struct MotionPoint {
+  long double t = 0;
+  std::vector<long double> state;
+  std::vector<double> leading;
+  std::vector<long double> integrals;
+};
+
+// Steps of a motion in doubles by a method other than Taylor's. Each ends on all hidden constraints.
+class StateStepper {
+ public:
+  virtual ~StateStepper() = default;
+  virtual const char* title() const = 0;
+  // Goes on from there; the state is on the constraints but for round-off.
+  virtual Outcome start(const MotionPoint& from, long double end) = 0;
+  virtual Outcome step(long double end) = 0;
+  // Anywhere in the last step, to the accuracy of the steps; close to the constraints.
+  virtual Outcome at(long double t, MotionPoint& point) = 0;
+  virtual std::size_t refused() const = 0;  // steps
+  virtual StateRate& rate() = 0;
+  virtual double more_work() const { return 0; }  // operations beside the evaluations of f
+
+  const MotionPoint& before() const { return before_; }
+  const MotionPoint& now() const { return now_; }
+  std::size_t steps() const { return steps_; }
+  double worst_constraint() const { return worst_constraint_; }
+
+ protected:
+  MotionPoint before_, now_;
+  std::size_t steps_ = 0;
+  double worst_constraint_ = 0;
+};
+
+// The size of each level of derivatives, at least 1: that which a tolerance is relative to.
+void level_sizes(const StateRate& rate, const std::vector<double>& state, std::vector<double>& sizes);
+
+}  // namespace anholon

@@ -1,0 +1,40 @@
+// Machine code for a kernel that has been at work for a while, made beside the motion; its bits are the same.
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "kernel/kernel.h"
+
+namespace anholon {
+
+class CodeForLongRuns {
+ public:
+  CodeForLongRuns() = default;
+  // Does not wait for a compilation on its way: it comes to its end with the process, see below.
+  ~CodeForLongRuns();
+  CodeForLongRuns(const CodeForLongRuns&) = delete;
+  CodeForLongRuns& operator=(const CodeForLongRuns&) = delete;
+
+  // Asked at every step, by one thread at a time: begins one for this plan, or none.
+  void step(const std::shared_ptr<const KernelPlan>& plan, int lanes = 1);
+
+ private:
+  struct Compilation {
+    std::shared_ptr<const KernelPlan> plan;
+    std::shared_ptr<std::atomic<bool>> done;
+    std::thread thread;
+  };
+  void leave();
+
+  Compilation compilation_;
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  std::size_t asked_ = 0;
+};
+
+// Whether compilations are on their way that nobody asks for any more. exit() waits for them; a program that has nothing left to do may leave by
+// std::_Exit (what is kept on disk is written under another name first).
+bool compiling_for_nobody();
+
+}  // namespace anholon
