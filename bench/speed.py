@@ -26,7 +26,7 @@ import time
 from decimal import Decimal
 
 import speed_report
-from speed_processes import ROOT, measure_growth, measure_startup, measure_threads, say
+from speed_processes import ROOT, measure_growth, measure_peak, measure_startup, measure_threads, say
 
 PEERS = os.path.join(ROOT, "build", "peers")
 HEYOKA = "heyoka==7.13.2"
@@ -295,8 +295,7 @@ def main():
 
     begin = time.perf_counter()
     python = install_heyoka()
-    peak = subprocess.run([os.path.join(ROOT, "build", "release", "speed_bench"), "--peak"], capture_output=True, text=True, check=True)
-    result = {"machine": machine(), "rounds": options.rounds, "peak": json.loads(peak.stdout), "systems": {}}
+    result = {"machine": machine(), "rounds": options.rounds, "peak": measure_peak(), "systems": {}}
     for title in options.only:
         result["systems"][title] = measure(title, python, options)
         say(f"{time.perf_counter() - begin:5.0f} s  {title}")
@@ -306,6 +305,7 @@ def main():
         result["growth"] = measure_growth(60, options.form)
     if not options.no_startup:
         result["startup"] = measure_startup(os.path.join(ROOT, "build", "anholon"))
+    result["peak"] = {k: max(x, again) for (k, x), again in zip(result["peak"].items(), measure_peak().values())}  # disturbed less
     result["seconds"] = time.perf_counter() - begin
     with open(options.json, "w", encoding="utf-8") as file:
         json.dump(result, file, indent=1)

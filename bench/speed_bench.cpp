@@ -249,7 +249,7 @@ void answer_lanes(const Ready& r, const std::string& name, JsonWriter& json) {
 // The lanes of one kernel, each to the end; those that are there wait for the others.
 void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions, const std::vector<Start<Wider<double>>>& starts,
                      const Wider<double>& end) {
-  for (std::size_t lane = 0; lane < motions.size(); ++lane) motions[lane].stepper.place(starts[lane].t, starts[lane].state, starts[lane].leading);
+  for (std::size_t i = 0; i < motions.size(); ++i) motions[i].stepper.place(starts[i].t, starts[i].state, starts[i].leading);
   const auto all = [&](const auto& part) {
     bool any = false;
     for (Trajectory<double>& m : motions)

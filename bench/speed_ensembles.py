@@ -33,14 +33,15 @@ def ensembles(result):
             alone = result["systems"][title]["cells"]["own"].get(level)
             rate = gigaflops(own) if mine else None
             rows.append([
-                title, level, number(mine), number(theirs), ratio(theirs / mine if mine and theirs else None), cell_text(own), cell_text(heyoka),
-                ratio(equal_error(batch, "heyoka", level)), per_step(alone), number(rate), f"{100 * rate / peak:.0f} %" if rate and peak else "–",
+                title, level, number(mine), number(theirs), ratio(theirs / mine if mine and theirs else None),
+                cell_text(own), cell_text(heyoka), ratio(equal_error(batch, "heyoka", level)),
+                per_step(alone), number(rate), f"{100 * rate / peak:.0f} %" if rate and peak else "–",
             ])  # fmt: skip
     if not rows:
         return "not measured."
     return table(
-        ["system", "tolerance", "us per trajectory and step: anholon", "heyoka", "heyoka / anholon, per step", "anholon, us per trajectory (error)",
-         "heyoka", "equal error", "anholon alone, us per step", "GF/s", "of the vector peak"], rows,
+        ["system", "tolerance", "us per trajectory and step: anholon", "heyoka", "heyoka / anholon, per step",
+         "anholon, us per trajectory (error)", "heyoka", "equal error", "anholon alone, us per step", "GF/s", "of the vector peak"], rows,
     )  # fmt: skip
 
 
@@ -71,4 +72,5 @@ def threads(result):
     ]  # fmt: skip
     if not rows:
         return "not measured."
-    return table(["model", "trajectories", "one thread, s", "two threads, s", "one / two", "time on the cores, two / one", "load before"], rows)
+    head = ["model", "trajectories", "one thread, s", "two threads, s", "one / two", "time on the cores, two / one", "load before"]
+    return table(head, rows)

@@ -1,4 +1,4 @@
-"""What bench/speed.py measures of whole processes: growth with n, start-up, ensembles by one thread and by two."""
+"""What bench/speed.py measures in processes of their own: the peak, growth with n, start-up, ensembles by one thread and by two."""
 
 import json
 import os
@@ -8,12 +8,18 @@ import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 GROWTH = (4, 8, 16, 32, 64, 128, 256, 500, 1000)
-# Ensembles: a model of bench/models, options, what is varied.
-SWEEPS = (("sleigh", (), "th~uniform(0,1)"), ("chain", ("--set", "n=8"), "th[1]~uniform(0,0.5)"))
+# Ensembles: title -> model of bench/models, options, what is varied.
+SWEEPS = {"sleigh": ("sleigh", (), "th~uniform(0,1)"), "chain 8": ("chain", ("--set", "n=8"), "th[1]~uniform(0,0.5)")}
 
 
 def say(*words):
     print(*words, file=sys.stderr, flush=True)
+
+
+def measure_peak():
+    """What a core can do, in GF/s."""
+    command = [os.path.join(ROOT, "build", "release", "speed_bench"), "--peak"]
+    return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
 
 
 def measure_growth(limit, form):
@@ -70,11 +76,11 @@ def sweep_seconds(program, sweep, cases, threads):
 def measure_threads(program, rounds, seconds=3):
     """The same sweep by one thread and by two, in turn: so many cases as one does in a few seconds."""
     rows = []
-    for sweep in SWEEPS:
+    for title, sweep in SWEEPS.items():
         few = 2000
         sweep_seconds(program, sweep, few, 1)  # keeps its machine code
         cases = int(few * max(1, seconds / sweep_seconds(program, sweep, few, 1)[0]))
-        row = {"model": " ".join((sweep[0], *sweep[1])), "cases": cases, "load": os.getloadavg()[0]}
+        row = {"model": title, "cases": cases, "load": os.getloadavg()[0]}
         for _ in range(rounds):
             for threads in (1, 2):
                 wall, cores = sweep_seconds(program, sweep, cases, threads)
@@ -82,5 +88,5 @@ def measure_threads(program, rounds, seconds=3):
                 if not best or wall < best["wall"]:
                     row[str(threads)] = {"wall": wall, "cores": cores}
         rows.append(row)
-        say(f"  {row['model']}: two threads {row['1']['wall'] / row['2']['wall']:.2f} times as fast as one")
+        say(f"  {title}: two threads {row['1']['wall'] / row['2']['wall']:.2f} times as fast as one")
     return rows
