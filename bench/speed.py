@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The speed table: motions from plain model files against heyoka and odeint on equations reduced by hand.
 
-    speed.py [--only NAME...] [--rounds N] [--seconds S] [--jit-limit S] [--form NAME] [--no-growth] [--no-startup] [--json FILE]
-             [--markdown FILE] [--write RESULTS.md]
+    speed.py [--only NAME...] [--rounds N] [--seconds S] [--jit-limit S] [--form NAME] [--no-batch] [--no-growth] [--no-startup]
+             [--json FILE] [--markdown FILE] [--write RESULTS.md]
 
 One process per side and system answers to requests (bench/speed_bench.cpp, bench/peers/odeint.cpp, bench/peers/heyoka_worker.py);
 they are asked in turn, on the core that is idle, round after round. A time is the smaller of wall time and time on the core; the
@@ -12,6 +12,7 @@ that took the first time: the first run lasts some ten minutes longer than the o
 
 Errors: largest |x - x_ref| / (1 + |x_ref|) of positions and velocities at the end. The reference is an extrapolation in __float128
 of the equations reduced by hand (twice, in 100 and 200 steps), compared with anholon's own motion in 32 digits where that is short.
+That of neighbours in the lanes of a kernel: our motions in long double, the worst lane.
 """
 
 import argparse
@@ -25,8 +26,8 @@ import time
 from decimal import Decimal
 
 import speed_report
+from speed_processes import ROOT, measure_growth, measure_peak, measure_startup, measure_threads, say
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PEERS = os.path.join(ROOT, "build", "peers")
 HEYOKA = "heyoka==7.13.2"
 SYSTEMS = {
@@ -36,14 +37,14 @@ SYSTEMS = {
 LEVELS = (1e-6, 1e-9, 1e-12, 1e-15)
 OWN_LEVELS = tuple(10.0**-k for k in range(4, 18))
 ODEINT_LEVELS = tuple(10.0**-k for k in range(5, 17))
-BATCHED = ("sleigh", "disc", "trailers 3", "trailers 10", "chain 4", "chain 8", "chain 16")
-LANES = 8
+# Systems with neighbours: the coordinate in whose beginning they differ.
+BATCHED = {
+    "sleigh": "th", "disc": "theta", "trailers 3": "th[1]", "trailers 10": "th[1]",
+    **{f"chain {n}": "th[1]" for n in (4, 8, 16)},
+}  # fmt: skip
+BATCH_LEVELS = LEVELS[:3]
+OWN_BATCH_LEVELS = tuple(10.0**-k for k in range(5, 15))
 OWN_REFERENCE = 16  # links and trailers up to which our own motion in many digits is compared, too
-GROWTH = (4, 8, 16, 32, 64, 128, 256, 500, 1000)
-
-
-def say(*words):
-    print(*words, file=sys.stderr, flush=True)
 
 
 class Worker:
@@ -128,29 +129,40 @@ class Heyoka:
         self.modes, self.version = about["modes"], about["version"]
         self.limit, self.expected, self.skipped = jit_limit, {}, []
 
+    def limit_of(self, mode):
+        """Without fast math it is hardly ever worth long."""
+        return self.limit if "compact" in mode or "fast" in mode else self.limit / 30
+
     def affordable(self, tolerance, mode):
-        """Compiling takes about 2.5 times as long from one tolerance to the next; without fast math it is hardly ever worth long."""
-        limit = self.limit if "compact" in mode or "fast" in mode else self.limit / 30
-        if self.expected.get(mode, 0) > limit:
+        """Compiling takes about 2.5 times as long from one tolerance to the next."""
+        if self.expected.get(mode, 0) > self.limit_of(mode):
             self.skipped.append((tolerance, mode))
             return False
         return True
 
-    def choose(self, tolerance):
-        """mode -> first look at each; the best mode."""
+    def looks_at(self, modes, *request):
+        """mode -> first look at each; the best mode, or none."""
         looks = {}
-        for mode in self.modes:
-            if not self.affordable(tolerance, mode):
-                continue
-            look = min((self.worker.ask_json("run", tolerance, mode, 0.03) for _ in range(2)), key=lambda r: r.get("us", 0))
+        for mode in modes:
+            command, tolerance, *others = request
+            look = min((self.worker.ask_json(command, tolerance, mode, *others, 0.03) for _ in range(2)), key=lambda r: r.get("us", 0))
             if "failed" in look:
-                say(f"  heyoka, {mode}: {look['failed']}")
+                say(f"  heyoka, {command}, {mode}: {look['failed']}")
                 continue
-            self.expected[mode] = 2.5 * look["jit"]
             looks[mode] = {"us": look["us"], "jit": look["jit"]}
-        best = min(looks, key=lambda m: looks[m]["us"])
-        looks[best]["again"] = self.second.ask_json("compile", tolerance, best).get("now")  # from the cache on the disk
+        return min(looks, key=lambda m: looks[m]["us"], default=None), looks
+
+    def choose(self, tolerance):
+        best, looks = self.looks_at([m for m in self.modes if self.affordable(tolerance, m)], "run", tolerance)
+        for mode, look in looks.items():
+            self.expected[mode] = 2.5 * look["jit"]
+        if best:
+            looks[best]["again"] = self.second.ask_json("compile", tolerance, best).get("now")  # from the cache on the disk
         return best, looks
+
+    def choose_batch(self, tolerance, looks, starts):
+        """Of the modes that compile one motion in the time allowed: several take about as long."""
+        return self.looks_at([m for m, look in looks.items() if look["jit"] <= self.limit_of(m)], "batch", tolerance, starts)
 
 
 # ---- one system -----------------------------------------------------------------------------------
@@ -202,16 +214,27 @@ def measure(title, python, options):
         result["heyoka_version"] = heyoka.version
         result["heyoka_modes"] = {}
         for level in LEVELS:
-            modes[level], result["heyoka_modes"][repr(level)] = heyoka.choose(level)
+            best, result["heyoka_modes"][repr(level)] = heyoka.choose(level)
+            if best:
+                modes[level] = best
         result["heyoka_skipped"] = heyoka.skipped
         heyoka.second.close()
     requests = [("own", level, lambda level=level: own.ask("run", level, options.seconds)) for level in OWN_LEVELS]
     requests += [("odeint", level, lambda level=level: odeint.ask("run", level, options.seconds)) for level in ODEINT_LEVELS]
     for level, mode in modes.items():
         requests.append(("heyoka", level, lambda level=level, mode=mode: heyoka.worker.ask_json("run", level, mode, options.seconds)))
-    requests.sort(key=lambda r: (-r[1], r[0]))  # both sides of a cell one after the other
+    take_turns(requests, workers, cells, exact["state"], options.rounds, modes)
+    if title in BATCHED and not options.no_batch:
+        result["batch"] = measure_batch(title, own, heyoka, result.get("heyoka_modes"), options)
+    for w in workers:
+        w.close()
+    return result
 
-    for _ in range(options.rounds):
+
+def take_turns(requests, workers, cells, exact, rounds, modes):
+    """Each request in every round, on the core that is idle then."""
+    requests.sort(key=lambda r: (-r[1], r[0]))  # both sides of a cell one after the other
+    for _ in range(rounds):
         cpu = idle_cpu()
         for w in workers:
             w.pin(cpu)
@@ -219,67 +242,30 @@ def measure(title, python, options):
             cell = run()
             if side == "heyoka" and "failed" not in cell:
                 cell["mode"] = modes[level]
-            cells[side][repr(level)] = better(cells[side].get(repr(level)), cell, exact["state"])
-    if heyoka and title in BATCHED:
-        result["batch"] = measure_batch(heyoka, own, modes, options)
-    for w in workers:
-        w.close()
-    return result
+            cells[side][repr(level)] = better(cells[side].get(repr(level)), cell, exact)
 
 
-def measure_batch(heyoka, own, modes, options):
-    """Neighbours in the lanes of one core; ours as soon as speed_bench knows the request."""
-    batch = {}
-    for level in (LEVELS[0], LEVELS[-1]):
-        mode = modes[level]
-        batch[repr(level)] = cell = {"mode": mode, "heyoka": {"us": float("inf")}, "own": None}
-        for _ in range(options.rounds):
-            found = heyoka.worker.ask_json("batch", level, mode, LANES, options.seconds)
-            cell["heyoka"] = min(cell["heyoka"], found if "failed" not in found else cell["heyoka"], key=lambda c: c["us"])
-            mine = own.ask("batch", level, LANES, options.seconds)
-            if "failed" not in mine:
-                cell["own"] = min(cell["own"] or mine, mine, key=lambda c: c["us"])
-    return batch
+# ---- ensembles ------------------------------------------------------------------------------------
 
 
-# ---- growth with n, and start-up --------------------------------------------------------------------
-
-
-def measure_growth(limit, form):
-    """Chains of more and more links: five steps each, in a process of its own."""
-    rows = []
-    for n in GROWTH:
-        model = [os.path.join(ROOT, "bench", "models", "chain.toml"), "--set", f"n={n}", *form]
-        command = [os.path.join(ROOT, "build", "release", "speed_bench"), *model]
-        try:
-            done = subprocess.run(command, input="run 1e-12 1 5\n", capture_output=True, text=True, timeout=limit, check=True)
-        except subprocess.TimeoutExpired:
-            rows.append({"n": n, "failed": f"not in {limit:g} s"})
-            break
-        except subprocess.CalledProcessError as problem:
-            rows.append({"n": n, "failed": problem.stderr.strip() or f"ended with {problem.returncode}"})
-            break
-        setup, run = map(json.loads, done.stdout.splitlines())
-        run.pop("state", None)
-        rows.append({"n": n, "setup": setup, "run": run})
-        say(f"  chain {n}: " + (run.get("failed") or f"{run['us'] / run['steps']:.0f} us per step, {run['megabytes']:.0f} MB"))
-    return rows
-
-
-def measure_startup(program, repeat=3):
-    """From the start of the process to its end, of each shipped model."""
-    listing = json.loads(subprocess.run([program, "models", "--json"], capture_output=True, text=True, check=True).stdout)
-    rows = []
-    for model in [m["name"] for m in listing]:
-        best, code = float("inf"), 0
-        for _ in range(repeat):
-            begin = time.perf_counter()
-            process = subprocess.Popen([program, "simulate", model], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            _, status, used = os.wait4(process.pid, 0)
-            process.returncode = code = os.waitstatus_to_exitcode(status)
-            best = min(best, time.perf_counter() - begin, used.ru_utime + used.ru_stime)
-        rows.append({"model": model, "seconds": best, "exit": code})
-    return rows
+def measure_batch(title, own, heyoka, single_modes, options):
+    """Neighbours in the lanes of one core: times, steps and expansions of a trajectory, the error of the worst."""
+    lanes = own.ask("lanes", BATCHED[title])
+    cells = {"own": {}, "heyoka": {}}
+    if "failed" in lanes:
+        say(f"  ensemble: {lanes['failed']}")
+        return {"cells": cells}
+    starts = [[float(x) for x in start] for start in lanes["starts"]]
+    requests = [("own", level, lambda level=level: own.ask("batch", level, options.seconds, BATCHED[title])) for level in OWN_BATCH_LEVELS]
+    modes = {}
+    for level in BATCH_LEVELS if heyoka else ():
+        mode, _ = heyoka.choose_batch(level, single_modes[repr(level)], starts)
+        if mode:
+            modes[level] = mode
+            run = lambda level=level, mode=mode: heyoka.worker.ask_json("batch", level, mode, starts, options.seconds)  # noqa: E731
+            requests.append(("heyoka", level, run))
+    take_turns(requests, [own, *([heyoka.worker] if heyoka else [])], cells, lanes["state"], options.rounds, modes)
+    return {"lanes": len(starts), "cells": cells}
 
 
 def machine():
@@ -299,6 +285,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=0.1, help="of each cell in each round")
     parser.add_argument("--jit-limit", type=float, default=300, help="seconds that one compilation by heyoka may be expected to take")
     parser.add_argument("--form", type=lambda name: ["--form", name], default=[], help="of our equations; Routh's without it")
+    parser.add_argument("--no-batch", action="store_true", help="leave out ensembles: neighbours in lanes, one thread and two")
     parser.add_argument("--no-growth", action="store_true")
     parser.add_argument("--no-startup", action="store_true")
     parser.add_argument("--json", default=os.path.join(ROOT, "build", "bench-speed.json"))
@@ -308,15 +295,17 @@ def main():
 
     begin = time.perf_counter()
     python = install_heyoka()
-    peak = subprocess.run([os.path.join(ROOT, "build", "release", "speed_bench"), "--peak"], capture_output=True, text=True, check=True)
-    result = {"machine": machine(), "rounds": options.rounds, "peak": json.loads(peak.stdout), "systems": {}}
+    result = {"machine": machine(), "rounds": options.rounds, "peak": measure_peak(), "systems": {}}
     for title in options.only:
         result["systems"][title] = measure(title, python, options)
         say(f"{time.perf_counter() - begin:5.0f} s  {title}")
+    if not options.no_batch:
+        result["threads"] = measure_threads(os.path.join(ROOT, "build", "anholon"), options.rounds)
     if not options.no_growth:
         result["growth"] = measure_growth(60, options.form)
     if not options.no_startup:
         result["startup"] = measure_startup(os.path.join(ROOT, "build", "anholon"))
+    result["peak"] = {k: max(x, again) for (k, x), again in zip(result["peak"].items(), measure_peak().values())}  # disturbed less
     result["seconds"] = time.perf_counter() - begin
     with open(options.json, "w", encoding="utf-8") as file:
         json.dump(result, file, indent=1)

@@ -2,14 +2,19 @@
 // integrated to the end of its [simulate] with the tolerances that come on the standard input. Each
 // answer is a line of JSON.
 //
-//   speed_bench MODEL [--set NAME=VALUE]... [--form NAME]     answers with the times of making
-//   ready start                       positions and velocities at the start, coordinate by
-//   coordinate, in 36 digits exact DIGITS                those at the end, so many digits to be
-//   trusted run TOLERANCE SECONDS [STEPS]   as many motions as fit the time, at least one; STEPS:
-//   no more of each speed_bench --peak          no model: what the core can do, in GF/s
+//   speed_bench MODEL [--set NAME=VALUE]... [--form NAME]     answers with the times of making ready
+//   start                          positions and velocities at the start, coordinate by coordinate, in 36 digits
+//   exact DIGITS                   those at the end, so many digits to be trusted
+//   run TOLERANCE SECONDS [STEPS]  as many motions as fit the time, at least one; STEPS: no more of each
+//   lanes NAME                     the neighbours in the lanes of a kernel, which begin with a shifted coordinate NAME: where
+//                                  they start, and where they end by motions in long double
+//   batch TOLERANCE SECONDS NAME   all of them side by side in one kernel, as often as fits the time
+//
+//   speed_bench --peak             no model: what the core can do, in GF/s
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -18,6 +23,7 @@
 #include "base/json.h"
 #include "base/read_file.h"
 #include "fma_peak.h"
+#include "kernel/arithmetic.h"
 #include "run/representation.h"
 #include "run/simulate.h"
 #include "stopwatch.h"
@@ -42,8 +48,8 @@ struct Ready {
   Scenario scenario;
   std::unique_ptr<Program> stepping;
   std::map<double, std::shared_ptr<const KernelPlan>> plans;  // by tolerance
-  double plan_made = 0, compiled = 0;                         // seconds, of the last of them
-  double read = 0, scenario_made = 0, program_made = 0;  // seconds
+  double read = 0, scenario_made = 0, program_made = 0;       // seconds
+  double plan_made = 0, compiled = 0;                         // of the last of the plans
 };
 
 std::unique_ptr<Ready> make_ready(const Request& request) {
@@ -123,9 +129,13 @@ struct Trajectory {
 constexpr std::size_t kMostSteps = 50'000'000;
 
 template <class Values>
+void write_values(JsonWriter& json, const Values& values, int digits = 0) {
+  for (const auto& x : values) json.string(number_text(x, digits));
+}
+template <class Values>
 void write_state(JsonWriter& json, const Values& values, int digits = 0) {
   json.key("state").open_array();
-  for (const auto& x : values) json.string(number_text(x, digits));
+  write_values(json, values, digits);
   json.close();
 }
 
@@ -175,8 +185,7 @@ void answer_exact(const Ready& r, int digits, JsonWriter& json) {
   write(json, "seconds", watch.seconds());
 }
 
-void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_steps,
-                JsonWriter& json) {
+void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_steps, JsonWriter& json) {
   using W = Wider<double>;
   Start<W> start;
   must(initial_state(r.scenario, {}, start));
@@ -202,6 +211,110 @@ void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_ste
   write_state(json, motion->last());
 }
 
+// Motions that differ in where a coordinate begins: by 1/64 from lane to lane. What else the file gives stays, constraints are kept.
+template <class W>
+std::vector<Start<W>> neighbours(const Ready& r, const std::string& name) {
+  const Scenario& s = r.scenario;
+  const auto& q = s.model->coordinates;
+  const auto found = std::find_if(q.begin(), q.end(), [&](const Coordinate& c) { return c.name == name; });
+  if (found == q.end()) throw Failed{"no coordinate " + name};
+  const auto j = static_cast<std::size_t>(found - q.begin());
+  const double* const from = s.state.value(s.model->graph->node(s.system.symbol(j, 0).id));
+  std::vector<Start<W>> starts(static_cast<std::size_t>(tiers().back().lanes));
+  for (std::size_t lane = 0; lane < starts.size(); ++lane)
+    must(initial_state(s, {{{0, j, Rational(*from) + Rational(static_cast<long>(lane), 64)}}, {}, {}}, starts[lane]));
+  return starts;
+}
+
+void answer_lanes(const Ready& r, const std::string& name, JsonWriter& json) {
+  using N = long double;
+  using W = Wider<N>;
+  const auto starts = neighbours<W>(r, name);
+  const W end = from_rational<W>(*r.scenario.model->simulate.to);
+  Trajectory<N> motion(r, {-18 * std::log(10.0), 0, kMostSteps, {}});
+  std::vector<W> last;
+  json.key("starts").open_array();
+  for (const Start<W>& start : starts) {
+    must(motion.stepper.start(start.t, start.state, start.leading));
+    json.open_array();
+    write_values(json, positions_and_velocities<W>(r, motion.stepper.point()));
+    json.close();
+    motion.go(start, end, kMostSteps);
+    for (const W& x : motion.last()) last.push_back(x);
+  }
+  json.close();
+  write_state(json, last);
+}
+
+// The lanes of one kernel, each to the end; those that are there wait for the others.
+void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions, const std::vector<Start<Wider<double>>>& starts,
+                     const Wider<double>& end) {
+  for (std::size_t i = 0; i < motions.size(); ++i) motions[i].stepper.place(starts[i].t, starts[i].state, starts[i].leading);
+  const auto all = [&](const auto& part) {
+    bool any = false;
+    for (Trajectory<double>& m : motions)
+      if (!(m.stepper.time() == end)) must(part(m.stepper)), any = true;
+    return any;
+  };
+  while (all([](Stepper<double>& s) { return s.begin_step(); })) {
+    kernel.expand();
+    all([&](Stepper<double>& s) { return s.aim(end); });
+    kernel.advance();
+    all([](Stepper<double>& s) { return s.finish_step(); });
+  }
+}
+
+void answer_batch(Ready& r, double tolerance, double seconds, const std::string& name, JsonWriter& json) {
+  using W = Wider<double>;
+  const auto starts = neighbours<W>(r, name);
+  const W end = from_rational<W>(*r.scenario.model->simulate.to);
+  const auto plan = plan_of(r, tolerance, starts[0]);
+  if (!plan) throw Failed{"no kernel for this model"};
+  const Stopwatch compiling;
+  plan->compile({}, static_cast<int>(starts.size()));
+  write(json, "compile", compiling.seconds());
+  const auto kernel = std::make_shared<Kernel>(plan, static_cast<int>(starts.size()));
+  const StepSettings settings{std::log(tolerance), 0, kMostSteps, {}, true, false};
+  std::deque<Trajectory<double>> motions;
+  for (int lane = 0; lane < kernel->lanes(); ++lane) {
+    Trajectory<double>& m = motions.emplace_back(r, settings);
+    kernel->set_parameters(lane, m.wide);
+    m.stepper.accelerate(kernel, lane);
+  }
+  std::vector<double> times;
+  for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
+    const Stopwatch watch;
+    go_side_by_side(*kernel, motions, starts, end);
+    times.push_back(watch.seconds());
+  }
+  // The same motions, each alone.
+  Trajectory<double> alone(r, settings);
+  alone.stepper.accelerate(plan);
+  std::vector<W> last;
+  std::size_t steps = 0, by_kernel = 0;
+  double apart = 0;
+  for (std::size_t lane = 0; lane < motions.size(); ++lane) {
+    alone.go(starts[lane], end, kMostSteps);
+    const std::vector<W> here = motions[lane].last(), there = alone.last();
+    for (std::size_t i = 0; i < here.size(); ++i) apart = std::max(apart, to_double(abs(here[i] - there[i]) / (W(1) + abs(there[i]))));
+    last.insert(last.end(), here.begin(), here.end());
+    steps += motions[lane].stepper.steps();
+    by_kernel += motions[lane].stepper.expansions_by_kernel();
+  }
+  const double lanes = kernel->lanes(), us = 1e6 * median(times);
+  write(json, "us", us / lanes);  // this and the numbers of steps and expansions: of one trajectory
+  write(json, "us_step", us / static_cast<double>(steps));
+  write(json, "steps", static_cast<double>(steps) / lanes);
+  write(json, "by_kernel", static_cast<double>(by_kernel) / lanes);
+  write(json, "work", plan->work());
+  write(json, "apart", apart);
+  json.key("code").boolean(plan->code(kernel->lanes()) != nullptr);
+  json.key("lanes").integer(kernel->lanes());
+  json.key("runs").integer(static_cast<long long>(times.size()));
+  json.key("order").integer(alone.stepper.order());
+  write_state(json, last);
+}
+
 void print(JsonWriter& json) {
   json.close();
   std::string line = json.text();
@@ -221,11 +334,14 @@ void serve(Ready& ready, const std::string& line) {
       answer_start(ready, json);
     } else if (int digits = 0; command == "exact" && words >> digits) {
       answer_exact(ready, digits, json);
-    } else if (double tolerance = 0, seconds = 0;
-               command == "run" && words >> tolerance >> seconds) {
+    } else if (double tolerance = 0, seconds = 0; command == "run" && words >> tolerance >> seconds) {
       std::size_t most_steps = kMostSteps;
       words >> most_steps;
       answer_run(ready, tolerance, seconds, words ? most_steps : kMostSteps, json);
+    } else if (std::string name; command == "lanes" && words >> name) {
+      answer_lanes(ready, name, json);
+    } else if (command == "batch" && words >> tolerance >> seconds >> name) {
+      answer_batch(ready, tolerance, seconds, name, json);
     } else {
       throw Failed{"unknown request: " + line};
     }

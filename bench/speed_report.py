@@ -2,71 +2,26 @@
 
 import math
 
+from speed_cells import LEVELS, cell_text, equal_error, least_error, number, per_step, ratio, span, table, time_at, verdict
+from speed_ensembles import ensembles, ensembles_of, gain_by_threads, gigaflops, lanes_checked, peak_parts, threads, vector_peak
+
 BEGIN, END = "<!-- speed: begin (bench/speed.py --write) -->", "<!-- speed: end -->"
-LEVELS = ("1e-06", "1e-09", "1e-12", "1e-15")
 SMALL = ("sleigh", "disc", "trailers 3")
 CHAINS = tuple(f"chain {n}" for n in (4, 8, 16, 32, 64))
-# what, systems, peer, level -> least ratio of times at equal error
+# what, systems, peer, level -> least ratio of times at equal error; ENSEMBLE_GOALS: of neighbours in the lanes of one core
 GOALS = [
     ("small systems against heyoka", SMALL, "heyoka", {"1e-06": 1.0, "1e-09": 1.2, "1e-12": 1.4, "1e-15": 1.4}),
     ("trailers 10 against heyoka", ("trailers 10",), "heyoka", dict.fromkeys(LEVELS, 1.5)),
     ("chains against heyoka", CHAINS, "heyoka", {"1e-06": 1.5, "1e-09": 4.0, "1e-12": 8.0}),
     ("against odeint", (*SMALL, "trailers 10", *CHAINS), "odeint", {"1e-06": 1.0, "1e-12": 3.0}),
 ]
-
-
-def good(cells):
-    """The points of a work-precision curve, by falling tolerance."""
-    points = [(float(level), c["us"], c["error"]) for level, c in cells.items() if "failed" not in c]
-    return sorted(points, reverse=True)
-
-
-def time_at(cells, error):
-    """Microseconds to an error: the cheapest run that reaches it, or between two neighbouring tolerances, on logarithmic scales."""
-    points = good(cells)
-    times = [us for _, us, e in points if e <= error]
-    for (_, us0, e0), (_, us1, e1) in zip(points, points[1:]):
-        if e0 > error >= e1 > 0:
-            part = math.log(e0 / error) / math.log(e0 / e1)
-            times.append(math.exp((1 - part) * math.log(us0) + part * math.log(us1)))
-    return min(times, default=None)
-
-
-def least_error(cells):
-    return min((e for _, _, e in good(cells)), default=math.inf)
-
-
-def equal_error(system, peer, level):
-    """Time of the peer over ours, where both have the error that the peer has at this tolerance; none: we do not get there."""
-    cell = system["cells"][peer].get(level)
-    if not cell or "failed" in cell:
-        return None
-    ours = time_at(system["cells"]["own"], cell["error"])
-    return cell["us"] / ours if ours else None
-
-
-def number(x):
-    if x is None:
-        return "–"
-    return f"{x:.0f}" if x >= 1000 else f"{x:.3g}"
-
-
-def ratio(x):
-    return "–" if x is None else f"**{x:.2g}**" if x < 10 else f"**{x:.0f}**"
-
-
-def cell_text(cell):
-    if not cell:
-        return "–"
-    return "failed" if "failed" in cell else f"{number(cell['us'])} ({cell['error']:.0e})"
-
-
-def table(head, rows):
-    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head), *("| " + " | ".join(map(str, r)) + " |" for r in rows)])
-
-
-def per_step(cell):
-    return number(cell["us"] / cell["steps"]) if cell and "failed" not in cell else "–"
+ENSEMBLE_GOALS = [
+    ("ensembles: small systems against heyoka's batch", SMALL, "heyoka", dict.fromkeys(LEVELS[:3], 1.5)),
+    ("ensembles: chains against heyoka's batch", CHAINS, "heyoka", dict.fromkeys(LEVELS[:3], 4.0)),
+]
+# systems -> least part of the vector peak, at some tolerance
+PEAK_GOALS = [("small systems", SMALL, 0.5), ("large systems", ("trailers 10", *CHAINS), 0.3)]
+THREADS_GOAL = 1.9
 
 
 def times(result):
@@ -85,18 +40,32 @@ def times(result):
     )  # fmt: skip
 
 
-def goals(result):
+def goals_of(goals, systems):
+    """Rows of the table; systems: title -> what has the cells."""
     rows = []
-    for what, systems, peer, levels in GOALS:
-        there = [t for t in systems if t in result["systems"]]
+    for what, titles, peer, levels in goals:
+        there = [t for t in titles if t in systems]
         for level, least in levels.items():
-            found = {t: equal_error(result["systems"][t], peer, level) for t in there if result["systems"][t]["cells"][peer].get(level)}
+            found = {t: equal_error(systems[t], peer, level) for t in there if systems[t]["cells"][peer].get(level)}
             if not found:
                 continue
             reached = [r for r in found.values() if r is not None]
-            missed = [f"{t} {number(r)}" for t, r in found.items() if r is None or r < least]
-            span = " to ".join(dict.fromkeys(number(f(reached)) for f in (min, max))) if reached else "–"
-            rows.append([what, level, f"≥ {least:g}", span, "met" if not missed else "missed: " + ", ".join(missed)])
+            judged = verdict({t: (r, r is not None and r >= least) for t, r in found.items()})
+            rows.append([what, level, f"≥ {least:g}", span(reached), judged])
+    return rows
+
+
+def goals(result):
+    rows = goals_of(GOALS, result["systems"]) + goals_of(ENSEMBLE_GOALS, ensembles_of(result))
+    for what, titles, least in PEAK_GOALS:
+        parts = {t: max(peak_parts(result, b), default=0) for t, b in ensembles_of(result).items() if t in titles}
+        if any(parts.values()):
+            judged = verdict({t: (100 * p, p >= least) for t, p in parts.items()})
+            reached = span([100 * p for p in parts.values()])
+            rows.append([f"ensembles: {what}, percent of the vector peak", "the best", f"≥ {100 * least:g}", reached, judged])
+    if gains := {r["model"]: gain_by_threads(r) for r in result.get("threads", [])}:
+        rows.append(["ensembles: two threads against one", "", f"≥ {THREADS_GOAL:g}", span(list(gains.values())),
+                     verdict({m: (g, g >= THREADS_GOAL) for m, g in gains.items()})])  # fmt: skip
     floors, compared = [], False
     for title, s in result["systems"].items():
         own, heyoka = least_error(s["cells"]["own"]), least_error(s["cells"]["heyoka"])
@@ -116,7 +85,7 @@ def flops_per_step(setup, order):
 
 
 def fractions(result):
-    peak = result["peak"].get("avx512") or result["peak"].get("avx2")
+    peak = vector_peak(result)
     rows = []
     for title, s in result["systems"].items():
         cell = s["cells"]["own"].get("1e-15")
@@ -144,20 +113,6 @@ def setups(result):
         ["system", "read, ms", "equations, start, structure, ms", "program, ms", *(f"heyoka compiles, s: {level}" for level in LEVELS),
          "its shortest", "again, from its disk cache, ms"], rows,
     )  # fmt: skip
-
-
-def batches(result):
-    rows = []
-    for title, s in result["systems"].items():
-        for level, b in s.get("batch", {}).items():
-            h, own = b["heyoka"], b["own"]
-            if not math.isfinite(h["us"]):
-                continue
-            alone = s["cells"]["own"].get(level, {})
-            rows.append([title, level, number(h["us"]), number(h["us"] / h["steps"]), number(own and own["us"]),
-                         ratio(own and h["us"] / own["us"]), number(alone.get("us"))])  # fmt: skip
-    head = ["system", "tolerance", "heyoka, us per trajectory", "per step", "anholon, us per trajectory", "ratio", "anholon, one alone"]
-    return table(head, rows)
 
 
 def growth(result):
@@ -247,9 +202,17 @@ Modes of heyoka left out because they were expected to compile for longer than t
 
 From the start of `anholon simulate MODEL` to its end, best of 3: {startup(result)}
 
-### Eight lanes on one core
+### Ensembles
 
-{batches(result)}
+Neighbours, one in each SIMD lane of one core; us of a trajectory, the error that of the worst. GF/s: twice the operations of the
+kernel's plan, for each of its expansions, by the whole time; the peak is that of fused multiply-adds. {lanes_checked(result)}
+
+{ensembles(result)}
+
+`anholon sweep` by one thread and by two, wall time of whole processes, the best of the rounds. Two threads need two cores, which
+others use as well: what these took lowers the ratio, while the time on the cores tells what a second thread costs the first.
+
+{threads(result)}
 
 ### Distance to the limit
 
@@ -293,6 +256,20 @@ def self_test():
     peer = {"1e-09": {"us": 200.0, "error": 1e-8}}
     ratio_here = equal_error({"cells": {"own": curve, "peer": peer}}, "peer", "1e-09")
     assert abs(ratio_here - 2 / 10**0.8) < 1e-12, "the peer's time over ours, both at the peer's error"
+    lanes = {"us": 2.0, "us_step": 0.5, "steps": 4, "by_kernel": 5, "work": 400.0, "error": 1e-9, "apart": 0.0, "code": True}
+    assert gigaflops(lanes) == 2.0, "twice 400 operations, five times in 2 us"
+    sides = {"own": {"1e-06": lanes}, "heyoka": {}, "odeint": {}}
+    result = {"peak": {"avx2": 1.0, "avx512": 4.0}, "systems": {"sleigh": {"batch": {"cells": sides}, "cells": sides}}}
+    result["threads"] = [{"model": m, "1": {"wall": 2.0}, "2": {"wall": w}} for m, w in (("sleigh", 1.0), ("chain", 1.25))]
+    found = goals(result)
+    assert "| ensembles: small systems, percent of the vector peak | the best | ≥ 50 | 50 | met |" in found, "half the peak is enough"
+    assert "| ensembles: two threads against one |  | ≥ 1.9 | 1.6 to 2 | missed: chain 1.6 |" in found, "the one that misses the goal is named"
+    assert "at most 0e+00 from" in lanes_checked(result) and "Without" not in lanes_checked(result), "lanes as they should be"
+    lanes |= {"apart": 1e-3, "code": False}
+    said = lanes_checked(result)
+    assert "at most 1e-03 from" in said and "Without machine code: sleigh at 1e-06" in said, "and not"
+    lanes["work"] = 399.0
+    assert "missed: sleigh 49.9" in goals(result), "less than half is not"
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "r.md")
         with open(path, "w", encoding="utf-8") as file:

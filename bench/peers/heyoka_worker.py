@@ -5,7 +5,7 @@
     modes                              the names of the modes of compilation
     compile TOLERANCE MODE             the seconds of its first compilation, and those of now
     run TOLERANCE MODE SECONDS         as many motions as fit the time, at least one
-    batch TOLERANCE MODE LANES SECONDS motions of so many neighbours at once
+    batch TOLERANCE MODE STARTS SECONDS motions of neighbours at once, one in each lane; STARTS: positions and velocities of each
 
 Every answer is a line of JSON. What is compiled stays in heyoka's cache on the disk, HEYOKA_CACHE_DIR. The time of a run is that of
 propagate_until less that of a call of it that has nowhere to go.
@@ -224,17 +224,21 @@ class Worker:
             "state": self.positions_and_velocities(np.array(ta.state)),
         }  # fmt: skip
 
-    def batch(self, tolerance, mode, lanes, seconds):
+    def batch(self, tolerance, mode, starts, seconds):
+        lanes = len(starts)
         ta, jit, _ = self.several(tolerance, mode, lanes)
-        # Neighbours: velocities that differ by parts in a thousand.
-        start = np.repeat(self.start[:, None], lanes, axis=1) * (1 + 1e-3 * np.arange(lanes) / lanes)
+        start = np.column_stack([self.system.reduce(np.array(given)) for given in starts])
 
         def reset():
             ta.set_time(0.0)
             ta.state[:] = start
 
         times, steps = measure(reset, lambda: ta.propagate_until(self.end), seconds, lambda _: [r[3] for r in ta.propagate_res])
-        return {"us": 1e6 * times / lanes, "jit": jit, "steps": sum(steps) / lanes, "order": ta.order}
+        ends = [self.positions_and_velocities(np.array(ta.state[:, k])) for k in range(lanes)]
+        return {
+            "us": 1e6 * times / lanes, "us_step": 1e6 * times / sum(steps), "jit": jit, "steps": sum(steps) / lanes, "order": ta.order,
+            "lanes": lanes, "state": [x for end in ends for x in end],
+        }  # fmt: skip
 
 
 def clocks(core=time.thread_time):
