@@ -14,6 +14,8 @@ namespace {
 constexpr double kHealthy = 2e-3;
 // The smallest singular value is looked at again whenever the pivots have become this much smaller.
 constexpr double kNews = 0.8;
+// Steps before and after are looked at where they have become this much smaller in one step.
+constexpr double kSuspected = 0.6;
 
 // … and every so many steps.
 constexpr std::size_t kLook = 256;
@@ -77,11 +79,13 @@ bool Stepper<N>::load_kernel(const std::vector<W>& guess) {
 template <Number N>
 bool Stepper<N>::take_from_kernel() {
   if constexpr (std::same_as<N, double>) {
-    const double health = kernel_->health(lane_), side = kernel_->side(lane_);
-    const bool across = by_kernel_ && side != side_;
-    side_ = side;
-    if (!(health > kHealthy) || across || (settings_.measure && health < least_health_ * kNews) || !kernel_->finite(lane_)) {
-      turned_ = across;
+    const double health = kernel_->health(lane_);
+    // A pivot that vanishes within a step has changed its sign, or has shrunk by much: before, and where the step ends close by.
+    suspected_ = health < health_before_ * kSuspected;
+    turned_ = by_kernel_ && (suspected_ || kernel_->sides(lane_) != sides_);
+    sides_ = kernel_->sides(lane_);
+    health_before_ = health;
+    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNews) || !kernel_->finite(lane_)) {
       least_health_ = std::min(least_health_, health);
       return false;
     }

@@ -57,6 +57,7 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
   by_kernel_ = turned_ = careful_ = loaded_ = expanded_ = singular_ahead_ = false;
   short_kinks_ = 0;
   least_health_ = N(1);
+  health_before_ = 0;
   sigma_ = sigma_before_ = first_sigma_ = N(0);
   smallest_sigma_ = N(1);
   smallest_sigma_t_ = t;
@@ -178,8 +179,7 @@ template <Number N>
 Outcome Stepper<N>::end_expansion(const std::vector<W>& guess) {
   const bool again = expansions_++ > 0, by_kernel = loaded_ && take_from_kernel();
   loaded_ = false;
-  if (by_kernel) return {};
-  Outcome o = expand_by_reference(guess);
+  Outcome o = by_kernel ? Outcome{} : expand_by_reference(guess);
   if (o.ok() && turned_) return look_back();
   if (!o.ok() && again) expand_again(StepperState<N>(begun_[1 - now_]));
   return o;
@@ -197,10 +197,12 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   return expand_by_reference(guess);
 }
 
-// The determinant has changed its sign in the last step: whether J was singular on the way is asked of the reference.
+// Pivots of the kernel have changed their signs in the last step: whether J was singular on the way is asked of the reference. At both ends first.
 template <Number N>
 Outcome Stepper<N>::look_back() {
   turned_ = false;
+  const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, begun_[1 - now_].state), here = mode_at(t_, state_);
+  if (before && here && !crossed(*before, *here, program_->system->coordinates)) return {};
   const StepperState<N> now = begun_[now_], last = begun_[1 - now_];
   const W length = last_step_;
   careful_ = true;
@@ -411,13 +413,18 @@ void Stepper<N>::on_polynomial(const W& h, std::vector<W>& state, std::vector<W>
 // for the singular value starts anew, so that a run that goes on finds the same.
 template <Number N>
 Expansion<N>* Stepper<N>::ahead(const W& h) {
-  if (!ahead_) ahead_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
   std::vector<W> leading, state;
   on_polynomial(h, state, leading);
+  return prepared(t_ + h, state, leading);
+}
+
+template <Number N>
+Expansion<N>* Stepper<N>::prepared(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+  if (!ahead_) ahead_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
   std::vector<N> narrow_state, narrow_leading;
   convert_all(state, narrow_state);
   convert_all(leading, narrow_leading);
-  ahead_->load(convert<N>(W(t_ + h)), narrow_state, narrow_leading);
+  ahead_->load(convert<N>(t), narrow_state, narrow_leading);
   ahead_->set_weakest_direction({});
   return ahead_->prepare().ok() ? ahead_.get() : nullptr;
 }
@@ -451,7 +458,16 @@ typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
 
 template <Number N>
 std::optional<Mode<N>> Stepper<N>::mode_ahead(const W& h) {
-  Expansion<N>* there = ahead(h);
+  return mode_of(ahead(h));
+}
+
+template <Number N>
+std::optional<Mode<N>> Stepper<N>::mode_at(const W& t, const std::vector<W>& state) {
+  return mode_of(prepared(t, state, {}));
+}
+
+template <Number N>
+std::optional<Mode<N>> Stepper<N>::mode_of(Expansion<N>* there) {
   if (!there) return std::nullopt;
   const N sigma = there->smallest_singular_value();
   return weakest_mode(*there, sigma);
@@ -463,10 +479,12 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
   constexpr int kBisections = 60;
   // A singular value that vanishes within the step has fallen by more than half in one as long.
-  const bool suspected = last_step_ == W(0) || sigma_ < sigma_before_ * N(kFaster) || abs(h) > last_step_ * W(kLonger);
+  const bool suspected = by_kernel_ || last_step_ == W(0) || sigma_ < sigma_before_ * N(kFaster) || abs(h) > last_step_ * W(kLonger);
   if (!suspected) return std::nullopt;
   const std::size_t n = program_->system->coordinates;
-  Mode<N> low = weakest_mode(expansion_, sigma_);
+  const std::optional<Mode<N>> here = by_kernel_ ? mode_at(t_, state_) : weakest_mode(expansion_, sigma_);
+  if (!here) return std::nullopt;
+  Mode<N> low = *here;
   const N start = low.sigma;
   const std::optional<Mode<N>> end = mode_ahead(h);
   if (!end || !crossed(low, *end, n)) return std::nullopt;
@@ -545,7 +563,7 @@ Outcome Stepper<N>::aim(const W& end) {
   } else {
     short_kinks_ = 0;
   }
-  if (const std::optional<W> met = by_kernel_ ? std::nullopt : singular_within(h)) {
+  if (const std::optional<W> met = by_kernel_ && !suspected_ ? std::nullopt : singular_within(h)) {
     // Up to where J is still regular.
     constexpr double kShortOf = 1 - 1e-7;
     h = *met * W(kShortOf);

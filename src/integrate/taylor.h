@@ -146,8 +146,11 @@ class Stepper {
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
   Expansion<N>* ahead(const W& h);
+  Expansion<N>* prepared(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
   std::optional<N> quadrature_ahead(std::size_t i, const N& h);
   std::optional<Mode<N>> mode_ahead(const W& h);
+  std::optional<Mode<N>> mode_at(const W& t, const std::vector<W>& state);
+  static std::optional<Mode<N>> mode_of(Expansion<N>* there);
   std::optional<W> singular_within(const W& h);
   bool end_out_of_reach(const W& h, const W& left) const;
   void advance_kernel(const W& h) const;
@@ -169,8 +172,10 @@ class Stepper {
   W aimed_{0};           // where the step ends
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
   bool by_kernel_ = false;                                    // the present expansion
-  double side_ = 1;                                           // sign of the determinant of J, in relation to where the kernel's pivots were chosen
-  bool turned_ = false;                                       // it has changed in a step by the kernel
+  std::uint64_t sides_ = 0;                                   // the signs of the kernel's pivots
+  double health_before_ = 0;                                  // their size at the last expansion
+  bool turned_ = false;                                       // J may have been singular within the last step by the kernel
+  bool suspected_ = false;                                    // that the step from here meets a singular point; as above
   bool careful_ = false;                                      // the next one is to be made without the kernel
   N least_health_{1};
   std::size_t by_kernel_count_ = 0;

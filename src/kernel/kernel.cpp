@@ -163,7 +163,7 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   lay_out();
   judged_.clear();
   for (const SparseLu::Pivot& p : elimination_.pivots)
-    if (!p.one && !p.minus_one) judged_.push_back({tables_.lu + p.entry, 1 / p.value[0]});
+    if (!p.one && !p.minus_one) judged_.push_back({tables_.lu + p.entry, 1 / p.value[0], 0x9e3779b97f4a7c15ULL * (2 * judged_.size() + 1)});
   return !elimination_.pivots.empty();
 }
 
@@ -236,7 +236,7 @@ double Kernel::correction_of_solution() {
 
 void Kernel::judge_pivots() {
   const std::size_t lanes = static_cast<std::size_t>(lanes_);
-  for (Judgement& j : judged_) j = {std::numeric_limits<double>::max(), 0, 1, 0, 0, 1, false};
+  for (Judgement& j : judged_) j = {std::numeric_limits<double>::max(), 0, 1, 0, 0, 0, false};
   for (const KernelPlan::Judged& p : plan_->judged_) {
     const double* pivot = arena_ + p.at * lanes;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -244,7 +244,7 @@ void Kernel::judge_pivots() {
       Judgement& j = judged_[lane];
       const double size = std::abs(ratio);
       j.health = size < j.health ? size : j.health;
-      j.side = ratio < 0 ? -j.side : j.side;
+      j.sides ^= ratio < 0 ? p.mark : 0;
       j.invalid += ratio - ratio;
     }
   }

@@ -52,6 +52,7 @@ class KernelPlan {
   struct Judged {
     std::uint32_t at;
     double inverse;
+    std::uint64_t mark;  // of its sign
   };
   std::vector<Judged> judged_;
   friend class Kernel;
@@ -94,10 +95,10 @@ class Kernel {
   // By how much refinement changes the solution for the leading derivatives, in relation to it.
   double correction_of_solution();
 
-  // Of the last expansion. The smallest pivot in relation to what it was where the pivots were chosen; and the sign of their product in the same
-  // relation, which is that of the determinant: where it changes, J was singular on the way. Pivots that change their signs two by two mean nothing.
+  // Of the last expansion. The smallest pivot in relation to what it was where the pivots were chosen; and a hash of their signs in the same
+  // relation: where it changes, J may have been singular on the way. (Or not: as a pivot passes zero, the next one passes infinity.)
   double health(int lane) const { return judged_[static_cast<std::size_t>(lane)].health; }
-  double side(int lane) const { return judged_[static_cast<std::size_t>(lane)].side; }
+  std::uint64_t sides(int lane) const { return judged_[static_cast<std::size_t>(lane)].sides; }
   bool finite(int lane) const;
   // How far the state was from the hidden constraints, in relation to its size, and whether it was moved.
   double drift(int lane) const { return judged_[static_cast<std::size_t>(lane)].drift; }
@@ -135,7 +136,8 @@ class Kernel {
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
   struct Judgement {
-    double health = 1, drift = 0, size = 1, most = 0, invalid = 0, side = 1;
+    double health = 1, drift = 0, size = 1, most = 0, invalid = 0;
+    std::uint64_t sides = 0;
     bool moved = false;
   };
   std::vector<Judgement> judged_;  // of the lanes

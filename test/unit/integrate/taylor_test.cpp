@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "kernel/kernel.h"
 #include "structure/consistent.h"
 #include "support/models.h"
 
@@ -197,6 +198,75 @@ TEST(Stepper, ConstraintsHoldToRoundOffAlongTheWay) {
   go(s, 0.8L);
   EXPECT_LE(s.worst_constraint(), 1e-11L) << "before projection: the tolerance of a step";
   EXPECT_LE(s.point().constraint_residual(), 1e-17L) << "a few round-offs of the wider numbers";
+}
+
+// ---- by a kernel ------------------------------------------------------------------------------------------------------------
+
+// Where a kernel makes all expansions that it can.
+struct Accelerated {
+  explicit Accelerated(const Motion& motion) : start(motion.start<long double>()), steps(motion.stepping, motion.parameters_in<double>(), motion.parameters_in<long double>(), settings()) {
+    steps.accelerate(KernelPlan::make(std::make_shared<const Program>(motion.stepping), steps.order() - 1, motion.parameters_in<long double>(), 0, {start.begin(), start.end()}));
+  }
+  static StepSettings settings() {
+    StepSettings s;
+    s.measure = false;
+    return s;
+  }
+  Outcome go(long double end) {
+    Outcome o = steps.start(0, start);
+    while (o.ok() && steps.time() < end) o = steps.step(end);
+    return o;
+  }
+  State start;
+  Stepper<double> steps;
+};
+
+// x = -cos t; (x + away) y' = 0 loses its hold where x + away = 0, and no multiplier has a pole there.
+std::string loses_hold(const std::string& away) {
+  return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"-x*ex\"\n"
+         "[[constraint]]\nname = \"hold\"\nequation = \"(x + " + away + ")*y' = 0\"\n[initial]\nx = -1\ny = 0\n\"x'\" = 0\n\"y'\" = 0\n";
+}
+
+TEST(ByKernel, ASingularPointWithinAStepIsSeen) {
+  const Motion motion(loses_hold("0"));
+  Accelerated a(motion);
+  ASSERT_TRUE(a.steps.accelerated());
+  const Outcome o = a.go(4);
+  EXPECT_EQ(o.kind, OutcomeKind::singular) << o.message;
+  EXPECT_NEAR(static_cast<double>(a.steps.time()), std::numbers::pi / 2, 1e-6) << o.message;
+  EXPECT_GT(a.steps.expansions_by_kernel(), 1U);
+}
+
+TEST(ByKernel, RegularMotionsAreNotStopped) {
+  const Motion motion(loses_hold("3"));
+  Accelerated a(motion);
+  ASSERT_TRUE(a.go(4).ok());
+  EXPECT_NEAR(static_cast<double>(state_at(motion, a.steps, 4.0L)[0]), -std::cos(4.0), 1e-12);
+  EXPECT_EQ(a.steps.expansions_by_kernel(), a.steps.expansions());
+}
+
+// Pivots pass zero here, J does not become singular: the kernel goes on.
+TEST(ByKernel, PivotsMayChangeTheirSigns) {
+  const Motion motion(test::replaced(test::shipped_text("zoo/trailers"), "n = 3", "n = 10"));
+  Accelerated a(motion);
+  ASSERT_TRUE(a.steps.accelerated());
+  ASSERT_TRUE(a.go(6).ok());
+  EXPECT_GE(a.steps.expansions_by_kernel() + 1, a.steps.expansions());
+  const State by_reference = moved(motion, 0, a.start, 6), by_kernel = state_at(motion, a.steps, 6.0L);
+  for (std::size_t i = 0; i < by_kernel.size(); ++i) EXPECT_NEAR(static_cast<double>(by_kernel[i]), static_cast<double>(by_reference[i]), 1e-10) << i;
+}
+
+TEST(ByKernel, AStepperStartsAnewWithoutATrace) {
+  for (const char* name : kModels) {
+    const Motion motion(test::shipped_text(name));
+    Accelerated once(motion), again(motion);
+    ASSERT_TRUE(once.go(0.5L).ok());
+    ASSERT_TRUE(again.go(0.25L).ok());
+    ASSERT_TRUE(again.go(0.5L).ok());
+    EXPECT_EQ(once.steps.state(), again.steps.state()) << name;
+    EXPECT_EQ(once.steps.steps(), again.steps.steps()) << name;
+    EXPECT_EQ(once.steps.begun().state, again.steps.begun().state) << name;
+  }
 }
 
 // ---- what cannot be integrated has a name -----------------------------------------------------------------------------------
