@@ -9,12 +9,13 @@ namespace anholon {
 namespace {
 
 struct Written {
-  explicit Written(const std::string& name) {
-    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, scenario).ok()) throw std::runtime_error("no start");
+  explicit Written(const std::string& name, const Overrides& overrides = {}) {
+    if (!make_scenario(test::model_of(test::shipped_text(name), overrides), *find_formulation("routh"), {}, scenario).ok()) throw std::runtime_error("no start");
     parameters = parameter_values<long double>(*scenario.model);
     Start<long double> start;
     if (!initial_state(scenario, {}, start).ok()) throw std::runtime_error("no start");
     state.assign(start.state.begin(), start.state.end());
+    t = static_cast<double>(start.t);
     derived = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), 14, parameters, static_cast<double>(start.t), state);
     const std::size_t before = scenario.model->graph->size();
     list = representations({derived, scenario.structure, {}, parameters, static_cast<double>(start.t), state, scenario.mechanics.get()}, WritingEffort::long_motion);
@@ -22,7 +23,13 @@ struct Written {
   }
   Scenario scenario;
   std::vector<long double> parameters;
+  const Representation* by(Writing writing) const {
+    for (const Representation& r : list)
+      if (r.writing == writing) return &r;
+    return nullptr;
+  }
   std::vector<double> state;
+  double t = 0;
   std::shared_ptr<const KernelPlan> derived;
   std::vector<Representation> list;
   bool grown = false;
@@ -40,6 +47,90 @@ TEST(Representation, WhereSolutionsAreRefinedEquationsStay) {
   const Written rattleback("zoo/rattleback");
   EXPECT_TRUE(rattleback.derived->tables().refine);
   EXPECT_EQ(cheapest(rattleback.list).writing, Writing::derived);
+}
+
+std::string links(int n) { return std::to_string(n); }
+
+// Four products a link of a chain: its sine, its cosine, and those with the forces at its end. Ten for the equations as derived.
+TEST(Representation, TotalDerivativesAreLeftToTheSeries) {
+  std::size_t before = 0;
+  for (const int n : {4, 8, 12}) {
+    const Written chain("zoo/chain", {{{"n", links(n)}}});
+    const Representation* rates = chain.by(Writing::rates);
+    ASSERT_TRUE(rates) << n;
+    const ExpansionWork work = work_of(*rates->plan);
+    EXPECT_EQ(work.products, 3U * static_cast<std::size_t>(n)) << "sine and cosine are one step";
+    EXPECT_LE(work.total, 0.55 * chain.derived->work());
+    if (before > 0) {
+      EXPECT_LE(work.sums, before + 4U * 16) << "in proportion to the links";
+    }
+    before = work.sums;
+    EXPECT_EQ(cheapest(chain.list).writing, Writing::rates) << n;
+    EXPECT_FALSE(chain.grown) << "the graph of the model";
+  }
+}
+
+// Largest difference of two expansions from a state beside the start, in relation to the coefficients of the same order.
+double apart(const Written& w, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b, const std::vector<long double>& parameters) {
+  Kernel one(a), other(b);
+  std::vector<double> state = w.state;
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] += 1e-3 * static_cast<double>(1 + i % 3);
+  one.set_parameters(0, w.parameters);
+  other.set_parameters(0, parameters);
+  // Each expansion projects the state on the hidden constraints by one step of Newton's method.
+  for (int pass = 0; pass < 4; ++pass) {
+    one.load<double>(0, w.t, state, {});
+    one.expand();
+    for (std::size_t j = 0, i = 0; j < a->plan().d.size(); ++j)
+      for (int k = 0; k < a->plan().d[j]; ++k) state[i++] = one.derivative(j, k);
+  }
+  other.load<double>(0, w.t, state, {});
+  other.expand();
+  double worst = 0;
+  for (int k = 0; k <= a->plan().stages; ++k) {
+    double size = 1e-9, off = 0;
+    for (std::size_t j = 0; j < a->plan().d.size(); ++j) {
+      const int order = k + a->plan().d[j];
+      size = std::max(size, std::abs(one.coefficient(j, order)));
+      off = std::max(off, std::abs(one.coefficient(j, order) - other.coefficient(j, order)));
+    }
+    worst = std::max(worst, off / size);
+  }
+  return worst;
+}
+
+TEST(Representation, RatesAreTheSameEquations) {
+  std::size_t models = 0;
+  for (const std::string& name : test::shipped_models()) {
+    Scenario probe;
+    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, probe).ok() || !no_plan(program(probe.system, probe.structure)).empty()) continue;
+    const Written w(name);
+    const Representation* rates = w.derived ? w.by(Writing::rates) : nullptr;
+    if (!rates) continue;
+    ++models;
+    EXPECT_LE(apart(w, w.derived, rates->plan, w.parameters), 1e-9) << name;
+  }
+  EXPECT_GE(models, 20U);
+  const Written disc("zoo/disc");
+  std::vector<long double> heavier = disc.parameters;
+  for (long double& p : heavier) p *= 1 + 1e-6L;
+  EXPECT_GT(apart(disc, disc.derived, disc.by(Writing::rates)->plan, heavier), 1e-8) << "the mutant";
+}
+
+// The interpreter reads such programs as well.
+TEST(Representation, RatesByTheReference) {
+  for (const char* name : {"zoo/chain", "zoo/trailers", "zoo/disc"}) {
+    const Written w(name);
+    const Program& rates = w.by(Writing::rates)->plan->program();
+    const std::vector<double> parameters(w.parameters.begin(), w.parameters.end());
+    Expansion<double> a(w.derived->program(), parameters, 8), b(rates, parameters, 8);
+    for (Expansion<double>* e : {&a, &b}) {
+      e->load(w.t, w.state, {});
+      ASSERT_TRUE(e->prepare().ok() && e->project().ok() && e->solve().ok() && e->extend().ok()) << name;
+    }
+    for (std::size_t j = 0; j < rates.unknowns(); ++j)
+      for (int k = 0; k <= 8; ++k) EXPECT_NEAR(a.coefficient(j, rates.d[j] + k), b.coefficient(j, rates.d[j] + k), 1e-9 * (1 + std::abs(a.coefficient(j, rates.d[j] + k)))) << name << " " << j << " " << k;
+  }
 }
 
 TEST(Representation, IsTheSameTwice) {
