@@ -25,6 +25,12 @@ struct StepSettings {
 // ceil(-ln(tolerance)/2 + 1): the order that makes the least work for the tolerance.
 int taylor_order(double log_tolerance);
 
+template <Number To, Number From>
+void convert_all(const std::vector<From>& from, std::vector<To>& to) {
+  to.resize(from.size(), To(0));
+  for (std::size_t i = 0; i < from.size(); ++i) to[i] = convert<To>(from[i]);
+}
+
 // All that a stepper carries where an expansion is made: from here the same steps follow, bit by bit.
 template <Number N>
 struct StepperState {

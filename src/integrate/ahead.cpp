@@ -1,0 +1,147 @@
+// The part of the stepper that looks along the polynomial of the present step: where J may become singular, or its branch end.
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/taylor.h"
+
+namespace anholon {
+
+template <Number N>
+void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<W>& leading) const {
+  const Program& p = *program_;
+  increments.assign(expansion_.state_size(), W(0));
+  leading.assign(p.unknowns(), W(0));
+  for (std::size_t j = 0; j < p.unknowns(); ++j) {
+    const int d = p.d[j], top = degree(j);
+    for (int k = 0; k <= d; ++k) {
+      // sum_i x_(k+i) (k+i)!/i! h^i, without the term of order 0 (that is the state itself).
+      W s(0);
+      for (int i = top - k; i >= 1; --i) {
+        W factor(1);
+        for (int f = 1; f <= k; ++f) factor = factor * W(i + f);
+        s = (s + dense(j, k + i) * factor) * h;
+      }
+      if (k < d) increments[expansion_.offset(j) + static_cast<std::size_t>(k)] = s;
+      else leading[j] = point_.derivative(j, k) + s;
+    }
+  }
+}
+
+// State and leading derivatives h beyond where the expansion was made.
+template <Number N>
+void Stepper<N>::on_polynomial(const W& h, std::vector<W>& state, std::vector<W>& leading) const {
+  if (by_kernel_) {
+    advance_kernel(h);
+    return advanced_by_kernel(h, expanded_ ? state_ : base_state_, state, leading);
+  }
+  std::vector<W> increments;
+  polynomial(h, increments, leading);
+  point().state(state);
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
+}
+
+// J and its LU at t + h on the polynomial, or nothing where it has none. What was met elsewhere says nothing there: the iteration
+// for the singular value starts anew, so that a run that goes on finds the same.
+template <Number N>
+Expansion<N>* Stepper<N>::ahead(const W& h) {
+  std::vector<W> leading, state;
+  on_polynomial(h, state, leading);
+  return prepared(t_ + h, state, leading);
+}
+
+template <Number N>
+Expansion<N>* Stepper<N>::prepared(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+  if (!ahead_) ahead_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
+  std::vector<N> narrow_state, narrow_leading;
+  convert_all(state, narrow_state);
+  convert_all(leading, narrow_leading);
+  ahead_->load(convert<N>(t), narrow_state, narrow_leading);
+  ahead_->set_weakest_direction({});
+  return ahead_->prepare().ok() ? ahead_.get() : nullptr;
+}
+
+// Of the polynomial itself, in formulas that follow from it without derivatives beyond the leading ones.
+template <Number N>
+std::optional<N> Stepper<N>::quadrature_ahead(std::size_t i, const N& h) {
+  Expansion<N>* there = ahead(convert<W>(h));
+  if (!there) return std::nullopt;
+  there->evaluate_quadratures();
+  const N value = there->quadrature(i)[0];
+  return is_finite(value) ? std::optional<N>(value) : std::nullopt;
+}
+
+template <Number N>
+bool Stepper<N>::near_in_branch(const W& h) {
+  const Expansion<N>* there = ahead(h);
+  return there && near(expansion_, *there);
+}
+
+// Steps end where J may become singular, and shrink towards a singular point.
+template <Number N>
+typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
+  // From a horizon of e^300 (a polynomial motion) to far below any step.
+  constexpr int kMostHalvings = 600;
+  if (branch_step_ > W(0) && abs(h) > branch_step_ * W(4)) h = h > W(0) ? branch_step_ * W(4) : branch_step_ * W(-4);
+  for (int k = 0; k < kMostHalvings && !(near_in_branch(h) && near_in_branch(h * W(0.5))); ++k) h = h * W(0.5);
+  branch_step_ = abs(h);
+  return h;
+}
+
+template <Number N>
+std::optional<Mode<N>> Stepper<N>::mode_ahead(const W& h) {
+  return mode_of(ahead(h));
+}
+
+template <Number N>
+std::optional<Mode<N>> Stepper<N>::mode_at(const W& t, const std::vector<W>& state) {
+  return mode_of(prepared(t, state, {}));
+}
+
+template <Number N>
+std::optional<Mode<N>> Stepper<N>::mode_of(Expansion<N>* there) {
+  if (!there) return std::nullopt;
+  const N sigma = there->smallest_singular_value();
+  return weakest_mode(*there, sigma);
+}
+
+// How far from t_ the first singular point is that is met within h; nothing if there is none.
+template <Number N>
+std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
+  constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
+  constexpr int kBisections = 60;
+  // A singular value that vanishes within the step has fallen by more than half in one as long.
+  const bool suspected = by_kernel_ || last_step_ == W(0) || sigma_ < sigma_before_ * N(kFaster) || abs(h) > last_step_ * W(kLonger);
+  if (!suspected) return std::nullopt;
+  const std::size_t n = program_->system->coordinates;
+  const std::optional<Mode<N>> here = by_kernel_ ? mode_at(t_, state_) : weakest_mode(expansion_, sigma_);
+  if (!here) return std::nullopt;
+  Mode<N> low = *here;
+  const N start = low.sigma;
+  const std::optional<Mode<N>> end = mode_ahead(h);
+  if (!end || !crossed(low, *end, n)) return std::nullopt;
+  W from(0), to = h;
+  for (int k = 0; k < kBisections; ++k) {
+    const W middle = from + (to - from) * W(0.5);
+    if (middle == from || middle == to) break;
+    std::optional<Mode<N>> m = mode_ahead(middle);
+    if (!m) return middle;
+    if (crossed(low, *m, n)) to = middle;
+    else from = middle, low = std::move(*m);
+  }
+  return low.sigma < start * N(kVanished) ? std::optional<W>(from) : std::nullopt;
+}
+
+#define INSTANTIATE(N)                                                                       \
+  template void Stepper<N>::polynomial(const W&, std::vector<W>&, std::vector<W>&) const;    \
+  template void Stepper<N>::on_polynomial(const W&, std::vector<W>&, std::vector<W>&) const; \
+  template std::optional<N> Stepper<N>::quadrature_ahead(std::size_t, const N&);             \
+  template Wider<N> Stepper<N>::on_the_branch(W);                                            \
+  template std::optional<Mode<N>> Stepper<N>::mode_at(const W&, const std::vector<W>&);      \
+  template std::optional<Wider<N>> Stepper<N>::singular_within(const W&);
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
+
+}  // namespace anholon

@@ -1,0 +1,237 @@
+// The part of the stepper that makes its expansions, by the kernel or the reference, and says how far they reach.
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/kink.h"
+#include "integrate/taylor.h"
+#include "kernel/kernel.h"
+
+namespace anholon {
+
+template <Number N>
+Outcome Stepper<N>::expand(const std::vector<W>& guess) {
+  begin_expansion(guess);
+  if (loaded_) kernel_->expand();
+  return end_expansion(guess);
+}
+
+template <Number N>
+void Stepper<N>::begin_expansion(const std::vector<W>& guess) {
+  now_ = 1 - now_;
+  note_begun(guess);
+  loaded_ = load_kernel(guess);
+}
+
+template <Number N>
+Outcome Stepper<N>::end_expansion(const std::vector<W>& guess) {
+  const bool again = expansions_++ > 0, by_kernel = loaded_ && take_from_kernel();
+  loaded_ = false;
+  Outcome o = by_kernel ? Outcome{} : expand_by_reference(guess);
+  if (o.ok() && turned_) return look_back();
+  if (!o.ok() && again) expand_again(StepperState<N>(begun_[1 - now_]));
+  return o;
+}
+
+// Where the kernel belongs to others, too, it is left in peace.
+template <Number N>
+Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
+  note_begun(guess);
+  ++expansions_;
+  if (alone_ && load_kernel(guess)) {
+    kernel_->expand();
+    if (take_from_kernel()) return {};
+  }
+  return expand_by_reference(guess);
+}
+
+// Pivots of the kernel have changed their signs in the last step: whether J was singular on the way is asked of the reference. At both ends first.
+template <Number N>
+Outcome Stepper<N>::look_back() {
+  turned_ = false;
+  const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, begun_[1 - now_].state), here = mode_at(t_, state_);
+  if (before && here && !crossed(*before, *here, program_->system->coordinates)) return {};
+  const StepperState<N> now = begun_[now_], last = begun_[1 - now_];
+  const W length = last_step_;
+  careful_ = true;
+  expand_again(last);
+  last_step_ = W(0);
+  const std::optional<W> met = singular_within(now.t - last.t);
+  last_step_ = length;
+  if (met) return {OutcomeKind::singular, "the system Jacobian becomes singular at t = " + number_text(to_double(W(last.t + *met)), 12), "end the motion before"};
+  careful_ = true;
+  const Outcome o = expand_here(now.leading);
+  begun_[now_] = now;
+  begun_[1 - now_] = last;
+  return o;
+}
+
+// After a failure: the polynomial of the last good step is still asked for.
+template <Number N>
+void Stepper<N>::expand_again(const StepperState<N>& last) {
+  const W t = t_;
+  const std::vector<W> state = state_, carry = carry_, leading = leading_;
+  t_ = before_ = last.t;
+  state_ = last.state;
+  carry_ = last.carry;
+  carried_ = false;
+  expand_here(last.leading);
+  begun_[now_] = last;
+  t_ = t;
+  state_ = state;
+  carry_ = carry;
+  carried_ = false;
+  leading_ = leading;
+  expanded_ = false;
+}
+
+template <Number N>
+void Stepper<N>::note_begun(const std::vector<W>& guess) {
+  StepperState<N>& b = begun_[now_];
+  b.t = t_;
+  b.state = state_;
+  b.carry = carry_;
+  b.leading = guess;
+  b.integrals = integrals_;
+  b.integral_carry = integral_carry_;
+  b.branch_step = branch_step_;
+  b.steps = steps_;
+  b.worst_constraint = worst_constraint_;
+  b.worst_equation = worst_equation_;
+  b.first_sigma = first_sigma_;
+  b.smallest_sigma = smallest_sigma_;
+  b.smallest_sigma_t = smallest_sigma_t_;
+  b.weakest = weakest_;
+  b.sigma_before = sigma_before_;
+  b.last_step = last_step_;
+  b.least_health = least_health_;
+  b.careful = careful_;
+}
+
+// Expansions by the kernel change neither the direction nor the sides.
+template <Number N>
+const StepperState<N>& Stepper<N>::begun() const {
+  if (by_kernel_) begun_[now_].direction = expansion_.weakest_direction(), begun_[now_].sides = events_.sides();
+  return begun_[now_];
+}
+
+template <Number N>
+Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
+  begun_[now_].direction = expansion_.weakest_direction();
+  begun_[now_].sides = events_.sides();
+  by_kernel_ = carried_ = false;
+  point_loaded_ = point_valued_ = true;
+  convert_all(state_, narrow_state_);
+  convert_all(guess, narrow_leading_);
+  expansion_.load(convert<N>(t_), narrow_state_, narrow_leading_);
+  if (Outcome o = expansion_.prepare(); !o.ok()) return o;
+  sigma_ = expansion_.smallest_singular_value();
+  note_sigma(sigma_);
+  point_.load(t_, state_, guess);
+  if constexpr (std::same_as<N, W>) {
+    if (Outcome o = expansion_.project(); !o.ok()) return o;
+    if (Outcome o = expansion_.solve(); !o.ok()) return o;
+    const std::vector<W> unprojected = state_;
+    expansion_.state(state_);
+    for (std::size_t i = 0; i < state_.size(); ++i)
+      if (state_[i] != unprojected[i]) carry_[i] = W(0);
+    expansion_.leading(leading_);
+    point_.load(t_, state_, leading_);
+    worst_constraint_ = std::max(worst_constraint_, expansion_.drift());
+    worst_equation_ = std::max(worst_equation_, expansion_.equation_residual());
+  } else {
+    const auto solver = [this](const std::vector<W>& r, std::vector<W>& y) {
+      convert_all(r, narrow_r_);
+      expansion_.lu().solve_once(narrow_r_, narrow_y_);
+      convert_all(narrow_y_, y);
+    };
+    point_.evaluate();
+    point_.adopt_jacobian(expansion_.system_jacobian());
+    if (Outcome o = point_.project(solver); !o.ok()) return o;
+    if (Outcome o = point_.solve(solver); !o.ok()) {
+      // The Jacobian moves with the leading derivatives: solve for them in N first.
+      if (o = expansion_.solve(); !o.ok()) return o;
+      expansion_.leading(narrow_leading_);
+      convert_all(narrow_leading_, leading_);
+      point_.load(t_, state_, leading_);
+      point_.evaluate();
+      if (o = point_.project(solver); !o.ok()) return o;
+      if (o = point_.solve(solver); !o.ok()) return o;
+    }
+    point_.state(state_);
+    point_.leading(leading_);
+    expansion_.adopt_values(point_);
+    worst_constraint_ = std::max(worst_constraint_, point_.drift());
+    worst_equation_ = std::max(worst_equation_, point_.equation_residual());
+  }
+  if (Outcome o = expansion_.extend(); !o.ok()) return o;
+  horizon_ = step_size();
+  // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
+  const double reach = std::min(kinks_log_reach<N>(expansion_.machine(), kinks_end(), order_ - 1, settings_.log_tolerance),
+                                events_.log_reach(expansion_, order_ - 1, settings_.log_tolerance));
+  if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
+  expanded_ = true;
+  return {};
+}
+
+// h = (rho / e^2) exp(-0.7/(p-1)), rho the smaller root of |x| / |x_k| for the last two orders k,
+// in the greatest norm, relative to the size of x but at least 1 (Jorba & Zou 2005). Positions,
+// velocities, … are measured each against their own size: an angle that has turned a thousand times
+// must not loosen the tolerance of the velocities.
+template <Number N>
+N Stepper<N>::step_size() const {
+  const Program& p = *program_;
+  constexpr double kNothing = -1e300;  // the logarithm of zero
+  double last_weight = kNothing, before_weight = kNothing;
+  const int levels = *std::max_element(p.d.begin(), p.d.end());
+  for (int k = 0; k < levels; ++k) {
+    double size = 1, last = kNothing, before_last = kNothing;
+    for (std::size_t j = 0; j < p.unknowns(); ++j) {
+      if (k >= p.d[j]) continue;
+      size = std::max(size, std::abs(to_double(expansion_.derivative(j, k))));
+      const auto coefficient = [&](int order) {  // of x_j^(k)
+        double factor = 1;
+        for (int i = 1; i <= k; ++i) factor *= order + i;
+        // Logarithms: coefficients of high order may leave the range of double.
+        const N v = abs(expansion_.coefficient(j, order + k));
+        return v > N(0) ? to_double(N(log(v))) + std::log(factor) : kNothing;
+      };
+      last = std::max(last, coefficient(order_));
+      before_last = std::max(before_last, coefficient(order_ - 1));
+    }
+    last_weight = std::max(last_weight, last - std::log(size));
+    before_weight = std::max(before_weight, before_last - std::log(size));
+  }
+  // Multipliers that are no states carry no error on, but a step must not pass a pole of theirs,
+  // where a constraint loses its hold: it stays within half of their radius of convergence.
+  double pole = kNothing;
+  for (std::size_t j = 0; j < p.unknowns(); ++j) {
+    if (p.d[j] > 0) continue;
+    const N top = abs(expansion_.coefficient(j, order_ - 1)), value = abs(expansion_.coefficient(j, 0));
+    if (!(top > N(0)) || !(value > N(0))) continue;
+    pole = std::max(pole, to_double(N(log(top))) - std::max(0.0, to_double(N(log(value)))));
+  }
+  return horizon(last_weight, before_weight, pole);
+}
+
+template <Number N>
+N Stepper<N>::horizon(double last, double before_last, double pole) const {
+  constexpr double kFar = 300;
+  // e^-2 per order suits order = -ln(tol)/2 + 1; another order keeps h^p rho^-p = tol.
+  const double shrink = settings_.order > 0 ? -settings_.log_tolerance / order_ : 2.0;
+  const double log_rho = std::min({kFar, -last / order_, -before_last / (order_ - 1)}), log_pole = std::min(kFar, -pole / (order_ - 1));
+  return N(std::exp(std::min(log_rho - shrink - 0.7 / (order_ - 1), log_pole - 0.7)));
+}
+
+#define INSTANTIATE(N)                                               \
+  template Outcome Stepper<N>::expand(const std::vector<W>&);        \
+  template void Stepper<N>::begin_expansion(const std::vector<W>&);  \
+  template Outcome Stepper<N>::end_expansion(const std::vector<W>&); \
+  template const StepperState<N>& Stepper<N>::begun() const;         \
+  template N Stepper<N>::horizon(double, double, double) const;
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
+
+}  // namespace anholon

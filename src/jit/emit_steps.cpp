@@ -1,0 +1,183 @@
+// The steps of a plan: values at the point, Taylor coefficients, partial derivatives.
+#include <llvm/IR/Intrinsics.h>
+
+#include "jit/emitter.h"
+
+namespace anholon::jit {
+
+llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
+  Value* r = number(0);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const PlanTerm& t = p_.terms[s.first + k];
+    Value* x = k < s.count ? get(t.x, s.lead) : number(1);
+    const Coefficient& c = p_.coefficients[t.coefficient];
+    // 1 x + 0 and 1 x + r are exact without the product.
+    if (c.one() || c.minus_one()) r = c.one() ? b_.CreateFAdd(x, r) : b_.CreateFSub(r, x);
+    else r = fma(load(t.coefficient), x, r);
+  }
+  return r;
+}
+
+llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last) {
+  Value *s, *t = number(0);
+  if (relative_) {
+    s = b_.CreateAlignedLoad(lane_, scratch(bulk_.at({a, b, lead}), static_cast<unsigned>(i_)), align());
+    const auto recent = [&](std::uint32_t x, int m) { return m == i_ ? newest(x, lead) : load(std::int64_t{x} + lead + m, true); };
+    for (int j = i_; j >= 1; --j) s = fma(load(a + j), recent(b, i_ - j), s);
+    if (first) s = fma(load(a), newest(b, lead), s);
+    for (int m = 0; m < i_; ++m) t = fma(recent(a, m), load(b + i_ - m), t);
+    if (last) t = fma(newest(a, lead), load(b), t);
+    return b_.CreateFAdd(s, t);
+  }
+  const std::int64_t p = stage_ + lead, block = stage_ > 0 ? (stage_ - 1) / kBlock * kBlock + 1 + lead : 0, known = std::min(block, p), i = p - known;
+  const auto at = [&](std::uint32_t x, std::int64_t order) { return order == p ? newest(x, lead) : load(x + order); };
+  s = number(0);
+  for (std::int64_t j = i + 1; j < known; ++j) s = fma(at(a, j), at(b, p - j), s);
+  for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = fma(at(a, j), at(b, p - j), s);
+  if (first) s = fma(at(a, 0), at(b, p), s);
+  for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = fma(at(a, j), at(b, p - j), t);
+  if (last) t = fma(at(a, p), at(b, 0), t);
+  return b_.CreateFAdd(s, t);
+}
+
+std::vector<Emitter::Convolution> Emitter::convolutions(const Step& s) {
+  switch (s.act) {
+    case Act::multiply: return {{s.a.at, s.b.at, s.lead}};
+    case Act::square: return {{s.a.at, s.a.at, s.lead}};
+    case Act::divide: return {{s.b.at, s.out.at, s.lead}};
+    case Act::square_root: return {{s.out.at, s.out.at, s.lead}};
+    case Act::power: return {{s.c.at, s.out.at, s.lead}, {s.d.at, s.a.at, s.lead}};
+    case Act::sine_cosine: return {{s.b.at, s.c.at, s.lead}, {s.b.at, s.out.at, s.lead}};
+    case Act::function: if (s.b_constant) return {}; return {{s.c.at, s.b.at, s.lead}};
+    case Act::arctan2: {
+      std::vector<Convolution> r;
+      if (!s.a_constant) r.push_back({s.e.at, s.c.at, s.lead});
+      if (!s.b_constant) r.push_back({s.f.at, s.d.at, s.lead});
+      return r;
+    }
+    case Act::input: case Act::linear: case Act::weigh: case Act::select: case Act::lookup: return {};
+  }
+  return {};
+}
+
+void Emitter::coefficient(const Step& s) {
+  const std::uint8_t l = s.lead;
+  switch (s.act) {
+    case Act::input: {
+      const auto key = "rising" + std::to_string(s.index);
+      const std::vector<double> row(k_.rising_.begin() + static_cast<std::ptrdiff_t>(s.index * k_.orders), k_.rising_.begin() + static_cast<std::ptrdiff_t>((s.index + 1) * k_.orders));
+      Value* x = relative_ ? load(std::int64_t{s.a.at} + i_ + l + s.index, true) : load(std::int64_t{s.a.at} + stage_ + l + s.index);
+      put(s.out, l, b_.CreateFMul(x, table(key.c_str(), row, l)));
+      break;
+    }
+    case Act::linear: put(s.out, l, sum(s, s.count)); break;
+    case Act::multiply: put(s.out, l, convolution(s.a.at, s.b.at, l, !s.b_unknown, !s.a_unknown)); break;
+    case Act::square: put(s.out, l, convolution(s.a.at, s.a.at, l, !s.a_unknown, !s.a_unknown)); break;
+    case Act::divide: {
+      Value* r = b_.CreateFNeg(convolution(s.b.at, s.out.at, l, false, !s.b_unknown));
+      if (!s.a_constant && !s.a_unknown) r = b_.CreateFAdd(r, get(s.a, l));
+      put(s.out, l, b_.CreateFMul(r, load(s.c.at)));
+      break;
+    }
+    case Act::square_root: {
+      Value* r = b_.CreateFNeg(convolution(s.out.at, s.out.at, l, false, false));
+      if (!s.a_unknown) r = b_.CreateFAdd(r, get(s.a, l));
+      put(s.out, l, b_.CreateFMul(r, b_.CreateFDiv(number(0.5), load(s.out.at))));
+      break;
+    }
+    case Act::power: {
+      Value* r = b_.CreateFMul(number(s.value), convolution(s.c.at, s.out.at, l, false, !s.a_unknown));
+      r = b_.CreateFSub(r, convolution(s.d.at, s.a.at, l, false, false));
+      r = b_.CreateFMul(b_.CreateFMul(r, table("reciprocal", k_.reciprocal_of, l)), load(s.b.at));
+      put(s.out, l, r);
+      put(s.d, l, b_.CreateFMul(r, table("order", k_.order, l)));
+      break;
+    }
+    case Act::sine_cosine: {
+      Value* r = table("reciprocal", k_.reciprocal_of, l);
+      Value* sine = b_.CreateFMul(convolution(s.b.at, s.c.at, l, false, !s.a_unknown), r);
+      Value* cosine = b_.CreateFMul(convolution(s.b.at, s.out.at, l, false, !s.a_unknown), r);
+      put(s.out, l, sine);
+      put(s.c, l, b_.CreateFNeg(cosine));
+      break;
+    }
+    case Act::function:
+      if (s.b_constant) put(s.out, l, s.a_unknown ? number(0) : b_.CreateFMul(load(s.b.at), get(s.a, l)));
+      else put(s.out, l, b_.CreateFMul(convolution(s.c.at, s.b.at, l, false, !s.a_unknown), table("reciprocal", k_.reciprocal_of, l)));
+      break;
+    case Act::arctan2: {
+      Value* r = number(0);
+      if (!s.a_constant) r = b_.CreateFAdd(r, convolution(s.e.at, s.c.at, l, false, !s.a_unknown));
+      if (!s.b_constant) r = b_.CreateFAdd(r, convolution(s.f.at, s.d.at, l, false, !s.b_unknown));
+      put(s.out, l, b_.CreateFMul(r, table("reciprocal", k_.reciprocal_of, l)));
+      break;
+    }
+    case Act::weigh: put(s.out, l, b_.CreateFMul(get(s.a, l), table("order", k_.order, l))); break;
+    case Act::select: {
+      Value* negative = b_.CreateFCmpOLT(load(s.c.at), number(0));
+      put(s.out, l, b_.CreateSelect(negative, s.b_constant ? number(0) : get(s.b, l), s.a_constant ? number(0) : get(s.a, l)));
+      break;
+    }
+    case Act::lookup: put(s.out, l, number(0)); break;
+  }
+}
+
+void Emitter::value(const Step& s) {
+  const std::uint8_t l = s.lead;
+  Value* a = s.act == Act::linear ? nullptr : get(s.a, l);
+  switch (s.act) {
+    case Act::input: put(s.out, l, b_.CreateFMul(load(s.a.at + s.index), number(k_.factorial[s.index]))); break;
+    case Act::linear: put(s.out, l, sum(s, s.count + s.constants)); break;
+    case Act::multiply: put(s.out, l, b_.CreateFMul(a, get(s.b, l))); break;
+    case Act::square: put(s.out, l, b_.CreateFMul(a, a)); break;
+    case Act::divide: {
+      Value* r = b_.CreateFDiv(number(1), get(s.b, l));
+      store(r, s.c.at);
+      known_[{s.c.at, -1000}] = r;
+      put(s.out, l, b_.CreateFMul(a, r));
+      break;
+    }
+    case Act::square_root: put(s.out, l, b_.CreateIntrinsic(llvm::Intrinsic::sqrt, {lane_}, {a})); break;
+    case Act::power:
+      put(s.out, l, call("anholon_power", {a, llvm::ConstantFP::get(b_.getDoubleTy(), s.value)}));
+      store(b_.CreateFDiv(number(1), a), s.b.at);
+      put(s.d, l, number(0));
+      break;
+    case Act::sine_cosine: {
+      Value *sine = address(s.out.at, false), *cosine = address(s.c.at, false);
+      for (int lane = 0; lane < lanes_; ++lane) {
+        const auto at = [&](Value* all) { return b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), all, static_cast<std::uint64_t>(lane)); };
+        call_scalar("anholon_sincos", {of_lane(a, lane), at(sine), at(cosine)}, b_.getVoidTy());
+      }
+      known_.erase({s.out.at, l});
+      known_.erase({s.c.at, l});
+      break;
+    }
+    case Act::function: put(s.out, l, call("anholon_function", {b_.getInt32(s.index), a})); break;
+    case Act::arctan2: put(s.out, l, call("atan2", {a, get(s.b, l)})); break;
+    case Act::weigh: put(s.out, l, number(0)); break;
+    case Act::select: {
+      Value* negative = b_.CreateFCmpOLT(load(s.c.at), number(0));
+      put(s.out, l, b_.CreateSelect(negative, get(s.b, l), get(s.a, l)));
+      break;
+    }
+    case Act::lookup: break;  // refused before
+  }
+}
+
+void Emitter::partial(const Partial& d) {
+  using K = Partial::Kind;
+  Value* a = load(d.a);
+  Value* r = nullptr;
+  switch (d.kind) {
+    case K::twice: r = b_.CreateFAdd(a, a); break;
+    case K::half_reciprocal: r = b_.CreateFDiv(number(0.5), a); break;
+    case K::quotient: r = b_.CreateFMul(a, load(d.b)); break;
+    case K::power: r = b_.CreateFDiv(b_.CreateFMul(number(d.value), a), load(d.b)); break;
+    case K::chosen: r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(0), number(1)); break;
+    case K::not_chosen: r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(1), number(0)); break;
+  }
+  store(r, d.out);
+}
+
+}  // namespace anholon::jit
