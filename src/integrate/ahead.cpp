@@ -131,12 +131,17 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   return low.sigma < start * N(kVanished) ? std::optional<W>(from) : std::nullopt;
 }
 
-#define INSTANTIATE(N)                                                                       \
-  template void Stepper<N>::polynomial(const W&, std::vector<W>&, std::vector<W>&) const;    \
-  template void Stepper<N>::on_polynomial(const W&, std::vector<W>&, std::vector<W>&) const; \
-  template std::optional<N> Stepper<N>::quadrature_ahead(std::size_t, const N&);             \
-  template Wider<N> Stepper<N>::on_the_branch(W);                                            \
-  template std::optional<Mode<N>> Stepper<N>::mode_at(const W&, const std::vector<W>&);      \
+#define INSTANTIATE(N)                                                                                 \
+  template void Stepper<N>::polynomial(const W&, std::vector<W>&, std::vector<W>&) const;              \
+  template void Stepper<N>::on_polynomial(const W&, std::vector<W>&, std::vector<W>&) const;           \
+  template Expansion<N>* Stepper<N>::ahead(const W&);                                                  \
+  template Expansion<N>* Stepper<N>::prepared(const W&, const std::vector<W>&, const std::vector<W>&); \
+  template std::optional<N> Stepper<N>::quadrature_ahead(std::size_t, const N&);                       \
+  template bool Stepper<N>::near_in_branch(const W&);                                                  \
+  template Wider<N> Stepper<N>::on_the_branch(W);                                                      \
+  template std::optional<Mode<N>> Stepper<N>::mode_ahead(const W&);                                    \
+  template std::optional<Mode<N>> Stepper<N>::mode_at(const W&, const std::vector<W>&);                \
+  template std::optional<Mode<N>> Stepper<N>::mode_of(Expansion<N>*);                                  \
   template std::optional<Wider<N>> Stepper<N>::singular_within(const W&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -222,11 +222,17 @@ N Stepper<N>::horizon(double last, double before_last, double pole) const {
   return N(std::exp(std::min(log_rho - shrink - 0.7 / (order_ - 1), log_pole - 0.7)));
 }
 
-#define INSTANTIATE(N)                                               \
-  template Outcome Stepper<N>::expand(const std::vector<W>&);        \
-  template void Stepper<N>::begin_expansion(const std::vector<W>&);  \
-  template Outcome Stepper<N>::end_expansion(const std::vector<W>&); \
-  template const StepperState<N>& Stepper<N>::begun() const;         \
+#define INSTANTIATE(N)                                                     \
+  template Outcome Stepper<N>::expand(const std::vector<W>&);              \
+  template void Stepper<N>::begin_expansion(const std::vector<W>&);        \
+  template Outcome Stepper<N>::end_expansion(const std::vector<W>&);       \
+  template Outcome Stepper<N>::expand_here(const std::vector<W>&);         \
+  template Outcome Stepper<N>::look_back();                                \
+  template void Stepper<N>::expand_again(const StepperState<N>&);          \
+  template void Stepper<N>::note_begun(const std::vector<W>&);             \
+  template const StepperState<N>& Stepper<N>::begun() const;               \
+  template Outcome Stepper<N>::expand_by_reference(const std::vector<W>&); \
+  template N Stepper<N>::step_size() const;                                \
   template N Stepper<N>::horizon(double, double, double) const;
 INSTANTIATE(double)
 INSTANTIATE(long double)
