@@ -175,6 +175,32 @@ TEST(Ensemble, KernelsAreSeenInTheLastDigits) {
   }
 }
 
+// Many cases share the lanes of a kernel, few do not: no bit of a case depends on that, nor on its neighbours, parameters or end.
+TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
+  Sweep many(test::shipped_text("zoo/disc"));
+  many.options.varied = {parameter(many.model(), "m"), initial(3, 0)};
+  many.options.at = {Rational(1, 2)};
+  std::vector<std::vector<Rational>> values;
+  for (int k = 0; k < 40; ++k) values.push_back({Rational(1) + Rational(k % 5, 8), Rational(1, 4) + Rational(k, 64)});
+  many.cases(values);
+  many.options.numbers = [values](std::size_t k) { return EnsembleCase{values[k], Rational(1) + Rational(static_cast<int>(k % 3), 4)}; };
+  const std::vector<CaseResult> together = many.go(1);
+  ASSERT_EQ(together.size(), values.size());
+  for (const std::size_t k : {0UL, 7UL, 8UL, 23UL, 39UL}) {
+    Sweep one(test::shipped_text("zoo/disc"));
+    one.options.varied = many.options.varied;
+    one.options.at = many.options.at;
+    one.options.cases = 1;
+    one.options.numbers = [&](std::size_t) { return many.options.numbers(k); };
+    const std::vector<CaseResult> alone = one.go(1);
+    ASSERT_EQ(alone.size(), 1U);
+    EXPECT_EQ(alone[0].steps, together[k].steps) << k;
+    EXPECT_EQ(alone[0].last, together[k].last) << k;
+    EXPECT_EQ(alone[0].rows, together[k].rows) << k;
+  }
+  EXPECT_NE(together[0].last, together[1].last);
+}
+
 TEST(Ensemble, OneInconsistentCaseStopsNoOther) {
   Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "l"), parameter(run.model(), "m")};
