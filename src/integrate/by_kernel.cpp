@@ -10,16 +10,6 @@ namespace anholon {
 
 namespace {
 
-// Below this part of what they were where they were chosen, the pivots are no longer trusted.
-constexpr double kHealthy = 2e-3;
-// The smallest singular value is looked at again whenever the pivots have become this much smaller.
-constexpr double kNews = 0.8;
-// Steps before and after are looked at where they have become this much smaller in one step.
-constexpr double kSuspected = 0.6;
-
-// … and every so many steps.
-constexpr std::size_t kLook = 256;
-
 bool may_turn(const Instruction& in) {
   return in.op == Op::select || in.op == Op::lookup ||
          (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign)));
@@ -60,7 +50,7 @@ template <Number N>
 bool Stepper<N>::load_kernel(const std::vector<W>& guess) {
   if constexpr (std::same_as<N, double>) {
     // Some expansions are the reference's, for the measure of how regular J is: the first, others ever more rarely, and see below.
-    const bool look = settings_.measure && (first_sigma_ == 0 || steps_ % kLook == 0 || (steps_ & (steps_ - 1)) == 0);
+    const bool look = settings_.measure && (first_sigma_ == 0 || due_for_a_look(steps_));
     if (!kernel_ || look || careful_) {
       careful_ = false;
       return false;
@@ -79,13 +69,11 @@ bool Stepper<N>::load_kernel(const std::vector<W>& guess) {
 template <Number N>
 bool Stepper<N>::take_from_kernel() {
   if constexpr (std::same_as<N, double>) {
-    const double health = kernel_->health(lane_);
-    // A pivot that vanishes within a step has changed its sign, or has shrunk by much: before, and where the step ends close by.
-    suspected_ = health < health_before_ * kSuspected;
-    turned_ = by_kernel_ && (suspected_ || kernel_->sides(lane_) != sides_);
-    sides_ = kernel_->sides(lane_);
-    health_before_ = health;
-    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNews) || !kernel_->finite(lane_)) {
+    const Pivots pivots = kernel_->pivots(lane_);
+    const double health = pivots.health;
+    suspected_ = by_kernel_ && may_have_vanished(pivots_before_, pivots);
+    pivots_before_ = pivots;
+    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNewsOfPivots) || !kernel_->finite(lane_)) {
       least_health_ = std::min(least_health_, health);
       return false;
     }

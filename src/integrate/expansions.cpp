@@ -19,6 +19,7 @@ template <Number N>
 void Stepper<N>::begin_expansion(const std::vector<W>& guess) {
   now_ = 1 - now_;
   note_begun(guess);
+  suspected_ = false;
   loaded_ = load_kernel(guess);
 }
 
@@ -27,7 +28,7 @@ Outcome Stepper<N>::end_expansion(const std::vector<W>& guess) {
   const bool again = expansions_++ > 0, by_kernel = loaded_ && take_from_kernel();
   loaded_ = false;
   Outcome o = by_kernel ? Outcome{} : expand_by_reference(guess);
-  if (o.ok() && turned_) return look_back();
+  if (o.ok() && suspected_) return look_back();
   if (!o.ok() && again) expand_again(StepperState<N>(begun_[1 - now_]));
   return o;
 }
@@ -44,10 +45,9 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   return expand_by_reference(guess);
 }
 
-// Pivots of the kernel have changed their signs in the last step: whether J was singular on the way is asked of the reference. At both ends first.
+// Whether J was singular within the last step is asked of the reference: at both ends first.
 template <Number N>
 Outcome Stepper<N>::look_back() {
-  turned_ = false;
   const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, begun_[1 - now_].state), here = mode_at(t_, state_);
   if (before && here && !crossed(*before, *here, program_->system->coordinates)) return {};
   const StepperState<N> now = begun_[now_], last = begun_[1 - now_];

@@ -5,9 +5,6 @@
 
 namespace anholon {
 
-// As for Taylor's steps: below this part of what they were where they were chosen, pivots are no longer trusted.
-constexpr double kHealthy = 2e-3;
-
 StateRate::StateRate(const Program& program, const std::vector<double>& parameters, const std::vector<long double>& wide_parameters,
                      std::shared_ptr<const KernelPlan> plan, std::vector<Guard> guards)
     : program_(&program), point_(program, parameters, 0), guards_(std::move(guards)), leading_(program.unknowns(), 0.0),
@@ -78,8 +75,8 @@ bool StateRate::by_kernel(double t, const std::vector<double>& state, bool proje
   if (std::any_of(leading_.begin(), leading_.end(), [](double x) { return !std::isfinite(x); })) leading_.assign(leading_.size(), 0.0);
   kernel_->load(0, t, state, leading_);
   kernel_->expand(projected);
-  health_ = kernel_->health(0);
-  if (!(health_ > kHealthy)) return false;
+  pivots_ = kernel_->pivots(0);
+  if (!(pivots_->health > kHealthy)) return false;
   moved_ = projected && kernel_->moved(0);
   drift_ = projected ? kernel_->drift(0) : 0;
   state_.resize(state.size());

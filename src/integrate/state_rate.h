@@ -7,6 +7,7 @@
 // small.
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "integrate/taylor.h"
 #include "kernel/kernel.h"
@@ -35,8 +36,8 @@ class StateRate {
   // Where it was projected: how far it was from the constraints, in relation to its size; whether it was moved.
   double drift() const { return drift_; }
   bool moved() const { return moved_; }
-  // Of the kernel's pivots; 1 where the reference was asked.
-  double health() const { return health_; }
+  // Of the kernel, also where they were so small that the reference was asked; none without a kernel.
+  const std::optional<Pivots>& pivots() const { return pivots_; }
   // Where f may have a kink: on which side each abs, sign, piecewise or table was, the number of a piece or of an interval between knots.
   // By a kernel alone.
   const std::vector<int>& sides() const { return sides_; }
@@ -77,7 +78,8 @@ class StateRate {
   int levels_ = 1;
   bool constrained_ = false, moved_ = false, guarded_ = false;
   std::vector<double> state_, rate_, leading_, integrands_, arguments_;
-  double drift_ = 0, health_ = 1;
+  double drift_ = 0;
+  std::optional<Pivots> pivots_;
   std::size_t evaluations_ = 0, by_reference_ = 0;
 };
 

@@ -54,10 +54,9 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
   integrals_.assign(program_->quadratures, W(0));
   integral_carry_ = integrals_;
   steps_ = expansions_ = by_kernel_count_ = 0;
-  by_kernel_ = turned_ = careful_ = loaded_ = expanded_ = singular_ahead_ = false;
+  by_kernel_ = suspected_ = careful_ = loaded_ = expanded_ = singular_ahead_ = false;
   short_kinks_ = 0;
   least_health_ = N(1);
-  health_before_ = 0;
   sigma_ = sigma_before_ = first_sigma_ = N(0);
   smallest_sigma_ = N(1);
   smallest_sigma_t_ = t;

@@ -7,11 +7,9 @@
 
 #include "integrate/events.h"
 #include "integrate/regular.h"
+#include "kernel/pivots.h"
 
 namespace anholon {
-
-class Kernel;
-class KernelPlan;
 
 struct StepSettings {
   double log_tolerance = -27.6310211159;  // natural logarithm: 1e-400 is a tolerance too
@@ -30,6 +28,13 @@ void convert_all(const std::vector<From>& from, std::vector<To>& to) {
   to.resize(from.size(), To(0));
   for (std::size_t i = 0; i < from.size(); ++i) to[i] = convert<To>(from[i]);
 }
+
+class Kernel;
+class KernelPlan;
+
+// The smallest singular value of J is looked at again after so many steps, and whenever the kernel's pivots have become this much smaller.
+constexpr bool due_for_a_look(std::size_t steps) { return steps % 256 == 0 || (steps & (steps - 1)) == 0; }
+inline constexpr double kNewsOfPivots = 0.8;
 
 // All that a stepper carries where an expansion is made: from here the same steps follow, bit by bit.
 template <Number N>
@@ -178,10 +183,8 @@ class Stepper {
   W aimed_{0};           // where the step ends
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
   bool by_kernel_ = false;                                    // the present expansion
-  std::uint64_t sides_ = 0;                                   // the signs of the kernel's pivots
-  double health_before_ = 0;                                  // their size at the last expansion
-  bool turned_ = false;                                       // J may have been singular within the last step by the kernel
-  bool suspected_ = false;                                    // that the step from here meets a singular point; as above
+  Pivots pivots_before_;                                      // of the kernel, at the last expansion
+  bool suspected_ = false;                                    // J may have been singular within the last step by the kernel, or may be so within the next
   bool careful_ = false;                                      // the next one is to be made without the kernel
   N least_health_{1};
   std::size_t by_kernel_count_ = 0;

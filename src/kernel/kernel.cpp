@@ -189,7 +189,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
 void Kernel::Free::operator()(double* p) const { std::free(p); }
 
 Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* tier)
-    : plan_(std::move(plan)), lanes_(lanes), judged_(static_cast<std::size_t>(lanes)), weight_(static_cast<std::size_t>(lanes), 0.0) {
+    : plan_(std::move(plan)), lanes_(lanes), verdicts_(static_cast<std::size_t>(lanes)), weight_(static_cast<std::size_t>(lanes), 0.0) {
   if (!tier) tier = &tiers().back();
   ANHOLON_ASSERT(lanes == 1 || lanes == tier->lanes);
   const std::size_t bytes = plan_->tables().size * sizeof(double) * static_cast<std::size_t>(lanes);
@@ -236,30 +236,30 @@ double Kernel::correction_of_solution() {
 
 void Kernel::judge_pivots() {
   const std::size_t lanes = static_cast<std::size_t>(lanes_);
-  for (Judgement& j : judged_) j = {std::numeric_limits<double>::max(), 0, 1, 0, 0, 0, false};
-  for (const KernelPlan::Judged& p : plan_->judged_) {
+  for (Verdict& v : verdicts_) v = {{std::numeric_limits<double>::max(), 0}, 0, 1, 0, 0, false};
+  for (const KernelPlan::Judged& p : plan_->judged()) {
     const double* pivot = arena_ + p.at * lanes;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const double ratio = pivot[lane] * p.inverse;
-      Judgement& j = judged_[lane];
+      Verdict& v = verdicts_[lane];
       const double size = std::abs(ratio);
-      j.health = size < j.health ? size : j.health;
-      j.sides ^= ratio < 0 ? p.mark : 0;
-      j.invalid += ratio - ratio;
+      v.pivots.health = size < v.pivots.health ? size : v.pivots.health;
+      v.pivots.signs ^= ratio < 0 ? p.mark : 0;
+      v.invalid += ratio - ratio;
     }
   }
-  for (Judgement& j : judged_)
-    if (j.invalid != 0) j.health = 0;  // what is not a number
+  for (Verdict& v : verdicts_)
+    if (v.invalid != 0) v.pivots.health = 0;  // what is not a number
 }
 
 void Kernel::project(const Code* code) {
   const Plan& p = plan_->plan();
   const KernelTables& t = plan_->tables();
   const std::size_t lanes = static_cast<std::size_t>(lanes_);
-  for (int level = plan_->levels_; level >= 1; --level) {
+  for (int level = plan_->levels(); level >= 1; --level) {
     if (code) code->level[static_cast<std::size_t>(level - 1)](arena_);
     else arithmetic_->residual(level);
-    for (Judgement& j : judged_) j.size = 1, j.most = 0;
+    for (Verdict& v : verdicts_) v.size = 1, v.most = 0;
     for (std::size_t j = 0; j < p.x.size(); ++j) {
       const int k = p.d[j] - level;
       if (k < 0) continue;
@@ -267,14 +267,14 @@ void Kernel::project(const Code* code) {
       const double* change = arena_ + (t.solution + j) * lanes;
       const double factor = t.factorial[static_cast<std::size_t>(k)];
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        Judgement& of = judged_[lane];
+        Verdict& of = verdicts_[lane];
         of.size = std::max(of.size, std::abs(x[lane]) * factor);
         of.most = std::max(of.most, std::abs(change[lane]));
       }
     }
     bool any = false;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      Judgement& of = judged_[lane];
+      Verdict& of = verdicts_[lane];
       const double displacement = of.most / of.size;
       if (!(displacement <= of.drift)) of.drift = displacement;
       weight_[lane] = displacement > kQuiet ? 1 : 0;

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "kernel/code.h"
+#include "kernel/pivots.h"
 
 namespace anholon {
 
@@ -26,6 +27,14 @@ class KernelPlan {
   const KernelTables& tables() const { return tables_; }
   const Program& program() const { return *program_; }
   std::size_t state_size() const { return state_size_; }
+  int levels() const { return levels_; }  // of hidden constraints
+  // Pivots whose size says how far they still serve: where they lie, 1 / what they were, the mark of their sign.
+  struct Judged {
+    std::uint32_t at;
+    double inverse;
+    std::uint64_t mark;
+  };
+  const std::vector<Judged>& judged() const { return judged_; }
   // Makes machine code for one lane, or for so many, with the same bits; such kernels take it up at their next expansion. At most once for each, from
   // any thread. Why there is none, or nothing.
   std::string compile(const std::string& cache, int lanes = 1) const;
@@ -47,15 +56,8 @@ class KernelPlan {
   SparseLu elimination_;
   KernelTables tables_;
   std::size_t state_size_ = 0;
-  int levels_ = 0;  // of hidden constraints
-  // Pivots whose size says how far they still serve: where they lie, and 1 / what they were.
-  struct Judged {
-    std::uint32_t at;
-    double inverse;
-    std::uint64_t mark;  // of its sign
-  };
+  int levels_ = 0;
   std::vector<Judged> judged_;
-  friend class Kernel;
   struct Compiled {
     Code code;
     int lanes = 1;
@@ -95,14 +97,12 @@ class Kernel {
   // By how much refinement changes the solution for the leading derivatives, in relation to it.
   double correction_of_solution();
 
-  // Of the last expansion. The smallest pivot in relation to what it was where the pivots were chosen; and a hash of their signs in the same
-  // relation: where it changes, J may have been singular on the way. (Or not: as a pivot passes zero, the next one passes infinity.)
-  double health(int lane) const { return judged_[static_cast<std::size_t>(lane)].health; }
-  std::uint64_t sides(int lane) const { return judged_[static_cast<std::size_t>(lane)].sides; }
+  // Of the last expansion.
+  const Pivots& pivots(int lane) const { return verdicts_[static_cast<std::size_t>(lane)].pivots; }
   bool finite(int lane) const;
   // How far the state was from the hidden constraints, in relation to its size, and whether it was moved.
-  double drift(int lane) const { return judged_[static_cast<std::size_t>(lane)].drift; }
-  bool moved(int lane) const { return judged_[static_cast<std::size_t>(lane)].moved; }
+  double drift(int lane) const { return verdicts_[static_cast<std::size_t>(lane)].drift; }
+  bool moved(int lane) const { return verdicts_[static_cast<std::size_t>(lane)].moved; }
 
   // The series of unknown j in a lane: number k lies k * lanes() further on.
   const double* unknown(std::size_t j, int lane) const { return arena_ + plan_->plan().x[j] * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane); }
@@ -135,12 +135,12 @@ class Kernel {
   std::unique_ptr<double[], Free> memory_;
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
-  struct Judgement {
-    double health = 1, drift = 0, size = 1, most = 0, invalid = 0;
-    std::uint64_t sides = 0;
+  struct Verdict {
+    Pivots pivots;
+    double drift = 0, size = 1, most = 0, invalid = 0;
     bool moved = false;
   };
-  std::vector<Judgement> judged_;  // of the lanes
+  std::vector<Verdict> verdicts_;  // of the lanes
   std::vector<double> weight_;
 };
 

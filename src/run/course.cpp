@@ -11,9 +11,6 @@ namespace {
 
 // Where another method cannot go, Taylor makes some steps; if that happens too often, all that follow.
 constexpr std::size_t kHelp = 8, kMostRescues = 50;
-// The smallest singular value is looked at as often as along Taylor's steps.
-constexpr std::size_t kLook = 256;
-constexpr double kNews = 0.8;
 
 template <Number W>
 std::vector<W> widened(const std::vector<double>& from) {
@@ -91,6 +88,7 @@ std::optional<Outcome> Course<N>::step_by_other(const W& end) {
       begun_ = motion_.stepper().point();
       look_.emplace(motion_.program(), parameter_values<N>(*s_.model), 1);
       least_health_ = 1;
+      suspected_ = false;
       times_.clear();
       window_steps_ = 0;
       window_t_ = static_cast<double>(motion_.stepper().time());
@@ -106,14 +104,17 @@ std::optional<Outcome> Course<N>::step_by_other(const W& end) {
     if (motion_.pivot_is_small(*begun_)) return by_taylor(1);
     code_.step(plan_);
     const std::size_t steps = other_->steps();
-    const double health = other_->rate().health();
+    const std::optional<Pivots> pivots = other_->rate().pivots();
     Outcome o = other_->step(end);
-    if (o.ok() && health > 0 && !(other_->rate().health() > 0) && passed_singular_point()) {
+    // Also in the step after one in which they shrank: J may be singular close by. Without a kernel nothing tells.
+    const bool suspected = !pivots || may_have_vanished(*pivots, *other_->rate().pivots());
+    if (o.ok() && (suspected || suspected_) && passed_singular_point()) {
       // Taylor stops there, or knows better.
       if (o = hand_over(MotionPoint(other_->before())); !o.ok()) return o;
       taylor_for_ = kHelp;
       return std::nullopt;
     }
+    suspected_ = suspected;
     if (o.ok()) {
       by_other_ = true;
       report_.steps += other_->steps() - steps;
@@ -137,7 +138,7 @@ std::optional<Outcome> Course<N>::step_by_other(const W& end) {
   }
 }
 
-// A pivot of the kernel has changed its sign in the last step: whether J was singular on the way is asked of the reference.
+// Whether J was singular within the last step: asked of the reference, at both ends.
 template <Number N>
 bool Course<N>::passed_singular_point() {
   if constexpr (std::same_as<N, double>) {
@@ -205,9 +206,8 @@ Outcome Course<N>::at(const W& t) {
 template <Number N>
 void Course<N>::look() {
   if constexpr (std::same_as<N, double>) {
-    const double health = other_->rate().health();
-    const std::size_t steps = other_->steps();
-    if (steps % kLook != 0 && (steps & (steps - 1)) != 0 && !(health < least_health_ * kNews)) return;
+    const double health = other_->rate().pivots() ? other_->rate().pivots()->health : 1;
+    if (!due_for_a_look(other_->steps()) && !(health < least_health_ * kNewsOfPivots)) return;
     least_health_ = std::min(least_health_, health);
     const MotionPoint& p = other_->before();
     look_->load(static_cast<double>(p.t), std::vector<double>(p.state.begin(), p.state.end()), p.leading);

@@ -102,6 +102,7 @@ class Course {
   N smallest_sigma_{1};
   std::size_t weakest_ = 0;
   double least_health_ = 1;
+  bool suspected_ = false;  // J may be singular close by
   // Taylor's last steps, and when it is asked next whether another method pays.
   std::vector<W> times_;
   static constexpr std::size_t kStretch = 256;  // steps that are remembered

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "run/simulate.h"
 #include "support/models.h"
 
@@ -193,6 +195,25 @@ TEST(Course, LooseTolerancesGoByRungeKutta) {
   EXPECT_LT(difference(found, exact), 10 * difference(taylor, exact)) << "cheaper, not worse";
   const Result sharp = motion(coin, 10, {Method::automatic, power_of_ten(7)});
   EXPECT_EQ(sharp.report.method.steps, 0U);
+}
+
+// x = -cos t; x y' = 0 loses its hold at x = 0, where no multiplier has a pole and the pivot, a square, keeps its sign.
+TEST(Course, SingularPointsAreNotPassed) {
+  const auto hold = [](const std::string& factor) {
+    return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\n"
+           "vector = \"-x*ex\"\n[[constraint]]\nname = \"hold\"\nequation = \"" + factor + "*y' = 0\"\n[initial]\nx = -1\ny = 0\n\"x'\" = 0\n\"y'\" = 0\n";
+  };
+  for (const Method m : {Method::taylor, Method::runge_kutta, Method::bdf})
+    for (const int digits : {4, 6, 9}) {
+      const Result r = motion(hold("x"), 4, {m, power_of_ten(digits)});
+      EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular) << name(m) << " " << digits << ": " << r.report.outcome.message;
+      EXPECT_NEAR(std::stod(r.report.t), std::numbers::pi / 2, 1e-3) << name(m) << " " << digits;
+      const Result regular = motion(hold("(x + 3)"), 4, {m, power_of_ten(digits)});
+      EXPECT_TRUE(regular.report.outcome.ok()) << name(m) << " " << digits << ": " << regular.report.outcome.message;
+      if (m != Method::taylor) {
+        EXPECT_EQ(regular.report.method.taylor_steps, 0U) << "nothing is suspected without need";
+      }
+    }
 }
 
 // Where another method cannot go, Taylor does, and stops where it always stopped.
