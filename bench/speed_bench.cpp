@@ -246,9 +246,9 @@ void answer_lanes(const Ready& r, const std::string& name, JsonWriter& json) {
   write_state(json, last);
 }
 
-// The lanes of one kernel, each to the end; those that are there wait for the others.
+// The lanes of one kernel, each to the end; those that are there wait for the others. Where they have arrived, if asked for.
 void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions, const std::vector<Start<Wider<double>>>& starts,
-                     const Wider<double>& end) {
+                     const Wider<double>& end, std::vector<std::vector<Wider<double>>>* last = nullptr) {
   for (std::size_t i = 0; i < motions.size(); ++i) motions[i].stepper.place(starts[i].t, starts[i].state, starts[i].leading);
   const auto all = [&](const auto& part) {
     bool any = false;
@@ -257,10 +257,14 @@ void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions, co
     return any;
   };
   while (all([](Stepper<double>& s) { return s.begin_step(); })) {
-    kernel.expand();
+    kernel.begin();
     all([&](Stepper<double>& s) { return s.aim(end); });
     kernel.advance();
     all([](Stepper<double>& s) { return s.finish_step(); });
+    if (!last) continue;
+    last->resize(motions.size());
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      if ((*last)[i].empty() && motions[i].stepper.time() == end) (*last)[i] = motions[i].last();
   }
 }
 
@@ -287,6 +291,8 @@ void answer_batch(Ready& r, double tolerance, double seconds, const std::string&
     go_side_by_side(*kernel, motions, starts, end);
     times.push_back(watch.seconds());
   }
+  std::vector<std::vector<W>> arrived;
+  go_side_by_side(*kernel, motions, starts, end, &arrived);
   // The same motions, each alone.
   Trajectory<double> alone(r, settings);
   alone.stepper.accelerate(plan);
@@ -295,7 +301,8 @@ void answer_batch(Ready& r, double tolerance, double seconds, const std::string&
   double apart = 0;
   for (std::size_t lane = 0; lane < motions.size(); ++lane) {
     alone.go(starts[lane], end, kMostSteps);
-    const std::vector<W> here = motions[lane].last(), there = alone.last();
+    const std::vector<W>& here = arrived[lane];
+    const std::vector<W> there = alone.last();
     for (std::size_t i = 0; i < here.size(); ++i) apart = std::max(apart, to_double(abs(here[i] - there[i]) / (W(1) + abs(there[i]))));
     last.insert(last.end(), here.begin(), here.end());
     steps += motions[lane].stepper.steps();

@@ -31,6 +31,7 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
 template <Number N>
 void Stepper<N>::on_polynomial(const W& h, std::vector<W>& state, std::vector<W>& leading) const {
   if (by_kernel_) {
+    settle();
     advance_kernel(h);
     return advanced_by_kernel(h, expanded_ ? state_ : base_state_, state, leading);
   }
@@ -112,6 +113,7 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   // A singular value that vanishes within the step has fallen by more than half in one as long.
   const bool suspected = by_kernel_ || last_step_ == W(0) || sigma_ < sigma_before_ * N(kFaster) || abs(h) > last_step_ * W(kLonger);
   if (!suspected) return std::nullopt;
+  settle();
   const std::size_t n = program_->system->coordinates;
   const std::optional<Mode<N>> here = by_kernel_ ? mode_at(t_, state_) : weakest_mode(expansion_, sigma_);
   if (!here) return std::nullopt;

@@ -35,9 +35,11 @@ void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane) {
     const Tape& tape = program_->tape;
     const bool kinks = std::any_of(tape.code.begin(), tape.code.begin() + kinks_end(), [](const Instruction& in) { return !in.constant && may_turn(in); });
     if (kinks || !events_.empty()) return;
+    settle();
     kernel_ = std::move(kernel);
     lane_ = lane;
     alone_ = kernel_->lanes() == 1;
+    kernel_->set_shrink(shrink());
     kink_series_.clear();
     for (const auto& [slot, place] : kernel_->plan().plan().roots_of_even_powers) kink_series_.push_back({slot, place.at});
   } else {
@@ -45,24 +47,68 @@ void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane) {
   }
 }
 
-// False where the reference has to be asked.
+// Not where the reference has to be asked: some expansions are its own, for the measure of how regular J is: the first, others ever more rarely, and
+// see below.
 template <Number N>
-bool Stepper<N>::load_kernel(const std::vector<W>& guess) {
+bool Stepper<N>::kernel_serves() const {
   if constexpr (std::same_as<N, double>) {
-    // Some expansions are the reference's, for the measure of how regular J is: the first, others ever more rarely, and see below.
     const bool look = settings_.measure && (first_sigma_ == 0 || due_for_a_look(steps_));
-    if (!kernel_ || look || careful_) {
-      careful_ = false;
-      return false;
+    return kernel_ && !look && !careful_;
+  } else {
+    return false;
+  }
+}
+
+template <Number N>
+void Stepper<N>::load_kernel(const std::vector<W>& guess) {
+  if constexpr (std::same_as<N, double>) {
+    if (!away_) {
+      if (!carried_)
+        for (std::size_t i = 0; i < state_.size(); ++i) state_[i] += std::exchange(carry_[i], W(0));
+      carried_ = true;
+      kernel_->place(lane_, state_, guess);
+      away_ = true;
     }
-    if (!carried_)
-      for (std::size_t i = 0; i < state_.size(); ++i) state_[i] += std::exchange(carry_[i], W(0));
-    carried_ = true;
-    kernel_->load(lane_, static_cast<double>(t_), state_, guess);
-    return true;
+    kernel_->set_time(lane_, static_cast<double>(t_));
   } else {
     (void)guess;
-    return false;
+  }
+}
+
+// What is with the kernel is fetched. Its last two expansions, too; while one is being made, there is nothing to settle.
+template <Number N>
+void Stepper<N>::settle() const {
+  if constexpr (std::same_as<N, double>) {
+    if (!away_) return;
+    away_ = false;
+    kernel_->fetch(lane_, Kernel::Moment::now, state_, leading_);
+    if (expanded_) leading_ = leading_at_base();
+    else kernel_->fetch_base(lane_, base_state_);
+    for (const int i : {0, 1})
+      if (StepperState<N>& b = begun_[i]; begun_by_kernel_[i]) {
+        kernel_->fetch(lane_, i == now_ ? Kernel::Moment::begun : Kernel::Moment::before, b.state, b.leading);
+        b.carry.assign(b.state.size(), W(0));
+      }
+  }
+}
+
+// The kernel has failed in the present expansion.
+template <Number N>
+void Stepper<N>::settle_as_begun() {
+  if constexpr (std::same_as<N, double>) {
+    settle();
+    state_ = begun_[now_].state;
+    leading_ = begun_[now_].leading;
+  }
+}
+
+// The kernel's step is not to be.
+template <Number N>
+void Stepper<N>::settle_at_base() {
+  if constexpr (std::same_as<N, double>) {
+    settle();
+    kernel_->fetch_base(lane_, state_);
+    leading_ = leading_at_base();
   }
 }
 
@@ -73,68 +119,27 @@ bool Stepper<N>::take_from_kernel() {
     const double health = pivots.health;
     suspected_ = by_kernel_ && may_have_vanished(pivots_before_, pivots);
     pivots_before_ = pivots;
-    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNewsOfPivots) || !kernel_->finite(lane_)) {
+    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNewsOfPivots) || !kernel_->reaches(lane_)) {
       least_health_ = std::min(least_health_, health);
       return false;
     }
-    by_kernel_ = true;
+    by_kernel_ = expanded_ = true;
     ++by_kernel_count_;
-    const Program& p = *program_;
-    if (kernel_->moved(lane_)) {
-      std::size_t i = 0;
-      for (std::size_t j = 0; j < p.unknowns(); ++j)
-        for (int k = 0; k < p.d[j]; ++k, ++i)
-          if (const double moved = kernel_->derivative(j, k, lane_) - static_cast<double>(state_[i]); moved != 0) state_[i] += moved;
-    }
-    leading_.resize(p.unknowns());
-    for (std::size_t j = 0; j < p.unknowns(); ++j) leading_[j] = kernel_->derivative(j, p.d[j], lane_);
     point_loaded_ = point_valued_ = false;
     worst_constraint_ = std::max(worst_constraint_, W(kernel_->drift(lane_)));
+    horizon_ = kernel_->reach(lane_);
     for (const auto& [slot, at] : kink_series_)
       for (int k = 0; k < order_; ++k) expansion_.adopt_coefficient(slot, k, kernel_->series({at, true}, k, lane_));
-    horizon_ = horizon_by_kernel();
-    expanded_ = true;
     return true;
   } else {
     return false;
   }
 }
 
-// step_size(), on numbers that are at hand.
-template <Number N>
-N Stepper<N>::horizon_by_kernel() const {
-  if constexpr (std::same_as<N, double>) {
-    const Program& p = *program_;
-    const std::vector<double>& factorial = kernel_->plan().tables().factorial;
-    const std::size_t stride = static_cast<std::size_t>(kernel_->lanes());
-    const int levels = *std::max_element(p.d.begin(), p.d.end());
-    double last_weight = 0, before_weight = 0, pole = 0, factor = 1, factor_before = 1;
-    for (int k = 0; k < levels; ++k) {
-      if (k > 0) factor *= order_ + k, factor_before *= order_ - 1 + k;
-      double size = 1, last = 0, before_last = 0;
-      for (std::size_t j = 0; j < p.unknowns(); ++j) {
-        if (k >= p.d[j]) continue;
-        const double* x = kernel_->unknown(j, lane_) + static_cast<std::size_t>(k) * stride;
-        size = std::max(size, std::abs(*x) * factorial[static_cast<std::size_t>(k)]);
-        last = std::max(last, std::abs(x[static_cast<std::size_t>(order_) * stride]));
-        before_last = std::max(before_last, std::abs(x[static_cast<std::size_t>(order_ - 1) * stride]));
-      }
-      last_weight = std::max(last_weight, last * factor / size);
-      before_weight = std::max(before_weight, before_last * factor_before / size);
-    }
-    for (std::size_t j = 0; j < p.unknowns(); ++j)
-      if (p.d[j] == 0)
-        if (const double value = std::abs(kernel_->coefficient(j, 0, lane_)); value > 0)
-          pole = std::max(pole, std::abs(kernel_->coefficient(j, order_ - 1, lane_)) / std::max(1.0, value));
-    return horizon(std::log(last_weight), std::log(before_weight), std::log(pole));
-  } else {
-    return N(0);
-  }
-}
-
 template <Number N>
 const Expansion<typename Stepper<N>::W>& Stepper<N>::point(bool values) const {
   if (!point_loaded_) {
+    settle();
     point_.load(begun_[now_].t, expanded_ ? state_ : base_state_, leading_at_base());
     point_loaded_ = true;
   }
@@ -169,7 +174,7 @@ N Stepper<N>::quadrature_coefficient(std::size_t i, int k) const {
 template <Number N>
 void Stepper<N>::advance_kernel(const W& h) const {
   kernel_->set_step(lane_, to_double(h));
-  kernel_->advance();
+  kernel_->change_over_step();
 }
 
 // The solution h beyond where the expansion was made. What the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
@@ -211,9 +216,12 @@ void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std:
   template void Stepper<N>::advanced_by_kernel(const W&, const std::vector<W>&, std::vector<W>&, std::vector<W>&) const; \
   template void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan>);                    \
   template void Stepper<N>::accelerate(std::shared_ptr<Kernel>, int);                         \
-  template bool Stepper<N>::load_kernel(const std::vector<W>&);                               \
+  template bool Stepper<N>::kernel_serves() const;                                            \
+  template void Stepper<N>::load_kernel(const std::vector<W>&);                               \
+  template void Stepper<N>::settle() const;                                                   \
+  template void Stepper<N>::settle_as_begun();                                                \
+  template void Stepper<N>::settle_at_base();                                                 \
   template bool Stepper<N>::take_from_kernel();                                               \
-  template N Stepper<N>::horizon_by_kernel() const;                                           \
   template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;                          \
   template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;
 INSTANTIATE(double)

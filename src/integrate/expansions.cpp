@@ -11,21 +11,24 @@ namespace anholon {
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
   begin_expansion(guess);
-  if (loaded_) kernel_->expand();
+  if (loaded_) kernel_->begin();
   return end_expansion(guess);
 }
 
 template <Number N>
 void Stepper<N>::begin_expansion(const std::vector<W>& guess) {
+  loaded_ = kernel_serves();
+  if (!loaded_) settle();
   now_ = 1 - now_;
   note_begun(guess);
-  suspected_ = false;
-  loaded_ = load_kernel(guess);
+  suspected_ = careful_ = false;
+  if (loaded_) load_kernel(guess);
 }
 
 template <Number N>
 Outcome Stepper<N>::end_expansion(const std::vector<W>& guess) {
   const bool again = expansions_++ > 0, by_kernel = loaded_ && take_from_kernel();
+  if (loaded_ && !by_kernel) settle_as_begun();
   loaded_ = false;
   Outcome o = by_kernel ? Outcome{} : expand_by_reference(guess);
   if (o.ok() && suspected_) return look_back();
@@ -36,18 +39,24 @@ Outcome Stepper<N>::end_expansion(const std::vector<W>& guess) {
 // Where the kernel belongs to others, too, it is left in peace.
 template <Number N>
 Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
+  loaded_ = alone_ && kernel_serves();
   note_begun(guess);
+  careful_ = false;
   ++expansions_;
-  if (alone_ && load_kernel(guess)) {
-    kernel_->expand();
-    if (take_from_kernel()) return {};
+  if (loaded_) {
+    load_kernel(guess);
+    kernel_->begin();
+    if (take_from_kernel()) return loaded_ = false, Outcome{};
+    settle_as_begun();
   }
+  loaded_ = false;
   return expand_by_reference(guess);
 }
 
 // Whether J was singular within the last step is asked of the reference: at both ends first.
 template <Number N>
 Outcome Stepper<N>::look_back() {
+  settle();
   const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, begun_[1 - now_].state), here = mode_at(t_, state_);
   if (before && here && !crossed(*before, *here, program_->system->coordinates)) return {};
   const StepperState<N> now = begun_[now_], last = begun_[1 - now_];
@@ -75,6 +84,8 @@ void Stepper<N>::expand_again(const StepperState<N>& last) {
   carry_ = last.carry;
   carried_ = false;
   expand_here(last.leading);
+  settle();
+  base_state_ = state_;
   begun_[now_] = last;
   t_ = t;
   state_ = state;
@@ -87,10 +98,13 @@ void Stepper<N>::expand_again(const StepperState<N>& last) {
 template <Number N>
 void Stepper<N>::note_begun(const std::vector<W>& guess) {
   StepperState<N>& b = begun_[now_];
+  begun_by_kernel_[now_] = loaded_;
   b.t = t_;
-  b.state = state_;
-  b.carry = carry_;
-  b.leading = guess;
+  if (!loaded_) {
+    b.state = state_;
+    b.carry = carry_;
+    b.leading = guess;
+  }
   b.integrals = integrals_;
   b.integral_carry = integral_carry_;
   b.branch_step = branch_step_;
@@ -110,6 +124,7 @@ void Stepper<N>::note_begun(const std::vector<W>& guess) {
 // Expansions by the kernel change neither the direction nor the sides.
 template <Number N>
 const StepperState<N>& Stepper<N>::begun() const {
+  settle();
   if (by_kernel_) begun_[now_].direction = expansion_.weakest_direction(), begun_[now_].sides = events_.sides();
   return begun_[now_];
 }
@@ -210,16 +225,15 @@ N Stepper<N>::step_size() const {
     if (!(top > N(0)) || !(value > N(0))) continue;
     pole = std::max(pole, to_double(N(log(top))) - std::max(0.0, to_double(N(log(value)))));
   }
-  return horizon(last_weight, before_weight, pole);
+  constexpr double kFar = 300;
+  const double log_rho = std::min({kFar, -last_weight / order_, -before_weight / (order_ - 1)}), log_pole = std::min(kFar, -pole / (order_ - 1));
+  return N(std::exp(std::min(log_rho - shrink() - 0.7 / (order_ - 1), log_pole - 0.7)));
 }
 
+// e^-2 per order suits order = -ln(tol)/2 + 1; another order keeps h^p rho^-p = tol.
 template <Number N>
-N Stepper<N>::horizon(double last, double before_last, double pole) const {
-  constexpr double kFar = 300;
-  // e^-2 per order suits order = -ln(tol)/2 + 1; another order keeps h^p rho^-p = tol.
-  const double shrink = settings_.order > 0 ? -settings_.log_tolerance / order_ : 2.0;
-  const double log_rho = std::min({kFar, -last / order_, -before_last / (order_ - 1)}), log_pole = std::min(kFar, -pole / (order_ - 1));
-  return N(std::exp(std::min(log_rho - shrink - 0.7 / (order_ - 1), log_pole - 0.7)));
+double Stepper<N>::shrink() const {
+  return settings_.order > 0 ? -settings_.log_tolerance / order_ : 2.0;
 }
 
 #define INSTANTIATE(N)                                                     \
@@ -233,7 +247,7 @@ N Stepper<N>::horizon(double last, double before_last, double pole) const {
   template const StepperState<N>& Stepper<N>::begun() const;               \
   template Outcome Stepper<N>::expand_by_reference(const std::vector<W>&); \
   template N Stepper<N>::step_size() const;                                \
-  template N Stepper<N>::horizon(double, double, double) const;
+  template double Stepper<N>::shrink() const;
 INSTANTIATE(double)
 INSTANTIATE(long double)
 INSTANTIATE(Quad)

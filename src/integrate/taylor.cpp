@@ -54,7 +54,7 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
   integrals_.assign(program_->quadratures, W(0));
   integral_carry_ = integrals_;
   steps_ = expansions_ = by_kernel_count_ = 0;
-  by_kernel_ = suspected_ = careful_ = loaded_ = expanded_ = singular_ahead_ = false;
+  by_kernel_ = suspected_ = careful_ = loaded_ = away_ = expanded_ = singular_ahead_ = false;
   short_kinks_ = 0;
   least_health_ = N(1);
   sigma_ = sigma_before_ = first_sigma_ = N(0);
@@ -83,6 +83,7 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
 
 template <Number N>
 Outcome Stepper<N>::restart(const std::vector<W>& state) {
+  settle();
   before_ = t_;  // the last step's polynomial is not this state's
   state_ = state;
   carry_.assign(state.size(), W(0));
@@ -99,6 +100,8 @@ Outcome Stepper<N>::restart(const std::vector<W>& state) {
 
 template <Number N>
 void Stepper<N>::adopt(const Stepper& other) {
+  other.settle();
+  away_ = false;
   events_ = other.events_;
   started_ = other.started_;
   t_ = before_ = other.t_;
@@ -119,6 +122,7 @@ void Stepper<N>::adopt(const Stepper& other) {
 
 template <Number N>
 Outcome Stepper<N>::resume(const StepperState<N>& b) {
+  away_ = false;
   started_ = t_ = before_ = b.t;
   state_ = b.state;
   carry_ = b.carry;
@@ -165,7 +169,7 @@ bool Stepper<N>::end_out_of_reach(const W& h, const W& left) const {
 template <Number N>
 Outcome Stepper<N>::step(const W& end) {
   if (Outcome o = begin_step(); !o.ok()) return o;
-  if (loaded_) kernel_->expand();
+  if (loaded_) kernel_->begin();
   if (Outcome o = aim(end); !o.ok()) return o;
   if (by_kernel_) kernel_->advance();
   return finish_step();
@@ -232,7 +236,8 @@ Outcome Stepper<N>::aim(const W& end) {
     if (to != whole) h = convert<W>(to), cut = true, singular_ahead_ = false;
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
-  const W reached = last && !cut ? end : convert<W>(convert<N>(W(t_ + h)));
+  arrives_ = last && !cut;
+  const W reached = arrives_ ? end : convert<W>(convert<N>(W(t_ + h)));
   h = reached - t_;
   aimed_ = reached;
   if (by_kernel_) kernel_->set_step(lane_, to_double(h));
@@ -244,7 +249,10 @@ Outcome Stepper<N>::finish_step() {
   const W h = aimed_ - t_;
   last_step_ = abs(h);
   sigma_before_ = sigma_;
-  if (by_kernel_) {
+  if (away_) {
+    // So that a NaN is one, too.
+    if (!(kernel_->largest(lane_) < kBlowUp)) return settle_at_base(), blow_up();
+  } else if (by_kernel_) {
     base_state_.swap(state_);
     advanced_by_kernel(h, base_state_, state_, leading_);
     if (!std::all_of(state_.begin(), state_.end(), [](const W& x) { return abs(x) < W(kBlowUp); })) return state_.swap(base_state_), blow_up();
@@ -266,6 +274,8 @@ Outcome Stepper<N>::finish_step() {
   t_ = aimed_;
   expanded_ = false;
   ++steps_;
+  // Others in the kernel go on while this one has arrived.
+  if (arrives_) settle();
   return {};
 }
 

@@ -90,7 +90,10 @@ class Stepper {
   // projected on the constraints by least change.
   Outcome restart(const std::vector<W>& state);
   void adopt(const Stepper& other);
-  const std::vector<W>& state() const { return state_; }
+  const std::vector<W>& state() const {
+    settle();
+    return state_;
+  }
   // Where the present expansion was made: the start of the last step, or of the next one if that is expanded already. A step
   // cut short by its end is thus repeated in full by whoever resumes.
   const StepperState<N>& begun() const;
@@ -140,7 +143,11 @@ class Stepper {
   Outcome expand_here(const std::vector<W>& guess);
   Outcome expand_by_reference(const std::vector<W>& guess);
   void note_begun(const std::vector<W>& guess);
-  bool load_kernel(const std::vector<W>& guess);
+  bool kernel_serves() const;
+  void load_kernel(const std::vector<W>& guess);
+  void settle() const;
+  void settle_as_begun();
+  void settle_at_base();
   bool take_from_kernel();
   N coefficient(std::size_t j, int k) const;
   void expand_again(const StepperState<N>& last);
@@ -150,9 +157,7 @@ class Stepper {
   std::uint32_t kinks_end() const { return events_.empty() ? program_->tape.main_end : static_cast<std::uint32_t>(program_->tape.code.size()); }
   N quadrature_coefficient(std::size_t i, int k) const;
   N step_size() const;
-  N horizon_by_kernel() const;
-  // From the logarithms of how much the last order and the one before weigh, and of the growth of multipliers.
-  N horizon(double last, double before_last, double pole) const;
+  double shrink() const;
   std::vector<W> leading_at_base() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
@@ -180,7 +185,10 @@ class Stepper {
   int lane_ = 0;
   bool alone_ = true;    // in the kernel
   bool loaded_ = false;  // the kernel is to make the expansion that was begun
+  // The state, what leads it and where it began are with the kernel, which goes on from there; whoever asks for them settles that first.
+  mutable bool away_ = false;
   W aimed_{0};           // where the step ends
+  bool arrives_ = false; // at what the caller has set
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
   bool by_kernel_ = false;                                    // the present expansion
   Pivots pivots_before_;                                      // of the kernel, at the last expansion
@@ -188,7 +196,7 @@ class Stepper {
   bool careful_ = false;                                      // the next one is to be made without the kernel
   N least_health_{1};
   std::size_t by_kernel_count_ = 0;
-  std::vector<W> base_state_;                                 // where the kernel's expansion of the last step was made
+  mutable std::vector<W> base_state_;                         // where the kernel's expansion of the last step was made
   std::unique_ptr<Expansion<N>> ahead_;  // for looks at J further on the polynomial
   N sigma_{0}, sigma_before_{0};         // where the last two steps began
   W last_step_{0};
@@ -200,7 +208,8 @@ class Stepper {
   W branch_step_{0};
   W started_{0}, t_{0}, before_{0};
   N horizon_{0};
-  std::vector<W> state_, carry_, leading_, integrals_, integral_carry_;
+  mutable std::vector<W> state_, leading_;
+  std::vector<W> carry_, integrals_, integral_carry_;
   std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;
   std::size_t steps_ = 0;
   bool expanded_ = false;  // at t_
@@ -209,6 +218,7 @@ class Stepper {
   W smallest_sigma_t_{0};
   std::size_t weakest_ = 0;
   mutable StepperState<N> begun_[2];  // of the present expansion and the one before
+  bool begun_by_kernel_[2] = {};      // which has the states of those, while they are away
   int now_ = 0;                       // which of them is the present one
   bool carried_ = false;              // nothing is left in carry_
   std::vector<W> change_, next_;

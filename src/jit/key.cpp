@@ -91,9 +91,10 @@ void Writer::add(const SparseLu& elimination) {
 }
 
 void Writer::add(const KernelTables& tables) {
-  // Knots: models that look tables up are not compiled.
-  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, rhs, side, solution, refined, entries, step, increments, size, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders] = tables;
-  all(*plan, *elimination, lu, reciprocal, rhs, side, solution, refined, entries, step, increments, size, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders);
+  // Knots: models that look tables up are not compiled. What motions need lies behind all that machine code knows.
+  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, rhs, side, solution, refined, entries, step, increments, now, begun, before, base,
+                                found, size, state_size, judged, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders] = tables;
+  all(*plan, *elimination, lu, reciprocal, rhs, side, solution, refined, entries, step, increments, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders);
 }
 
 }  // namespace anholon::jit

@@ -13,6 +13,23 @@ namespace anholon {
 inline constexpr int kBlock = 4;
 inline constexpr int kMostRising = 12;
 
+// A pivot whose size says how far it still serves: where it lies, 1 / what it was, the mark of its sign.
+struct JudgedPivot {
+  std::uint32_t at;
+  double inverse;
+  std::uint64_t mark;
+};
+
+// Where in the arena an expansion leaves what it found, a number in every lane.
+struct Findings {
+  std::uint32_t health = 0, signs = 0;               // Pivots (pivots.h); signs are bits
+  std::uint32_t drift = 0, weight = 0, moved = 0;    // of the projection; 0 or 1: where it moves the state, has moved it
+  std::uint32_t reach = 0;                           // the step that the series allow
+  std::uint32_t unfit = 0;                           // not 0: a highest coefficient is no number
+  std::uint32_t largest = 0;                         // of the state after a step, by absolute value; no number if one is none
+  static constexpr std::uint32_t kCount = 8;
+};
+
 // Read only once made; shared by the kernels of all threads.
 struct KernelTables {
   const Plan* plan = nullptr;
@@ -21,7 +38,16 @@ struct KernelTables {
     std::vector<double> at, values;
   };
   std::vector<Knots> knots;
-  std::uint32_t lu = 0, reciprocal = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, step = 0, increments = 0, size = 0;  // of the arena
+  // Where in the arena.
+  std::uint32_t lu = 0, reciprocal = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, step = 0, increments = 0;
+  // Of motions: x_j^(k), k < d_j, as sums of two doubles, first all the larger parts, and first guesses of x_j^(d_j): now, where the present expansion
+  // was begun, and the one before; without the guesses where it was made, after projection.
+  std::uint32_t now = 0, begun = 0, before = 0, base = 0;
+  Findings found;
+  std::uint32_t size = 0;
+  std::uint32_t state_size = 0;
+  std::uint32_t motion_size() const { return 2 * state_size + static_cast<std::uint32_t>(plan->x.size()); }
+  std::vector<JudgedPivot> judged;
   bool refine = false;  // solutions, by one step of iterative refinement
   std::vector<double> factorial, inverse_factorial, reciprocal_of, order;  // k!, 1 / k!, 1 / k, k
 
@@ -41,16 +67,29 @@ class Arithmetic {
   // Values and known coefficients at the point: stages from..0; and the partial derivatives.
   virtual void values(int from) = 0;
   virtual void factor() = 0;
+  // What pivots say, into the findings.
+  virtual void judge() = 0;
   // The solution for the residuals at derivative order c_i - level.
   virtual void residual(int level) = 0;
-  // Adds weight[lane] * solution to the derivatives d_j - level.
-  virtual void correct(int level, const double* weight) = 0;
+  // How far the solution for a level moves the derivatives d_j - level, and whether that is more than round-off: in any lane?
+  virtual bool displaced(int level) = 0;
+  // Moves them in the lanes where it is.
+  virtual void correct(int level) = 0;
   // Puts the solution of a stage in.
   virtual void complete(int stage) = 0;
   // Stages 1.. and the quadratures.
   virtual void extend() = 0;
   // By what x_j^(k), k = 0..d_j, one after the other, change over `step`, into `increments`.
   virtual void advance() = 0;
+
+  // Of motions: puts their states in where an expansion begins,
+  virtual void begin() = 0;
+  // takes over what projection has moved,
+  virtual void adopt() = 0;
+  // says how far the series reach (integrate/taylor.h: step_size; `shrink`: e^-shrink per order) and whether they are numbers,
+  virtual void measure(double shrink) = 0;
+  // and goes on by the increments.
+  virtual void go_on() = 0;
 };
 
 // Functions of the C library, in one place for every tier.

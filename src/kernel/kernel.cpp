@@ -11,8 +11,6 @@ namespace anholon {
 
 namespace {
 
-// A state this many round-offs off its hidden constraints is left alone: it is not known better.
-constexpr double kQuiet = 8 * 0x1p-53;
 // The samples for the choice of pivots lie so far around the state given: an angle may take any value.
 constexpr double kAround = 3.3;
 // Steps of a stage: more would be compiled for many seconds.
@@ -60,7 +58,7 @@ const std::vector<Tier>& tiers() {
 }
 
 KernelPlan::KernelPlan(std::shared_ptr<const Program> program, int stages) : program_(std::move(program)), plan_(anholon::plan(*program_, stages)) {
-  for (int d : plan_.d) state_size_ += static_cast<std::size_t>(d);
+  for (int d : plan_.d) tables_.state_size += static_cast<std::uint32_t>(d);
   levels_ = *std::max_element(plan_.c.begin(), plan_.c.end());
   tables_.plan = &plan_;
   tables_.elimination = &elimination_;
@@ -99,7 +97,14 @@ void KernelPlan::lay_out() {
   tables_.entries = tables_.refined + plan_.rows;
   tables_.step = tables_.entries + (tables_.refine ? static_cast<std::uint32_t>(plan_.entries.size()) : 0);
   tables_.increments = tables_.step + 1;
-  tables_.size = even(tables_.increments + static_cast<std::uint32_t>(state_size_ + plan_.x.size()));
+  tables_.now = tables_.increments + tables_.state_size + static_cast<std::uint32_t>(plan_.x.size());
+  tables_.begun = tables_.now + tables_.motion_size();
+  tables_.before = tables_.begun + tables_.motion_size();
+  tables_.base = tables_.before + tables_.motion_size();
+  std::uint32_t at = tables_.base + 2 * tables_.state_size;
+  Findings& f = tables_.found;
+  for (std::uint32_t* place : {&f.health, &f.signs, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest}) *place = at++;
+  tables_.size = even(at);
 }
 
 std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
@@ -161,9 +166,9 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   for (SparseLu::Pivot& p : elimination_.pivots)
     for (std::size_t k = samples; k < kSamples; ++k) p.value[k] = p.value[0];
   lay_out();
-  judged_.clear();
+  tables_.judged.clear();
   for (const SparseLu::Pivot& p : elimination_.pivots)
-    if (!p.one && !p.minus_one) judged_.push_back({tables_.lu + p.entry, 1 / p.value[0], 0x9e3779b97f4a7c15ULL * (2 * judged_.size() + 1)});
+    if (!p.one && !p.minus_one) tables_.judged.push_back({tables_.lu + p.entry, 1 / p.value[0], 0x9e3779b97f4a7c15ULL * (2 * tables_.judged.size() + 1)});
   return !elimination_.pivots.empty();
 }
 
@@ -189,7 +194,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
 void Kernel::Free::operator()(double* p) const { std::free(p); }
 
 Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* tier)
-    : plan_(std::move(plan)), lanes_(lanes), verdicts_(static_cast<std::size_t>(lanes)), weight_(static_cast<std::size_t>(lanes), 0.0) {
+    : plan_(std::move(plan)), lanes_(lanes) {
   if (!tier) tier = &tiers().back();
   ANHOLON_ASSERT(lanes == 1 || lanes == tier->lanes);
   const std::size_t bytes = plan_->tables().size * sizeof(double) * static_cast<std::size_t>(lanes);
@@ -209,7 +214,7 @@ void Kernel::expand(bool projected) {
   const Code* code = this->code();
   if (code) code->values(arena_), code->factor(arena_);
   else arithmetic_->values(-plan_->plan().largest_lead), arithmetic_->factor();
-  judge_pivots();
+  arithmetic_->judge();
   if (projected) project(code);
   if (code) {
     code->lead(arena_);
@@ -234,60 +239,57 @@ double Kernel::correction_of_solution() {
   return size > 0 ? change / size : 0;
 }
 
-void Kernel::judge_pivots() {
-  const std::size_t lanes = static_cast<std::size_t>(lanes_);
-  for (Verdict& v : verdicts_) v = {{std::numeric_limits<double>::max(), 0}, 0, 1, 0, 0, false};
-  for (const KernelPlan::Judged& p : plan_->judged()) {
-    const double* pivot = arena_ + p.at * lanes;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const double ratio = pivot[lane] * p.inverse;
-      Verdict& v = verdicts_[lane];
-      const double size = std::abs(ratio);
-      v.pivots.health = size < v.pivots.health ? size : v.pivots.health;
-      v.pivots.signs ^= ratio < 0 ? p.mark : 0;
-      v.invalid += ratio - ratio;
-    }
-  }
-  for (Verdict& v : verdicts_)
-    if (v.invalid != 0) v.pivots.health = 0;  // what is not a number
-}
-
 void Kernel::project(const Code* code) {
-  const Plan& p = plan_->plan();
-  const KernelTables& t = plan_->tables();
-  const std::size_t lanes = static_cast<std::size_t>(lanes_);
   for (int level = plan_->levels(); level >= 1; --level) {
     if (code) code->level[static_cast<std::size_t>(level - 1)](arena_);
     else arithmetic_->residual(level);
-    for (Verdict& v : verdicts_) v.size = 1, v.most = 0;
-    for (std::size_t j = 0; j < p.x.size(); ++j) {
-      const int k = p.d[j] - level;
-      if (k < 0) continue;
-      const double* x = arena_ + (p.x[j] + static_cast<std::uint32_t>(k)) * lanes;
-      const double* change = arena_ + (t.solution + j) * lanes;
-      const double factor = t.factorial[static_cast<std::size_t>(k)];
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        Verdict& of = verdicts_[lane];
-        of.size = std::max(of.size, std::abs(x[lane]) * factor);
-        of.most = std::max(of.most, std::abs(change[lane]));
-      }
-    }
-    bool any = false;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      Verdict& of = verdicts_[lane];
-      const double displacement = of.most / of.size;
-      if (!(displacement <= of.drift)) of.drift = displacement;
-      weight_[lane] = displacement > kQuiet ? 1 : 0;
-      if (weight_[lane] > 0) any = of.moved = true;
-    }
-    if (!any) continue;
-    arithmetic_->correct(level, weight_.data());
+    if (!arithmetic_->displaced(level)) continue;
+    arithmetic_->correct(level);
     if (code) code->values(arena_);
-    else arithmetic_->values(-p.largest_lead);
+    else arithmetic_->values(-plan_->plan().largest_lead);
   }
 }
 
+void Kernel::place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading) {
+  const KernelTables& t = plan_->tables();
+  const std::uint32_t n = t.state_size, m = static_cast<std::uint32_t>(plan_->plan().x.size());
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double high = static_cast<double>(state[i]);
+    number(t.now + i, lane) = high;
+    number(t.now + n + i, lane) = static_cast<double>(state[i] - high);
+  }
+  for (std::uint32_t j = 0; j < m; ++j) number(t.now + 2 * n + j, lane) = leading.empty() ? 0 : static_cast<double>(leading[j]);
+}
+
+void Kernel::begin() {
+  arithmetic_->begin();
+  expand();
+  arithmetic_->adopt();
+  arithmetic_->measure(shrink_);
+}
+
 void Kernel::advance() {
+  change_over_step();
+  arithmetic_->go_on();
+}
+
+void Kernel::sum_up(std::uint32_t at, int lane, std::vector<long double>& state) const {
+  const std::uint32_t n = plan_->tables().state_size;
+  state.resize(n);
+  for (std::uint32_t i = 0; i < n; ++i) state[i] = static_cast<long double>(number(at + i, lane)) + number(at + n + i, lane);
+}
+
+void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const {
+  const KernelTables& t = plan_->tables();
+  const std::uint32_t at = moment == Moment::now ? t.now : moment == Moment::begun ? t.begun : t.before, m = static_cast<std::uint32_t>(plan_->plan().x.size());
+  sum_up(at, lane, state);
+  leading.resize(m);
+  for (std::uint32_t j = 0; j < m; ++j) leading[j] = number(at + 2 * t.state_size + j, lane);
+}
+
+void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(plan_->tables().base, lane, state); }
+
+void Kernel::change_over_step() {
   if (const Code* code = this->code()) code->advance(arena_);
   else arithmetic_->advance();
 }

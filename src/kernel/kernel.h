@@ -5,7 +5,7 @@
 // they still serve; where it is small, the reference takes the step.
 #pragma once
 #include <atomic>
-#include <limits>
+#include <bit>
 #include <optional>
 #include <span>
 
@@ -26,15 +26,8 @@ class KernelPlan {
   const SparseLu& elimination() const { return elimination_; }
   const KernelTables& tables() const { return tables_; }
   const Program& program() const { return *program_; }
-  std::size_t state_size() const { return state_size_; }
+  std::size_t state_size() const { return tables_.state_size; }
   int levels() const { return levels_; }  // of hidden constraints
-  // Pivots whose size says how far they still serve: where they lie, 1 / what they were, the mark of their sign.
-  struct Judged {
-    std::uint32_t at;
-    double inverse;
-    std::uint64_t mark;
-  };
-  const std::vector<Judged>& judged() const { return judged_; }
   // Makes machine code for one lane, or for so many, with the same bits; such kernels take it up at their next expansion. At most once for each, from
   // any thread. Why there is none, or nothing.
   std::string compile(const std::string& cache, int lanes = 1) const;
@@ -55,9 +48,7 @@ class KernelPlan {
   Plan plan_;
   SparseLu elimination_;
   KernelTables tables_;
-  std::size_t state_size_ = 0;
   int levels_ = 0;
-  std::vector<Judged> judged_;
   struct Compiled {
     Code code;
     int lanes = 1;
@@ -74,7 +65,7 @@ class Kernel {
   int lanes() const { return lanes_; }
   const KernelPlan& plan() const { return *plan_; }
   void set_parameters(int lane, const std::vector<long double>& parameters);
-  // State: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
+  // A state for `expand`: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
   template <class State>
   void load(int lane, double t, const std::vector<State>& state, const std::vector<State>& leading) {
     const Plan& p = plan_->plan();
@@ -87,8 +78,7 @@ class Kernel {
       for (int k = 0; k < d; ++k, x += stride) *x = static_cast<double>(*from++) * inverse[k];
       *x = leading.empty() ? 0 : static_cast<double>(leading[j]) * inverse[d];
     }
-    number(p.time, lane) = t;
-    number(p.time + 1, lane) = 1;
+    set_time(lane, t);
   }
   // Projects the state on the hidden constraints where it has left them (or leaves it as it is), solves for the leading derivatives, and computes
   // all coefficients.
@@ -98,11 +88,33 @@ class Kernel {
   double correction_of_solution();
 
   // Of the last expansion.
-  const Pivots& pivots(int lane) const { return verdicts_[static_cast<std::size_t>(lane)].pivots; }
+  Pivots pivots(int lane) const { return {number(found().health, lane), std::bit_cast<std::uint64_t>(number(found().signs, lane))}; }
   bool finite(int lane) const;
   // How far the state was from the hidden constraints, in relation to its size, and whether it was moved.
-  double drift(int lane) const { return verdicts_[static_cast<std::size_t>(lane)].drift; }
-  bool moved(int lane) const { return verdicts_[static_cast<std::size_t>(lane)].moved; }
+  double drift(int lane) const { return number(found().drift, lane); }
+  bool moved(int lane) const { return number(found().moved, lane) > 0; }
+
+  // Motions, step by step, in all lanes at once. The kernel keeps their states in the width of long double: they are placed there where they come
+  // from elsewhere; then `begin` (the expansions at the times set) and, over the steps set, `advance` follow each other.
+  void place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading);
+  void set_time(int lane, double t) {
+    number(plan_->plan().time, lane) = t;
+    number(plan_->plan().time + 1, lane) = 1;
+  }
+  void begin();
+  void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
+  void advance();
+  // e^-shrink of the radius of convergence is a step (integrate/taylor.h: step_size).
+  void set_shrink(double shrink) { shrink_ = shrink; }
+  double reach(int lane) const { return number(found().reach, lane); }
+  // Whether the highest coefficients are numbers, and the largest number of a state after a step.
+  bool reaches(int lane) const { return number(found().unfit, lane) == 0; }
+  double largest(int lane) const { return number(found().largest, lane); }
+  // The state and the first guess of the leading derivatives as they are, as the present expansion was begun, the one before.
+  enum class Moment { now, begun, before };
+  void fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const;
+  // The state where the expansion was made that the last step followed.
+  void fetch_base(int lane, std::vector<long double>& state) const;
 
   // The series of unknown j in a lane: number k lies k * lanes() further on.
   const double* unknown(std::size_t j, int lane) const { return arena_ + plan_->plan().x[j] * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane); }
@@ -114,9 +126,8 @@ class Kernel {
     return q.series ? number(q.at + static_cast<std::uint32_t>(order), lane) : order == 0 ? number(q.at, lane) : 0;
   }
   double series(const Place& place, int order, int lane = 0) const { return number(place.at + static_cast<std::uint32_t>(order), lane); }
-  // After set_step in every lane: the changes of x_j^(k), k = 0..d_j, one after the other, over the steps.
-  void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
-  void advance();
+  // The changes of x_j^(k), k = 0..d_j, one after the other, over the steps set.
+  void change_over_step();
   // Number i lies i * lanes() further on.
   const double* increments(int lane) const { return arena_ + plan_->tables().increments * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane); }
 
@@ -125,7 +136,8 @@ class Kernel {
   double& number(std::uint32_t slot, int lane) { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
   void project(const Code* code);
   const Code* code() const { return plan_->code(lanes_); }
-  void judge_pivots();
+  const Findings& found() const { return plan_->tables().found; }
+  void sum_up(std::uint32_t at, int lane, std::vector<long double>& state) const;
 
   struct Free {
     void operator()(double* p) const;
@@ -135,13 +147,7 @@ class Kernel {
   std::unique_ptr<double[], Free> memory_;
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
-  struct Verdict {
-    Pivots pivots;
-    double drift = 0, size = 1, most = 0, invalid = 0;
-    bool moved = false;
-  };
-  std::vector<Verdict> verdicts_;  // of the lanes
-  std::vector<double> weight_;
+  double shrink_ = 2;
 };
 
 }  // namespace anholon

@@ -3,8 +3,10 @@
 // Everything lies in an unnamed namespace: each of those files has its own copy, compiled for its machine.
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "kernel/arithmetic.h"
 
@@ -18,6 +20,11 @@ struct Lanes;
 template <>
 struct Lanes<1> {
   using V = double;
+  using B = std::uint64_t;
+  static B bits(V v) { return std::bit_cast<B>(v); }
+  static V of(B b) { return std::bit_cast<V>(b); }
+  static B exponent(B b) { return static_cast<B>(static_cast<std::int64_t>(b) >> 52); }
+  static bool any(bool b) { return b; }
   static V broadcast(double x) { return x; }
   static double get(V v, int) { return v; }
   static void set(V& v, int, double x) { v = x; }
@@ -34,30 +41,42 @@ struct Lanes<1> {
 #include <immintrin.h>
 namespace anholon {
 namespace {
-template <>
-struct Lanes<4> {
-  using V = __m256d;
-  static V broadcast(double x) { return _mm256_set1_pd(x); }
+template <int L>
+struct SeveralLanes {
+  typedef double V __attribute__((vector_size(8 * L), may_alias));
+  typedef std::uint64_t B __attribute__((vector_size(8 * L)));
+  typedef std::int64_t Signed __attribute__((vector_size(8 * L)));
   static double get(V v, int lane) { return reinterpret_cast<const double*>(&v)[lane]; }
   static void set(V& v, int lane, double x) { reinterpret_cast<double*>(&v)[lane] = x; }
-  static V fma(V a, V b, V c) { return _mm256_fmadd_pd(a, b, c); }
+  static B bits(V v) { return (B)v; }
+  static V of(B b) { return (V)b; }
+  static B exponent(B b) { return (B)((Signed)b >> 52); }
+};
+
+template <>
+struct Lanes<4> : SeveralLanes<4> {
+  static V broadcast(double x) { return (V)_mm256_set1_pd(x); }
+  static V fma(V a, V b, V c) { return (V)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c); }
+  static bool any(Signed mask) { return _mm256_movemask_pd((__m256d)mask) != 0; }
 };
 #endif
 #ifdef __AVX512F__
 template <>
-struct Lanes<8> {
-  using V = __m512d;
-  static V broadcast(double x) { return _mm512_set1_pd(x); }
-  static double get(V v, int lane) { return reinterpret_cast<const double*>(&v)[lane]; }
-  static void set(V& v, int lane, double x) { reinterpret_cast<double*>(&v)[lane] = x; }
-  static V fma(V a, V b, V c) { return _mm512_fmadd_pd(a, b, c); }
+struct Lanes<8> : SeveralLanes<8> {
+  static V broadcast(double x) { return (V)_mm512_set1_pd(x); }
+  static V fma(V a, V b, V c) { return (V)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c); }
+  static bool any(Signed mask) { return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0; }
 };
 #endif
+
+// A state this many round-offs off its hidden constraints is left alone: it is not known better.
+constexpr double kQuiet = 8 * 0x1p-53;
 
 template <int L>
 class Sweep final : public Arithmetic {
   using T = Lanes<L>;
   using V = typename T::V;
+  using B = typename T::B;
 
  public:
   Sweep(const KernelTables& tables, double* arena) : k_(tables), p_(*tables.plan), w_(reinterpret_cast<V*>(arena)) {}
@@ -104,10 +123,41 @@ class Sweep final : public Arithmetic {
     solve();
   }
 
-  void correct(int level, const double* weight) override {
+  void judge() override {
+    const V zero = T::broadcast(0);
+    V health = T::broadcast(std::numeric_limits<double>::max()), invalid = zero;
+    B signs = T::bits(zero);
+    for (const JudgedPivot& p : k_.judged) {
+      const V ratio = w_[p.at] * T::broadcast(p.inverse), size = abs(ratio);
+      health = size < health ? size : health;
+      signs ^= ratio < zero ? signs * 0 + p.mark : signs * 0;
+      invalid += ratio - ratio;
+    }
+    w_[k_.found.health] = invalid == zero ? health : zero;  // what is not a number
+    w_[k_.found.signs] = T::of(signs);
+    w_[k_.found.drift] = w_[k_.found.moved] = zero;
+  }
+
+  bool displaced(int level) override {
+    V size = T::broadcast(1), most = T::broadcast(0);
+    for (std::size_t j = 0; j < p_.x.size(); ++j) {
+      const int k = p_.d[j] - level;
+      if (k < 0) continue;
+      size = larger(size, abs(w_[p_.x[j] + static_cast<std::uint32_t>(k)]) * T::broadcast(k_.factorial[static_cast<std::size_t>(k)]));
+      most = larger(most, abs(w_[k_.solution + j]));
+    }
+    const V displacement = most / size, one = T::broadcast(1), zero = T::broadcast(0);
+    V& drift = w_[k_.found.drift];
+    drift = displacement <= drift ? drift : displacement;
+    const auto moves = displacement > T::broadcast(kQuiet);
+    w_[k_.found.weight] = moves ? one : zero;
+    w_[k_.found.moved] = moves ? one : w_[k_.found.moved];
+    return T::any(moves);
+  }
+
+  void correct(int level) override {
     const V* y = w_ + k_.solution;
-    V use;
-    for (int lane = 0; lane < L; ++lane) T::set(use, lane, weight[lane]);
+    const V use = w_[k_.found.weight];
     for (std::size_t j = 0; j < p_.x.size(); ++j)
       if (const int order = p_.d[j] - level; order >= 0) {
         V& x = w_[p_.x[j] + static_cast<std::uint32_t>(order)];
@@ -161,7 +211,121 @@ class Sweep final : public Arithmetic {
     }
   }
 
+  void begin() override {
+    std::copy_n(w_ + k_.begun, k_.motion_size(), w_ + k_.before);
+    std::copy_n(w_ + k_.now, k_.motion_size(), w_ + k_.begun);
+    const V *high = w_ + k_.now, *guess = high + 2 * k_.state_size;
+    for (std::size_t j = 0; j < p_.x.size(); ++j) {
+      V* x = w_ + p_.x[j];
+      const int d = p_.d[j];
+      for (int k = 0; k < d; ++k) x[k] = *high++ * T::broadcast(k_.inverse_factorial[static_cast<std::size_t>(k)]);
+      x[d] = guess[j] * T::broadcast(k_.inverse_factorial[static_cast<std::size_t>(d)]);
+    }
+  }
+
+  void adopt() override {
+    const auto moved = w_[k_.found.moved] > T::broadcast(0);
+    if (!T::any(moved)) return;
+    V* high = w_ + k_.now;
+    for (std::size_t j = 0; j < p_.x.size(); ++j)
+      for (int k = 0; k < p_.d[j]; ++k, ++high) *high = moved ? V(w_[p_.x[j] + static_cast<std::uint32_t>(k)] * T::broadcast(k_.factorial[static_cast<std::size_t>(k)])) : *high;
+  }
+
+  void measure(double shrink) override {
+    constexpr double kLog2e = 1.4426950408889634, kFar = 300 * kLog2e;
+    const int order = p_.stages + 1;
+    const V zero = T::broadcast(0), one = T::broadcast(1);
+    V last = zero, before_last = zero, pole = zero, unfit = zero;
+    double factor = 1, factor_before = 1;
+    for (int k = 0; k < p_.largest_d; ++k) {
+      if (k > 0) factor *= order + k, factor_before *= order - 1 + k;
+      V size = one, l = zero, b = zero;
+      for (std::size_t j = 0; j < p_.x.size(); ++j) {
+        if (k >= p_.d[j]) continue;
+        const V* x = w_ + p_.x[j] + k;
+        size = larger(size, abs(x[0]) * T::broadcast(k_.factorial[static_cast<std::size_t>(k)]));
+        l = larger(l, abs(x[order]));
+        b = larger(b, abs(x[order - 1]));
+      }
+      last = larger(last, l * T::broadcast(factor) / size);
+      before_last = larger(before_last, b * T::broadcast(factor_before) / size);
+    }
+    for (std::size_t j = 0; j < p_.x.size(); ++j) {
+      const V* x = w_ + p_.x[j];
+      const V top = x[p_.stages + p_.d[j]];
+      unfit += top - top;
+      if (p_.d[j] > 0) continue;
+      const V value = abs(x[0]), relative = abs(x[order - 1]) / larger(one, value);
+      pole = value > zero ? larger(pole, relative) : pole;
+    }
+    const auto reach = [&](V weight, int by) {
+      const V log = log2(weight) * T::broadcast(-1.0 / by), far = T::broadcast(kFar);
+      return weight > zero && log < far ? log : far;
+    };
+    const V by_order = smaller(reach(last, order), reach(before_last, order - 1)) - T::broadcast((shrink + 0.7 / (order - 1)) * kLog2e);
+    w_[k_.found.reach] = exp2(smaller(by_order, reach(pole, order - 1) - T::broadcast(0.7 * kLog2e)));
+    w_[k_.found.unfit] = unfit;
+  }
+
+  void go_on() override {
+    const std::size_t n = k_.state_size;
+    std::copy_n(w_ + k_.now, 2 * n, w_ + k_.base);
+    const V *high = w_ + k_.base, *low = high + n, *change = w_ + k_.increments;
+    V *to = w_ + k_.now, *guess = to + 2 * n;
+    const V step = w_[k_.step], zero = T::broadcast(0);
+    V largest = zero, invalid = zero;
+    for (std::size_t j = 0; j < p_.x.size(); ++j) {
+      const V* x = w_ + p_.x[j];
+      const int d = p_.d[j];
+      for (int k = 0; k < d; ++k, ++to) {
+        // What the series do not know of the state.
+        V s = low[k] + *change++, power = step;
+        for (int i = k + 1; i < d; ++i) {
+          s = T::fma(high[i] - x[i] * T::broadcast(k_.factorial[static_cast<std::size_t>(i)]) + low[i], power, s);
+          if (i + 1 < d) power *= step * T::broadcast(k_.reciprocal_of[static_cast<std::size_t>(i - k + 1)]);
+        }
+        const V sum = high[k] + s, part = sum - high[k], error = (high[k] - (sum - part)) + (s - part);
+        to[0] = sum;
+        to[n] = rest(sum, error);
+        largest = larger(largest, abs(sum));
+        invalid += sum - sum;
+      }
+      guess[j] = x[d] * T::broadcast(k_.factorial[static_cast<std::size_t>(d)]) + *change++;
+      high += d, low += d;
+    }
+    w_[k_.found.largest] = largest + invalid;
+  }
+
  private:
+  static V abs(V v) { return T::of(T::bits(v) & 0x7fffffffffffffffULL); }
+  static V larger(V a, V b) { return a < b ? b : a; }
+  static V smaller(V a, V b) { return b < a ? b : a; }
+
+  // An error of a sum, rounded to what a long double keeps of both.
+  static V rest(V sum, V error) {
+    const V grid = T::of(T::bits(sum) & 0x7ff0000000000000ULL) * T::broadcast(1.5 * 0x1p-11);
+    return (error + grid) - grid;
+  }
+
+  // For x > 0, to ten digits or so.
+  static V log2(V x) {
+    constexpr std::uint64_t kRootOfHalf = 0x3fe6a09e667f3bcdULL;
+    const B exponent = T::exponent(T::bits(x) - kRootOfHalf);
+    const V m = T::of(T::bits(x) - (exponent << 52)), s = (m - T::broadcast(1)) / (m + T::broadcast(1)), z = s * s;
+    V r = T::broadcast(1.0 / 9);
+    for (const double c : {1.0 / 7, 1.0 / 5, 1.0 / 3, 1.0}) r = T::fma(r, z, T::broadcast(c));
+    return T::fma(r * s, T::broadcast(2 * 1.4426950408889634), T::of(exponent + T::bits(T::broadcast(kInteger))) - T::broadcast(kInteger));
+  }
+
+  // For |x| < 1000, to ten digits or so.
+  static V exp2(V x) {
+    const V n = x + T::broadcast(kInteger), f = (x - (n - T::broadcast(kInteger))) * T::broadcast(0.6931471805599453);
+    V r = T::broadcast(1.0 / 40320);
+    for (const double c : {1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0}) r = T::fma(r, f, T::broadcast(c));
+    return T::of(T::bits(r) + ((T::bits(n) - T::bits(T::broadcast(kInteger))) << 52));
+  }
+  static constexpr double kInteger = 6755399441055744.0;  // 1.5 2^52: a small integer added to it lies in its last bits
+
   V* at(const Place& place, std::uint32_t order) { return w_ + place.at + (place.series ? order : 0); }
 
   // Sum of a_j b_(p-j), j = first..last; first is 0 or 1, last p or p - 1. Orders are computed in blocks of four: what was known before the block

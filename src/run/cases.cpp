@@ -157,7 +157,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
     if (const W at = from_rational<W>(t); forward ? at <= end_ : at >= end_) times_.push_back(at);
   if (!forward) std::reverse(times_.begin(), times_.end());
   result_ = &r;
-  if (end_ == named_.t) return stepper_->start(named_.t, state).ok() ? after_expansion() : stop(CaseWay::derivation);
+  if (end_ == named_.t) return stepper_->start(named_.t, state).ok() ? after_step() : stop(CaseWay::derivation);
   stepper_->place(named_.t, state);
   return CaseWay::plain;
 }
@@ -186,16 +186,16 @@ CaseWay CaseWalk::aim() {
 
 CaseWay CaseWalk::finish_step() {
   if (const Outcome o = stepper_->finish_step(); !o.ok()) return stopped(o);
-  return after_expansion();
+  return after_step();
 }
 
 CaseWay CaseWalk::step() {
   if (const Outcome o = stepper_->step(end_); !o.ok()) return stopped(o);
-  return after_expansion();
+  return after_step();
 }
 
 // What the last step has to give, which may be the end.
-CaseWay CaseWalk::after_expansion() {
+CaseWay CaseWalk::after_step() {
   for (std::size_t i = 0; i < plan_->program->quadratures; ++i)
     if (!plan_->scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)) return stop(CaseWay::simulation);
   if (!rows()) return stop(CaseWay::simulation);
@@ -281,7 +281,7 @@ void CaseWorker::integrate(std::span<CaseResult> results) {
       continue;
     }
     for (CaseWalk& w : walks_) go(w, &CaseWalk::begin_step);
-    if (kernel_) kernel_->expand();
+    if (kernel_) kernel_->begin();
     for (CaseWalk& w : walks_) go(w, &CaseWalk::aim);
     if (kernel_) kernel_->advance();
     for (CaseWalk& w : walks_) go(w, &CaseWalk::finish_step);

@@ -68,7 +68,7 @@ class CaseWalk {
   CaseWay step();
 
  private:
-  CaseWay after_expansion();
+  CaseWay after_step();
   CaseWay stopped(const Outcome& why);
   CaseWay stop(CaseWay way);
   bool rows();

@@ -72,7 +72,7 @@ static bool can_go_on(OutcomeKind kind) {
 
 template <Number N>
 Outcome Motion<N>::step(const W& end) {
-  if (stepped_ && pivot_is_small(leg_->stepper.point())) eliminate_again();
+  if (stepped_ && pivots_ && pivot_is_small(leg_->stepper.point())) eliminate_again();
   if (stepped_) write_anew();
   code_.step(leg_->plan);
   const Mark before{choices_.size(), chosen_};
