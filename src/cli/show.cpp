@@ -68,7 +68,8 @@ static void cost_json(const FormChoice& c) {
     for (const WritingCost& w : f.writings) {
       j.open_object().key("writing").string(name(w.writing)).key("products").integer(static_cast<long long>(w.work.products));
       j.key("sums").integer(static_cast<long long>(w.work.sums)).key("solve").integer(static_cast<long long>(w.work.solve));
-      j.key("operations").number(number_text(std::round(w.work.total))).key("after_steps");
+      j.key("operations").number(number_text(std::round(w.work.operations))).key("waits").integer(w.work.waits);
+      j.key("cost").number(number_text(std::round(w.work.total))).key("after_steps");
       w.after ? j.integer(static_cast<long long>(*w.after)) : j.null();
       j.close();
     }
@@ -82,16 +83,18 @@ int show_cost(const Options& o, const Reader& in) {
   const FormChoice c = choose_form(in.again, state_choice(o, *in.model));
   if (o.json) return cost_json(c), kOk;
   std::puts("one expansion at tolerance 1e-12\n");
-  std::printf("%-8s  %-9s  %8s  %6s  %6s  %10s  taken\n", "form", "writing", "products", "sums", "solve", "operations");
+  std::printf("%-8s  %-9s  %8s  %6s  %6s  %10s  %5s  %8s  taken\n", "form", "writing", "products", "sums", "solve", "operations", "waits", "cost");
   for (const FormCost& f : c.costs) {
     if (f.writings.empty()) std::printf("%-8s  no kernel: %s\n", f.form->name, f.why.c_str());
     for (const WritingCost& w : f.writings) {
       const std::string taken = !w.after ? "" : *w.after == 0 ? "at once" : "after " + std::to_string(*w.after) + " steps";
-      std::printf("%-8s  %-9s  %8zu  %6zu  %6zu  %10.0f%s%s\n", f.form->name, name(w.writing), w.work.products, w.work.sums, w.work.solve, w.work.total,
+      std::printf("%-8s  %-9s  %8zu  %6zu  %6zu  %10.0f  %5d  %8.0f%s%s\n", f.form->name, name(w.writing), w.work.products, w.work.sums, w.work.solve, w.work.operations, w.work.waits,
+                  w.work.total,
                   taken.empty() ? "" : "  ", taken.c_str());
     }
   }
-  std::printf("\n--form auto takes %s: %s\n", c.form->name, c.why.c_str());
+  std::puts("\nwaits: of a stage, one operation after the other; cost: operations, and for each stage five for each wait");
+  std::printf("--form auto takes %s: %s\n", c.form->name, c.why.c_str());
   return kOk;
 }
 

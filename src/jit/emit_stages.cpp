@@ -59,19 +59,19 @@ void Emitter::known_before(const Convolution* group, std::size_t count) {
     Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), address(a, false), j);
     return b_.CreateVectorSplat(kBlock, b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8)));
   };
-  // The nearest ones: only the first j orders of the block have both.
-  for (int j = 1; j < kBlock; ++j)
+  sums = over_known(l, sums, [&](Value* j, const std::vector<Value*>& so_far) {
+    std::vector<Value*> r;
+    for (std::size_t k = 0; k < count; ++k) r.push_back(fma(a_at(group[k].a, j), b_at(group[k].b, j), so_far[k]));
+    return r;
+  });
+  // The nearest ones last: only the first j orders of the block have both.
+  for (int j = kBlock - 1; j >= 1; --j)
     for (std::size_t k = 0; k < count; ++k) {
       std::vector<int> mask;
       for (int lane = 0; lane < kBlock; ++lane) mask.push_back(lane < j ? lane : kBlock + lane);
       Value* b = b_.CreateShuffleVector(b_at(group[k].b, b_.getInt64(static_cast<std::uint64_t>(j))), zero, mask);
       sums[k] = fma(a_at(group[k].a, b_.getInt64(static_cast<std::uint64_t>(j))), b, sums[k]);
     }
-  sums = over_known(l, sums, [&](Value* j, const std::vector<Value*>& so_far) {
-    std::vector<Value*> r;
-    for (std::size_t k = 0; k < count; ++k) r.push_back(fma(a_at(group[k].a, j), b_at(group[k].b, j), so_far[k]));
-    return r;
-  });
   for (std::size_t k = 0; k < count; ++k) b_.CreateAlignedStore(sums[k], scratch(bulk_.at(group[k]), 0), llvm::Align(32));
 }
 
@@ -84,12 +84,6 @@ void Emitter::known_before_in_lanes(const Convolution* group, std::size_t count)
     return b_.CreateAlignedLoad(lane_, b_.CreateInBoundsGEP(lane_, address(std::int64_t{b} + l + i, true), b_.CreateNeg(j)), align());
   };
   const auto a_at = [&](std::uint32_t a, Value* j) { return b_.CreateAlignedLoad(lane_, b_.CreateInBoundsGEP(lane_, address(a, false), j), align()); };
-  for (int j = 1; j < kBlock; ++j)
-    for (std::size_t k = 0; k < count; ++k) {
-      Value* at = b_.getInt64(static_cast<std::uint64_t>(j));
-      Value* a = a_at(group[k].a, at);
-      for (int i = 0; i < j; ++i) sums[k * n + static_cast<std::size_t>(i)] = fma(a, b_at(group[k].b, at, i), sums[k * n + static_cast<std::size_t>(i)]);
-    }
   // After the sums: b of the orders 0 .. 2 of the block for the present j.
   for (std::size_t k = 0; k < count; ++k)
     for (int i = 0; i + 1 < kBlock; ++i) sums.push_back(b_at(group[k].b, b_.getInt64(kBlock), i + 1));
@@ -104,6 +98,12 @@ void Emitter::known_before_in_lanes(const Convolution* group, std::size_t count)
     }
     return r;
   });
+  for (int j = kBlock - 1; j >= 1; --j)
+    for (std::size_t k = 0; k < count; ++k) {
+      Value* at = b_.getInt64(static_cast<std::uint64_t>(j));
+      Value* a = a_at(group[k].a, at);
+      for (int i = 0; i < j; ++i) sums[k * n + static_cast<std::size_t>(i)] = fma(a, b_at(group[k].b, at, i), sums[k * n + static_cast<std::size_t>(i)]);
+    }
   for (std::size_t k = 0; k < count; ++k)
     for (std::size_t i = 0; i < n; ++i) b_.CreateAlignedStore(sums[k * n + i], scratch(bulk_.at(group[k]), static_cast<unsigned>(i)), align());
 }

@@ -18,26 +18,27 @@ llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
   return r;
 }
 
-llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last) {
+llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later) {
   Value *s, *t = number(0);
   if (relative_) {
     s = b_.CreateAlignedLoad(lane_, scratch(bulk_.at({a, b, lead}), static_cast<unsigned>(i_)), align());
     const auto recent = [&](std::uint32_t x, int m) { return m == i_ ? newest(x, lead) : load(std::int64_t{x} + lead + m, true); };
     for (int j = i_; j >= 1; --j) s = fma(load(a + j), recent(b, i_ - j), s);
-    if (first) s = fma(load(a), newest(b, lead), s);
     for (int m = 0; m < i_; ++m) t = fma(recent(a, m), load(b + i_ - m), t);
-    if (last) t = fma(newest(a, lead), load(b), t);
-    return b_.CreateFAdd(s, t);
+  } else {
+    const std::int64_t p = stage_ + lead, block = stage_ > 0 ? (stage_ - 1) / kBlock * kBlock + 1 + lead : 0, known = std::min(block, p), i = p - known;
+    const auto at = [&](std::uint32_t x, std::int64_t order) { return order == p ? newest(x, lead) : load(x + order); };
+    s = number(0);
+    for (std::int64_t j = kBlock; j < known; ++j) s = fma(at(a, j), at(b, p - j), s);
+    for (std::int64_t j = std::min<std::int64_t>(known, kBlock) - 1; j > i; --j) s = fma(at(a, j), at(b, p - j), s);
+    for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = fma(at(a, j), at(b, p - j), s);
+    for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = fma(at(a, j), at(b, p - j), t);
   }
-  const std::int64_t p = stage_ + lead, block = stage_ > 0 ? (stage_ - 1) / kBlock * kBlock + 1 + lead : 0, known = std::min(block, p), i = p - known;
-  const auto at = [&](std::uint32_t x, std::int64_t order) { return order == p ? newest(x, lead) : load(x + order); };
-  s = number(0);
-  for (std::int64_t j = i + 1; j < known; ++j) s = fma(at(a, j), at(b, p - j), s);
-  for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = fma(at(a, j), at(b, p - j), s);
-  if (first) s = fma(at(a, 0), at(b, p), s);
-  for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = fma(at(a, j), at(b, p - j), t);
-  if (last) t = fma(at(a, p), at(b, 0), t);
-  return b_.CreateFAdd(s, t);
+  s = b_.CreateFAdd(s, t);
+  if (first && !b_later) s = fma(load(a), newest(b, lead), s);
+  if (last) s = fma(newest(a, lead), load(b), s);
+  if (first && b_later) s = fma(load(a), newest(b, lead), s);
+  return s;
 }
 
 std::vector<Emitter::Convolution> Emitter::convolutions(const Step& s) {
@@ -71,7 +72,7 @@ void Emitter::coefficient(const Step& s) {
       break;
     }
     case Act::linear: put(s.out, l, sum(s, s.count)); break;
-    case Act::multiply: put(s.out, l, convolution(s.a.at, s.b.at, l, !s.b_unknown, !s.a_unknown)); break;
+    case Act::multiply: put(s.out, l, convolution(s.a.at, s.b.at, l, !s.b_unknown, !s.a_unknown, s.b_later)); break;
     case Act::square: put(s.out, l, convolution(s.a.at, s.a.at, l, !s.a_unknown, !s.a_unknown)); break;
     case Act::divide: {
       Value* r = b_.CreateFNeg(convolution(s.b.at, s.out.at, l, false, !s.b_unknown));

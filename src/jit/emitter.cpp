@@ -19,7 +19,7 @@ Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes)
 }
 
 void Emitter::run() {
-  if (k_.elimination->work() > kLongElimination) substitution();
+  if (k_.elimination->influences.empty() && k_.elimination->work() > kLongElimination) substitution();
   values();
   factor();
   lead();
@@ -146,7 +146,26 @@ void Emitter::factor() {
   for (std::uint32_t i = 0; i < e.entries; ++i) store(at(i), k_.lu + i);
   for (std::size_t k = 0; k < e.pivots.size(); ++k)
     if (reciprocal[k]) store(reciprocal[k], k_.reciprocal + static_cast<std::int64_t>(k));
+  if (!e.influences.empty()) invert(lu, reciprocal);
   end();
+}
+
+// Without what is always zero.
+void Emitter::invert(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal) {
+  const SparseLu& e = *k_.elimination;
+  const auto minus = [&](Value* s, std::uint32_t entry, Value* x) { return x && lu[entry] ? fma(b_.CreateFNeg(lu[entry]), x, s ? s : number(0)) : s; };
+  for (const std::uint32_t side : p_.sides) {
+    std::vector<Value*> rhs(p_.rows, nullptr), y(p_.rows, nullptr);
+    rhs[side] = number(1);
+    for (const SparseLu::Forward& f : e.forward) rhs[f.to] = minus(rhs[f.to], f.entry, rhs[f.from]);
+    for (const SparseLu::Backward& b : e.backward) {
+      Value* s = b.zero_side ? nullptr : rhs[b.row];
+      for (std::uint32_t i = b.first; i < b.first + b.count; ++i) s = minus(s, e.terms[i].entry, y[e.terms[i].column]);
+      y[b.column] = !s || e.pivots[b.pivot].one ? s : b_.CreateFMul(s, reciprocal[b.pivot]);
+    }
+    for (std::size_t i = 0; i < e.influences.size(); ++i)
+      if (e.influences[i].side == side) store(y[e.influences[i].column], k_.inverse + static_cast<std::int64_t>(i));
+  }
 }
 
 void Emitter::side(std::size_t i) {
@@ -157,6 +176,10 @@ void Emitter::side(std::size_t i) {
   }
   if (p_.root_is_zero[i]) {
     side_.push_back(number(0));
+    return;
+  }
+  if (c == 0) {
+    side_.push_back(b_.CreateFNeg(get(p_.roots[i], c)));
     return;
   }
   const std::vector<double> row(k_.rising_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(c) * k_.orders),
@@ -171,6 +194,16 @@ void Emitter::sides() {
 }
 
 void Emitter::solve() {
+  if (const SparseLu& e = *k_.elimination; !e.influences.empty()) {
+    solution_.assign(p_.rows, nullptr);
+    for (std::size_t i = 0; i < e.influences.size(); ++i) {
+      Value*& y = solution_[e.influences[i].column];
+      y = fma(load(k_.inverse + static_cast<std::int64_t>(i)), side_[e.influences[i].side], y ? y : number(0));
+    }
+    for (std::uint32_t j = 0; j < p_.rows; ++j)
+      if (asked_[j] && !solution_[j]) solution_[j] = number(0);
+    return;
+  }
   side_.resize(p_.rows, nullptr);
   if (!substitution_) return substitute();
   for (std::size_t i = 0; i < p_.roots.size(); ++i) store(side_[i], k_.side + static_cast<std::int64_t>(i));
@@ -214,7 +247,7 @@ void Emitter::complete() {
     return table(("falling" + std::to_string(m)).c_str(), row, 0);
   };
   for (std::size_t j = 0; j < p_.x.size(); ++j) {
-    Value* change = b_.CreateFMul(solution_[j], falling(p_.d[j]));
+    Value* change = p_.d[j] > 0 ? b_.CreateFMul(solution_[j], falling(p_.d[j])) : solution_[j];
     put({p_.x[j], true}, p_.d[j], start ? b_.CreateFAdd(get({p_.x[j], true}, p_.d[j]), change) : change);
   }
   for (const Completion& c : p_.completions) {
@@ -261,9 +294,9 @@ void Emitter::advance() {
       for (int i = p_.stages + p_.d[j] - k; i >= 1; --i) {
         Value* x = load(std::int64_t{p_.x[j]} + k + i);
         const double rising = k_.rising(k, i);
-        s = b_.CreateFMul(rising == 1 ? b_.CreateFAdd(x, s) : fma(x, number(rising), s), step);
+        s = fma(s, step, rising == 1 ? x : b_.CreateFMul(x, number(rising)));
       }
-      store(s, out++);
+      store(b_.CreateFMul(s, step), out++);
     }
   end();
 }

@@ -40,6 +40,7 @@ class Emitter {
   void end();
   void values();
   void factor();
+  void invert(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
   void lead();
   void level(int level);
   void advance();
@@ -57,7 +58,7 @@ class Emitter {
   void coefficient(const Step& s);
   void partial(const Partial& d);
   Value* sum(const Step& s, std::uint32_t count);
-  Value* convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last);
+  Value* convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later = false);
   void side(std::size_t root);
   void sides();
   void solve();

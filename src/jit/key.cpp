@@ -25,8 +25,8 @@ void Writer::add(const Place& place) {
 }
 
 void Writer::add(const Step& step) {
-  const auto& [act, lead, a_constant, b_constant, a_unknown, b_unknown, out, a, b, c, d, e, f, first, count, constants, index, value] = step;
-  all(act, lead, a_constant, b_constant, a_unknown, b_unknown, out, a, b, c, d, e, f, first, count, constants, index, value);
+  const auto& [act, lead, a_constant, b_constant, a_unknown, b_unknown, b_later, out, a, b, c, d, e, f, first, count, constants, index, value] = step;
+  all(act, lead, a_constant, b_constant, a_unknown, b_unknown, b_later, out, a, b, c, d, e, f, first, count, constants, index, value);
 }
 
 void Writer::add(const PlanTerm& term) {
@@ -73,6 +73,11 @@ void Writer::add(const SparseLu::Backward& backward) {
   all(column, row, pivot, first, count, zero_side);
 }
 
+void Writer::add(const SparseLu::Influence& influence) {
+  const auto& [column, side] = influence;
+  all(column, side);
+}
+
 void Writer::add(const SparseLu::Term& term) {
   const auto& [entry, column] = term;
   all(entry, column);
@@ -80,21 +85,21 @@ void Writer::add(const SparseLu::Term& term) {
 
 void Writer::add(const Plan& plan) {
   // What roots of even powers are is for whoever chooses steps.
-  [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, quadratures,
+  [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures,
                                 roots_of_even_powers, rows, largest_lead, largest_d, c, d] = plan;
-  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, quadratures, rows, largest_lead, largest_d, c, d);
+  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, rows, largest_lead, largest_d, c, d);
 }
 
 void Writer::add(const SparseLu& elimination) {
-  const auto& [entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms] = elimination;
-  all(entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms);
+  const auto& [entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences] = elimination;
+  all(entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences);
 }
 
 void Writer::add(const KernelTables& tables) {
   // Knots: models that look tables up are not compiled. What motions need lies behind all that machine code knows.
-  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, rhs, side, solution, refined, entries, step, increments, now, begun, before, base,
+  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, increments, now, begun, before, base,
                                 found, size, state_size, judged, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders] = tables;
-  all(*plan, *elimination, lu, reciprocal, rhs, side, solution, refined, entries, step, increments, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders);
+  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, increments, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders);
 }
 
 }  // namespace anholon::jit

@@ -47,6 +47,7 @@ class Writer {
   void add(const SparseLu::Forward& forward);
   void add(const SparseLu::Backward& backward);
   void add(const SparseLu::Term& term);
+  void add(const SparseLu::Influence& influence);
   void add(const Plan& plan);
   void add(const SparseLu& elimination);
   void add(const KernelTables& tables);

@@ -39,7 +39,7 @@ struct KernelTables {
   };
   std::vector<Knots> knots;
   // Where in the arena.
-  std::uint32_t lu = 0, reciprocal = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, step = 0, increments = 0;
+  std::uint32_t lu = 0, reciprocal = 0, inverse = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, step = 0, increments = 0;
   // Of motions: x_j^(k), k < d_j, as sums of two doubles, first all the larger parts, and first guesses of x_j^(d_j): now, where the present expansion
   // was begun, and the one before; without the guesses where it was made, after projection.
   std::uint32_t now = 0, begun = 0, before = 0, base = 0;

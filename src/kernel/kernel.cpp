@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/assert.h"
+#include "kernel/latency.h"
 
 namespace anholon {
 
@@ -13,6 +14,8 @@ namespace {
 
 // The samples for the choice of pivots lie so far around the state given: an angle may take any value.
 constexpr double kAround = 3.3;
+// An operation that waits for the one before costs so many that do not: measured on small systems and chains.
+constexpr double kWaiting = 5;
 // Steps of a stage: more would be compiled for many seconds.
 constexpr std::size_t kMostCompiled = 400;
 // Solutions are refined where that changes them by more.
@@ -90,7 +93,8 @@ void KernelPlan::lay_out() {
   const auto even = [](std::uint32_t x) { return (x + 7) / 8 * 8; };
   tables_.lu = even(plan_.arena);
   tables_.reciprocal = tables_.lu + elimination_.entries;
-  tables_.rhs = tables_.reciprocal + static_cast<std::uint32_t>(elimination_.pivots.size());
+  tables_.inverse = tables_.reciprocal + static_cast<std::uint32_t>(elimination_.pivots.size());
+  tables_.rhs = tables_.inverse + static_cast<std::uint32_t>(elimination_.influences.size());
   tables_.side = tables_.rhs + plan_.rows;
   tables_.solution = tables_.side + static_cast<std::uint32_t>(plan_.roots.size());
   tables_.refined = tables_.solution + plan_.rows;
@@ -165,12 +169,16 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   }
   for (SparseLu::Pivot& p : elimination_.pivots)
     for (std::size_t k = samples; k < kSamples; ++k) p.value[k] = p.value[0];
+  if (!tables_.refine && !elimination_.pivots.empty()) invert(elimination_, plan_.sides, needed);
   lay_out();
   tables_.judged.clear();
   for (const SparseLu::Pivot& p : elimination_.pivots)
     if (!p.one && !p.minus_one) tables_.judged.push_back({tables_.lu + p.entry, 1 / p.value[0], 0x9e3779b97f4a7c15ULL * (2 * tables_.judged.size() + 1)});
+  waits_ = latency(plan_, elimination_);
   return !elimination_.pivots.empty();
 }
+
+double KernelPlan::cost_alone() const { return work() + kWaiting * waits_ * (plan_.stages + 1); }
 
 std::string KernelPlan::compile(const std::string& cache, int lanes) const {
   const CompilerModule* module = compiler();

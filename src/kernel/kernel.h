@@ -27,6 +27,8 @@ class KernelPlan {
   const KernelTables& tables() const { return tables_; }
   const Program& program() const { return *program_; }
   std::size_t state_size() const { return tables_.state_size; }
+  int waits() const { return waits_; }
+  double cost_alone() const;
   int levels() const { return levels_; }  // of hidden constraints
   // Makes machine code for one lane, or for so many, with the same bits; such kernels take it up at their next expansion. At most once for each, from
   // any thread. Why there is none, or nothing.
@@ -36,7 +38,8 @@ class KernelPlan {
     const Code* ready = c.ready.load(std::memory_order_acquire);
     return ready && c.lanes == lanes ? ready : nullptr;
   }
-  // Operations of one expansion.
+  // Operations of one expansion: what it costs in a lane among others. And how many of them a stage makes one after the other (latency.h); with that, what it
+  // costs alone, in operations.
   double work() const { return plan_.work() + elimination_.work() * (plan_.stages + 2) + static_cast<double>(elimination_.update_list.size()); }
 
  private:
@@ -48,7 +51,7 @@ class KernelPlan {
   Plan plan_;
   SparseLu elimination_;
   KernelTables tables_;
-  int levels_ = 0;
+  int levels_ = 0, waits_ = 0;
   struct Compiled {
     Code code;
     int lanes = 1;

@@ -369,6 +369,9 @@ class Planner {
     }
   }
 
+  // What a stage has computed before is there first.
+  int arrival(std::uint32_t s, std::uint8_t lead) const { return code_[s].constant || code_[s].lead > lead ? -1 : depth_[s]; }
+
   void emit() {
     depth_.assign(code_.size(), 0);
     for (std::uint32_t s = 0; s < code_.size(); ++s) {
@@ -452,6 +455,7 @@ class Planner {
           const std::uint32_t b = same_as(in.b);
           step.b = place_[b];
           step.b_constant = code_[b].constant;
+          step.b_later = arrival(b, in.lead) > arrival(a, in.lead);
         }
       }
       if (again_) {
@@ -548,6 +552,12 @@ class Planner {
       plan_.root_is_zero.push_back(code_[r].constant || (unknown(r, code_[alias].lead) && pure_[r]));
       if (!code_[r].constant && unknown(r, code_[alias].lead)) plan_.entries.push_back({static_cast<std::uint32_t>(i), column(r), unit, 1});
     }
+    std::vector<int> depth;
+    for (std::uint32_t i = 0; i < p_.unknowns(); ++i) {
+      plan_.sides.push_back(i);
+      depth.push_back(depth_[same_as(tape_.roots[i])]);
+    }
+    std::stable_sort(plan_.sides.begin(), plan_.sides.end(), [&](std::uint32_t i, std::uint32_t j) { return depth[i] < depth[j]; });
     for (std::size_t i = p_.unknowns(); i < tape_.roots.size(); ++i) plan_.quadratures.push_back(place_[same_as(tape_.roots[i])]);
   }
 

@@ -42,6 +42,7 @@ struct Step {
   std::uint8_t lead = 0;
   bool a_constant = false, b_constant = false;  // only the coefficient of order 0 is not zero
   bool a_unknown = false, b_unknown = false;    // the newest coefficient is an unknown of the stage, zero in the sweep
+  bool b_later = false;                         // that of b is known later than that of a
   Place out, a, b, c, d, e, f;
   std::uint32_t first = 0, count = 0;  // terms
   std::uint32_t constants = 0;         // terms after those, constant in time
@@ -99,6 +100,7 @@ struct Plan {
   std::uint32_t time = 0;             // series of t
   std::vector<Place> roots;           // of the equations; the right side of row i is that of root i
   std::vector<char> root_is_zero;     // beyond stage 0, before the unknowns of the stage are known
+  std::vector<std::uint32_t> sides;   // roots as they become known in a stage
   std::vector<Place> quadratures;
   std::vector<std::pair<std::uint32_t, Place>> roots_of_even_powers;  // slot of the tape of what roots are taken of: they may pass zero
   std::uint32_t rows = 0;             // of the linearized tape

@@ -231,4 +231,28 @@ SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entr
   return out;
 }
 
+void invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed) {
+  // More operations, that do not wait for each other: while they are few.
+  constexpr std::size_t kMost = 64;
+  std::vector<std::vector<std::uint32_t>> met(needed.size());
+  std::size_t count = 0;
+  for (const std::uint32_t side : sides) {
+    std::vector<bool> rhs(needed.size(), false), solution(needed.size(), false);
+    rhs[side] = true;
+    for (const SparseLu::Forward& f : e.forward)
+      if (rhs[f.from]) rhs[f.to] = true;
+    for (const SparseLu::Backward& b : e.backward) {
+      bool some = !b.zero_side && rhs[b.row];
+      for (std::uint32_t i = b.first; i < b.first + b.count; ++i)
+        if (solution[e.terms[i].column]) some = true;
+      if (!some) continue;
+      solution[b.column] = true;
+      if (needed[b.column]) met[b.column].push_back(side), ++count;
+    }
+  }
+  if (count > kMost) return;
+  for (std::uint32_t column = 0; column < met.size(); ++column)
+    for (const std::uint32_t side : met[column]) e.influences.push_back({column, side});
+}
+
 }  // namespace anholon

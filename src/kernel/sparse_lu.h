@@ -56,10 +56,21 @@ struct SparseLu {
   std::vector<Backward> backward;
   std::vector<Term> terms;
 
-  double work() const { return static_cast<double>(forward.size() + terms.size() + backward.size()); }
+  // Of a small system, the inverse in place of the two: solution[column] = sum of influence * side, column by column, what becomes known last
+  // last. It is made of solutions for sides of one.
+  struct Influence {
+    std::uint32_t column, side;
+  };
+  std::vector<Influence> influences;
+
+  double work() const { return static_cast<double>(influences.empty() ? forward.size() + terms.size() + backward.size() : influences.size()); }
 };
 
 // `sides`: rows 0..sides-1 have a right side, all others zero. `needed`: the columns whose solution is asked for. Empty pivots if the matrix is singular at a sample.
 SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, std::uint32_t sides, const std::vector<bool>& needed);
+
+// The inverse for the columns needed, if the system is small: a solution then waits for its last side only, not for a chain of eliminations.
+// `sides`: in the order in which they become known.
+void invert(SparseLu& elimination, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed);
 
 }  // namespace anholon

@@ -111,6 +111,7 @@ class Sweep final : public Arithmetic {
         lu[u.to] = T::fma(-lu[u.l], lu[u.u], lu[u.to]);
       }
     }
+    if (!e.influences.empty()) invert();
   }
 
   void residual(int level) override {
@@ -205,8 +206,8 @@ class Sweep final : public Arithmetic {
       const V* x = w_ + p_.x[j];
       for (int k = 0; k <= p_.d[j]; ++k) {
         V s = T::broadcast(0);
-        for (int i = p_.stages + p_.d[j] - k; i >= 1; --i) s = T::fma(x[k + i], T::broadcast(k_.rising(k, i)), s) * step;
-        *out++ = s;
+        for (int i = p_.stages + p_.d[j] - k; i >= 1; --i) s = T::fma(s, step, x[k + i] * T::broadcast(k_.rising(k, i)));
+        *out++ = s * step;
       }
     }
   }
@@ -329,16 +330,19 @@ class Sweep final : public Arithmetic {
   V* at(const Place& place, std::uint32_t order) { return w_ + place.at + (place.series ? order : 0); }
 
   // Sum of a_j b_(p-j), j = first..last; first is 0 or 1, last p or p - 1. Orders are computed in blocks of four: what was known before the block
-  // comes first (so that another tier may do that for four orders at once), then what is new of b, and of a, the newest last.
-  V convolution(const V* a, const V* b, std::int64_t p, bool first, bool last) const {
-    const std::int64_t known = block_ < p ? block_ : p, i = p - known;
+  // comes first (so that another tier may do that for four orders at once), then what is new of b, and of a. In each part the newest comes last.
+  V convolution(const V* a, const V* b, std::int64_t p, bool first, bool last, bool b_later = false) const {
+    const std::int64_t known = block_ < p ? block_ : p, i = p - known, few = known < kBlock ? known : kBlock;
     V s = T::broadcast(0), t = s;
-    for (std::int64_t j = i + 1; j < known; ++j) s = T::fma(a[j], b[p - j], s);
+    for (std::int64_t j = kBlock; j < known; ++j) s = T::fma(a[j], b[p - j], s);
+    for (std::int64_t j = few - 1; j > i; --j) s = T::fma(a[j], b[p - j], s);
     for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = T::fma(a[j], b[p - j], s);
-    if (first) s = T::fma(a[0], b[p], s);
     for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = T::fma(a[j], b[p - j], t);
-    if (last) t = T::fma(a[p], b[0], t);
-    return s + t;
+    s += t;
+    if (first && !b_later) s = T::fma(a[0], b[p], s);
+    if (last) s = T::fma(a[p], b[0], s);
+    if (first && b_later) s = T::fma(a[0], b[p], s);
+    return s;
   }
 
   template <class F>
@@ -435,7 +439,7 @@ class Sweep final : public Arithmetic {
     switch (s.act) {
       case Act::input: out = a[p + s.index] * T::broadcast(k_.rising(static_cast<int>(s.index), static_cast<int>(p))); break;
       case Act::linear: out = sum(s, p, s.count); break;
-      case Act::multiply: out = convolution(a, b, n, newest_b, newest); break;
+      case Act::multiply: out = convolution(a, b, n, newest_b, newest, s.b_later); break;
       case Act::square: out = convolution(a, a, n, newest, newest); break;
       case Act::divide: {
         V r = -convolution(b, w, n, false, newest_b);
@@ -492,6 +496,12 @@ class Sweep final : public Arithmetic {
     V* const rhs = w_ + k_.rhs;
     V* const y = w_ + k_.solution;
     const std::size_t n = p_.roots.size();
+    if (const SparseLu& e = *k_.elimination; !e.influences.empty()) {
+      std::fill(y, y + p_.rows, T::broadcast(0));
+      const V* influence = w_ + k_.inverse;
+      for (const SparseLu::Influence& of : e.influences) y[of.column] = T::fma(*influence++, side[of.side], y[of.column]);
+      return;
+    }
     std::copy(side, side + n, rhs);
     std::fill(rhs + n, rhs + p_.rows, T::broadcast(0));
     substitute(y);
@@ -503,6 +513,21 @@ class Sweep final : public Arithmetic {
     V* const change = w_ + k_.refined;
     substitute(change, true);
     for (std::uint32_t i = 0; i < p_.rows; ++i) y[i] += change[i];
+  }
+
+  // Of sides of one.
+  void invert() {
+    V* const rhs = w_ + k_.rhs;
+    V* const y = w_ + k_.solution;
+    V* const inverse = w_ + k_.inverse;
+    const std::vector<SparseLu::Influence>& influences = k_.elimination->influences;
+    for (const std::uint32_t side : p_.sides) {
+      std::fill(rhs, rhs + p_.rows, T::broadcast(0));
+      rhs[side] = T::broadcast(1);
+      substitute(y);
+      for (std::size_t i = 0; i < influences.size(); ++i)
+        if (influences[i].side == side) inverse[i] = y[influences[i].column];
+    }
   }
 
   void substitute(V* y, bool all_sides = false) {

@@ -54,7 +54,7 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
     const double t = static_cast<double>(at.t);
     const int order = o.order > 0 ? o.order : taylor_order(settings.log_tolerance);
     if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state))
-      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion)).plan;
+      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion), false).plan;
   }
   constexpr std::size_t kMany = 32;
   if (kernel && o.cases >= kMany) lanes = tiers().back().lanes;

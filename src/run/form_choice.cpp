@@ -84,7 +84,7 @@ FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& agai
   } else {
     const double ratio = with.total / without.total;
     if (ratio >= kWorthIt) c.form = &maggi;
-    c.why = "an expansion of Maggi's equations takes " + number_text(100 / ratio, 3) + " % of the operations of one of Routh's; they are taken up to " +
+    c.why = "an expansion of Maggi's equations costs " + number_text(100 / ratio, 3) + " % of one of Routh's; they are taken up to " +
             number_text(100 / kWorthIt, 3) + " %";
   }
   return c;

@@ -145,8 +145,9 @@ WritingEffort effort_after(std::size_t steps) {
   return most;
 }
 
-const Representation& cheapest(const std::vector<Representation>& list) {
-  return *std::min_element(list.begin(), list.end(), [](const Representation& a, const Representation& b) { return a.plan->work() < b.plan->work(); });
+const Representation& cheapest(const std::vector<Representation>& list, bool alone) {
+  const auto cost = [&](const Representation& r) { return alone ? r.plan->cost_alone() : r.plan->work(); };
+  return *std::min_element(list.begin(), list.end(), [&](const Representation& a, const Representation& b) { return cost(a) < cost(b); });
 }
 
 ExpansionWork work_of(const KernelPlan& plan) {
@@ -159,7 +160,9 @@ ExpansionWork work_of(const KernelPlan& plan) {
         case Act::input: case Act::weigh: case Act::select: case Act::lookup: break;
       }
   w.solve = static_cast<std::size_t>(plan.elimination().work());
-  w.total = plan.work();
+  w.operations = plan.work();
+  w.waits = plan.waits();
+  w.total = plan.cost_alone();
   return w;
 }
 

@@ -47,13 +47,15 @@ WritingEffort effort_after(std::size_t steps);
 // All that can be had with that effort, the derived one first. Where solutions have to be refined, equations that are written out would lose the digits
 // that refinement saves: there, and where a kernel has to know the slots of the derived tape, others are left out.
 std::vector<Representation> representations(const ToRepresent& equations, WritingEffort effort);
-// The first of the cheapest.
-const Representation& cheapest(const std::vector<Representation>& list);
+// The first of the cheapest, for a motion alone or many side by side in lanes.
+const Representation& cheapest(const std::vector<Representation>& list, bool alone = true);
 
 // Operations of one expansion, by kind.
 struct ExpansionWork {
   std::size_t products = 0, sums = 0, solve = 0;  // convolutions; terms of sums per order; operations on one right side
-  double total = 0;
+  double operations = 0;
+  int waits = 0;     // operations of a stage, one after the other
+  double total = 0;  // cost of a motion alone
 };
 ExpansionWork work_of(const KernelPlan& plan);
 
