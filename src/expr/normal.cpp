@@ -8,6 +8,7 @@
 
 #include "expr/diff.h"
 #include "expr/polynomial.h"
+#include "expr/refute.h"
 
 namespace anholon {
 
@@ -323,7 +324,7 @@ std::optional<Expr> expression(const NormalForm& f) {
 
 bool proved_zero(Expr e) {
   if (is_zero(e)) return true;
-  if (is_number(e)) return false;
+  if (is_number(e) || refuted(e)) return false;
   try {
     return Normalizer(e, true).zero();
   } catch (const TooLarge&) {

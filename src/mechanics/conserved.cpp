@@ -52,8 +52,7 @@ bool small_at_points(Expr e) {
   return true;
 }
 
-// The exact test is for what is true.
-bool vanishes(Expr e) { return is_zero(e) || (small_at_points(e) && proved_zero(e)); }
+bool vanishes(Expr e) { return is_zero(e) || proved_zero(e); }
 
 // ---- energy ------------------------------------------------------------------------------------
 

@@ -12,19 +12,6 @@ namespace anholon::verification {
 constexpr double kLargestChance = -40;  // log2; a weaker bound confirms nothing
 constexpr int kMostBranches = 8;
 
-Word Field::power(Word a, Word exponent) const {
-  Word r = 1;
-  for (; exponent > 0; exponent >>= 1, a = multiply(a, a))
-    if (exponent & 1) r = multiply(r, a);
-  return r;
-}
-
-std::optional<Word> Field::from(const Rational& r) const {
-  const Word n = mpz_fdiv_ui(r.get_num_mpz_t(), p_), d = mpz_fdiv_ui(r.get_den_mpz_t(), p_);
-  if (d == 0) return std::nullopt;
-  return d == 1 ? n : multiply(n, inverse(d));
-}
-
 std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) {
   std::vector<ModularFinding> findings(claims_.size());
   try {

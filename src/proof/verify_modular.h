@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "numeric/prime_field.h"
 #include "proof/certificate.h"
 
 namespace anholon::verification {
@@ -45,31 +46,7 @@ inline constexpr std::array<std::uint64_t, 16> kPrimes = {
     2305843008908132399, 2305843008817757639, 2305843008811413959, 2305843008787237079, 2305843008727893599, 2305843008716181359,
     2305843008639951959, 2305843008563423159, 2305843008485267039, 2305843008405113999};
 
-// The field of p elements, 2^61 − 2^30 < p < 2^61.
-class Field {
- public:
-  using Word = std::uint64_t;
-  explicit Field(Word p) : p_(p), c_((Word{1} << 61) - p) {}
-  Word prime() const { return p_; }
-  Word add(Word a, Word b) const { const Word s = a + b; return s >= p_ ? s - p_ : s; }
-  Word subtract(Word a, Word b) const { return a >= b ? a - b : a + p_ - b; }
-  Word negate(Word a) const { return a == 0 ? 0 : p_ - a; }
-  Word multiply(Word a, Word b) const {
-    const unsigned __int128 x = static_cast<unsigned __int128>(a) * b;
-    const unsigned __int128 y = static_cast<unsigned __int128>(static_cast<Word>(x >> 61)) * c_ + (static_cast<Word>(x) & kMask);
-    Word z = static_cast<Word>(y >> 61) * c_ + (static_cast<Word>(y) & kMask);
-    while (z >= p_) z -= p_;
-    return z;
-  }
-  Word power(Word a, Word exponent) const;
-  Word inverse(Word a) const { return power(a, p_ - 2); }  // of a ≠ 0
-  bool is_square(Word a) const { return a == 0 || power(a, (p_ - 1) / 2) == 1; }
-  std::optional<Word> from(const Rational& r) const;  // nothing if p divides the denominator
-
- private:
-  static constexpr Word kMask = (Word{1} << 61) - 1;
-  Word p_, c_;
-};
+using Field = PrimeField;
 
 struct ModularFinding {
   enum class Is : std::uint8_t { zero, nonzero, unknown } is = Is::unknown;
