@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "expr/degree.h"
 #include "expr/normal.h"
 #include "tape/point.h"
 
@@ -66,8 +67,11 @@ std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
   return std::nullopt;
 }
 
-// On the motion, of the reaction N of constraint r.
+// On the motion, of the reaction N of constraint r: its power is lambda times dphi/dt where phi depends on q alone, and times degree * phi where phi is
+// homogeneous in q'.
 bool without_power(const Mechanics& m, std::size_t r) {
+  if (m.order[r] == 0 && free_of(m.phi[r], {Kind::time, Kind::given, Kind::state, Kind::control, Kind::mass})) return true;
+  if (m.order[r] == 1 && homogeneous_degree(m.phi[r], [](const Node& n) { return n.kind == Kind::jet && n.order == 1; })) return true;
   Expr rate = m.graph().zero();
   for (std::size_t a = 0; a < m.q.size(); ++a) rate += partial(m.N[a], m.lambda[r]) * m.qd[a];
   if (vanishes(rate)) return true;

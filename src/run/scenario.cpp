@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "expr/degree.h"
 #include "expr/normal.h"
 #include "expr/table.h"
 #include "run/redundant.h"
@@ -37,7 +38,10 @@ ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
     if (linear && !all_proved_zero(gradient(m.Phi[r][a], top))) linear = false;
     radial += top[a] * m.Phi[r][a];
   }
-  for (int degree = 1; degree <= (linear ? 1 : 6) && !c.homogeneous; ++degree)
+  constexpr int kMost = 6;
+  const auto by_structure = homogeneous_degree(m.phi[r], [&](const Node& n) { return n.kind == Kind::jet && n.order == order; });
+  c.homogeneous = by_structure && by_structure->get_den() == 1 && *by_structure >= 1 && *by_structure <= kMost;
+  for (int degree = 1; degree <= (linear ? 1 : kMost) && !c.homogeneous; ++degree)
     c.homogeneous = proved_zero(radial - Rational(degree) * m.phi[r]);
   c.kind = !linear ? "nonlinear" : c.homogeneous ? "linear" : "affine";
   return c;
@@ -204,9 +208,10 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   s.classes = classify(*s.mechanics);
   s.notes = model->notes;
   const std::vector<double> parameters = parameter_values<double>(*model);
-  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t};
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
+  s.start = numbers ? std::make_shared<const StartPlan>(*s.mechanics, std::vector<StateOverride>{}) : nullptr;
+  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t, nullptr, s.start.get()};
   Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
   if (initial.ok() && numbers) initial = admissible(*model, parameters, s.state);
   s.independent.clear();
@@ -239,7 +244,7 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
 
 template <Number N>
 Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start) {
-  const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t};
+  const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr, s.start.get()};
   InitialState<N> named;
   if (Outcome o = consistent_state(problem, named); !o.ok()) return o;
   if (s.routh)

@@ -30,7 +30,8 @@ struct Scenario {
   std::shared_ptr<const Model> model;
   std::unique_ptr<Mechanics> mechanics;
   std::vector<ConstraintClass> classes;
-  InitialState<double> state;  // consistent, in double
+  std::shared_ptr<const StartPlan> start;  // null without numbers
+  InitialState<double> state;              // consistent, in double
   std::vector<std::size_t> independent, redundant;
   Elimination elimination;  // of forms without multipliers
   System system;

@@ -48,7 +48,7 @@ Tape values_of(const Model& model) {
 }
 
 // Of equations, those that overrides leave: all laws, and the conditions that say something about what is still open.
-StageEquations kept(const StageEquations& equations, const Column& unknowns, const std::vector<StateOverride>& overrides, Graph& g) {
+StageEquations left_of(const StageEquations& equations, const Column& unknowns, const std::vector<StateOverride>& overrides, Graph& g) {
   StageEquations list;
   for (const StageEquation& e : equations) {
     bool open = !e.condition;
@@ -78,13 +78,10 @@ Outcome StateSolver<N>::positions_and_velocities() {
   state_.qd_origin.assign(n, Origin::chosen);
   states();
   start_values([](const Node& s) { return !is_higher(s); });
-  if (p_.plan) {
-    if (Outcome o = solve(p_.plan->positions, [&] { return p_.plan->kept_positions; }); !o.ok()) return o;
-    return solve(p_.plan->velocities, [&] { return p_.plan->kept_velocities; });
-  }
-  const StartPlan plan(m_, {}, p_.mass);
-  if (Outcome o = solve(plan.positions, [&] { return kept_of(plan.positions); }); !o.ok()) return o;
-  return solve(plan.velocities, [&] { return kept_of(plan.velocities); });
+  std::optional<StartPlan> own;
+  const StartPlan& plan = p_.plan ? *p_.plan : own.emplace(m_, std::vector<StateOverride>{}, p_.mass);
+  if (Outcome o = solve(plan.positions, [&] { return plan.kept ? plan.kept_positions : kept_of(plan.positions); }); !o.ok()) return o;
+  return solve(plan.velocities, [&] { return plan.kept ? plan.kept_velocities : kept_of(plan.velocities); });
 }
 
 // The model's states start where the file says.
@@ -146,7 +143,7 @@ Outcome StateSolver<N>::solve(const StageEquations& equations, const Column& unk
 
 template <Number N>
 StartPlan::Stages StateSolver<N>::kept_of(const StartPlan::Stages& s) const {
-  return planned(m_, kept(s->equations, s->unknowns, p_.overrides, m_.graph()), s->unknowns, s->metric, p_.mass);
+  return planned(m_, left_of(s->equations, s->unknowns, p_.overrides, m_.graph()), s->unknowns, s->metric, p_.mass);
 }
 
 template <Number N>
@@ -201,11 +198,14 @@ StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overr
   for (const StageEquation& e : conditions_of(model))
     if (!holds_higher(e.residual)) (jet_order(e.residual) == 0 ? of_positions : of_velocities).push_back(e);
   constexpr unsigned kPositions = 1U, kVelocities = 2U;
+  std::vector<Column> of_both;
+  if (!mass && !(of_positions.empty() && of_velocities.empty())) mass = &(of_both = mass_matrix(m));
   positions = planned(m, of_positions, m.q, kPositions, mass);
   velocities = planned(m, of_velocities, m.qd, kVelocities, mass);
-  if (overrides.empty()) return;
-  kept_positions = planned(m, kept(of_positions, m.q, overrides, m.graph()), m.q, kPositions, mass);
-  kept_velocities = planned(m, kept(of_velocities, m.qd, overrides, m.graph()), m.qd, kVelocities, mass);
+  kept = !overrides.empty();
+  if (!kept) return;
+  kept_positions = planned(m, left_of(of_positions, m.q, overrides, m.graph()), m.q, kPositions, mass);
+  kept_velocities = planned(m, left_of(of_velocities, m.qd, overrides, m.graph()), m.qd, kVelocities, mass);
 }
 
 template <Number N>

@@ -25,14 +25,15 @@ struct StateOverride {
   bool multiplier = false;
 };
 
-// All that positions and velocities need of the expressions, made once for many states: with a plan `consistent_state` builds none,
-// so many threads may ask at the same time. Overrides are then those of the plan, with other values.
+// All that positions and velocities need of the expressions, made once for many states: with a plan `consistent_state` builds none, as long as the
+// overrides are those of the plan, with other values; many threads may then ask at the same time.
 struct StartPlan {
   StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass = nullptr);
 
   Tape values;  // t, the states, then guesses and given values
   using Stages = std::shared_ptr<const StagePlan>;
   Stages positions, velocities;            // null where there is nothing to solve
+  bool kept = false;                       // made for overrides:
   Stages kept_positions, kept_velocities;  // without conditions that are only about what is overridden
 };
 
