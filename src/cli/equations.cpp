@@ -193,15 +193,16 @@ Expr Arranger::operator()(Expr e, const SymbolNames& names) {
   if (expand_ == "none") return e;
   if (const auto it = known_.find(e.id); it != known_.end()) return it->second;
   Expr out = e;
-  const std::optional<Expr> full = expanded(e);
+  const std::optional<NormalForm> form = written_out(e);
+  const std::optional<Expr> full = form ? expression(*form) : std::nullopt;
   if (expand_ == "full") {
     out = full.value_or(e);
   } else if (!full) {
-    out = arranged(e, names);
+    out = arranged(e, names, form);
   } else if (const auto it = of_written_out_.find(full->id); it != of_written_out_.end()) {
     out = it->second;
   } else {
-    out = arranged(e, names);
+    out = arranged(e, names, form);
     of_written_out_.emplace(full->id, out);
   }
   known_.emplace(e.id, out);

@@ -41,19 +41,26 @@ Features features(Expr e, const SymbolNames& names) {
 
 }  // namespace
 
-Expr arranged(Expr e, const SymbolNames& names) {
+static bool is_arranged(Expr e) {
+  const Kind kind = e.graph->node(e.id).kind;
+  return kind != Kind::sum && kind != Kind::product;
+}
+
+std::optional<NormalForm> written_out(Expr e) { return normal_form(e, {}, kMostWork); }
+
+Expr arranged(Expr e, const SymbolNames& names) { return is_arranged(e) ? e : arranged(e, names, written_out(e)); }
+
+Expr arranged(Expr e, const SymbolNames& names, const std::optional<NormalForm>& plain) {
+  if (is_arranged(e)) return e;
   const Graph& g = *e.graph;
-  const Kind kind = g.node(e.id).kind;
-  if (kind != Kind::sum && kind != Kind::product) return e;
   const auto length = [&](Expr x) {
     const std::string text = print(x, names, Format::text);
     return text.find("…") == std::string::npos ? text.size() : kLongestPrint;  // cut: as long as can be
   };
   Expr best = e;
   std::size_t shortest = length(e);
-  const std::optional<NormalForm> written_out = normal_form(e, {}, kMostWork);
-  if (written_out)
-    if (const std::optional<Expr> full = expression(*written_out))  // `expanded(e)`
+  if (plain)
+    if (const std::optional<Expr> full = expression(*plain))  // `expanded(e)`
       if (const std::size_t n = length(*full); n <= shortest) best = *full, shortest = n;
 
   std::vector<Written> seen;
@@ -64,7 +71,7 @@ Expr arranged(Expr e, const SymbolNames& names) {
       for (bool keep_names : {false, true}) {
         if ((angles && !has.sums_of_angles) || (fractions && !has.fractions) || (keep_names && !has.names)) continue;
         const Whole whole{angles, fractions, keep_names ? &names.defined : nullptr};
-        const std::optional<NormalForm> form = angles || fractions || keep_names ? normal_form(e, whole, kMostProducts) : written_out;
+        const std::optional<NormalForm> form = angles || fractions || keep_names ? normal_form(e, whole, kMostProducts) : plain;
         if (!form || form->numerator.size() + form->denominator.size() > kArrangedTerms) continue;
         Written w{form->generators, {}, as_sum(form->numerator), as_sum(form->denominator)};
         const auto same = [&](const Written& o) { return o.generators == w.generators && o.numerator == w.numerator && o.denominator == w.denominator; };

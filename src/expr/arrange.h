@@ -5,6 +5,7 @@
 // Each arrangement is an identity: the normal form (normal.h), sin^2 + cos^2 = 1 and the sines of sums
 // the other way round, factors found by FLINT, and the distributive law.
 #pragma once
+#include "expr/normal.h"
 #include "expr/print.h"
 
 namespace anholon {
@@ -12,5 +13,9 @@ namespace anholon {
 // The shortest in print of e itself, `expanded(e)` and several arrangements; equal to e wherever e is
 // defined. Names in `names.defined` are kept where e contains them. Large expressions get less effort.
 Expr arranged(Expr e, const SymbolNames& names);
+
+// For who needs `expanded(e)` as well: it is the expression of this form, if both are there.
+std::optional<NormalForm> written_out(Expr e);
+Expr arranged(Expr e, const SymbolNames& names, const std::optional<NormalForm>& plain);
 
 }  // namespace anholon

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "base/assert.h"
 #include "base/diagnostic.h"
@@ -67,6 +68,17 @@ void Graph::spend(std::uint64_t work) {
   if (work_ > most_work_) throw Failure(Span{}, "the expressions grow out of all proportion", "fewer derivatives or powers, or fewer definitions within definitions");
 }
 
+// Short numbers, most of them, without what GMP takes to write a number.
+static std::string key(const Rational& r) {
+  if (!r.get_num().fits_slong_p() || !r.get_den().fits_slong_p()) return r.get_str(62);
+  std::array<char, 48> text;
+  text[0] = '#';  // no digit
+  char* const end = text.data() + text.size();
+  char* at = std::to_chars(text.data() + 1, end, r.get_num().get_si()).ptr;
+  if (r.get_den() != 1) *at++ = '/', at = std::to_chars(at, end, r.get_den().get_si()).ptr;
+  return {text.data(), at};
+}
+
 std::uint32_t Graph::rational_index(const Rational& r) {
   if (one_ != 0 && r == 1) return nodes_[one_].index;  // most of them
   // Arithmetic with long numbers and their text take time that grows with their square.
@@ -74,8 +86,7 @@ std::uint32_t Graph::rational_index(const Rational& r) {
     if (limbs > kLongestNumber) throw Failure(Span{}, "a number of more than " + std::to_string(kLongestNumber * 19) + " digits");
     spend(limbs * limbs / kShortNumber);
   }
-  const auto [it, fresh] =
-      rational_index_.try_emplace(r.get_str(62), static_cast<std::uint32_t>(rationals_.size()));
+  const auto [it, fresh] = rational_index_.try_emplace(key(r), static_cast<std::uint32_t>(rationals_.size()));
   if (fresh) rationals_.push_back(r);
   return it->second;
 }
@@ -199,8 +210,16 @@ static Rational floor(const Rational& r) {
 
 // The rational content of a sum, with the sign that makes its first coefficient positive.
 static Rational content(const Graph& g, NodeId id) {
-  mpz_class num = 0, den = 1;
   const std::span<const Term> terms = g.terms(id);
+  const bool negative = g.rational(terms[0].weight) < 0;
+  bool whole = true, unit = false;
+  for (const Term& t : terms) {
+    const Rational& c = g.rational(t.weight);
+    whole = whole && c.get_den() == 1;
+    unit = unit || mpz_cmpabs_ui(c.get_num_mpz_t(), 1) == 0;
+  }
+  if (whole && unit) return negative ? -1 : 1;
+  mpz_class num = 0, den = 1;
   for (const Term& t : terms) {
     const Rational& c = g.rational(t.weight);
     num = gcd(num, c.get_num());
@@ -208,7 +227,7 @@ static Rational content(const Graph& g, NodeId id) {
   }
   Rational r(num, den);
   r.canonicalize();
-  return g.rational(terms[0].weight) < 0 ? Rational(-r) : r;
+  return negative ? Rational(-r) : r;
 }
 
 Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {

@@ -18,33 +18,43 @@ N apply(Function f, const N& u) {
   return u;
 }
 
+// Most weights are small integers.
+template <Number N>
+N number_of(const Rational& r) {
+  if (r.get_den() == 1 && abs(r.get_num()) < 1'000'000) return N(static_cast<int>(r.get_num().get_si()));
+  return from_rational<N>(r);
+}
+
 }  // namespace
 
 template <Number N>
 N ValuesAt<N>::evaluate(const Graph& g, NodeId id) const {
   const Node& n = g.node(id);
   switch (n.kind) {
-    case Kind::number: return from_rational<N>(g.value(id));
+    case Kind::number: return number_of<N>(g.value(id));
     case Kind::pi: return pi<N>();
     case Kind::sum: {
       N s(0);
-      for (const Term& t : g.summands(id)) s += from_rational<N>(g.rational(t.weight)) * known_.at(t.node);
+      for (const Term& t : g.summands(id)) s += number_of<N>(g.rational(t.weight)) * known(t.node);
       return s;
     }
     case Kind::product: {
       N p(1);
-      for (const Term& t : g.terms(id)) p *= pow(known_.at(t.node), from_rational<N>(g.rational(t.weight)));
+      for (const Term& t : g.terms(id)) {
+        const Rational& e = g.rational(t.weight);
+        p *= e == 1 ? known(t.node) : pow(known(t.node), number_of<N>(e));
+      }
       return p;
     }
-    case Kind::function: return apply(static_cast<Function>(n.index), known_.at(g.terms(id)[0].node));
-    case Kind::atan2: return atan2(known_.at(g.terms(id)[0].node), known_.at(g.terms(id)[1].node));
+    case Kind::function: return apply(static_cast<Function>(n.index), known(g.terms(id)[0].node));
+    case Kind::atan2: return atan2(known(g.terms(id)[0].node), known(g.terms(id)[1].node));
     case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given:
     case Kind::quasi: case Kind::state: case Kind::control:
       return symbol_(n);
-    case Kind::select: return known_.at(g.terms(id)[!(known_.at(g.terms(id)[0].node) < N(0)) ? 1 : 2].node);
+    case Kind::select: return known(g.terms(id)[!(known(g.terms(id)[0].node) < N(0)) ? 1 : 2].node);
     case Kind::lookup: {
       const StepFunction& f = g.step_function(n.index);
-      const N& x = known_.at(g.terms(id)[0].node);
+      const N& x = known(g.terms(id)[0].node);
       std::size_t k = 0;
       while (k < f.knots.size() && !(x < from_rational<N>(f.knots[k]))) ++k;
       return from_rational<N>(f.values[k]);
@@ -56,17 +66,22 @@ N ValuesAt<N>::evaluate(const Graph& g, NodeId id) const {
 template <Number N>
 N ValuesAt<N>::operator()(Expr e) {
   const Graph& g = *e.graph;
-  std::vector<NodeId> open = {e.id}, found;
-  while (!open.empty()) {
-    const NodeId id = open.back();
-    open.pop_back();
-    if (!known_.try_emplace(id, N(0)).second) continue;
-    found.push_back(id);
-    for (const Term& t : g.summands(id)) open.push_back(t.node);
-  }
+  if (place_.size() <= e.id) place_.resize(g.size(), 0);
+  constexpr std::uint32_t kFound = ~std::uint32_t{0};
+  std::vector<NodeId> found;
+  const auto find = [&](NodeId id) {
+    if (place_[id] == 0) place_[id] = kFound, found.push_back(id);
+  };
+  find(e.id);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const Term& t : g.summands(found[i])) find(t.node);
   std::sort(found.begin(), found.end());
-  for (NodeId id : found) known_.insert_or_assign(id, evaluate(g, id));
-  return known_.at(e.id);
+  for (NodeId id : found) {
+    N value = evaluate(g, id);
+    values_.push_back(std::move(value));
+    place_[id] = static_cast<std::uint32_t>(values_.size());
+  }
+  return known(e.id);
 }
 
 template class ValuesAt<double>;

@@ -2,7 +2,7 @@
 // results.
 #pragma once
 #include <functional>
-#include <unordered_map>
+#include <vector>
 
 #include "expr/expr.h"
 #include "numeric/number.h"
@@ -18,9 +18,11 @@ class ValuesAt {
 
  private:
   N evaluate(const Graph& g, NodeId id) const;
+  const N& known(NodeId id) const { return values_[place_[id] - 1]; }
 
   std::function<N(const Node&)> symbol_;
-  std::unordered_map<NodeId, N> known_;
+  std::vector<std::uint32_t> place_;  // of a node among the values, counted from 1; 0 while it has none
+  std::vector<N> values_;
 };
 
 extern template class ValuesAt<double>;
