@@ -211,7 +211,7 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
   s.start = numbers ? std::make_shared<const StartPlan>(*s.mechanics, std::vector<StateOverride>{}) : nullptr;
-  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t, nullptr, s.start.get()};
+  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t, nullptr, s.start.get(), true};
   Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
   if (initial.ok() && numbers) initial = admissible(*model, parameters, s.state);
   s.independent.clear();
@@ -244,7 +244,7 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
 
 template <Number N>
 Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start) {
-  const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr, s.start.get()};
+  const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr, s.start.get(), true};
   InitialState<N> named;
   if (Outcome o = consistent_state(problem, named); !o.ok()) return o;
   if (s.routh)

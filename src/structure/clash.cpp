@@ -56,7 +56,7 @@ template <Number N>
 std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row) const {
   constexpr std::size_t kMostUnknowns = 2, kLongest = 60;
   constexpr long kMostWork = 2000;
-  if (p_.plan) return {};  // it would take an expression
+  if (p_.plan && !p_.alone) return {};  // it would take an expression
   const Graph& g = m_.graph();
   const Expr residual = stage.equation(row).residual;
   std::size_t open = 0;

@@ -45,6 +45,7 @@ struct InitialProblem {
   std::optional<Rational> t;
   const std::vector<Column>* mass = nullptr;  // the mass matrix, where the caller solves for many states
   const StartPlan* plan = nullptr;
+  bool alone = false;  // nobody else has the plan: a message may make expressions
 };
 
 // Positions and velocities, from the constraints of orders 0 and 1 and the conditions on them.
