@@ -71,12 +71,12 @@ void Graph::spend(std::uint64_t work) {
 // Short numbers, most of them, without what GMP takes to write a number.
 static std::string key(const Rational& r) {
   if (!r.get_num().fits_slong_p() || !r.get_den().fits_slong_p()) return r.get_str(62);
-  std::array<char, 48> text;
-  text[0] = '#';  // no digit
-  char* const end = text.data() + text.size();
-  char* at = std::to_chars(text.data() + 1, end, r.get_num().get_si()).ptr;
-  if (r.get_den() != 1) *at++ = '/', at = std::to_chars(at, end, r.get_den().get_si()).ptr;
-  return {text.data(), at};
+  std::array<char, 24> digits;
+  const auto text = [&digits](long n) { return std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), n).ptr); };
+  std::string key("#");  // no digit
+  key += text(r.get_num().get_si());
+  if (r.get_den() != 1) key += '/', key += text(r.get_den().get_si());
+  return key;
 }
 
 std::uint32_t Graph::rational_index(const Rational& r) {

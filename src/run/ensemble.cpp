@@ -16,7 +16,7 @@ namespace anholon {
 
 namespace {
 
-// Cases that are integrated together. The number of threads has no say in it: who is beside whom may decide bits.
+// Cases that are integrated together, in the lanes of one kernel; as many for any number of threads.
 std::size_t together(std::size_t cases) {
   constexpr std::size_t kMost = 32, kFew = 8;
   return std::clamp<std::size_t>(cases / kFew, 1, kMost);

@@ -35,7 +35,7 @@ struct ToRepresent {
 
 // What a motion puts into its writing grows with its length: the steps saved have to pay for it.
 enum class WritingEffort : std::uint8_t {
-  at_once,  // paired
+  at_once,  // paired, rates
   long_motion,
   very_long_motion,  // arranged
 };

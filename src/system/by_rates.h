@@ -12,7 +12,7 @@
 
 namespace anholon {
 
-// In `into`, a model of names alone with a graph of its own; `others` are copied there. Nothing where the system is not Routh's, or has nothing to gain.
+// In a model of names alone with a graph of its own; `others` are copied there. Nothing where the system is not Routh's, or has nothing to gain.
 // The unknowns and the order of the equations are those of `derived`.
 struct ByRates {
   System system;
