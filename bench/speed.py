@@ -284,7 +284,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=0.1, help="of each cell in each round")
     parser.add_argument("--jit-limit", type=float, default=300, help="seconds that one compilation by heyoka may be expected to take")
-    parser.add_argument("--form", type=lambda name: ["--form", name], default=[], help="of our equations; Routh's without it")
+    parser.add_argument("--form", type=lambda name: ["--form", name], default=[], help="of our equations; as auto chooses without it")
     parser.add_argument("--no-batch", action="store_true", help="leave out ensembles: neighbours in lanes, one thread and two")
     parser.add_argument("--no-growth", action="store_true")
     parser.add_argument("--no-startup", action="store_true")

@@ -24,6 +24,7 @@
 #include "base/read_file.h"
 #include "fma_peak.h"
 #include "kernel/arithmetic.h"
+#include "run/form_choice.h"
 #include "run/representation.h"
 #include "run/simulate.h"
 #include "stopwatch.h"
@@ -40,7 +41,7 @@ void must(const Outcome& o) {
 }
 
 struct Request {
-  std::string model, form = "routh";
+  std::string model, form = "auto";
   Overrides set;
 };
 
@@ -68,7 +69,8 @@ std::unique_ptr<Ready> make_ready(const Request& request) {
   if (!m) throw Failed{diagnostics.print(source)};
   auto model = std::make_shared<const Model>(std::move(*m));
   r->read = lap();
-  const Formulation* form = find_formulation(request.form);
+  const auto again = [&] { return std::make_shared<const Model>(*read_model(source, diagnostics, request.set)); };
+  const Formulation* form = request.form == "auto" ? choose_form(again, {}).form : find_formulation(request.form);
   if (!form) throw Failed{"no form " + request.form};
   must(make_scenario(model, *form, {}, r->scenario));
   r->scenario_made = lap();

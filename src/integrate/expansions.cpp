@@ -105,8 +105,10 @@ void Stepper<N>::note_begun(const std::vector<W>& guess) {
     b.carry = carry_;
     b.leading = guess;
   }
-  b.integrals = integrals_;
-  b.integral_carry = integral_carry_;
+  if (!integrals_.empty()) {
+    b.integrals = integrals_;
+    b.integral_carry = integral_carry_;
+  }
   b.branch_step = branch_step_;
   b.steps = steps_;
   b.worst_constraint = worst_constraint_;

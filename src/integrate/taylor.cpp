@@ -192,6 +192,10 @@ Outcome Stepper<N>::aim(const W& end) {
   const W left = end - t_;
   const bool forward = left > W(0);
   W h = convert<W>(horizon_);
+  if (nothing_in_the_way() && h < abs(left) && !end_out_of_reach(h, left)) {
+    aim_at(convert<W>(convert<N>(W(t_ + (forward ? h : W(-h))))), false);
+    return {};
+  }
   // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from there.
   if (program_->nonlinear) h = abs(on_the_branch(forward ? h : W(-h)));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
@@ -236,12 +240,23 @@ Outcome Stepper<N>::aim(const W& end) {
     if (to != whole) h = convert<W>(to), cut = true, singular_ahead_ = false;
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
-  arrives_ = last && !cut;
-  const W reached = arrives_ ? end : convert<W>(convert<N>(W(t_ + h)));
-  h = reached - t_;
-  aimed_ = reached;
-  if (by_kernel_) kernel_->set_step(lane_, to_double(h));
+  if (last && !cut) aim_at(end, true);
+  else aim_at(convert<W>(convert<N>(W(t_ + h))), false);
   return {};
+}
+
+// An ordinary step, of the length that the series allow.
+template <Number N>
+bool Stepper<N>::nothing_in_the_way() const {
+  return by_kernel_ && !suspected_ && !singular_ahead_ && kink_series_.empty() && short_kinks_ == 0 && fired_.empty() && events_.empty() &&
+         to_double(horizon_) > std::abs(to_double(t_)) * (2 * kCollapsedRoundoffs * unit_roundoff<double>());
+}
+
+template <Number N>
+void Stepper<N>::aim_at(const W& t, bool arrives) {
+  aimed_ = t;
+  arrives_ = arrives;
+  if (by_kernel_) kernel_->set_step(lane_, to_double(W(t - t_)));
 }
 
 template <Number N>

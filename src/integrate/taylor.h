@@ -169,6 +169,8 @@ class Stepper {
   static std::optional<Mode<N>> mode_of(Expansion<N>* there);
   std::optional<W> singular_within(const W& h);
   bool end_out_of_reach(const W& h, const W& left) const;
+  bool nothing_in_the_way() const;
+  void aim_at(const W& t, bool arrives);
   void advance_kernel(const W& h) const;
   void advanced_by_kernel(const W& h, const std::vector<W>& base, std::vector<W>& state, std::vector<W>& leading) const;
   void on_polynomial(const W& h, std::vector<W>& state, std::vector<W>& leading) const;
