@@ -10,6 +10,7 @@ namespace anholon {
 
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
+  if (!alone_) careful_ = true;  // those beside it in the kernel are left in peace
   begin_expansion(guess);
   if (loaded_) kernel_->begin();
   return end_expansion(guess);

@@ -70,8 +70,9 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
 }
 
 template <Number N>
-Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading, bool kernel) {
   place(t, state, leading);
+  careful_ = !kernel;
   return expand(leading_);
 }
 

@@ -69,8 +69,9 @@ class Stepper {
           const StepSettings& settings);
   ~Stepper();
 
-  // Starts at a consistent state; `leading` is a first guess and names the branch. What the stepper did before leaves no trace.
-  Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
+  // Starts at a consistent state; `leading` is a first guess and names the branch. What the stepper did before leaves no trace. Without the kernel the
+  // first expansion is the reference's, as it is in lanes.
+  Outcome start(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {}, bool kernel = true);
   // The same, but for the expansion, which the first step makes.
   void place(const W& t, const std::vector<W>& state, const std::vector<W>& leading = {});
   // Goes on where another stepper for the same unknowns is, with its sums and counts.

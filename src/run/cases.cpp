@@ -157,7 +157,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
     if (const W at = from_rational<W>(t); forward ? at <= end_ : at >= end_) times_.push_back(at);
   if (!forward) std::reverse(times_.begin(), times_.end());
   result_ = &r;
-  if (end_ == named_.t) return stepper_->start(named_.t, state).ok() ? after_step() : stop(CaseWay::derivation);
+  if (end_ == named_.t) return stepper_->start(named_.t, state, {}, false).ok() ? after_step() : stop(CaseWay::derivation);
   stepper_->place(named_.t, state);
   return CaseWay::plain;
 }

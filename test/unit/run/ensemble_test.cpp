@@ -183,10 +183,11 @@ TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
   std::vector<std::vector<Rational>> values;
   for (int k = 0; k < 40; ++k) values.push_back({Rational(1) + Rational(k % 5, 8), Rational(1, 4) + Rational(k, 64)});
   many.cases(values);
-  many.options.numbers = [values](std::size_t k) { return EnsembleCase{values[k], Rational(1) + Rational(static_cast<int>(k % 3), 4)}; };
+  // One of them has no motion.
+  many.options.numbers = [values](std::size_t k) { return EnsembleCase{values[k], k == 13 ? Rational(0) : Rational(1) + Rational(static_cast<int>(k % 3), 4)}; };
   const std::vector<CaseResult> together = many.go(1);
   ASSERT_EQ(together.size(), values.size());
-  for (const std::size_t k : {0UL, 7UL, 8UL, 23UL, 39UL}) {
+  for (const std::size_t k : {0UL, 7UL, 8UL, 13UL, 23UL, 39UL}) {
     Sweep one(test::shipped_text("zoo/disc"));
     one.options.varied = many.options.varied;
     one.options.at = many.options.at;
