@@ -6,7 +6,6 @@ namespace anholon {
 
 namespace {
 
-constexpr std::uint32_t kNone = Slots::kNone, kReciprocal = Slots::kReciprocal;
 // A sum takes in the sums it is made of up to so many terms.
 constexpr std::size_t kLongestSum = 48;
 
@@ -26,7 +25,6 @@ Slots::Slots(const Program& program) : tape(program.tape), code(tape.code), p_(p
   taint();
 }
 
-// The slot whose value this one repeats.
 std::uint32_t Slots::same_as(std::uint32_t s) const {
   while (code[s].op == Op::linear && code[s].count == 1 && tape.rationals[tape.linear_terms[code[s].first].coefficient] == 1)
     s = tape.linear_terms[code[s].first].slot;
@@ -43,7 +41,6 @@ void Slots::pair_functions() {
     if (const auto it = cosine.find(a); it != cosine.end()) cosine_of[s] = it->second, sine_of[it->second] = s;
 }
 
-// The operands of a slot that is no sum, with repeats seen through.
 std::vector<std::uint32_t> Slots::operands(std::uint32_t s) const {
   const Instruction& in = code[s];
   std::vector<std::uint32_t> r;

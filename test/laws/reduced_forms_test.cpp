@@ -13,7 +13,6 @@ namespace anholon {
 namespace {
 
 constexpr double kExact = 1e-26;   // 40 digits, less what a nearly singular point of the manifold takes
-constexpr double kRefuted = 1e-6;  // a mutant misses by much more
 constexpr int kPoints = 2;
 
 struct System {
