@@ -120,74 +120,120 @@ void Emitter::bulk() {
   }
 }
 
-// Each stage is a function of its own.
-void Emitter::stages(const std::vector<Step>& steps, bool solved) {
-  const int last = p_.stages;
-  llvm::Function* const whole = function_;
-  Value* const arena = w_;
-  const std::string list = solved ? "stage" : "after";
-  const auto back = b_.saveIP();
+// Scratch memory for the sums of all convolutions.
+llvm::Value* Emitter::scratch_memory() {
+  llvm::BasicBlock& entry = function_->getEntryBlock();
+  llvm::IRBuilder<> top(&entry, entry.begin());
+  auto* memory = top.CreateAlloca(lane_, top.getInt32(static_cast<std::uint32_t>(2 * kBlock * (bulk_.size() + 1))));
+  memory->setAlignment(llvm::Align(64));
+  return memory;
+}
 
-  std::vector<llvm::Function*> first, later;
-  relative_ = false;
-  for (stage_ = 1; stage_ <= std::min(last, kBlock); ++stage_) {
-    first.push_back(begin_part(list + std::to_string(stage_)));
-    stage(steps, solved);
-    end();
-  }
-  bulk_.clear();
-  llvm::Function* before_block = nullptr;
-  if (last > kBlock) {
-    for (const Step& s : steps)
-      for (const Convolution& c : convolutions(s)) bulk_.try_emplace(c, 0U);
-    unsigned place = 0;
-    for (auto& [c, where] : bulk_) where = place++;
-    before_block = begin_part(list + "_known");
-    bulk();
-    end();
-    relative_ = true;
-    for (i_ = 0; i_ < kBlock; ++i_) {
-      later.push_back(begin_part(list + "_later" + std::to_string(i_)));
-      stage(steps, solved);
-      end();
-    }
-    relative_ = false;
-  }
-
-  function_ = whole;
-  w_ = arena;
-  b_.restoreIP(back);
-  known_.clear();
-  Value* scratch = nullptr;
-  {
-    llvm::BasicBlock& entry = function_->getEntryBlock();
-    llvm::IRBuilder<> top(&entry, entry.begin());
-    auto* memory = top.CreateAlloca(lane_, top.getInt32(static_cast<std::uint32_t>(kBlock * (bulk_.size() + 1))));
-    memory->setAlignment(llvm::Align(64));
-    scratch = memory;
-  }
-  for (llvm::Function* f : first) b_.CreateCall(f, {w_, scratch, b_.getInt64(1)});
-  if (!before_block) return;
-  llvm::BasicBlock* before = b_.GetInsertBlock();
+void Emitter::over_blocks(const std::function<void(Value*)>& before, const std::function<void(Value*, int)>& body) {
+  llvm::BasicBlock* from = b_.GetInsertBlock();
   auto* loop = llvm::BasicBlock::Create(m_.getContext(), "block", function_);
   auto* done = llvm::BasicBlock::Create(m_.getContext(), "done", function_);
   b_.CreateBr(loop);
   b_.SetInsertPoint(loop);
   llvm::PHINode* k0 = b_.CreatePHI(b_.getInt64Ty(), 2);
-  k0->addIncoming(b_.getInt64(kBlock + 1), before);
-  b_.CreateCall(before_block, {w_, scratch, k0});
+  k0->addIncoming(b_.getInt64(kBlock + 1), from);
+  Value* last = b_.getInt64(static_cast<std::uint64_t>(p_.stages));
+  before(k0);
   for (int i = 0; i < kBlock; ++i) {
     if (i > 0) {
       auto* next = llvm::BasicBlock::Create(m_.getContext(), "stage", function_);
-      b_.CreateCondBr(b_.CreateICmpSLE(b_.CreateAdd(k0, b_.getInt64(static_cast<std::uint64_t>(i))), b_.getInt64(static_cast<std::uint64_t>(last))), next, done);
+      b_.CreateCondBr(b_.CreateICmpSLE(b_.CreateAdd(k0, b_.getInt64(static_cast<std::uint64_t>(i))), last), next, done);
       b_.SetInsertPoint(next);
     }
-    b_.CreateCall(later[static_cast<std::size_t>(i)], {w_, scratch, k0});
+    body(k0, i);
   }
   Value* next = b_.CreateAdd(k0, b_.getInt64(kBlock));
   k0->addIncoming(next, b_.GetInsertBlock());
-  b_.CreateCondBr(b_.CreateICmpSLE(next, b_.getInt64(static_cast<std::uint64_t>(last))), loop, done);
+  b_.CreateCondBr(b_.CreateICmpSLE(next, last), loop, done);
   b_.SetInsertPoint(done);
+}
+
+// One function for all stages: four of them, one for each place in a block, were no faster and took twice as long to make. What is new in a block is
+// added to the sums as it comes.
+void Emitter::stages(const std::vector<Step>& steps, bool solved) {
+  const std::string list = solved ? "stage" : "after";
+  bulk_.clear();
+  for (const Step& s : steps)
+    for (const Convolution& c : convolutions(s)) bulk_.try_emplace(c, 0U);
+  unsigned count = 0;
+  for (auto& [c, place] : bulk_) place = count++;
+
+  llvm::Function* const whole = function_;
+  Value* const arena = w_;
+  const auto back = b_.saveIP();
+
+  // The first block knows little before it: its histories are made stage by stage.
+  llvm::Function *first[kBlock] = {}, *add[kBlock - 1] = {}, *before_block = nullptr;
+  for (stage_ = 1; stage_ <= std::min(p_.stages, kBlock); ++stage_) {
+    first[stage_ - 1] = begin_part(list + "_first" + std::to_string(stage_));
+    for (const auto& [c, place] : bulk_) {
+      const auto [old, new_of_a] = history(c);
+      b_.CreateAlignedStore(old, scratch(place, static_cast<unsigned>(stage_ - 1)), align());
+      b_.CreateAlignedStore(new_of_a, scratch(place, static_cast<unsigned>(stage_ - 1), true), align());
+    }
+    end();
+  }
+  relative_ = true;
+  if (p_.stages > kBlock) {
+    before_block = begin_part(list + "_known");
+    bulk();
+    for (const auto& [c, place] : bulk_)
+      for (unsigned i = 0; i < kBlock; ++i) b_.CreateAlignedStore(number(0), scratch(place, i, true), align());
+    end();
+    for (int m = 0; m + 1 < kBlock; ++m) {
+      add[m] = begin_part(list + "_add" + std::to_string(m));
+      add_newest(m);
+      end();
+    }
+  }
+  llvm::Function* const any = begin_part(list + "_any");
+  stage(steps, solved);
+  relative_ = false;
+  end();
+
+  function_ = whole;
+  w_ = arena;
+  b_.restoreIP(back);
+  known_.clear();
+  Value* scratch = scratch_memory();
+  const auto make = [&](Value* k, int i) { b_.CreateCall(any, {w_, b_.CreateConstInBoundsGEP1_64(lane_, scratch, static_cast<std::uint64_t>(i)), k}); };
+  for (int i = 0; i < std::min(kBlock, p_.stages); ++i) {
+    Value* k = b_.getInt64(static_cast<std::uint64_t>(i + 1));
+    b_.CreateCall(first[i], {w_, scratch, k});
+    make(k, i);
+  }
+  if (!before_block) return;
+  over_blocks([&](Value* k0) { b_.CreateCall(before_block, {w_, scratch, k0}); },
+              [&](Value* k0, int i) {
+                Value* k = b_.CreateAdd(k0, b_.getInt64(static_cast<std::uint64_t>(i)));
+                make(k, i);
+                if (i + 1 < kBlock) b_.CreateCall(add[i], {w_, scratch, k});
+              });
+}
+
+// After stage m of a block: what its coefficients, the newest, add to the orders after it.
+void Emitter::add_newest(int m) {
+  // For one lane, four orders at once: those up to m are done with.
+  auto* orders = lanes_ == 1 ? static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock)) : lane_;
+  const llvm::Align at_any = lanes_ == 1 ? llvm::Align(8) : align(), at_four = lanes_ == 1 ? llvm::Align(32) : align();
+  for (const auto& [c, place] : bulk_) {
+    Value *a = load(std::int64_t{c.a} + c.lead, true), *b = load(std::int64_t{c.b} + c.lead, true);
+    if (lanes_ == 1) a = b_.CreateVectorSplat(kBlock, a), b = b_.CreateVectorSplat(kBlock, b);
+    for (int i = lanes_ == 1 ? 0 : m + 1; i < (lanes_ == 1 ? 1 : kBlock); ++i) {
+      const auto add = [&](bool new_of_a, std::uint32_t older, Value* newest) {
+        Value* sum = scratch(place, static_cast<unsigned>(i), new_of_a);
+        Value* x = b_.CreateAlignedLoad(orders, address(std::int64_t{older} + i - m, false), at_any);
+        b_.CreateAlignedStore(fma(x, newest, b_.CreateAlignedLoad(orders, sum, at_four)), sum, at_four);
+      };
+      add(false, c.a, b);
+      add(true, c.b, a);
+    }
+  }
 }
 
 void Emitter::extend() {

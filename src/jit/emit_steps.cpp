@@ -18,23 +18,27 @@ llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
   return r;
 }
 
-llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later) {
+std::pair<llvm::Value*, llvm::Value*> Emitter::history(const Convolution& c) {
   Value *s, *t = number(0);
   if (relative_) {
-    s = b_.CreateAlignedLoad(lane_, scratch(bulk_.at({a, b, lead}), static_cast<unsigned>(i_)), align());
-    const auto recent = [&](std::uint32_t x, int m) { return m == i_ ? newest(x, lead) : load(std::int64_t{x} + lead + m, true); };
-    for (int j = i_; j >= 1; --j) s = fma(load(a + j), recent(b, i_ - j), s);
-    for (int m = 0; m < i_; ++m) t = fma(recent(a, m), load(b + i_ - m), t);
+    const unsigned place = bulk_.at(c);
+    s = b_.CreateAlignedLoad(lane_, scratch(place, 0), align());
+    t = b_.CreateAlignedLoad(lane_, scratch(place, 0, true), align());
   } else {
-    const std::int64_t p = stage_ + lead, block = stage_ > 0 ? (stage_ - 1) / kBlock * kBlock + 1 + lead : 0, known = std::min(block, p), i = p - known;
-    const auto at = [&](std::uint32_t x, std::int64_t order) { return order == p ? newest(x, lead) : load(x + order); };
+    const std::int64_t p = stage_ + c.lead, block = stage_ > 0 ? (stage_ - 1) / kBlock * kBlock + 1 + c.lead : 0, known = std::min(block, p), i = p - known;
+    const auto at = [&](std::uint32_t x, std::int64_t order) { return order == p ? newest(x, c.lead) : load(x + order); };
     s = number(0);
-    for (std::int64_t j = kBlock; j < known; ++j) s = fma(at(a, j), at(b, p - j), s);
-    for (std::int64_t j = std::min<std::int64_t>(known, kBlock) - 1; j > i; --j) s = fma(at(a, j), at(b, p - j), s);
-    for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = fma(at(a, j), at(b, p - j), s);
-    for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = fma(at(a, j), at(b, p - j), t);
+    for (std::int64_t j = kBlock; j < known; ++j) s = fma(at(c.a, j), at(c.b, p - j), s);
+    for (std::int64_t j = std::min<std::int64_t>(known, kBlock) - 1; j > i; --j) s = fma(at(c.a, j), at(c.b, p - j), s);
+    for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = fma(at(c.a, j), at(c.b, p - j), s);
+    for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = fma(at(c.a, j), at(c.b, p - j), t);
   }
-  s = b_.CreateFAdd(s, t);
+  return {s, t};
+}
+
+llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later) {
+  const auto [old, new_of_a] = history({a, b, lead});
+  Value* s = b_.CreateFAdd(old, new_of_a);
   if (first && !b_later) s = fma(load(a), newest(b, lead), s);
   if (last) s = fma(newest(a, lead), load(b), s);
   if (first && b_later) s = fma(load(a), newest(b, lead), s);
@@ -67,7 +71,7 @@ void Emitter::coefficient(const Step& s) {
     case Act::input: {
       const auto key = "rising" + std::to_string(s.index);
       const std::vector<double> row(k_.rising_.begin() + static_cast<std::ptrdiff_t>(s.index * k_.orders), k_.rising_.begin() + static_cast<std::ptrdiff_t>((s.index + 1) * k_.orders));
-      Value* x = relative_ ? load(std::int64_t{s.a.at} + i_ + l + s.index, true) : load(std::int64_t{s.a.at} + stage_ + l + s.index);
+      Value* x = relative_ ? load(std::int64_t{s.a.at} + l + s.index, true) : load(std::int64_t{s.a.at} + stage_ + l + s.index);
       put(s.out, l, b_.CreateFMul(x, table(key.c_str(), row, l)));
       break;
     }

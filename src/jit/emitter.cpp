@@ -61,7 +61,7 @@ llvm::Value* Emitter::address(std::int64_t slot, bool relative) {
 llvm::Value* Emitter::get(const Place& place, int lead) {
   const auto key = std::make_pair(place.at, place.series ? lead : -1000);
   if (const auto it = known_.find(key); it != known_.end()) return it->second;
-  Value* v = !place.series ? load(place.at) : relative_ ? load(std::int64_t{place.at} + i_ + lead, true) : load(std::int64_t{place.at} + stage_ + lead);
+  Value* v = !place.series ? load(place.at) : relative_ ? load(std::int64_t{place.at} + lead, true) : load(std::int64_t{place.at} + stage_ + lead);
   return known_[key] = v;
 }
 
@@ -72,7 +72,7 @@ void Emitter::put(const Place& place, int lead, Value* v) {
     if (!relative_ && stage_ <= 0) store(v, place.at);
     return;
   }
-  if (relative_) store(v, std::int64_t{place.at} + i_ + lead, true);
+  if (relative_) store(v, std::int64_t{place.at} + lead, true);
   else store(v, std::int64_t{place.at} + stage_ + lead);
 }
 
@@ -84,7 +84,7 @@ llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, in
     t = new llvm::GlobalVariable(m_, data->getType(), true, llvm::GlobalValue::PrivateLinkage, data, name);
   }
   Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), t, k0_);
-  at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at, static_cast<std::uint64_t>(static_cast<std::int64_t>(i_ + offset)));
+  at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at, static_cast<std::uint64_t>(static_cast<std::int64_t>(offset)));
   Value* x = b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8));
   return lanes_ == 1 ? x : b_.CreateVectorSplat(static_cast<unsigned>(lanes_), x);
 }

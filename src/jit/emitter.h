@@ -1,8 +1,8 @@
 // LLVM IR for a kernel of one lane or several: the arithmetic of kernel/sweep.h, operation by operation in the same order, so the bits are the same.
 //
-// Shape of the code: the first block of four stages straight, all further blocks as one loop whose body is four stages. What a
-// convolution knows before a block is summed for its four orders at once, several convolutions side by side. Where the elimination is long it is
-// a function of its own, called by every stage.
+// Shape of the code: one function for all stages, in a loop over blocks of four. What a convolution knows before a block is summed for its four orders
+// at once, several convolutions side by side; what becomes known in a block is added to the orders after it. The first block, where little is known,
+// makes these sums stage by stage. Where the elimination is long it is a function of its own.
 #pragma once
 #include <llvm/IR/IRBuilder.h>
 #include <llvm/IR/Module.h>
@@ -35,7 +35,7 @@ class Emitter {
   };
 
   void begin(const char* name);
-  // A part of another function: of the arena, the scratch memory and the first stage of the block.
+  // A part of another function: of the arena, the scratch memory and a stage.
   llvm::Function* begin_part(const std::string& name);
   void end();
   void values();
@@ -48,7 +48,11 @@ class Emitter {
   // All stages from 1 of a list, in blocks.
   void stages(const std::vector<Step>& steps, bool solved);
   void stage(const std::vector<Step>& steps, bool solved);
+  // A loop over the blocks after the first; `body` is for stage k0 + i.
+  void over_blocks(const std::function<void(Value* k0)>& before, const std::function<void(Value* k0, int i)>& body);
   void bulk();
+  Value* scratch_memory();
+  void add_newest(int m);
   void known_before(const Convolution* group, std::size_t count);
   void known_before_in_lanes(const Convolution* group, std::size_t count);
   // A loop over j = 4 .. order of the block - 1; `body` takes j and the sums so far, and gives the new ones.
@@ -58,6 +62,8 @@ class Emitter {
   void coefficient(const Step& s);
   void partial(const Partial& d);
   Value* sum(const Step& s, std::uint32_t count);
+  // Its sums over what is older than the newest coefficients, those that end with what is new of a in a block apart.
+  std::pair<Value*, Value*> history(const Convolution& c);
   Value* convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later = false);
   void side(std::size_t root);
   void sides();
@@ -67,14 +73,16 @@ class Emitter {
   void complete();
   static std::vector<Convolution> convolutions(const Step& s);
 
-  // Orders are of the present stage: absolute, or relative to the stage where the block begins.
+  // Orders are of the present stage: absolute, or relative to it.
   Value* number(double x) { return llvm::ConstantFP::get(lane_, x); }
   Value* address(std::int64_t slot, bool relative);
   Value* load(std::int64_t slot, bool relative = false) { return b_.CreateAlignedLoad(lane_, address(slot, relative), align()); }
   void store(Value* v, std::int64_t slot, bool relative = false) { b_.CreateAlignedStore(v, address(slot, relative), align()); }
   llvm::Align align() const { return llvm::Align(8 * static_cast<std::uint64_t>(lanes_)); }
-  // The sum that known_before has left for a convolution and an order of the block.
-  Value* scratch(unsigned place, unsigned order) { return b_.CreateConstInBoundsGEP1_64(lane_, scratch_, std::uint64_t{kBlock} * place + order); }
+  // The sums that known_before has left for a convolution and an order of the block: of what both knew before, and of what is new of a.
+  Value* scratch(unsigned place, unsigned order, bool new_of_a = false) {
+    return b_.CreateConstInBoundsGEP1_64(lane_, scratch_, std::uint64_t{kBlock} * (2 * place + new_of_a) + order);
+  }
   // The coefficient of order stage + lead.
   Value* get(const Place& place, int lead);
   void put(const Place& place, int lead, Value* v);
@@ -96,9 +104,9 @@ class Emitter {
   std::vector<bool> asked_;      // columns of the solution
   llvm::Function* substitution_ = nullptr;
   llvm::Function* function_ = nullptr;
-  Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr;  // arena; arena + first stage of the block; that stage
+  Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr;  // arena; arena + stage; that stage, or the first of a block
   bool relative_ = false;
-  int stage_ = 0, i_ = 0;  // absolute; in the block
+  int stage_ = 0;                                          // absolute
   std::map<std::pair<std::uint32_t, int>, Value*> known_;  // of the present stage
   std::map<Convolution, unsigned> bulk_;                    // place in the scratch memory
   std::map<std::string, llvm::GlobalVariable*> tables_;

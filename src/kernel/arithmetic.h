@@ -9,8 +9,6 @@
 
 namespace anholon {
 
-// Orders are computed in blocks of so many (sweep.h: convolution).
-inline constexpr int kBlock = 4;
 inline constexpr int kMostRising = 12;
 
 // A pivot whose size says how far it still serves: where it lies, 1 / what it was, the mark of its sign.

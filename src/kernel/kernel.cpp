@@ -16,8 +16,8 @@ namespace {
 constexpr double kAround = 3.3;
 // An operation that waits for the one before costs so many that do not: measured on small systems and chains.
 constexpr double kWaiting = 5;
-// Steps of a stage: more would be compiled for many seconds.
-constexpr std::size_t kMostCompiled = 400;
+// Steps of a stage: more would be compiled for more than a second or two.
+constexpr std::size_t kMostCompiled = 600;
 // Solutions are refined where that changes them by more.
 constexpr double kRefined = 64 * 0x1p-53;
 

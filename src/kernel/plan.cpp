@@ -59,7 +59,8 @@ class Planner {
       if (code_[s].constant) coefficient({Rational(1), {s}});
       for (const Slots::Summand& t : slots_.sums[s]) coefficient(t.c);
     }
-    plan_.arena = static_cast<std::uint32_t>(plan_.coefficients.size());
+    // A vector of coefficients may begin before the first series.
+    plan_.arena = std::max(static_cast<std::uint32_t>(plan_.coefficients.size()), std::uint32_t{kBlock});
     for (std::size_t j = 0; j < p_.unknowns(); ++j) plan_.x.push_back(take(plan_.stride));
     plan_.time = take(plan_.stride);
     zero_ = take(plan_.stride);

@@ -15,6 +15,9 @@
 
 namespace anholon {
 
+// Orders are computed in blocks of so many (sweep.h: convolution).
+inline constexpr int kBlock = 4;
+
 // A value in the arena; of a series: its coefficient of order p lies at `at` + p.
 struct Place {
   std::uint32_t at = 0;
