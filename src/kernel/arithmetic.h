@@ -11,16 +11,15 @@ namespace anholon {
 
 inline constexpr int kMostRising = 12;
 
-// A pivot whose size says how far it still serves: where it lies, 1 / what it was, the mark of its sign.
+// A pivot whose size says how far it still serves: where it lies, 1 / what it was.
 struct JudgedPivot {
   std::uint32_t at;
   double inverse;
-  std::uint64_t mark;
 };
 
 // Where in the arena an expansion leaves what it found, a number in every lane.
 struct Findings {
-  std::uint32_t health = 0, signs = 0;               // Pivots (pivots.h); signs are bits
+  std::uint32_t health = 0, determinant = 0;         // Pivots (pivots.h)
   std::uint32_t drift = 0, weight = 0, moved = 0;    // of the projection; 0 or 1: where it moves the state, has moved it
   std::uint32_t reach = 0;                           // the step that the series allow
   std::uint32_t unfit = 0;                           // not 0: a highest coefficient is no number

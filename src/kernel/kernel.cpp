@@ -107,7 +107,7 @@ void KernelPlan::lay_out() {
   tables_.base = tables_.before + tables_.motion_size();
   std::uint32_t at = tables_.base + 2 * tables_.state_size;
   Findings& f = tables_.found;
-  for (std::uint32_t* place : {&f.health, &f.signs, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest}) *place = at++;
+  for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest}) *place = at++;
   tables_.size = even(at);
 }
 
@@ -173,7 +173,7 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   lay_out();
   tables_.judged.clear();
   for (const SparseLu::Pivot& p : elimination_.pivots)
-    if (!p.one && !p.minus_one) tables_.judged.push_back({tables_.lu + p.entry, 1 / p.value[0], 0x9e3779b97f4a7c15ULL * (2 * tables_.judged.size() + 1)});
+    if (!p.one && !p.minus_one) tables_.judged.push_back({tables_.lu + p.entry, 1 / p.value[0]});
   waits_ = latency(plan_, elimination_);
   return !elimination_.pivots.empty();
 }

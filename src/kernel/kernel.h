@@ -5,7 +5,6 @@
 // they still serve; where it is small, the reference takes the step.
 #pragma once
 #include <atomic>
-#include <bit>
 #include <optional>
 #include <span>
 
@@ -91,7 +90,7 @@ class Kernel {
   double correction_of_solution();
 
   // Of the last expansion.
-  Pivots pivots(int lane) const { return {number(found().health, lane), std::bit_cast<std::uint64_t>(number(found().signs, lane))}; }
+  Pivots pivots(int lane) const { return {number(found().health, lane), number(found().determinant, lane)}; }
   bool finite(int lane) const;
   // How far the state was from the hidden constraints, in relation to its size, and whether it was moved.
   double drift(int lane) const { return number(found().drift, lane); }

@@ -126,16 +126,15 @@ class Sweep final : public Arithmetic {
 
   void judge() override {
     const V zero = T::broadcast(0);
-    V health = T::broadcast(std::numeric_limits<double>::max()), invalid = zero;
-    B signs = T::bits(zero);
+    V health = T::broadcast(std::numeric_limits<double>::max()), determinant = T::broadcast(1), invalid = zero;
     for (const JudgedPivot& p : k_.judged) {
       const V ratio = w_[p.at] * T::broadcast(p.inverse), size = abs(ratio);
       health = size < health ? size : health;
-      signs ^= ratio < zero ? signs * 0 + p.mark : signs * 0;
+      determinant *= ratio;
       invalid += ratio - ratio;
     }
     w_[k_.found.health] = invalid == zero ? health : zero;  // what is not a number
-    w_[k_.found.signs] = T::of(signs);
+    w_[k_.found.determinant] = determinant;
     w_[k_.found.drift] = w_[k_.found.moved] = zero;
   }
 
