@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The speed table: motions from plain model files against heyoka and odeint on equations reduced by hand.
+"""The speed table: motions from plain model files against heyoka, odeint and CVODE on equations reduced by hand.
 
     speed.py [--only NAME...] [--rounds N] [--seconds S] [--jit-limit S] [--form NAME] [--no-batch] [--no-growth] [--no-startup]
              [--json FILE] [--markdown FILE] [--write RESULTS.md]
 
-One process per side and system answers to requests (bench/speed_bench.cpp, bench/peers/odeint.cpp, bench/peers/heyoka_worker.py);
+One process per side and system answers to requests (bench/speed_bench.cpp, bench/peers);
 they are asked in turn, on the core that is idle, round after round. A time is the smaller of wall time and time on the core; the
 median of the motions of a round, and the best of the rounds, which was disturbed least; for every side alike. heyoka is installed
 into build/peers from PyPI, and left out with a line if that fails. What it compiled stays in build/peers/cache, with the seconds
@@ -37,6 +37,8 @@ SYSTEMS = {
 LEVELS = (1e-6, 1e-9, 1e-12, 1e-15)
 OWN_LEVELS = tuple(10.0**-k for k in range(4, 18))
 ODEINT_LEVELS = tuple(10.0**-k for k in range(5, 17))
+CVODE = ("adams", "bdf")
+CVODE_LEVELS = tuple(10.0**-k for k in range(4, 14))
 # Systems with neighbours: the coordinate in whose beginning they differ.
 BATCHED = {
     "sleigh": "th", "disc": "theta", "trailers 3": "th[1]", "trailers 10": "th[1]",
@@ -202,12 +204,15 @@ def measure(title, python, options):
         w.tell("\n".join(start))
         variants[variant] = w
     exact = reference(variants["strict"], own, n)
+    cvode = {method: Worker([os.path.join(build, "cvode_" + method), name, str(n), repr(setup["end"])]) for method in CVODE}
+    for w in cvode.values():
+        w.tell("\n".join(start))
     flags = min(variants, key=lambda v: variants[v].ask("run", 1e-9, 0.05)["us"])
     odeint = variants[flags]
 
-    cells = {"own": {}, "odeint": {}, "heyoka": {}}
+    cells = {"own": {}, "odeint": {}, "heyoka": {}, **{method: {} for method in CVODE}}
     result = {"setup": setup, "reference": {k: v for k, v in exact.items() if k != "state"}, "odeint_flags": flags, "cells": cells}
-    workers, modes, heyoka = [own, *variants.values()], {}, None
+    workers, modes, heyoka = [own, *variants.values(), *cvode.values()], {}, None
     if python:
         heyoka = Heyoka(python, name, n, setup["end"], start, options.jit_limit)
         workers.append(heyoka.worker)
@@ -221,6 +226,7 @@ def measure(title, python, options):
         heyoka.second.close()
     requests = [("own", level, lambda level=level: own.ask("run", level, options.seconds)) for level in OWN_LEVELS]
     requests += [("odeint", level, lambda level=level: odeint.ask("run", level, options.seconds)) for level in ODEINT_LEVELS]
+    requests += [(m, level, lambda m=m, level=level: cvode[m].ask("run", level, options.seconds)) for m in CVODE for level in CVODE_LEVELS]
     for level, mode in modes.items():
         requests.append(("heyoka", level, lambda level=level, mode=mode: heyoka.worker.ask_json("run", level, mode, options.seconds)))
     take_turns(requests, workers, cells, exact["state"], options.rounds, modes)
@@ -302,7 +308,7 @@ def main():
     if not options.no_batch:
         result["threads"] = measure_threads(os.path.join(ROOT, "build", "anholon"), options.rounds)
     if not options.no_growth:
-        result["growth"] = measure_growth(60, options.form)
+        result["growth"] = measure_growth(300, options.form)
     if not options.no_startup:
         result["startup"] = measure_startup(os.path.join(ROOT, "build", "anholon"))
     result["peak"] = {k: max(x, again) for (k, x), again in zip(result["peak"].items(), measure_peak().values())}  # disturbed less

@@ -14,6 +14,8 @@ GOALS = [
     ("trailers 10 against heyoka", ("trailers 10",), "heyoka", dict.fromkeys(LEVELS, 1.5)),
     ("chains against heyoka", CHAINS, "heyoka", {"1e-06": 1.5, "1e-09": 4.0, "1e-12": 8.0}),
     ("against odeint", (*SMALL, "trailers 10", *CHAINS), "odeint", {"1e-06": 1.0, "1e-12": 3.0}),
+    ("against CVODE, Adams", (*SMALL, "trailers 10", *CHAINS), "adams", dict.fromkeys(LEVELS[:3], 10.0)),
+    ("against CVODE, BDF", (*SMALL, "trailers 10", *CHAINS), "bdf", dict.fromkeys(LEVELS[:3], 10.0)),
 ]
 ENSEMBLE_GOALS = [
     ("ensembles: small systems against heyoka's batch", SMALL, "heyoka", dict.fromkeys(LEVELS[:3], 1.5)),
@@ -32,11 +34,11 @@ def times(result):
             equal = heyoka["us"] / own["us"] if heyoka and own and "us" in heyoka and "us" in own else None
             rows.append([
                 title, level, cell_text(own), cell_text(heyoka), cell_text(odeint), per_step(own), per_step(heyoka),
-                number(equal), ratio(equal_error(s, "heyoka", level)), ratio(equal_error(s, "odeint", level)),
+                number(equal), *(ratio(equal_error(s, peer, level)) for peer in ("heyoka", "odeint", "adams", "bdf")),
             ])  # fmt: skip
     return table(
         ["system", "tolerance", "anholon, us (error)", "heyoka", "odeint", "us per step: anholon", "heyoka",
-         "heyoka / anholon, equal tolerance", "equal error", "odeint / anholon, equal error"], rows,
+         "heyoka / anholon, equal tolerance", "equal error", "odeint / anholon", "CVODE Adams / anholon", "CVODE BDF / anholon"], rows,
     )  # fmt: skip
 
 
@@ -173,10 +175,10 @@ def skipped(result):
 def markdown(result):
     m, peak = result["machine"], result["peak"]
     heyoka = next((s["heyoka_version"] for s in result["systems"].values() if "heyoka_version" in s), None)
-    return f"""## Speed: motions from model files against heyoka and odeint
+    return f"""## Speed: motions from model files against heyoka, odeint and CVODE
 
 `./dev bench speed` ({m["date"]}, {result["seconds"]:.0f} s, compilations of heyoka that were cached not counted): the models are in
-`bench/models`, read as they are; heyoka and odeint get the equations reduced by hand (`bench/peers`). heyoka's time is that of its
+`bench/models`, read as they are; the others get the equations reduced by hand (`bench/peers`). heyoka's time is that of its
 best mode, unrolled or compact, with fast math or without; odeint's rkf78 that of the better of `-O3 -march=native` with and without
 `-ffast-math`, on arrays of fixed length, O(n) for chains and trailers. A time is the smaller of wall time and time on the core, the
 median of a round, and the best of {result["rounds"]} rounds in which all sides take turns. Ratios above 1: anholon is ahead.
@@ -186,7 +188,7 @@ Peak of fused multiply-adds on a core, GF/s: {", ".join(f"{k} {v:.1f}" for k, v 
 
 {times(result)}
 
-Equal error: the peer's time over ours where we reach its error, between our tolerances by logarithms; – where we do not.
+The last four columns are at equal error: the peer's time over ours where we reach its error, between our tolerances by logarithms; – where we do not.
 
 ### Goals
 

@@ -10,8 +10,12 @@ namespace {
 constexpr int kMostNewton = 30;
 constexpr int kMostProjections = 4;
 // Newton steps that no longer shrink are round-off below this many round-offs of the unknowns; more where J depends on them, as
-// it may be small there (the multiplier of a nonlinear constraint goes to zero).
-constexpr double kStalled = 1e3, kStalledNonlinear = 1e8;
+// it may be small there (the multiplier of a nonlinear constraint goes to zero), and where there are many: the condition of a chain grows as n^2.
+constexpr double kStalled = 1e3, kStalledNonlinear = 1e8, kMany = 32;
+double stalled(bool nonlinear, std::size_t unknowns) {
+  const double more = std::max(1.0, static_cast<double>(unknowns) / kMany);
+  return std::max(nonlinear ? kStalledNonlinear : 0, kStalled * more * more);
+}
 // A hidden constraint is left alone while its residual is below this many round-offs of its terms.
 constexpr int kQuietRoundoffs = 6;
 // An LU whose smallest scaled singular value is below this many round-offs is singular.
@@ -344,7 +348,7 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     const N floor = eps * N(4) * (size > N(1) ? size : N(1));
     if (!(step > floor)) return {};
     // Round-off reached: steps no longer shrink and are small.
-    if (last >= N(0) && !(step < last * N(0.5)) && step < floor * N(p.nonlinear ? kStalledNonlinear : kStalled)) return {};
+    if (last >= N(0) && !(step < last * N(0.5)) && step < floor * N(stalled(p.nonlinear, p.unknowns()))) return {};
     if (own && k >= 2 && last >= N(0) && step > last * N(0.1)) {
       // Slow: the Jacobian has changed with the leading derivatives.
       jacobian();
