@@ -86,30 +86,30 @@ void Emitter::measure() {
     pole = b_.CreateSelect(b_.CreateFCmpOGT(value, zero), larger(pole, relative), pole);
     poles = true;
   }
-  const auto reach = [&](Value* weight, int by) {
-    Value *log = b_.CreateFMul(log2(weight), number(-1.0 / by)), *far = number(kFarthest);
-    return b_.CreateSelect(b_.CreateAnd(b_.CreateFCmpOGT(weight, zero), b_.CreateFCmpOLT(log, far)), log, far);
-  };
-  Value *by_last = reach(last, order), *by_order = b_.CreateFSub(smaller(by_last, reach(before_last, order - 1)), load(k_.margin));
-  if (poles) by_order = smaller(by_order, b_.CreateFSub(reach(pole, order - 1), number(0.7 * kLog2e)));
-  store(exp2(by_order), k_.found.reach);
+  Value *margin = load(k_.margin), *most = smaller(reach(before_last, order - 1, margin), number(kFarthest));
+  if (poles) most = smaller(most, reach(pole, order - 1, number(-0.7 * kLog2e)));
+  store(exp2(smaller(most, reach(last, order, margin))), k_.found.reach);
   store(unfit, k_.found.unfit);
   end();
 }
 
 llvm::Value* Emitter::line(const double* c, Value* x) { return fma(number(c[1]), x, number(c[0])); }
 
-llvm::Value* Emitter::log2(Value* x) {
-  Value* exponent = b_.CreateAShr(b_.CreateSub(bits(x), pattern(kRootOfHalf)), pattern(52));
-  Value *u = b_.CreateFSub(of_bits(b_.CreateSub(bits(x), b_.CreateShl(exponent, pattern(52)))), number(1)), *square = b_.CreateFMul(u, u);
-  Value* r = fma(fma(line(kLog2 + 4, u), square, line(kLog2 + 2, u)), square, line(kLog2, u));
-  return fma(r, u, b_.CreateFSub(of_bits(b_.CreateAdd(exponent, bits(number(kInteger)))), number(kInteger)));
+llvm::Value* Emitter::cubic(const double* c, Value* x) {
+  Value *high = line(c + 2, x), *square = b_.CreateFMul(x, x);
+  return fma(high, square, line(c, x));
+}
+
+llvm::Value* Emitter::reach(Value* weight, int by, Value* margin) {
+  Value* exponent = b_.CreateAShr(b_.CreateSub(bits(weight), pattern(kRootOfHalf)), pattern(52));
+  Value *u = b_.CreateFSub(of_bits(b_.CreateSub(bits(weight), b_.CreateShl(exponent, pattern(52)))), number(1)), *each = number(-1.0 / by);
+  Value* whole = fma(b_.CreateFSub(of_bits(b_.CreateAdd(exponent, bits(number(kInteger)))), number(kInteger)), each, margin);
+  return b_.CreateSelect(b_.CreateFCmpOGT(weight, number(0)), fma(cubic(kLog2, u), b_.CreateFMul(u, each), whole), number(kFarthest));
 }
 
 llvm::Value* Emitter::exp2(Value* x) {
-  Value *n = b_.CreateFAdd(x, number(kInteger)), *f = b_.CreateFSub(x, b_.CreateFSub(n, number(kInteger))), *square = b_.CreateFMul(f, f);
-  Value* r = fma(fma(number(kExp2[4]), square, line(kExp2 + 2, f)), square, line(kExp2, f));
-  return of_bits(b_.CreateAdd(bits(r), b_.CreateShl(b_.CreateSub(bits(n), bits(number(kInteger))), pattern(52))));
+  Value *n = b_.CreateFAdd(x, number(kInteger)), *f = b_.CreateFSub(x, b_.CreateFSub(n, number(kInteger)));
+  return of_bits(b_.CreateAdd(bits(cubic(kExp2, f)), b_.CreateShl(b_.CreateSub(bits(n), bits(number(kInteger))), pattern(52))));
 }
 
 // An error of a sum, rounded to what a long double keeps of both.

@@ -73,7 +73,8 @@ class Emitter {
   Value* displaced(int level);
   void measure();
   void go_on();
-  Value* log2(Value* x);
+  Value* reach(Value* weight, int by, Value* margin);
+  Value* cubic(const double* c, Value* x);
   Value* exp2(Value* x);
   Value* rest(Value* sum, Value* error);
   Value* line(const double* c, Value* x);

@@ -24,11 +24,11 @@ struct JudgedPivot {
 // A state this many round-offs off its hidden constraints is left alone: it is not known better.
 inline constexpr double kQuiet = 8 * 0x1p-53;
 
-// How far series reach is found to five digits, in powers of two: log2(1 + u) = u (c_0 + c_1 u + …) from sqrt(1/2) to sqrt(2), 2^f from -1/2 to 1/2
+// How far series reach is found to four digits, in powers of two: log2(1 + u) = u (c_0 + c_1 u + …) from sqrt(1/2) to sqrt(2), 2^f from -1/2 to 1/2
 // (minimax). Nothing is farther than 2^kFarthest.
 inline constexpr double kLog2e = 1.4426950408889634, kFarthest = 300 * kLog2e;
-inline constexpr double kLog2[] = {1.44271342, -0.72113227, 0.47934968, -0.36748372, 0.32214296, -0.20660525};
-inline constexpr double kExp2[] = {0.99999926, 0.69312181, 0.24024745, 0.05591786, 0.0095701};
+inline constexpr double kLog2[] = {1.4417624, -0.72490038, 0.51749214, -0.32964325};
+inline constexpr double kExp2[] = {0.99992807, 0.69326099, 0.24261112, 0.05517167};
 inline constexpr std::uint64_t kRootOfHalf = 0x3fe6a09e667f3bcdULL;  // its bits
 inline constexpr double kInteger = 6755399441055744.0;               // 1.5 2^52: a small integer added to it lies in its last bits
 
@@ -56,7 +56,7 @@ struct KernelTables {
   // next expansion begins, the present one was begun, the one before; they take turns. Without the guesses: where projection has put the present one.
   std::array<std::uint32_t, 3> motions{};
   std::uint32_t projected = 0;
-  std::uint32_t margin = 0;   // by what a step falls short of what its series reach (integrate/taylor.h: step_size), in powers of two
+  std::uint32_t margin = 0;          // what a step is of the reach of its series (integrate/taylor.h: step_size), in powers of two
   std::uint32_t inverse_pivots = 0;  // `inverse` of those that are judged
   Findings found;
   std::uint32_t size = 0;

@@ -222,7 +222,7 @@ void Kernel::set_all(std::uint32_t slot, double x) {
   for (int lane = 0; lane < lanes_; ++lane) number(slot, lane) = x;
 }
 
-void Kernel::set_shrink(double shrink) { set_all(plan_->tables().margin, (shrink + 0.7 / plan_->plan().stages) * kLog2e); }
+void Kernel::set_shrink(double shrink) { set_all(plan_->tables().margin, -(shrink + 0.7 / plan_->plan().stages) * kLog2e); }
 
 void Kernel::set_parameters(int lane, const std::vector<long double>& parameters) {
   const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters);

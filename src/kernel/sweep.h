@@ -259,13 +259,9 @@ class Sweep final : public Arithmetic {
       pole = value > zero ? larger(pole, relative) : pole;
       poles = true;
     }
-    const auto reach = [&](V weight, int by) {
-      const V log = log2(weight) * T::broadcast(-1.0 / by), far = T::broadcast(kFarthest);
-      return weight > zero && log < far ? log : far;
-    };
-    V by_order = smaller(reach(last, order), reach(before_last, order - 1)) - w_[k_.margin];
-    if (poles) by_order = smaller(by_order, reach(pole, order - 1) - T::broadcast(0.7 * kLog2e));
-    w_[k_.found.reach] = exp2(by_order);
+    V most = smaller(reach(before_last, order - 1, w_[k_.margin]), T::broadcast(kFarthest));
+    if (poles) most = smaller(most, reach(pole, order - 1, T::broadcast(-0.7 * kLog2e)));
+    w_[k_.found.reach] = exp2(smaller(most, reach(last, order, w_[k_.margin])));
     w_[k_.found.unfit] = unfit;
   }
 
@@ -311,19 +307,20 @@ class Sweep final : public Arithmetic {
   // c_0 + c_1 x
   static V line(const double* c, V x) { return T::fma(T::broadcast(c[1]), x, T::broadcast(c[0])); }
 
-  // For x > 0.
-  static V log2(V x) {
-    const B exponent = T::exponent(T::bits(x) - kRootOfHalf);
-    const V u = T::of(T::bits(x) - (exponent << 52)) - T::broadcast(1), square = u * u;
-    const V r = T::fma(T::fma(line(kLog2 + 4, u), square, line(kLog2 + 2, u)), square, line(kLog2, u));
-    return T::fma(r, u, T::of(exponent + T::bits(T::broadcast(kInteger))) - T::broadcast(kInteger));
+  static V cubic(const double* c, V x) { return T::fma(line(c + 2, x), x * x, line(c, x)); }
+
+  // log2(weight^(-1 / by)) + margin
+  static V reach(V weight, int by, V margin) {
+    const B exponent = T::exponent(T::bits(weight) - kRootOfHalf);
+    const V u = T::of(T::bits(weight) - (exponent << 52)) - T::broadcast(1), each = T::broadcast(-1.0 / by);
+    const V whole = T::fma(T::of(exponent + T::bits(T::broadcast(kInteger))) - T::broadcast(kInteger), each, margin);
+    return weight > T::broadcast(0) ? T::fma(cubic(kLog2, u), u * each, whole) : T::broadcast(kFarthest);
   }
 
   // For |x| < 1000.
   static V exp2(V x) {
-    const V n = x + T::broadcast(kInteger), f = x - (n - T::broadcast(kInteger)), square = f * f;
-    const V r = T::fma(T::fma(T::broadcast(kExp2[4]), square, line(kExp2 + 2, f)), square, line(kExp2, f));
-    return T::of(T::bits(r) + ((T::bits(n) - T::bits(T::broadcast(kInteger))) << 52));
+    const V n = x + T::broadcast(kInteger), f = x - (n - T::broadcast(kInteger));
+    return T::of(T::bits(cubic(kExp2, f)) + ((T::bits(n) - T::bits(T::broadcast(kInteger))) << 52));
   }
 
   V* at(const Place& place, std::uint32_t order) { return w_ + place.at + (place.series ? order : 0); }
