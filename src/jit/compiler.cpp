@@ -138,6 +138,8 @@ void compile(const KernelTables& tables, int lanes, const CalledFunctions& calle
   // Twice as fast to compile as Default where that takes long, and no slower to run; a simpler register allocator gains nothing more.
   builder->setCodeGenOptLevel(llvm::CodeGenOptLevel::Less);
   builder->setRelocationModel(llvm::Reloc::PIC_);
+  // What is called lies anywhere and is called by stubs; constants lie beside the code, each an operand and not an address first.
+  builder->setCodeModel(llvm::CodeModel::Small);
 
   Key key;
   const Store store(!cache.empty() && name(tables, lanes, *builder, key) ? cache : std::string());
