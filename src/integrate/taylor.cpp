@@ -176,15 +176,10 @@ bool Stepper<N>::begins() {
 }
 
 template <Number N>
-bool Stepper<N>::aims(const W& end) {
-  if (!expanded_ && !ends_expansion(leading_)) return false;
+bool Stepper<N>::aims_with_care(const W& end) {
   const W left = end - t_;
   const bool forward = left > W(0);
   W h = convert<W>(horizon_);
-  if (nothing_in_the_way() && h < abs(left) && !end_out_of_reach(h, left)) {
-    aim_at(convert<W>(convert<N>(W(t_ + (forward ? h : W(-h))))), false);
-    return true;
-  }
   // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from there.
   if (program_->nonlinear) h = abs(on_the_branch(forward ? h : W(-h)));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
@@ -242,10 +237,38 @@ bool Stepper<N>::nothing_in_the_way() const {
 }
 
 template <Number N>
+bool Stepper<N>::aims_freely(const W& end) {
+  if (!nothing_in_the_way()) return false;
+  const W left = end - t_, h = convert<W>(horizon_);
+  if (!(h < abs(left)) || end_out_of_reach(h, left)) return false;
+  aim_at(convert<W>(convert<N>(W(left > W(0) ? t_ + h : t_ - h))), false);
+  return true;
+}
+
+template <Number N>
 void Stepper<N>::aim_at(const W& t, bool arrives) {
   aimed_ = t;
   arrives_ = arrives;
   if (by_kernel_) kernel_->set_step(lane_, to_double(W(t - t_)));
+}
+
+// Where the state is not with the kernel.
+template <Number N>
+bool Stepper<N>::goes_on(const W& h) {
+  if (by_kernel_) {
+    base_state_.swap(state_);
+    advanced_by_kernel(h, base_state_, state_, leading_);
+    if (!std::all_of(state_.begin(), state_.end(), [](const W& x) { return abs(x) < W(kBlowUp); })) return state_.swap(base_state_), false;
+    return true;
+  }
+  polynomial(h, change_, leading_);
+  next_ = state_;
+  for (std::size_t i = 0; i < next_.size(); ++i) {
+    add_compensated(next_[i], carry_[i], change_[i]);
+    if (!is_finite(next_[i]) || std::abs(to_double(next_[i])) > kBlowUp) return false;
+  }
+  std::swap(state_, next_);
+  return true;
 }
 
 template <Number N>
@@ -256,18 +279,8 @@ bool Stepper<N>::finishes() {
   if (away_) {
     // So that a NaN is one, too.
     if (!(kernel_->largest(lane_) < kBlowUp)) return settle_at_base(), fail(blow_up());
-  } else if (by_kernel_) {
-    base_state_.swap(state_);
-    advanced_by_kernel(h, base_state_, state_, leading_);
-    if (!std::all_of(state_.begin(), state_.end(), [](const W& x) { return abs(x) < W(kBlowUp); })) return state_.swap(base_state_), fail(blow_up());
-  } else {
-    polynomial(h, change_, leading_);
-    next_ = state_;
-    for (std::size_t i = 0; i < next_.size(); ++i) {
-      add_compensated(next_[i], carry_[i], change_[i]);
-      if (!is_finite(next_[i]) || std::abs(to_double(next_[i])) > kBlowUp) return fail(blow_up());
-    }
-    std::swap(state_, next_);
+  } else if (!goes_on(h)) {
+    return fail(blow_up());
   }
   for (std::size_t i = 0; i < integrals_.size(); ++i) {
     W s(0);

@@ -147,8 +147,11 @@ class Stepper {
  private:
   // The parts of a step and of its expansion; where they fail, trouble_ says why.
   bool begins();
-  bool aims(const W& end);
+  bool aims(const W& end) { return (expanded_ || ends_expansion(leading_)) && (aims_freely(end) || aims_with_care(end)); }
+  bool aims_freely(const W& end);
+  bool aims_with_care(const W& end);
   bool finishes();
+  bool goes_on(const W& h);
   bool ends_expansion(const std::vector<W>& guess);
   bool fail(Outcome o) { return trouble_ = std::move(o), false; }
   Outcome outcome(bool good) { return good ? Outcome{} : std::exchange(trouble_, {}); }

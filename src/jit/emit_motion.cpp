@@ -7,6 +7,11 @@
 
 namespace anholon::jit {
 
+namespace {
+// The increments of few states are added as they are made; those of many are not worth a second copy of that code.
+constexpr std::size_t kFewStates = 32;
+}  // namespace
+
 llvm::Value* Emitter::larger(Value* a, Value* b) { return b_.CreateSelect(b_.CreateFCmpOLT(a, b), b, a); }
 llvm::Value* Emitter::smaller(Value* a, Value* b) { return b_.CreateSelect(b_.CreateFCmpOLT(b, a), b, a); }
 llvm::Value* Emitter::of_bits(Value* b) { return b_.CreateBitCast(b, lane_); }
@@ -118,17 +123,26 @@ llvm::Value* Emitter::rest(Value* sum, Value* error) {
   return b_.CreateFSub(b_.CreateFAdd(error, grid), grid);
 }
 
+// Over the step, by the increments.
 void Emitter::go_on() {
   begin("go_on", 2);
+  std::vector<Value*> added;
+  if (k_.state_size <= kFewStates) {
+    added = increments();
+  } else {
+    b_.CreateCall(advance_, {w_});
+    for (std::uint32_t i = 0; i < k_.state_size + p_.x.size(); ++i) added.push_back(load(k_.increments + i));
+  }
   Value *base = function_->getArg(1), *to = function_->getArg(2), *step = load(k_.step), *largest = number(0), *invalid = number(0);
   const std::int64_t n = k_.state_size;
-  std::int64_t at = 0, change = k_.increments;
+  std::int64_t at = 0;
+  auto change = added.begin();
   for (std::size_t j = 0; j < p_.x.size(); ++j) {
     const int d = p_.d[j];
     std::vector<Value*> high, low;
     for (int k = 0; k < d; ++k) high.push_back(load_from(base, at + k)), low.push_back(load_from(base, n + at + k));
     for (int k = 0; k < d; ++k, ++at) {
-      Value *s = b_.CreateFAdd(low[static_cast<std::size_t>(k)], load(change++)), *power = step;
+      Value *s = b_.CreateFAdd(low[static_cast<std::size_t>(k)], *change++), *power = step;
       for (int i = k + 1; i < d; ++i) {
         const auto place = static_cast<std::size_t>(i);
         s = fma(b_.CreateFAdd(b_.CreateFSub(high[place], times(coefficient_of(j, i), factorial(i))), low[place]), power, s);
@@ -141,7 +155,7 @@ void Emitter::go_on() {
       largest = larger(largest, magnitude(sum));
       invalid = b_.CreateFAdd(invalid, b_.CreateFSub(sum, sum));
     }
-    store_to(b_.CreateFAdd(times(coefficient_of(j, d), factorial(d)), load(change++)), to, 2 * n + static_cast<std::int64_t>(j));
+    store_to(b_.CreateFAdd(times(coefficient_of(j, d), factorial(d)), *change++), to, 2 * n + static_cast<std::int64_t>(j));
   }
   store(b_.CreateFAdd(largest, invalid), k_.found.largest);
   end();

@@ -293,8 +293,14 @@ void Emitter::level(int level) {
 
 void Emitter::advance() {
   begin("advance");
+  increments();
+  end();
+  advance_ = function_;
+}
+
+std::vector<llvm::Value*> Emitter::increments() {
   Value* step = load(k_.step);
-  std::int64_t out = k_.increments;
+  std::vector<Value*> all;
   for (std::size_t j = 0; j < p_.x.size(); ++j)
     for (int k = 0; k <= p_.d[j]; ++k) {
       Value* s = number(0);
@@ -303,9 +309,10 @@ void Emitter::advance() {
         const double rising = k_.rising(k, i);
         s = fma(s, step, rising == 1 ? x : b_.CreateFMul(x, number(rising)));
       }
-      store(b_.CreateFMul(s, step), out++);
+      all.push_back(b_.CreateFMul(s, step));
+      store(all.back(), k_.increments + static_cast<std::int64_t>(all.size()) - 1);
     }
-  end();
+  return all;
 }
 
 }  // namespace anholon::jit

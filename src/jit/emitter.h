@@ -45,6 +45,7 @@ class Emitter {
   void lead();
   void level(int level);
   void advance();
+  std::vector<Value*> increments();
   void extend();
   // All stages from 1 of a list, in blocks.
   void stages(const std::vector<Step>& steps, bool solved);
@@ -117,7 +118,7 @@ class Emitter {
   const int lanes_;
   llvm::Type* const lane_;  // double, or a vector of them
   std::vector<bool> asked_;      // columns of the solution
-  llvm::Function* substitution_ = nullptr;
+  llvm::Function *substitution_ = nullptr, *advance_ = nullptr;
   llvm::Function* function_ = nullptr;
   Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr;  // arena; arena + first stage of the block; that stage
   bool relative_ = false;

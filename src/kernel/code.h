@@ -13,7 +13,7 @@ struct Code {
   using Part = void (*)(double*);
   Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr, measure = nullptr, advance = nullptr;  // `factor` judges, too
   void (*begin)(double*, const double* from) = nullptr;
-  void (*go_on)(double*, const double* base, double* to) = nullptr;
+  void (*go_on)(double*, const double* base, double* to) = nullptr;  // and advances before
   std::vector<int (*)(double*)> level;  // [l - 1]: the solution for the residuals at derivative order c_i - l, and whether a state is displaced by it
   std::shared_ptr<void> keeper;
 };

@@ -305,7 +305,6 @@ void Kernel::begin() {
 
 void Kernel::advance() {
   if (const Code* code = this->code()) {
-    code->advance(arena_);
     code->go_on(arena_, slot(base_), slot(next_));
   } else {
     arithmetic_->advance();
