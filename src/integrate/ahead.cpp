@@ -82,9 +82,9 @@ template <Number N>
 typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
   // From a horizon of e^300 (a polynomial motion) to far below any step.
   constexpr int kMostHalvings = 600;
-  if (branch_step_ > W(0) && abs(h) > branch_step_ * W(4)) h = h > W(0) ? branch_step_ * W(4) : branch_step_ * W(-4);
+  if (record_.branch_step > W(0) && abs(h) > record_.branch_step * W(4)) h = h > W(0) ? record_.branch_step * W(4) : record_.branch_step * W(-4);
   for (int k = 0; k < kMostHalvings && !(near_in_branch(h) && near_in_branch(h * W(0.5))); ++k) h = h * W(0.5);
-  branch_step_ = abs(h);
+  record_.branch_step = abs(h);
   return h;
 }
 
@@ -111,7 +111,7 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
   constexpr int kBisections = 60;
   // A singular value that vanishes within the step has fallen by more than half in one as long.
-  const bool suspected = by_kernel_ || last_step_ == W(0) || sigma_ < sigma_before_ * N(kFaster) || abs(h) > last_step_ * W(kLonger);
+  const bool suspected = by_kernel_ || record_.last_step == W(0) || sigma_ < record_.sigma_before * N(kFaster) || abs(h) > record_.last_step * W(kLonger);
   if (!suspected) return std::nullopt;
   settle();
   const std::size_t n = program_->system->coordinates;

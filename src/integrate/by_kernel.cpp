@@ -52,8 +52,8 @@ void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane) {
 template <Number N>
 bool Stepper<N>::kernel_serves() const {
   if constexpr (std::same_as<N, double>) {
-    const bool look = settings_.measure && (first_sigma_ == 0 || due_for_a_look(steps_));
-    return kernel_ && !look && !careful_;
+    const bool look = settings_.measure && (record_.first_sigma == 0 || due_for_a_look(record_.steps));
+    return kernel_ && !look && !record_.careful;
   } else {
     return false;
   }
@@ -119,14 +119,14 @@ bool Stepper<N>::take_from_kernel() {
     const double health = pivots.health;
     suspected_ = by_kernel_ && may_have_vanished(pivots_before_, pivots);
     pivots_before_ = pivots;
-    if (!(health > kHealthy) || (settings_.measure && health < least_health_ * kNewsOfPivots) || !kernel_->reaches(lane_)) {
-      least_health_ = std::min(least_health_, health);
+    if (!(health > kHealthy) || (settings_.measure && health < record_.least_health * kNewsOfPivots) || !kernel_->reaches(lane_)) {
+      record_.least_health = std::min(record_.least_health, health);
       return false;
     }
     by_kernel_ = expanded_ = true;
     ++by_kernel_count_;
     point_loaded_ = point_valued_ = false;
-    worst_constraint_ = std::max(worst_constraint_, W(kernel_->drift(lane_)));
+    if (const W drift(kernel_->drift(lane_)); record_.worst_constraint < drift) record_.worst_constraint = drift;
     horizon_ = kernel_->reach(lane_);
     for (const auto& [slot, at] : kink_series_)
       for (int k = 0; k < order_; ++k) expansion_.adopt_coefficient(slot, k, kernel_->series({at, true}, k, lane_));

@@ -10,10 +10,10 @@ namespace anholon {
 
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
-  if (!alone_) careful_ = true;  // those beside it in the kernel are left in peace
+  if (!alone_) record_.careful = true;  // those beside it in the kernel are left in peace
   begin_expansion(guess);
   if (loaded_) kernel_->begin();
-  return end_expansion(guess);
+  return outcome(ends_expansion(guess));
 }
 
 template <Number N>
@@ -22,19 +22,21 @@ void Stepper<N>::begin_expansion(const std::vector<W>& guess) {
   if (!loaded_) settle();
   now_ = 1 - now_;
   note_begun(guess);
-  suspected_ = careful_ = false;
+  suspected_ = record_.careful = false;
   if (loaded_) load_kernel(guess);
 }
 
+// Ends what was begun.
 template <Number N>
-Outcome Stepper<N>::end_expansion(const std::vector<W>& guess) {
+bool Stepper<N>::ends_expansion(const std::vector<W>& guess) {
   const bool again = expansions_++ > 0, by_kernel = loaded_ && take_from_kernel();
   if (loaded_ && !by_kernel) settle_as_begun();
   loaded_ = false;
+  if (by_kernel && !suspected_) return true;
   Outcome o = by_kernel ? Outcome{} : expand_by_reference(guess);
-  if (o.ok() && suspected_) return look_back();
-  if (!o.ok() && again) expand_again(StepperState<N>(begun_[1 - now_]));
-  return o;
+  if (o.ok() && suspected_) o = look_back();
+  else if (!o.ok() && again) expand_again(StepperState<N>(begun_[1 - now_]));
+  return o.ok() || fail(std::move(o));
 }
 
 // Where the kernel belongs to others, too, it is left in peace.
@@ -42,7 +44,7 @@ template <Number N>
 Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   loaded_ = alone_ && kernel_serves();
   note_begun(guess);
-  careful_ = false;
+  record_.careful = false;
   ++expansions_;
   if (loaded_) {
     load_kernel(guess);
@@ -61,14 +63,14 @@ Outcome Stepper<N>::look_back() {
   const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, begun_[1 - now_].state), here = mode_at(t_, state_);
   if (before && here && !crossed(*before, *here, program_->system->coordinates)) return {};
   const StepperState<N> now = begun_[now_], last = begun_[1 - now_];
-  const W length = last_step_;
-  careful_ = true;
+  const W length = record_.last_step;
+  record_.careful = true;
   expand_again(last);
-  last_step_ = W(0);
+  record_.last_step = W(0);
   const std::optional<W> met = singular_within(now.t - last.t);
-  last_step_ = length;
+  record_.last_step = length;
   if (met) return {OutcomeKind::singular, "the system Jacobian becomes singular at t = " + number_text(to_double(W(last.t + *met)), 12), "end the motion before"};
-  careful_ = true;
+  record_.careful = true;
   const Outcome o = expand_here(now.leading);
   begun_[now_] = now;
   begun_[1 - now_] = last;
@@ -110,18 +112,7 @@ void Stepper<N>::note_begun(const std::vector<W>& guess) {
     b.integrals = integrals_;
     b.integral_carry = integral_carry_;
   }
-  b.branch_step = branch_step_;
-  b.steps = steps_;
-  b.worst_constraint = worst_constraint_;
-  b.worst_equation = worst_equation_;
-  b.first_sigma = first_sigma_;
-  b.smallest_sigma = smallest_sigma_;
-  b.smallest_sigma_t = smallest_sigma_t_;
-  b.weakest = weakest_;
-  b.sigma_before = sigma_before_;
-  b.last_step = last_step_;
-  b.least_health = least_health_;
-  b.careful = careful_;
+  static_cast<StepperRecord<N>&>(b) = record_;
 }
 
 // Expansions by the kernel change neither the direction nor the sides.
@@ -154,8 +145,8 @@ Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
       if (state_[i] != unprojected[i]) carry_[i] = W(0);
     expansion_.leading(leading_);
     point_.load(t_, state_, leading_);
-    worst_constraint_ = std::max(worst_constraint_, expansion_.drift());
-    worst_equation_ = std::max(worst_equation_, expansion_.equation_residual());
+    record_.worst_constraint = std::max(record_.worst_constraint, expansion_.drift());
+    record_.worst_equation = std::max(record_.worst_equation, expansion_.equation_residual());
   } else {
     const auto solver = [this](const std::vector<W>& r, std::vector<W>& y) {
       convert_all(r, narrow_r_);
@@ -178,8 +169,8 @@ Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
     point_.state(state_);
     point_.leading(leading_);
     expansion_.adopt_values(point_);
-    worst_constraint_ = std::max(worst_constraint_, point_.drift());
-    worst_equation_ = std::max(worst_equation_, point_.equation_residual());
+    record_.worst_constraint = std::max(record_.worst_constraint, point_.drift());
+    record_.worst_equation = std::max(record_.worst_equation, point_.equation_residual());
   }
   if (Outcome o = expansion_.extend(); !o.ok()) return o;
   horizon_ = step_size();
@@ -242,7 +233,7 @@ double Stepper<N>::shrink() const {
 #define INSTANTIATE(N)                                                     \
   template Outcome Stepper<N>::expand(const std::vector<W>&);              \
   template void Stepper<N>::begin_expansion(const std::vector<W>&);        \
-  template Outcome Stepper<N>::end_expansion(const std::vector<W>&);       \
+  template bool Stepper<N>::ends_expansion(const std::vector<W>&);         \
   template Outcome Stepper<N>::expand_here(const std::vector<W>&);         \
   template Outcome Stepper<N>::look_back();                                \
   template void Stepper<N>::expand_again(const StepperState<N>&);          \

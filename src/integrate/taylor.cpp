@@ -26,6 +26,8 @@ void add_compensated(N& s, N& carry, const N& x) {
 
 Outcome blow_up() { return {OutcomeKind::blow_up, "the motion grows without bound", "look at the last good state: a velocity or position diverges"}; }
 
+Outcome becomes_singular() { return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"}; }
+
 // A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other side.
 constexpr int kPastKink = 32;
 // Kinks met so soon after another one are other kinks, until they are too many.
@@ -53,16 +55,13 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
   leading_ = leading;
   integrals_.assign(program_->quadratures, W(0));
   integral_carry_ = integrals_;
-  steps_ = expansions_ = by_kernel_count_ = 0;
-  by_kernel_ = suspected_ = careful_ = loaded_ = away_ = expanded_ = singular_ahead_ = false;
+  record_ = {};
+  record_.smallest_sigma_t = t;
+  expansions_ = by_kernel_count_ = 0;
+  by_kernel_ = suspected_ = loaded_ = away_ = expanded_ = singular_ahead_ = false;
   short_kinks_ = 0;
-  least_health_ = N(1);
-  sigma_ = sigma_before_ = first_sigma_ = N(0);
-  smallest_sigma_ = N(1);
-  smallest_sigma_t_ = t;
-  weakest_ = 0;
+  sigma_ = N(0);
   expansion_.set_weakest_direction({});
-  last_step_ = branch_step_ = worst_constraint_ = worst_equation_ = W(0);
   fired_.clear();
   events_.restart();
   begun_[0] = begun_[1] = {};
@@ -72,7 +71,7 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
 template <Number N>
 Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading, bool kernel) {
   place(t, state, leading);
-  careful_ = !kernel;
+  record_.careful = !kernel;
   return expand(leading_);
 }
 
@@ -93,9 +92,9 @@ Outcome Stepper<N>::restart(const std::vector<W>& state) {
   fired_.clear();
   short_kinks_ = 0;
   // How far what was set lies from the constraints is no drift.
-  const W drift = worst_constraint_;
+  const W drift = record_.worst_constraint;
   Outcome o = expand(leading_);
-  worst_constraint_ = drift;
+  record_.worst_constraint = drift;
   return o;
 }
 
@@ -112,101 +111,85 @@ void Stepper<N>::adopt(const Stepper& other) {
   leading_ = other.leading_;
   integrals_ = other.integrals_;
   integral_carry_ = other.integral_carry_;
-  steps_ = other.steps_;
-  worst_constraint_ = other.worst_constraint_;
-  worst_equation_ = other.worst_equation_;
-  first_sigma_ = other.first_sigma_;
-  smallest_sigma_ = other.smallest_sigma_;
-  smallest_sigma_t_ = other.smallest_sigma_t_;
-  weakest_ = other.weakest_;
+  record_.steps = other.record_.steps;
+  record_.worst_constraint = other.record_.worst_constraint;
+  record_.worst_equation = other.record_.worst_equation;
+  record_.first_sigma = other.record_.first_sigma;
+  record_.smallest_sigma = other.record_.smallest_sigma;
+  record_.smallest_sigma_t = other.record_.smallest_sigma_t;
+  record_.weakest = other.record_.weakest;
 }
 
 template <Number N>
 Outcome Stepper<N>::resume(const StepperState<N>& b) {
   away_ = false;
   started_ = t_ = before_ = b.t;
+  record_ = b;
+  sigma_ = b.sigma_before;
   state_ = b.state;
   carry_ = b.carry;
   carried_ = false;
   leading_ = b.leading;
   integrals_ = b.integrals;
   integral_carry_ = b.integral_carry;
-  branch_step_ = b.branch_step;
-  steps_ = b.steps;
-  worst_constraint_ = b.worst_constraint;
-  worst_equation_ = b.worst_equation;
-  first_sigma_ = b.first_sigma;
-  smallest_sigma_ = b.smallest_sigma;
-  smallest_sigma_t_ = b.smallest_sigma_t;
-  weakest_ = b.weakest;
   expansion_.set_weakest_direction(b.direction);
-  sigma_ = sigma_before_ = b.sigma_before;
-  last_step_ = b.last_step;
-  least_health_ = b.least_health;
-  careful_ = b.careful;
   if (!b.sides.empty()) events_.set_sides(b.sides);
   return expand(leading_);
 }
 
 template <Number N>
 void Stepper<N>::note_sigma(const N& sigma) {
-  if (first_sigma_ == N(0)) first_sigma_ = sigma;
-  if (!(sigma < smallest_sigma_)) return;
-  smallest_sigma_ = sigma;
-  smallest_sigma_t_ = t_;
+  if (record_.first_sigma == N(0)) record_.first_sigma = sigma;
+  if (!(sigma < record_.smallest_sigma)) return;
+  record_.smallest_sigma = sigma;
+  record_.smallest_sigma_t = t_;
   const std::vector<N>& v = expansion_.weakest_direction();
-  for (std::size_t j = weakest_ = 0; j < v.size(); ++j)
-    if (abs(v[j]) > abs(v[weakest_])) weakest_ = j;
+  for (std::size_t j = record_.weakest = 0; j < v.size(); ++j)
+    if (abs(v[j]) > abs(v[record_.weakest])) record_.weakest = j;
 }
 
 // At the present pace, and at that of the whole motion so far, the end lies beyond the step limit.
 template <Number N>
 bool Stepper<N>::end_out_of_reach(const W& h, const W& left) const {
-  if (steps_ < kStepsToJudge) return false;
-  const double mean = std::abs(to_double(W(t_ - started_))) / static_cast<double>(steps_);
-  return std::abs(to_double(left)) > std::max(mean, to_double(h)) * static_cast<double>(settings_.most_steps - steps_);
+  if (record_.steps < kStepsToJudge) return false;
+  const double mean = std::abs(to_double(W(t_ - started_))) / static_cast<double>(record_.steps);
+  return std::abs(to_double(left)) > std::max(mean, to_double(h)) * static_cast<double>(settings_.most_steps - record_.steps);
 }
 
 template <Number N>
 Outcome Stepper<N>::step(const W& end) {
-  if (Outcome o = begin_step(); !o.ok()) return o;
+  if (!begins()) return outcome(false);
   if (loaded_) kernel_->begin();
-  if (Outcome o = aim(end); !o.ok()) return o;
+  if (!aims(end)) return outcome(false);
   if (by_kernel_) kernel_->advance();
-  return finish_step();
+  return outcome(finishes());
 }
 
 template <Number N>
-Outcome Stepper<N>::begin_step() {
+bool Stepper<N>::begins() {
   if (settings_.cancelled && settings_.cancelled())
-    return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
-  if (steps_ >= settings_.most_steps)
-    return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
+    return fail({OutcomeKind::interrupted, "interrupted", "what was computed is kept"});
+  if (record_.steps >= settings_.most_steps)
+    return fail({OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"});
   if (!expanded_) begin_expansion(leading_);
-  return {};
+  return true;
 }
 
 template <Number N>
-Outcome Stepper<N>::aim(const W& end) {
-  if (!expanded_)
-    if (Outcome o = end_expansion(leading_); !o.ok()) return o;
+bool Stepper<N>::aims_with_care(const W& end) {
   const W left = end - t_;
   const bool forward = left > W(0);
   W h = convert<W>(horizon_);
-  if (nothing_in_the_way() && h < abs(left) && !end_out_of_reach(h, left)) {
-    aim_at(convert<W>(convert<N>(W(t_ + (forward ? h : W(-h))))), false);
-    return {};
-  }
   // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from there.
   if (program_->nonlinear) h = abs(on_the_branch(forward ? h : W(-h)));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
   if (!(h > floor))
-    return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
-            "the motion approaches a singularity: stop before it, or look at the last good state"};
+    return fail({OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
+                 "the motion approaches a singularity: stop before it, or look at the last good state"});
   if (end_out_of_reach(h, left))
-    return {OutcomeKind::interrupted, "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(to_double(h), 2) + " long",
-            "end the motion earlier, or take what is very fast or very stiff out of the model"};
-  if (singular_ahead_) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+    return fail({OutcomeKind::interrupted, "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(to_double(h), 2) + " long",
+                 "end the motion earlier, or take what is very fast or very stiff out of the model"});
+  if (singular_ahead_) return fail(becomes_singular());
   const bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
@@ -219,8 +202,8 @@ Outcome Stepper<N>::aim(const W& end) {
     const W where = kink.at_start ? W(0) : convert<W>(kink.where);
     short_kinks_ = !kink.at_start && !(abs(where) > past * W(4)) ? short_kinks_ + 1 : 0;
     if (short_kinks_ > kMostShortKinks)
-      return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
-              "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such as tanh(x/0.01) for sign(x)"};
+      return fail({OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
+                   "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such as tanh(x/0.01) for sign(x)"});
     const W beyond = where + (forward ? past : W(-past));
     if (abs(beyond) < abs(h)) h = beyond, cut = true, ++kinks_;
   } else {
@@ -231,7 +214,7 @@ Outcome Stepper<N>::aim(const W& end) {
     constexpr double kShortOf = 1 - 1e-7;
     h = *met * W(kShortOf);
     cut = singular_ahead_ = true;
-    if (!(abs(h) > floor)) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+    if (!(abs(h) > floor)) return fail(becomes_singular());
   }
   fired_.clear();
   if (!events_.empty()) {
@@ -243,7 +226,7 @@ Outcome Stepper<N>::aim(const W& end) {
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
   if (last && !cut) aim_at(end, true);
   else aim_at(convert<W>(convert<N>(W(t_ + h))), false);
-  return {};
+  return true;
 }
 
 // An ordinary step, of the length that the series allow.
@@ -254,32 +237,50 @@ bool Stepper<N>::nothing_in_the_way() const {
 }
 
 template <Number N>
+bool Stepper<N>::aims_freely(const W& end) {
+  if (!nothing_in_the_way()) return false;
+  const W left = end - t_, h = convert<W>(horizon_);
+  if (!(h < abs(left)) || end_out_of_reach(h, left)) return false;
+  aim_at(convert<W>(convert<N>(W(left > W(0) ? t_ + h : t_ - h))), false);
+  return true;
+}
+
+template <Number N>
 void Stepper<N>::aim_at(const W& t, bool arrives) {
   aimed_ = t;
   arrives_ = arrives;
   if (by_kernel_) kernel_->set_step(lane_, to_double(W(t - t_)));
 }
 
+// Where the state is not with the kernel.
 template <Number N>
-Outcome Stepper<N>::finish_step() {
-  const W h = aimed_ - t_;
-  last_step_ = abs(h);
-  sigma_before_ = sigma_;
-  if (away_) {
-    // So that a NaN is one, too.
-    if (!(kernel_->largest(lane_) < kBlowUp)) return settle_at_base(), blow_up();
-  } else if (by_kernel_) {
+bool Stepper<N>::goes_on(const W& h) {
+  if (by_kernel_) {
     base_state_.swap(state_);
     advanced_by_kernel(h, base_state_, state_, leading_);
-    if (!std::all_of(state_.begin(), state_.end(), [](const W& x) { return abs(x) < W(kBlowUp); })) return state_.swap(base_state_), blow_up();
-  } else {
-    polynomial(h, change_, leading_);
-    next_ = state_;
-    for (std::size_t i = 0; i < next_.size(); ++i) {
-      add_compensated(next_[i], carry_[i], change_[i]);
-      if (!is_finite(next_[i]) || std::abs(to_double(next_[i])) > kBlowUp) return blow_up();
-    }
-    std::swap(state_, next_);
+    if (!std::all_of(state_.begin(), state_.end(), [](const W& x) { return abs(x) < W(kBlowUp); })) return state_.swap(base_state_), false;
+    return true;
+  }
+  polynomial(h, change_, leading_);
+  next_ = state_;
+  for (std::size_t i = 0; i < next_.size(); ++i) {
+    add_compensated(next_[i], carry_[i], change_[i]);
+    if (!is_finite(next_[i]) || std::abs(to_double(next_[i])) > kBlowUp) return false;
+  }
+  std::swap(state_, next_);
+  return true;
+}
+
+template <Number N>
+bool Stepper<N>::finishes() {
+  const W h = aimed_ - t_;
+  record_.last_step = abs(h);
+  record_.sigma_before = sigma_;
+  if (away_) {
+    // So that a NaN is one, too.
+    if (!(kernel_->largest(lane_) < kBlowUp)) return settle_at_base(), fail(blow_up());
+  } else if (!goes_on(h)) {
+    return fail(blow_up());
   }
   for (std::size_t i = 0; i < integrals_.size(); ++i) {
     W s(0);
@@ -289,10 +290,10 @@ Outcome Stepper<N>::finish_step() {
   before_ = t_;
   t_ = aimed_;
   expanded_ = false;
-  ++steps_;
+  ++record_.steps;
   // Others in the kernel go on while this one has arrived.
   if (arrives_) settle();
-  return {};
+  return true;
 }
 
 template <Number N>

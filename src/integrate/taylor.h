@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "integrate/events.h"
 #include "integrate/regular.h"
@@ -36,24 +37,30 @@ class KernelPlan;
 constexpr bool due_for_a_look(std::size_t steps) { return steps % 256 == 0 || (steps & (steps - 1)) == 0; }
 inline constexpr double kNewsOfPivots = 0.8;
 
-// All that a stepper carries where an expansion is made: from here the same steps follow, bit by bit.
+// What a stepper has found on its way so far.
 template <Number N>
-struct StepperState {
+struct StepperRecord {
   using W = Wider<N>;
-  W t{0};
-  std::vector<W> state, carry, leading, integrals, integral_carry;
   W branch_step{0};
   std::size_t steps = 0;
   W worst_constraint{0}, worst_equation{0};
   N first_sigma{0}, smallest_sigma{1};
   W smallest_sigma_t{0};
   std::size_t weakest = 0;
+  N sigma_before{0};     // where the last step began
+  W last_step{0};        // its length
+  N least_health{1};     // of the kernel's pivots
+  bool careful = false;  // the step that follows was, or has to be, made without the kernel
+};
+
+// All that it carries where an expansion is made: from here the same steps follow, bit by bit.
+template <Number N>
+struct StepperState : StepperRecord<N> {
+  using W = Wider<N>;
+  W t{0};
+  std::vector<W> state, carry, leading, integrals, integral_carry;
   std::vector<N> direction;  // of the iteration for sigma
-  N sigma_before{0};         // where the last step began
-  W last_step{0};            // its length
   std::vector<int> sides;    // of the series watched for events
-  N least_health{1};         // of the kernel's pivots
-  bool careful = false;      // the step that follows was, or has to be, made without the kernel
 };
 
 // Taylor coefficients are computed in N; the state, the projection on the constraints and the
@@ -104,13 +111,13 @@ class Stepper {
   Outcome step(const W& end);
   // Its parts, for steppers in the lanes of one kernel: after `begin_step` of all of them the kernel is to be expanded, after `aim` of all it is to
   // advance, and nothing else may happen to it in between.
-  Outcome begin_step();
-  Outcome aim(const W& end);
-  Outcome finish_step();
+  Outcome begin_step() { return outcome(begins()); }
+  Outcome aim(const W& end) { return outcome(aims(end)); }
+  Outcome finish_step() { return outcome(finishes()); }
 
   const W& time() const { return t_; }
   const W& before() const { return before_; }
-  std::size_t steps() const { return steps_; }
+  std::size_t steps() const { return record_.steps; }
   std::size_t kinks() const { return kinks_; }  // steps that one has cut short
   int order() const { return order_; }
 
@@ -129,18 +136,27 @@ class Stepper {
   W quadrature(std::size_t i, const W& dt) const;
   // Integrals of the quadratures since the start.
   const std::vector<W>& integrals() const { return integrals_; }
-  const W& worst_constraint() const { return worst_constraint_; }
-  const W& worst_equation() const { return worst_equation_; }
+  const W& worst_constraint() const { return record_.worst_constraint; }
+  const W& worst_equation() const { return record_.worst_equation; }
   // Of the scaled system Jacobian: the smallest so far, when it was met, the unknown that J determined least there; the first one.
-  const N& smallest_sigma() const { return smallest_sigma_; }
-  const W& smallest_sigma_time() const { return smallest_sigma_t_; }
-  std::size_t weakest_unknown() const { return weakest_; }
-  const N& first_sigma() const { return first_sigma_; }
+  const N& smallest_sigma() const { return record_.smallest_sigma; }
+  const W& smallest_sigma_time() const { return record_.smallest_sigma_t; }
+  std::size_t weakest_unknown() const { return record_.weakest; }
+  const N& first_sigma() const { return record_.first_sigma; }
 
  private:
+  // The parts of a step and of its expansion; where they fail, trouble_ says why.
+  bool begins();
+  bool aims(const W& end) { return (expanded_ || ends_expansion(leading_)) && (aims_freely(end) || aims_with_care(end)); }
+  bool aims_freely(const W& end);
+  bool aims_with_care(const W& end);
+  bool finishes();
+  bool goes_on(const W& h);
+  bool ends_expansion(const std::vector<W>& guess);
+  bool fail(Outcome o) { return trouble_ = std::move(o), false; }
+  Outcome outcome(bool good) { return good ? Outcome{} : std::exchange(trouble_, {}); }
   Outcome expand(const std::vector<W>& guess);
   void begin_expansion(const std::vector<W>& guess);
-  Outcome end_expansion(const std::vector<W>& guess);
   Outcome expand_here(const std::vector<W>& guess);
   Outcome expand_by_reference(const std::vector<W>& guess);
   void note_begun(const std::vector<W>& guess);
@@ -179,6 +195,7 @@ class Stepper {
 
   const Program* program_;
   StepSettings settings_;
+  Outcome trouble_;
   int order_;
   std::vector<N> parameters_;
   Expansion<N> expansion_;
@@ -196,30 +213,22 @@ class Stepper {
   bool by_kernel_ = false;                                    // the present expansion
   Pivots pivots_before_;                                      // of the kernel, at the last expansion
   bool suspected_ = false;                                    // J may have been singular within the last step by the kernel, or may be so within the next
-  bool careful_ = false;                                      // the next one is to be made without the kernel
-  N least_health_{1};
   std::size_t by_kernel_count_ = 0;
   mutable std::vector<W> base_state_;                         // where the kernel's expansion of the last step was made
   std::unique_ptr<Expansion<N>> ahead_;  // for looks at J further on the polynomial
-  N sigma_{0}, sigma_before_{0};         // where the last two steps began
-  W last_step_{0};
+  N sigma_{0};                           // where the present step began
   bool singular_ahead_ = false;          // right after the present state
   std::size_t kinks_ = 0;
   int short_kinks_ = 0;                  // steps in a row that were cut by a kink at their very start
   EventWatch<N> events_{{}};
   std::vector<Fired<N>> fired_;
-  W branch_step_{0};
   W started_{0}, t_{0}, before_{0};
   N horizon_{0};
   mutable std::vector<W> state_, leading_;
   std::vector<W> carry_, integrals_, integral_carry_;
   std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;
-  std::size_t steps_ = 0;
+  StepperRecord<N> record_;
   bool expanded_ = false;  // at t_
-  W worst_constraint_{0}, worst_equation_{0};
-  N first_sigma_{0}, smallest_sigma_{1};
-  W smallest_sigma_t_{0};
-  std::size_t weakest_ = 0;
   mutable StepperState<N> begun_[2];  // of the present expansion and the one before
   bool begun_by_kernel_[2] = {};      // which has the states of those, while they are away
   int now_ = 0;                       // which of them is the present one

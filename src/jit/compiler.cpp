@@ -103,18 +103,22 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
   add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
   if (auto error = (*jit)->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(symbols)))) return message = text_of(std::move(error)), Code{};
   if (auto error = (*jit)->addObjectFile(std::move(object))) return message = text_of(std::move(error)), Code{};
-  const auto find = [&](const char* part) -> Code::Part {
+  const auto find = [&](const std::string& part, auto& function) {
     auto symbol = (*jit)->lookup(part);
-    if (!symbol) return message = text_of(symbol.takeError()), nullptr;
-    return symbol->toPtr<Code::Part>();
+    if (symbol) function = symbol->toPtr<std::remove_reference_t<decltype(function)>>();
+    else message = text_of(symbol.takeError());
   };
   Code made;
-  made.values = find("values");
-  made.factor = find("factor");
-  made.lead = find("lead");
-  made.extend = find("extend");
-  made.advance = find("advance");
-  for (int level = 1; level <= levels; ++level) made.level.push_back(find(Emitter::level_name(level).c_str()));
+  find("values", made.values);
+  find("factor", made.factor);
+  find("lead", made.lead);
+  find("extend", made.extend);
+  find("measure", made.measure);
+  find("advance", made.advance);
+  find("begin", made.begin);
+  find("go_on", made.go_on);
+  made.level.resize(static_cast<std::size_t>(levels));
+  for (int level = 1; level <= levels; ++level) find(Emitter::level_name(level), made.level[static_cast<std::size_t>(level - 1)]);
   if (!message.empty()) return {};
   made.keeper = std::shared_ptr<void>(jit->release(), [](void* p) { delete static_cast<llvm::orc::LLJIT*>(p); });
   return made;
@@ -134,6 +138,8 @@ void compile(const KernelTables& tables, int lanes, const CalledFunctions& calle
   // Twice as fast to compile as Default where that takes long, and no slower to run; a simpler register allocator gains nothing more.
   builder->setCodeGenOptLevel(llvm::CodeGenOptLevel::Less);
   builder->setRelocationModel(llvm::Reloc::PIC_);
+  // What is called lies anywhere and is called by stubs; constants lie beside the code, each an operand and not an address first.
+  builder->setCodeModel(llvm::CodeModel::Small);
 
   Key key;
   const Store store(!cache.empty() && name(tables, lanes, *builder, key) ? cache : std::string());

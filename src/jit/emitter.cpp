@@ -25,11 +25,14 @@ void Emitter::run() {
   lead();
   extend();
   advance();
+  begin_motion();
+  measure();
+  go_on();
   for (int l = 1; l <= levels(k_); ++l) level(l);
 }
 
-void Emitter::begin(const char* name) {
-  auto* type = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy()}, false);
+void Emitter::begin(const char* name, unsigned places, bool answers) {
+  auto* type = llvm::FunctionType::get(answers ? b_.getInt32Ty() : b_.getVoidTy(), std::vector<llvm::Type*>(1 + places, b_.getPtrTy()), false);
   function_ = llvm::Function::Create(type, llvm::Function::ExternalLinkage, name, m_);
   function_->addFnAttr(llvm::Attribute::NoUnwind);
   w_ = function_->getArg(0);
@@ -52,7 +55,10 @@ llvm::Function* Emitter::begin_part(const std::string& name) {
   return function_;
 }
 
-void Emitter::end() { b_.CreateRetVoid(); }
+void Emitter::end(Value* answer) {
+  if (answer) b_.CreateRet(b_.CreateZExt(answer, b_.getInt32Ty()));
+  else b_.CreateRetVoid();
+}
 
 llvm::Value* Emitter::address(std::int64_t slot, bool relative) {
   return b_.CreateConstInBoundsGEP1_64(lane_, relative ? block_ : w_, static_cast<std::uint64_t>(slot));
@@ -147,6 +153,7 @@ void Emitter::factor() {
   for (std::size_t k = 0; k < e.pivots.size(); ++k)
     if (reciprocal[k]) store(reciprocal[k], k_.reciprocal + static_cast<std::int64_t>(k));
   if (!e.influences.empty()) invert(lu, reciprocal);
+  judge(lu);
   end();
 }
 
@@ -271,7 +278,7 @@ void Emitter::lead() {
 }
 
 void Emitter::level(int level) {
-  begin(level_name(level).c_str());
+  begin(level_name(level).c_str(), 0, true);
   side_.clear();
   for (std::size_t i = 0; i < p_.roots.size(); ++i) {
     const int order = p_.c[i] - level;
@@ -281,13 +288,19 @@ void Emitter::level(int level) {
   solve();
   // All are asked for: they are looked at before they are used.
   for (std::uint32_t j = 0; j < p_.x.size(); ++j) store(solution_[j], k_.solution + j);
-  end();
+  end(displaced(level));
 }
 
 void Emitter::advance() {
   begin("advance");
+  increments();
+  end();
+  advance_ = function_;
+}
+
+std::vector<llvm::Value*> Emitter::increments() {
   Value* step = load(k_.step);
-  std::int64_t out = k_.increments;
+  std::vector<Value*> all;
   for (std::size_t j = 0; j < p_.x.size(); ++j)
     for (int k = 0; k <= p_.d[j]; ++k) {
       Value* s = number(0);
@@ -296,9 +309,10 @@ void Emitter::advance() {
         const double rising = k_.rising(k, i);
         s = fma(s, step, rising == 1 ? x : b_.CreateFMul(x, number(rising)));
       }
-      store(b_.CreateFMul(s, step), out++);
+      all.push_back(b_.CreateFMul(s, step));
+      store(all.back(), k_.increments + static_cast<std::int64_t>(all.size()) - 1);
     }
-  end();
+  return all;
 }
 
 }  // namespace anholon::jit

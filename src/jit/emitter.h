@@ -20,8 +20,8 @@ namespace anholon::jit {
 class Emitter {
  public:
   Emitter(const KernelTables& tables, llvm::Module& module, int lanes);
-  // Functions of one argument, the arena: "values", "factor", "lead" (residual and completion of stage 0), "extend", "advance",
-  // and "level1", …: the solution for the residuals of hidden constraints.
+  // The parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend", "measure", "advance", "begin", "go_on", and
+  // "level1", …: the solution for the residuals of hidden constraints.
   void run();
   static int levels(const KernelTables& tables) { return *std::max_element(tables.plan->c.begin(), tables.plan->c.end()); }
   static std::string level_name(int level) { return "level" + std::to_string(level); }
@@ -34,16 +34,18 @@ class Emitter {
     bool operator<(const Convolution& o) const { return std::tie(lead, a, b) < std::tie(o.lead, o.a, o.b); }
   };
 
-  void begin(const char* name);
+  // Of the arena, and so many places in it.
+  void begin(const char* name, unsigned places = 0, bool answers = false);
   // A part of another function: of the arena, the scratch memory and a stage.
   llvm::Function* begin_part(const std::string& name);
-  void end();
+  void end(Value* answer = nullptr);
   void values();
   void factor();
   void invert(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
   void lead();
   void level(int level);
   void advance();
+  std::vector<Value*> increments();
   void extend();
   // All stages from 1 of a list, in blocks.
   void stages(const std::vector<Step>& steps, bool solved);
@@ -73,11 +75,33 @@ class Emitter {
   void complete();
   static std::vector<Convolution> convolutions(const Step& s);
 
+  void begin_motion();
+  void judge(const std::vector<Value*>& lu);
+  Value* displaced(int level);
+  void measure();
+  void go_on();
+  Value* reach(Value* weight, int by, Value* margin);
+  Value* cubic(const double* c, Value* x);
+  Value* exp2(Value* x);
+  Value* rest(Value* sum, Value* error);
+  Value* line(const double* c, Value* x);
+  Value* larger(Value* a, Value* b);
+  Value* smaller(Value* a, Value* b);
+  Value* magnitude(Value* v);
+  Value* times(Value* v, double x);
+  Value* bits(Value* v);
+  Value* of_bits(Value* b);
+  Value* pattern(std::uint64_t x);
+  Value* coefficient_of(std::size_t j, int order);
+  double factorial(int k) const;
+
   // Orders are of the present stage: absolute, or relative to it.
   Value* number(double x) { return llvm::ConstantFP::get(lane_, x); }
   Value* address(std::int64_t slot, bool relative);
   Value* load(std::int64_t slot, bool relative = false) { return b_.CreateAlignedLoad(lane_, address(slot, relative), align()); }
   void store(Value* v, std::int64_t slot, bool relative = false) { b_.CreateAlignedStore(v, address(slot, relative), align()); }
+  Value* load_from(Value* place, std::int64_t i) { return b_.CreateAlignedLoad(lane_, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align()); }
+  void store_to(Value* v, Value* place, std::int64_t i) { b_.CreateAlignedStore(v, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align()); }
   llvm::Align align() const { return llvm::Align(8 * static_cast<std::uint64_t>(lanes_)); }
   // The sums that known_before has left for a convolution and an order of the block: of what both knew before, and of what is new of a.
   Value* scratch(unsigned place, unsigned order, bool new_of_a = false) {
@@ -102,7 +126,7 @@ class Emitter {
   const int lanes_;
   llvm::Type* const lane_;  // double, or a vector of them
   std::vector<bool> asked_;      // columns of the solution
-  llvm::Function* substitution_ = nullptr;
+  llvm::Function *substitution_ = nullptr, *advance_ = nullptr;
   llvm::Function* function_ = nullptr;
   Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr;  // arena; arena + stage; that stage, or the first of a block
   bool relative_ = false;

@@ -83,6 +83,17 @@ void Writer::add(const SparseLu::Term& term) {
   all(entry, column);
 }
 
+// What a pivot was is a number of the arena.
+void Writer::add(const JudgedPivot& pivot) {
+  [[maybe_unused]] const auto& [at, inverse] = pivot;
+  all(at);
+}
+
+void Writer::add(const Findings& found) {
+  const auto& [health, determinant, drift, weight, moved, reach, unfit, largest] = found;
+  all(health, determinant, drift, weight, moved, reach, unfit, largest);
+}
+
 void Writer::add(const Plan& plan) {
   // What roots of even powers are is for whoever chooses steps.
   [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures,
@@ -96,10 +107,11 @@ void Writer::add(const SparseLu& elimination) {
 }
 
 void Writer::add(const KernelTables& tables) {
-  // Knots: models that look tables up are not compiled. What motions need lies behind all that machine code knows.
-  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, increments, now, begun, before, base,
-                                found, size, state_size, judged, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders] = tables;
-  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, increments, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders);
+  // Knots: models that look tables up are not compiled. The code is told which places of motions it is to read and write.
+  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, increments, motions, projected, margin,
+                                inverse_pivots, found, size, state_size, judged, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders] = tables;
+  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, increments, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial,
+      reciprocal_of, order, rising, falling, orders);
 }
 
 }  // namespace anholon::jit

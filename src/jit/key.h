@@ -48,6 +48,8 @@ class Writer {
   void add(const SparseLu::Backward& backward);
   void add(const SparseLu::Term& term);
   void add(const SparseLu::Influence& influence);
+  void add(const JudgedPivot& pivot);
+  void add(const Findings& found);
   void add(const Plan& plan);
   void add(const SparseLu& elimination);
   void add(const KernelTables& tables);

@@ -66,8 +66,8 @@ std::unique_ptr<llvm::MemoryBuffer> Store::read(const Key& key) const {
   if ((about.st_uid != geteuid() && about.st_uid != 0) || (about.st_mode & (S_IWGRP | S_IWOTH))) return nullptr;
   const auto size = static_cast<std::uint64_t>(about.st_size);
   if (size <= sizeof(Key) || size > kMost) return nullptr;
-  // Volatile: read and not mapped, as a file that is cut short while mapped kills the reader.
-  auto all = llvm::MemoryBuffer::getOpenFile(file.number, path.c_str(), size, false, true);
+  // Volatile and with a zero at its end: otherwise it is mapped if it is large, and a file that is cut short while mapped kills the reader.
+  auto all = llvm::MemoryBuffer::getOpenFile(file.number, path.c_str(), size, true, true);
   if (!all || (*all)->getBufferSize() != size) return nullptr;
   const llvm::StringRef object = (*all)->getBuffer().drop_back(sizeof(Key));
   Key found;

@@ -1,5 +1,6 @@
 // What a kernel asks of an instruction set, and what the instruction sets share.
 #pragma once
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,17 @@ struct JudgedPivot {
   std::uint32_t at;
   double inverse;
 };
+
+// A state this many round-offs off its hidden constraints is left alone: it is not known better.
+inline constexpr double kQuiet = 8 * 0x1p-53;
+
+// How far series reach is found to four digits, in powers of two: log2(1 + u) = u (c_0 + c_1 u + …) from sqrt(1/2) to sqrt(2), 2^f from -1/2 to 1/2
+// (minimax). Nothing is farther than 2^kFarthest.
+inline constexpr double kLog2e = 1.4426950408889634, kFarthest = 300 * kLog2e;
+inline constexpr double kLog2[] = {1.4417624, -0.72490038, 0.51749214, -0.32964325};
+inline constexpr double kExp2[] = {0.99992807, 0.69326099, 0.24261112, 0.05517167};
+inline constexpr std::uint64_t kRootOfHalf = 0x3fe6a09e667f3bcdULL;  // its bits
+inline constexpr double kInteger = 6755399441055744.0;               // 1.5 2^52: a small integer added to it lies in its last bits
 
 // Where in the arena an expansion leaves what it found, a number in every lane.
 struct Findings {
@@ -37,9 +49,12 @@ struct KernelTables {
   std::vector<Knots> knots;
   // Where in the arena.
   std::uint32_t lu = 0, reciprocal = 0, inverse = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, step = 0, increments = 0;
-  // Of motions: x_j^(k), k < d_j, as sums of two doubles, first all the larger parts, and first guesses of x_j^(d_j): now, where the present expansion
-  // was begun, and the one before; without the guesses where it was made, after projection.
-  std::uint32_t now = 0, begun = 0, before = 0, base = 0;
+  // Of motions: x_j^(k), k < d_j, as sums of two doubles, first all the larger parts, and first guesses of x_j^(d_j). There are three places: where the
+  // next expansion begins, the present one was begun, the one before; they take turns. Without the guesses: where projection has put the present one.
+  std::array<std::uint32_t, 3> motions{};
+  std::uint32_t projected = 0;
+  std::uint32_t margin = 0;          // what a step is of the reach of its series (integrate/taylor.h: step_size), in powers of two
+  std::uint32_t inverse_pivots = 0;  // `inverse` of those that are judged
   Findings found;
   std::uint32_t size = 0;
   std::uint32_t state_size = 0;
@@ -80,13 +95,13 @@ class Arithmetic {
   virtual void advance() = 0;
 
   // Of motions: puts their states in where an expansion begins,
-  virtual void begin() = 0;
-  // takes over what projection has moved,
-  virtual void adopt() = 0;
-  // says how far the series reach (integrate/taylor.h: step_size; `shrink`: e^-shrink per order) and whether they are numbers,
-  virtual void measure(double shrink) = 0;
+  virtual void begin(const double* from) = 0;
+  // takes over what projection has moved of them,
+  virtual void adopt(const double* from) = 0;
+  // says how far the series reach and whether they are numbers,
+  virtual void measure() = 0;
   // and goes on by the increments.
-  virtual void go_on() = 0;
+  virtual void go_on(const double* base, double* to) = 0;
 };
 
 // Functions of the C library, in one place for every tier.

@@ -8,11 +8,13 @@
 
 namespace anholon {
 
-// The parts of one expansion; each takes the arena. What they point to lives as long as `keeper`.
+// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. What they point to lives as long as `keeper`.
 struct Code {
   using Part = void (*)(double*);
-  Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr, advance = nullptr;
-  std::vector<Part> level;  // [l - 1]: the solution for the residuals at derivative order c_i - l
+  Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr, measure = nullptr, advance = nullptr;  // `factor` judges, too
+  void (*begin)(double*, const double* from) = nullptr;
+  void (*go_on)(double*, const double* base, double* to) = nullptr;  // and advances before
+  std::vector<int (*)(double*)> level;  // [l - 1]: the solution for the residuals at derivative order c_i - l, and whether a state is displaced by it
   std::shared_ptr<void> keeper;
 };
 
@@ -29,7 +31,7 @@ struct CompilerModule {
   // Empty `code.values` and a message where it fails. `cache`: a folder for compiled code, or empty.
   void (*compile)(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache, Code& code, std::string& message);
 };
-inline constexpr int kCompilerVersion = 2;
+inline constexpr int kCompilerVersion = 3;
 
 // The module beside the program; null where there is none, or this machine cannot run what it makes.
 const CompilerModule* compiler();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "base/assert.h"
 #include "kernel/latency.h"
@@ -101,13 +102,14 @@ void KernelPlan::lay_out() {
   tables_.entries = tables_.refined + plan_.rows;
   tables_.step = tables_.entries + (tables_.refine ? static_cast<std::uint32_t>(plan_.entries.size()) : 0);
   tables_.increments = tables_.step + 1;
-  tables_.now = tables_.increments + tables_.state_size + static_cast<std::uint32_t>(plan_.x.size());
-  tables_.begun = tables_.now + tables_.motion_size();
-  tables_.before = tables_.begun + tables_.motion_size();
-  tables_.base = tables_.before + tables_.motion_size();
-  std::uint32_t at = tables_.base + 2 * tables_.state_size;
+  std::uint32_t at = tables_.increments + tables_.state_size + static_cast<std::uint32_t>(plan_.x.size());
+  const auto take = [&](std::uint32_t count) { return std::exchange(at, at + count); };
+  for (std::uint32_t& place : tables_.motions) place = take(tables_.motion_size());
+  tables_.projected = take(2 * tables_.state_size);
+  tables_.margin = take(1);
+  tables_.inverse_pivots = take(static_cast<std::uint32_t>(elimination_.pivots.size()));
   Findings& f = tables_.found;
-  for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest}) *place = at++;
+  for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest}) *place = take(1);
   tables_.size = even(at);
 }
 
@@ -202,7 +204,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
 void Kernel::Free::operator()(double* p) const { std::free(p); }
 
 Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* tier)
-    : plan_(std::move(plan)), lanes_(lanes) {
+    : plan_(std::move(plan)), lanes_(lanes), next_(plan_->tables().motions[0]), begun_(plan_->tables().motions[1]), before_(plan_->tables().motions[2]), base_(next_) {
   if (!tier) tier = &tiers().back();
   ANHOLON_ASSERT(lanes == 1 || lanes == tier->lanes);
   const std::size_t bytes = plan_->tables().size * sizeof(double) * static_cast<std::size_t>(lanes);
@@ -211,27 +213,41 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
   arena_ = memory_.get();
   std::memset(arena_, 0, bytes);
   arithmetic_ = tier->make(plan_->tables(), arena_, lanes);
+  const KernelTables& t = plan_->tables();
+  for (std::uint32_t i = 0; i < t.judged.size(); ++i) set_all(t.inverse_pivots + i, t.judged[i].inverse);
+  set_shrink(2);
 }
+
+void Kernel::set_all(std::uint32_t slot, double x) {
+  for (int lane = 0; lane < lanes_; ++lane) number(slot, lane) = x;
+}
+
+void Kernel::set_shrink(double shrink) { set_all(plan_->tables().margin, -(shrink + 0.7 / plan_->plan().stages) * kLog2e); }
 
 void Kernel::set_parameters(int lane, const std::vector<long double>& parameters) {
   const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters);
   for (std::size_t i = 0; i < values.size(); ++i) number(static_cast<std::uint32_t>(i), lane) = values[i];
 }
 
-void Kernel::expand(bool projected) {
-  const Code* code = this->code();
-  if (code) code->values(arena_), code->factor(arena_);
-  else arithmetic_->values(-plan_->plan().largest_lead), arithmetic_->factor();
-  arithmetic_->judge();
-  if (projected) project(code);
+bool Kernel::expand(const Code* code, bool projected) {
+  if (code) {
+    code->values(arena_);
+    code->factor(arena_);
+  } else {
+    arithmetic_->values(-plan_->plan().largest_lead);
+    arithmetic_->factor();
+    arithmetic_->judge();
+  }
+  const bool moved = projected && project(code);
   if (code) {
     code->lead(arena_);
     code->extend(arena_);
-    return;
+  } else {
+    arithmetic_->residual(0);
+    arithmetic_->complete(0);
+    arithmetic_->extend();
   }
-  arithmetic_->residual(0);
-  arithmetic_->complete(0);
-  arithmetic_->extend();
+  return moved;
 }
 
 double Kernel::correction_of_solution() {
@@ -247,15 +263,17 @@ double Kernel::correction_of_solution() {
   return size > 0 ? change / size : 0;
 }
 
-void Kernel::project(const Code* code) {
+// Whether that has moved a state.
+bool Kernel::project(const Code* code) {
+  bool moved = false;
   for (int level = plan_->levels(); level >= 1; --level) {
-    if (code) code->level[static_cast<std::size_t>(level - 1)](arena_);
-    else arithmetic_->residual(level);
-    if (!arithmetic_->displaced(level)) continue;
+    if (code ? code->level[static_cast<std::size_t>(level - 1)](arena_) == 0 : (arithmetic_->residual(level), !arithmetic_->displaced(level))) continue;
+    moved = true;
     arithmetic_->correct(level);
     if (code) code->values(arena_);
     else arithmetic_->values(-plan_->plan().largest_lead);
   }
+  return moved;
 }
 
 void Kernel::place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading) {
@@ -263,22 +281,36 @@ void Kernel::place(int lane, const std::vector<long double>& state, const std::v
   const std::uint32_t n = t.state_size, m = static_cast<std::uint32_t>(plan_->plan().x.size());
   for (std::uint32_t i = 0; i < n; ++i) {
     const double high = static_cast<double>(state[i]);
-    number(t.now + i, lane) = high;
-    number(t.now + n + i, lane) = static_cast<double>(state[i] - high);
+    number(next_ + i, lane) = high;
+    number(next_ + n + i, lane) = static_cast<double>(state[i] - high);
   }
-  for (std::uint32_t j = 0; j < m; ++j) number(t.now + 2 * n + j, lane) = leading.empty() ? 0 : static_cast<double>(leading[j]);
+  for (std::uint32_t j = 0; j < m; ++j) number(next_ + 2 * n + j, lane) = leading.empty() ? 0 : static_cast<double>(leading[j]);
+  gone_on_ = true;
 }
 
 void Kernel::begin() {
-  arithmetic_->begin();
-  expand();
-  arithmetic_->adopt();
-  arithmetic_->measure(shrink_);
+  next_ = std::exchange(before_, std::exchange(begun_, next_));
+  gone_on_ = false;
+  base_ = begun_;
+  const Code* code = this->code();
+  if (code) code->begin(arena_, slot(begun_));
+  else arithmetic_->begin(slot(begun_));
+  if (expand(code, true)) {
+    arithmetic_->adopt(slot(begun_));
+    base_ = plan_->tables().projected;
+  }
+  if (code) code->measure(arena_);
+  else arithmetic_->measure();
 }
 
 void Kernel::advance() {
-  change_over_step();
-  arithmetic_->go_on();
+  if (const Code* code = this->code()) {
+    code->go_on(arena_, slot(base_), slot(next_));
+  } else {
+    arithmetic_->advance();
+    arithmetic_->go_on(slot(base_), slot(next_));
+  }
+  gone_on_ = true;
 }
 
 void Kernel::sum_up(std::uint32_t at, int lane, std::vector<long double>& state) const {
@@ -288,14 +320,13 @@ void Kernel::sum_up(std::uint32_t at, int lane, std::vector<long double>& state)
 }
 
 void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const {
-  const KernelTables& t = plan_->tables();
-  const std::uint32_t at = moment == Moment::now ? t.now : moment == Moment::begun ? t.begun : t.before, m = static_cast<std::uint32_t>(plan_->plan().x.size());
-  sum_up(at, lane, state);
+  const std::uint32_t at = moment == Moment::before ? before_ : moment == Moment::now && gone_on_ ? next_ : begun_, m = static_cast<std::uint32_t>(plan_->plan().x.size());
+  sum_up(moment == Moment::now && !gone_on_ ? base_ : at, lane, state);
   leading.resize(m);
-  for (std::uint32_t j = 0; j < m; ++j) leading[j] = number(at + 2 * t.state_size + j, lane);
+  for (std::uint32_t j = 0; j < m; ++j) leading[j] = number(at + 2 * plan_->tables().state_size + j, lane);
 }
 
-void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(plan_->tables().base, lane, state); }
+void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(base_, lane, state); }
 
 void Kernel::change_over_step() {
   if (const Code* code = this->code()) code->advance(arena_);

@@ -84,7 +84,7 @@ class Kernel {
   }
   // Projects the state on the hidden constraints where it has left them (or leaves it as it is), solves for the leading derivatives, and computes
   // all coefficients.
-  void expand(bool projected = true);
+  void expand(bool projected = true) { expand(code(), projected); }
 
   // By how much refinement changes the solution for the leading derivatives, in relation to it.
   double correction_of_solution();
@@ -107,7 +107,7 @@ class Kernel {
   void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
   void advance();
   // e^-shrink of the radius of convergence is a step (integrate/taylor.h: step_size).
-  void set_shrink(double shrink) { shrink_ = shrink; }
+  void set_shrink(double shrink);
   double reach(int lane) const { return number(found().reach, lane); }
   // Whether the highest coefficients are numbers, and the largest number of a state after a step.
   bool reaches(int lane) const { return number(found().unfit, lane) == 0; }
@@ -136,7 +136,10 @@ class Kernel {
  private:
   double number(std::uint32_t slot, int lane) const { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
   double& number(std::uint32_t slot, int lane) { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
-  void project(const Code* code);
+  double* slot(std::uint32_t slot) { return arena_ + slot * static_cast<std::size_t>(lanes_); }
+  void set_all(std::uint32_t slot, double x);
+  bool expand(const Code* code, bool projected);
+  bool project(const Code* code);
   const Code* code() const { return plan_->code(lanes_); }
   const Findings& found() const { return plan_->tables().found; }
   void sum_up(std::uint32_t at, int lane, std::vector<long double>& state) const;
@@ -149,7 +152,9 @@ class Kernel {
   std::unique_ptr<double[], Free> memory_;
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
-  double shrink_ = 2;
+  // Places of motions (KernelTables): where the next expansion begins, the present one was begun, the one before; where that was made.
+  std::uint32_t next_, begun_, before_, base_;
+  bool gone_on_ = true;  // or placed, since the present one was made
 };
 
 }  // namespace anholon

@@ -69,9 +69,6 @@ struct Lanes<8> : SeveralLanes<8> {
 };
 #endif
 
-// A state this many round-offs off its hidden constraints is left alone: it is not known better.
-constexpr double kQuiet = 8 * 0x1p-53;
-
 template <int L>
 class Sweep final : public Arithmetic {
   using T = Lanes<L>;
@@ -127,8 +124,9 @@ class Sweep final : public Arithmetic {
   void judge() override {
     const V zero = T::broadcast(0);
     V health = T::broadcast(std::numeric_limits<double>::max()), determinant = T::broadcast(1), invalid = zero;
+    const V* inverse = w_ + k_.inverse_pivots;
     for (const JudgedPivot& p : k_.judged) {
-      const V ratio = w_[p.at] * T::broadcast(p.inverse), size = abs(ratio);
+      const V ratio = w_[p.at] * *inverse++, size = abs(ratio);
       health = size < health ? size : health;
       determinant *= ratio;
       invalid += ratio - ratio;
@@ -211,10 +209,8 @@ class Sweep final : public Arithmetic {
     }
   }
 
-  void begin() override {
-    std::copy_n(w_ + k_.begun, k_.motion_size(), w_ + k_.before);
-    std::copy_n(w_ + k_.now, k_.motion_size(), w_ + k_.begun);
-    const V *high = w_ + k_.now, *guess = high + 2 * k_.state_size;
+  void begin(const double* from) override {
+    const V *high = reinterpret_cast<const V*>(from), *guess = high + 2 * k_.state_size;
     for (std::size_t j = 0; j < p_.x.size(); ++j) {
       V* x = w_ + p_.x[j];
       const int d = p_.d[j];
@@ -223,16 +219,17 @@ class Sweep final : public Arithmetic {
     }
   }
 
-  void adopt() override {
+  void adopt(const double* from) override {
     const auto moved = w_[k_.found.moved] > T::broadcast(0);
-    if (!T::any(moved)) return;
-    V* high = w_ + k_.now;
+    const V* high = reinterpret_cast<const V*>(from);
+    V* to = w_ + k_.projected;
+    std::copy_n(high + k_.state_size, k_.state_size, to + k_.state_size);
     for (std::size_t j = 0; j < p_.x.size(); ++j)
-      for (int k = 0; k < p_.d[j]; ++k, ++high) *high = moved ? V(w_[p_.x[j] + static_cast<std::uint32_t>(k)] * T::broadcast(k_.factorial[static_cast<std::size_t>(k)])) : *high;
+      for (int k = 0; k < p_.d[j]; ++k, ++high) *to++ = moved ? V(w_[p_.x[j] + static_cast<std::uint32_t>(k)] * T::broadcast(k_.factorial[static_cast<std::size_t>(k)])) : *high;
   }
 
-  void measure(double shrink) override {
-    constexpr double kLog2e = 1.4426950408889634, kFar = 300 * kLog2e;
+  // The newest coefficients come last: no division, no logarithm of anything else waits for them.
+  void measure() override {
     const int order = p_.stages + 1;
     const V zero = T::broadcast(0), one = T::broadcast(1);
     V last = zero, before_last = zero, pole = zero, unfit = zero;
@@ -247,31 +244,30 @@ class Sweep final : public Arithmetic {
         l = larger(l, abs(x[order]));
         b = larger(b, abs(x[order - 1]));
       }
-      last = larger(last, l * T::broadcast(factor) / size);
-      before_last = larger(before_last, b * T::broadcast(factor_before) / size);
+      const V scale = T::broadcast(factor) / size;
+      last = larger(last, l * scale);
+      before_last = larger(before_last, b * (scale * T::broadcast(factor_before / factor)));
     }
+    bool poles = false;
     for (std::size_t j = 0; j < p_.x.size(); ++j) {
       const V* x = w_ + p_.x[j];
       const V top = x[p_.stages + p_.d[j]];
       unfit += top - top;
       if (p_.d[j] > 0) continue;
-      const V value = abs(x[0]), relative = abs(x[order - 1]) / larger(one, value);
+      const V value = abs(x[0]), relative = abs(top) * (one / larger(one, value));
       pole = value > zero ? larger(pole, relative) : pole;
+      poles = true;
     }
-    const auto reach = [&](V weight, int by) {
-      const V log = log2(weight) * T::broadcast(-1.0 / by), far = T::broadcast(kFar);
-      return weight > zero && log < far ? log : far;
-    };
-    const V by_order = smaller(reach(last, order), reach(before_last, order - 1)) - T::broadcast((shrink + 0.7 / (order - 1)) * kLog2e);
-    w_[k_.found.reach] = exp2(smaller(by_order, reach(pole, order - 1) - T::broadcast(0.7 * kLog2e)));
+    V most = smaller(reach(before_last, order - 1, w_[k_.margin]), T::broadcast(kFarthest));
+    if (poles) most = smaller(most, reach(pole, order - 1, T::broadcast(-0.7 * kLog2e)));
+    w_[k_.found.reach] = exp2(smaller(most, reach(last, order, w_[k_.margin])));
     w_[k_.found.unfit] = unfit;
   }
 
-  void go_on() override {
+  void go_on(const double* base, double* next) override {
     const std::size_t n = k_.state_size;
-    std::copy_n(w_ + k_.now, 2 * n, w_ + k_.base);
-    const V *high = w_ + k_.base, *low = high + n, *change = w_ + k_.increments;
-    V *to = w_ + k_.now, *guess = to + 2 * n;
+    const V *high = reinterpret_cast<const V*>(base), *low = high + n, *change = w_ + k_.increments;
+    V *to = reinterpret_cast<V*>(next), *guess = to + 2 * n;
     const V step = w_[k_.step], zero = T::broadcast(0);
     V largest = zero, invalid = zero;
     for (std::size_t j = 0; j < p_.x.size(); ++j) {
@@ -307,24 +303,24 @@ class Sweep final : public Arithmetic {
     return (error + grid) - grid;
   }
 
-  // For x > 0, to ten digits or so.
-  static V log2(V x) {
-    constexpr std::uint64_t kRootOfHalf = 0x3fe6a09e667f3bcdULL;
-    const B exponent = T::exponent(T::bits(x) - kRootOfHalf);
-    const V m = T::of(T::bits(x) - (exponent << 52)), s = (m - T::broadcast(1)) / (m + T::broadcast(1)), z = s * s;
-    V r = T::broadcast(1.0 / 9);
-    for (const double c : {1.0 / 7, 1.0 / 5, 1.0 / 3, 1.0}) r = T::fma(r, z, T::broadcast(c));
-    return T::fma(r * s, T::broadcast(2 * 1.4426950408889634), T::of(exponent + T::bits(T::broadcast(kInteger))) - T::broadcast(kInteger));
+  // c_0 + c_1 x
+  static V line(const double* c, V x) { return T::fma(T::broadcast(c[1]), x, T::broadcast(c[0])); }
+
+  static V cubic(const double* c, V x) { return T::fma(line(c + 2, x), x * x, line(c, x)); }
+
+  // log2(weight^(-1 / by)) + margin
+  static V reach(V weight, int by, V margin) {
+    const B exponent = T::exponent(T::bits(weight) - kRootOfHalf);
+    const V u = T::of(T::bits(weight) - (exponent << 52)) - T::broadcast(1), each = T::broadcast(-1.0 / by);
+    const V whole = T::fma(T::of(exponent + T::bits(T::broadcast(kInteger))) - T::broadcast(kInteger), each, margin);
+    return weight > T::broadcast(0) ? T::fma(cubic(kLog2, u), u * each, whole) : T::broadcast(kFarthest);
   }
 
-  // For |x| < 1000, to ten digits or so.
+  // For |x| < 1000.
   static V exp2(V x) {
-    const V n = x + T::broadcast(kInteger), f = (x - (n - T::broadcast(kInteger))) * T::broadcast(0.6931471805599453);
-    V r = T::broadcast(1.0 / 40320);
-    for (const double c : {1.0 / 5040, 1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5, 1.0, 1.0}) r = T::fma(r, f, T::broadcast(c));
-    return T::of(T::bits(r) + ((T::bits(n) - T::bits(T::broadcast(kInteger))) << 52));
+    const V n = x + T::broadcast(kInteger), f = x - (n - T::broadcast(kInteger));
+    return T::of(T::bits(cubic(kExp2, f)) + ((T::bits(n) - T::bits(T::broadcast(kInteger))) << 52));
   }
-  static constexpr double kInteger = 6755399441055744.0;  // 1.5 2^52: a small integer added to it lies in its last bits
 
   V* at(const Place& place, std::uint32_t order) { return w_ + place.at + (place.series ? order : 0); }
 

@@ -194,7 +194,7 @@ TEST_P(Cache, SurvivesWritersAndKills) {
   for (std::size_t i = 0; i < children.size(); ++i) {
     int status = 0;
     ASSERT_EQ(waitpid(children[i], &status, 0), children[i]);
-    EXPECT_TRUE(status == 0 || (i < 2 && WIFSIGNALED(status))) << i;
+    EXPECT_TRUE(status == 0 || (i < 2 && WIFSIGNALED(status))) << i << ": " << status;
   }
   EXPECT_EQ(sleigh().check(folder_), "");
   EXPECT_EQ(sleigh().check(folder_), "");

@@ -72,6 +72,69 @@ double difference(const KernelPlan& plan, const Expansion<long double>& referenc
   return worst;
 }
 
+bool same(double a, double b) { return a == b || (a != a && b != b); }
+
+// What two kernels say of a motion, in a lane of each: the first difference, or nothing.
+std::string difference_of_motions(const Kernel& a, int lane_a, const Kernel& b, int lane_b) {
+  if (!same(a.pivots(lane_a).health, b.pivots(lane_b).health)) return "health";
+  if (a.pivots(lane_a).determinant != b.pivots(lane_b).determinant) return "determinant";
+  if (!same(a.drift(lane_a), b.drift(lane_b))) return "drift";
+  if (a.moved(lane_a) != b.moved(lane_b)) return "moved";
+  if (a.reaches(lane_a) != b.reaches(lane_b)) return "reaches";
+  if (a.reaches(lane_a) && a.reach(lane_a) != b.reach(lane_b)) return "reach";
+  if (!same(a.largest(lane_a), b.largest(lane_b))) return "largest";
+  const auto equal = [](const std::vector<long double>& x, const std::vector<long double>& y) {
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](long double p, long double q) { return p == q || (p != p && q != q); });
+  };
+  std::vector<long double> x, y, lead_x, lead_y;
+  for (const Kernel::Moment m : {Kernel::Moment::now, Kernel::Moment::begun, Kernel::Moment::before}) {
+    a.fetch(lane_a, m, x, lead_x);
+    b.fetch(lane_b, m, y, lead_y);
+    if (!equal(x, y) || !equal(lead_x, lead_y)) return "state " + std::to_string(static_cast<int>(m));
+  }
+  a.fetch_base(lane_a, x);
+  b.fetch_base(lane_b, y);
+  return equal(x, y) ? "" : "base";
+}
+
+// Where a lane's motion starts: at the start, without a value, far from the constraints, a little off.
+std::vector<long double> start_of_lane(const Reference& r, int lane) {
+  std::vector<long double> state = r.start.state;
+  if (lane == 1) state[0] = std::numeric_limits<long double>::quiet_NaN();
+  else if (lane == 2) state.back() += 0.1L;
+  else state[0] += 1e-18L * lane;
+  return state;
+}
+
+constexpr int kSteps = 3;
+// Expanded, and after the step, `compare` is asked what differs.
+template <class Compare>
+void walk(const Reference& r, std::initializer_list<Kernel*> kernels, const Compare& compare) {
+  std::vector<double> t;
+  for (Kernel* k : kernels)
+    for (int lane = 0; lane < k->lanes(); ++lane) {
+      k->set_parameters(lane, r.parameters);
+      k->place(lane, start_of_lane(r, lane), r.start.leading);
+    }
+  const int lanes = (*kernels.begin())->lanes();
+  t.assign(static_cast<std::size_t>(lanes), static_cast<double>(r.start.t));
+  for (int step = 0; step < kSteps; ++step) {
+    for (Kernel* k : kernels) {
+      for (int lane = 0; lane < lanes; ++lane) k->set_time(lane, t[static_cast<std::size_t>(lane)]);
+      k->begin();
+    }
+    compare();
+    for (int lane = 0; lane < lanes; ++lane) {
+      const Kernel& first = **kernels.begin();
+      const double h = first.reaches(lane) ? std::min(first.reach(lane), 0.25) : 0.01;
+      for (Kernel* k : kernels) k->set_step(lane, h);
+      t[static_cast<std::size_t>(lane)] += h;
+    }
+    for (Kernel* k : kernels) k->advance();
+    compare();
+  }
+}
+
 class KernelOf : public testing::TestWithParam<std::string> {};
 class CompiledKernelOf : public testing::TestWithParam<std::string> {};
 
@@ -192,9 +255,110 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
   }
 }
 
+// The same of motions: what is said of pivots, projection, reach and the next state; alone and in lanes.
+TEST_P(CompiledKernelOf, MovesWithTheSameBits) {
+  const Reference r(GetParam());
+  ASSERT_EQ(r.why, "");
+  for (const int lanes : {1, tiers().back().lanes}) {
+    const auto plain = r.plan(), compiled = r.plan();
+    ASSERT_TRUE(plain && compiled);
+    ASSERT_EQ(compiled->compile({}, lanes), compiler() ? "" : "there is no compiler beside the program");
+    Kernel a(plain, lanes), b(compiled, lanes);
+    int comparison = 0;
+    walk(r, {&a, &b}, [&] {
+      ++comparison;
+      for (int lane = 0; lane < lanes; ++lane) EXPECT_EQ(difference_of_motions(a, lane, b, lane), "") << "lane " << lane << " of " << lanes << ", " << comparison;
+    });
+  }
+}
+
+// A lane's motion has the bits of a motion alone.
+TEST_P(KernelOf, LanesMoveWithTheSameBits) {
+  const Reference r(GetParam());
+  ASSERT_EQ(r.why, "");
+  const auto plan = r.plan();
+  ASSERT_TRUE(plan);
+  for (const Tier& tier : tiers()) {
+    if (tier.lanes == 1) continue;
+    Kernel lanes(plan, tier.lanes, &tier);
+    std::vector<Kernel> alone;
+    for (int lane = 0; lane < tier.lanes; ++lane) {
+      Kernel& one = alone.emplace_back(plan, 1, &tier);
+      one.set_parameters(0, r.parameters);
+      one.place(0, start_of_lane(r, lane), r.start.leading);
+    }
+    std::vector<double> t(alone.size(), static_cast<double>(r.start.t));
+    bool begun = false;
+    walk(r, {&lanes}, [&] {
+      begun = !begun;
+      for (int lane = 0; lane < tier.lanes; ++lane) {
+        const auto at = static_cast<std::size_t>(lane);
+        Kernel& one = alone[at];
+        if (begun) {
+          one.set_time(0, t[at]);
+          one.begin();
+        } else {
+          const double h = one.reaches(0) ? std::min(one.reach(0), 0.25) : 0.01;
+          one.set_step(0, h);
+          t[at] += h;
+          one.advance();
+        }
+        // A lane is projected with others; where a motion has no value, that may leave other traces of it.
+        if (lane == 1) continue;
+        EXPECT_EQ(difference_of_motions(lanes, lane, one, 0), "") << tier.name << " lane " << lane;
+      }
+    });
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Model, KernelOf, testing::ValuesIn(shipped_except({kWithoutKernel})), [](const auto& p) { return test::test_name(p.param); });
 INSTANTIATE_TEST_SUITE_P(Model, CompiledKernelOf, testing::ValuesIn(shipped_except({kWithoutKernel, kNotCompiled})),
                          [](const auto& p) { return test::test_name(p.param); });
+
+// The start of the present expansion and of the one before are kept, whether the kernel went on from there or was told where to.
+TEST(Kernels, KeepTheirLastTwoStarts) {
+  const Reference r("zoo/chaplygin-sleigh");
+  ASSERT_EQ(r.why, "");
+  Kernel k(r.plan());
+  k.set_parameters(0, r.parameters);
+  std::vector<long double> leading;
+  const auto fetched = [&](Kernel::Moment m) {
+    std::vector<long double> state;
+    k.fetch(0, m, state, leading);
+    return state;
+  };
+  using enum Kernel::Moment;
+  std::vector<long double> last;
+  for (int step = 0; step < 5; ++step) {
+    if (step % 2 == 0) {
+      std::vector<long double> state = r.start.state;
+      for (long double& x : state) x += 0.125L * step;
+      k.place(0, state, r.start.leading);
+      EXPECT_EQ(fetched(now), state);
+    }
+    const std::vector<long double> start = fetched(now), guess = leading;
+    k.set_time(0, 0);
+    k.begin();
+    EXPECT_EQ(fetched(begun), start);
+    EXPECT_EQ(leading, guess);
+    if (!k.moved(0)) {
+      EXPECT_EQ(fetched(now), start);
+    }
+    if (step > 0) {
+      EXPECT_EQ(fetched(before), last);
+    }
+    last = start;
+    if (step % 4 == 3) continue;  // the expansion failed
+    k.set_step(0, 0.01);
+    const std::vector<long double> base = fetched(now);
+    k.advance();
+    EXPECT_NE(fetched(now), base);
+    EXPECT_EQ(fetched(begun), start);
+    std::vector<long double> made;
+    k.fetch_base(0, made);
+    EXPECT_EQ(made, base);
+  }
+}
 
 // The other direction: who is on a list belongs there, for the reason given.
 TEST(Kernels, AreMissingForTheseReasonsOnly) {

@@ -1,0 +1,164 @@
+// What motions need between expansions: where one begins, how well its pivots serve, how far its series reach, where the state goes on.
+#include <llvm/IR/Intrinsics.h>
+
+#include <limits>
+
+#include "jit/emitter.h"
+
+namespace anholon::jit {
+
+namespace {
+// The increments of few states are added as they are made; those of many are not worth a second copy of that code.
+constexpr std::size_t kFewStates = 32;
+}  // namespace
+
+llvm::Value* Emitter::larger(Value* a, Value* b) { return b_.CreateSelect(b_.CreateFCmpOLT(a, b), b, a); }
+llvm::Value* Emitter::smaller(Value* a, Value* b) { return b_.CreateSelect(b_.CreateFCmpOLT(b, a), b, a); }
+llvm::Value* Emitter::of_bits(Value* b) { return b_.CreateBitCast(b, lane_); }
+llvm::Value* Emitter::bits(Value* v) { return b_.CreateBitCast(v, lane_->getWithNewType(b_.getInt64Ty())); }
+llvm::Value* Emitter::pattern(std::uint64_t x) { return llvm::ConstantInt::get(lane_->getWithNewType(b_.getInt64Ty()), x); }
+llvm::Value* Emitter::magnitude(Value* v) { return b_.CreateIntrinsic(llvm::Intrinsic::fabs, {lane_}, {v}); }
+// What is multiplied by one is as it was.
+llvm::Value* Emitter::times(Value* v, double x) { return x == 1 ? v : b_.CreateFMul(v, number(x)); }
+llvm::Value* Emitter::coefficient_of(std::size_t j, int order) { return load(std::int64_t{p_.x[j]} + order); }
+double Emitter::factorial(int k) const { return k_.factorial[static_cast<std::size_t>(k)]; }
+
+void Emitter::begin_motion() {
+  begin("begin", 1);
+  std::int64_t high = 0, guess = 2 * std::int64_t{k_.state_size};
+  for (std::size_t j = 0; j < p_.x.size(); ++j)
+    for (int k = 0; k <= p_.d[j]; ++k)
+      store(times(load_from(function_->getArg(1), k < p_.d[j] ? high++ : guess++), k_.inverse_factorial[static_cast<std::size_t>(k)]), std::int64_t{p_.x[j]} + k);
+  end();
+}
+
+void Emitter::judge(const std::vector<Value*>& lu) {
+  Value *zero = number(0), *health = number(std::numeric_limits<double>::max()), *determinant = number(1), *invalid = zero;
+  std::int64_t inverse = k_.inverse_pivots;
+  for (const JudgedPivot& p : k_.judged) {
+    Value *ratio = b_.CreateFMul(lu[p.at - k_.lu], load(inverse++)), *size = magnitude(ratio);
+    health = b_.CreateSelect(b_.CreateFCmpOLT(size, health), size, health);
+    determinant = b_.CreateFMul(determinant, ratio);
+    invalid = b_.CreateFAdd(invalid, b_.CreateFSub(ratio, ratio));
+  }
+  store(b_.CreateSelect(b_.CreateFCmpOEQ(invalid, zero), health, zero), k_.found.health);
+  store(determinant, k_.found.determinant);
+  store(zero, k_.found.drift);
+  store(zero, k_.found.moved);
+}
+
+// Whether the solution displaces a state in any lane.
+llvm::Value* Emitter::displaced(int level) {
+  Value *one = number(1), *zero = number(0), *size = one, *most = zero;
+  for (std::size_t j = 0; j < p_.x.size(); ++j) {
+    const int k = p_.d[j] - level;
+    if (k < 0) continue;
+    size = larger(size, times(magnitude(coefficient_of(j, k)), factorial(k)));
+    most = larger(most, magnitude(solution_[j]));
+  }
+  Value *displacement = b_.CreateFDiv(most, size), *drift = load(k_.found.drift);
+  store(b_.CreateSelect(b_.CreateFCmpOLE(displacement, drift), drift, displacement), k_.found.drift);
+  Value* moves = b_.CreateFCmpOGT(displacement, number(kQuiet));
+  store(b_.CreateSelect(moves, one, zero), k_.found.weight);
+  store(b_.CreateSelect(moves, one, load(k_.found.moved)), k_.found.moved);
+  return lanes_ == 1 ? moves : b_.CreateOrReduce(moves);
+}
+
+void Emitter::measure() {
+  begin("measure");
+  const int order = p_.stages + 1;
+  Value *zero = number(0), *one = number(1), *last = zero, *before_last = zero, *pole = zero, *unfit = zero;
+  double factor = 1, factor_before = 1;
+  for (int k = 0; k < p_.largest_d; ++k) {
+    if (k > 0) factor *= order + k, factor_before *= order - 1 + k;
+    Value *size = one, *l = zero, *b = zero;
+    for (std::size_t j = 0; j < p_.x.size(); ++j) {
+      if (k >= p_.d[j]) continue;
+      size = larger(size, times(magnitude(coefficient_of(j, k)), factorial(k)));
+      l = larger(l, magnitude(coefficient_of(j, order + k)));
+      b = larger(b, magnitude(coefficient_of(j, order - 1 + k)));
+    }
+    Value* scale = b_.CreateFDiv(number(factor), size);
+    last = larger(last, b_.CreateFMul(l, scale));
+    before_last = larger(before_last, b_.CreateFMul(b, times(scale, factor_before / factor)));
+  }
+  bool poles = false;
+  for (std::size_t j = 0; j < p_.x.size(); ++j) {
+    Value* top = coefficient_of(j, p_.stages + p_.d[j]);
+    unfit = b_.CreateFAdd(unfit, b_.CreateFSub(top, top));
+    if (p_.d[j] > 0) continue;
+    Value *value = magnitude(coefficient_of(j, 0)), *relative = b_.CreateFMul(magnitude(top), b_.CreateFDiv(one, larger(one, value)));
+    pole = b_.CreateSelect(b_.CreateFCmpOGT(value, zero), larger(pole, relative), pole);
+    poles = true;
+  }
+  Value *margin = load(k_.margin), *most = smaller(reach(before_last, order - 1, margin), number(kFarthest));
+  if (poles) most = smaller(most, reach(pole, order - 1, number(-0.7 * kLog2e)));
+  store(exp2(smaller(most, reach(last, order, margin))), k_.found.reach);
+  store(unfit, k_.found.unfit);
+  end();
+}
+
+llvm::Value* Emitter::line(const double* c, Value* x) { return fma(number(c[1]), x, number(c[0])); }
+
+llvm::Value* Emitter::cubic(const double* c, Value* x) {
+  Value *high = line(c + 2, x), *square = b_.CreateFMul(x, x);
+  return fma(high, square, line(c, x));
+}
+
+llvm::Value* Emitter::reach(Value* weight, int by, Value* margin) {
+  Value* exponent = b_.CreateAShr(b_.CreateSub(bits(weight), pattern(kRootOfHalf)), pattern(52));
+  Value *u = b_.CreateFSub(of_bits(b_.CreateSub(bits(weight), b_.CreateShl(exponent, pattern(52)))), number(1)), *each = number(-1.0 / by);
+  Value* whole = fma(b_.CreateFSub(of_bits(b_.CreateAdd(exponent, bits(number(kInteger)))), number(kInteger)), each, margin);
+  return b_.CreateSelect(b_.CreateFCmpOGT(weight, number(0)), fma(cubic(kLog2, u), b_.CreateFMul(u, each), whole), number(kFarthest));
+}
+
+llvm::Value* Emitter::exp2(Value* x) {
+  Value *n = b_.CreateFAdd(x, number(kInteger)), *f = b_.CreateFSub(x, b_.CreateFSub(n, number(kInteger)));
+  return of_bits(b_.CreateAdd(bits(cubic(kExp2, f)), b_.CreateShl(b_.CreateSub(bits(n), bits(number(kInteger))), pattern(52))));
+}
+
+// An error of a sum, rounded to what a long double keeps of both.
+llvm::Value* Emitter::rest(Value* sum, Value* error) {
+  Value* grid = b_.CreateFMul(of_bits(b_.CreateAnd(bits(sum), pattern(0x7ff0000000000000ULL))), number(1.5 * 0x1p-11));
+  return b_.CreateFSub(b_.CreateFAdd(error, grid), grid);
+}
+
+// Over the step, by the increments.
+void Emitter::go_on() {
+  begin("go_on", 2);
+  std::vector<Value*> added;
+  if (k_.state_size <= kFewStates) {
+    added = increments();
+  } else {
+    b_.CreateCall(advance_, {w_});
+    for (std::uint32_t i = 0; i < k_.state_size + p_.x.size(); ++i) added.push_back(load(k_.increments + i));
+  }
+  Value *base = function_->getArg(1), *to = function_->getArg(2), *step = load(k_.step), *largest = number(0), *invalid = number(0);
+  const std::int64_t n = k_.state_size;
+  std::int64_t at = 0;
+  auto change = added.begin();
+  for (std::size_t j = 0; j < p_.x.size(); ++j) {
+    const int d = p_.d[j];
+    std::vector<Value*> high, low;
+    for (int k = 0; k < d; ++k) high.push_back(load_from(base, at + k)), low.push_back(load_from(base, n + at + k));
+    for (int k = 0; k < d; ++k, ++at) {
+      Value *s = b_.CreateFAdd(low[static_cast<std::size_t>(k)], *change++), *power = step;
+      for (int i = k + 1; i < d; ++i) {
+        const auto place = static_cast<std::size_t>(i);
+        s = fma(b_.CreateFAdd(b_.CreateFSub(high[place], times(coefficient_of(j, i), factorial(i))), low[place]), power, s);
+        if (i + 1 < d) power = b_.CreateFMul(power, times(step, k_.reciprocal_of[static_cast<std::size_t>(i - k + 1)]));
+      }
+      Value *h = high[static_cast<std::size_t>(k)], *sum = b_.CreateFAdd(h, s), *part = b_.CreateFSub(sum, h);
+      Value* error = b_.CreateFAdd(b_.CreateFSub(h, b_.CreateFSub(sum, part)), b_.CreateFSub(s, part));
+      store_to(sum, to, at);
+      store_to(rest(sum, error), to, n + at);
+      largest = larger(largest, magnitude(sum));
+      invalid = b_.CreateFAdd(invalid, b_.CreateFSub(sum, sum));
+    }
+    store_to(b_.CreateFAdd(times(coefficient_of(j, d), factorial(d)), *change++), to, 2 * n + static_cast<std::int64_t>(j));
+  }
+  store(b_.CreateFAdd(largest, invalid), k_.found.largest);
+  end();
+}
+
+}  // namespace anholon::jit
