@@ -28,7 +28,7 @@ def least_error(cells):
 
 def equal_error(system, peer, level):
     """Time of the peer over ours, where both have the error that the peer has at this tolerance; none: we do not get there."""
-    cell = system["cells"][peer].get(level)
+    cell = system["cells"].get(peer, {}).get(level)
     if not cell or "failed" in cell:
         return None
     ours = time_at(system["cells"]["own"], cell["error"])

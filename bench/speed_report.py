@@ -48,7 +48,7 @@ def goals_of(goals, systems):
     for what, titles, peer, levels in goals:
         there = [t for t in titles if t in systems]
         for level, least in levels.items():
-            found = {t: equal_error(systems[t], peer, level) for t in there if systems[t]["cells"][peer].get(level)}
+            found = {t: equal_error(systems[t], peer, level) for t in there if systems[t]["cells"].get(peer, {}).get(level)}
             if not found:
                 continue
             reached = [r for r in found.values() if r is not None]

@@ -77,7 +77,7 @@ bool same(double a, double b) { return a == b || (a != a && b != b); }
 // What two kernels say of a motion, in a lane of each: the first difference, or nothing.
 std::string difference_of_motions(const Kernel& a, int lane_a, const Kernel& b, int lane_b) {
   if (!same(a.pivots(lane_a).health, b.pivots(lane_b).health)) return "health";
-  if (a.pivots(lane_a).determinant != b.pivots(lane_b).determinant) return "determinant";
+  if (!same(a.pivots(lane_a).determinant, b.pivots(lane_b).determinant)) return "determinant";
   if (!same(a.drift(lane_a), b.drift(lane_b))) return "drift";
   if (a.moved(lane_a) != b.moved(lane_b)) return "moved";
   if (a.reaches(lane_a) != b.reaches(lane_b)) return "reaches";
