@@ -19,7 +19,7 @@ Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes)
 }
 
 void Emitter::run() {
-  if (k_.elimination->influences.empty() && k_.elimination->work() > kLongElimination) substitution();
+  if (k_.refine || (k_.elimination->influences.empty() && k_.elimination->work() > kLongElimination)) substitution();
   values();
   factor();
   lead();
@@ -136,6 +136,7 @@ void Emitter::factor() {
   for (std::size_t i = 0; i < p_.entries.size(); ++i) {
     Value* v = b_.CreateFMul(number(p_.entries[i].sign), load(p_.entries[i].from));
     lu[e.place[i]] = b_.CreateFAdd(at(e.place[i]), v);
+    if (k_.refine) store(v, k_.entries + static_cast<std::int64_t>(i));
   }
   std::vector<Value*> reciprocal(e.pivots.size(), nullptr);
   for (std::size_t k = 0; k < e.pivots.size(); ++k) {
@@ -220,14 +221,14 @@ void Emitter::solve() {
 }
 
 // Forward and backward, from side_ to solution_.
-void Emitter::substitute() {
+void Emitter::substitute(bool all_sides) {
   const SparseLu& e = *k_.elimination;
   for (Value*& v : side_)
     if (!v) v = number(0);
-  for (const SparseLu::Forward& f : e.forward) side_[f.to] = fma(b_.CreateFNeg(load(k_.lu + f.entry)), side_[f.from], side_[f.to]);
+  for (const SparseLu::Forward& f : all_sides ? e.forward_all : e.forward) side_[f.to] = fma(b_.CreateFNeg(load(k_.lu + f.entry)), side_[f.from], side_[f.to]);
   solution_.assign(p_.rows, nullptr);
   for (const SparseLu::Backward& back : e.backward) {
-    Value* s = back.zero_side ? number(0) : side_[back.row];
+    Value* s = back.zero_side && !all_sides ? number(0) : side_[back.row];
     for (std::uint32_t i = back.first; i < back.first + back.count; ++i) s = fma(b_.CreateFNeg(load(k_.lu + e.terms[i].entry)), solution_[e.terms[i].column], s);
     solution_[back.column] = e.pivots[back.pivot].one ? s : b_.CreateFMul(s, load(k_.reciprocal + back.pivot));
   }
@@ -239,7 +240,21 @@ void Emitter::substitution() {
   side_.clear();
   for (std::size_t i = 0; i < p_.roots.size(); ++i) side_.push_back(load(k_.side + static_cast<std::int64_t>(i)));
   side_.resize(p_.rows, nullptr);
+  std::vector<Value*> left = side_;
   substitute();
+  if (k_.refine) {
+    // For what the solution leaves of the sides.
+    const std::vector<Value*> first = solution_;
+    for (Value*& v : left)
+      if (!v) v = number(0);
+    for (std::size_t i = 0; i < p_.entries.size(); ++i) {
+      const Entry& entry = p_.entries[i];
+      left[entry.row] = fma(b_.CreateFNeg(load(k_.entries + static_cast<std::int64_t>(i))), first[entry.column], left[entry.row]);
+    }
+    side_ = left;
+    substitute(true);
+    for (std::uint32_t j = 0; j < p_.rows; ++j) solution_[j] = b_.CreateFAdd(first[j], solution_[j]);
+  }
   for (std::uint32_t j = 0; j < p_.rows; ++j)
     if (asked_[j]) store(solution_[j], k_.solution + j);
   end();

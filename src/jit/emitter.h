@@ -70,7 +70,7 @@ class Emitter {
   void side(std::size_t root);
   void sides();
   void solve();
-  void substitute();
+  void substitute(bool all_sides = false);
   void substitution();
   void complete();
   static std::vector<Convolution> convolutions(const Step& s);

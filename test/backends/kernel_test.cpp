@@ -19,11 +19,11 @@ constexpr int kStages = 12;
 
 // Shipped models without a kernel, and without machine code, and why.
 using Reasons = std::map<std::string, std::string>;
-constexpr const char *kNonlinear = "the leading derivatives enter nonlinearly", *kRefined = "solutions are refined", *kLooked = "tables are looked up",
+constexpr const char *kNonlinear = "the leading derivatives enter nonlinearly", *kLooked = "tables are looked up",
                      *kLarge = "it is too large to be compiled in a short time";
 const Reasons kWithoutKernel{{"zoo/constant-acceleration", kNonlinear}, {"zoo/constant-jerk", kNonlinear}, {"zoo/constant-jerk-central", kNonlinear},
                              {"zoo/rheonomic-order-2", kNonlinear}, {"zoo/rheonomic-order-3", kNonlinear}};
-const Reasons kNotCompiled{{"zoo/launcher", kLooked}, {"zoo/rattleback", kRefined}, {"zoo/spherical-robot", kLarge}, {"zoo/whipple", kLarge}};
+const Reasons kNotCompiled{{"zoo/launcher", kLooked}, {"zoo/whipple", kLarge}};
 
 std::vector<std::string> shipped_except(const std::vector<Reasons>& lists) {
   std::vector<std::string> names;
