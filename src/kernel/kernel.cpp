@@ -17,8 +17,8 @@ namespace {
 constexpr double kAround = 3.3;
 // An operation that waits for the one before costs so many that do not: measured on small systems and chains.
 constexpr double kWaiting = 5;
-// Operations of the code: more would be compiled for more than some five seconds.
-constexpr std::size_t kMostCompiled = 4500;
+// Steps of a stage, operations of the elimination: more would be compiled for more than some five seconds.
+constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 6000;
 // Solutions are refined where that changes them by more.
 constexpr double kRefined = 64 * 0x1p-53;
 
@@ -187,7 +187,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
   if (!module) return "there is no compiler beside the program";
   const SparseLu& e = elimination_;
   const std::size_t substitution = e.forward.size() + e.terms.size();
-  if (plan_.stage.size() + plan_.after.size() + e.update_list.size() + substitution * (tables_.refine ? 3 : 1) > kMostCompiled) return "it is too large to be compiled in a short time";
+  if (plan_.stage.size() + plan_.after.size() > kMostCompiled || e.update_list.size() + substitution * (tables_.refine ? 3 : 1) > kMostEliminated) return "it is too large to be compiled in a short time";
   for (const std::vector<Step>* list : {&plan_.point, &plan_.after})
     for (const Step& s : *list)
       if (s.act == Act::lookup) return "tables are looked up";

@@ -115,13 +115,16 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
   const Program& derived = first->program();
   // The stepper follows such roots by the slots of the derived tape.
   if (!first->plan().roots_of_even_powers.empty()) return list;
+  // Where few unknowns ask for refined solutions, J has rounded something away, and no writing is as good as another. The condition of a long chain asks
+  // for them in any writing, sooner or later.
+  const bool large = derived.unknowns() > kMostUnknowns;
   const auto add = [&](Writing writing, std::shared_ptr<const Program> p) {
     auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state) : nullptr;
-    if (plan && plan->tables().refine == first->tables().refine && plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
+    if (plan && (large || plan->tables().refine == first->tables().refine) && plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
       list.push_back({writing, std::move(plan)});
   };
-  if (!first->tables().refine) add(Writing::rates, left_to_series(e));
-  if (derived.unknowns() > kMostUnknowns) return list;
+  if (large || !first->tables().refine) add(Writing::rates, left_to_series(e));
+  if (large) return list;
   add(Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)));
   if (first->tables().refine) return list;
   if (effort >= WritingEffort::long_motion) add(Writing::expanded, rewritten(e, Writing::expanded));
