@@ -54,24 +54,23 @@ FormCost cost_of(const Scenario& s, const StateChoice& choice) {
   return cost;
 }
 
-FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& again, const StateChoice& choice) {
+FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& again, const StateChoice& choice, Costs costs) {
   FormChoice c;
   c.form = find_formulation("routh");
-  std::size_t unknowns = 0;
   const auto add = [&](const Formulation& form) {
     Scenario s;
     const Outcome o = make_scenario(again(), form, choice, s);
-    unknowns = s.system.size();
     if (o.ok() && regular_at_start(s).ok()) c.costs.push_back(cost_of(s, choice));
     else c.costs.push_back({&form, {}, 0, o.ok() ? "its equations are singular at the start" : o.message});
   };
-  add(*c.form);
   const Formulation& maggi = *find_formulation("maggi");
   const std::shared_ptr<const Model> model = again();
   if (model->constraints.empty()) c.why = "there are no constraints to eliminate";
-  else if (unknowns > kFewUnknowns) c.why = "with more than " + std::to_string(kFewUnknowns) + " unknowns the sparse equations with multipliers are the cheap ones";
-  else if (c.costs[0].writings.empty()) c.why = c.costs[0].why;
+  else if (model->coordinates.size() + model->constraints.size() + model->states.size() > kFewUnknowns) c.why = "with more than " + std::to_string(kFewUnknowns) + " unknowns the sparse equations with multipliers are the cheap ones";
   else if (const std::string no = obstacle(maggi, mechanics(*model)); !no.empty()) c.why = no;
+  if (!c.why.empty() && costs == Costs::where_needed) return c;
+  add(*c.form);
+  if (c.why.empty() && c.costs[0].writings.empty()) c.why = c.costs[0].why;
   if (!c.why.empty()) return c;
   try {
     add(maggi);

@@ -29,7 +29,9 @@ struct FormChoice {
   const Formulation* form = nullptr;
   std::string why;
 };
+// Counting takes longer than many a motion: it is left out where something else decides, unless it is to be shown.
+enum class Costs : std::uint8_t { where_needed, all };
 // `again`: the model, each time in a graph of its own, in which nothing else is made.
-FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& again, const StateChoice& choice);
+FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& again, const StateChoice& choice, Costs costs = Costs::where_needed);
 
 }  // namespace anholon

@@ -15,6 +15,8 @@ namespace {
 
 // Beyond these, as in chains, there are few pairs, and equations written out are longer than they were.
 constexpr std::size_t kMostUnknowns = 12, kMostNodes = 2000;
+// Beyond, a plan takes longer to make than it saves.
+constexpr std::size_t kMostRefined = 64;
 // Products of terms for one equation, a fraction of a millisecond.
 constexpr long kMostProducts = 4000;
 // Two writings of one equation agree to this, in relation to the largest coefficient of the order, or one of them loses digits.
@@ -123,7 +125,7 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
     if (plan && (large || plan->tables().refine == first->tables().refine) && plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
       list.push_back({writing, std::move(plan)});
   };
-  if (large || !first->tables().refine) add(Writing::rates, left_to_series(e));
+  if (!first->tables().refine || (large && derived.unknowns() <= kMostRefined)) add(Writing::rates, left_to_series(e));
   if (large) return list;
   add(Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)));
   if (first->tables().refine) return list;
