@@ -29,22 +29,22 @@ void shorten_squares(Sum& s, std::size_t kept, std::size_t other) {
   }
 }
 
-// All even powers of one generator in terms of the other: s^2 = 1 - c^2.
+// All even powers of one generator in terms of the other: s^2k = (1 - c^2)^k.
 Sum without_square(const Sum& s, std::size_t gone, std::size_t other) {
-  Sum done, pending = s;
-  while (!pending.empty()) {
-    auto node = pending.extract(pending.begin());
-    Exponents e = node.key();
-    if (e[gone] < 2) {
-      add(done, e, node.mapped());
-      continue;
+  Sum result;
+  for (const auto& [exponents, c] : s) {
+    const unsigned long k = exponents[gone] / 2;
+    Exponents e = exponents;
+    e[gone] -= 2 * k;
+    Rational binomial = c;
+    for (unsigned long i = 0; i <= k; ++i) {
+      add(result, e, binomial);
+      binomial *= Rational(-static_cast<long>(k - i));
+      binomial /= Rational(static_cast<long>(i + 1));
+      e[other] += 2;
     }
-    e[gone] -= 2;
-    add(pending, e, node.mapped());
-    e[other] += 2;
-    add(pending, e, -node.mapped());
   }
-  return done;
+  return result;
 }
 
 // cos a cos b + sin a sin b = cos(a - b) and its three sisters, for pairs of terms with equal cofactors.
