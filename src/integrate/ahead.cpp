@@ -33,7 +33,13 @@ void Stepper<N>::on_polynomial(const W& h, std::vector<W>& state, std::vector<W>
   if (by_kernel_) {
     settle();
     advance_kernel(h);
-    return advanced_by_kernel(h, expanded_ ? state_ : base_state_, state, leading);
+    if (!mapped()) return advanced_by_kernel(h, expanded_ ? state_ : base_state_, state, leading);
+    std::vector<W> own_base, own, own_leading;
+    fetch_own_base(own_base);
+    advanced_by_kernel(h, own_base, own, own_leading);
+    read(begun_[now_].t + h, own, state);
+    leading = leading_at_base();
+    return;
   }
   std::vector<W> increments;
   polynomial(h, increments, leading);

@@ -41,6 +41,9 @@ void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane) {
     alone_ = kernel_->lanes() == 1;
     kernel_->set_shrink(shrink());
     kink_series_.clear();
+    own_.clear();
+    // The roots of a kernel with unknowns of its own are its own, too: of what J keeps from zero.
+    if (mapped()) return;
     for (const auto& [slot, place] : kernel_->plan().plan().roots_of_even_powers) kink_series_.push_back({slot, place.at});
   } else {
     (void)kernel, (void)lane;
@@ -66,7 +69,15 @@ void Stepper<N>::load_kernel(const std::vector<W>& guess) {
       if (!carried_)
         for (std::size_t i = 0; i < state_.size(); ++i) state_[i] += std::exchange(carry_[i], W(0));
       carried_ = true;
-      kernel_->place(lane_, state_, guess);
+      if (!mapped()) {
+        kernel_->place(lane_, state_, guess);
+      } else {
+        if (own_.empty()) {
+          kernel_->reader(lane_).own(t_, state_, own_);
+          own_leading_.clear();
+        }
+        kernel_->place(lane_, own_, own_leading_);
+      }
       away_ = true;
     }
     kernel_->set_time(lane_, static_cast<double>(t_));
@@ -81,15 +92,51 @@ void Stepper<N>::settle() const {
   if constexpr (std::same_as<N, double>) {
     if (!away_) return;
     away_ = false;
-    kernel_->fetch(lane_, Kernel::Moment::now, state_, leading_);
-    if (expanded_) leading_ = leading_at_base();
-    else kernel_->fetch_base(lane_, base_state_);
+    if (mapped()) {
+      kernel_->fetch(lane_, Kernel::Moment::now, own_, own_leading_);
+      read(t_, own_, state_);
+    } else {
+      kernel_->fetch(lane_, Kernel::Moment::now, state_, leading_);
+    }
+    if (expanded_ || mapped()) leading_ = leading_at_base();
+    if (!expanded_) fetch_base(base_state_);
     for (const int i : {0, 1})
       if (StepperState<N>& b = begun_[i]; begun_by_kernel_[i]) {
-        kernel_->fetch(lane_, i == now_ ? Kernel::Moment::begun : Kernel::Moment::before, b.state, b.leading);
+        const Kernel::Moment moment = i == now_ ? Kernel::Moment::begun : Kernel::Moment::before;
+        if (mapped()) {
+          kernel_->fetch(lane_, moment, b.own, b.own_leading);
+          read(b.t, b.own, b.state);
+          b.leading.assign(program_->unknowns(), W(0));
+        } else {
+          kernel_->fetch(lane_, moment, b.state, b.leading);
+        }
         b.carry.assign(b.state.size(), W(0));
       }
   }
+}
+
+template <Number N>
+bool Stepper<N>::mapped() const {
+  return kernel_ && kernel_->plan().map();
+}
+
+template <Number N>
+void Stepper<N>::read(const W& t, const std::vector<W>& own, std::vector<W>& state) const {
+  if constexpr (std::same_as<N, double>) kernel_->reader(lane_).motion(t, own, state);
+}
+
+// Where the kernel's expansion was made.
+template <Number N>
+void Stepper<N>::fetch_own_base(std::vector<W>& own) const {
+  if constexpr (std::same_as<N, double>) kernel_->fetch_base(lane_, own);
+}
+
+template <Number N>
+void Stepper<N>::fetch_base(std::vector<W>& state) const {
+  if (!mapped()) return fetch_own_base(state);
+  std::vector<W> own;
+  fetch_own_base(own);
+  read(begun_[now_].t, own, state);
 }
 
 // The kernel has failed in the present expansion.
@@ -99,6 +146,7 @@ void Stepper<N>::settle_as_begun() {
     settle();
     state_ = begun_[now_].state;
     leading_ = begun_[now_].leading;
+    own_.clear();
   }
 }
 
@@ -107,8 +155,9 @@ template <Number N>
 void Stepper<N>::settle_at_base() {
   if constexpr (std::same_as<N, double>) {
     settle();
-    kernel_->fetch_base(lane_, state_);
+    fetch_base(state_);
     leading_ = leading_at_base();
+    own_.clear();
   }
 }
 
@@ -142,6 +191,8 @@ const Expansion<typename Stepper<N>::W>& Stepper<N>::point(bool values) const {
     settle();
     point_.load(begun_[now_].t, expanded_ ? state_ : base_state_, leading_at_base());
     point_loaded_ = true;
+    // The kernel knows no multipliers.
+    if (mapped() && point_.prepare().ok()) point_.solve();
   }
   if (values && !point_valued_) {
     point_.evaluate();
@@ -153,14 +204,24 @@ const Expansion<typename Stepper<N>::W>& Stepper<N>::point(bool values) const {
 template <Number N>
 std::vector<typename Stepper<N>::W> Stepper<N>::leading_at_base() const {
   std::vector<W> leading(program_->unknowns());
-  for (std::size_t j = 0; j < leading.size(); ++j) leading[j] = W(kernel_->derivative(j, program_->d[j], lane_));
+  for (std::size_t j = 0; j < leading.size(); ++j)
+    if (const auto own = kernel_unknown(j)) leading[j] = W(kernel_->derivative(*own, program_->d[j], lane_));
   return leading;
+}
+
+// Of the motion's unknown j; a kernel with unknowns of its own has no multipliers.
+template <Number N>
+std::optional<std::size_t> Stepper<N>::kernel_unknown(std::size_t j) const {
+  return mapped() ? kernel_->plan().map()->own(j, program_->unknowns()) : std::optional<std::size_t>(j);
 }
 
 template <Number N>
 N Stepper<N>::coefficient(std::size_t j, int k) const {
   if constexpr (std::same_as<N, double>)
-    if (by_kernel_) return kernel_->coefficient(j, k, lane_);
+    if (by_kernel_) {
+      const auto own = kernel_unknown(j);
+      return own && k <= kernel_->plan().plan().stages + kernel_->plan().plan().d[*own] ? kernel_->coefficient(*own, k, lane_) : 0;
+    }
   return expansion_.coefficient(j, k);
 }
 
@@ -177,11 +238,11 @@ void Stepper<N>::advance_kernel(const W& h) const {
   kernel_->change_over_step();
 }
 
-// The solution h beyond where the expansion was made. What the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
+// The solution h beyond where the expansion was made, in the unknowns of the kernel. What the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
 template <Number N>
 void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std::vector<W>& state, std::vector<W>& leading) const {
   if constexpr (std::same_as<N, double>) {
-    const Program& p = *program_;
+    const Program& p = kernel_->plan().program();
     const std::size_t stride = static_cast<std::size_t>(kernel_->lanes());
     const double *increment = kernel_->increments(lane_), *factorial = kernel_->plan().tables().factorial.data();
     state.resize(base.size());
@@ -223,7 +284,12 @@ void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std:
   template void Stepper<N>::settle_at_base();                                                 \
   template bool Stepper<N>::take_from_kernel();                                               \
   template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;                          \
-  template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;
+  template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;                         \
+  template std::optional<std::size_t> Stepper<N>::kernel_unknown(std::size_t) const;          \
+  template bool Stepper<N>::mapped() const;                                                   \
+  template void Stepper<N>::read(const W&, const std::vector<W>&, std::vector<W>&) const;     \
+  template void Stepper<N>::fetch_own_base(std::vector<W>&) const;                            \
+  template void Stepper<N>::fetch_base(std::vector<W>&) const;
 INSTANTIATE(double)
 INSTANTIATE(long double)
 INSTANTIATE(Quad)

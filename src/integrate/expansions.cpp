@@ -81,9 +81,11 @@ Outcome Stepper<N>::look_back() {
 template <Number N>
 void Stepper<N>::expand_again(const StepperState<N>& last) {
   const W t = t_;
-  const std::vector<W> state = state_, carry = carry_, leading = leading_;
+  const std::vector<W> state = state_, carry = carry_, leading = leading_, own = own_, own_leading = own_leading_;
   t_ = before_ = last.t;
   state_ = last.state;
+  own_ = last.own;
+  own_leading_ = last.own_leading;
   carry_ = last.carry;
   carried_ = false;
   expand_here(last.leading);
@@ -92,6 +94,8 @@ void Stepper<N>::expand_again(const StepperState<N>& last) {
   begun_[now_] = last;
   t_ = t;
   state_ = state;
+  own_ = own;
+  own_leading_ = own_leading;
   carry_ = carry;
   carried_ = false;
   leading_ = leading;
@@ -107,6 +111,7 @@ void Stepper<N>::note_begun(const std::vector<W>& guess) {
     b.state = state_;
     b.carry = carry_;
     b.leading = guess;
+    b.own.clear();
   }
   if (!integrals_.empty()) {
     b.integrals = integrals_;
@@ -127,6 +132,7 @@ template <Number N>
 Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
   begun_[now_].direction = expansion_.weakest_direction();
   begun_[now_].sides = events_.sides();
+  own_.clear();
   by_kernel_ = carried_ = false;
   point_loaded_ = point_valued_ = true;
   convert_all(state_, narrow_state_);

@@ -53,6 +53,7 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
   state_ = state;
   carry_.assign(state.size(), W(0));
   leading_ = leading;
+  own_.clear();
   integrals_.assign(program_->quadratures, W(0));
   integral_carry_ = integrals_;
   record_ = {};
@@ -86,6 +87,7 @@ Outcome Stepper<N>::restart(const std::vector<W>& state) {
   settle();
   before_ = t_;  // the last step's polynomial is not this state's
   state_ = state;
+  own_.clear();
   carry_.assign(state.size(), W(0));
   carried_ = false;
   events_.restart();
@@ -106,6 +108,7 @@ void Stepper<N>::adopt(const Stepper& other) {
   started_ = other.started_;
   t_ = before_ = other.t_;
   state_ = other.state_;
+  own_.clear();
   carry_ = other.carry_;
   carried_ = false;
   leading_ = other.leading_;
@@ -127,6 +130,8 @@ Outcome Stepper<N>::resume(const StepperState<N>& b) {
   record_ = b;
   sigma_ = b.sigma_before;
   state_ = b.state;
+  own_ = b.own;
+  own_leading_ = b.own_leading;
   carry_ = b.carry;
   carried_ = false;
   leading_ = b.leading;
@@ -276,6 +281,7 @@ bool Stepper<N>::finishes() {
   const W h = aimed_ - t_;
   record_.last_step = abs(h);
   record_.sigma_before = sigma_;
+  if (by_kernel_ && mapped()) away_ = true;  // whoever has read the state has left it as it was
   if (away_) {
     // So that a NaN is one, too.
     if (!(kernel_->largest(lane_) < kBlowUp)) return settle_at_base(), fail(blow_up());

@@ -59,6 +59,7 @@ struct StepperState : StepperRecord<N> {
   using W = Wider<N>;
   W t{0};
   std::vector<W> state, carry, leading, integrals, integral_carry;
+  std::vector<W> own, own_leading;  // the state and first guesses in the unknowns of a kernel that has its own, and has begun the expansion
   std::vector<N> direction;  // of the iteration for sigma
   std::vector<int> sides;    // of the series watched for events
 };
@@ -163,6 +164,11 @@ class Stepper {
   bool kernel_serves() const;
   void load_kernel(const std::vector<W>& guess);
   void settle() const;
+  bool mapped() const;
+  void read(const W& t, const std::vector<W>& own, std::vector<W>& state) const;
+  void fetch_own_base(std::vector<W>& own) const;
+  void fetch_base(std::vector<W>& state) const;
+  std::optional<std::size_t> kernel_unknown(std::size_t j) const;
   void settle_as_begun();
   void settle_at_base();
   bool take_from_kernel();
@@ -225,6 +231,7 @@ class Stepper {
   W started_{0}, t_{0}, before_{0};
   N horizon_{0};
   mutable std::vector<W> state_, leading_;
+  mutable std::vector<W> own_, own_leading_;  // the same in the unknowns of the kernel, where it has its own and state_ is from there; else empty
   std::vector<W> carry_, integrals_, integral_carry_;
   std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;
   StepperRecord<N> record_;

@@ -36,7 +36,7 @@ void Emitter::judge(const std::vector<Value*>& lu) {
   Value *zero = number(0), *health = number(std::numeric_limits<double>::max()), *determinant = number(1), *invalid = zero;
   std::int64_t inverse = k_.inverse_pivots;
   for (const JudgedPivot& p : k_.judged) {
-    Value *ratio = b_.CreateFMul(lu[p.at - k_.lu], load(inverse++)), *size = magnitude(ratio);
+    Value *ratio = b_.CreateFMul(p.at < k_.lu ? load(p.at) : lu[p.at - k_.lu], load(inverse++)), *size = magnitude(ratio);
     health = b_.CreateSelect(b_.CreateFCmpOLT(size, health), size, health);
     determinant = b_.CreateFMul(determinant, ratio);
     invalid = b_.CreateFAdd(invalid, b_.CreateFSub(ratio, ratio));
@@ -68,19 +68,21 @@ void Emitter::measure() {
   begin("measure");
   const int order = p_.stages + 1;
   Value *zero = number(0), *one = number(1), *last = zero, *before_last = zero, *pole = zero, *unfit = zero;
-  double factor = 1, factor_before = 1;
-  for (int k = 0; k < p_.largest_d; ++k) {
-    if (k > 0) factor *= order + k, factor_before *= order - 1 + k;
-    Value *size = one, *l = zero, *b = zero;
-    for (std::size_t j = 0; j < p_.x.size(); ++j) {
-      if (k >= p_.d[j]) continue;
-      size = larger(size, times(magnitude(coefficient_of(j, k)), factorial(k)));
-      l = larger(l, magnitude(coefficient_of(j, order + k)));
-      b = larger(b, magnitude(coefficient_of(j, order - 1 + k)));
+  for (const auto& [first, end] : {std::pair(std::size_t{0}, p_.apart), std::pair(p_.apart, p_.x.size())}) {
+    double factor = 1, factor_before = 1;
+    for (int k = 0; k < p_.largest_d && first < end; ++k) {
+      if (k > 0) factor *= order + k, factor_before *= order - 1 + k;
+      Value *size = one, *l = zero, *b = zero;
+      for (std::size_t j = first; j < end; ++j) {
+        if (k >= p_.d[j]) continue;
+        size = larger(size, times(magnitude(coefficient_of(j, k)), factorial(k)));
+        l = larger(l, magnitude(coefficient_of(j, order + k)));
+        b = larger(b, magnitude(coefficient_of(j, order - 1 + k)));
+      }
+      Value* scale = b_.CreateFDiv(number(factor), size);
+      last = larger(last, b_.CreateFMul(l, scale));
+      before_last = larger(before_last, b_.CreateFMul(b, times(scale, factor_before / factor)));
     }
-    Value* scale = b_.CreateFDiv(number(factor), size);
-    last = larger(last, b_.CreateFMul(l, scale));
-    before_last = larger(before_last, b_.CreateFMul(b, times(scale, factor_before / factor)));
   }
   bool poles = false;
   for (std::size_t j = 0; j < p_.x.size(); ++j) {

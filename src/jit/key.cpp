@@ -95,10 +95,10 @@ void Writer::add(const Findings& found) {
 }
 
 void Writer::add(const Plan& plan) {
-  // What roots of even powers are is for whoever chooses steps.
+  // What roots of even powers are is for whoever chooses steps; the determinant is among what is judged.
   [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures,
-                                roots_of_even_powers, rows, largest_lead, largest_d, c, d] = plan;
-  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, rows, largest_lead, largest_d, c, d);
+                                roots_of_even_powers, rows, largest_lead, largest_d, c, d, apart, determinant] = plan;
+  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, rows, largest_lead, largest_d, c, d, apart);
 }
 
 void Writer::add(const SparseLu& elimination) {

@@ -61,7 +61,9 @@ const std::vector<Tier>& tiers() {
   return list;
 }
 
-KernelPlan::KernelPlan(std::shared_ptr<const Program> program, int stages) : program_(std::move(program)), plan_(anholon::plan(*program_, stages)) {
+KernelPlan::KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages)
+    : program_(std::move(program)), map_(std::move(map)), plan_(anholon::plan(*program_, stages, judged)) {
+  if (map_) plan_.apart = plan_.x.size() - map_->velocities();
   for (int d : plan_.d) tables_.state_size += static_cast<std::uint32_t>(d);
   levels_ = *std::max_element(plan_.c.begin(), plan_.c.end());
   tables_.plan = &plan_;
@@ -107,7 +109,7 @@ void KernelPlan::lay_out() {
   for (std::uint32_t& place : tables_.motions) place = take(tables_.motion_size());
   tables_.projected = take(2 * tables_.state_size);
   tables_.margin = take(1);
-  tables_.inverse_pivots = take(static_cast<std::uint32_t>(elimination_.pivots.size()));
+  tables_.inverse_pivots = take(static_cast<std::uint32_t>(elimination_.pivots.size()) + (plan_.determinant ? 1 : 0));
   Findings& f = tables_.found;
   for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest}) *place = take(1);
   tables_.size = even(at);
@@ -115,8 +117,19 @@ void KernelPlan::lay_out() {
 
 std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
                                                    const std::vector<double>& state) {
+  return make(std::move(program), nullptr, false, stages, parameters, t, state);
+}
+
+std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages,
+                                                   const std::vector<long double>& parameters, double t, const std::vector<double>& motion) {
   if (!no_plan(*program).empty()) return nullptr;
-  std::shared_ptr<KernelPlan> p(new KernelPlan(std::move(program), stages));
+  std::vector<double> state = motion;
+  if (map) {
+    std::vector<long double> own;
+    StateReader(*map, parameters).own(t, {motion.begin(), motion.end()}, own);
+    state.assign(own.begin(), own.end());
+  }
+  std::shared_ptr<KernelPlan> p(new KernelPlan(std::move(program), std::move(map), judged, stages));
   // Whether solutions need a second look is seen at the state itself.
   p->tables_.refine = true;
   if (!p->choose_pivots(parameters, t, state)) return nullptr;
@@ -141,6 +154,7 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   std::copy(coefficients.begin(), coefficients.end(), arena.begin());
   const std::unique_ptr<Arithmetic> arithmetic = tier_plain.make(tables_, arena.data(), 1);
   std::size_t samples = 0;
+  double determinant = 1;
   for (std::uint64_t attempt = 0; attempt < 3 * kSamples && samples < kSamples; ++attempt) {
     std::size_t i = 0;
     for (std::size_t j = 0; j < plan_.d.size(); ++j) {
@@ -159,6 +173,7 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
     }
     if (good) ++samples;
     else if (attempt == 0) return false;
+    if (attempt == 0 && plan_.determinant) determinant = arena[plan_.determinant->at];
   }
   std::vector<bool> needed(plan_.rows, tables_.refine);
   for (std::size_t j = 0; j < plan_.d.size(); ++j) needed[j] = true;
@@ -176,6 +191,7 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   tables_.judged.clear();
   for (const SparseLu::Pivot& p : elimination_.pivots)
     if (!p.one && !p.minus_one) tables_.judged.push_back({tables_.lu + p.entry, 1 / p.value[0]});
+  if (plan_.determinant) tables_.judged.push_back({plan_.determinant->at, 1 / determinant});
   waits_ = latency(plan_, elimination_);
   return !elimination_.pivots.empty();
 }
@@ -228,6 +244,9 @@ void Kernel::set_shrink(double shrink) { set_all(plan_->tables().margin, -(shrin
 void Kernel::set_parameters(int lane, const std::vector<long double>& parameters) {
   const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters);
   for (std::size_t i = 0; i < values.size(); ++i) number(static_cast<std::uint32_t>(i), lane) = values[i];
+  if (!plan_->map()) return;
+  while (readers_.size() < static_cast<std::size_t>(lanes_)) readers_.emplace_back(*plan_->map(), parameters);
+  readers_[static_cast<std::size_t>(lane)] = StateReader(*plan_->map(), parameters);
 }
 
 bool Kernel::expand(const Code* code, bool projected) {

@@ -10,6 +10,7 @@
 
 #include "kernel/code.h"
 #include "kernel/pivots.h"
+#include "kernel/state_map.h"
 
 namespace anholon {
 
@@ -18,6 +19,9 @@ class KernelPlan {
   // `state`: where the pivots are chosen, and around it. Nothing if the program has no plan, or the equations are singular there.
   static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
                                                 const std::vector<double>& state);
+  // Of a program for other unknowns than those of the motion; `judged`: its last quadrature is the determinant of the motion's J, up to a factor.
+  static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages,
+                                                const std::vector<long double>& parameters, double t, const std::vector<double>& state);
   KernelPlan(const KernelPlan&) = delete;
   KernelPlan& operator=(const KernelPlan&) = delete;
 
@@ -26,6 +30,8 @@ class KernelPlan {
   const KernelTables& tables() const { return tables_; }
   const Program& program() const { return *program_; }
   std::size_t state_size() const { return tables_.state_size; }
+  // To the state of the motion, where the kernel has unknowns of its own; else null.
+  const StateMap* map() const { return map_.get(); }
   int waits() const { return waits_; }
   double cost_alone() const;
   int levels() const { return levels_; }  // of hidden constraints
@@ -42,11 +48,12 @@ class KernelPlan {
   double work() const { return plan_.work() + elimination_.work() * (plan_.stages + 2) + static_cast<double>(elimination_.update_list.size()); }
 
  private:
-  KernelPlan(std::shared_ptr<const Program> program, int stages);
+  KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages);
   bool choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state);
   void lay_out();
 
   std::shared_ptr<const Program> program_;
+  std::shared_ptr<const StateMap> map_;
   Plan plan_;
   SparseLu elimination_;
   KernelTables tables_;
@@ -67,6 +74,8 @@ class Kernel {
   int lanes() const { return lanes_; }
   const KernelPlan& plan() const { return *plan_; }
   void set_parameters(int lane, const std::vector<long double>& parameters);
+  // Between the kernel's state and that of the motion, with the parameters of a lane; where the plan has a map.
+  StateReader& reader(int lane) { return readers_[static_cast<std::size_t>(lane)]; }
   // A state for `expand`: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
   template <class State>
   void load(int lane, double t, const std::vector<State>& state, const std::vector<State>& leading) {
@@ -152,6 +161,7 @@ class Kernel {
   std::unique_ptr<double[], Free> memory_;
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
+  std::vector<StateReader> readers_;
   // Places of motions (KernelTables): where the next expansion begins, the present one was begun, the one before; where that was made.
   std::uint32_t next_, begun_, before_, base_;
   bool gone_on_ = true;  // or placed, since the present one was made

@@ -16,9 +16,10 @@ constexpr int kHighestOrder = 12;
 
 class Planner {
  public:
-  Planner(const Program& p, int stages) : p_(p), tape_(p.tape), code_(tape_.code), slots_(p), stages_(stages) {}
+  Planner(const Program& p, int stages, bool judged) : p_(p), tape_(p.tape), code_(tape_.code), slots_(p), stages_(stages), judged_(judged) {}
 
   Plan run() {
+    if (judged_) find_values_only();
     lay_out();
     emit();
     linearize();
@@ -86,7 +87,23 @@ class Planner {
 
   Place at(std::uint32_t s) const { return place_[slots_.same_as(s)]; }
 
-  std::vector<Step>& list(std::uint32_t s, bool beyond) { return !slots_.in_main(s) ? plan_.after : beyond ? plan_.stage : plan_.point; }
+  std::vector<Step>& list(std::uint32_t s, bool beyond) { return !slots_.in_main(s) && !value_only(s) ? plan_.after : beyond ? plan_.stage : plan_.point; }
+  bool value_only(std::uint32_t s) const { return judged_ && value_only_[s]; }
+
+  // What only the last root needs, of which nothing is asked but its value.
+  void find_values_only() {
+    value_only_.assign(code_.size(), true);
+    std::fill(value_only_.begin(), value_only_.begin() + tape_.main_end, false);
+    for (std::size_t i = p_.unknowns(); i + 1 < tape_.roots.size(); ++i) value_only_[slots_.same_as(tape_.roots[i])] = false;
+    for (std::uint32_t s = static_cast<std::uint32_t>(code_.size()); s-- > 0;)
+      if (!value_only_[s] && slots_.live[s] && !code_[s].constant) {
+        for (const std::uint32_t o : slots_.operands(s)) value_only_[o] = false;
+        for (const Slots::Summand& t : slots_.sums[s])
+          if (t.slot != kNone) value_only_[t.slot] = false;
+      }
+    for (const auto& [sine, cosine] : slots_.cosine_of)
+      if (!value_only_[sine] || !value_only_[cosine]) value_only_[sine] = value_only_[cosine] = false;
+  }
 
   // The series j a_j.
   Place weighted(std::uint32_t a, bool after) {
@@ -99,7 +116,7 @@ class Planner {
     w.out = it->second;
     w.a = place_[a];
     if (after) {
-      plan_.after.push_back(w);
+      if (!value_only(a)) plan_.after.push_back(w);
     } else {
       plan_.point.push_back(w);
       if (!(slots_.tainted[a] && slots_.pure[a])) plan_.stage.push_back(w);
@@ -324,6 +341,11 @@ class Planner {
     }
     std::stable_sort(plan_.sides.begin(), plan_.sides.end(), [&](std::uint32_t i, std::uint32_t j) { return depth[i] < depth[j]; });
     for (std::size_t i = p_.unknowns(); i < tape_.roots.size(); ++i) plan_.quadratures.push_back(place_[slots_.same_as(tape_.roots[i])]);
+    plan_.apart = p_.unknowns();
+    if (judged_) {
+      plan_.determinant = plan_.quadratures.back();
+      plan_.quadratures.pop_back();
+    }
   }
 
   void finish() {
@@ -345,6 +367,8 @@ class Planner {
   const std::vector<Instruction>& code_;
   const Slots slots_;
   int stages_;
+  bool judged_;
+  std::vector<bool> value_only_;
   Plan plan_;
   std::vector<int> depth_;
   std::vector<Place> place_;
@@ -367,9 +391,9 @@ std::string no_plan(const Program& p) {
   return {};
 }
 
-Plan plan(const Program& program, int stages) {
+Plan plan(const Program& program, int stages, bool judged) {
   ANHOLON_ASSERT(no_plan(program).empty());
-  return Planner(program, stages).run();
+  return Planner(program, stages, judged).run();
 }
 
 std::vector<double> coefficient_values(const Plan& plan, const Program& program, const std::vector<long double>& parameters) {

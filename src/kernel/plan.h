@@ -9,6 +9,7 @@
 //     LU (sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "program/program.h"
@@ -109,6 +110,8 @@ struct Plan {
   std::uint32_t rows = 0;             // of the linearized tape
   int largest_lead = 0, largest_d = 0;
   std::vector<int> c, d;
+  std::size_t apart = 0;              // the unknowns from here on are measured against their own size when a step is chosen
+  std::optional<Place> determinant;   // to be judged with the pivots
 
   // For choices of representation: multiplications and additions of one expansion (without the elimination).
   double work() const;
@@ -117,7 +120,8 @@ struct Plan {
 // Why a program has no plan, or nothing.
 std::string no_plan(const Program& program);
 // REQUIRES: no_plan(program).empty()
-Plan plan(const Program& program, int stages);
+// `judged`: the last quadrature is the plan's `determinant`, known at the point of expansion only.
+Plan plan(const Program& program, int stages, bool judged = false);
 
 // The coefficients' values; the slots' in long double, rounded once.
 std::vector<double> coefficient_values(const Plan& plan, const Program& program, const std::vector<long double>& parameters);

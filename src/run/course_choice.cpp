@@ -59,7 +59,7 @@ void Course<N>::make_plans() {
     planned_ = equations;
     const MotionPoint from = here();
     const auto plan = [&](int stages) {
-      return KernelPlan::make(program_of(motion_.plan(), motion_.program()), stages, motion_.parameters(), static_cast<double>(from.t),
+      return KernelPlan::make(program_of(motion_.unmapped_plan(), motion_.program()), stages, motion_.parameters(), static_cast<double>(from.t),
                               {from.state.begin(), from.state.end()});
     };
     plan_ = settings_.kernel ? plan(0) : nullptr;

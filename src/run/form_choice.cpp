@@ -43,7 +43,7 @@ FormCost cost_of(const Scenario& s, const StateChoice& choice) {
   const bool stays = s.elimination.pivots().empty();
   for (const Representation& r : representations(equations, stays ? WritingEffort::very_long_motion : WritingEffort::at_once)) cost.writings.push_back({r.writing, work_of(*r.plan), {}});
   // The writings of less effort come first.
-  const std::size_t known[] = {3, 4, 5};
+  const std::size_t known[] = {4, 5, 6};
   for (const WritingEffort effort : kWritingEfforts) {
     WritingCost* best = nullptr;
     for (WritingCost& w : cost.writings)

@@ -28,26 +28,26 @@ Outcome Motion<N>::start(const StateChoice& choice) {
 
 // Pivots are chosen at the start of the whole motion, so that a run that goes on has the same.
 template <Number N>
-Writing Motion<N>::accelerate(Leg& leg) const {
+void Motion<N>::accelerate(Leg& leg) const {
   if constexpr (std::same_as<N, double>) {
     // Whoever asks for the last digits gets them from the reference, whose state is wider: an angle that has turned often keeps its sine.
     constexpr double kLastDigits = -33.8;  // ln 2e-15
-    if (!settings_.kernel || settings_.log_tolerance < kLastDigits || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return Writing::derived;
+    if (!settings_.kernel || settings_.log_tolerance < kLastDigits || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return;
     std::vector<double> state;
     for (const W& x : start_.state) state.push_back(to_double(x));
     const double t = to_double(start_.t);
     const auto derived = KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, t, state);
     leg.stepper.accelerate(derived);
-    if (!leg.stepper.accelerated()) return Writing::derived;
+    if (!leg.stepper.accelerated()) return;
     const std::vector<Expr> quadratures = with_events();
     const std::vector<Representation> list = representations({derived, leg.structure, quadratures, parameters_, t, state, s_.mechanics.get()}, effort_);
     const Representation& best = cheapest(list);
     if (best.plan != derived) leg.stepper.accelerate(best.plan);
     leg.plan = best.plan;
-    return best.writing;
+    leg.unmapped_plan = cheapest_unmapped(list).plan;
+    leg.writing = best.writing;
   } else {
     (void)leg;
-    return Writing::derived;
   }
 }
 
@@ -59,7 +59,8 @@ void Motion<N>::write_anew() {
   if (effort == effort_ || pivots_ || !leg_->stepper.accelerated()) return;
   effort_ = effort;
   auto next = std::make_unique<Leg>(*this, leg_->system, leg_->structure);
-  if (accelerate(*next) <= Writing::rates || !next->stepper.take_over(leg_->stepper).ok()) return;
+  accelerate(*next);
+  if (next->writing == leg_->writing || !next->stepper.take_over(leg_->stepper).ok()) return;
   leg_ = std::move(next);
   mark_ = {choices_.size(), chosen_};
   begun_parameters_ = parameters_;
@@ -188,6 +189,8 @@ void Motion<N>::save(SavedRun& to) const {
   to.set_numbers("state", b.state);
   to.set_numbers("carry", b.carry);
   to.set_numbers("leading", b.leading);
+  to.set_numbers("own", b.own);
+  to.set_numbers("own_leading", b.own_leading);
   to.set_numbers("integrals", b.integrals);
   to.set_numbers("integral_carry", b.integral_carry);
   to.set_numbers<W>("stepper", {b.branch_step, b.worst_constraint, b.worst_equation, b.smallest_sigma_t, b.last_step});
@@ -258,6 +261,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   b.carry = from.numbers<W>("carry", size);
   b.leading = from.numbers<W>("leading");
   if (!b.leading.empty() && b.leading.size() != p.unknowns()) SavedRun::unfit("leading");
+  b.own = from.numbers<W>("own");
+  b.own_leading = from.numbers<W>("own_leading");
   b.integrals = from.numbers<W>("integrals", p.quadratures);
   b.integral_carry = from.numbers<W>("integral_carry", p.quadratures);
   b.branch_step = more[0];

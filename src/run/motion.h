@@ -61,6 +61,8 @@ class Motion {
   // For another method (run/course.h): the plan of the kernel, if there is one; whether other coordinates should be eliminated at a point; Taylor
   // steps from where it has come to.
   const std::shared_ptr<const KernelPlan>& plan() const { return leg_->plan; }
+  // The same in the motion's unknowns, for other methods.
+  const std::shared_ptr<const KernelPlan>& unmapped_plan() const { return leg_->unmapped_plan; }
   bool pivot_is_small(const Expansion<W>& at);
   Outcome go_on(const StepperState<N>& from) { return leg_->stepper.resume(from); }
 
@@ -74,6 +76,8 @@ class Motion {
     Stepper<N> stepper;
     Expansion<W> point;
     std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
+    std::shared_ptr<const KernelPlan> unmapped_plan;
+    Writing writing = Writing::derived;
   };
 
   // Every choice of dependent coordinates on the way. The graph grows with each of them, and the order of its nodes decides
@@ -90,7 +94,7 @@ class Motion {
 
   void watch_pivots(const Elimination& e);
   InitialState<double> here() const;
-  Writing accelerate(Leg& leg) const;
+  void accelerate(Leg& leg) const;
   void write_anew();
   std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
   bool eliminate_again();

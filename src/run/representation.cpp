@@ -8,6 +8,7 @@
 #include "expr/copy.h"
 #include "expr/normal.h"
 #include "system/by_rates.h"
+#include "system/quasi_velocities.h"
 
 namespace anholon {
 
@@ -76,22 +77,59 @@ std::shared_ptr<const Program> left_to_series(const ToRepresent& e) {
   return {r, &r->program};
 }
 
+// What the derived system knows of a symbol at the start.
+double value_at_start(const ToRepresent& e, const Node& n) {
+  const Program& p = e.derived->program();
+  if (n.kind == Kind::time) return e.t;
+  if (n.kind == Kind::parameter) return static_cast<double>(e.parameters[n.index]);
+  std::size_t at = 0, j = n.kind == Kind::state ? p.system->mechanical() + n.index : n.index;
+  if ((n.kind != Kind::state && n.kind != Kind::jet) || j >= p.unknowns() || n.order >= p.d[j]) return 0;
+  for (std::size_t i = 0; i < j; ++i) at += static_cast<std::size_t>(p.d[i]);
+  return e.state[at + n.order];
+}
+
+// Where accelerations and multipliers are all that is solved for.
+std::shared_ptr<const KernelPlan> in_quasi_velocities(const ToRepresent& e) {
+  const Program& derived = e.derived->program();
+  const System& s = *derived.system;
+  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty()) return nullptr;
+  for (std::size_t j = 0; j < derived.unknowns(); ++j)
+    if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return nullptr;
+  std::optional<QuasiVelocities> q = quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });
+  if (!q) return nullptr;
+  const bool judged = !is_number(q->determinant);
+  if (judged) q->others.push_back(q->determinant);
+  auto map = std::make_shared<const StateMap>(*q);
+  auto r = std::make_shared<Rewritten>(Rewritten{std::move(q->system), {}});
+  Structure first_order;
+  first_order.c.assign(r->system.size(), 0);
+  first_order.d.assign(r->system.size(), 1);
+  r->program = program(r->system, first_order, q->others, true);
+  return KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t, e.state);
+}
+
 // Largest difference of two expansions at one state, order by order.
 double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b) {
   Kernel one(a), other(b);
   for (Kernel* k : {&one, &other}) {
     k->set_parameters(0, e.parameters);
-    k->load(0, e.t, e.state, std::vector<double>(a->plan().d.size(), 0.0));
+    std::vector<long double> state(e.state.begin(), e.state.end()), own;
+    if (k->plan().map()) k->reader(0).own(e.t, state, own);
+    else own = state;
+    k->load<long double>(0, e.t, own, {});
     k->expand();
     if (!k->finite(0)) return std::numeric_limits<double>::infinity();
   }
   double worst = 0;
+  const std::size_t unknowns = a->plan().d.size();
   for (int k = 0; k <= a->plan().stages; ++k) {
     double size = 1e-9, off = 0;
-    for (std::size_t j = 0; j < a->plan().d.size(); ++j) {
-      const int order = k + a->plan().d[j];
+    for (std::size_t j = 0; j < unknowns; ++j) {
+      const auto of_other = b->map() ? b->map()->own(j, unknowns) : std::optional<std::size_t>(j);
+      if (!of_other) continue;
+      const int order = k + b->plan().d[*of_other];
       size = std::max(size, std::abs(one.coefficient(j, order)));
-      off = std::max(off, std::abs(one.coefficient(j, order) - other.coefficient(j, order)));
+      off = std::max(off, std::abs(one.coefficient(j, order) - other.coefficient(*of_other, order)));
     }
     worst = std::max(worst, off / size);
   }
@@ -105,6 +143,7 @@ const char* name(Writing writing) {
     case Writing::derived: return "derived";
     case Writing::paired: return "paired";
     case Writing::rates: return "rates";
+    case Writing::quasi: return "quasi";
     case Writing::expanded: return "expanded";
     case Writing::arranged: return "arranged";
   }
@@ -126,6 +165,8 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
       list.push_back({writing, std::move(plan)});
   };
   if (!first->tables().refine || (large && derived.unknowns() <= kMostRefined)) add(Writing::rates, left_to_series(e));
+  if (!first->tables().refine)
+    if (auto plan = in_quasi_velocities(e); plan && difference(e, first, plan) < kAgree) list.push_back({Writing::quasi, std::move(plan)});
   if (large) return list;
   add(Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)));
   if (first->tables().refine) return list;
@@ -152,6 +193,11 @@ WritingEffort effort_after(std::size_t steps) {
 
 const Representation& cheapest(const std::vector<Representation>& list, bool alone) {
   const auto cost = [&](const Representation& r) { return alone ? r.plan->cost_alone() : r.plan->work(); };
+  return *std::min_element(list.begin(), list.end(), [&](const Representation& a, const Representation& b) { return cost(a) < cost(b); });
+}
+
+const Representation& cheapest_unmapped(const std::vector<Representation>& list) {
+  const auto cost = [](const Representation& r) { return r.plan->map() ? std::numeric_limits<double>::infinity() : r.plan->cost_alone(); };
   return *std::min_element(list.begin(), list.end(), [&](const Representation& a, const Representation& b) { return cost(a) < cost(b); });
 }
 

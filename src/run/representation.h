@@ -12,6 +12,7 @@ enum class Writing : std::uint8_t {
   derived,   // as the form gave them
   paired,    // with products of common pairs (tape.h)
   rates,     // total derivatives left to the series (by_rates.h), paired
+  quasi,     // in quasi-velocities (quasi_velocities.h), paired: the kernel has unknowns of its own
   expanded,  // as reduced sums of monomials, paired
   arranged,  // common factors in front, paired
 };
@@ -35,7 +36,7 @@ struct ToRepresent {
 
 // What a motion puts into its writing grows with its length: the steps saved have to pay for it.
 enum class WritingEffort : std::uint8_t {
-  at_once,  // paired, rates
+  at_once,  // paired, rates, quasi
   long_motion,
   very_long_motion,  // arranged
 };
@@ -49,6 +50,8 @@ WritingEffort effort_after(std::size_t steps);
 std::vector<Representation> representations(const ToRepresent& equations, WritingEffort effort);
 // The first of the cheapest, for a motion alone or many side by side in lanes.
 const Representation& cheapest(const std::vector<Representation>& list, bool alone = true);
+// … of those in the motion's own unknowns.
+const Representation& cheapest_unmapped(const std::vector<Representation>& list);
 
 // Operations of one expansion, by kind.
 struct ExpansionWork {

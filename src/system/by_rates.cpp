@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "expr/copy.h"
+#include "system/copied_mechanics.h"
 
 namespace anholon {
 
@@ -19,57 +19,9 @@ bool is_symbol(Expr e) {
   return k == Kind::jet || k == Kind::number || k == Kind::parameter;
 }
 
-// What the equations are made of, copied to the graph where they are made.
-struct Copied {
-  struct Point {
-    Expr weight, speed2;
-    Vector place;
-    bool of_mass;
-  };
-  std::vector<Point> points;
-  Column forces, constraints, state_rates, others;
-  std::shared_ptr<Model> model;  // names, masses and inputs
-};
-
-Copied copied(const Mechanics& m, const System& derived, std::span<const Expr> others) {
-  const Model& from = *m.model;
-  Copied c;
-  c.model = std::make_shared<Model>();
-  c.model->graph = std::make_shared<Graph>();
-  c.model->names = from.names;
-  c.model->names.defined.clear();
-  c.model->coordinates = from.coordinates;
-  c.model->masses = from.masses;
-  c.model->controls = from.controls;
-  Column all;
-  const auto visit = [&](const auto& each) {
-    for (std::size_t i = 0; i < m.points.size(); ++i) {
-      const WeightedPoint& p = m.points[i];
-      if (c.points.size() <= i) c.points.push_back({p.weight, p.speed2, p.place, p.uniform_field});
-      for (Expr* e : {&c.points[i].weight, &c.points[i].speed2, &c.points[i].place.x, &c.points[i].place.y, &c.points[i].place.z}) each(*e);
-    }
-    for (Expr& e : c.forces) each(e);
-    for (Expr& e : c.constraints) each(e);
-    for (Expr& e : c.state_rates) each(e);
-    for (Expr& e : c.others) each(e);
-    for (VaryingMass& v : c.model->masses) each(v.value);
-    for (Control& u : c.model->controls)
-      if (u.value) each(*u.value);
-  };
-  c.forces = forces(m);
-  for (std::size_t r : derived.constraints) c.constraints.push_back(m.phi[r]);
-  for (const StateVariable& z : from.states) c.state_rates.push_back(z.rate);
-  c.others.assign(others.begin(), others.end());
-  visit([&](Expr& e) { all.push_back(e); });
-  const Column images = anholon::copied(all, *c.model->graph);
-  std::size_t i = 0;
-  visit([&](Expr& e) { e = images[i++]; });
-  return c;
-}
-
 class Writer {
  public:
-  Writer(const System& derived, const Mechanics& m, std::span<const Expr> others) : derived_(derived), m_(m), c_(copied(m, derived, others)), g_(*c_.model->graph) {}
+  Writer(const System& derived, const Mechanics& m, std::span<const Expr> others) : derived_(derived), m_(m), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph) {}
 
   ByRates run() {
     const std::size_t n = derived_.coordinates;
@@ -116,7 +68,7 @@ class Writer {
   // T with the velocities of mass centres by their places, as far as that is worth a series; what remains is held.
   Expr kinetic_energy() {
     std::vector<std::pair<Rational, Expr>> held;
-    for (const Copied::Point& p : c_.points) {
+    for (const CopiedMechanics::Point& p : c_.points) {
       if (!p.of_mass || !depends_on_place(p.speed2)) {
         held.push_back({Rational(1, 2), p.weight * p.speed2});
         continue;
@@ -190,7 +142,7 @@ class Writer {
 
   const System& derived_;
   const Mechanics& m_;
-  Copied c_;
+  CopiedMechanics c_;
   Graph& g_;
   Column q_, qd_;
   Column rates_;

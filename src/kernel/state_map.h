@@ -1,0 +1,53 @@
+// A kernel may have other unknowns than the motion it serves: coordinates, the model's states and quasi-velocities p, all of first order
+// (system/quasi_velocities.h), where the motion's state is q, q', z. From one to the other, in the width of the motion's state.
+#pragma once
+#include <optional>
+
+#include "system/quasi_velocities.h"
+#include "tape/tape.h"
+
+namespace anholon {
+
+class StateMap {
+ public:
+  explicit StateMap(const QuasiVelocities& q);
+
+  std::size_t coordinates() const { return coordinates_; }
+  std::size_t velocities() const { return velocities_; }
+  std::size_t own_size() const { return coordinates_ + states_ + velocities_; }
+  // The kernel's unknown that is the motion's unknown j, of `count`; multipliers are none.
+  std::optional<std::size_t> own(std::size_t j, std::size_t count) const {
+    if (j < coordinates_) return j;
+    return j + states_ < count ? std::nullopt : std::optional<std::size_t>(coordinates_ + j + states_ - count);
+  }
+
+ private:
+  friend class StateReader;
+  enum class From : std::uint8_t { time, coordinate, velocity, other };
+  struct Input {
+    From from;
+    std::uint32_t slot;
+    std::size_t index;  // other: of a state among the kernel's, z before p
+  };
+  static std::vector<Input> inputs(const Tape& tape, const QuasiVelocities& q);
+
+  std::size_t coordinates_, states_, velocities_;
+  Tape to_own_, to_motion_;
+  std::vector<Input> of_own_, of_motion_;
+};
+
+// The workspace of one motion.
+class StateReader {
+ public:
+  using Numbers = std::vector<long double>;
+  StateReader(const StateMap& map, const Numbers& parameters) : map_(&map), to_own_(map.to_own_, 0, parameters), to_motion_(map.to_motion_, 0, parameters) {}
+  // State of the motion: q_a, q_a', one after the other, then z. Of the kernel: q, z, p.
+  void own(long double t, const Numbers& state, Numbers& own);
+  void motion(long double t, const Numbers& own, Numbers& state);
+
+ private:
+  const StateMap* map_;
+  Machine<long double> to_own_, to_motion_;
+};
+
+}  // namespace anholon
