@@ -99,20 +99,31 @@ void Stepper<N>::settle() const {
       kernel_->fetch(lane_, Kernel::Moment::now, state_, leading_);
     }
     if (expanded_ || mapped()) leading_ = leading_at_base();
-    if (!expanded_) fetch_base(base_state_);
+    if (!expanded_ && !mapped()) kernel_->fetch_base(lane_, base_state_);
     for (const int i : {0, 1})
       if (StepperState<N>& b = begun_[i]; begun_by_kernel_[i]) {
         const Kernel::Moment moment = i == now_ ? Kernel::Moment::begun : Kernel::Moment::before;
         if (mapped()) {
           kernel_->fetch(lane_, moment, b.own, b.own_leading);
-          read(b.t, b.own, b.state);
-          b.leading.assign(program_->unknowns(), W(0));
+          b.state.clear();
         } else {
           kernel_->fetch(lane_, moment, b.state, b.leading);
         }
         b.carry.assign(b.state.size(), W(0));
       }
   }
+}
+
+// Of the present expansion, or the one before.
+template <Number N>
+StepperState<N>& Stepper<N>::settled(int which) const {
+  StepperState<N>& b = begun_[which];
+  if (b.state.empty() && !b.own.empty()) {
+    read(b.t, b.own, b.state);
+    b.leading.assign(program_->unknowns(), W(0));
+    b.carry.assign(b.state.size(), W(0));
+  }
+  return b;
 }
 
 template <Number N>
@@ -144,7 +155,7 @@ template <Number N>
 void Stepper<N>::settle_as_begun() {
   if constexpr (std::same_as<N, double>) {
     settle();
-    state_ = begun_[now_].state;
+    state_ = settled(now_).state;
     leading_ = begun_[now_].leading;
     own_.clear();
   }
@@ -189,6 +200,7 @@ template <Number N>
 const Expansion<typename Stepper<N>::W>& Stepper<N>::point(bool values) const {
   if (!point_loaded_) {
     settle();
+    if (mapped() && by_kernel_ && !expanded_) fetch_base(base_state_);
     point_.load(begun_[now_].t, expanded_ ? state_ : base_state_, leading_at_base());
     point_loaded_ = true;
     // The kernel knows no multipliers.
@@ -286,6 +298,7 @@ void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std:
   template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;                          \
   template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;                         \
   template std::optional<std::size_t> Stepper<N>::kernel_unknown(std::size_t) const;          \
+  template StepperState<N>& Stepper<N>::settled(int) const;                                   \
   template bool Stepper<N>::mapped() const;                                                   \
   template void Stepper<N>::read(const W&, const std::vector<W>&, std::vector<W>&) const;     \
   template void Stepper<N>::fetch_own_base(std::vector<W>&) const;                            \

@@ -35,7 +35,7 @@ bool Stepper<N>::ends_expansion(const std::vector<W>& guess) {
   if (by_kernel && !suspected_) return true;
   Outcome o = by_kernel ? Outcome{} : expand_by_reference(guess);
   if (o.ok() && suspected_) o = look_back();
-  else if (!o.ok() && again) expand_again(StepperState<N>(begun_[1 - now_]));
+  else if (!o.ok() && again) expand_again(StepperState<N>(settled(1 - now_)));
   return o.ok() || fail(std::move(o));
 }
 
@@ -60,9 +60,9 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
 template <Number N>
 Outcome Stepper<N>::look_back() {
   settle();
-  const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, begun_[1 - now_].state), here = mode_at(t_, state_);
+  const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, settled(1 - now_).state), here = mode_at(t_, state_);
   if (before && here && !crossed(*before, *here, program_->system->coordinates)) return {};
-  const StepperState<N> now = begun_[now_], last = begun_[1 - now_];
+  const StepperState<N> now = settled(now_), last = settled(1 - now_);
   const W length = record_.last_step;
   record_.careful = true;
   expand_again(last);
@@ -125,7 +125,7 @@ template <Number N>
 const StepperState<N>& Stepper<N>::begun() const {
   settle();
   if (by_kernel_) begun_[now_].direction = expansion_.weakest_direction(), begun_[now_].sides = events_.sides();
-  return begun_[now_];
+  return settled(now_);
 }
 
 template <Number N>

@@ -164,6 +164,7 @@ class Stepper {
   bool kernel_serves() const;
   void load_kernel(const std::vector<W>& guess);
   void settle() const;
+  StepperState<N>& settled(int which) const;
   bool mapped() const;
   void read(const W& t, const std::vector<W>& own, std::vector<W>& state) const;
   void fetch_own_base(std::vector<W>& own) const;

@@ -1,5 +1,6 @@
 #include "run/form_choice.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace anholon {
@@ -71,12 +72,16 @@ FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& agai
   if (!c.why.empty() && costs == Costs::where_needed) return c;
   add(*c.form);
   if (c.why.empty() && c.costs[0].writings.empty()) c.why = c.costs[0].why;
-  if (!c.why.empty()) return c;
+  const std::vector<WritingCost>& writings = c.costs[0].writings;
+  const bool quasi = std::any_of(writings.begin(), writings.end(), [](const WritingCost& w) { return w.writing == Writing::quasi && w.after; });
+  if (c.why.empty() && quasi) c.why = "in quasi-velocities that make the energy short they need neither multipliers nor a mass matrix";
+  if (!c.why.empty() && (!quasi || costs == Costs::where_needed)) return c;
   try {
     add(maggi);
   } catch (const Failure& e) {
     c.costs.push_back({&maggi, {}, 0, e.diagnostic.message});
   }
+  if (quasi) return c;
   const FormCost &with = c.costs[0], &without = c.costs[1];
   if (without.writings.empty()) {
     c.why = without.why;
