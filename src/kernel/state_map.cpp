@@ -4,9 +4,13 @@
 
 namespace anholon {
 
+static Tape compiled(const Column& es, const QuasiVelocities& q) {
+  return compile(es, std::vector<int>(es.size(), 0), false, q.system.rates, static_cast<std::uint32_t>(q.system.coordinates));
+}
+
 StateMap::StateMap(const QuasiVelocities& q)
-    : coordinates_(q.system.coordinates), states_(q.system.size() - q.system.coordinates - q.count), velocities_(q.count), to_own_(compile(q.of_state)),
-      to_motion_(compile(q.velocities)), of_own_(inputs(to_own_, q)), of_motion_(inputs(to_motion_, q)) {}
+    : coordinates_(q.system.coordinates), states_(q.system.size() - q.system.coordinates - q.count), velocities_(q.count), to_own_(compiled(q.of_state, q)),
+      to_motion_(compiled(q.velocities, q)), of_own_(inputs(to_own_, q)), of_motion_(inputs(to_motion_, q)) {}
 
 std::vector<StateMap::Input> StateMap::inputs(const Tape& tape, const QuasiVelocities& q) {
   std::vector<Input> list;

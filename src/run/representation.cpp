@@ -92,7 +92,7 @@ double value_at_start(const ToRepresent& e, const Node& n) {
 std::shared_ptr<const KernelPlan> in_quasi_velocities(const ToRepresent& e) {
   const Program& derived = e.derived->program();
   const System& s = *derived.system;
-  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty()) return nullptr;
+  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostRefined) return nullptr;
   for (std::size_t j = 0; j < derived.unknowns(); ++j)
     if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return nullptr;
   std::optional<QuasiVelocities> q = quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });

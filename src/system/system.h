@@ -20,7 +20,7 @@ struct System {
   std::size_t of_motion = 0;              // how many of the n belong to the form; the others give lambda
   std::vector<std::string> equation_names;
   std::vector<std::string> variable_names;  // q_a, then lambda.NAME
-  Column rates;  // jets of coordinates n + k stand for the derivatives of these (by_rates.h)
+  Column rates;  // jets of coordinates n + k stand for these and their derivatives (by_rates.h)
 
   std::size_t size() const { return equations.size(); }
   // Equations and unknowns below this are those of motion and constraints; z' - rate = 0 follow.

@@ -277,10 +277,13 @@ class Compiler {
         if (n.kind == Kind::jet && n.index >= rates_from_ && n.index - rates_from_ < rates_.size()) {
           const Expr of = rates_[n.index - rates_from_];
           for (NodeId below : reachable({&of, 1})) emit(below);
+          if (n.order == 0) {
+            slot_[id] = slot_.at(of.id);
+            return;
+          }
           in.op = Op::rate;
           in.a = slot_.at(of.id);
           in.index = n.order;
-          in.constant = constant(in.a) && n.order == 0;
           slot_[id] = push(in);
           return;
         }

@@ -79,7 +79,7 @@ struct Tape {
 // `shared`: products of factors that vary in time are made of pairs that several of them have in common, and what is constant in time comes
 // last. Fewer products, and another order of rounding.
 //
-// `rates`: the jets of coordinates from `rates_from` on stand for the derivatives of these expressions, which the tape takes from their series.
+// `rates`: the jets of coordinates from `rates_from` on stand for these expressions and their derivatives, which the tape takes from their series.
 Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared = false, std::span<const Expr> rates = {}, std::uint32_t rates_from = 0);
 Tape compile(std::span<const Expr> es);
 
