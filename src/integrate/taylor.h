@@ -19,6 +19,7 @@ struct StepSettings {
   std::function<bool()> cancelled;   // asked between steps
   bool kernel = true;                // where there is one
   bool measure = true;               // how regular J is, where the kernel does not ask for it
+  bool multipliers = false;          // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
 };
 
 // ceil(-ln(tolerance)/2 + 1): the order that makes the least work for the tolerance.

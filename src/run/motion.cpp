@@ -41,7 +41,7 @@ void Motion<N>::accelerate(Leg& leg) const {
     if (!leg.stepper.accelerated()) return;
     const std::vector<Expr> quadratures = with_events();
     const std::vector<Representation> list = representations({derived, leg.structure, quadratures, parameters_, t, state, s_.mechanics.get()}, effort_);
-    const Representation& best = cheapest(list);
+    const Representation& best = settings_.multipliers ? cheapest_unmapped(list) : cheapest(list);
     if (best.plan != derived) leg.stepper.accelerate(best.plan);
     leg.plan = best.plan;
     leg.unmapped_plan = cheapest_unmapped(list).plan;

@@ -12,7 +12,9 @@ namespace anholon {
 namespace {
 
 StepSettings step_settings(const SimulationOptions& o) {
-  return {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
+  StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
+  s.multipliers = o.rigorous.has_value();
+  return s;
 }
 
 // What is to go on with the same bits, to be enclosed or to be compared with is Taylor's.
