@@ -21,7 +21,7 @@ std::string why_no_kernel(const Scenario& s, const Program& p) {
 
 }  // namespace
 
-FormCost cost_of(const Scenario& s, const StateChoice& choice) {
+FormCost cost_of(const Scenario& s, const StateChoice& choice, WritingEffort most) {
   FormCost cost;
   cost.form = s.system.form;
   const auto p = std::make_shared<const Program>(program(s.system, s.structure));
@@ -42,7 +42,7 @@ FormCost cost_of(const Scenario& s, const StateChoice& choice) {
   }
   const ToRepresent equations{derived, s.structure, {}, parameters, t, state, s.mechanics.get()};
   const bool stays = s.elimination.pivots().empty();
-  for (const Representation& r : representations(equations, stays ? WritingEffort::very_long_motion : WritingEffort::at_once)) cost.writings.push_back({r.writing, work_of(*r.plan), {}});
+  for (const Representation& r : representations(equations, stays ? most : WritingEffort::at_once)) cost.writings.push_back({r.writing, work_of(*r.plan), {}});
   // The writings of less effort come first.
   const std::size_t known[] = {4, 5, 6};
   for (const WritingEffort effort : kWritingEfforts) {
@@ -55,14 +55,21 @@ FormCost cost_of(const Scenario& s, const StateChoice& choice) {
   return cost;
 }
 
+static bool in_quasi_velocities(const FormCost& cost) {
+  return std::any_of(cost.writings.begin(), cost.writings.end(), [](const WritingCost& w) { return w.writing == Writing::quasi && w.after == 0U; });
+}
+
 FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& again, const StateChoice& choice, Costs costs) {
   FormChoice c;
   c.form = find_formulation("routh");
   const auto add = [&](const Formulation& form) {
     Scenario s;
     const Outcome o = make_scenario(again(), form, choice, s);
-    if (o.ok() && regular_at_start(s).ok()) c.costs.push_back(cost_of(s, choice));
-    else c.costs.push_back({&form, {}, 0, o.ok() ? "its equations are singular at the start" : o.message});
+    if (!o.ok() || !regular_at_start(s).ok()) return c.costs.push_back({&form, {}, 0, o.ok() ? "its equations are singular at the start" : o.message});
+    // Where quasi-velocities serve, no other writing is asked for.
+    FormCost soon;
+    if (costs == Costs::where_needed) soon = cost_of(s, choice, WritingEffort::at_once);
+    c.costs.push_back(in_quasi_velocities(soon) ? soon : cost_of(s, choice));
   };
   const Formulation& maggi = *find_formulation("maggi");
   const std::shared_ptr<const Model> model = again();
@@ -72,8 +79,7 @@ FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& agai
   if (!c.why.empty() && costs == Costs::where_needed) return c;
   add(*c.form);
   if (c.why.empty() && c.costs[0].writings.empty()) c.why = c.costs[0].why;
-  const std::vector<WritingCost>& writings = c.costs[0].writings;
-  const bool quasi = std::any_of(writings.begin(), writings.end(), [](const WritingCost& w) { return w.writing == Writing::quasi && w.after; });
+  const bool quasi = in_quasi_velocities(c.costs[0]);
   if (c.why.empty() && quasi) c.why = "in quasi-velocities that make the energy short they need neither multipliers nor a mass matrix";
   if (!c.why.empty() && (!quasi || costs == Costs::where_needed)) return c;
   try {

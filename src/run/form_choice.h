@@ -22,7 +22,7 @@ struct FormCost {
   double total = 0;                   // of a long motion
   std::string why;                    // no kernel computes its motion
 };
-FormCost cost_of(const Scenario& scenario, const StateChoice& choice);
+FormCost cost_of(const Scenario& scenario, const StateChoice& choice, WritingEffort most = WritingEffort::very_long_motion);
 
 struct FormChoice {
   std::vector<FormCost> costs;  // Routh's first

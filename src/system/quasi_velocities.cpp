@@ -71,7 +71,7 @@ class Writer {
       if (is_zero(point.weight)) continue;
       for (int i = 0; i < 3; ++i) {
         const Expr v = total_derivative(point.place[i]);
-        if (!is_zero(v)) points_.push_back({point.weight, linear(tidy(v_.solved(v)), used_, tidy)});
+        if (!is_zero(v)) points_.push_back({point.weight, linear(v_.solved(v), used_, tidy)});
       }
       bounds_.push_back(points_.size());
     }

@@ -54,7 +54,10 @@ Expr Tidy::operator()(Expr e) {
   const auto [known, fresh] = known_.try_emplace(e.id, e);
   if (!fresh) return known->second;
   const std::optional<NormalForm> plain = normal_form(e, {}, kWork);
-  return plain ? known->second = arranged(e, {}, plain) : e;
+  if (!plain) return e;
+  // There is nothing to arrange in a monomial.
+  const bool monomial = plain->numerator.size() <= 1 && plain->denominator.size() <= 1;
+  return known->second = monomial ? expression(*plain).value_or(e) : arranged(e, {}, plain);
 }
 
 Linear linear(Expr e, const Column& v, Tidy& tidy) {
