@@ -71,7 +71,8 @@ INSTANTIATE_TEST_SUITE_P(Runs, Restart,
                                          Case{"AtTheSteps", "zoo/double-pendulum-cartesian", "routh", Precision::real, 16, 1, 2, true},
                                          Case{"ConstantJerk", "zoo/constant-jerk"},
                                          // Its equations are written anew between the two.
-                                         Case{"WrittenAnew", "zoo/disc", "routh", Precision::real, 16, 90, 100},
+                                         Case{"WrittenAnew", "zoo/two-wheeled-pendulum", "routh", Precision::real, 16, 150, 165}, Case{"InQuasiVelocities", "zoo/disc"},
+                                         Case{"InQuasiVelocitiesAtTheSteps", "zoo/snakeboard", "routh", Precision::real, 16, 1, 2, true},
                                          Case{"Backwards", "zoo/disc", "routh", Precision::real, 16, -1, -2},
                                          // Chaplygin's form divides by cos(theta), which vanishes on the way.
                                          Case{"Elimination", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10},
