@@ -71,6 +71,11 @@ static void cost_json(const FormChoice& c) {
       j.key("operations").number(number_text(std::round(w.work.operations))).key("waits").integer(w.work.waits);
       j.key("cost").number(number_text(std::round(w.work.total))).key("after_steps");
       w.after ? j.integer(static_cast<long long>(*w.after)) : j.null();
+      if (!w.velocities.empty()) {
+        j.key("velocities").open_array();
+        for (const std::string& p : w.velocities) j.string(p);
+        j.close();
+      }
       j.close();
     }
     j.close().close();
@@ -94,6 +99,12 @@ int show_cost(const Options& o, const Reader& in) {
     }
   }
   std::puts("\nwaits: of a stage, one operation after the other; cost: operations, and for each stage five for each wait");
+  for (const FormCost& f : c.costs)
+    for (const WritingCost& w : f.writings) {
+      if (w.velocities.empty()) continue;
+      std::puts("quasi: in velocities that make the kinetic energy a sum of squares,");
+      for (std::size_t i = 0; i < w.velocities.size(); ++i) std::printf("  p%zu = %s\n", i + 1, w.velocities[i].c_str());
+    }
   std::printf("--form auto takes %s: %s\n", c.form->name, c.why.c_str());
   return kOk;
 }

@@ -42,7 +42,7 @@ FormCost cost_of(const Scenario& s, const StateChoice& choice, WritingEffort mos
   }
   const ToRepresent equations{derived, s.structure, {}, parameters, t, state, s.mechanics.get()};
   const bool stays = s.elimination.pivots().empty();
-  for (const Representation& r : representations(equations, stays ? most : WritingEffort::at_once)) cost.writings.push_back({r.writing, work_of(*r.plan), {}});
+  for (const Representation& r : representations(equations, stays ? most : WritingEffort::at_once)) cost.writings.push_back({r.writing, work_of(*r.plan), {}, r.velocities});
   // The writings of less effort come first.
   const std::size_t known[] = {4, 5, 6};
   for (const WritingEffort effort : kWritingEfforts) {

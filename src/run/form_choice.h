@@ -14,6 +14,7 @@ struct WritingCost {
   Writing writing;
   ExpansionWork work;
   std::optional<std::size_t> after;  // so many steps a motion takes it
+  std::vector<std::string> velocities;
 };
 
 struct FormCost {

@@ -7,6 +7,7 @@
 #include "expr/arrange.h"
 #include "expr/copy.h"
 #include "expr/normal.h"
+#include "expr/print.h"
 #include "system/by_rates.h"
 #include "system/quasi_velocities.h"
 
@@ -88,26 +89,6 @@ double value_at_start(const ToRepresent& e, const Node& n) {
   return e.state[at + n.order];
 }
 
-// Where accelerations and multipliers are all that is solved for.
-std::shared_ptr<const KernelPlan> in_quasi_velocities(const ToRepresent& e) {
-  const Program& derived = e.derived->program();
-  const System& s = *derived.system;
-  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostRefined) return nullptr;
-  for (std::size_t j = 0; j < derived.unknowns(); ++j)
-    if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return nullptr;
-  std::optional<QuasiVelocities> q = quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });
-  if (!q) return nullptr;
-  const bool judged = !is_number(q->determinant);
-  if (judged) q->others.push_back(q->determinant);
-  auto map = std::make_shared<const StateMap>(*q);
-  auto r = std::make_shared<Rewritten>(Rewritten{std::move(q->system), {}});
-  Structure first_order;
-  first_order.c.assign(r->system.size(), 0);
-  first_order.d.assign(r->system.size(), 1);
-  r->program = program(r->system, first_order, q->others, true);
-  return KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t, e.state);
-}
-
 // Largest difference of two expansions at one state, order by order.
 double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b) {
   Kernel one(a), other(b);
@@ -136,6 +117,43 @@ double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>&
   return worst;
 }
 
+// What stands for series (system.h) is written out.
+Expr whole(const System& s, Expr e) {
+  for (;;) {
+    const auto series = [&](NodeId id) {
+      const Node& n = s.model->graph->node(id);
+      return n.kind == Kind::jet && n.index >= s.coordinates ? s.rates[n.index - s.coordinates] : Expr{};
+    };
+    const Expr out = substitute({&e, 1}, series)[0];
+    if (out == e) return e;
+    e = out;
+  }
+}
+
+// Where accelerations and multipliers are all that is solved for.
+std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
+  const Program& derived = e.derived->program();
+  const System& s = *derived.system;
+  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostRefined) return std::nullopt;
+  for (std::size_t j = 0; j < derived.unknowns(); ++j)
+    if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return std::nullopt;
+  std::optional<QuasiVelocities> q = quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });
+  if (!q) return std::nullopt;
+  Representation found{Writing::quasi, nullptr, {}};
+  for (Expr p : q->of_state) found.velocities.push_back(print(whole(q->system, p), q->system.model->names, Format::text));
+  const bool judged = !is_number(q->determinant);
+  if (judged) q->others.push_back(q->determinant);
+  auto map = std::make_shared<const StateMap>(*q);
+  auto r = std::make_shared<Rewritten>(Rewritten{std::move(q->system), {}});
+  Structure first_order;
+  first_order.c.assign(r->system.size(), 0);
+  first_order.d.assign(r->system.size(), 1);
+  r->program = program(r->system, first_order, q->others, true);
+  found.plan = KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t, e.state);
+  if (!found.plan || !(difference(e, e.derived, found.plan) < kAgree)) return std::nullopt;
+  return found;
+}
+
 }  // namespace
 
 const char* name(Writing writing) {
@@ -151,7 +169,7 @@ const char* name(Writing writing) {
 }
 
 std::vector<Representation> representations(const ToRepresent& e, WritingEffort effort) {
-  std::vector<Representation> list{{Writing::derived, e.derived}};
+  std::vector<Representation> list{{Writing::derived, e.derived, {}}};
   const auto& first = e.derived;
   const Program& derived = first->program();
   // The stepper follows such roots by the slots of the derived tape.
@@ -162,11 +180,11 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
   const auto add = [&](Writing writing, std::shared_ptr<const Program> p) {
     auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state) : nullptr;
     if (plan && (large || plan->tables().refine == first->tables().refine) && plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
-      list.push_back({writing, std::move(plan)});
+      list.push_back({writing, std::move(plan), {}});
   };
   if (!first->tables().refine || (large && derived.unknowns() <= kMostRefined)) add(Writing::rates, left_to_series(e));
   if (!first->tables().refine)
-    if (auto plan = in_quasi_velocities(e); plan && difference(e, first, plan) < kAgree) list.push_back({Writing::quasi, std::move(plan)});
+    if (auto quasi = in_quasi_velocities(e)) list.push_back(std::move(*quasi));
   if (large) return list;
   add(Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)));
   if (first->tables().refine) return list;

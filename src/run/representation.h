@@ -21,6 +21,7 @@ const char* name(Writing writing);
 struct Representation {
   Writing writing = Writing::derived;
   std::shared_ptr<const KernelPlan> plan;
+  std::vector<std::string> velocities;  // of quasi: what p are, in words of the model
 };
 
 // The equations as derived, and where their plan was made.

@@ -32,11 +32,11 @@ bool AdmissibleVelocities::solve(Expr constraint) {
     if (std::abs(at_(a[i])) >= kPivot * largest)
       if (const std::size_t c = varying_nodes(a[i]); c < cost) best = i, cost = c;
   if (cost > 0 && in.size() == 2 && is_zero(rest)) {
-    // a v + b w = 0 without division: v = -b u, w = a u.
+    // a v + b w = 0 without division: v = b u, w = -a u.
     const std::size_t v = in[0], w = in[1];
-    const Expr u = new_name(), u_by_velocity = (a[v] * free_by_velocity_[w] - a[w] * free_by_velocity_[v]) / (pow(a[v], 2) + pow(a[w], 2));
-    remove(w, a[v] * u);
-    remove(v, -a[w] * u);
+    const Expr u = new_name(), u_by_velocity = (a[w] * free_by_velocity_[v] - a[v] * free_by_velocity_[w]) / tidy_(pow(a[v], 2) + pow(a[w], 2));
+    remove(w, -a[v] * u);
+    remove(v, a[w] * u);
     free.push_back(u);
     free_by_velocity_.push_back(u_by_velocity);
     return true;
@@ -75,13 +75,13 @@ std::optional<AdmissibleVelocities::Direction> AdmissibleVelocities::direction(E
   return Direction{parts[0].first, parts[0].second, parts[1].first, parts[1].second};
 }
 
-// X = -b u, Y = a u from now on, also in the velocities of points that are reached from this one.
+// X = b u, Y = -a u from now on, also in the velocities of points that are reached from this one.
 void AdmissibleVelocities::name_speed(const Direction& d) {
-  const Expr u = new_name(), speed = tidy_(solved(d.a * d.Y - d.b * d.X) / (pow(d.a, 2) + pow(d.b, 2)));
+  const Expr u = new_name(), speed = tidy_(solved(d.b * d.X - d.a * d.Y) / (pow(d.a, 2) + pow(d.b, 2)));
   named.push_back(u);
   definitions.push_back(speed);
-  points_.push_back({d.X, -d.b * u});
-  points_.push_back({d.Y, d.a * u});
+  points_.push_back({d.X, d.b * u});
+  points_.push_back({d.Y, -d.a * u});
 }
 
 // The latest point first.
