@@ -10,7 +10,10 @@ static Tape compiled(const Column& es, const QuasiVelocities& q) {
 
 StateMap::StateMap(const QuasiVelocities& q)
     : coordinates_(q.system.coordinates), states_(q.system.size() - q.system.coordinates - q.count), velocities_(q.count), to_own_(compiled(q.of_state, q)),
-      to_motion_(compiled(q.velocities, q)), of_own_(inputs(to_own_, q)), of_motion_(inputs(to_motion_, q)) {}
+      to_motion_(compiled(q.velocities, q)), of_own_(inputs(to_own_, q)), of_motion_(inputs(to_motion_, q)) {
+  // Series that velocities are made of are in both tapes; p are none of what p are made of.
+  std::erase_if(of_own_, [&](const Input& in) { return in.from == From::other && in.index >= states_; });
+}
 
 std::vector<StateMap::Input> StateMap::inputs(const Tape& tape, const QuasiVelocities& q) {
   std::vector<Input> list;
