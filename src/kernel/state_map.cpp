@@ -27,6 +27,7 @@ std::vector<StateMap::Input> StateMap::inputs(const Tape& tape, const QuasiVeloc
 
 void StateReader::own(long double t, const Numbers& state, Numbers& own) {
   const std::size_t n = map_->coordinates_;
+  ANHOLON_ASSERT(state.size() == 2 * n + map_->states_);
   using From = StateMap::From;
   for (const StateMap::Input& in : map_->of_own_) {
     to_own_.series(in.slot)[0] = in.from == From::time ? t : in.from == From::other ? state[2 * n + in.index] : state[2 * in.index + (in.from == From::velocity)];
@@ -40,6 +41,7 @@ void StateReader::own(long double t, const Numbers& state, Numbers& own) {
 
 void StateReader::motion(long double t, const Numbers& own, Numbers& state) {
   const std::size_t n = map_->coordinates_;
+  ANHOLON_ASSERT(own.size() == map_->own_size());
   using From = StateMap::From;
   for (const StateMap::Input& in : map_->of_motion_) {
     to_motion_.series(in.slot)[0] = in.from == From::time ? t : own[in.from == From::other ? n + in.index : in.index];

@@ -10,6 +10,7 @@
 #include "expr/print.h"
 #include "system/by_rates.h"
 #include "system/quasi_velocities.h"
+#include "system/velocity_algebra.h"
 
 namespace anholon {
 
@@ -117,19 +118,6 @@ double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>&
   return worst;
 }
 
-// What stands for series (system.h) is written out.
-Expr whole(const System& s, Expr e) {
-  for (;;) {
-    const auto series = [&](NodeId id) {
-      const Node& n = s.model->graph->node(id);
-      return n.kind == Kind::jet && n.index >= s.coordinates ? s.rates[n.index - s.coordinates] : Expr{};
-    };
-    const Expr out = substitute({&e, 1}, series)[0];
-    if (out == e) return e;
-    e = out;
-  }
-}
-
 // Where accelerations and multipliers are all that is solved for.
 std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   const Program& derived = e.derived->program();
@@ -140,7 +128,7 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   std::optional<QuasiVelocities> q = quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });
   if (!q) return std::nullopt;
   Representation found{Writing::quasi, nullptr, {}};
-  for (Expr p : q->of_state) found.velocities.push_back(print(whole(q->system, p), q->system.model->names, Format::text));
+  for (Expr p : q->of_state) found.velocities.push_back(print(written_out(p, s.coordinates, q->system.rates), q->system.model->names, Format::text));
   const bool judged = !is_number(q->determinant);
   if (judged) q->others.push_back(q->determinant);
   auto map = std::make_shared<const StateMap>(*q);

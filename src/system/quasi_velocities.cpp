@@ -40,15 +40,6 @@ class Writer {
     return g_.jet(static_cast<std::uint32_t>(n_ + at->second), 0);
   }
   bool stands_for(const Node& n) const { return n.kind == Kind::jet && n.index >= n_; }
-  // … written out again.
-  Expr whole(Expr e) {
-    for (;;) {
-      const Expr out = substitute({&e, 1}, [&](NodeId id) { return stands_for(g_.node(id)) ? rates_[g_.node(id).index - n_] : Expr{}; })[0];
-      if (out == e) return e;
-      e = out;
-    }
-  }
-
   // Velocities with a name, in those that are free. False where they are not homogeneous.
   bool use_names() {
     const std::size_t l = v_.free.size();
@@ -187,7 +178,7 @@ class Writer {
       std::vector<Expr> terms{zero_};
       for (const auto& [weight, e] : points) {
         if (is_zero(e[i]) || is_zero(e[j])) continue;
-        const Expr of = whole(e[j]);
+        const Expr of = written_out(e[j], n_, rates_);
         const Column gradient = anholon::gradient(of, q_);
         for (std::size_t a = 0; a < n_; ++a)
           if (!is_zero(gradient[a])) by_velocity[a] = by_velocity[a] + weight * e[i] * gradient[a];
@@ -204,7 +195,7 @@ class Writer {
         const auto length = [&](std::size_t k) {
           std::size_t all = 0;
           for (const auto& [weight, e] : points)
-            if (!is_zero(e[i]) && !is_zero(e[j])) all += node_count(whole(e[k]));
+            if (!is_zero(e[i]) && !is_zero(e[j])) all += node_count(written_out(e[k], n_, rates_));
           return all;
         };
         const bool forward = length(j) <= length(i);

@@ -41,6 +41,18 @@ Column put(const Column& es, const Column& from, const Column& to) {
 }
 Expr put(Expr e, const Column& from, const Column& to) { return put(Column{e}, from, to)[0]; }
 
+Expr written_out(Expr e, std::size_t first, const Column& rates) {
+  const auto series = [&](NodeId id) {
+    const Node& n = e.graph->node(id);
+    return n.kind == Kind::jet && n.index >= first ? rates[n.index - first] : Expr{};
+  };
+  for (;;) {
+    const Expr out = substitute({&e, 1}, series)[0];
+    if (out == e) return e;
+    e = out;
+  }
+}
+
 Expr dot(const Column& a, const Column& b) {
   std::vector<Expr> terms{a[0].graph->zero()};
   for (std::size_t i = 0; i < a.size(); ++i)
