@@ -77,6 +77,8 @@ void Stepper<N>::load_kernel(const std::vector<W>& guess) {
           own_leading_.clear();
         }
         kernel_->place(lane_, own_, own_leading_);
+        // Where the map has no value, this is all that is left.
+        begun_[now_].state = state_;
       }
       away_ = true;
     }
@@ -105,11 +107,11 @@ void Stepper<N>::settle() const {
         const Kernel::Moment moment = i == now_ ? Kernel::Moment::begun : Kernel::Moment::before;
         if (mapped()) {
           kernel_->fetch(lane_, moment, b.own, b.own_leading);
-          b.state.clear();
+          b.leading.assign(program_->unknowns(), W(0));
         } else {
           kernel_->fetch(lane_, moment, b.state, b.leading);
         }
-        b.carry.assign(b.state.size(), W(0));
+        b.carry.assign(state_.size(), W(0));
       }
   }
 }
@@ -118,11 +120,7 @@ void Stepper<N>::settle() const {
 template <Number N>
 StepperState<N>& Stepper<N>::settled(int which) const {
   StepperState<N>& b = begun_[which];
-  if (b.state.empty() && !b.own.empty()) {
-    read(b.t, b.own, b.state);
-    b.leading.assign(program_->unknowns(), W(0));
-    b.carry.assign(b.state.size(), W(0));
-  }
+  if (b.state.empty() && !b.own.empty()) read(b.t, b.own, b.state);
   return b;
 }
 

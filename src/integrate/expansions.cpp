@@ -107,6 +107,7 @@ void Stepper<N>::note_begun(const std::vector<W>& guess) {
   StepperState<N>& b = begun_[now_];
   begun_by_kernel_[now_] = loaded_;
   b.t = t_;
+  if (loaded_ && mapped()) b.state.clear();
   if (!loaded_) {
     b.state = state_;
     b.carry = carry_;

@@ -66,9 +66,9 @@ FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& agai
     Scenario s;
     const Outcome o = make_scenario(again(), form, choice, s);
     if (!o.ok() || !regular_at_start(s).ok()) return c.costs.push_back({&form, {}, 0, o.ok() ? "its equations are singular at the start" : o.message});
-    // Where quasi-velocities serve, no other writing is asked for.
+    // Where quasi-velocities serve Routh's equations, no other writing is asked for.
     FormCost soon;
-    if (costs == Costs::where_needed) soon = cost_of(s, choice, WritingEffort::at_once);
+    if (&form == c.form && costs == Costs::where_needed) soon = cost_of(s, choice, WritingEffort::at_once);
     c.costs.push_back(in_quasi_velocities(soon) ? soon : cost_of(s, choice));
   };
   const Formulation& maggi = *find_formulation("maggi");

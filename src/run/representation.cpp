@@ -18,8 +18,8 @@ namespace {
 
 // Beyond these, as in chains, there are few pairs, and equations written out are longer than they were.
 constexpr std::size_t kMostUnknowns = 12, kMostNodes = 2000;
-// Beyond, a plan takes longer to make than it saves.
-constexpr std::size_t kMostRefined = 64;
+// Beyond, a plan takes longer to make than it saves: of refined solutions, of quasi-velocities.
+constexpr std::size_t kMostRefined = 64, kMostInQuasi = 64;
 // Products of terms for one equation, a fraction of a millisecond.
 constexpr long kMostProducts = 4000;
 // Two writings of one equation agree to this, in relation to the largest coefficient of the order, or one of them loses digits.
@@ -122,7 +122,7 @@ double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>&
 std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   const Program& derived = e.derived->program();
   const System& s = *derived.system;
-  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostRefined) return std::nullopt;
+  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostInQuasi) return std::nullopt;
   for (std::size_t j = 0; j < derived.unknowns(); ++j)
     if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return std::nullopt;
   std::optional<QuasiVelocities> q = quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });

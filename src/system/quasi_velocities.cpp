@@ -17,13 +17,13 @@ class Writer {
  public:
   Writer(const System& derived, const Mechanics& m, std::span<const Expr> others, const std::function<double(const Node&)>& symbol)
       : derived_(derived), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph), at_([this, symbol](const Node& n) { return stands_for(n) ? value_of_[n.index - n_] : symbol(n); }),
-        q_(jets(*c_.model, 0)), qd_(jets(*c_.model, 1)), n_(q_.size()), zero_(g_.zero()), v_(qd_, at_, tidy) {}
+        q_(jets(*c_.model, 0)), qd_(jets(*c_.model, 1)), n_(q_.size()), zero_(g_.zero()), v_(qd_, at_, tidy_) {}
 
   std::optional<QuasiVelocities> run() {
     if (!v_.solve(put_masses(*c_.model, c_.constraints)) || v_.free.size() > kMostVelocities || !use_names()) return std::nullopt;
-    for (Expr v : qd_) velocity_.push_back(tidy(v_.solved(v)));
+    for (Expr v : qd_) velocity_.push_back(tidy_(v_.solved(v)));
     read_points();
-    if (!energy_.diagonalize(mass_matrix(), v_.free, at_, tidy, [this](Expr e) { return one_series(e); })) return std::nullopt;
+    if (!energy_.diagonalize(mass_matrix(), v_.free, at_, tidy_, [this](Expr e) { return one_series(e); })) return std::nullopt;
     return equations();
   }
 
@@ -40,13 +40,14 @@ class Writer {
     return g_.jet(static_cast<std::uint32_t>(n_ + at->second), 0);
   }
   bool stands_for(const Node& n) const { return n.kind == Kind::jet && n.index >= n_; }
+
   // Velocities with a name, in those that are free. False where they are not homogeneous.
   bool use_names() {
     const std::size_t l = v_.free.size();
     for (std::size_t i = 0; i < l; ++i) used_by_free_.push_back(Column(l, zero_)), used_by_free_[i][i] = g_.one();
     used_ = v_.free;
     for (std::size_t s = 0; s < v_.named.size(); ++s) {
-      const auto [by, rest] = linear(v_.definitions[s], used_, tidy);
+      const auto [by, rest] = linear(v_.definitions[s], used_, tidy_);
       if (!is_zero(rest)) return false;
       Column row = by * used_by_free_;
       for (Expr& x : row) x = one_series(x);
@@ -62,7 +63,7 @@ class Writer {
       if (is_zero(point.weight)) continue;
       for (int i = 0; i < 3; ++i) {
         const Expr v = total_derivative(point.place[i]);
-        if (!is_zero(v)) points_.push_back({point.weight, linear(v_.solved(v), used_, tidy)});
+        if (!is_zero(v)) points_.push_back({point.weight, linear(v_.solved(v), used_, tidy_)});
       }
       bounds_.push_back(points_.size());
     }
@@ -79,19 +80,19 @@ class Writer {
           std::vector<Expr> terms;
           for (std::size_t c = first; c < end; ++c)
             if (const auto& [weight, e] = points_[c]; !is_zero(e.by[s]) && !is_zero(e.by[t])) terms.push_back(weight * e.by[s] * e.by[t]);
-          if (!terms.empty()) local[s][t] = local[s][t] + tidy(sum(terms));
+          if (!terms.empty()) local[s][t] = local[s][t] + tidy_(sum(terms));
         }
       first = end;
     }
     for (std::size_t s = 0; s < n; ++s)
-      for (std::size_t t = s; t < n; ++t) local[t][s] = local[s][t] = tidy(local[s][t]);
+      for (std::size_t t = s; t < n; ++t) local[t][s] = local[s][t] = tidy_(local[s][t]);
     for (std::size_t i = 0; i < l; ++i)
       for (std::size_t j = i; j < l; ++j) {
         std::vector<Expr> terms{zero_};
         for (std::size_t s = 0; s < n; ++s)
           for (std::size_t t = 0; t < n; ++t)
             if (!is_zero(local[s][t]) && !is_zero(used_by_free_[s][i]) && !is_zero(used_by_free_[t][j])) terms.push_back(local[s][t] * used_by_free_[s][i] * used_by_free_[t][j]);
-        M[i][j] = M[j][i] = v_.named.empty() ? tidy(sum(terms)) : sum(terms);
+        M[i][j] = M[j][i] = v_.named.empty() ? tidy_(sum(terms)) : sum(terms);
       }
     return M;
   }
@@ -117,7 +118,7 @@ class Writer {
     const Rows A = gyroscopic(r.velocities);
     // Forces on what is used first, where sines and cosines meet.
     Column forces = pullback(velocity_, put(put_masses(*c_.model, c_.forces), qd_, r.velocities), used_);
-    for (Expr& f : forces) f = tidy(f);
+    for (Expr& f : forces) f = tidy_(f);
     const Column Q = forces * used_by_free_ * energy_.v_by_p;
     ps.push_back(g_.one());
     for (std::size_t i = 0; i < l; ++i) rates.push_back((Q[i] - dot(A[i], ps)) / energy_.inertia[i]);
@@ -155,7 +156,7 @@ class Writer {
       if (!is_constant(d)) factors.push_back({d, Rational(1)});
     for (Expr a : v_.pivots)
       if (!is_constant(a)) factors.push_back({a, Rational(2)});
-    const Expr d = tidy(g_.product(factors));
+    const Expr d = tidy_(g_.product(factors));
     return is_constant(d) ? g_.one() : d;
   }
 
@@ -170,7 +171,7 @@ class Writer {
     for (const auto& [weight, e] : points_) {
       Column by = e.by * used_by_p;
       by.push_back(e.rest);
-      for (Expr& x : by) x = tidy(x);
+      for (Expr& x : by) x = tidy_(x);
       points.push_back({weight, std::move(by)});
     }
     const auto moved = [&](std::size_t i, std::size_t j) {  // sum_c m_c e_ci . e_cj'
@@ -185,7 +186,7 @@ class Writer {
         if (const Expr rest = on_velocities(put(total_derivative(of), qd_, Column(n_, zero_))); !is_zero(rest)) terms.push_back(weight * e[i] * rest);
       }
       for (std::size_t a = 0; a < n_; ++a)
-        if (!is_zero(by_velocity[a])) terms.push_back(tidy(by_velocity[a]) * velocities[a]);
+        if (!is_zero(by_velocity[a])) terms.push_back(tidy_(by_velocity[a]) * velocities[a]);
       return sum(terms);
     };
     Rows A(l, Column(l + 1, zero_));
@@ -211,7 +212,7 @@ class Writer {
   CopiedMechanics c_;
   Graph& g_;
   PointValues at_;
-  Tidy tidy;
+  Tidy tidy_;
   Column q_, qd_;
   std::size_t n_;
   Expr zero_;

@@ -174,5 +174,41 @@ TEST(QuasiVelocities, OfOtherConstraints) {
     EXPECT_FALSE(Found(test::model_of(text)).q) << text;
 }
 
+// The quasi-velocities of the sweep's start divide by c; where that is zero the kernel has no value, and the reference goes on from the state that was.
+TEST(QuasiVelocities, WithoutAValueNothingIsLost) {
+  const std::string text = particle(constraint("c*z' - (1 + y^2)*x' - (2 + z^2)*y' = 0")) + "\"x'\" = 0.5\n[parameters]\nc = 1\n";
+  Scenario s;
+  ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, s).ok());
+  const std::vector<long double> one = parameter_values<long double>(*s.model);
+  Start<long double> start;
+  ASSERT_TRUE(initial_state(s, {}, start).ok());
+  const Program p = program(s.system, s.structure);
+  const std::vector<double> state(start.state.begin(), start.state.end());
+  const auto derived = KernelPlan::make(std::make_shared<const Program>(p), 14, one, 0, state);
+  std::shared_ptr<const KernelPlan> plan;
+  for (const Representation& r : representations({derived, s.structure, {}, one, 0, state, s.mechanics.get()}, WritingEffort::at_once))
+    if (r.writing == Writing::quasi) plan = r.plan;
+  ASSERT_TRUE(plan);
+  // With c = 0: x' = 0.5 and y' that fits it.
+  const std::vector<long double> zero(one.size(), 0);
+  std::vector<long double> at = start.state;
+  at[5] = 0;
+  at[3] = -at[1] * (1 + at[2] * at[2]) / (2 + at[4] * at[4]);
+  const auto end = [&](bool kernel) {
+    Stepper<double> stepper(p, {zero.begin(), zero.end()}, zero, {});
+    if (kernel) stepper.accelerate(plan);
+    EXPECT_TRUE(stepper.start(0, at).ok());
+    while (stepper.time() < 1) {
+      const Outcome o = stepper.step(1);
+      EXPECT_TRUE(o.ok()) << o.message;
+      if (!o.ok()) break;
+    }
+    EXPECT_EQ(stepper.expansions_by_kernel(), 0U);
+    return stepper.state();
+  };
+  const auto with = end(true), without = end(false);
+  for (std::size_t i = 0; i < with.size(); ++i) EXPECT_NEAR(static_cast<double>(with[i]), static_cast<double>(without[i]), 1e-12) << i;
+}
+
 }  // namespace
 }  // namespace anholon
