@@ -25,7 +25,8 @@ CodeForLongRuns::~CodeForLongRuns() { leave(); }
 void CodeForLongRuns::leave() {
   if (!compilation_.thread.joinable()) return;
   if (*compilation_.done) return compilation_.thread.join();
-  // The compiler's own destructors run after this, as it was loaded before.
+  // The compiler's own destructors run after this if it is loaded before, which its thread may not have come to yet.
+  compiler();
   static const int once = std::atexit([] {
     for (Left& l : left_behind()) l.thread.join();
   });
