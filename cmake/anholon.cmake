@@ -178,6 +178,30 @@ function(anholon_find_header name header)
   target_include_directories(external::${name} INTERFACE "${ANHOLON_${name}_INCLUDE}")
 endfunction()
 
+# A library we can do without: ANHOLON_FOUND_<name> is external::<name>, with the definition ANHOLON_<NAME> that says so, or empty
+# where `option` is off or none of the pkg-config modules is there.
+function(anholon_find_optional name option)
+  set(ANHOLON_FOUND_${name} "" PARENT_SCOPE)
+  if(NOT ${option})
+    return()
+  endif()
+  find_package(PkgConfig QUIET)
+  foreach(module IN LISTS ARGN)
+    if(PkgConfig_FOUND AND NOT TARGET PkgConfig::ANHOLON_${module})
+      pkg_check_modules(ANHOLON_${module} QUIET IMPORTED_TARGET ${module})
+    endif()
+    if(TARGET PkgConfig::ANHOLON_${module})
+      add_library(external::${name} INTERFACE IMPORTED)
+      string(TOUPPER "${name}" upper)
+      target_compile_definitions(external::${name} INTERFACE ANHOLON_${upper})
+      target_link_libraries(external::${name} INTERFACE PkgConfig::ANHOLON_${module})
+      set(ANHOLON_FOUND_${name} external::${name} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  message(STATUS "${name} was not found: the build does without it")
+endfunction()
+
 function(anholon_pick_linker target)
   find_program(ANHOLON_MOLD mold)
   find_program(ANHOLON_LLD NAMES ld.lld-19)
@@ -186,4 +210,38 @@ function(anholon_pick_linker target)
   elseif(ANHOLON_MOLD)
     target_link_options(${target} INTERFACE -fuse-ld=mold)
   endif()
+endfunction()
+
+# src/report: the style of pages, the literature, and the viewer where npm has made it (viewer/dist), put into the program as they are.
+function(anholon_page_assets result)
+  set(folder "${PROJECT_SOURCE_DIR}")
+  set(nothing "${CMAKE_BINARY_DIR}/generated/nothing")
+  file(WRITE "${nothing}" "")
+  set(assets "")
+  set(functions "")
+  set(files "")
+  foreach(asset page_style=src/report/page.css viewer_script=viewer/dist/viewer.js viewer_style=viewer/dist/viewer.css literature=refs.bib)
+    string(REGEX MATCH "^([a-z_]+)=(.*)$" asset "${asset}")
+    set(name "${CMAKE_MATCH_1}")
+    set(file "${folder}/${CMAKE_MATCH_2}")
+    if(NOT EXISTS "${file}")
+      set(file "${nothing}")
+    endif()
+    string(APPEND assets "asm(\".section .rodata\\n\"\n    \"anholon_${name}: .incbin \\\"${file}\\\"\\n\"\n    \"anholon_${name}_end: .byte 0\\n\"\n    \".previous\\n\");\nextern \"C\" const char anholon_${name}[], anholon_${name}_end[];\n")
+    string(APPEND functions "std::string_view ${name}() { return {anholon_${name}, static_cast<std::size_t>(anholon_${name}_end - anholon_${name})}; }\n")
+    list(APPEND files "${file}")
+  endforeach()
+  set(output "${CMAKE_BINARY_DIR}/generated/page_assets.cpp")
+  file(CONFIGURE OUTPUT "${output}" @ONLY CONTENT [=[
+// Written by the build: files that the program carries.
+#include "report/assets.h"
+
+#include <cstddef>
+
+@assets@
+namespace anholon {
+@functions@}  // namespace anholon
+]=])
+  set_source_files_properties("${output}" PROPERTIES OBJECT_DEPENDS "${files}")
+  set(${result} "${output}" PARENT_SCOPE)
 endfunction()

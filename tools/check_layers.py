@@ -15,13 +15,14 @@ import tempfile
 LEVEL = {
     "base": 0, "numeric": 1, "expr": 2, "tape": 3, "model": 4, "spec": 5, "mechanics": 5,
     "formulation": 6, "system": 7, "structure": 8, "proof": 8, "program": 9, "kernel": 9.5, "jit": 10,
-    "integrate": 10, "result": 11, "run": 12, "report": 13, "cli": 14, "python": 14,
+    "integrate": 10, "result": 11, "run": 12, "plot": 13, "report": 13.5, "cli": 14, "python": 14,
 }  # fmt: skip
 
 # Layers that may see less than everything below them.
 ONLY = {
     "result": {"base", "numeric"},
     "jit": {"kernel"},  # a module of its own
+    "plot": {"base", "numeric", "expr", "result"},
 }
 NOT = {
     "formulation": {"spec"},
@@ -36,7 +37,7 @@ NOT = {
 VERIFY = re.compile(r"^proof/(verify|certificate)\w*\.(h|cpp)$")
 VERIFY_MAY = re.compile(r"^(base/|numeric/|proof/(certificate|verify)\w*\.h$)")
 
-# header pattern, what we call it, layers that may include it, number of files that may
+# header pattern, what we call it, layers that may include it, number of files in each that may
 OUTSIDE = [
     (r"(flint/|arb|acb|arf|arith|mag\.h|ca\.h|ca_|calcium|antic|nf\.h|nf_|fmp[qz]|qqbar)", "FLINT/Arb", {"expr", "numeric"}, None),
     (r"(gmp|gmpxx|mpfr|mpf2mpfr|mpc)\.h$", "GMP/MPFR", {"expr", "numeric"}, None),
@@ -46,11 +47,12 @@ OUTSIDE = [
     (r"sleef", "SLEEF", {"jit"}, None),
     (r"mpi\.h$", "MPI", {"run"}, 1),
     (r"(hdf5|H5\w*)(_hl)?\.h$", "HDF5", {"result"}, 1),
+    (r"cairo(-\w+)?\.h$", "cairo", {"plot"}, 1),
     (r"sqlite3\.h$", "SQLite", {"result"}, 1),
     (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate"}, 1),
     (r"(tbb|oneapi)/", "oneTBB", {"run"}, 1),
     (r"pybind11/", "pybind11", {"python"}, None),
-    (r"nlohmann/", "nlohmann-json", {"proof"}, 1),
+    (r"nlohmann/", "nlohmann-json", {"proof", "report"}, 1),
     (r"boost/", "Boost, of a peer in bench/", set(), None),
     (r"(gtest|gmock|benchmark)/", "a test library", set(), None),
 ]  # fmt: skip
@@ -97,14 +99,15 @@ def check(root):
                     problems.append(f'{where}: {layer} includes "{header}": {way}')
             for pattern, name, layers, _ in OUTSIDE:
                 if re.match(pattern, header) and not (quote == '"' and header.split("/")[0] in LEVEL):
-                    users.setdefault(name, set()).add(str(inside))
+                    users.setdefault((name, layer), set()).add(str(inside))
                     if layer not in layers:
                         place = " and ".join(f"{x}/" for x in sorted(layers)) or "test/"
                         problems.append(f"{where}: {name} belongs into {place} only")
-    for _, name, _, limit in OUTSIDE:
-        files = sorted(users.get(name, ()))
-        if limit is not None and len(files) > limit:
-            problems.append(f"{name} is included by {len(files)} files, {limit} is allowed: {', '.join(files)}")
+    for _, name, layers, limit in OUTSIDE:
+        for layer in sorted(layers):
+            files = sorted(users.get((name, layer), ()))
+            if limit is not None and len(files) > limit:
+                problems.append(f"{name} is included by {len(files)} files of {layer}/, {limit} is allowed: {', '.join(files)}")
 
     public = root / "include"
     for path in sorted(p for p in public.rglob("*") if p.is_file() and p.suffix in SOURCES):
@@ -121,6 +124,8 @@ GOOD = {
     "src/expr/graph.cpp": '#include <flint/flint.h>\n#include "base/text.h"\n#include "expr/graph.h"\n',
     "src/expr/graph.h": '// #include "cli/main.h"\n',
     "src/spec/read.cpp": '#include <toml++/toml.h>\n#include "model/model.h"\n',
+    "src/result/hdf5.cpp": "#include <hdf5.h>\n",
+    "src/plot/cairo.cpp": '#include <cairo.h>\n#include "expr/print.h"\n',
     "src/report/html.cpp": '#include "result/columns.h"\n#include "program/program.h"\n',
     "src/proof/verify.cpp": '#include "numeric/ball.h"\n#include "proof/certificate.h"\n',
     "src/proof/certificate.cpp": '#include <nlohmann/json.hpp>\n#include "base/json.h"\n',
@@ -154,6 +159,10 @@ MUTANTS = {
     "CLI11 twice": ("src/cli/again.cpp", "#include <CLI/App.hpp>\n"),
     "SUNDIALS elsewhere": ("src/run/bad.cpp", "#include <cvode/cvode.h>\n"),
     "LLVM outside jit": ("src/run/bad.cpp", "#include <llvm/IR/Module.h>\n"),
+    "HDF5 twice": ("src/result/bad.cpp", "#include <hdf5.h>\n"),
+    "HDF5 elsewhere": ("src/cli/bad.cpp", "#include <hdf5.h>\n"),
+    "cairo elsewhere": ("src/cli/bad.cpp", "#include <cairo-pdf.h>\n"),
+    "plot does not simulate": ("src/plot/bad.cpp", '#include "run/simulate.h"\n'),
     "test library in src": ("src/base/bad.cpp", "#include <gtest/gtest.h>\n"),
     "public header": ("include/anholon/bad.h", '#include "expr/graph.h"\n'),
 }

@@ -139,7 +139,7 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
         j.key("value").number(number_text(k ? s.state.qd[a] : s.state.q[a]));
         j.key("origin").string(name(k ? s.state.qd_origin[a] : s.state.q_origin[a])).close();
       }
-    for (const Entry& e : higher_state(s)) j.key(e.name).open_object().key("value").number(number_text(e.value)).key("origin").string(name(e.origin)).close();
+    for (const StateEntry& e : higher_state(s)) j.key(e.name).open_object().key("value").number(number_text(e.value)).key("origin").string(name(e.origin)).close();
     j.close();
   }
   if (outcome.ok()) write_conserved(j, *s.mechanics);

@@ -9,28 +9,7 @@ namespace anholon::cli {
 
 namespace {
 
-std::string describe(const ConstraintClass& c, int order) {
-  if (order == 0) return std::string(c.rheonomic ? "holonomic, rheonomic" : "holonomic");
-  std::string s = "order " + std::to_string(order) + ", ";
-  s += c.kind == "nonlinear" ? "nonlinear" : c.kind == "linear" ? "linear homogeneous" : "affine";
-  if (c.kind == "nonlinear") s += c.homogeneous ? ", homogeneous" : ", not homogeneous";
-  if (c.rheonomic) s += ", rheonomic";
-  return s;
-}
-
-std::string work(const Scenario& s, const Explanation& x, std::size_t r) {
-  if (s.model->constraints[r].by) return "servo";
-  if (is_zero(x.constraints[r].power_factor)) return "does no work";
-  constexpr std::size_t kLongestPower = 120;  // what is longer is not read here; --json has it
-  const std::string power = power_text(s, x, r);
-  return power.size() > kLongestPower ? "may do work" : "may do work, of power " + power;
-}
-
-std::string listed(const Model& model, const std::vector<std::size_t>& constraints) {
-  std::string list;
-  for (std::size_t r : constraints) list += (list.empty() ? "" : ", ") + model.constraints[r].name;
-  return list;
-}
+constexpr std::size_t kLongestPower = 120;  // what is longer is not read here; --json has it
 
 std::string counted(std::size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); }
 
@@ -42,18 +21,18 @@ void reactions(const Scenario& s, const Explanation& x) {
       if (x.constraints[r].hypothesis == h && !s.model->constraints[r].by) list.push_back(r);
     return list;
   };
-  const auto line = [&](Hypothesis h, const char* text) {
+  const auto line = [&](Hypothesis h) {
     const std::vector<std::size_t> list = with(h);
     if (list.empty()) return;
     const std::string whose = list.size() < x.constraints.size() ? " of " + listed(*s.model, list) : "";
-    std::printf("  reactions%s: %s\n", whose.c_str(), text);
+    std::printf("  reactions%s: %s\n", whose.c_str(), in_words(h));
   };
   for (std::size_t r = 0; r < x.constraints.size(); ++r)
     if (const auto by = s.model->constraints[r].by)
       std::printf("  %s is kept by the input %s (servo): no ideal reaction\n", s.model->constraints[r].name.c_str(), s.model->controls[*by].name.c_str());
-  line(Hypothesis::dalembert, "ideal, no work in virtual displacements (d'Alembert, Lagrange)");
-  line(Hypothesis::chetaev, "ideal by Chetaev's rule, along dphi/dq' (nonlinear in the velocities: a hypothesis)");
-  line(Hypothesis::niu, "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and more)");
+  line(Hypothesis::dalembert);
+  line(Hypothesis::chetaev);
+  line(Hypothesis::niu);
 }
 
 // Names by their units, where the file has any.
@@ -132,7 +111,7 @@ void structure(const Scenario& s, const Explanation& x) {
 }
 
 // What initial data the structure asks for, and who said what.
-std::string data_needed(const Scenario& s, const std::vector<Entry>& higher) {
+std::string data_needed(const Scenario& s, const std::vector<StateEntry>& higher) {
   constexpr std::size_t kNamed = 8;  // of more choices only the number is said: the table shows them
   const InitialState<double>& x = s.state;
   std::vector<std::string> chosen;
@@ -147,7 +126,7 @@ std::string data_needed(const Scenario& s, const std::vector<Entry>& higher) {
   for (std::size_t a = 0; a < x.q.size(); ++a) count(s.model->coordinates[a].name, x.q_origin[a]);
   for (std::size_t a = 0; a < x.q.size(); ++a) count(s.model->coordinates[a].name + "'", x.qd_origin[a]);
   std::string among;
-  for (const Entry& e : higher) count(e.name, e.origin), among += ", " + e.name;
+  for (const StateEntry& e : higher) count(e.name, e.origin), among += ", " + e.name;
   std::string out = "initial data: " + counted(static_cast<std::size_t>(s.structure.state_dimension), "number", "numbers") + " may be prescribed, among " +
                     (among.empty() ? "positions and velocities" : "positions, velocities" + among) + "; " + std::to_string(given) + " given, " +
                     std::to_string(derived) + " derived, " + std::to_string(chosen.size()) + " chosen";
@@ -159,13 +138,13 @@ std::string data_needed(const Scenario& s, const std::vector<Entry>& higher) {
 
 void state_table(const Scenario& s) {
   const InitialState<double>& x = s.state;
-  const std::vector<Entry> higher = higher_state(s);
+  const std::vector<StateEntry> higher = higher_state(s);
   if (!x.q.empty()) std::printf("%s\n", data_needed(s, higher).c_str());
   std::printf("initial state at t = %s\n", number_text(x.t).c_str());
   for (std::size_t a = 0; a < x.q.size(); ++a)
     std::printf("  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
                 name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(), number_text(x.qd[a]).c_str(), name(x.qd_origin[a]));
-  for (const Entry& e : higher) std::printf("  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
+  for (const StateEntry& e : higher) std::printf("  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
   std::printf("  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
 }
 
@@ -195,7 +174,7 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
       redundant = x.constraints[r].follows_from.empty() ? "; redundant here" : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
     // One component of a vector equation too many.
     if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x') redundant += "; 'along' names the directions that count";
-    std::printf("  %-14s %s; %s%s\n", "", describe(s.classes[r], c.order).c_str(), work(s, x, r).c_str(), redundant.c_str());
+    std::printf("  %-14s %s; %s%s\n", "", description(s.classes[r], c.order).c_str(), work(s, x, r, kLongestPower).c_str(), redundant.c_str());
   }
   reactions(s, x);
   integrability(s, x);

@@ -8,6 +8,7 @@ namespace anholon::cli {
 enum ExitCode : int { kOk = 0, kStopped = 1, kBadInput = 2, kFault = 3 };
 
 struct Options {
+  std::string command_line;  // as it could be typed again
   std::string model;
   std::string equations;
   std::string form = "routh";
@@ -22,6 +23,8 @@ struct Options {
   std::vector<std::string> set, cases, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance, rigorous;
   std::string save, resume;
+  std::string report, rows;  // a page of the motion; a run whose rows it shows
+  bool no_proof = false;
   std::string vary, about;
   std::vector<std::string> varied;  // of sweep
   std::string case_count;
@@ -33,11 +36,17 @@ struct Options {
   int points = 6;
   unsigned long long seed = 0;
   std::vector<std::string> files;
+  std::vector<std::string> columns;  // of plot
+  std::string abscissa, from, size, title, labels = "unicode";
+  std::string fps, seconds, picture_at, frame;  // of render
+  bool dark = false;
+  bool log_axis = false, each = false, together = false;
   bool check_only = false, to_stdout = false, schema = false;
   bool json = false, quiet = false, steps = false, csv = false;
 };
 
 int check(const Options& o);
+int convert(const Options& o);
 int derive(const Options& o);
 int evaluate(const Options& o);
 int linearize(const Options& o);
@@ -45,7 +54,10 @@ int simulate(const Options& o);
 int sweep(const Options& o);
 int forms(const Options& o);
 int models(const Options& o);
+int plot(const Options& o);
 int prove(const Options& o);
+int render(const Options& o);
+int report(const Options& o);
 int compare(const Options& o);
 int verify(const Options& o);
 int reference(const Options& o);

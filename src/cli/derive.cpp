@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <map>
 
-#include "cli/equations.h"
+#include "report/equations.h"
 #include "cli/input.h"
 #include "cli/show.h"
 #include "program/emit.h"

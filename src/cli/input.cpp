@@ -136,6 +136,12 @@ Reader read(const Options& o) {
                                      : "hint: did you mean the shipped model '" + near + "'?\n")};
     }
   }
+  return read(o, std::move(r.source));
+}
+
+Reader read(const Options& o, SourceText source) {
+  Reader r;
+  r.source = std::move(source);
   Overrides overrides;
   for (const std::string& s : split(o.set)) {
     const auto [name, value] = assignment(s, "--set");

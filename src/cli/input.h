@@ -28,6 +28,8 @@ struct Reader {
 std::string all_text(const SourceText& source);
 // Reads the model named by the options (a path, or the name of a shipped model) with --set applied.
 Reader read(const Options& o);
+// The same of a text that is at hand.
+Reader read(const Options& o, SourceText source);
 // The form asked for: --form, else [simulate] form, else Routh's; throws if it does not apply.
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics = nullptr);
 // The options with --form auto, or that of the file, replaced by the form it comes to; says which, unless quiet.

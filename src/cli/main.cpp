@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -25,8 +26,7 @@ void rescue_model(Options& o) {
     }
 }
 
-constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "sweep", "linearize", "forms", "models", "prove", "compare", "verify", "new", "fmt", "reference"};
-constexpr const char* kLater[] = {"report", "plot", "render", "convert"};
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "sweep", "linearize", "forms", "models", "prove", "compare", "verify", "new", "fmt", "reference", "convert", "plot", "report", "render"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {
@@ -36,11 +36,22 @@ void check_command(const char* word) {
     if (std::string(c) == word) return;
     known.emplace_back(c);
   }
-  for (const char* c : kLater)
-    if (std::string(c) == word) throw UsageError{"error: the command '" + std::string(word) + "' is not there yet\nhint: anholon --help\n"};
   const std::string near = did_you_mean(word, known);
   throw UsageError{"error: there is no command '" + std::string(word) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
                    "\nhint: anholon --help\n"};
+}
+
+// The words as they could be typed again.
+std::string command_line(int argc, char** argv) {
+  std::string line = "anholon";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool plain = !word.empty() && word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-") == std::string::npos;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += " " + (plain ? word : quoted + "'");
+  }
+  return line;
 }
 
 // What was printed has reached its reader; a full disk or a closed pipe is not success.
@@ -62,11 +73,15 @@ int run(int argc, char** argv) {
              "  anholon check disc                                  what kind of system it is\n"
              "  anholon derive luo-zhao-example-2 --format latex    its equations\n"
              "  anholon simulate disc --to 10 -o disc.csv           its motion\n"
+             "  anholon report disc -o disc.html                    its equations, motion and animation on one page\n"
+             "  anholon render disc -o disc.mp4                     its animation as a film; -o disc.png --at 3 for a picture\n"
+             "  anholon plot disc.csv theta phi                     drawn in the terminal; -o fig.pdf for a paper\n"
              "  anholon sweep disc --vary m=1:3:200 -o cases.csv    many motions, on all cores\n"
              "  anholon linearize whipple --vary v=0..10:1          eigenvalues over a range, weave and capsize speeds\n"
              "  anholon prove disc -o proof.json                    a proof that all forms of the equations agree\n"
              "Exit status: 0 ok, 1 the motion stopped early (what was computed is kept), 2 bad input, 3 internal fault.");
   Options o;
+  o.command_line = command_line(argc, argv);
   std::function<int(const Options&)> command;
 
   const auto model_command = [&](const char* name, const char* what, int (*f)(const Options&), const char* footer) {
@@ -115,25 +130,70 @@ int run(int argc, char** argv) {
   evaluate_command->add_option("--digits", o.digits, "more than 16: multiprecision, or quad if asked for")->type_name("N")->check(CLI::Range(1, 2000));
   evaluate_command->add_option("--numbers", o.numbers, "long-double (default) or quad (33 digits)")->check(CLI::IsMember({"long-double", "quad"}));
 
+  const auto accuracy = [&](CLI::App* c) {
+    c->add_option("--tolerance", o.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
+    c->add_option("--digits", o.digits, "more than 16: multiprecision, or quad if asked for")->type_name("N")->check(CLI::Range(1, 2000));
+    c->add_option("--numbers", o.numbers, "double, long-double or quad (33 digits, tolerance 1e-32 unless given; faster than --digits)")->check(CLI::IsMember({"double", "long-double", "quad"}));
+    c->add_option("--rigorous", o.rigorous, "bound the residuals of the dense output by ball arithmetic: at so many times, or all")->type_name("N");
+    c->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
+    c->add_option("--method", o.method, "taylor; rk: Runge-Kutta of order 8, for loose tolerances and kinks; bdf, for stiff motions; auto (default): Taylor\nunless another one is found to be much cheaper on the way")->type_name("NAME");
+    c->add_option("--integrator", o.integrator, "taylor, or a second opinion by SUNDIALS: cvode, ida; with its difference")->type_name("NAME");
+  };
+  const auto motion = [&](CLI::App* c) {
+    c->add_option("--to", o.to, "end time (absolute)")->type_name("T");
+    c->add_option("--at", o.at, "rows at exactly these times: 0.25,0.5")->type_name("T,…");
+    c->add_option("--every", o.every, "rows at this interval")->type_name("DT");
+    accuracy(c);
+  };
   CLI::App* simulate_command = model_command("simulate", "integrate the motion", cli::simulate,
+                                             "FILE.h5 holds the model, the rows and the report, and can be read while the run goes on and after a kill.\n"
                                              "Examples: anholon simulate disc --to 10 --every 0.01 -o disc.csv\n"
+                                             "          anholon simulate disc --to 10 -o disc.h5 && anholon plot disc.h5\n"
                                              "          anholon simulate disc --to 1000 --tolerance 1e-6 --method rk");
   parameters(simulate_command), state(simulate_command), form_option(simulate_command);
-  simulate_command->add_option("--to", o.to, "end time (absolute)")->type_name("T");
-  simulate_command->add_option("--at", o.at, "rows at exactly these times: 0.25,0.5")->type_name("T,…");
-  simulate_command->add_option("--every", o.every, "rows at this interval")->type_name("DT");
-  simulate_command->add_option("--tolerance", o.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
-  simulate_command->add_option("--digits", o.digits, "more than 16: multiprecision, or quad if asked for")->type_name("N")->check(CLI::Range(1, 2000));
-  simulate_command->add_option("--numbers", o.numbers, "double, long-double or quad (33 digits, tolerance 1e-32 unless given; faster than --digits)")->check(CLI::IsMember({"double", "long-double", "quad"}));
-  simulate_command->add_option("--rigorous", o.rigorous, "bound the residuals of the dense output by ball arithmetic: at so many times, or all")->type_name("N");
-  simulate_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
-  simulate_command->add_option("--method", o.method, "taylor; rk: Runge-Kutta of order 8, for loose tolerances and kinks; bdf, for stiff motions; auto (default): Taylor\nunless another one is found to be much cheaper on the way")->type_name("NAME");
-  simulate_command->add_option("--integrator", o.integrator, "taylor, or a second opinion by SUNDIALS: cvode, ida; with its difference")->type_name("NAME");
+  motion(simulate_command);
   simulate_command->add_option("--save", o.save, "FILE that holds the run's state at the end, after Ctrl-C, and every few seconds")->type_name("FILE");
   simulate_command->add_option("--continue", o.resume, "FILE that --save wrote: the run goes on with the same bits, rows after its last")->type_name("FILE");
   simulate_command->add_option("--error-estimate", o.error_estimate, "digits to trust, by a second, sharper run: always, never, or of runs up to 5000 steps (short, the default)")
       ->type_name("WHEN")->check(CLI::IsMember({"always", "never", "short"}));
-  simulate_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
+  simulate_command->add_option("-o,--output", o.output, "FILE.h5, FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
+
+  simulate_command->add_option("--report", o.report, "FILE.html: the motion as a page with equations, plots and animation (see anholon report)")->type_name("FILE");
+
+  CLI::App* report_command = model_command("report", "a page that shows a motion: equations, proof, plots, animation", cli::report,
+                                           "One self-contained file for any browser. MODEL is a model, whose motion is computed, or a run in HDF5.\n"
+                                           "Examples: anholon report disc -o disc.html\n"
+                                           "          anholon simulate disc --to 10 -o disc.h5 && anholon report disc.h5\n"
+                                           "          anholon report luo-zhao-example-2 --to 5 --forms routh,appell\n"
+                                           "          anholon report pendulum.toml --case moon --case mars       scenarios side by side\n"
+                                           "          anholon report disc --rows disc.csv                        rows from a file");
+  parameters(report_command), state(report_command), form_option(report_command), motion(report_command);
+  report_command->add_option("-o,--output", o.output, "FILE.html (default: named as the model, in this folder)")->type_name("FILE");
+  report_command->add_option("--forms", o.forms, "forms whose equations are shown: routh,maggi (default: Routh's, those of the motion, Maggi's)")->type_name("NAME,…")->allow_extra_args(false);
+  report_command->add_option("--rows", o.rows, "a run of this model whose rows are shown, in HDF5, CSV or JSON")->type_name("FILE");
+  report_command->add_flag("--no-proof", o.no_proof, "leave out the proof that the forms agree");
+
+  CLI::App* render_command = model_command("render", "the animation of a motion as a film or pictures (needs Chromium; films: ffmpeg)", cli::render,
+                                           "MODEL is a model, whose motion is computed, or a run in HDF5. -o FILE.mp4 or FILE.gif is a film, FILE.png one picture,\n"
+                                           "FOLDER/ a picture for each moment: frame-0001.png, … Chromium is looked for as chromium, chromium-browser, google-chrome;\n"
+                                           "ANHOLON_CHROMIUM names another.\n"
+                                           "Exit status: 0 ok, 1 the motion stopped early (what there is was recorded) or Ctrl-C, 2 bad input, or nothing to record with.\n"
+                                           "Examples: anholon render disc -o disc.mp4\n"
+                                           "          anholon simulate disc --to 10 -o disc.h5 && anholon render disc.h5 -o disc.gif --seconds 4\n"
+                                           "          anholon render disc -o disc.png --at 3 --size 1920x1080 --dark\n"
+                                           "          anholon render luo-zhao-example-2 -o seen/ --frame inertial --from 1 --to 2 --fps 50");
+  parameters(render_command), state(render_command), form_option(render_command), accuracy(render_command);
+  render_command->add_option("-o,--output", o.output, "FILE.mp4, FILE.gif, FILE.png or FOLDER/ (default: named as the model, .mp4, with --at .png)")->type_name("FILE");
+  render_command->add_option("--size", o.size, "of the picture in pixels, 64x64 to 7680x7680 (default 1280x720; gif: 640x360)")->type_name("WxH");
+  render_command->add_option("--fps", o.fps, "pictures per second, 1 to 120 (default 30; gif: 25)")->type_name("N");
+  render_command->add_option("--seconds", o.seconds, "how long the film lasts (default: as the motion where that is 2 to 20 s, else 10)")->type_name("S");
+  render_command->add_option("--at", o.picture_at, "with FILE.png: the time of the picture, or 60%: so far through the motion (default: its start)")->type_name("T");
+  render_command->add_option("--from", o.from, "recorded from this time on")->type_name("T");
+  render_command->add_option("--to", o.to, "recorded up to this time, where the motion of a MODEL ends, too")->type_name("T");
+  render_command->add_option("--every", o.every, "rows of the motion at this interval (default: as many as a page shows)")->type_name("DT");
+  render_command->add_option("--frame", o.frame, "where the model's observer moves: what it sees, observer (default), or an inertial one")->type_name("WHO")->check(CLI::IsMember({"observer", "inertial"}));
+  render_command->add_flag("--dark", o.dark, "on a dark ground");
+  render_command->add_option("--rows", o.rows, "a run of this model, in HDF5, CSV or JSON")->type_name("FILE");
 
   CLI::App* sweep_command = model_command("sweep", "many motions with other parameters and initial values, on all cores", cli::sweep,
                                           "NAME is a parameter, a coordinate x or a velocity x'. A grid is 0:10:101 (from, to, how many), a list 1,2,5; several grids make all\n"
@@ -202,6 +262,33 @@ int run(int argc, char** argv) {
   format_command->add_flag("--check", o.check_only, "change nothing, say which files would be");
   format_command->add_flag("--stdout", o.to_stdout, "print the text instead of changing the file");
   format_command->callback([&command] { command = cli::format; });
+  CLI::App* plot_command = app.add_subcommand("plot", "columns of a run, drawn in the terminal or as a figure for a paper");
+  plot_command->footer("Columns are named as in the run; * and ? stand for any letters (in quotes, for the shell). Without names: the coordinates.\n"
+                       "Examples: anholon plot run.h5\n"
+                       "          anholon plot run.h5 theta \"theta'\" --each --from 2 --to 5\n"
+                       "          anholon plot run.h5 y --x x --title \"path of the contact\"\n"
+                       "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm");
+  plot_command->add_option("RUN", o.model, "a run: FILE.h5, FILE.csv, FILE.json, or - for what comes through a pipe")->required();
+  plot_command->add_option("COLUMN", o.columns, "names of columns, or patterns");
+  plot_command->add_option("--x", o.abscissa, "the column along the horizontal axis (default: t)")->type_name("COLUMN");
+  plot_command->add_option("--from", o.from, "no rows before this time")->type_name("T");
+  plot_command->add_option("--to", o.to, "no rows after this time")->type_name("T");
+  plot_command->add_flag("--log", o.log_axis, "logarithmic vertical axis; what is not positive is left out");
+  plot_command->add_flag("--together", o.together, "all columns in one panel (the default)");
+  plot_command->add_flag("--each", o.each, "a panel for each column");
+  plot_command->add_option("--labels", o.labels, "unicode (θ̇), latex ($\\dot{\\theta}$, for programs that set it) or plain (theta')")->type_name("STYLE")->check(CLI::IsMember({"unicode", "latex", "plain"}));
+  plot_command->add_option("--title", o.title, "above the figure")->type_name("TEXT");
+  plot_command->add_option("--size", o.size, "of a figure: 8cmx5cm (cm, mm, in, pt; default 16cmx9cm); in the terminal: 100x30, columns and rows")->type_name("WxH");
+  plot_command->add_flag("--json", o.json, "JSON on the standard output: what is drawn, and between which numbers");
+  plot_command->add_option("-o,--output", o.output, "FILE.svg, FILE.pdf, FILE.png or FILE.tex (pgfplots)")->type_name("FILE");
+  plot_command->callback([&command] { command = cli::plot; });
+  CLI::App* convert_command = app.add_subcommand("convert", "a run in another format: HDF5, CSV or JSON");
+  convert_command->footer("No digit is lost on the way. HDF5 holds the model, the rows and the report, JSON the rows and the report, CSV the rows.\n"
+                          "Example: anholon convert run.h5 run.csv");
+  convert_command->add_option("IN", o.model, "the run, in any of the formats; -: through a pipe")->required();
+  convert_command->add_option("OUT", o.output, "FILE.h5, FILE.csv or FILE.json (default: CSV on the standard output)");
+  convert_command->add_flag("--json", o.json, "JSON on the standard output");
+  convert_command->callback([&command] { command = cli::convert; });
   CLI::App* reference_command = app.add_subcommand("reference", "the language of model files, in Markdown");
   reference_command->footer("Example: anholon reference event");
   reference_command->add_option("SECTION", o.model, "one section: body, event, …, or formulas (default: all)");
@@ -230,6 +317,8 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A limit of the size of files is an error like a full disk, with a message.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     const int status = finish(run(argc, argv));
     if (!compiling_for_nobody()) return status;

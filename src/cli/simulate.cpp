@@ -2,14 +2,18 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <deque>
 
-#include "base/json.h"
 #include "cli/input.h"
 #include "cli/method.h"
 #include "cli/progress.h"
+#include "cli/run_info.h"
+#include "cli/report.h"
 #include "cli/saved.h"
 #include "cli/show.h"
+#include "cli/simulation_json.h"
 #include "result/file.h"
+#include "result/hdf5_sink.h"
 #include "run/simulate.h"
 
 namespace anholon::cli {
@@ -18,6 +22,15 @@ namespace {
 
 // More rows than this are refused before they fill memory or disk; JSON, which is held in memory, has less room.
 constexpr long kMostRows = 5'000'000, kMostJsonNumbers = 5'000'000;
+
+bool ends_with(const std::string& s, const std::string& end) {
+  return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
+}
+
+bool is_hdf5(const std::string& path) {
+  RunFormat format{};
+  return format_of(path, format) && format == RunFormat::hdf5;
+}
 
 Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
   const Model& model = *scenario.model;
@@ -48,10 +61,10 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s)
   if (end < start) std::fprintf(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
   if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
-  const bool json = o.json || (o.output.size() > 5 && o.output.substr(o.output.size() - 5) == ".json");
+  const bool json = ends_with(o.output, ".json") || (o.json && !is_hdf5(o.output));
   const auto columns = static_cast<long>(1 + 4 * scenario.system.coordinates + scenario.system.constraints.size());
   if (s.every && json && columns * abs(Rational(end - start)) > kMostJsonNumbers * *s.every)
-    throw UsageError{"error: --every asks for more than " + std::to_string(kMostJsonNumbers) + " numbers of JSON\nhint: write CSV: -o run.csv\n"};
+    throw UsageError{"error: --every asks for more than " + std::to_string(kMostJsonNumbers) + " numbers of JSON\nhint: write HDF5 or CSV: -o run.h5\n"};
   return end;
 }
 
@@ -85,8 +98,6 @@ std::optional<std::size_t> rigorous(const std::string& text) {
   return n->get_num().get_ui();
 }
 
-std::string small(double x) { return number_text(x, 3); }
-
 // SUNDIALS computes in double, and not below a tolerance of its own.
 void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   s.integrator = model.simulate.integrator.value_or(Integrator::taylor);
@@ -113,98 +124,6 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   s.estimate = ErrorEstimate::never;
   const std::string least = small(kLeastSundialsTolerance);
   if (s.tolerance.get_d() < kLeastSundialsTolerance) std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
-}
-
-void write_watched(JsonWriter& j, const char* key, const std::vector<WatchedReport>& list) {
-  if (list.empty()) return;
-  j.key(key).open_object();
-  for (const WatchedReport& w : list) {
-    j.key(w.name).open_object();
-    for (const auto& [name, value] : {std::pair{"first", &w.first}, {"last", &w.last}, {"min", &w.least}, {"max", &w.greatest}}) j.key(name).number(*value);
-    j.key("largest_change").number(small(w.largest_change)).close();
-  }
-  j.close();
-}
-
-void write_json(const Scenario& s, const MemorySink& rows, const SimulationReport& r, std::FILE* file) {
-  JsonWriter j;
-  j.open_object();
-  j.key("model").string(s.model->title);
-  j.key("form").string(s.system.form->name);
-  j.key("columns").open_array();
-  for (const std::string& n : rows.names()) j.string(n);
-  j.close();
-  j.key("rows").open_array();
-  for (const auto& row : rows.rows()) {
-    j.open_array();
-    for (const std::string& v : row) j.number(v);
-    j.close();
-  }
-  j.close();
-  j.key("residuals").open_object();
-  for (const auto& [name, value] : {std::pair{"newton", r.newton}, {"projected", r.projected},
-                                    {"constraints", r.constraints_kept}, {"constraints_before_projection", r.constraints},
-                                    {"power", r.power}, {"smallest_sigma", r.smallest_sigma}})
-    j.key(name).number(small(value));
-  j.close();
-  if (r.second) {
-    j.key("second_opinion").open_object().key("integrator").string(name(r.second->integrator)).key("form").string(r.second->form);
-    j.key("difference").number(small(r.second->difference)).key("of").string(r.second->of).key("t").number(number_text(r.second->t));
-    j.key("steps").integer(static_cast<long long>(r.second->steps)).key("evaluations").integer(static_cast<long long>(r.second->evaluations)).close();
-  }
-  j.key("smallest_sigma_t").number(r.smallest_sigma_t.empty() ? "nan" : r.smallest_sigma_t);
-  j.key("constraints_each").open_object();
-  for (const ConstraintReport& c : r.constraints_each) {
-    j.key(c.name).open_array();
-    for (double x : c.residuals) j.number(small(x));
-    j.close();
-  }
-  j.close();
-  if (r.error) {
-    j.key("error_estimate").open_object().key("digits").integer(r.error->digits).key("error").number(small(r.error->error));
-    j.key("t").number(r.error->t).key("means").string(r.error->means).close();
-  } else if (!r.no_error.empty()) {
-    j.key("error_estimate").open_object().key("digits").null().key("reason").string(r.no_error).close();
-  }
-  if (!s.model->events.empty()) {
-    j.key("events").open_array();
-    for (const EventReport& e : r.events) {
-      j.open_object().key("name").string(e.name).key("t").number(e.t);
-      if (!e.changes.empty()) {
-        j.key("set").open_object();
-        for (const auto& c : e.changes) j.key(c.name).open_object().key("before").number(c.before).key("after").number(c.after).close();
-        j.close().key("correction").number(small(e.correction));
-      }
-      if (e.stop) j.key("stop").boolean(true);
-      j.close();
-    }
-    j.close();
-  }
-  write_watched(j, "conserved", r.conserved);
-  write_watched(j, "monitors", r.monitors);
-  if (!r.warnings.empty()) {
-    j.key("warnings").open_array();
-    for (const Warning& w : r.warnings) j.open_object().key("message").string(w.message).key("hint").string(w.hint).close();
-    j.close();
-  }
-  if (r.rigorous) {
-    j.key("rigorous").open_object();
-    j.key("times");
-    if (r.rigorous->times) j.integer(static_cast<long long>(*r.rigorous->times));
-    else j.string("all");
-    j.key("newton").number(r.rigorous->newton).key("projected").number(r.rigorous->projected).key("constraints").number(r.rigorous->constraints).key("joints").number(r.rigorous->joints);
-    j.key("bits").integer(r.rigorous->bits);
-    j.close();
-  }
-  write_method(j, r.method);
-  j.key("steps").integer(static_cast<long long>(r.steps));
-  j.key("order").integer(r.order);
-  if (s.system.form->eliminates()) j.key("eliminations").integer(static_cast<long long>(r.eliminations));
-  j.key("t").number(r.t);
-  j.key("outcome").string(name(r.outcome.kind));
-  if (!r.outcome.ok()) j.key("message").string(r.outcome.message).key("hint").string(r.outcome.hint);
-  j.close();
-  std::fputs((j.text() + "\n").c_str(), file);
 }
 
 // "blade'" for the first derivative of the constraint that holds worst.
@@ -270,10 +189,6 @@ void report(const Scenario& s, const SimulationReport& r) {
   for (const Warning& w : r.warnings) std::fprintf(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
 }
 
-bool ends_with(const std::string& s, const std::string& end) {
-  return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
-}
-
 // Writes the runs that --save asks for; the first failure ends it and is kept.
 class Saver {
  public:
@@ -292,17 +207,32 @@ class Saver {
   const SimulationOptions& options_;
 };
 
-SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSink& rows) {
+SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSink& rows, Told* told) {
   try {
-    return anholon::simulate(s, options, rows);
+    if (!told) return anholon::simulate(s, options, rows);
+    RunSink kept(told->run);
+    TwoSinks both(rows, kept);
+    return anholon::simulate(s, options, both);
   } catch (const Failure& e) {
     throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
   }
 }
 
-int simulate_motion(const Options& asked, const SavedRun* resume) {
-  if (ends_with(asked.output, ".h5")) throw UsageError{"error: HDF5 is not written yet\nhint: -o run.csv or -o run.json\n"};
-  const Reader in = read(asked);
+// Rows of a motion that is drawn, where nobody says how many: as many as a page holds whole.
+int rows_to_look_at(const Mechanics& m) {
+  constexpr std::size_t kNumbers = 22000;
+  return static_cast<int>(std::clamp<std::size_t>(kNumbers / (4 * m.q.size() + 3 * m.phi.size() + 6), 250, 1000));
+}
+
+}  // namespace
+
+int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
+  const bool hdf5 = is_hdf5(asked.output);
+  if (hdf5 && !has_hdf5()) throw UsageError{"error: " + std::string(kNoHdf5) + "\nhint: " + kNoHdf5Hint + "\n"};
+  Told own;
+  Told& all = told ? *told : own;
+  all.in = read(asked);
+  const Reader& in = all.in;
   const Options o = with_form(asked, in);
   if (resume) same_model(*resume, in);
   SimulationOptions options;
@@ -310,7 +240,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume) {
   options.estimate = o.error_estimate == "always" ? ErrorEstimate::always : o.error_estimate == "never" ? ErrorEstimate::never : ErrorEstimate::short_runs;
   options.state = state_choice(o, *in.model);
   options.order = o.order;
-  Scenario s;
+  Scenario& s = all.scenario;
   const Outcome start = ready(in, form(o, *in.model), options.state, s);
   form(o, *in.model, s.mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
@@ -320,6 +250,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume) {
   if (!o.show.empty()) return show(o, s);
   const Rational last = times(o, s, options);
   if (resume) beyond(*resume, o, last);
+  if (told && o.output.empty() && !options.every && options.at.empty() && last != Rational(s.state.t)) options.every = abs(Rational(last - Rational(s.state.t))) / rows_to_look_at(*s.mechanics);
   // What an event sets is not conserved.
   const bool reset = std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
   if (reset && last < Rational(s.state.t)) throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after the start, t = " + number_text(s.state.t) + "\n"};
@@ -333,21 +264,33 @@ int simulate_motion(const Options& asked, const SavedRun* resume) {
   catch_stop();
   options.cancelled = stop_requested;
 
-  const bool json = o.json || ends_with(o.output, ".json");
+  if (told) {
+    static_cast<RunInfo&>(told->run) = run_info(o, in, s, options);
+    told->conserved = options.conserved;
+  }
+  const bool json = !hdf5 && (o.json || ends_with(o.output, ".json"));
   SimulationReport r;
   std::string write_error;
   {
     const double end = options.at.empty() ? options.to->get_d() : std::max(options.at.back().get_d(), options.to ? options.to->get_d() : options.at.back().get_d());
     Progress progress(o.quiet || end == s.state.t, "t", "steps");
     options.progress = [&](double t, std::size_t steps) { progress((t - s.state.t) / (end - s.state.t), t, steps); };
-    if (json) {
+    if (told && o.output.empty()) {
+      if (!start.ok()) {
+        print_outcome(start);
+        return kStopped;
+      }
+      RunSink rows(told->run);
+      if (!o.save.empty()) options.save = std::ref(saver);
+      r = run(s, options, rows, nullptr);
+    } else if (json) {
       MemorySink rows;
       std::FILE* file = o.output.empty() || o.output == "-" ? stdout : std::fopen(o.output.c_str(), "w");
       if (!file) throw UsageError{"error: cannot write " + o.output + ": " + std::strerror(errno) + "\n"};
       if (!o.save.empty()) options.save = std::ref(saver);
-      if (start.ok()) r = run(s, options, rows);
+      if (start.ok()) r = run(s, options, rows, told);
       else r.outcome = start, r.t = number_text(s.state.t);
-      write_json(s, rows, r, file);
+      std::fputs(simulation_json(s, rows, r).c_str(), file);
       if (std::fflush(file) != 0 || std::ferror(file)) write_error = "cannot write " + (o.output.empty() ? "the output" : o.output) + ": " + std::strerror(errno);
       if (file != stdout) std::fclose(file);
     } else {
@@ -355,17 +298,29 @@ int simulate_motion(const Options& asked, const SavedRun* resume) {
         print_outcome(start);
         return kStopped;
       }
-      CsvSink rows(o.output);
-      if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
-      if (!o.save.empty())
-        options.save = [&](const SavedRun& run) {
-          rows.flush();
-          saver(run);
-        };
-      r = run(s, options, rows);
-      write_error = rows.close();
+      // What --save lays down is never ahead of the rows.
+      const auto into = [&](auto& rows) {
+        if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
+        if (!o.save.empty())
+          options.save = [&](const SavedRun& run) {
+            rows.flush();
+            saver(run);
+          };
+        r = run(s, options, rows, told);
+        if constexpr (std::same_as<decltype(rows), Hdf5Sink&>) rows.report(report_json(s, r));
+        write_error = rows.close();
+      };
+      if (hdf5) {
+        Hdf5Sink rows(o.output, run_info(o, in, s, options));
+        into(rows);
+        if (o.json) std::printf("%s\n", report_json(s, r).c_str());
+      } else {
+        CsvSink rows(o.output);
+        into(rows);
+      }
     }
   }
+  if (told) told->run.report = report_json(s, r);
   if (!o.quiet && r.rows > 0) report(s, r);
   if (!r.outcome.ok()) {
     print_outcome(r.outcome);
@@ -379,13 +334,17 @@ int simulate_motion(const Options& asked, const SavedRun* resume) {
   return r.outcome.ok() ? kOk : kStopped;
 }
 
-}  // namespace
-
 int simulate(const Options& o) {
-  if (o.resume.empty()) return simulate_motion(o, nullptr);
+  SavedRun run;
   Options all = o;
-  const SavedRun run = continued(all);
-  return simulate_motion(all, &run);
+  if (!o.resume.empty()) run = continued(all);
+  const SavedRun* resume = o.resume.empty() ? nullptr : &run;
+  if (o.report.empty()) return simulate_motion(all, resume, nullptr);
+  std::deque<Told> cases(1);
+  const int code = simulate_motion(all, resume, &cases[0]);
+  if (cases[0].run.table.rows() == 0) return code;
+  write_page(all, cases);
+  return code;
 }
 
 }  // namespace anholon::cli

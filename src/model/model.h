@@ -12,6 +12,7 @@
 #include "base/diagnostic.h"
 #include "expr/formula.h"
 #include "expr/print.h"
+#include "model/view.h"
 
 namespace anholon {
 
@@ -51,12 +52,6 @@ struct Axis {
   Expr weight;  // frozen form
   Vector vector;
   std::vector<Expr> own;  // components along the body's own axes, where these are orthonormal identically
-};
-
-// The homogeneous solid that a body has the inertia of, or is drawn as.
-struct Shape {
-  std::string kind;         // "disc", "ball", …
-  std::vector<Expr> sizes;  // of numbers and parameters
 };
 
 struct Body {
@@ -241,6 +236,7 @@ struct Model {
   std::vector<Bound> bounds;
   std::vector<Monitor> monitors;  // [monitor], then the numbers of the outputs
   SimulationSettings simulate;
+  View view;
   SymbolNames names;
   std::vector<std::string> cases;  // scenarios of the file, [case.NAME]
   // Where the file has units: those of coordinates and parameters, empty where nothing tells.

@@ -3,6 +3,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "result/table.h"
+
 namespace anholon {
 
 CsvSink::CsvSink(const std::string& path) : path_(path) {
@@ -11,6 +13,12 @@ CsvSink::CsvSink(const std::string& path) : path_(path) {
 }
 
 CsvSink::~CsvSink() { close(); }
+
+void CsvSink::columns(const std::vector<std::string>& names) {
+  std::vector<std::string> quoted;
+  for (const std::string& n : names) quoted.push_back(csv_name(n));
+  row(quoted);
+}
 
 void CsvSink::row(const std::vector<std::string>& values) {
   if (!file_ || !error_.empty()) return;

@@ -12,6 +12,8 @@ class RowSink {
   virtual ~RowSink() = default;
   virtual void columns(const std::vector<std::string>& names) = 0;
   virtual void row(const std::vector<std::string>& values) = 0;
+  // A step of the motion that was accepted ends at t.
+  virtual void step(double) {}
 };
 
 // CSV with one header row. Flushes at every row when the output is watched by a person.
@@ -22,7 +24,7 @@ class CsvSink final : public RowSink {
   ~CsvSink() override;
   CsvSink(const CsvSink&) = delete;
   CsvSink& operator=(const CsvSink&) = delete;
-  void columns(const std::vector<std::string>& names) override { row(names); }
+  void columns(const std::vector<std::string>& names) override;
   void row(const std::vector<std::string>& values) override;
   // The rows so far are in the file, whatever happens to the program.
   void flush();
@@ -33,6 +35,18 @@ class CsvSink final : public RowSink {
  private:
   std::string path_, error_;
   std::FILE* file_ = nullptr;
+};
+
+// To two places.
+class TwoSinks final : public RowSink {
+ public:
+  TwoSinks(RowSink& first, RowSink& second) : first_(first), second_(second) {}
+  void columns(const std::vector<std::string>& names) override { first_.columns(names), second_.columns(names); }
+  void row(const std::vector<std::string>& values) override { first_.row(values), second_.row(values); }
+  void step(double t) override { first_.step(t), second_.step(t); }
+
+ private:
+  RowSink &first_, &second_;
 };
 
 // Keeps the rows, for JSON.

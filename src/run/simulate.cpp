@@ -228,6 +228,7 @@ class Run {
       if (defect_) defect_->step(dense_step(motion().stepper(), stop));
       if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
       rows_until(stop);
+      sink_.step(to_double(stop));
       if (report_.outcome.ok() && !(stop == course_.time())) negative_mass(stop);
       if (report_.outcome.ok() && course_.by_taylor() && motion().fired() && !events()) break;
       if (!o_.save || std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() < o_.save_seconds) continue;

@@ -197,12 +197,39 @@ integrator = "taylor"
 
 - Options on the command line win.
 )md"},
-      {"view", Form::named, any, {},
+      {"view", Form::named, any,
+       {{"camera", vector, "from where it is looked at"},
+        {"target", vector, "what lies in the middle at the start"},
+        {"up", vector, "the direction that is up on the page; `ez` without it"},
+        {"follow", name, "the body or point that stays in the middle"},
+        {"floor", any, "the height of a grid in the plane z = const; `false`: none"},
+        {"hide", names, "bodies and points that are not drawn"}},
        R"md(```toml
-view = {camera = "P + 3*ez"}
+[view]
+camera = "5*ex + 3*ez"
+target = "P"
+up     = "ez"
+follow = "plate"
+floor  = -1
+hide   = ["plate"]
+path   = {trace = "P"}
+arm    = {line = ["0*ex", "P", "plate.center"], color = "#36c"}
+plate  = {shape = "box(2, 1, 1/10)"}                            # this is how the body is drawn
+mast   = {shape = "rod(2)", at = "P + ez", axes = "roty(pi/2)"}  # and this stands beside the bodies
+pull   = {vector = "vel(P)", at = "P"}
 ```
 
-- Belongs to pictures: any keys are accepted, and this version draws nothing, which a note says.
+- The picture of reports. Bodies with a `shape` are drawn as such, others as points with their axes, points as dots; forces with a `tension` as lines.
+- Every other name is an element: `shape` (with `at` and `axes`; of a body it takes its own place), `line` (through a list of places), `trace` (the path of a
+  place), `vector` (with `at`); each may have a `color`. Without a trace particles and points leave one.
+- Nothing here has a part in the motion. `anholon report MODEL -o page.html` shows it.
+
+```toml
+view = {follow = "plat"}
+```
+```text
+error: there is no body or point 'plat'; did you mean 'plate'?
+```
 )md"},
   };
 }

@@ -23,6 +23,7 @@
 #include "spec/tables.h"
 #include "spec/values.h"
 #include "spec/variants.h"
+#include "spec/view.h"
 
 namespace anholon {
 
@@ -100,6 +101,7 @@ class Reader {  // what it refers to is asked only while it runs
       for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
       read_notation(*n, model_, declared, diagnostics_);
     }
+    read_view(root, scope_, model_, diagnostics_);
     guard([&] { read_simulate(root, scope_, model_, diagnostics_); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
@@ -127,10 +129,6 @@ class Reader {  // what it refers to is asked only while it runs
 
   void sections(const Item& root) {
     check_keys(root, "the model file", "", diagnostics_);
-    if (const Item* view = root.find("view")) {
-      if (view->kind != Item::Kind::table) diagnostics_.error(view->span, "'view' is a section", "write [view]");
-      else model_.notes.push_back("[view] is for pictures, and this version draws none");
-    }
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
       if (const Item* i = root.find(key)) {
         if (i->kind == Item::Kind::string) *target = i->text();

@@ -106,9 +106,9 @@ void section(JsonWriter& j, const LanguageSection& s) {
       j.close().close().close();
       return;
     case Form::named:
-      if (std::string(s.name) == "initial") return keys(j, s, true);
+      if (std::string(s.name) == "initial" || std::string(s.name) == "view") return keys(j, s, true);
       type(j, {"object"});
-      if (std::string(s.name) == "case" || std::string(s.name) == "view") return;
+      if (std::string(s.name) == "case") return;
       j.key("additionalProperties").open_object().key("anyOf").open_array();
       // The value alone, a list of those of a family, or a table of its keys.
       j.open_object();

@@ -27,6 +27,7 @@ const std::vector<Solid>& solids() {
       {"shell", "shell(R)", 1, {row(third2), row(third2), row(third2)}},
       {"rod", "rod(l)", 1, {row(0), row(twelfth), row(twelfth)}},
       {"box", "box(a, b, c)", 3, {row(0, twelfth, twelfth), row(twelfth, 0, twelfth), row(twelfth, twelfth, 0)}},
+      {"ellipsoid", "ellipsoid(a, b, c)", 3, {row(0, Rational(1, 5), Rational(1, 5)), row(Rational(1, 5), 0, Rational(1, 5)), row(Rational(1, 5), Rational(1, 5), 0)}},
       {"cylinder", "cylinder(R, h)", 2, {row(fourth, twelfth), row(fourth, twelfth), row(half, 0)}},
   };
   return list;

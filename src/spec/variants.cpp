@@ -146,14 +146,17 @@ Item read_over(SourceText& all, std::size_t file, std::vector<fs::path>& open) {
     for (auto it = again; it != open.end(); ++it) way += it->filename().string() + " -> ";
     throw Failure(base->formula.whole(), "the file builds on itself: " + way + path.filename().string());
   }
-  if (all.others.size() >= kMostFiles) throw Failure(base->formula.whole(), "more than " + std::to_string(kMostFiles) + " files that build on each other");
+  if (file >= kMostFiles) throw Failure(base->formula.whole(), "more than " + std::to_string(kMostFiles) + " files that build on each other");
   SourceText below;
   below.name = (fs::path(source.name).parent_path() / base->text()).lexically_normal().string();
   below.path = path.string();
-  std::string why;
-  if (!read_file(path, below.text, &why)) throw Failure(base->formula.whole(), "cannot read the base '" + below.name + "': " + why);
-  all.others.push_back(std::move(below));
-  Item merged = read_over(all, all.others.size(), open);
+  // A text that is at hand already, as in the file of a run, is not looked for on disk.
+  if (file >= all.others.size()) {
+    std::string why;
+    if (!read_file(path, below.text, &why)) throw Failure(base->formula.whole(), "cannot read the base '" + below.name + "': " + why);
+    all.others.push_back(std::move(below));
+  }
+  Item merged = read_over(all, file + 1, open);
   Diagnostics problems;
   Overlay(problems, false).root(merged, root);
   for (const Diagnostic& d : problems.list()) throw Failure(d);

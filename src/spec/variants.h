@@ -15,8 +15,8 @@
 
 namespace anholon {
 
-// The tree of a file with that of its base (and of the base's base) under it; the files are added to source.others. A base lies
-// relative to the file that names it. Throws Failure.
+// The tree of a file with that of its base (and of the base's base) under it; the files are added to source.others, where they
+// are not there yet. A base lies relative to the file that names it. Throws Failure.
 Item read_files(SourceText& source);
 
 // The scenarios of a file, taken out of its tree.

@@ -98,11 +98,13 @@ TEST(Messages, ASyntaxErrorOfTomlHasItsPlace) {
 }
 
 // [view] belongs to pictures: whoever gives it is told that nothing is drawn.
-TEST(View, IsAcceptedWithANote) {
-  const auto model = test::model_of(kGood + "[view]\nanything = {at = \"x\"}\n");
-  ASSERT_EQ(model->notes.size(), 1U);
-  EXPECT_EQ(model->notes[0], "[view] is for pictures, and this version draws none");
-  EXPECT_TRUE(test::model_of(kGood)->notes.empty());
+TEST(View, IsReadAndItsElementsMustShowSomething) {
+  const auto model = test::model_of(kGood + "[view]\npath = {trace = \"0*ex\"}\n");
+  ASSERT_EQ(model->view.elements.size(), 1U);
+  EXPECT_EQ(model->view.elements[0].kind, View::Kind::trace);
+  const std::vector<Diagnostic> nothing = diagnostics_of(kGood + "[view]\nanything = {at = \"0*ex\"}\n");
+  ASSERT_EQ(nothing.size(), 1U);
+  EXPECT_EQ(nothing[0].message, "'anything' in [view] shows nothing");
   const std::vector<Diagnostic> list = diagnostics_of(kGood + "[[view]]\n");
   ASSERT_EQ(list.size(), 1U);
   EXPECT_EQ(list[0].message, "'view' is a section");

@@ -1,8 +1,8 @@
-#include "cli/check_report.h"
+#include "report/words.h"
 
 #include <algorithm>
 
-namespace anholon::cli {
+namespace anholon {
 
 std::vector<std::string> effects(const Model& model) {
   std::vector<std::string> list;
@@ -31,8 +31,8 @@ std::vector<std::string> external_forces(const Model& model) {
   return list;
 }
 
-std::vector<Entry> higher_state(const Scenario& s) {
-  std::vector<Entry> list;
+std::vector<StateEntry> higher_state(const Scenario& s) {
+  std::vector<StateEntry> list;
   if (!s.routh) return list;
   const Graph& g = *s.model->graph;
   for (int k = 0; k < *std::max_element(s.routh_structure.d.begin(), s.routh_structure.d.end()); ++k)
@@ -42,7 +42,7 @@ std::vector<Entry> higher_state(const Scenario& s) {
       list.push_back({derivative_name(s.routh->variable_names[j], static_cast<unsigned>(k), Format::text), *s.state.value(n), *s.state.origin(n)});
     }
   // Coordinates first, by order.
-  std::stable_partition(list.begin(), list.end(), [](const Entry& e) { return e.name.rfind("lambda.", 0) != 0; });
+  std::stable_partition(list.begin(), list.end(), [](const StateEntry& e) { return e.name.rfind("lambda.", 0) != 0; });
   return list;
 }
 
@@ -50,4 +50,35 @@ std::string power_text(const Scenario& s, const Explanation& x, std::size_t r) {
   return print(s.mechanics->lambda[r] * x.constraints[r].power_factor, s.model->names, Format::text);
 }
 
-}  // namespace anholon::cli
+std::string description(const ConstraintClass& c, int order) {
+  if (order == 0) return std::string(c.rheonomic ? "holonomic, rheonomic" : "holonomic");
+  std::string s = "order " + std::to_string(order) + ", ";
+  s += c.kind == "nonlinear" ? "nonlinear" : c.kind == "linear" ? "linear homogeneous" : "affine";
+  if (c.kind == "nonlinear") s += c.homogeneous ? ", homogeneous" : ", not homogeneous";
+  if (c.rheonomic) s += ", rheonomic";
+  return s;
+}
+
+std::string work(const Scenario& s, const Explanation& x, std::size_t r, std::size_t longest) {
+  if (s.model->constraints[r].by) return "servo";
+  if (is_zero(x.constraints[r].power_factor)) return "does no work";
+  const std::string power = power_text(s, x, r);
+  return power.size() > longest ? "may do work" : "may do work, of power " + power;
+}
+
+std::string listed(const Model& model, const std::vector<std::size_t>& constraints) {
+  std::string list;
+  for (std::size_t r : constraints) list += (list.empty() ? "" : ", ") + model.constraints[r].name;
+  return list;
+}
+
+const char* in_words(Hypothesis hypothesis) {
+  switch (hypothesis) {
+    case Hypothesis::dalembert: return "ideal, no work in virtual displacements (d'Alembert, Lagrange)";
+    case Hypothesis::chetaev: return "ideal by Chetaev's rule, along dphi/dq' (nonlinear in the velocities: a hypothesis)";
+    case Hypothesis::niu: return "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and more)";
+  }
+  return "";
+}
+
+}  // namespace anholon

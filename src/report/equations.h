@@ -6,7 +6,7 @@
 
 #include "formulation/formulation.h"
 
-namespace anholon::cli {
+namespace anholon {
 
 struct Line {
   std::string name;             // "x", "blade_edge", "T"
@@ -45,4 +45,4 @@ std::string as_latex(const std::vector<Derivation>& list);
 std::string as_mathml(const std::vector<Derivation>& list);
 std::string as_json(const std::vector<Derivation>& list, bool as_list);
 
-}  // namespace anholon::cli
+}  // namespace anholon

@@ -1,4 +1,4 @@
-#include "cli/equations.h"
+#include "report/equations.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 #include "expr/arrange.h"
 #include "expr/normal.h"
 
-namespace anholon::cli {
+namespace anholon {
 
 namespace {
 
@@ -329,4 +329,4 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
   return j.text() + "\n";
 }
 
-}  // namespace anholon::cli
+}  // namespace anholon

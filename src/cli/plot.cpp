@@ -1,0 +1,193 @@
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "base/json.h"
+#include "cli/result_file.h"
+#include "plot/drawing.h"
+#include "plot/terminal.h"
+#include "result/file.h"
+
+namespace anholon::cli {
+
+namespace {
+
+using namespace anholon::plot;
+
+enum class Target { terminal, svg, pdf, png, tex };
+
+Target target(const std::string& path) {
+  if (path.empty()) return Target::terminal;
+  const std::size_t dot = path.rfind('.');
+  const std::string end = dot == std::string::npos ? "" : path.substr(dot + 1);
+  for (const auto& [name, t] : {std::pair{"svg", Target::svg}, {"pdf", Target::pdf}, {"png", Target::png}, {"tex", Target::tex}})
+    if (end == name) return t;
+  throw UsageError{"error: a figure '" + path + "' cannot be drawn\nhint: a name that ends in .svg, .pdf, .png or .tex\n"};
+}
+
+struct Length {
+  double value = 0;
+  bool paper = false;  // in cm
+};
+
+// "8cm", "80"; nothing if it is no length.
+std::optional<Length> length(const std::string& text) {
+  Length l;
+  const auto r = std::from_chars(text.data(), text.data() + text.size(), l.value);
+  if (r.ec != std::errc() || !(l.value > 0)) return std::nullopt;
+  const std::string unit(r.ptr, text.data() + text.size());
+  if (unit.empty()) return l;
+  l.paper = true;
+  for (const auto& [name, cm] : {std::pair{"cm", 1.0}, {"mm", 0.1}, {"in", 2.54}, {"pt", 2.54 / 72}})
+    if (unit == name) {
+      l.value *= cm;
+      return l;
+    }
+  return std::nullopt;
+}
+
+// WIDTHxHEIGHT, of paper or in characters.
+void take_size(const std::string& text, Target t, FigureOptions& figure, TerminalSize& terminal) {
+  if (text.empty()) return;
+  const std::size_t x = text.find('x');
+  const auto wrong = [&](const std::string& what) {
+    throw UsageError{"error: --size " + text + ": " + what + "\nhint: --size 8cmx5cm for a figure, --size 100x30 (columns, rows) in the terminal\n"};
+  };
+  if (x == std::string::npos) wrong("not of the form WIDTHxHEIGHT");
+  const auto w = length(text.substr(0, x)), h = length(text.substr(x + 1));
+  if (!w || !h || w->paper != h->paper) wrong("not two lengths");
+  if (t == Target::terminal) {
+    if (w->paper) wrong("a terminal has columns and rows");
+    if (w->value < 20 || w->value > 1000 || h->value < 2 || h->value > 1000) wrong("from 20x2 to 1000x1000");
+    terminal.columns = static_cast<int>(w->value);
+    terminal.rows = static_cast<int>(h->value);
+  } else {
+    if (!w->paper) wrong("a figure has lengths");
+    if (w->value < 2 || w->value > 200 || h->value < 1.5 || h->value > 200) wrong("from 2cmx1.5cm to 200cmx200cm");
+    figure.width = w->value;
+    figure.height = h->value;
+  }
+}
+
+double time(const std::string& text, const char* option) { return exact(text, option).get_d(); }
+
+bool colours() {
+  const char* no = std::getenv("NO_COLOR");
+  const char* kind = std::getenv("TERM");
+  return isatty(1) && !(no && *no) && !(kind && std::strcmp(kind, "dumb") == 0);
+}
+
+// Of the terminal, or of COLUMNS and LINES; rows: of the box of each of so many panels.
+TerminalSize terminal_size(std::size_t panels) {
+  TerminalSize size;
+  int lines = 26;
+  winsize w{};
+  if (isatty(1) && ioctl(1, TIOCGWINSZ, &w) == 0 && w.ws_col > 0) {
+    size.columns = w.ws_col;
+    if (w.ws_row > 0) lines = w.ws_row;
+  } else if (const char* columns = std::getenv("COLUMNS")) {
+    if (const int n = std::atoi(columns); n > 0) size.columns = n;
+  }
+  size.columns = std::clamp(size.columns, 30, 500);
+  // Legend, axis, its labels, its name, the prompt.
+  constexpr int kBeside = 6, kLeast = 6, kMost = 30;
+  size.rows = panels > 1 ? std::clamp((lines - kBeside) / static_cast<int>(panels) - 2, kLeast, kMost) : std::clamp(lines - kBeside, 2 * kLeast, kMost);
+  size.colours = colours();
+  return size;
+}
+
+std::string ranges(const Figure& f) {
+  JsonWriter j;
+  const auto range = [&](double from, double to) { j.open_array().number(number_text(from)).number(number_text(to)).close(); };
+  const auto least_and_greatest = [&](const std::vector<double>& v) {
+    double least = INFINITY, greatest = -INFINITY;
+    for (const double x : v)
+      if (std::isfinite(x)) least = std::min(least, x), greatest = std::max(greatest, x);
+    range(least, greatest);
+  };
+  j.open_object().key("x").open_object().key("name").string(f.x_name).key("axis");
+  range(f.x_axis.from, f.x_axis.to);
+  j.key("range");
+  least_and_greatest(f.x);
+  j.close().key("rows").integer(static_cast<long long>(f.rows)).key("panels").open_array();
+  for (const Panel& p : f.panels) {
+    j.open_object().key("axis");
+    range(p.y.from, p.y.to);
+    j.key("series").open_array();
+    for (const Series& s : p.series) {
+      j.open_object().key("name").string(s.name).key("label").string(text_label(s.name, s.unit, f.labels)).key("range");
+      least_and_greatest(s.y);
+      j.close();
+    }
+    j.close().close();
+  }
+  j.close().close();
+  return j.text() + "\n";
+}
+
+std::string write_figure(const Figure& f, Target t, const std::string& path) {
+  switch (t) {
+    case Target::svg: return write_whole(path, draw_svg(f));
+    case Target::tex: return write_whole(path, draw_tex(f));
+    case Target::pdf:
+    case Target::png: {
+      const std::string beside = path + ".part";
+      std::string why = draw_cairo(f, t == Target::pdf ? CairoFormat::pdf : CairoFormat::png, beside);
+      if (why.empty() && std::rename(beside.c_str(), path.c_str()) != 0) why = std::strerror(errno);
+      if (why.empty()) return {};
+      std::remove(beside.c_str());
+      return "cannot write " + path + ": " + why;
+    }
+    case Target::terminal: break;
+  }
+  return {};
+}
+
+}  // namespace
+
+int plot(const Options& o) {
+  const Target t = target(o.output);
+  if ((t == Target::pdf || t == Target::png) && !has_cairo())
+    throw UsageError{"error: " + std::string(kNoCairo) + "\nhint: -o figure.svg or -o figure.tex, or build it where libcairo2-dev is installed\n"};
+  if (o.each && o.together) throw UsageError{"error: --together and --each exclude each other\n"};
+  FigureOptions options;
+  for (const std::string& name : split(o.columns)) options.names.push_back(name);
+  options.x = o.abscissa;
+  if (!o.from.empty()) options.from = time(o.from, "--from");
+  if (!o.to.empty()) options.to = time(o.to, "--to");
+  options.log = o.log_axis;
+  options.each = o.each;
+  options.smooth = true;
+  options.title = o.title;
+  options.labels = o.labels == "latex" ? LabelStyle::latex : o.labels == "plain" ? LabelStyle::plain : LabelStyle::unicode;
+  TerminalSize given;
+  given.rows = 0;
+  take_size(o.size, t, options, given);
+
+  const RunFile run = read_result(o.model);
+  Figure figure;
+  try {
+    figure = make_figure(run, options);
+  } catch (const Failure& e) {
+    throw UsageError{"error: " + e.diagnostic.message + (e.diagnostic.hint.empty() ? "" : "\nhint: " + e.diagnostic.hint) + "\n"};
+  }
+  if (t != Target::terminal) {
+    if (o.size.empty() && figure.panels.size() > 1) figure.height = std::min(26.0, std::max(9.0, 3.5 * static_cast<double>(figure.panels.size())));
+    if (const std::string why = write_figure(figure, t, o.output); !why.empty()) throw UsageError{"error: " + why + "\n"};
+  } else if (!o.json) {
+    TerminalSize size = terminal_size(figure.panels.size());
+    if (given.rows > 0) size.columns = given.columns, size.rows = given.rows;
+    std::fputs(draw_terminal(figure, size).c_str(), stdout);
+  }
+  if (o.json) std::fputs(ranges(figure).c_str(), stdout);
+  return kOk;
+}
+
+}  // namespace anholon::cli

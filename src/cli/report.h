@@ -1,0 +1,33 @@
+// A motion on its way to a page.
+#pragma once
+#include <deque>
+
+#include "cli/input.h"
+#include "mechanics/conserved.h"
+#include "result/run_file.h"
+#include "run/saved.h"
+
+namespace anholon::cli {
+
+// A motion with all that is told of it.
+struct Told {
+  std::string name;  // of the scenario
+  Reader in;
+  Scenario scenario;
+  std::vector<Conserved> conserved;
+  RunFile run;
+};
+
+// `simulate`; with `told` the motion is kept there, too, and without an output only there.
+int simulate_motion(const Options& asked, const SavedRun* resume, Told* told);
+
+// A result file that is there, told by its name.
+bool is_a_run(const std::string& path);
+
+// The run that the options name (o.model, or o.rows of the model o.model), with its model. Throws UsageError.
+void take_up(const Options& o, Told& x);
+
+// The page of these motions of one model, to o.report. Throws UsageError.
+void write_page(const Options& o, std::deque<Told>& cases);
+
+}  // namespace anholon::cli

@@ -1,0 +1,63 @@
+#include "cli/run_info.h"
+
+#include "base/hash.h"
+
+namespace anholon::cli {
+
+namespace {
+
+// Beyond these derivatives no column goes.
+constexpr unsigned kHighest = 12;
+
+std::string rate(const std::string& unit, unsigned order) {
+  if (order == 0) return unit;
+  const std::string over = order == 1 ? "s" : "s^" + std::to_string(order);
+  if (unit == "1") return "1/" + over;
+  return (unit.find_first_of(" */") == std::string::npos ? unit : "(" + unit + ")") + "/" + over;
+}
+
+std::map<std::string, std::string> units(const Model& model) {
+  std::map<std::string, std::string> units;
+  bool any = false;
+  for (std::size_t i = 0; i < model.coordinate_units.size() && i < model.coordinates.size(); ++i) {
+    const std::string& unit = model.coordinate_units[i];
+    if (unit.empty()) continue;
+    any = true;
+    for (unsigned k = 0; k <= kHighest; ++k) units[derivative_name(model.coordinates[i].name, k, Format::text)] = rate(unit, k);
+  }
+  if (any) units["t"] = "s";
+  for (const OutputQuantity& o : model.outputs)
+    for (const Monitor& m : model.monitors)
+      if (!o.unit.empty() && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0))) units[m.name] = o.unit;
+  return units;
+}
+
+}  // namespace
+
+RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const SimulationOptions& options) {
+  RunInfo info;
+  info.title = in.model->title;
+  info.command = o.command_line;
+  info.created_by = "anholon " ANHOLON_VERSION;
+  info.model.push_back({in.source.name, in.source.text});
+  for (const SourceText& s : in.source.others) info.model.push_back({s.name, s.text});
+  info.units = units(*in.model);
+
+  const auto set = [&](const char* name, const std::vector<std::string>& words) { info.settings[name] = words; };
+  const auto one = [&](const char* name, const std::string& word) { info.settings[name] = word.empty() ? std::vector<std::string>{} : std::vector<std::string>{word}; };
+  set("set", o.set), set("case", o.cases), set("q", o.q), set("qdot", o.qdot), set("qddot", o.qddot), set("qdddot", o.qdddot);
+  set("lambda", o.lambda), set("lambdadot", o.lambdadot), set("eliminate", o.eliminate);
+  one("t", o.t), one("start", number_text(scenario.state.t));
+  one("form", scenario.system.form->name);
+  one("to", options.to ? options.to->get_str() : ""), one("every", options.every ? options.every->get_str() : "");
+  std::vector<std::string> at;
+  for (const Rational& t : options.at) at.push_back(t.get_str());
+  set("at", at);
+  one("tolerance", options.tolerance.get_str()), one("numbers", o.numbers), one("digits", std::to_string(o.digits)), one("order", std::to_string(o.order));
+  one("method", o.method), one("integrator", name(options.integrator)), one("rigorous", o.rigorous), one("error-estimate", o.error_estimate);
+  one("continued", o.resume);
+  one("model_sha256", sha256_text(all_text(in.source)));
+  return info;
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,135 @@
+// The only file that knows cairo.
+#include "plot/drawing.h"
+
+#ifdef ANHOLON_CAIRO
+#include <cairo-pdf.h>
+#include <cairo.h>
+#endif
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace anholon::plot {
+
+const char* const kNoCairo = "this build of anholon draws no PDF and PNG";
+
+#ifndef ANHOLON_CAIRO
+
+bool has_cairo() { return false; }
+std::string draw_cairo(const Figure&, CairoFormat, const std::string&) { return kNoCairo; }
+
+#else
+
+bool has_cairo() { return true; }
+
+namespace {
+
+void colour(cairo_t* c, const char* hex) {
+  const unsigned long rgb = std::strtoul(hex + 1, nullptr, 16);
+  cairo_set_source_rgb(c, static_cast<double>(rgb >> 16) / 255, static_cast<double>(rgb >> 8 & 255) / 255, static_cast<double>(rgb & 255) / 255);
+}
+
+void stroke(cairo_t* c, const Stroke& s) {
+  cairo_set_dash(c, nullptr, 0, 0);
+  switch (s.role) {
+    case Role::grid: colour(c, "#e4e4e4"), cairo_set_line_width(c, 0.5); break;
+    case Role::axis: colour(c, "#222222"), cairo_set_line_width(c, 0.6); break;
+    case Role::series: {
+      const double dashes[] = {4, 2};
+      colour(c, kColour[s.series % kColours]);
+      cairo_set_line_width(c, 1.1);
+      if (s.series >= kColours) cairo_set_dash(c, dashes, 2, 0);
+      break;
+    }
+  }
+  for (std::size_t i = 0; i < s.points.size(); ++i) i == 0 ? cairo_move_to(c, s.points[i].x, s.points[i].y) : cairo_line_to(c, s.points[i].x, s.points[i].y);
+  cairo_stroke(c);
+}
+
+void font(cairo_t* c, const Word& w, const TextPiece& p) {
+  cairo_select_font_face(c, "serif", p.italic ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(c, p.sub ? 0.7 * w.size : w.size);
+}
+
+// Dots are drawn: where a mark that combines with the letter would come to stand differs with the font.
+void dots(cairo_t* c, const Word& w, double x, double y, const cairo_text_extents_t& letter, unsigned count) {
+  const double radius = 0.055 * w.size, apart = 0.2 * w.size;
+  const double middle = x + letter.x_bearing + letter.width / 2 + 0.04 * w.size, height = y + letter.y_bearing - 0.16 * w.size;
+  for (unsigned k = 0; k < count; ++k) {
+    cairo_new_path(c);
+    cairo_arc(c, middle + apart * (k - (count - 1) / 2.0), height, radius, 0, 2 * M_PI);
+    cairo_fill(c);
+  }
+}
+
+void word(cairo_t* c, const Word& w) {
+  double width = 0;
+  for (const TextPiece& p : w.text) {
+    cairo_text_extents_t e;
+    font(c, w, p);
+    cairo_text_extents(c, p.text.c_str(), &e);
+    width += e.x_advance;
+  }
+  colour(c, "#222222");
+  cairo_save(c);
+  cairo_translate(c, w.at.x, w.at.y);
+  if (w.upwards) cairo_rotate(c, -M_PI / 2);
+  double x = w.anchor == Anchor::start ? 0 : w.anchor == Anchor::middle ? -width / 2 : -width;
+  for (const TextPiece& p : w.text) {
+    cairo_text_extents_t e;
+    font(c, w, p);
+    cairo_text_extents(c, p.text.c_str(), &e);
+    const double y = p.sub ? 0.22 * w.size : 0;
+    cairo_move_to(c, x, y);
+    cairo_show_text(c, p.text.c_str());
+    if (p.dots > 0) dots(c, w, x, y, e, p.dots);
+    x += e.x_advance;
+  }
+  cairo_restore(c);
+}
+
+}  // namespace
+
+std::string draw_cairo(const Figure& figure, CairoFormat format, const std::string& path) {
+  // cairo does not tell why.
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (!file) return std::strerror(errno);
+  std::fclose(file);
+  const Drawing d = lay_out(figure);
+  constexpr double kPixelsPerPoint = 200.0 / 72;
+  cairo_surface_t* surface = nullptr;
+  if (format == CairoFormat::pdf) {
+    surface = cairo_pdf_surface_create(path.c_str(), d.width, d.height);
+    if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
+      if (!figure.title.empty()) cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, figure.title.c_str());
+      // The same figure makes the same bytes.
+      cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
+    }
+  } else {
+    surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(d.width * kPixelsPerPoint)), static_cast<int>(std::ceil(d.height * kPixelsPerPoint)));
+  }
+  cairo_t* c = cairo_create(surface);
+  if (format == CairoFormat::png) {
+    cairo_scale(c, kPixelsPerPoint, kPixelsPerPoint);
+    colour(c, "#ffffff");
+    cairo_paint(c);
+  }
+  cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
+  for (const Stroke& s : d.strokes) stroke(c, s);
+  for (const Word& w : d.words) word(c, w);
+  cairo_status_t status = cairo_status(c);
+  cairo_destroy(c);
+  if (status == CAIRO_STATUS_SUCCESS && format == CairoFormat::png) status = cairo_surface_write_to_png(surface, path.c_str());
+  cairo_surface_finish(surface);
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
+  cairo_surface_destroy(surface);
+  return status == CAIRO_STATUS_SUCCESS ? std::string() : std::string(cairo_status_to_string(status));
+}
+
+#endif
+
+}  // namespace anholon::plot

@@ -1,0 +1,302 @@
+#include "plot/figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <tuple>
+
+#include "base/diagnostic.h"
+
+namespace anholon::plot {
+
+namespace {
+
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 60;
+  std::string list;
+  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) list += (i ? " " : "") + names[i];
+  return list + (names.size() > kMost ? " …" : "");
+}
+
+[[noreturn]] void unknown(const RunTable& table, const std::string& name) {
+  const bool pattern = name.find_first_of("*?") != std::string::npos;
+  const std::string near = pattern ? "" : did_you_mean(name, table.columns);
+  throw Failure(Span{}, pattern ? "no column fits '" + name + "'" : "there is no column '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                "the columns are " + list_of(table.columns));
+}
+
+// Those that have a derivative beside them, or all where none has.
+std::vector<std::size_t> coordinates(const RunTable& table, std::size_t x) {
+  constexpr std::size_t kMost = 8;
+  std::vector<std::size_t> list;
+  for (const bool all : {false, true}) {
+    for (std::size_t j = 0; j < table.columns.size() && list.size() < kMost; ++j)
+      if (j != x && table.columns[j] != "t" && table.columns[j].back() != '\'' && (all || table.find(table.columns[j] + "'") < table.columns.size())) list.push_back(j);
+    if (!list.empty()) break;
+  }
+  return list;
+}
+
+struct Range {
+  double least = std::numeric_limits<double>::infinity(), greatest = -std::numeric_limits<double>::infinity();
+  void see(double x) { least = std::min(least, x), greatest = std::max(greatest, x); }
+  bool empty() const { return least > greatest; }
+};
+
+// The slopes of a column at its rows: the derivative, where there is a column of it, or those of a curve that stays between the rows
+// (Fritsch and Carlson).
+std::vector<double> slopes(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> s(y.size(), 0);
+  for (std::size_t i = 1; i + 1 < y.size(); ++i) {
+    const double before = (y[i] - y[i - 1]) / (x[i] - x[i - 1]), after = (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
+    if (before * after > 0) s[i] = 2 * before * after / (before + after);
+  }
+  const std::size_t n = y.size();
+  s[0] = (y[1] - y[0]) / (x[1] - x[0]);
+  s[n - 1] = (y[n - 1] - y[n - 2]) / (x[n - 1] - x[n - 2]);
+  return s;
+}
+
+// Rows at the ends of steps are far apart: between them the curve is the cubic of both slopes. Where these do not fit to the rows,
+// something has jumped in between, and the line stays straight.
+void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
+  constexpr std::size_t kPoints = 1000, kMost = 20;
+  const std::size_t n = f.x.size(), parts = n < 2 ? 1 : std::min(kMost, kPoints / n);
+  const bool in_order = std::is_sorted(f.x.begin(), f.x.end(), std::less_equal<>()) || std::is_sorted(f.x.rbegin(), f.x.rend(), std::less_equal<>());
+  if (parts < 2 || !in_order) return;
+  const std::vector<double> x = std::move(f.x);
+  f.x.clear();
+  for (std::size_t i = 0; i + 1 < n; ++i)
+    for (std::size_t k = 0; k < parts; ++k) f.x.push_back(x[i] + (x[i + 1] - x[i]) * static_cast<double>(k) / static_cast<double>(parts));
+  f.x.push_back(x.back());
+  std::size_t number = 0;
+  for (Panel& p : f.panels)
+    for (Series& s : p.series) {
+      const std::vector<double>& given = derivatives[number++];
+      const std::vector<double> y = std::move(s.y), d = given.empty() ? slopes(x, y) : given;
+      s.y.clear();
+      for (std::size_t i = 0; i + 1 < n; ++i) {
+        const double h = x[i + 1] - x[i], rise = y[i + 1] - y[i], mean = h * (d[i] + d[i + 1]) / 2;
+        constexpr double kFits = 0.25;
+        const bool curved = std::abs(rise - mean) <= kFits * (std::abs(rise) + std::abs(h) * (std::abs(d[i]) + std::abs(d[i + 1])) / 2);
+        for (std::size_t k = 0; k < parts; ++k) {
+          const double u = static_cast<double>(k) / static_cast<double>(parts), v = 1 - u;
+          s.y.push_back(k == 0 ? y[i] : curved ? y[i] * v * v * (1 + 2 * u) + y[i + 1] * u * u * (1 + 2 * v) + h * u * v * (d[i] * v - d[i + 1] * u) : y[i] + u * rise);
+        }
+      }
+      s.y.push_back(y.back());
+    }
+}
+
+}  // namespace
+
+bool matches(const std::string& pattern, const std::string& name) {
+  std::size_t p = 0, n = 0, star = std::string::npos, back = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') star = p++, back = n;
+    else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) ++p, ++n;
+    else if (star != std::string::npos) p = star + 1, n = ++back;
+    else return false;
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+std::vector<std::size_t> select_columns(const RunTable& table, const std::vector<std::string>& names, std::size_t x) {
+  if (names.empty()) return coordinates(table, x);
+  std::vector<std::size_t> list;
+  for (const std::string& name : names) {
+    const std::size_t before = list.size();
+    if (const std::size_t j = table.find(name); j < table.columns.size()) {
+      list.push_back(j);
+    } else {
+      bool any = false;
+      for (std::size_t k = 0; k < table.columns.size(); ++k)
+        if (matches(name, table.columns[k])) {
+          any = true;
+          if (k != x && std::find(list.begin(), list.end(), k) == list.end()) list.push_back(k);
+        }
+      if (!any) unknown(table, name);
+    }
+    for (std::size_t k = 0; k < before; ++k)
+      if (list.size() > before && list[k] == list[before]) {
+        list.erase(list.begin() + static_cast<std::ptrdiff_t>(before));
+        break;
+      }
+  }
+  return list;
+}
+
+Figure make_figure(const RunFile& run, const FigureOptions& o) {
+  const RunTable& table = run.table;
+  const auto unit = [&](const std::string& column) {
+    const auto it = run.units.find(column);
+    return it == run.units.end() ? std::string() : it->second;
+  };
+  if (table.rows() == 0) throw Failure(Span{}, "the run has no rows yet", "wait for them, or simulate anew");
+  const std::size_t time = table.find("t");
+  std::size_t x = o.x.empty() ? (time < table.columns.size() ? time : 0) : table.find(o.x);
+  if (x == table.columns.size()) unknown(table, o.x);
+
+  Figure f;
+  std::tie(f.title, f.labels, f.width, f.height) = std::tie(o.title, o.labels, o.width, o.height);
+  f.x_name = table.columns[x];
+  f.x_unit = unit(f.x_name);
+  const std::vector<double>& t = table.values[time < table.columns.size() ? time : x];
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    if (!(o.from && !(t[i] >= *o.from)) && !(o.to && !(t[i] <= *o.to))) rows.push_back(i);
+  if (rows.empty())
+    throw Failure(Span{}, "no row lies between these times", "the rows go from t = " + table.text(0, time < table.columns.size() ? time : x) + " to " + table.text(table.rows() - 1, time < table.columns.size() ? time : x));
+  const auto taken = [&](std::size_t column) {
+    std::vector<double> v;
+    v.reserve(rows.size());
+    for (const std::size_t i : rows) v.push_back(table.values[column][i]);
+    return v;
+  };
+  f.rows = rows.size();
+  f.x = taken(x);
+  Range xs;
+  for (const double v : f.x)
+    if (std::isfinite(v)) xs.see(v);
+  if (xs.empty()) throw Failure(Span{}, "the column '" + f.x_name + "' has no number to be shown", "another --x");
+  f.x_axis = axis_for(xs.least, xs.greatest, false, f.x_name == "t");
+
+  const std::vector<std::size_t> columns = select_columns(table, o.names, x);
+  if (columns.empty()) throw Failure(Span{}, "there is nothing to draw over '" + f.x_name + "'", "the columns are " + list_of(table.columns));
+  constexpr std::size_t kMostPanels = 40;
+  if (o.each && columns.size() > kMostPanels)
+    throw Failure(Span{}, std::to_string(columns.size()) + " panels are too many for one figure", "fewer columns, or without --each");
+  std::vector<std::vector<double>> derivatives;
+  for (const std::size_t j : columns) {
+    if (o.each || f.panels.empty()) f.panels.emplace_back();
+    std::vector<Series>& series = f.panels.back().series;
+    series.push_back({table.columns[j], unit(table.columns[j]), taken(j), o.each ? 0 : series.size()});
+    if (!o.smooth) continue;
+    const std::size_t derivative = table.find(table.columns[j] + "'");
+    derivatives.push_back(derivative < table.columns.size() ? taken(derivative) : std::vector<double>());
+  }
+  if (o.smooth && x == time) smooth(f, derivatives);
+  for (Panel& p : f.panels) {
+    Range ys;
+    for (const Series& s : p.series)
+      for (const double v : s.y)
+        if (std::isfinite(v) && (!o.log || v > 0)) ys.see(v);
+    if (ys.empty())
+      throw Failure(Span{}, "the column '" + p.series[0].name + "' has no " + (o.log ? "positive " : "") + "number to be shown", o.log ? "without --log" : "another column, or other times");
+    p.y = axis_for(ys.least, ys.greatest, o.log, false);
+  }
+  return f;
+}
+
+namespace {
+
+// Keeps what is seen of points that come in order of columns.
+class ByColumns {
+ public:
+  explicit ByColumns(std::vector<Point>& out) : out_(out) {}
+  void add(const Point& p) {
+    const double column = std::floor(p.x);
+    if (count_ > 0 && column != column_) flush();
+    if (count_ == 0) column_ = column, first_ = least_ = greatest_ = p, least_at_ = greatest_at_ = 0;
+    if (p.y < least_.y) least_ = p, least_at_ = count_;
+    if (p.y > greatest_.y) greatest_ = p, greatest_at_ = count_;
+    last_ = p;
+    ++count_;
+  }
+  void flush() {
+    if (count_ == 0) return;
+    out_.push_back(first_);
+    const bool rising = least_at_ <= greatest_at_;
+    const std::size_t a = rising ? least_at_ : greatest_at_, b = rising ? greatest_at_ : least_at_;
+    if (a > 0 && a + 1 < count_) out_.push_back(rising ? least_ : greatest_);
+    if (b > a && b > 0 && b + 1 < count_) out_.push_back(rising ? greatest_ : least_);
+    if (count_ > 1) out_.push_back(last_);
+    count_ = 0;
+  }
+
+ private:
+  std::vector<Point>& out_;
+  std::size_t count_ = 0, least_at_ = 0, greatest_at_ = 0;
+  double column_ = 0;
+  Point first_{}, last_{}, least_{}, greatest_{};
+};
+
+// Leaves out points of a path that lie on a straight way between others, within what can be seen: from the last point that was kept,
+// all since lie in a narrow cone.
+class AlongAPath {
+ public:
+  explicit AlongAPath(std::vector<Point>& out) : out_(out) {}
+  void add(const Point& p) {
+    if (out_.empty()) {
+      out_.push_back(p);
+      return;
+    }
+    if (!narrow(p) && holds_) {
+      out_.push_back(last_);
+      distance_ = 0;
+      open_ = holds_ = false;
+      narrow(p);
+    }
+    last_ = p;
+    holds_ = true;
+  }
+  void flush() {
+    if (holds_) out_.push_back(last_);
+    holds_ = false;
+  }
+
+ private:
+  static constexpr double kSeen = 0.3;  // of a point of the output
+
+  // Makes the cone narrower by p; false if p lies outside or comes back.
+  bool narrow(const Point& p) {
+    const double dx = p.x - out_.back().x, dy = p.y - out_.back().y, d = std::hypot(dx, dy);
+    if (d <= kSeen) return !open_;
+    const double angle = std::atan2(dy, dx), half = std::asin(kSeen / d);
+    if (!open_) {
+      open_ = true;
+      direction_ = angle;
+      low_ = -half, high_ = half;
+    } else {
+      const double turned = std::remainder(angle - direction_, 2 * M_PI);
+      if (turned < low_ || turned > high_ || d < distance_) return false;
+      low_ = std::max(low_, turned - half), high_ = std::min(high_, turned + half);
+    }
+    distance_ = d;
+    return true;
+  }
+
+  std::vector<Point>& out_;
+  Point last_{};
+  bool holds_ = false, open_ = false;
+  double direction_ = 0, low_ = 0, high_ = 0, distance_ = 0;
+};
+
+template <class Keeper>
+std::vector<std::vector<Point>> kept(const Figure& f, const Panel& panel, const Series& s, double width, double height) {
+  std::vector<std::vector<Point>> pieces;
+  std::optional<Keeper> keeper;
+  for (std::size_t i = 0; i < std::min(f.x.size(), s.y.size()); ++i) {
+    const bool there = std::isfinite(f.x[i]) && std::isfinite(s.y[i]) && (!panel.y.log || s.y[i] > 0);
+    if (!there) {
+      if (keeper) keeper->flush();
+      keeper.reset();
+      continue;
+    }
+    if (!keeper) keeper.emplace(pieces.emplace_back());
+    keeper->add({width * f.x_axis.place(f.x[i]), height * panel.y.place(s.y[i])});
+  }
+  if (keeper) keeper->flush();
+  return pieces;
+}
+
+}  // namespace
+
+std::vector<std::vector<Point>> curve(const Figure& f, const Panel& panel, const Series& s, double width, double height) {
+  const bool in_order = std::is_sorted(f.x.begin(), f.x.end()) || std::is_sorted(f.x.rbegin(), f.x.rend());
+  return in_order ? kept<ByColumns>(f, panel, s, width, height) : kept<AlongAPath>(f, panel, s, width, height);
+}
+
+}  // namespace anholon::plot

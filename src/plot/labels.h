@@ -1,0 +1,30 @@
+// How the name of a column is written: theta' as θ̇ or $\dot{\theta}$, lambda.blade as λ_blade, D(x,4) as x⁽⁴⁾.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace anholon::plot {
+
+enum class LabelStyle { unicode, latex, plain };
+
+// A piece of a label for what can set type; dots stand above its only letter.
+struct TextPiece {
+  std::string text;
+  bool italic = false, sub = false;
+  unsigned dots = 0;
+};
+using RichText = std::vector<TextPiece>;
+
+// The unit may be empty.
+RichText rich_label(const std::string& column, const std::string& unit, LabelStyle style);
+// The same in one line of a terminal.
+std::string text_label(const std::string& column, const std::string& unit, LabelStyle style);
+std::string latex_label(const std::string& column, const std::string& unit);
+
+// How wide it is on a terminal: what combines with the letter before has no width.
+std::size_t shown_width(const std::string& text);
+std::string plain_text(const RichText& text);
+// With TeX's own signs escaped.
+std::string latex_text(const std::string& text);
+
+}  // namespace anholon::plot

@@ -1,0 +1,322 @@
+#include "report/columns.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "expr/print_names.h"
+#include "numeric/number.h"
+
+namespace anholon {
+
+namespace {
+
+// A page stays small: numbers in plots and in the picture, columns in plots.
+constexpr std::size_t kMostNumbers = 28000, kMostFrameNumbers = 18000, kMostColumns = 96;
+constexpr std::size_t kLeastRows = 200, kMostFrames = 2000;
+
+constexpr const char* kDerivatives[] = {"coordinates", "velocities", "accelerations", "third derivatives", "fourth derivatives"};
+
+const std::vector<PlotGroup>& all_groups() {
+  static const std::vector<PlotGroup> list = {{"coordinates", "Coordinates"},   {"velocities", "Velocities"},
+                                              {"accelerations", "Accelerations"}, {"third derivatives", "Third derivatives"},
+                                              {"fourth derivatives", "Fourth derivatives"}, {"states", "States"},
+                                              {"multipliers", "Multipliers"},   {"reactions", "Generalized reactions"},
+                                              {"energies", "Energies"},         {"integrals", "Integrals of the motion"},
+                                              {"monitors", "Outputs and monitors"}, {"residuals", "Residuals of the stored rows", true},
+                                              {"steps", "Size of the steps", true}};
+  return list;
+}
+
+// Values of expressions at the rows of a table.
+class AtRows {
+ public:
+  AtRows(const Model& model, const RunTable& table, const Column& es, const std::vector<double>& parameters)
+      : tape_(compile(es)), machine_(tape_, 0, parameters), table_(table) {
+    const ColumnOf column = column_of(model, table);
+    for (const Input& in : tape_.inputs) columns_.push_back(column(model.graph->node(in.symbol)));
+  }
+  // Every input is a column.
+  bool possible() const {
+    return std::all_of(columns_.begin(), columns_.end(), [](const auto& c) { return c.has_value(); });
+  }
+  void go(const std::function<void(std::size_t row, const Machine<double>&)>& see) {
+    for (std::size_t row = 0; row < table_.rows(); ++row) {
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        machine_.series(tape_.inputs[k].slot)[0] = table_.values[*columns_[k] < 0 ? 0 : static_cast<std::size_t>(*columns_[k])][row];
+      machine_.evaluate();
+      see(row, machine_);
+    }
+  }
+
+ private:
+  Tape tape_;
+  Machine<double> machine_;
+  const RunTable& table_;
+  std::vector<std::optional<int>> columns_;
+};
+
+class Plots {
+ public:
+  Plots(const Scenario& s, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene)
+      : s_(s), model_(*s.model), run_(run), conserved_(conserved), scene_(scene), parameters_(parameter_values<double>(model_)) {}
+
+  PlotData make() {
+    data_.t = run_.table.values.empty() ? std::vector<double>{} : run_.table.values[0];
+    data_.rows = data_.t.size();
+    given();
+    // What an event has set is not in the rows: formulas with modes would be evaluated for the wrong ones.
+    if (std::none_of(model_.events.begin(), model_.events.end(), [](const Event& e) { return !e.set.empty(); })) {
+      energies();
+      residuals();
+    }
+    steps();
+    shorten();
+    for (const PlotGroup& g : all_groups())
+      if (std::any_of(data_.columns.begin(), data_.columns.end(), [&](const PlotColumn& c) { return c.group == g.id; })) data_.groups.push_back(g);
+    return std::move(data_);
+  }
+
+ private:
+  PlotColumn& add(std::string name, std::string math, std::string group, std::vector<double> values) {
+    data_.columns.push_back({std::move(name), std::move(math), {}, std::move(group), {}, std::move(values)});
+    return data_.columns.back();
+  }
+
+  std::string math_of(Expr symbol) const { return print(symbol, model_.names, Format::mathml); }
+
+  // The columns of the run, in its order (the scene knows them by it).
+  void given() {
+    const RunTable& t = run_.table;
+    std::map<std::string, std::pair<std::string, std::string>> known;  // name -> group, math
+    std::map<std::string, std::string> units;
+    Graph& g = *model_.graph;
+    for (std::uint32_t a = 0; a < model_.coordinates.size(); ++a)
+      for (std::uint32_t k = 0; k < 5; ++k) {
+        const std::string name = derivative_name(model_.coordinates[a].name, k, Format::text);
+        known[name] = {kDerivatives[k], math_of(g.jet(a, k))};
+        if (const std::string unit = a < model_.coordinate_units.size() ? model_.coordinate_units[a] : ""; !unit.empty())
+          units[name] = k == 0 ? unit : (unit == "1" ? "1/s" : unit + "/s") + (k == 1 ? "" : "^" + std::to_string(k));
+      }
+    for (std::uint32_t r = 0; r < model_.constraints.size(); ++r)
+      for (std::uint32_t k = 0; k < 3; ++k) known[derivative_name("lambda." + model_.constraints[r].name, k, Format::text)] = {"multipliers", math_of(g.multiplier(r, k))};
+    for (const Coordinate& c : model_.coordinates) known["N." + c.name] = {"reactions", "<msub><mi>N</mi><mrow>" + mathml_name(c.name) + "</mrow></msub>"};
+    for (std::uint32_t k = 0; k < model_.states.size(); ++k) known[model_.states[k].name] = {"states", math_of(g.state(k, 0))};
+    for (std::size_t k = 1; k < t.columns.size(); ++k) {
+      const auto it = known.find(t.columns[k]);
+      PlotColumn& c = it == known.end() ? add(t.columns[k], mathml_name(t.columns[k]), "monitors", t.values[k])
+                                        : add(t.columns[k], it->second.second, it->second.first, t.values[k]);
+      if (const auto unit = units.find(c.name); unit != units.end()) c.unit = unit->second;
+      if (const auto unit = run_.units.find(c.name); unit != run_.units.end()) c.unit = unit->second;
+    }
+  }
+
+  void energies() {
+    Column es = {put_masses(model_, s_.mechanics->T)};
+    std::vector<std::array<std::string, 3>> what = {{"T", "<mi>T</mi>", "energies"}};
+    for (const Potential& p : model_.potentials) {
+      es.push_back(put_masses(model_, p.value));
+      what.push_back({"V." + p.name, "<msub><mi>V</mi><mtext>" + xml_escape(p.name) + "</mtext></msub>", "energies"});
+    }
+    for (const Conserved& c : conserved_) {
+      es.push_back(c.value);
+      const bool energy = c.name == "energy" || c.name == "Jacobi integral";
+      what.push_back({c.name, "<mtext>" + xml_escape(c.name) + "</mtext>", energy ? "energies" : "integrals"});
+    }
+    std::vector<std::vector<double>> values(es.size());
+    AtRows rows(model_, run_.table, es, parameters_);
+    if (!rows.possible()) return;
+    rows.go([&](std::size_t, const Machine<double>& m) {
+      for (std::size_t k = 0; k < es.size(); ++k) values[k].push_back(m.value(k));
+    });
+    for (std::size_t k = 0; k < es.size(); ++k) add(what[k][0], what[k][1], what[k][2], std::move(values[k]));
+  }
+
+  // |phi^(k)| of what must vanish at every row, and how far integrals have gone from their first value in relation to their terms.
+  void residuals() {
+    constexpr std::size_t kMost = 40;
+    const Mechanics& m = *s_.mechanics;
+    Column es;
+    std::vector<std::pair<std::string, std::string>> names;
+    for (std::size_t r = 0; r < m.phi.size() && names.size() < kMost; ++r) {
+      if (m.order[r] > 2) continue;
+      for (int k = 0; k <= 2 - m.order[r]; ++k) {
+        const std::string name = model_.constraints[r].name;
+        es.push_back(put_masses(model_, total_derivative(m.phi[r], static_cast<unsigned>(k))));
+        names.push_back({"|" + derivative_name("phi." + name, static_cast<unsigned>(k), Format::text) + "|",
+                         "<mo>|</mo>" + derivative_name("<msub><mi>φ</mi><mtext>" + xml_escape(name) + "</mtext></msub>", static_cast<unsigned>(k), Format::mathml) + "<mo>|</mo>"});
+      }
+    }
+    std::vector<std::size_t> first(conserved_.size());
+    for (std::size_t c = 0; c < conserved_.size(); ++c) {
+      first[c] = es.size();
+      es.insert(es.end(), conserved_[c].terms.begin(), conserved_[c].terms.end());
+    }
+    if (es.empty()) return;
+    AtRows rows(model_, run_.table, es, parameters_);
+    if (!rows.possible()) return;
+    std::vector<std::vector<double>> values(names.size()), integral(conserved_.size());
+    std::vector<double> size(conserved_.size(), 0);
+    rows.go([&](std::size_t, const Machine<double>& machine) {
+      for (std::size_t k = 0; k < names.size(); ++k) values[k].push_back(std::abs(machine.value(k)));
+      for (std::size_t c = 0; c < conserved_.size(); ++c) {
+        double sum = 0, terms = 0;
+        for (std::size_t k = 0; k < conserved_[c].terms.size(); ++k) sum += machine.value(first[c] + k), terms += std::abs(machine.value(first[c] + k));
+        integral[c].push_back(sum);
+        size[c] = std::max(size[c], terms);
+      }
+    });
+    for (std::size_t k = 0; k < names.size(); ++k) add(names[k].first, names[k].second, "residuals", std::move(values[k]));
+    for (std::size_t c = 0; c < conserved_.size(); ++c) {
+      if (!(size[c] > 0)) continue;
+      std::vector<double> change;
+      for (double x : integral[c]) change.push_back(std::abs(x - integral[c][0]) / size[c]);
+      add("change of " + conserved_[c].name, "<mtext>change of " + xml_escape(conserved_[c].name) + "</mtext>", "residuals", std::move(change));
+    }
+  }
+
+  void steps() {
+    if (run_.steps.empty() || data_.t.empty()) return;
+    std::vector<double> t, h;
+    double before = data_.t[0];
+    for (double end : run_.steps) {
+      if (end != before) t.push_back(end), h.push_back(std::abs(end - before));
+      before = end;
+    }
+    add("h", "<mi>h</mi>", "steps", std::move(h)).t = std::move(t);
+  }
+
+  // Of every group as many columns as there is room for.
+  void fewer_columns() {
+    if (data_.columns.size() <= kMostColumns) return;
+    std::map<std::string, std::size_t> size;
+    for (const PlotColumn& c : data_.columns) ++size[c.group];
+    const std::size_t each = std::max<std::size_t>(kMostColumns / size.size(), 4);
+    std::map<std::string, std::size_t> seen;
+    for (PlotColumn& c : data_.columns)
+      if (++seen[c.group] > each) c.group.clear(), ++data_.left_out;
+  }
+
+  void shorten() {
+    const ColumnOf column = column_of(model_, run_.table);
+    std::vector<int> needed = columns_of(scene_, *model_.graph, column);
+    for (int& k : needed) --k;  // t is no column of the page
+    fewer_columns();
+    const auto plotted = static_cast<std::size_t>(std::count_if(data_.columns.begin(), data_.columns.end(), [](const PlotColumn& c) { return !c.group.empty(); }));
+    const bool all_rows = data_.rows * plotted <= kMostNumbers;
+    data_.shown = data_.rows;
+    if (!all_rows || data_.left_out > 0) take_frames(needed);
+    const std::size_t most = std::max(kLeastRows, kMostNumbers / std::max<std::size_t>(2 * plotted, 1));
+    for (PlotColumn& c : data_.columns) {
+      if (c.group.empty()) c.values.clear();
+      else if (!c.t.empty() || !all_rows) keep(c, most);
+    }
+    if (!all_rows) data_.t.clear(), data_.shown = most_kept_;
+  }
+
+  void keep(PlotColumn& c, std::size_t most) {
+    const std::vector<double>& all = c.t.empty() ? data_.t : c.t;
+    const std::vector<std::size_t> rows = keep_extremes(c.values, most);
+    if (c.group != "steps") most_kept_ = std::max(most_kept_, rows.size());
+    std::vector<double> t, values;
+    for (std::size_t r : rows) t.push_back(all[r]), values.push_back(c.values[r]);
+    c.t = std::move(t);
+    c.values = std::move(values);
+  }
+
+  void take_frames(const std::vector<int>& needed) {
+    const std::size_t most = std::clamp<std::size_t>(kMostFrameNumbers / std::max<std::size_t>(needed.size(), 1), 60, kMostFrames);
+    const std::size_t count = std::min(most, data_.rows);
+    std::vector<std::size_t> rows;
+    for (std::size_t k = 0; k < count; ++k) rows.push_back(count < 2 ? 0 : k * (data_.rows - 1) / (count - 1));
+    for (std::size_t r : rows) data_.frame_t.push_back(data_.t[r]);
+    for (int c : needed)
+      for (std::size_t r : rows) data_.frames[c].push_back(data_.columns[static_cast<std::size_t>(c)].values[r]);
+  }
+
+  const Scenario& s_;
+  const Model& model_;
+  const RunFile& run_;
+  const std::vector<Conserved>& conserved_;
+  const Scene& scene_;
+  std::vector<double> parameters_;
+  PlotData data_;
+  std::size_t most_kept_ = 0;  // rows of the column that keeps most
+};
+
+}  // namespace
+
+ColumnOf column_of(const Model& model, const RunTable& table) {
+  std::map<std::string, int> places;
+  for (std::size_t k = 0; k < table.columns.size(); ++k) places.emplace(table.columns[k], static_cast<int>(k));
+  return [&model, places](const Node& n) -> std::optional<int> {
+    if (n.kind == Kind::time) return -1;
+    std::string base;
+    if (n.kind == Kind::jet) base = model.coordinates[n.index].name;
+    else if (n.kind == Kind::multiplier) base = "lambda." + model.constraints[n.index].name;
+    else if (n.kind == Kind::state && n.order == 0) base = model.states[n.index].name;
+    else return std::nullopt;
+    const auto it = places.find(derivative_name(base, n.order, Format::text));
+    return it == places.end() ? std::nullopt : std::optional<int>(it->second);
+  };
+}
+
+PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene) {
+  return Plots(scenario, conserved, run, scene).make();
+}
+
+std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most) {
+  std::vector<std::size_t> rows;
+  const std::size_t n = values.size();
+  if (n <= most) {
+    rows.resize(n);
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    return rows;
+  }
+  const std::size_t stretches = std::max<std::size_t>(most / 2, 1);
+  const auto add = [&](std::size_t r) {
+    if (rows.empty() || rows.back() < r) rows.push_back(r);
+  };
+  add(0);
+  for (std::size_t s = 0; s < stretches; ++s) {
+    const std::size_t begin = s * n / stretches, end = (s + 1) * n / stretches;
+    std::size_t least = n, greatest = n, gap = n;
+    for (std::size_t r = begin; r < end; ++r) {
+      if (std::isnan(values[r])) {
+        gap = r;
+        continue;
+      }
+      if (least == n || values[r] < values[least]) least = r;
+      if (greatest == n || values[r] > values[greatest]) greatest = r;
+    }
+    std::vector<std::size_t> here;
+    for (std::size_t r : {least, greatest, gap})
+      if (r < n) here.push_back(r);
+    std::sort(here.begin(), here.end());
+    for (std::size_t r : here) add(r);
+  }
+  add(n - 1);
+  return rows;
+}
+
+std::string base64(const std::vector<double>& values) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  bytes.reserve(values.size() * 8);
+  for (double x : values) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    for (int k = 0; k < 8; ++k) bytes += static_cast<char>(bits >> (8 * k) & 0xFF);
+  }
+  std::string out;
+  out.reserve(bytes.size() * 4 / 3 + 4);
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t b = 0; b < 3; ++b) three = three << 8 | (k + b < bytes.size() ? static_cast<unsigned char>(bytes[k + b]) : 0U);
+    for (std::size_t d = 0; d < 4; ++d) out += k + d > bytes.size() ? '=' : digits[three >> (18 - 6 * d) & 63];
+  }
+  return out;
+}
+
+}  // namespace anholon

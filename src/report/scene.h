@@ -1,0 +1,49 @@
+// The picture of a motion as data: what is drawn, and the straight-line program that places it from a row of the run.
+//
+// Positions are computed where they are shown, from coordinates that are interpolated between rows: so a rolling wheel rolls at every
+// moment, and the page carries formulas instead of poses. Lengths as in the model; vectors and axes in the observer's axes.
+#pragma once
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "mechanics/mechanics.h"
+#include "tape/tape.h"
+
+namespace anholon {
+
+struct SceneItem {
+  std::string kind;  // body, point, line, vector, trace
+  std::string name, of, what, color;
+  std::string shape;                            // of a body
+  std::vector<double> sizes;
+  std::vector<std::array<std::size_t, 3>> places;  // roots of the tape
+  std::optional<std::array<std::size_t, 9>> axes;  // x, y, z axis of the body
+  std::optional<std::array<std::size_t, 3>> vector;
+};
+
+struct Scene {
+  Tape tape;
+  std::vector<double> parameters;
+  std::vector<SceneItem> items;
+  std::optional<std::array<std::size_t, 3>> camera, target;
+  std::optional<double> floor;  // height of a plane z = const
+  std::array<double, 3> up{0, 0, 1};
+  bool flat = false;  // everything stays in a plane z = const
+  std::string follow;
+};
+
+// Without [view]: bodies, points, tensions; the velocity of every mass centre, the reaction on every body that has one.
+Scene scene(const Mechanics& mechanics);
+
+// Which column of a table holds a symbol; no value: none, -1: it is the time.
+using ColumnOf = std::function<std::optional<int>(const Node& symbol)>;
+// The columns that the scene's inputs stand in, without the time.
+std::vector<int> columns_of(const Scene& scene, const Graph& graph, const ColumnOf& column);
+// As the viewer reads it (viewer/CONTRACT.md); `observer` is written by the caller's function, null without one.
+void write_scene(JsonWriter& json, const Scene& scene, const Graph& graph, const ColumnOf& column, const std::function<void(JsonWriter&)>& observer);
+
+}  // namespace anholon

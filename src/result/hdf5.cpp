@@ -1,0 +1,445 @@
+#include "result/hdf5.h"
+
+#include "base/diagnostic.h"
+
+#ifdef ANHOLON_HDF5
+#include <hdf5.h>
+#endif
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+namespace anholon {
+
+const char* const kNoHdf5 = "this build of anholon has no HDF5";
+const char* const kNoHdf5Hint = "-o run.csv, or build it where libhdf5-dev is installed";
+
+bool looks_like_hdf5(std::string_view beginning) { return beginning.substr(0, 8) == "\x89HDF\r\n\x1A\n"; }
+
+void RowBlock::add(const std::vector<std::string>& row) {
+  columns = row.size();
+  const std::size_t before = rows();
+  for (std::size_t j = 0; j < row.size(); ++j) {
+    double value = 0;
+    parse_number(row[j], value);
+    numbers.push_back(value);
+    const bool plain = says_all(row[j], value);
+    const auto it = texts.find(j);
+    if (plain && it == texts.end()) continue;
+    std::vector<std::string>& own = it == texts.end() ? texts[j] : it->second;
+    own.resize(before);
+    own.push_back(plain ? std::string() : row[j]);
+    text_bytes += sizeof(std::string) + own.back().size();
+  }
+}
+
+void RowBlock::clear() {
+  numbers.clear();
+  texts.clear();
+  steps.clear();
+  report.reset();
+  text_bytes = 0;
+}
+
+#ifndef ANHOLON_HDF5
+
+bool has_hdf5() { return false; }
+std::string create_hdf5(const std::string&, const RunInfo&, const std::vector<std::string>&) { return kNoHdf5; }
+std::string extend_hdf5(const std::string&, const RowBlock&) { return kNoHdf5; }
+RunFile read_hdf5(const std::string&) { throw Failure(Span{}, kNoHdf5, "a run in CSV or JSON, or build anholon where libhdf5-dev is installed"); }
+
+#else
+
+bool has_hdf5() { return true; }
+
+namespace {
+
+constexpr const char* kFormat = "anholon run";
+constexpr int kVersion = 1;
+constexpr hsize_t kChunkNumbers = 8192;  // 64 KB: what a small file is long, and a large one is read by
+
+struct Trouble {
+  std::string message;
+};
+
+// The first cause that HDF5 reports, with the words of the operating system where it quotes them.
+std::string cause() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, [](unsigned, const H5E_error2_t* e, void* to) -> herr_t {
+    std::string& first = *static_cast<std::string*>(to);
+    if (first.empty() && e->desc) first = e->desc;
+    return 0;
+  }, &text);
+  const std::string quote = "error message = '";
+  if (const std::size_t at = text.find(quote); at != std::string::npos) {
+    const std::size_t from = at + quote.size();
+    return text.substr(from, text.find('\'', from) - from);
+  }
+  return text.empty() ? "HDF5 gives no reason" : text;
+}
+
+template <class T>
+T checked(T result) {
+  if (result < 0) throw Trouble{cause()};
+  return result;
+}
+
+// An object of HDF5, closed with whoever holds it.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*closing)(hid_t)) : id_(checked(id)), close_(closing) {}
+  Handle(Handle&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }
+  // Closing a file is where its last bytes are written.
+  void close() {
+    const hid_t id = id_;
+    id_ = -1;
+    checked(close_(id));
+  }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void quietly() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Handle text_type() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  checked(H5Tset_size(type, H5T_VARIABLE));
+  checked(H5Tset_cset(type, H5T_CSET_UTF8));
+  return type;
+}
+
+Handle space_of(std::size_t n) {
+  const hsize_t size = n;
+  return {H5Screate_simple(1, &size, nullptr), H5Sclose};
+}
+
+// In groups that are made on the way; in chunks, if it is to grow. Without times of its own: the same run makes the same bytes.
+Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space, const std::vector<hsize_t>& chunk = {}) {
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  checked(H5Pset_create_intermediate_group(links, 1));
+  checked(H5Pset_obj_track_times(creation, false));
+  if (!chunk.empty()) checked(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
+  return {H5Dcreate2(file, name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose};
+}
+
+void put_texts(hid_t file, const std::string& name, const std::vector<std::string>& texts) {
+  const Handle type = text_type(), space = space_of(texts.size());
+  const Handle set = new_dataset(file, name, type, space);
+  std::vector<const char*> pointers;
+  for (const std::string& t : texts) pointers.push_back(t.c_str());
+  if (!texts.empty()) checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
+}
+
+void put_text(hid_t file, const std::string& name, const std::string& text) {
+  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle set = new_dataset(file, name, type, space);
+  const char* pointer = text.c_str();
+  checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &pointer));
+}
+
+void put_attribute(hid_t object, const char* name, const std::string& text) {
+  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const char* pointer = text.c_str();
+  checked(H5Awrite(attribute, type, &pointer));
+}
+
+void put_attribute(hid_t object, const char* name, int number) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(H5Acreate2(object, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  checked(H5Awrite(attribute, H5T_NATIVE_INT, &number));
+}
+
+// Extendible in all directions, in chunks.
+Handle new_extendible(hid_t file, const char* name, hid_t type, std::vector<hsize_t> size, const std::vector<hsize_t>& chunk) {
+  const std::vector<hsize_t> most(size.size(), H5S_UNLIMITED);
+  const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), most.data()), H5Sclose);
+  return new_dataset(file, name, type, space, chunk);
+}
+
+std::vector<hsize_t> size_of(hid_t set) {
+  const Handle space(H5Dget_space(set), H5Sclose);
+  const int rank = checked(H5Sget_simple_extent_ndims(space));
+  std::vector<hsize_t> size(static_cast<std::size_t>(rank));
+  if (rank > 0) checked(H5Sget_simple_extent_dims(space, size.data(), nullptr));
+  return size;
+}
+
+// Writes or reads the box [from, from + size).
+enum class Way { write, read };
+void transfer(Way way, hid_t set, hid_t type, const std::vector<hsize_t>& from, const std::vector<hsize_t>& size, const void* data) {
+  if (std::find(size.begin(), size.end(), 0) != size.end()) return;
+  const Handle in_file(H5Dget_space(set), H5Sclose), in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  checked(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr));
+  if (way == Way::write) checked(H5Dwrite(set, type, in_memory, in_file, H5P_DEFAULT, data));
+  else checked(H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, const_cast<void*>(data)));
+}
+
+bool exists(hid_t file, const std::string& name) {
+  for (std::size_t slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1))
+    if (slash > 0 && H5Lexists(file, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
+  return H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+Handle open_dataset(hid_t file, const std::string& name) { return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose}; }
+
+// Texts of a column that has some: /text is as long as /rows from then on, and its attribute `columns` says which columns it holds.
+void extend_texts(hid_t file, hsize_t before, const RowBlock& block) {
+  std::vector<std::uint32_t> held;
+  if (exists(file, "text")) {
+    const Handle set = open_dataset(file, "text");
+    held.resize(size_of(set).at(1));
+    const Handle attribute(H5Aopen(set, "columns", H5P_DEFAULT), H5Aclose);
+    checked(H5Aread(attribute, H5T_NATIVE_UINT32, held.data()));
+  }
+  const std::size_t known = held.size();
+  for (const auto& [column, texts] : block.texts)
+    if (std::find(held.begin(), held.end(), column) == held.end()) held.push_back(static_cast<std::uint32_t>(column));
+  if (held.empty()) return;
+  constexpr hsize_t kChunk = 1024;
+  const Handle type = text_type();
+  const hsize_t rows = block.rows();
+  const Handle set = known == 0 ? new_extendible(file, "text", type, {before, held.size()}, {kChunk, 1}) : open_dataset(file, "text");
+  const std::vector<hsize_t> size = {before + rows, held.size()};
+  checked(H5Dset_extent(set, size.data()));
+  if (held.size() > known) {
+    if (known > 0) checked(H5Adelete(set, "columns"));
+    const Handle space = space_of(held.size());
+    const Handle attribute(H5Acreate2(set, "columns", H5T_STD_U32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    checked(H5Awrite(attribute, H5T_NATIVE_UINT32, held.data()));
+  }
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    const auto it = block.texts.find(held[k]);
+    if (it == block.texts.end()) continue;
+    std::vector<const char*> pointers(rows, "");
+    for (std::size_t i = 0; i < it->second.size(); ++i) pointers[i] = it->second[i].c_str();
+    transfer(Way::write, set, type, {before, k}, {rows, 1}, pointers.data());
+  }
+}
+
+void extend_steps(hid_t file, const std::vector<double>& steps) {
+  if (steps.empty()) return;
+  const Handle set = open_dataset(file, "steps");
+  const hsize_t before = size_of(set).at(0), after = before + steps.size();
+  checked(H5Dset_extent(set, &after));
+  transfer(Way::write, set, H5T_NATIVE_DOUBLE, {before}, {steps.size()}, steps.data());
+}
+
+template <class F>
+std::string done(F f) {
+  quietly();
+  try {
+    f();
+    return {};
+  } catch (const Trouble& t) {
+    return t.message;
+  }
+}
+
+std::vector<std::string> texts_of(hid_t set, hid_t memory, hid_t file_space, std::size_t count) {
+  const Handle own(H5Dget_type(set), H5Tclose);
+  if (H5Tis_variable_str(own) <= 0) throw Trouble{"texts of variable length are missing"};
+  const Handle type = text_type();
+  std::vector<char*> pointers(count, nullptr);
+  std::vector<std::string> texts;
+  if (count == 0) return texts;
+  checked(H5Dread(set, type, memory, file_space, H5P_DEFAULT, pointers.data()));
+  for (char* p : pointers) {
+    texts.emplace_back(p ? p : "");
+    H5free_memory(p);
+  }
+  return texts;
+}
+
+class Hdf5Reader {
+ public:
+  explicit Hdf5Reader(const std::string& path) : file_(open(path)) {}
+
+  RunFile read() {
+    if (attribute("format") != kFormat) throw Failure(Span{}, "this is an HDF5 file, but not the run of anholon", "anholon simulate MODEL --to T -o run.h5 writes one");
+    if (const int version = number("format_version"); version != kVersion)
+      throw Failure(Span{}, "the run has format version " + std::to_string(version) + ", known is " + std::to_string(kVersion), "a newer anholon");
+    run_.title = attribute("title");
+    run_.command = attribute("command");
+    run_.created_by = attribute("created_by");
+    const std::vector<std::string> names = texts("model/files"), files = texts("model/texts");
+    for (std::size_t i = 0; i < names.size() && i < files.size(); ++i) run_.model.push_back({names[i], files[i]});
+    settings();
+    rows();
+    if (exists(file_, "report")) run_.report = texts("report").at(0);
+    if (exists(file_, "steps")) {
+      const Handle set = open_dataset(file_, "steps");
+      run_.steps.resize(limited(size_of(set), 1).at(0));
+      transfer(Way::read, set, H5T_NATIVE_DOUBLE, {0}, {run_.steps.size()}, run_.steps.data());
+    }
+    return std::move(run_);
+  }
+
+ private:
+  static hid_t open_file(const std::string& path) {
+    quietly();
+    return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  }
+  static Handle open(const std::string& path) { return {open_file(path), H5Fclose}; }
+
+  // More numbers than this are no run, but a file that somebody made up.
+  static std::vector<hsize_t> limited(std::vector<hsize_t> size, std::size_t rank) {
+    constexpr double kMost = 4e9;
+    double product = 1;
+    for (const hsize_t n : size) product *= static_cast<double>(n);
+    if (size.size() != rank || product > kMost) throw Trouble{"a data set has an unfit size"};
+    return size;
+  }
+
+  std::string attribute(const char* name) {
+    if (H5Aexists(file_, name) <= 0) return {};
+    const Handle a(H5Aopen(file_, name, H5P_DEFAULT), H5Aclose), own(H5Aget_type(a), H5Tclose), type = text_type();
+    if (H5Tis_variable_str(own) <= 0) return {};
+    char* text = nullptr;
+    checked(H5Aread(a, type, &text));
+    const std::string copy = text ? text : "";
+    H5free_memory(text);
+    return copy;
+  }
+
+  int number(const char* name) {
+    int value = 0;
+    const Handle a(H5Aopen(file_, name, H5P_DEFAULT), H5Aclose);
+    checked(H5Aread(a, H5T_NATIVE_INT, &value));
+    return value;
+  }
+
+  // A list, or a single one.
+  std::vector<std::string> texts(const std::string& name) {
+    if (!exists(file_, name)) return {};
+    const Handle set = open_dataset(file_, name);
+    const std::vector<hsize_t> size = size_of(set);
+    return texts_of(set, H5S_ALL, H5S_ALL, size.empty() ? 1 : limited(size, 1)[0]);
+  }
+
+  void settings() {
+    if (!exists(file_, "settings")) return;
+    const Handle group(H5Gopen2(file_, "settings", H5P_DEFAULT), H5Gclose);
+    H5G_info_t info{};
+    checked(H5Gget_info(group, &info));
+    for (hsize_t i = 0; i < info.nlinks; ++i) {
+      const auto length = checked(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT));
+      std::string name(static_cast<std::size_t>(length), '\0');
+      checked(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size() + 1, H5P_DEFAULT));
+      run_.settings[name] = texts("settings/" + name);
+    }
+  }
+
+  void rows() {
+    RunTable& table = run_.table;
+    table.set_columns(texts("columns"));
+    const std::vector<std::string> units = texts("units");
+    const std::size_t columns = table.columns.size();
+    for (std::size_t j = 0; j < columns && j < units.size(); ++j)
+      if (!units[j].empty()) run_.units[table.columns[j]] = units[j];
+    const Handle set = open_dataset(file_, "rows");
+    const std::vector<hsize_t> size = limited(size_of(set), 2);
+    if (columns == 0 || size[1] != columns) throw Trouble{"/rows and /columns do not fit together"};
+    for (auto& v : table.values) v.resize(size[0]);
+    const hsize_t block = std::max<hsize_t>(1, 16 * kChunkNumbers / columns);
+    std::vector<double> numbers;
+    for (hsize_t i = 0; i < size[0]; i += block) {
+      const hsize_t n = std::min(block, size[0] - i);
+      numbers.resize(n * columns);
+      transfer(Way::read, set, H5T_NATIVE_DOUBLE, {i, 0}, {n, columns}, numbers.data());
+      for (hsize_t k = 0; k < n; ++k)
+        for (std::size_t j = 0; j < columns; ++j) table.values[j][i + k] = numbers[k * columns + j];
+    }
+    written_digits(size[0]);
+  }
+
+  void written_digits(hsize_t rows) {
+    if (!exists(file_, "text")) return;
+    const Handle set = open_dataset(file_, "text");
+    const std::vector<hsize_t> size = limited(size_of(set), 2);
+    std::vector<std::uint32_t> held(size[1]);
+    const Handle a(H5Aopen(set, "columns", H5P_DEFAULT), H5Aclose), length(H5Aget_space(a), H5Sclose);
+    if (static_cast<hsize_t>(H5Sget_simple_extent_npoints(length)) != size[1] || size[0] > rows) throw Trouble{"/text does not fit to /rows"};
+    checked(H5Aread(a, H5T_NATIVE_UINT32, held.data()));
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      if (held[k] >= run_.table.columns.size()) throw Trouble{"/text does not fit to /columns"};
+      const hsize_t from[2] = {0, k}, count[2] = {size[0], 1};
+      const Handle in_file(H5Dget_space(set), H5Sclose), in_memory = space_of(size[0]);
+      checked(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from, nullptr, count, nullptr));
+      run_.table.texts[held[k]] = texts_of(set, in_memory, in_file, size[0]);
+      run_.table.texts[held[k]].resize(rows);
+    }
+  }
+
+  Handle file_;
+  RunFile run_;
+};
+
+}  // namespace
+
+std::string create_hdf5(const std::string& path, const RunInfo& info, const std::vector<std::string>& columns) {
+  return done([&] {
+    Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    put_attribute(file, "format", kFormat);
+    put_attribute(file, "format_version", kVersion);
+    put_attribute(file, "title", info.title);
+    put_attribute(file, "created_by", info.created_by);
+    put_attribute(file, "command", info.command);
+    put_texts(file, "columns", columns);
+    std::vector<std::string> units;
+    for (const std::string& c : columns) {
+      const auto it = info.units.find(c);
+      units.push_back(it == info.units.end() ? "" : it->second);
+    }
+    put_texts(file, "units", units);
+    const hsize_t n = columns.size();
+    new_extendible(file, "rows", H5T_IEEE_F64LE, {0, n}, {std::max<hsize_t>(1, kChunkNumbers / std::max<hsize_t>(1, n)), std::max<hsize_t>(1, n)});
+    new_extendible(file, "steps", H5T_IEEE_F64LE, {0}, {kChunkNumbers});
+    std::vector<std::string> names, texts;
+    for (const RunInfo::File& f : info.model) names.push_back(f.name), texts.push_back(f.text);
+    if (!names.empty()) put_texts(file, "model/files", names), put_texts(file, "model/texts", texts);
+    for (const auto& [name, list] : info.settings) put_texts(file, "settings/" + name, list);
+    file.close();
+  });
+}
+
+std::string extend_hdf5(const std::string& path, const RowBlock& block) {
+  return done([&] {
+    Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    if (block.rows() > 0) {
+      const Handle set = open_dataset(file, "rows");
+      const hsize_t before = size_of(set).at(0);
+      const std::vector<hsize_t> size = {before + block.rows(), block.columns};
+      checked(H5Dset_extent(set, size.data()));
+      transfer(Way::write, set, H5T_NATIVE_DOUBLE, {before, 0}, {block.rows(), block.columns}, block.numbers.data());
+      extend_texts(file, before, block);
+    }
+    extend_steps(file, block.steps);
+    if (block.report) {
+      if (exists(file, "report")) checked(H5Ldelete(file, "report", H5P_DEFAULT));
+      put_text(file, "report", *block.report);
+    }
+    checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+    file.close();
+  });
+}
+
+RunFile read_hdf5(const std::string& path) {
+  try {
+    return Hdf5Reader(path).read();
+  } catch (const Trouble& t) {
+    throw Failure(Span{}, "the file cannot be read: " + t.message, "a whole run, as `anholon simulate MODEL -o run.h5` writes it");
+  }
+}
+
+#endif
+
+}  // namespace anholon

@@ -1,0 +1,140 @@
+#include "result/hdf5_sink.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace anholon {
+
+// Of all steps of a run; those beyond are not written.
+static constexpr std::size_t kMostSteps = 5'000'000;
+
+Hdf5Sink::Hdf5Sink(std::string path, RunInfo info, Pace pace)
+    : path_(std::move(path)), beside_(path_ + ".part"), info_(std::move(info)), pace_(pace) {
+  if (!has_hdf5()) {
+    error_ = kNoHdf5;
+    return;
+  }
+  const int fd = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd < 0) {
+    error_ = "cannot write " + path_ + ": " + std::strerror(errno);
+    return;
+  }
+  ::close(fd);
+  std::remove(beside_.c_str());
+}
+
+Hdf5Sink::~Hdf5Sink() {
+  close();
+  if (last_ >= 0) ::close(last_);
+}
+
+void Hdf5Sink::columns(const std::vector<std::string>& names) {
+  names_ = names;
+  begun_ = true;
+  checkpoint();
+}
+
+void Hdf5Sink::row(const std::vector<std::string>& values) {
+  if (!error_.empty()) return;
+  block_.add(values);
+  if (block_.bytes() >= std::max(pace_.bytes, size_ / 4) || std::chrono::steady_clock::now() >= next_) checkpoint();
+}
+
+void Hdf5Sink::step(double t) {
+  if (error_.empty() && steps_ < kMostSteps) block_.steps.push_back(t), ++steps_;
+}
+
+void Hdf5Sink::flush() {
+  if (begun_ && block_.bytes() > 0) checkpoint();
+}
+
+std::string Hdf5Sink::close() {
+  if (!closed_ && begun_ && (block_.bytes() > 0 || block_.report)) checkpoint();
+  closed_ = true;
+  return error_;
+}
+
+bool Hdf5Sink::fail(const std::string& why) {
+  error_ = "cannot write " + path_ + ": " + why;
+  std::remove(beside_.c_str());
+  return false;
+}
+
+// Room for what will be added is taken before HDF5 sees the file: it does not end well on a full disk.
+bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
+  const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (out < 0) return fail(std::strerror(errno));
+  const auto failed = [&] {
+    const int why = errno;
+    ::close(out);
+    return fail(std::strerror(why));
+  };
+  if (::fallocate(out, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(size_ + room)) != 0 && errno != EOPNOTSUPP && errno != ENOSYS && errno != EINTR) return failed();
+  off_t at = 0;
+  bool by_kernel = true;
+  std::vector<char> buffer;
+  while (static_cast<std::size_t>(at) < size_) {
+    if (by_kernel) {
+      off_t in = at;
+      const ssize_t n = ::copy_file_range(last_, &in, out, nullptr, size_ - static_cast<std::size_t>(at), 0);
+      if (n > 0) {
+        at = in;
+        continue;
+      }
+      // Between some file systems, and on old kernels, it cannot.
+      if (n < 0 && errno == ENOSPC) return failed();
+      by_kernel = false;
+    }
+    buffer.resize(1u << 20);
+    const ssize_t n = ::pread(last_, buffer.data(), std::min(buffer.size(), size_ - static_cast<std::size_t>(at)), at);
+    if (n < 0 && errno == EINTR) continue;
+    if (n == 0) errno = EIO;
+    if (n <= 0) return failed();
+    for (ssize_t k = 0; k < n;) {
+      const ssize_t w = ::pwrite(out, buffer.data() + k, static_cast<std::size_t>(n - k), at + k);
+      if (w < 0 && errno != EINTR) return failed();
+      if (w > 0) k += w;
+    }
+    at += n;
+  }
+  if (::close(out) != 0) return fail(std::strerror(errno));
+  return true;
+}
+
+void Hdf5Sink::checkpoint() {
+  if (!error_.empty() || !begun_) return;
+  const auto start = std::chrono::steady_clock::now();
+  // Chunks of every data set that are begun, the directory of chunks, and the texts.
+  constexpr std::size_t kMargin = 1u << 20;
+  std::size_t texts = 0;
+  for (const RunInfo::File& f : info_.model) texts += f.text.size();
+  const std::size_t room = kMargin + block_.bytes() + block_.bytes() / 8 + 2 * texts + (block_.report ? block_.report->size() : 0);
+  if (!copy_last(beside_, room)) return;
+  if (last_ < 0)
+    if (const std::string why = create_hdf5(beside_, info_, names_); !why.empty()) return static_cast<void>(fail(why));
+  if (const std::string why = extend_hdf5(beside_, block_); !why.empty()) return static_cast<void>(fail(why));
+  const int fd = ::open(beside_.c_str(), O_RDWR | O_CLOEXEC);
+  struct stat info {};
+  // What was taken and not used goes back; the bytes are on disk before the name is.
+  if (fd < 0 || ::fstat(fd, &info) != 0 || ::ftruncate(fd, info.st_size) != 0 || ::fdatasync(fd) != 0 || std::rename(beside_.c_str(), path_.c_str()) != 0) {
+    const int why = errno;
+    if (fd >= 0) ::close(fd);
+    return static_cast<void>(fail(std::strerror(why)));
+  }
+  if (last_ >= 0) ::close(last_);
+  last_ = fd;
+  size_ = static_cast<std::size_t>(info.st_size);
+  written_ += block_.rows();
+  block_.clear();
+  const auto end = std::chrono::steady_clock::now();
+  next_ = end + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                    std::chrono::duration<double>(std::max(pace_.seconds, pace_.share * std::chrono::duration<double>(end - start).count())));
+}
+
+}  // namespace anholon

@@ -1,0 +1,158 @@
+// Pages of real models, opened in a browser from disk: node pages.mjs PROGRAM. Exit 77: there is no browser, or no viewer.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+
+const program = resolve(process.argv[2]);
+const browser_path = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
+if (!existsSync(browser_path)) skip(`no ${browser_path}`);
+if (!existsSync('viewer/dist/viewer.js')) skip('the viewer is not built');
+const { chromium } = await import(resolve('viewer/node_modules/playwright-core/index.mjs')).catch(() => skip('no playwright-core'));
+
+const folder = mkdtempSync(join(tmpdir(), 'anholon-pages-'));
+const run = (...args) => execFileSync(program, args, { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'], encoding: 'utf8' });
+const page_of = (name, ...args) => { run('report', ...args, '-o', `${name}.html`, '--quiet'); return join(folder, `${name}.html`); };
+
+const browser = await chromium.launch({
+  executablePath: browser_path,
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking', '--disable-component-update'],
+});
+
+// Opens a page that must not complain, ask for anything, or be wider than the window.
+async function open(path, width) {
+  const page = await browser.newPage({ viewport: { width, height: 900 } });
+  const faults = [];
+  page.on('console', (m) => { if (m.type() === 'error' || m.type() === 'warning') faults.push(m.text()); });
+  page.on('pageerror', (e) => faults.push(e.stack ?? e.message));
+  page.on('request', (r) => { if (!/^(file|data|blob):/.test(r.url())) faults.push(`asked for ${r.url()}`); });
+  await page.goto(`file://${path}`);
+  await page.evaluate(() => window.anholon.ready);
+  const clipped = await page.evaluate(() => [...document.querySelectorAll('main *')]
+    .filter((e) => e.getBoundingClientRect().right > innerWidth + 1 && !e.closest('.wide, .formula, pre, svg, canvas, .u-wrap'))
+    .slice(0, 3).map((e) => `${e.tagName}.${e.className}`));
+  if (clipped.length) faults.push(`beyond the edge: ${clipped.join(', ')}`);
+  const across = await page.evaluate(() => document.documentElement.scrollWidth);
+  if (across > width) faults.push(`scrolls sideways: ${across} of ${width}`);
+  return { page, faults };
+}
+
+// How far the material point at the contact moves between two frames of a screen; `contact` is the name of a point.
+async function slip(page, body, contact) {
+  return page.evaluate(([b, c]) => {
+    const { pose, times } = window.anholon.cases[0];
+    const of = (t, name) => pose(t).find((p) => p.name === name && p.position);
+    const d = 1e-4;
+    let worst = 0;
+    for (let k = 1; k < 400; ++k) {
+      const t = times.start + (times.end - times.start) * (k + 0.37) / 401;       // never a row of the run
+      const here = of(t, b), at = of(t, c).position;
+      const arm = at.map((x, i) => x - here.position[i]);
+      const own = [0, 1, 2].map((a) => arm.reduce((s, x, i) => s + x * here.axes[3 * a + i], 0));
+      const point = (p) => p.position.map((x, i) => x + own.reduce((s, o, a) => s + o * p.axes[3 * a + i], 0));
+      const before = point(of(t - d, b)), after = point(of(t + d, b));
+      worst = Math.max(worst, Math.hypot(...after.map((x, i) => x - before[i])) / (2 * d) / 60);
+    }
+    return worst;
+  }, [body, contact]);
+}
+
+let failed = 0;
+async function test(name, body) {
+  try {
+    await body();
+    console.log(`ok: ${name}`);
+  } catch (e) {
+    ++failed;
+    console.log(`FAILED: ${name}\n${e.stack ?? e}`);
+  }
+}
+
+const figures = ['luo-zhao-example-1', 'luo-zhao-example-2', 'rolling-coin', 'snakeboard', 'rattleback', 'car-three-trailers', 'ball-on-turntable-rotating'];
+for (const model of figures) {
+  await test(`${model}: opens at both widths without a fault, and fits`, async () => {
+    const path = page_of(model, model, '--no-proof');
+    assert.ok(readFileSync(path).length < 1.4e6, 'well under 1.5 MB');
+    for (const width of [1400, 400]) {
+      const { page, faults } = await open(path, width);
+      const boxes = await page.$$eval('.equation math', (list) => list.map((m) => [m.getBoundingClientRect().width, m.getBoundingClientRect().height]).filter(([w]) => w > 0));
+      assert.ok(boxes.length > 4);
+      for (const [w, h] of boxes) assert.ok(w > 3 && h > 4 && h < 130, `an equation of ${w} x ${h} pixels`);
+      assert.deepEqual(faults, []);
+      await page.close();
+    }
+  });
+}
+
+for (const [model, body, contact, radius] of [['disc', 'disc', 'contact', 0.5], ['rolling-coin', 'coin', 'contact', 0.5], ['ball-on-turntable-rotating', 'ball', 'contact', 0.25]]) {
+  await test(`${model}: rolls in the picture without slipping`, async () => {
+    // Points that the view hides are asked for: the contact is one of them.
+    const text = run('models', model).replace(/^hide .*$/m, '').replace(/spin = "W\*ez"/, 'spin = "W*ez"');
+    writeFileSync(join(folder, `${model}.toml`), text);
+    const { page, faults } = await open(page_of(`slip-${model}`, `${model}.toml`, '--no-proof'), 1000);
+    const s = await slip(page, body, contact);
+    assert.ok(s < 1e-6 * radius, `slips by ${s}`);
+    // The same question for a point that is not the contact has another answer.
+    assert.ok(await slip(page, body, body) > 1e-4 * radius || model === 'x');
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+}
+
+await test('play advances the time, a hovered value is the stored one', async () => {
+  run('simulate', 'disc', '--to', '2', '--every', '0.01', '-o', 'disc.csv', '--quiet');
+  const { page, faults } = await open(page_of('hover', 'disc', '--rows', 'disc.csv', '--no-proof'), 1200);
+  const before = await page.evaluate(() => window.anholon.cases[0].time);
+  await page.getByRole('button', { name: /play/i }).first().click();
+  await page.waitForFunction((t) => window.anholon.cases[0].time > t, before);
+  await page.evaluate(() => window.anholon.cases[0].pause());
+  const plot = page.locator('.plot').nth(1);  // velocities
+  await plot.scrollIntoViewIfNeeded();
+  await plot.locator('.u-over').waitFor();
+  const box = await plot.locator('.u-over').boundingBox();
+  await page.mouse.move(box.x + 0.31 * box.width, box.y + 40);
+  await page.waitForTimeout(300);
+  const t = Number((await plot.locator('.moment').innerText()).replace(/[^\d.e-]/g, ''));
+  const values = await plot.locator('.value').allInnerTexts();
+  const lines = readFileSync(join(folder, 'disc.csv'), 'utf8').trim().split('\n').map((l) => l.split(','));
+  const row = lines.find((l) => l[0] !== 't' && Number(l[0]) === t);
+  assert.ok(row, `a row at t = ${t}`);
+  assert.deepEqual(values, lines[0].map((n, k) => [n, row[k]]).filter(([n]) => /^[a-z]+'$/.test(n)).map(([, v]) => String(Number(v))));
+  assert.deepEqual(faults, []);
+  await page.close();
+});
+
+await test('hostile names are text', async () => {
+  const evil = '</script><script>window.hit = 1</script><img src=x onerror="window.hit = 2">';
+  const text = run('models', 'chaplygin-sleigh').replace(/^title = .*$/m, `title = ${JSON.stringify(`${evil} "'&\u202eabc\u05d0\u05d1 ${'very '.repeat(80)}`)}`)
+    .replace(/^source = .*$/m, `source = ${JSON.stringify(evil)}`).replace(/^(m|M) = 2.*$/m, `m = {value = 2, doc = ${JSON.stringify(evil)}}`);
+  assert.ok(text.includes('doc ='));
+  writeFileSync(join(folder, 'evil.toml'), text);
+  const path = page_of('evil', 'evil.toml');
+  for (const width of [1400, 400]) {
+    const { page, faults } = await open(path, width);
+    assert.equal(await page.evaluate(() => window.hit), undefined);
+    assert.equal(await page.locator('main img').count(), 0);
+    assert.ok((await page.locator('h1').innerText()).startsWith('</script><script>'));
+    assert.deepEqual(faults, []);
+    await page.close();
+  }
+});
+
+await test('scenarios stand side by side', async () => {
+  const text = `${run('models', 'chaplygin-sleigh')}\n[case.heavy]\nparameters.m = 20\n[case.light]\nparameters.m = 1\n`;
+  writeFileSync(join(folder, 'cases.toml'), text);
+  const { page, faults } = await open(page_of('cases', 'cases.toml', '--case', 'heavy', '--case', 'light', '--no-proof'), 1400);
+  assert.equal(await page.evaluate(() => window.anholon.cases.length), 2);
+  const [a, b] = await page.locator('article.case').all();
+  const x = await a.boundingBox(), y = await b.boundingBox();
+  assert.ok(Math.abs(x.y - y.y) < 2 && y.x > x.x + 300, 'beside each other');
+  assert.deepEqual(faults, []);
+  await page.close();
+});
+
+await browser.close();
+rmSync(folder, { recursive: true, force: true });
+process.exit(failed ? 1 : 0);

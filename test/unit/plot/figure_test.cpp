@@ -1,0 +1,316 @@
+#include "plot/figure.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/diagnostic.h"
+#include "plot/drawing.h"
+#include "plot/terminal.h"
+
+namespace anholon::plot {
+namespace {
+
+RunFile run(const std::vector<std::string>& columns, const std::vector<std::vector<double>>& values) {
+  RunFile r;
+  r.table.set_columns(columns);
+  r.table.values = values;
+  return r;
+}
+
+std::vector<std::string> names(const Figure& f) {
+  std::vector<std::string> list;
+  for (const Panel& p : f.panels)
+    for (const Series& s : p.series) list.push_back(s.name);
+  return list;
+}
+
+const RunFile& disc() {
+  static const RunFile r = run({"t", "x", "theta", "x'", "theta'", "x''", "lambda.a", "lambda.b"}, {{0, 1, 2}, {1, 2, 3}, {3, 2, 5}, {0, 0, 0}, {1, 1, 2}, {0, 1, 2}, {7, 8, 9}, {-1, 0, 1}});
+  return r;
+}
+
+FigureOptions of(const std::vector<std::string>& list) {
+  FigureOptions o;
+  o.names = list;
+  return o;
+}
+
+std::string trouble(const RunFile& r, const FigureOptions& o) {
+  try {
+    make_figure(r, o);
+    return "none";
+  } catch (const Failure& f) {
+    return f.diagnostic.message;
+  }
+}
+
+TEST(Ticks, AreRound) {
+  const Ticks t = ticks({0, 10, false}, 6);
+  EXPECT_EQ(t.labels, (std::vector<std::string>{"0", "2", "4", "6", "8", "10"}));
+  EXPECT_EQ(ticks({-0.31, 0.2, false}, 4).labels, (std::vector<std::string>{"-0.2", "0.0", "0.2"}));
+  EXPECT_EQ(ticks({1e-7, 4e-7, false}, 4).labels, (std::vector<std::string>{"1", "2", "3", "4"}));
+  EXPECT_EQ(ticks({1e-7, 4e-7, false}, 4).note, "×10⁻⁷");
+  EXPECT_EQ(ticks({0, 2e6, false}, 3).note, "×10⁶");
+}
+
+// What differs in late digits is shown beyond a round number; both together are the number again.
+TEST(Ticks, LateDigits) {
+  const Ticks t = ticks({11.5983245949, 11.5983245953, false}, 5);
+  ASSERT_GE(t.at.size(), 3u);
+  ASSERT_EQ(t.note.substr(0, 7), "×10⁻");
+  const std::size_t plus = t.note.find("+ ");
+  ASSERT_NE(plus, std::string::npos);
+  const double base = std::stod(t.note.substr(plus + 2)), factor = t.note.find("⁻¹⁰") != std::string::npos ? 1e-10 : 1e-9;
+  for (std::size_t k = 0; k < t.at.size(); ++k) EXPECT_NEAR(base + factor * std::stod(t.labels[k]), t.at[k], 1e-14);
+}
+
+TEST(Ticks, OfPowersAndOfNothing) {
+  EXPECT_EQ(ticks({1e-12, 1, true}, 4).labels, (std::vector<std::string>{"10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"}));
+  EXPECT_EQ(ticks({1, 30, true}, 6).labels, (std::vector<std::string>{"1", "2", "5", "10", "20"}));
+  EXPECT_TRUE(ticks({1, 1, false}, 5).at.empty());
+  EXPECT_TRUE(ticks({0, INFINITY, false}, 5).at.empty());
+  for (const double size : {1e-300, 1e-8, 3.7, 1e8, 1e300})
+    for (int most = 2; most < 12; ++most) {
+      const Ticks t = ticks({-0.3 * size, size, false}, most);
+      EXPECT_GE(t.at.size(), 2u) << size << " " << most;
+      EXPECT_LE(t.at.size(), static_cast<std::size_t>(most + 2)) << size << " " << most;
+    }
+}
+
+TEST(Axis, HasALengthAlways) {
+  for (const double x : {0.0, 1.0, -3e-9, 11.598}) {
+    const Axis a = axis_for(x, x, false, false);
+    EXPECT_LT(a.from, x);
+    EXPECT_GT(a.to, x);
+  }
+  EXPECT_EQ(axis_for(0, 10, false, true).to, 10);
+  EXPECT_LT(axis_for(0, 10, false, false).from, 0);
+  EXPECT_NEAR((Axis{1, 100, true}).place(10), 0.5, 1e-15);
+}
+
+TEST(Select, NamesPatternsAndTheCoordinates) {
+  EXPECT_EQ(names(make_figure(disc(), {})), (std::vector<std::string>{"x", "theta"}));
+  EXPECT_EQ(names(make_figure(disc(), of({"lambda.*", "x"}))), (std::vector<std::string>{"lambda.a", "lambda.b", "x"}));
+  EXPECT_EQ(names(make_figure(disc(), of({"*'"}))), (std::vector<std::string>{"x'", "theta'", "x''"}));
+  EXPECT_EQ(names(make_figure(disc(), of({"?'"}))), (std::vector<std::string>{"x'"}));
+  EXPECT_EQ(names(make_figure(disc(), of({"x", "x", "?"}))), (std::vector<std::string>{"x"}));  // and never t over t
+  FigureOptions path = of({"theta"});
+  path.x = "x";
+  EXPECT_EQ(make_figure(disc(), path).x, (std::vector<double>{1, 2, 3}));
+  EXPECT_TRUE(matches("a*b*c", "aXbYbZc"));
+  EXPECT_FALSE(matches("a*b*c", "aXbYbZ"));
+  EXPECT_TRUE(matches("*", ""));
+}
+
+TEST(Select, SaysWhatThereIs) {
+  EXPECT_EQ(trouble(disc(), of({"thata"})), "there is no column 'thata'; did you mean 'theta'?");
+  EXPECT_EQ(trouble(disc(), of({"q.*"})), "no column fits 'q.*'");
+  FigureOptions o;
+  o.from = 5;
+  EXPECT_EQ(trouble(disc(), o), "no row lies between these times");
+  o = of({"x''"});
+  o.to = 0.5;
+  o.log = true;
+  EXPECT_EQ(trouble(disc(), o), "the column 'x''' has no positive number to be shown");
+  EXPECT_EQ(trouble(run({"t", "x"}, {{}, {}}), {}), "the run has no rows yet");
+}
+
+TEST(Figure, TimesAndPanels) {
+  FigureOptions o = of({"x", "theta"});
+  o.from = 1;
+  o.each = true;
+  const Figure f = make_figure(disc(), o);
+  EXPECT_EQ(f.x, (std::vector<double>{1, 2}));
+  ASSERT_EQ(f.panels.size(), 2u);
+  EXPECT_EQ(f.panels[1].series[0].y, (std::vector<double>{2, 5}));
+}
+
+// A million rows, one of which stands out: it is still there, and little else.
+TEST(Curve, KeepsExtremesOfManyRows) {
+  const std::size_t n = 1'000'000;
+  std::vector<double> t(n), y(n);
+  for (std::size_t i = 0; i < n; ++i) t[i] = static_cast<double>(i), y[i] = std::sin(static_cast<double>(i));
+  y[777'777] = 50;
+  y[123'456] = -40;
+  const Figure f = make_figure(run({"t", "y"}, {t, y}), {});
+  const auto pieces = curve(f, f.panels[0], f.panels[0].series[0], 200, 1);
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_LE(pieces[0].size(), 4u * 201u);
+  double least = 1, greatest = 0, before = -1;
+  for (const Point& p : pieces[0]) {
+    least = std::min(least, p.y), greatest = std::max(greatest, p.y);
+    EXPECT_GE(p.x, before);
+    before = p.x;
+  }
+  EXPECT_EQ(greatest, f.panels[0].y.place(50));
+  EXPECT_EQ(least, f.panels[0].y.place(-40));
+  // Ends of the curve, and both sides of the outlier.
+  EXPECT_EQ(pieces[0].front().x, 0);
+  EXPECT_EQ(pieces[0].back().x, 200);
+}
+
+TEST(Curve, AFewRowsStayAsTheyAre) {
+  const Figure f = make_figure(disc(), of({"theta"}));
+  const auto pieces = curve(f, f.panels[0], f.panels[0].series[0], 100, 100);
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_EQ(pieces[0].size(), 3u);
+}
+
+// Sparse rows of a sine with its derivative: what is drawn between them is the sine, not the polygon. Where a value jumps, nothing
+// swings over.
+TEST(Curve, IsSmoothBetweenTheRows) {
+  std::vector<double> t, y, dy, ddy;
+  for (int i = 0; i <= 20; ++i) t.push_back(0.5 * i), y.push_back(std::sin(t.back())), dy.push_back(std::cos(t.back())), ddy.push_back(i < 10 ? 1 : 5);
+  FigureOptions o = of({"y", "y'", "y''"});
+  o.smooth = true;
+  const Figure f = make_figure(run({"t", "y", "y'", "y''"}, {t, y, dy, ddy}), o);
+  EXPECT_EQ(f.rows, 21u);
+  ASSERT_GT(f.x.size(), 300u);
+  for (std::size_t i = 0; i < f.x.size(); ++i) {
+    EXPECT_NEAR(f.panels[0].series[0].y[i], std::sin(f.x[i]), 2e-4);
+    EXPECT_GE(f.panels[0].series[2].y[i], 1 - 1e-14);
+    EXPECT_LE(f.panels[0].series[2].y[i], 5 + 1e-14);
+  }
+  for (std::size_t i = 0; i < t.size(); ++i) EXPECT_NE(std::find(f.x.begin(), f.x.end(), t[i]), f.x.end());
+  // A velocity that is turned round between two rows, under the same acceleration before and after.
+  const Figure jump = make_figure(run({"t", "v", "v'"}, {{0, 1, 2, 3}, {0, -10, 10, 0}, {-10, -10, -10, -10}}), o = [] { FigureOptions p = of({"v"}); p.smooth = true; return p; }());
+  const std::vector<double>& v = jump.panels[0].series[0].y;
+  EXPECT_EQ(*std::max_element(v.begin(), v.end()), 10);
+  EXPECT_EQ(*std::min_element(v.begin(), v.end()), -10);
+  // Over another abscissa the rows are joined as they are.
+  o.names = {"y"}, o.x = "y'";
+  EXPECT_EQ(make_figure(run({"t", "y", "y'"}, {t, y, dy}), o).x.size(), 21u);
+}
+
+TEST(Curve, GapsAndPaths) {
+  const double nan = std::nan("");
+  const Figure gap = make_figure(run({"t", "y"}, {{0, 1, 2, 3, 4}, {0, 1, nan, 1, 0}}), {});
+  const auto pieces = curve(gap, gap.panels[0], gap.panels[0].series[0], 10, 10);
+  ASSERT_EQ(pieces.size(), 2u);
+  EXPECT_EQ(pieces[0].size(), 2u);
+  EXPECT_EQ(pieces[1].size(), 2u);
+  // A circle goes back and forth; its last point is there.
+  std::vector<double> t, x, y;
+  for (int i = 0; i <= 10'000; ++i) t.push_back(i), x.push_back(std::cos(i * 1e-3)), y.push_back(std::sin(i * 1e-3));
+  FigureOptions o = of({"y"});
+  o.x = "x";
+  const Figure f = make_figure(run({"t", "x", "y"}, {t, x, y}), o);
+  const auto circle = curve(f, f.panels[0], f.panels[0].series[0], 100, 100);
+  ASSERT_EQ(circle.size(), 1u);
+  EXPECT_LT(circle[0].size(), 200u);
+  // Nothing that was left out is farther from the curve than can be seen.
+  for (std::size_t i = 0; i < t.size(); i += 7) {
+    const Point p{100 * f.x_axis.place(x[i]), 100 * f.panels[0].y.place(y[i])};
+    double nearest = 1e9;
+    for (std::size_t k = 1; k < circle[0].size(); ++k) {
+      const Point a = circle[0][k - 1], b = circle[0][k];
+      const double dx = b.x - a.x, dy = b.y - a.y, u = std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+      nearest = std::min(nearest, std::hypot(p.x - a.x - u * dx, p.y - a.y - u * dy));
+    }
+    ASSERT_LT(nearest, 0.7) << i;
+  }
+  EXPECT_EQ(circle[0].back().x, 100 * f.x_axis.place(x.back()));
+  // A path that comes back the way it went turns at its end.
+  const Figure back = make_figure(run({"t", "x", "y"}, {{0, 1, 2, 3}, {0, 5, 10, 3}, {0, 5, 10, 3}}), o);
+  const auto turned = curve(back, back.panels[0], back.panels[0].series[0], 100, 100);
+  ASSERT_EQ(turned[0].size(), 3u);
+  EXPECT_EQ(turned[0][1].x, 100 * back.x_axis.place(10));
+}
+
+TEST(Terminal, DrawsEveryDotOfALine) {
+  FigureOptions o = of({"y"});
+  const std::string text = draw_terminal(make_figure(run({"t", "y"}, {{0, 1}, {0, 1}}), o), {24, 4, false});
+  EXPECT_EQ(text,
+            "     y\n"
+            "1.0 ┤               ⣀⡠⠔\n"
+            "0.5 ┤         ⢀⣀⠤⠔⠊⠉\n"
+            "    │    ⢀⡠⠤⠒⠊⠁\n"
+            "0.0 ┤⠤⠔⠒⠉⠁\n"
+            "    └┬────────┬───────┬\n"
+            "    0.0      0.5     1.0\n"
+            "             t\n");
+}
+
+TEST(Terminal, ColoursOnlyWhereAskedFor) {
+  const Figure f = make_figure(disc(), of({"x", "theta"}));
+  const std::string plain = draw_terminal(f, {60, 10, false}), coloured = draw_terminal(f, {60, 10, true});
+  EXPECT_EQ(plain.find('\033'), std::string::npos);
+  EXPECT_NE(plain.find("a x  b θ"), std::string::npos);
+  EXPECT_NE(coloured.find("\033[36m──\033[0m x"), std::string::npos);
+  EXPECT_NE(coloured.find("\033[33m──\033[0m θ"), std::string::npos);
+}
+
+TEST(Terminal, NoLineIsWiderThanTheTerminal) {
+  const RunFile& r = disc();
+  for (const int width : {30, 47, 80, 133}) {
+    for (const bool each : {false, true}) {
+      FigureOptions o = of({"*"});
+      o.each = each;
+      const std::string text = draw_terminal(make_figure(r, o), {width, 7, false});
+      for (std::size_t from = 0; from < text.size();) {
+        const std::size_t end = text.find('\n', from);
+        EXPECT_LE(shown_width(text.substr(from, end - from)), static_cast<std::size_t>(width)) << text;
+        from = end + 1;
+      }
+    }
+  }
+}
+
+TEST(Svg, EscapesAndNamesItsClasses) {
+  FigureOptions o = of({"x", "theta'"});
+  o.title = "a < b & \"c\"";
+  const std::string svg = draw_svg(make_figure(disc(), o));
+  EXPECT_NE(svg.find("<title>a &lt; b &amp; \"c\"</title>"), std::string::npos);
+  EXPECT_EQ(svg.find("a < b"), std::string::npos);
+  for (const char* part : {"class=\"s s0\"", "class=\"s s1\"", "class=\"axis\"", "class=\"grid\"", "var(--s0,", "viewBox=\"0 0 "}) EXPECT_NE(svg.find(part), std::string::npos) << part;
+  EXPECT_EQ(svg.substr(svg.size() - 7), "</svg>\n");
+}
+
+TEST(Tex, NamesAreLatex) {
+  FigureOptions o = of({"x", "theta'"});
+  o.title = "50%";
+  const std::string tex = draw_tex(make_figure(disc(), o));
+  for (const char* part : {"\\addlegendentry{$\\dot{\\theta}$}", "xlabel={$t$}", "title={50\\%}", "\\begin{groupplot}", "\\addplot[color=anholon1] coordinates {\n(0,1)(1,1)(2,2)\n};"})
+    EXPECT_NE(tex.find(part), std::string::npos) << part << "\n" << tex;
+}
+
+TEST(Cairo, SaysWhereItCannotWrite) {
+  if (!has_cairo()) GTEST_SKIP() << kNoCairo;
+  const Figure f = make_figure(disc(), {});
+  EXPECT_EQ(draw_cairo(f, CairoFormat::pdf, "/no/such/folder/a.pdf"), "No such file or directory");
+  EXPECT_EQ(draw_cairo(f, CairoFormat::png, "/no/such/folder/a.png"), "No such file or directory");
+}
+
+TEST(Cairo, DrawsTheSameBytes) {
+  if (!has_cairo()) GTEST_SKIP() << kNoCairo;
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "fontconfig keeps what it has read of fonts until the end";
+#endif
+  FigureOptions o = of({"theta'", "lambda.*"});
+  o.title = "Scheibe";
+  const Figure f = make_figure(disc(), o);
+  const auto drawn = [&](CairoFormat format) {
+    const std::string path = ::testing::TempDir() + "anholon-figure-" + std::to_string(getpid());
+    EXPECT_EQ(draw_cairo(f, format, path), "");
+    std::string bytes;
+    if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
+      for (int c; (c = std::fgetc(file)) != EOF;) bytes += static_cast<char>(c);
+      std::fclose(file);
+    }
+    std::remove(path.c_str());
+    return bytes;
+  };
+  const std::string pdf = drawn(CairoFormat::pdf), png = drawn(CairoFormat::png);
+  EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_GT(png.size(), 2000u);
+  EXPECT_EQ(drawn(CairoFormat::pdf), pdf);
+  EXPECT_EQ(drawn(CairoFormat::png), png);
+}
+
+}  // namespace
+}  // namespace anholon::plot

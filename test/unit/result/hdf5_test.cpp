@@ -1,0 +1,259 @@
+// Results in HDF5: what was written is read, and the file that has a name is whole at every moment.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include "base/diagnostic.h"
+#include "numeric/number.h"
+#include "result/hdf5_sink.h"
+
+namespace anholon {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Hdf5 : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_hdf5()) GTEST_SKIP() << kNoHdf5;
+    char name[] = "/tmp/anholon-hdf5-XXXXXX";
+    ASSERT_NE(mkdtemp(name), nullptr);
+    folder_ = name;
+    path_ = (folder_ / "run.h5").string();
+  }
+  void TearDown() override {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  }
+  static RunInfo info() {
+    RunInfo i;
+    i.title = "Scheibe θ";
+    i.command = "anholon simulate disc";
+    i.created_by = "anholon test";
+    i.model = {{"disc.toml", "title = \"Scheibe θ\"\n"}, {"base.toml", std::string(100'000, '#') + "\n"}};
+    i.settings = {{"set", {"m=2", "J=1"}}, {"tolerance", {"1/10"}}, {"case", {}}};
+    i.units = {{"x", "m"}};
+    return i;
+  }
+  fs::path folder_;
+  std::string path_;
+};
+
+TEST_F(Hdf5, EverythingComesBack) {
+  {
+    Hdf5Sink sink(path_, info());
+    sink.columns({"t", "x", "θ'"});
+    for (int i = 0; i < 2500; ++i) {
+      sink.row({std::to_string(i), i < 10 ? "0.1" : number_text(1.0 / i), i == 2000 ? "1/3" : "nan"});
+      sink.step(i + 0.5);
+      if (i == 3 || i == 1999) sink.flush();
+    }
+    sink.report("{\"a\": 1}");
+    EXPECT_EQ(sink.close(), "");
+    EXPECT_EQ(sink.written(), 2500u);
+  }
+  const RunFile run = read_run(path_);
+  const RunInfo expected = info();
+  EXPECT_EQ(run.title, expected.title);
+  EXPECT_EQ(run.command, expected.command);
+  EXPECT_EQ(run.created_by, expected.created_by);
+  ASSERT_EQ(run.model.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(run.model[i].name, expected.model[i].name);
+    EXPECT_EQ(run.model[i].text, expected.model[i].text);
+  }
+  EXPECT_EQ(run.settings, expected.settings);
+  EXPECT_EQ(run.units, expected.units);
+  EXPECT_EQ(run.report, "{\"a\": 1}");
+  EXPECT_EQ(run.table.columns, (std::vector<std::string>{"t", "x", "θ'"}));
+  ASSERT_EQ(run.table.rows(), 2500u);
+  ASSERT_EQ(run.steps.size(), 2500u);
+  EXPECT_EQ(run.steps[2499], 2499.5);
+  for (std::size_t i = 0; i < 2500; ++i) {
+    EXPECT_EQ(run.table.values[0][i], static_cast<double>(i));
+    EXPECT_EQ(run.table.values[1][i], i < 10 ? 0.1 : 1.0 / static_cast<double>(i));
+    EXPECT_EQ(run.table.text(i, 2), i == 2000 ? "1/3" : "nan");
+  }
+  EXPECT_FALSE(fs::exists(path_ + ".part"));
+}
+
+// Texts may begin in any column at any row; what came before has none.
+TEST_F(Hdf5, TextsOfSeveralColumns) {
+  Hdf5Sink sink(path_, info());
+  sink.columns({"a", "b", "c"});
+  std::vector<std::vector<std::string>> rows;
+  for (int i = 0; i < 40; ++i) {
+    rows.push_back({"1", i % 7 == 3 ? "0.10" : "0.1", i > 20 ? "1.00000000000000000000000000001" : "1"});
+    sink.row(rows.back());
+    if (i % 5 == 4) sink.flush();
+  }
+  ASSERT_EQ(sink.close(), "");
+  const RunTable t = read_run(path_).table;
+  EXPECT_TRUE(t.texts[0].empty());
+  for (std::size_t i = 0; i < 40; ++i)
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(t.text(i, j), rows[i][j]) << i << " " << j;
+}
+
+TEST_F(Hdf5, IsThereFromTheBeginning) {
+  Hdf5Sink sink(path_, info());
+  EXPECT_FALSE(fs::exists(path_));
+  sink.columns({"t"});
+  const RunFile run = read_run(path_);
+  EXPECT_EQ(run.table.rows(), 0u);
+  EXPECT_EQ(run.model.at(0).name, "disc.toml");
+  EXPECT_TRUE(run.report.empty());
+  // Between checkpoints nothing is seen, and nothing has to be.
+  sink.row({"1"});
+  EXPECT_EQ(read_run(path_).table.rows(), 0u);
+  sink.flush();
+  EXPECT_EQ(read_run(path_).table.rows(), 1u);
+}
+
+// A reader that has opened the file, and one that removes it, do not disturb the run.
+TEST_F(Hdf5, GoesOnWhereItsFileWasTakenAway) {
+  Hdf5Sink sink(path_, info());
+  sink.columns({"t"});
+  sink.row({"1"});
+  sink.flush();
+  fs::remove(path_);
+  sink.row({"2"});
+  EXPECT_EQ(sink.close(), "");
+  EXPECT_EQ(read_run(path_).table.values[0], (std::vector<double>{1, 2}));
+}
+
+TEST_F(Hdf5, CheckpointsComeByTimeAndByBytes) {
+  CheckpointPace pace;
+  pace.seconds = 1000;
+  pace.bytes = 8000;
+  Hdf5Sink by_bytes(path_, info(), pace);
+  by_bytes.columns({"t"});
+  for (int i = 0; i < 100'000; ++i) by_bytes.row({"1"});
+  EXPECT_GT(by_bytes.written(), 80'000u);
+  pace = {};
+  pace.seconds = 0.01;
+  pace.share = 0;
+  Hdf5Sink by_time(path_, info(), pace);
+  by_time.columns({"t"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  by_time.row({"1"});
+  EXPECT_EQ(by_time.written(), 1u);
+}
+
+// A process that writes without end is killed at random times: each time the file opens, with all rows up to some checkpoint.
+TEST_F(Hdf5, SurvivesKills) {
+  unsigned random = 12345;
+  std::size_t grown = 0;
+  for (int kill_number = 0; kill_number < 20; ++kill_number) {
+    int reports[2];
+    ASSERT_EQ(pipe(reports), 0);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      CheckpointPace pace;
+      pace.seconds = 0;
+      pace.share = 0;  // a checkpoint at every row: most of the time it is in the middle of one
+      Hdf5Sink sink(path_, info(), pace);
+      sink.columns({"t", "x"});
+      for (std::uint64_t i = 0;; ++i) {
+        sink.row({std::to_string(i), i % 3 ? "0.25" : "0.250"});
+        const std::uint64_t written = sink.written();
+        if (!sink.error().empty() || write(reports[1], &written, sizeof written) != sizeof written) _exit(1);
+      }
+    }
+    close(reports[1]);
+    // Not before the first row is there.
+    std::uint64_t written = 0, next = 0;
+    ASSERT_EQ(read(reports[0], &written, sizeof written), static_cast<ssize_t>(sizeof written));
+    random = random * 1103515245u + 12345u;
+    std::thread killer([&] {
+      std::this_thread::sleep_for(std::chrono::microseconds(200 + random / 65536 % 30'000));
+      kill(child, SIGKILL);
+    });
+    while (read(reports[0], &next, sizeof next) == static_cast<ssize_t>(sizeof next)) written = next;
+    killer.join();
+    int status = 0;
+    waitpid(child, &status, 0);
+    close(reports[0]);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    const RunFile run = read_run(path_);
+    ASSERT_GE(run.table.rows(), written);
+    ASSERT_EQ(run.table.values[1].size(), run.table.rows());
+    for (std::size_t i = 0; i < run.table.rows(); ++i) {
+      ASSERT_EQ(run.table.values[0][i], static_cast<double>(i));
+      ASSERT_EQ(run.table.text(i, 1), i % 3 ? "0.25" : "0.250");
+    }
+    EXPECT_EQ(run.model.size(), 2u);
+    grown += run.table.rows();
+  }
+  EXPECT_GT(grown, 20u);
+}
+
+// A disk that is full: what was complete stays, the reason is told, nothing else lies about.
+TEST_F(Hdf5, FullDiskLeavesTheLastFile) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    Hdf5Sink sink(path_, info());
+    sink.columns({"t"});
+    for (int i = 0; i < 1000; ++i) sink.row({std::to_string(i)});
+    sink.flush();
+    if (!sink.error().empty() || sink.written() != 1000) _exit(1);
+    const rlimit little{3u << 20, 3u << 20};
+    setrlimit(RLIMIT_FSIZE, &little);
+    for (int i = 1000; i < 500'000; ++i) sink.row({std::to_string(i)});
+    sink.report("{}");
+    const std::string why = sink.close();
+    if (why != "cannot write " + path_ + ": File too large") _exit(2);
+    _exit(fs::exists(path_ + ".part") ? 3 : 0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const RunFile run = read_run(path_);
+  EXPECT_EQ(run.table.rows(), 1000u);
+  EXPECT_TRUE(run.report.empty());
+}
+
+TEST_F(Hdf5, SaysWhereItCannotWrite) {
+  EXPECT_EQ(Hdf5Sink((folder_ / "no" / "run.h5").string(), info()).error(), "cannot write " + (folder_ / "no" / "run.h5").string() + ": No such file or directory");
+}
+
+// Damage is an error with a message, never a crash.
+TEST_F(Hdf5, DamagedFilesAreRefused) {
+  {
+    Hdf5Sink sink(path_, info());
+    sink.columns({"t", "x"});
+    for (int i = 0; i < 300; ++i) sink.row({std::to_string(i), "0.50"});
+    sink.close();
+  }
+  std::string bytes;
+  {
+    std::FILE* f = std::fopen(path_.c_str(), "rb");
+    char buffer[4096];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, f)) > 0;) bytes.append(buffer, n);
+    std::fclose(f);
+  }
+  const auto write_bytes = [&](const std::string& b) {
+    std::FILE* f = std::fopen(path_.c_str(), "wb");
+    std::fwrite(b.data(), 1, b.size(), f);
+    std::fclose(f);
+  };
+  std::size_t refused = 0;
+  for (std::size_t cut = 8; cut < bytes.size(); cut += bytes.size() / 40) {
+    write_bytes(bytes.substr(0, cut));
+    EXPECT_THROW(read_run(path_), Failure) << cut;
+    ++refused;
+  }
+  EXPECT_GT(refused, 30u);
+}
+
+}  // namespace
+}  // namespace anholon

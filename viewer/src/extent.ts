@@ -1,0 +1,57 @@
+// How large a scene is and how far it goes, for the first look at it.
+
+import { radius } from './shapes.ts';
+import type { Frame, Item, SceneModel } from './scene.ts';
+import type { Vector } from './rotation.ts';
+
+export interface Extent {
+  points: { at: Vector; r: number }[];     // balls that the motion fills
+  center: Vector;
+  radius: number;                          // of a ball about the centre that holds them all
+  unit: number;                            // size of the largest body, or a length to draw sizeless things by
+  far: boolean;                            // it goes so far that the bodies would be specks: the camera should follow
+}
+
+export const placed = (item: Item): boolean => item.kind === 'body' || item.kind === 'point' || item.kind === 'frame';
+
+export function extent(model: SceneModel, frame: Frame): Extent {
+  const items = model.items.filter((i) => placed(i) || i.kind === 'line');
+  const sizes = items.map(radius);
+  const largest = Math.max(0, ...sizes);
+  const points: Extent['points'] = [];
+  for (const time of model.sample_times()) {
+    const poses = model.pose(time);
+    model.items.forEach((item, k) => {
+      const index = items.indexOf(item);
+      if (index < 0) return;
+      for (const p of poses[k].points ?? [poses[k].position]) {
+        const at = model.in_frame(frame, time, p);
+        if (at.every(Number.isFinite)) points.push({ at, r: sizes[index] });
+      }
+    });
+  }
+  if (points.length === 0) points.push({ at: [0, 0, 0], r: largest });
+  const center = [0, 1, 2].map((k) => {
+    const low = Math.min(...points.map((p) => p.at[k] - p.r)), high = Math.max(...points.map((p) => p.at[k] + p.r));
+    return (low + high) / 2;
+  }) as Vector;
+  const reach = Math.max(...points.map((p) => Math.hypot(...p.at.map((x, k) => x - center[k])) + p.r));
+  const ball = reach > 0 ? reach : 1;
+  const unit = largest > 0 ? largest : 0.3 * ball;
+  return { points, center, radius: ball, unit, far: largest > 0 && ball > 30 * largest };
+}
+
+// Radius about a followed item within which what moves with it stays, in bounds that keep it in sight.
+export function company(model: SceneModel, name: string, unit: number): number {
+  const k = model.items.findIndex((i) => i.name === name && placed(i));
+  let reach = 0;
+  for (const time of model.sample_times(60)) {
+    const poses = model.pose(time);
+    model.items.forEach((item, j) => {
+      if (!placed(item)) return;
+      const d = Math.hypot(...poses[j].position.map((x, c) => x - poses[k].position[c])) + radius(item);
+      if (Number.isFinite(d)) reach = Math.max(reach, d);
+    });
+  }
+  return Math.min(Math.max(1.2 * reach, 3 * unit), 9 * unit);
+}

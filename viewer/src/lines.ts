@@ -1,0 +1,113 @@
+// Lines of a width in pixels, and arrows.
+
+import { Color, ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, Quaternion, Vector3 } from 'three';
+import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
+import type { Vector } from './rotation.ts';
+
+export function segments(points: Float32Array, color: string, width: number): LineSegments2 {
+  const geometry = new LineSegmentsGeometry();
+  if (points.length > 0) geometry.setPositions(points);
+  const material = new LineMaterial({ linewidth: width, transparent: true, depthWrite: false });
+  material.color = new Color(color);
+  const lines = new LineSegments2(geometry, material);
+  lines.frustumCulled = false;
+  lines.renderOrder = 4;       // after the ground and the bodies, which hide what is behind them
+  lines.visible = points.length > 0;
+  return lines;
+}
+
+// The ends of each segment along a chain of points; where one has no value there is a gap.
+export function chain(points: Vector[]): Float32Array {
+  const out: number[] = [];
+  for (let i = 1; i < points.length; ++i) {
+    if ([...points[i - 1], ...points[i]].every(Number.isFinite)) out.push(...points[i - 1], ...points[i]);
+  }
+  return new Float32Array(out);
+}
+
+// The path of a point over the whole run: faint, and strong up to the present.
+export class Trace {
+  readonly group = new Group();
+  private readonly whole: LineSegments2;
+  private readonly past: LineSegments2;
+  private readonly tip: LineSegments2;
+  private readonly starts: Vector[] = [];
+  private readonly times: number[] = [];        // [start, end] of each segment
+
+  // `faint` is a colour and no transparency, which would show the joints of the segments.
+  constructor(path: { time: number; at: Vector }[], color: string, faint: string, width: number) {
+    const out: number[] = [];
+    for (let i = 1; i < path.length; ++i) {
+      const a = path[i - 1], b = path[i];
+      if (!(b.time > a.time) || ![...a.at, ...b.at].every(Number.isFinite)) continue;      // the two sides of a jump are not joined
+      out.push(...a.at, ...b.at);
+      this.starts.push(a.at);
+      this.times.push(a.time, b.time);
+    }
+    const points = new Float32Array(out);
+    this.whole = segments(points, faint, width);
+    this.past = segments(points, color, width);
+    this.tip = segments(new Float32Array(points.length > 0 ? 6 : 0), color, width);
+    this.whole.renderOrder = 2;
+    this.past.renderOrder = this.tip.renderOrder = 3;
+    this.group.add(this.whole, this.past, this.tip);
+  }
+
+  show(time: number, at: Vector): void {
+    let low = 0, high = this.starts.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.times[2 * middle + 1] <= time) low = middle + 1; else high = middle;
+    }
+    this.past.geometry.instanceCount = low;
+    this.past.visible = low > 0;
+    const within = low < this.starts.length && this.times[2 * low] < time && at.every(Number.isFinite);
+    this.tip.visible = within;
+    if (within) this.tip.geometry.setPositions(new Float32Array([...this.starts[low], ...at]));
+  }
+}
+
+// Drawn over bodies, since a reaction starts within one.
+export class Arrow {
+  readonly group = new Group();
+  private readonly shaft: Mesh;
+  private readonly head: Mesh;
+  private readonly direction = new Vector3();
+
+  constructor(color: string, private readonly thickness: number, over = true) {
+    const material = new MeshBasicMaterial({ color, depthTest: !over, transparent: over });
+    this.shaft = new Mesh(new CylinderGeometry(1, 1, 1, 12).translate(0, 0.5, 0), material);
+    this.head = new Mesh(new ConeGeometry(1, 1, 20).translate(0, 0.5, 0), material);
+    this.group.add(this.shaft, this.head);
+    if (over) this.shaft.renderOrder = this.head.renderOrder = 10;
+  }
+
+  set(from: Vector, along: Vector): void {
+    const length = Math.hypot(...along);
+    this.group.visible = length > 1e-3 * this.thickness && [...from, ...along].every(Number.isFinite);
+    if (!this.group.visible) return;
+    const head = Math.min(5.5 * this.thickness, 0.45 * length);
+    this.group.position.set(...from);
+    this.group.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), this.direction.set(...along).normalize()));
+    this.shaft.scale.set(this.thickness, Math.max(length - head, 1e-9), this.thickness);
+    this.head.scale.set(head * 0.38, head, head * 0.38);
+    this.head.position.set(0, length - head, 0);
+  }
+}
+
+export class Triad {
+  readonly group = new Group();
+  private readonly arrows: Arrow[];
+
+  constructor(private readonly length: number, thickness: number, dark: boolean) {
+    const colors = dark ? ['#ef7f74', '#7cc08a', '#7fa8ec'] : ['#c0392b', '#2f8f4e', '#2f62b8'];
+    this.arrows = colors.map((c) => new Arrow(c, thickness));
+    this.group.add(...this.arrows.map((a) => a.group));
+  }
+
+  set(origin: Vector, axes: number[]): void {
+    this.arrows.forEach((arrow, k) => arrow.set(origin, [0, 1, 2].map((j) => this.length * axes[3 * k + j]) as Vector));
+  }
+}

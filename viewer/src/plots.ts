@@ -1,0 +1,136 @@
+// The plots of one case, over one time.
+
+import type { Clock } from './clock.ts';
+import type { Case, Group } from './data.ts';
+import { h } from './dom.ts';
+import { Plot, type Cursor, type Owner } from './plot.ts';
+import { on_theme } from './theme.ts';
+
+const print_width = 680;       // fits between the margins of a page of A4 or letter
+
+export class Plots implements Owner {
+  range: [number, number];
+  readonly plots: Plot[] = [];
+  cursor: Cursor | null = null;
+  private pending = false;
+  private last_reading = 0;
+  private readonly unzoom = h('button', { type: 'button', class: 'plain', hidden: true, click: () => this.zoom(null) }, 'Whole time');
+  private readonly stack = h('div', { class: 'stack' });
+
+  constructor(readonly place: HTMLElement, private readonly data: Case, private readonly clock: Clock) {
+    this.range = this.whole();
+    for (const s of place.querySelectorAll<HTMLElement>('.static')) s.hidden = true;
+    place.classList.add('live');
+    place.append(this.head(), this.stack);
+    const width = place.clientWidth || 600;
+    for (const group of this.groups()) {
+      const plot = new Plot(data, group, data.columns.filter((c) => c.group === group.id), this);
+      this.plots.push(plot);
+      this.stack.append(plot.element);
+      plot.resize(plot.chart_width || width);
+    }
+    this.chips();
+    clock.listen(() => this.request());
+    on_theme(() => { for (const p of this.plots) p.recolor(); });
+    const seen = new IntersectionObserver((entries) => {
+      for (const e of entries) if (e.isIntersecting) this.wake(this.plots.find((p) => p.element === e.target));
+    }, { rootMargin: '300px' });
+    for (const p of this.plots) seen.observe(p.element);
+    this.wake_idly(0);
+    new ResizeObserver(() => this.resize()).observe(this.stack);
+    addEventListener('beforeprint', () => { for (const p of this.plots) this.wake(p); this.resize(print_width); });
+    addEventListener('afterprint', () => this.resize());
+    this.read();
+  }
+
+  // The others one by one when there is nothing else to do.
+  private wake_idly(k: number): void {
+    if (k >= this.plots.length) return;
+    const next = (): void => { this.wake(this.plots[k]); this.wake_idly(k + 1); };
+    if ('requestIdleCallback' in window) requestIdleCallback(next, { timeout: 1000 }); else setTimeout(next, 200);
+  }
+
+  private wake(plot: Plot | undefined): void {
+    plot?.wake();
+    plot?.move(this.clock.time);
+    plot?.point(this.cursor, this.clock.time);
+  }
+
+  private whole(): [number, number] {
+    const { start, end } = this.data;
+    return end > start ? [start, end] : [start - 0.5, start + 0.5];
+  }
+
+  // Those of the data that have columns, and what columns name besides.
+  private groups(): Group[] {
+    const used = new Set(this.data.columns.map((c) => c.group).filter((id) => id !== ''));   // without a group: for the picture only
+    const known = this.data.groups.filter((g) => used.has(g.id));
+    const others = [...used].filter((id) => !known.some((g) => g.id === id)).map((id) => ({ id, title: id, log: false }));
+    return [...known, ...others];
+  }
+
+  private readonly group_chips = h('div', { class: 'chips', role: 'group', 'aria-label': 'Plots shown' });
+
+  private head(): HTMLElement {
+    const { rows, shown } = this.data;
+    const note = shown < rows
+      ? h('span', { class: 'note' }, `${shown.toLocaleString('en')} of ${rows.toLocaleString('en')} rows are drawn; extremes are kept`) : null;
+    return h('div', { class: 'plots-head' }, this.group_chips, this.unzoom, note);
+  }
+
+  private chips(): void {
+    if (this.plots.length < 2) return;
+    for (const plot of this.plots) {
+      const chip = h('button', { type: 'button', class: 'chip', 'aria-pressed': 'true', click: () => {
+        plot.element.hidden = !plot.element.hidden;
+        chip.setAttribute('aria-pressed', String(!plot.element.hidden));
+        this.resize();
+      } }, plot.group.title);
+      this.group_chips.append(chip);
+    }
+  }
+
+  hover(cursor: Cursor | null): void {
+    this.cursor = cursor;
+    this.last_reading = 0;
+    this.request();
+  }
+
+  zoom(range: [number, number] | null): void {
+    const [start, end] = this.whole();
+    let [from, to] = range ?? [start, end];
+    from = Math.max(start, from);
+    to = Math.min(end, to);
+    // Closer than this the times of neighbouring pixels are the same double.
+    if (!(to - from > 1e-12 * Math.max(Math.abs(start), Math.abs(end)))) return;
+    this.range = [from, to];
+    this.unzoom.hidden = from === start && to === end;
+    for (const p of this.plots) p.rescale();
+    this.request();
+  }
+
+  seek(time: number): void { this.clock.seek(time); }
+
+  private request(): void {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => { this.pending = false; this.read(); });
+  }
+
+  private read(): void {
+    const now = performance.now();
+    // Numbers that change sixty times a second cannot be read.
+    const due = !this.clock.playing || this.cursor !== null || now - this.last_reading > 120;
+    if (due) this.last_reading = now;
+    for (const p of this.plots) {
+      if (p.element.hidden) continue;
+      p.move(this.clock.time);
+      if (due) p.point(this.cursor, this.clock.time);
+    }
+  }
+
+  private resize(width?: number): void {
+    for (const p of this.plots) if (!p.element.hidden) p.resize(width ?? p.chart_width);
+    this.request();
+  }
+}

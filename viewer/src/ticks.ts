@@ -1,0 +1,51 @@
+// Labels of axes: as many digits as the distance of the ticks needs. Where values differ only in late digits, as an energy
+// does, what they have in common is taken out and said once.
+
+export interface Offset { value: number; text: string }
+
+// Null where plain labels are short enough.
+export function offset_of(low: number, high: number): Offset | null {
+  const size = Math.max(Math.abs(low), Math.abs(high)), span = high - low;
+  if (!(size > 0) || span > 2e-4 * size) return null;
+  const digits = Math.min(17, Math.max(1, Math.ceil(Math.log10(size / (span || 1e-15 * size))) - 0));
+  const text = String(Number(((low + high) / 2).toPrecision(digits)));
+  return { value: Number(text), text };
+}
+
+export function tick_labels(values: (number | null)[], step: number, offset: number): string[] {
+  const shown = values.map((v) => (v === null ? null : v - offset));
+  const size = Math.max(...shown.map((v) => Math.abs(v ?? 0)));
+  const digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-6));
+  const plain = size < 1e5 && digits <= 5;
+  return shown.map((v) => {
+    if (v === null) return '';
+    if (Math.abs(v) < 1e-3 * step) return '0';
+    if (plain) return v.toFixed(needed(step, digits)).replace('-', '\u2212');
+    const significant = Math.max(0, Math.min(15, Math.ceil(Math.log10(Math.abs(v) / step) - 1e-6)));
+    return v.toExponential(significant).replace(/(\.\d*?)0+e/, '$1e').replace('.e', 'e').replace('e+', 'e').replace(/-/g, '\u2212');
+  });
+}
+
+// A step of 2.5 takes a decimal more than one of 2.
+function needed(step: number, digits: number): number {
+  const rest = step * 10 ** digits;
+  return Math.abs(rest - Math.round(rest)) > 1e-6 ? digits + 1 : digits;
+}
+
+// Of the splits of a log axis those that are labelled and ruled: powers of ten, as many as fit.
+export function powers(values: number[], room: number): (number | null)[] {
+  const exponent = (v: number): number | null => {
+    const k = Math.log10(v);
+    return Math.abs(k - Math.round(k)) < 1e-6 ? Math.round(k) : null;
+  };
+  const exponents = values.map(exponent), count = exponents.filter((k) => k !== null).length;
+  const step = [1, 2, 5, 10, 20, 50, 100].find((s) => count / s <= room) ?? 200;
+  return values.map((v, i) => (exponents[i] !== null && exponents[i]! % step === 0 ? v : null));
+}
+
+export function power_label(v: number | null): string {
+  if (v === null || !(v > 0)) return '';
+  const k = Math.log10(v), up = '\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079';
+  if (Math.abs(k - Math.round(k)) > 1e-6) return '';
+  return `10${String(Math.round(k)).replace('-', '\u207b').replace(/\d/g, (d) => up[Number(d)])}`;
+}

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""Cuts STIX Two Math down to the glyphs of our formulas, with the MATH table (stretching brackets, roots, sums) kept.
+
+usage: subset_font.py STIX.woff2 OUT.woff2      needs python3-fonttools and python3-brotli
+"""
+import sys
+
+from fontTools import subset
+
+RANGES = [
+    (0x20, 0x7E), (0xA0, 0xA0), (0xAC, 0xAC), (0xB0, 0xB1), (0xB2, 0xB3), (0xB5, 0xB5), (0xB7, 0xB7), (0xB9, 0xB9), (0xD7, 0xD7), (0xF7, 0xF7),
+    (0x131, 0x131), (0x237, 0x237),
+    (0x2D9, 0x2D9), (0x300, 0x304), (0x306, 0x308), (0x30C, 0x30C), (0x338, 0x338), (0x20D7, 0x20D7), (0x20DB, 0x20DC),
+    (0x391, 0x3A9), (0x3B1, 0x3C9), (0x3D1, 0x3D1), (0x3D5, 0x3D6), (0x3F0, 0x3F1), (0x3F5, 0x3F5),
+    (0x2009, 0x200A), (0x2010, 0x2015), (0x2016, 0x2016), (0x2020, 0x2022), (0x2026, 0x2026), (0x2032, 0x2037), (0x2044, 0x2044),
+    (0x2057, 0x2057), (0x2061, 0x2064), (0x2070, 0x2071), (0x2074, 0x208E),
+    (0x210E, 0x210F), (0x2113, 0x2113), (0x211D, 0x211D), (0x2190, 0x2194), (0x21A6, 0x21A6), (0x21D2, 0x21D4),
+    (0x2200, 0x220F), (0x2210, 0x2213), (0x2215, 0x221E), (0x2220, 0x222E), (0x2234, 0x2237), (0x223C, 0x223C),
+    (0x2243, 0x2248), (0x2250, 0x2254), (0x2260, 0x2265), (0x226A, 0x226B), (0x2282, 0x2287), (0x2295, 0x2299), (0x22A4, 0x22A5),
+    (0x22C0, 0x22C5), (0x22EE, 0x22F1), (0x2308, 0x230B), (0x239B, 0x23AD), (0x23B7, 0x23B7), (0x23D0, 0x23D0), (0x23DE, 0x23DF), (0x27E8, 0x27EB),
+]
+# Mathematical italic and bold letters and digits: browsers map <mi>x</mi> and mathvariant to these.
+RANGES += [(0x1D400, 0x1D467), (0x1D6A4, 0x1D71B), (0x1D7CE, 0x1D7D7)]
+
+
+def main():
+    source, target = sys.argv[1:]
+    options = subset.Options()
+    options.flavor = "woff2"
+    options.layout_features = ["ssty", "dtls", "math", "ccmp", "mark", "mkmk", "kern", "liga"]
+    options.hinting = False
+    # With new glyph numbers fontTools 4.38 writes a MATH table that Chromium drops as faulty (a horizontal construction), and
+    # then nothing stretches. test/browser.test.ts looks at a bracket.
+    options.retain_gids = True
+    options.desubroutinize = True
+    options.name_IDs = [0, 1, 2, 3, 4, 5, 6, 13]       # copyright and licence go with the font
+    options.name_languages = [0x409]
+    options.notdef_outline = True
+    font = subset.load_font(source, options)
+    # The closure over the MATH table follows every size of every glyph that stretches.
+    chooser = subset.Subsetter(options)
+    chooser.populate(unicodes=[c for low, high in RANGES for c in range(low, high + 1)])
+    chooser.subset(font)
+    if "MATH" not in font:
+        sys.exit("the MATH table is gone")
+    subset.save_font(font, target, options)
+
+
+main()
