@@ -1,6 +1,5 @@
 #include "run/code_for_long_runs.h"
 
-#include <cstdlib>
 #include <mutex>
 #include <vector>
 
@@ -18,6 +17,24 @@ std::vector<Left>& left_behind() {
   return *list;
 }
 
+void wait_for_left_behind() {
+  std::vector<Left> list;
+  {
+    const std::lock_guard lock(left_lock);
+    list.swap(left_behind());
+  }
+  for (Left& l : list) l.thread.join();
+}
+
+// The compiler makes statics of its own as it goes, and exit() destroys the latest first: whatever waits among them comes too late for a thread that still
+// compiles. What belongs to the main thread is destroyed before all of them.
+struct WaitsAtTheEndOfMain {
+  ~WaitsAtTheEndOfMain() { wait_for_left_behind(); }
+  void arm() {}
+};
+thread_local WaitsAtTheEndOfMain waits;
+[[maybe_unused]] const bool armed = (waits.arm(), true);  // by the thread that initializes the program
+
 }  // namespace
 
 CodeForLongRuns::~CodeForLongRuns() { leave(); }
@@ -25,13 +42,8 @@ CodeForLongRuns::~CodeForLongRuns() { leave(); }
 void CodeForLongRuns::leave() {
   if (!compilation_.thread.joinable()) return;
   if (*compilation_.done) return compilation_.thread.join();
-  // The compiler's own destructors run after this if it is loaded before, which its thread may not have come to yet.
-  compiler();
-  static const int once = std::atexit([] {
-    for (Left& l : left_behind()) l.thread.join();
-  });
-  (void)once;
   const std::lock_guard lock(left_lock);
+  std::erase_if(left_behind(), [](Left& l) { return *l.done && (l.thread.join(), true); });
   left_behind().push_back({compilation_.done, std::move(compilation_.thread)});
 }
 
