@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that includes point downwards, and that each outside library stays in its place.
+"""Checks that includes point downwards, that each outside library stays in its place, and that no two types share a name.
 
 usage: check_layers.py [--root DIR] [--self-test]
 
@@ -61,6 +61,46 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 SOURCES = {".h", ".hpp", ".cpp", ".c", ".def", ".inc"}
 
 
+# Comments, strings and characters, which hold braces of no meaning.
+NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9A-Fa-f])\'(?:\\.|[^\'\\\n])\'', re.S)
+TYPE = re.compile(r"(?:^|[;}>\s])(?:struct|class|union|enum(?:\s+class)?)\s+(?:\[\[\w+\]\]\s*)?(\w+)(?:\s+final)?\s*(?::[^:;][^;]*)?$")
+NAMESPACE = re.compile(r"(?:^|[;}\s])(?:inline\s+)?namespace(?:\s+([\w:]+))?\s*$")
+
+
+def types(text):
+    """The types that a text defines at the scope of a namespace with a name: (line, qualified name)."""
+    text = NO_CODE.sub(lambda m: "\n" * m[0].count("\n"), text)
+    text = re.sub(r"^\s*#(?:[^\n\\]|\\.|\\\n)*", "", text, flags=re.M)
+    scopes = []  # the name of a namespace, "" for one without, None for any other brace
+    begin = 0
+    for brace in re.finditer(r"[{}]", text):
+        if brace[0] == "}":
+            if scopes:
+                scopes.pop()
+            begin = brace.end()
+            continue
+        before = text[max(begin, text.rfind(";", begin, brace.start()) + 1) : brace.start()]
+        begin = brace.end()
+        space, of = NAMESPACE.search(before), TYPE.search(before)
+        if space:
+            scopes.append(space[1] or "")
+            continue
+        if of and all(scopes):
+            yield text.count("\n", 0, brace.start()) + 1, "::".join([*scopes, of[1]])
+        scopes.append(None)
+
+
+def same_names(sources):
+    """The program is linked from all files: two types of one name share their functions, one of them wrongly."""
+    places = {}
+    for path, name in sources:
+        for line, of in types(path.read_text(encoding="utf-8")):
+            places.setdefault(of, []).append(f"{name}:{line}")
+    for of, where in sorted(places.items()):
+        if len(where) > 1:
+            yield f"{where[1]}: the type {of} is at {where[0]}, too (ODR): another name, or an unnamed namespace"
+
+
 def may_include(layer):
     below = {name for name, level in LEVEL.items() if level < LEVEL[layer]}
     return (ONLY.get(layer, below) - NOT.get(layer, set())) | {layer}
@@ -109,6 +149,9 @@ def check(root):
             if limit is not None and len(files) > limit:
                 problems.append(f"{name} is included by {len(files)} files of {layer}/, {limit} is allowed: {', '.join(files)}")
 
+    files = [(p, p.relative_to(root)) for p in sorted((root / "src").rglob("*")) if p.suffix in SOURCES]
+    problems += same_names(files)
+
     public = root / "include"
     for path in sorted(p for p in public.rglob("*") if p.is_file() and p.suffix in SOURCES):
         for number, quote, header in includes(path):
@@ -132,6 +175,9 @@ GOOD = {
     "src/jit/emitter.cpp": '#include <llvm/IR/Module.h>\n#include "kernel/code.h"\n',
     "src/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "run/run.h"\n',
     "include/anholon/api.h": "#include <vector>\n",
+    # The same names where they are different types.
+    "src/kernel/plan.h": "namespace anholon {\nstruct Entry {\n  struct Place {};\n};\ntemplate <> struct Of<int> {};\n}\n",
+    "src/run/plan.cpp": "namespace anholon {\nnamespace {\nstruct Entry {};\n}\nstruct Entry;\nstruct Own { struct Place {}; };\n}\nnamespace anholon::cli {\nclass Entry {};\n}\n",
 }
 MUTANTS = {
     "upward": ("src/expr/bad.cpp", '#include "model/model.h"\n'),
@@ -164,6 +210,9 @@ MUTANTS = {
     "cairo elsewhere": ("src/cli/bad.cpp", "#include <cairo-pdf.h>\n"),
     "plot does not simulate": ("src/plot/bad.cpp", '#include "run/simulate.h"\n'),
     "test library in src": ("src/base/bad.cpp", "#include <gtest/gtest.h>\n"),
+    "two types of one name": ("src/report/words.h", "namespace anholon {\n// {\nstruct Entry {\n  int k;\n};\n}\n"),
+    "two classes of one name": ("src/run/bad.cpp", "namespace anholon {\nconst char* kText = \"}\";\nclass Own final : public Base {\n};\n}\n"),
+    "an enumeration and a type": ("src/run/bad.cpp", "namespace anholon {\nenum class Own : int { a };\n}\n"),
     "public header": ("include/anholon/bad.h", '#include "expr/graph.h"\n'),
 }
 

@@ -1,11 +1,10 @@
 #include "cli/recording.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 
+#include "base/base64.h"
 #include "cli/input.h"
 #include "numeric/number.h"
 
@@ -177,31 +176,6 @@ Pictures pictures(const std::string& dom, std::size_t first, std::size_t last, i
     }
   }
   return p;
-}
-
-std::string from_base64(std::string_view text) {
-  static const auto digits = [] {
-    std::array<int, 256> d;
-    d.fill(-1);
-    const std::string_view order = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (std::size_t k = 0; k < order.size(); ++k) d[static_cast<unsigned char>(order[k])] = static_cast<int>(k);
-    return d;
-  }();
-  if (text.empty() || text.size() % 4 != 0) return "";
-  const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;
-  text.remove_suffix(padding);
-  std::string out;
-  out.reserve(text.size() / 4 * 3 + 2);
-  std::uint32_t bits = 0;
-  int held = 0;
-  for (const char c : text) {
-    const int d = digits[static_cast<unsigned char>(c)];
-    if (d < 0) return "";
-    bits = (bits << 6 | static_cast<std::uint32_t>(d)) & 0xffffff;
-    held += 6;
-    if (held >= 8) held -= 8, out += static_cast<char>(bits >> held & 0xff);
-  }
-  return out;
 }
 
 std::optional<std::pair<int, int>> png_size(const std::string& bytes) {

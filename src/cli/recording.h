@@ -45,9 +45,6 @@ struct Pictures {
 // Out of the text of a page that the script has left. Each must be a PNG of the size asked for.
 Pictures pictures(const std::string& dom, std::size_t first, std::size_t last, int width, int height);
 
-// Empty where the text is no base64 of anything.
-std::string from_base64(std::string_view text);
-
 // Width and height of a PNG; nothing if it is none.
 std::optional<std::pair<int, int>> png_size(const std::string& bytes);
 

@@ -69,8 +69,7 @@ void check_place(const Recording& r) {
     if (access(r.output.c_str(), W_OK) != 0) refuse("cannot write " + r.output + ": " + std::strerror(errno), "");
     return;
   }
-  if (const std::string why = write_whole(r.output + ".try", ""); !why.empty()) refuse("cannot write " + r.output + why.substr(std::min(why.find(": "), why.size())), "");
-  std::remove((r.output + ".try").c_str());
+  if (const std::string why = obstacle_to_writing(r.output); !why.empty()) refuse(why, "");
 }
 
 // The motion with its model.
@@ -222,7 +221,7 @@ void note_others(const Recording& r, const Moments& m) {
 
 int render(const Options& o) {
   const Recording r = recording(o);
-  if (viewer_script().empty()) refuse("this program was built without the viewer, which draws the pictures", "npm ci && npm run build in viewer/, then build anholon again");
+  if (viewer_script().empty()) refuse("this program was built without the viewer, which draws the pictures", "./dev build, which makes the viewer where there is npm");
   const std::string chromium = browser(), ffmpeg = film_maker(r);
   check_place(r);
   catch_stop();

@@ -8,6 +8,7 @@
 
 #include "base/hash.h"
 #include "cli/result_file.h"
+#include "cli/run_info.h"
 #include "report/page.h"
 #include "result/file.h"
 
@@ -17,23 +18,6 @@ namespace {
 
 // A proof of all forms takes its time; equations of so many coordinates nobody reads.
 constexpr std::size_t kMostProved = 12, kMostNodesProved = 600, kMostRead = 24;
-
-// What was asked for when the run was made.
-Options options_of(const RunFile& run, Options o) {
-  const auto words = [&](const char* name) {
-    const auto it = run.settings.find(name);
-    return it == run.settings.end() ? std::vector<std::string>{} : it->second;
-  };
-  const auto word = [&](const char* name) {
-    const std::vector<std::string> list = words(name);
-    return list.empty() ? std::string() : list[0];
-  };
-  o.set = words("set"), o.cases = words("case"), o.q = words("q"), o.qdot = words("qdot"), o.qddot = words("qddot"), o.qdddot = words("qdddot");
-  o.lambda = words("lambda"), o.lambdadot = words("lambdadot"), o.eliminate = words("eliminate");
-  o.t = word("t");
-  if (!word("form").empty()) o.form = word("form"), o.form_given = true;
-  return o;
-}
 
 void make_ready(const Options& o, Told& x) {
   const Outcome outcome = ready(x.in, form(o, *x.in.model), state_choice(o, *x.in.model), x.scenario);
@@ -110,6 +94,7 @@ void take_up(const Options& o, Told& x) {
   if (x.run.table.rows() == 0) throw UsageError{"error: the run has no rows\n"};
   if (!o.rows.empty()) {
     x.in = read(o);
+    if (x.run.units.empty()) x.run.units = column_units(*x.in.model);
     make_ready(with_form(o, x.in), x);
     return;
   }
@@ -125,6 +110,10 @@ void take_up(const Options& o, Told& x) {
 bool is_a_run(const std::string& path) {
   RunFormat format;
   return format_of(path, format) && std::filesystem::exists(path);
+}
+
+void check_page(const Options& o) {
+  if (const std::string why = obstacle_to_writing(o.report); !why.empty()) throw UsageError{"error: " + why + "\n"};
 }
 
 void write_page(const Options& o, std::deque<Told>& cases) {
@@ -189,6 +178,7 @@ int report(const Options& asked) {
   o.report = o.output;
   o.output.clear();
   if (o.report.empty()) o.report = std::filesystem::path(o.model).stem().string() + ".html";
+  check_page(o);
   std::deque<Told> cases;
   if (!o.rows.empty() || is_a_run(o.model)) {
     take_up(o, cases.emplace_back());

@@ -27,6 +27,9 @@ bool is_a_run(const std::string& path);
 // The run that the options name (o.model, or o.rows of the model o.model), with its model. Throws UsageError.
 void take_up(const Options& o, Told& x);
 
+// Before the motion is computed: throws UsageError where the page could not be written.
+void check_page(const Options& o);
+
 // The page of these motions of one model, to o.report. Throws UsageError.
 void write_page(const Options& o, std::deque<Told>& cases);
 

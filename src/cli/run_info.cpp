@@ -16,7 +16,9 @@ std::string rate(const std::string& unit, unsigned order) {
   return (unit.find_first_of(" */") == std::string::npos ? unit : "(" + unit + ")") + "/" + over;
 }
 
-std::map<std::string, std::string> units(const Model& model) {
+}  // namespace
+
+std::map<std::string, std::string> column_units(const Model& model) {
   std::map<std::string, std::string> units;
   bool any = false;
   for (std::size_t i = 0; i < model.coordinate_units.size() && i < model.coordinates.size(); ++i) {
@@ -32,8 +34,6 @@ std::map<std::string, std::string> units(const Model& model) {
   return units;
 }
 
-}  // namespace
-
 RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const SimulationOptions& options) {
   RunInfo info;
   info.title = in.model->title;
@@ -41,7 +41,7 @@ RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, c
   info.created_by = "anholon " ANHOLON_VERSION;
   info.model.push_back({in.source.name, in.source.text});
   for (const SourceText& s : in.source.others) info.model.push_back({s.name, s.text});
-  info.units = units(*in.model);
+  info.units = column_units(*in.model);
 
   const auto set = [&](const char* name, const std::vector<std::string>& words) { info.settings[name] = words; };
   const auto one = [&](const char* name, const std::string& word) { info.settings[name] = word.empty() ? std::vector<std::string>{} : std::vector<std::string>{word}; };
@@ -58,6 +58,22 @@ RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, c
   one("continued", o.resume);
   one("model_sha256", sha256_text(all_text(in.source)));
   return info;
+}
+
+Options options_of(const RunInfo& run, Options o) {
+  const auto words = [&](const char* name) {
+    const auto it = run.settings.find(name);
+    return it == run.settings.end() ? std::vector<std::string>{} : it->second;
+  };
+  const auto word = [&](const char* name) {
+    const std::vector<std::string> list = words(name);
+    return list.empty() ? std::string() : list[0];
+  };
+  o.set = words("set"), o.cases = words("case"), o.q = words("q"), o.qdot = words("qdot"), o.qddot = words("qddot"), o.qdddot = words("qdddot");
+  o.lambda = words("lambda"), o.lambdadot = words("lambdadot"), o.eliminate = words("eliminate");
+  o.t = word("t");
+  if (!word("form").empty()) o.form = word("form"), o.form_given = true;
+  return o;
 }
 
 }  // namespace anholon::cli

@@ -7,8 +7,8 @@
 #include "cli/input.h"
 #include "cli/method.h"
 #include "cli/progress.h"
-#include "cli/run_info.h"
 #include "cli/report.h"
+#include "cli/run_info.h"
 #include "cli/saved.h"
 #include "cli/show.h"
 #include "cli/simulation_json.h"
@@ -340,6 +340,7 @@ int simulate(const Options& o) {
   if (!o.resume.empty()) run = continued(all);
   const SavedRun* resume = o.resume.empty() ? nullptr : &run;
   if (o.report.empty()) return simulate_motion(all, resume, nullptr);
+  check_page(all);
   std::deque<Told> cases(1);
   const int code = simulate_motion(all, resume, &cases[0]);
   if (cases[0].run.table.rows() == 0) return code;

@@ -107,7 +107,7 @@ unsigned order_of_motion(Expr e) {
 
 Comparer::Comparer(const Mechanics& M, const Elimination& elimination, SymbolNames names) : M_(M), elimination_(elimination), names_(std::move(names)) {}
 
-Motion& Comparer::motion(unsigned highest) {
+EquationsOfMotion& Comparer::motion(unsigned highest) {
   const auto it = motions_.find(highest);
   return it != motions_.end() ? it->second : motions_.try_emplace(highest, M_, highest, elimination_.dependent).first->second;
 }
@@ -128,13 +128,13 @@ std::string Comparer::times(Expr factor) const {
 }
 
 // The symbols by which a derived equation is recognised.
-Column Comparer::leading(const DerivedEquation& e, Motion& motion) const {
+Column Comparer::leading(const DerivedEquation& e, EquationsOfMotion& motion) const {
   if (!e.constraint) return motion.top;
   return jets(*M_.model, static_cast<unsigned>(M_.order[e.index]) + e.times);
 }
 
 // P = f * residual, identically.
-bool Comparer::directly(Expr P, const DerivedEquation& e, Motion& motion, Comparison& out) {
+bool Comparer::directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out) {
   std::vector<PointValues>& points = motion.anywhere();
   if (points.empty()) return false;
   Column candidates;
@@ -160,7 +160,7 @@ bool Comparer::directly(Expr P, const DerivedEquation& e, Motion& motion, Compar
 }
 
 // The coefficients of a combination of rows that has the same derivatives by q'', lambda as P, and what is then left of P.
-std::optional<Expr> Comparer::combination(Expr P, Motion& motion, std::vector<std::pair<std::size_t, Expr>>& terms) {
+std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion, std::vector<std::pair<std::size_t, Expr>>& terms) {
   std::vector<PointValues>& points = motion.on_constraints();
   const std::size_t n = motion.rows.size();
   if (points.empty()) return std::nullopt;
@@ -239,7 +239,7 @@ std::optional<Expr> Comparer::combination(Expr P, Motion& motion, std::vector<st
   return rest;
 }
 
-bool Comparer::combined(Expr P, Motion& motion, Comparison& out) {
+bool Comparer::combined(Expr P, EquationsOfMotion& motion, Comparison& out) {
   std::vector<std::pair<std::size_t, Expr>> terms;
   const std::optional<Expr> rest = combination(P, motion, terms);
   if (!rest) return false;
@@ -292,7 +292,7 @@ bool Comparer::combined(Expr P, Motion& motion, Comparison& out) {
 }
 
 // What is left of P, less the derived equation that leaves the least.
-void Comparer::nearest(Expr P, Motion& motion, Comparison& out) {
+void Comparer::nearest(Expr P, EquationsOfMotion& motion, Comparison& out) {
   std::vector<PointValues>& points = motion.anywhere();
   if (points.empty()) return;
   struct Offer {
@@ -387,7 +387,7 @@ Comparison Comparer::judge(Expr P) {
     out.what = "an identity: it holds whatever the motion";
     return out;
   }
-  Motion& motion = this->motion(order_of_motion(P));
+  EquationsOfMotion& motion = this->motion(order_of_motion(P));
   for (const DerivedEquation& e : motion.lower)
     if (directly(P, e, motion, out)) return out;
   for (const DerivedEquation& e : motion.rows)

@@ -11,7 +11,7 @@
 #include <map>
 
 #include "model/published.h"
-#include "proof/motion.h"
+#include "proof/equations_of_motion.h"
 #include "proof/prove.h"
 
 namespace anholon {
@@ -51,23 +51,23 @@ class Comparer {
   // With the changes that would make it true, if it is false.
   Comparison compare(const PublishedEquation& equation, Names& names, const Alphabet& alphabet);
 
-  Motion& motion(unsigned highest);
+  EquationsOfMotion& motion(unsigned highest);
   const SymbolNames& names() const { return names_; }
 
  private:
-  bool directly(Expr P, const DerivedEquation& e, Motion& motion, Comparison& out);
-  bool combined(Expr P, Motion& motion, Comparison& out);
-  void nearest(Expr P, Motion& motion, Comparison& out);
-  std::optional<Expr> combination(Expr P, Motion& motion, std::vector<std::pair<std::size_t, Expr>>& terms);
+  bool directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out);
+  bool combined(Expr P, EquationsOfMotion& motion, Comparison& out);
+  void nearest(Expr P, EquationsOfMotion& motion, Comparison& out);
+  std::optional<Expr> combination(Expr P, EquationsOfMotion& motion, std::vector<std::pair<std::size_t, Expr>>& terms);
   std::string name(const DerivedEquation& e) const;
   std::string times(Expr factor) const;
   Expr tidy(Expr e) const;
-  Column leading(const DerivedEquation& e, Motion& motion) const;
+  Column leading(const DerivedEquation& e, EquationsOfMotion& motion) const;
 
   const Mechanics& M_;
   const Elimination& elimination_;
   SymbolNames names_;
-  std::map<unsigned, Motion> motions_;
+  std::map<unsigned, EquationsOfMotion> motions_;
 };
 
 // The highest derivative of which the equations of the motion must speak.

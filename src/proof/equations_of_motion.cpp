@@ -1,4 +1,4 @@
-#include "proof/motion.h"
+#include "proof/equations_of_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +76,7 @@ std::optional<Expr> solved_for(Expr psi, Expr s) {
 
 }  // namespace
 
-bool Motion::choose(Stage& s, const std::vector<std::size_t>& preferred, PointValues& at) const {
+bool EquationsOfMotion::choose(Stage& s, const std::vector<std::size_t>& preferred, PointValues& at) const {
   const std::vector<std::size_t> all_rows = up_to(s.rows.size()), all = up_to(s.symbols.size());
   const Matrix<double> a = values(s.jacobian, all_rows, all, at);
   if (!finite(a)) return false;
@@ -91,7 +91,7 @@ bool Motion::choose(Stage& s, const std::vector<std::size_t>& preferred, PointVa
   return true;
 }
 
-Motion::Motion(const Mechanics& M, unsigned highest_order, const std::vector<std::size_t>& preferred) : highest(std::max(2U, highest_order)) {
+EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order, const std::vector<std::size_t>& preferred) : highest(std::max(2U, highest_order)) {
   const Model& model = *M.model;
   Graph& g = M.graph();
   const std::size_t n = M.q.size();
@@ -143,7 +143,7 @@ Motion::Motion(const Mechanics& M, unsigned highest_order, const std::vector<std
   }
 }
 
-bool Motion::find_point(int attempt, Symbols& known, Symbols* below) {
+bool EquationsOfMotion::find_point(int attempt, Symbols& known, Symbols* below) {
   for (std::size_t k = 0; k < stages_.size(); ++k) {
     const Stage& s = stages_[k];
     if (k == 2) *below = known;
@@ -177,7 +177,7 @@ bool Motion::find_point(int attempt, Symbols& known, Symbols* below) {
   return true;
 }
 
-void Motion::solve_lower() {
+void EquationsOfMotion::solve_lower() {
   lower_solved_ = true;
   const auto put = [&](Expr e) {
     for (const auto& [symbol, value] : solution_)
@@ -211,7 +211,7 @@ void Motion::solve_lower() {
   }
 }
 
-std::optional<Expr> Motion::reduced(Expr e) {
+std::optional<Expr> EquationsOfMotion::reduced(Expr e) {
   if (!lower_solved_) solve_lower();
   if (!lower_can_be_ || solution_.empty()) return std::nullopt;
   try {

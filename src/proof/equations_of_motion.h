@@ -19,10 +19,10 @@ struct DerivedEquation {
   Expr residual;
 };
 
-class Motion {
+class EquationsOfMotion {
  public:
   // `preferred`: coordinates for which constraints are solved where they can be.
-  Motion(const Mechanics& M, unsigned highest, const std::vector<std::size_t>& preferred);
+  EquationsOfMotion(const Mechanics& M, unsigned highest, const std::vector<std::size_t>& preferred);
 
   unsigned highest = 2;
   std::vector<DerivedEquation> lower;  // constraints and their derivatives of orders 0 and 1

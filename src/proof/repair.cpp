@@ -419,7 +419,7 @@ class Repair {
   Comparer& comparer_;
   std::vector<TopTerm> terms_;
   Expr whole_;
-  Motion& motion_;
+  EquationsOfMotion& motion_;
   std::vector<double> value_, size_;
   std::vector<Survivor> survivors_;
   std::vector<Change> changes_;

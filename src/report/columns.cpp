@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "base/base64.h"
 #include "expr/print_names.h"
 #include "numeric/number.h"
 
@@ -91,15 +92,9 @@ class Plots {
   void given() {
     const RunTable& t = run_.table;
     std::map<std::string, std::pair<std::string, std::string>> known;  // name -> group, math
-    std::map<std::string, std::string> units;
     Graph& g = *model_.graph;
     for (std::uint32_t a = 0; a < model_.coordinates.size(); ++a)
-      for (std::uint32_t k = 0; k < 5; ++k) {
-        const std::string name = derivative_name(model_.coordinates[a].name, k, Format::text);
-        known[name] = {kDerivatives[k], math_of(g.jet(a, k))};
-        if (const std::string unit = a < model_.coordinate_units.size() ? model_.coordinate_units[a] : ""; !unit.empty())
-          units[name] = k == 0 ? unit : (unit == "1" ? "1/s" : unit + "/s") + (k == 1 ? "" : "^" + std::to_string(k));
-      }
+      for (std::uint32_t k = 0; k < std::size(kDerivatives); ++k) known[derivative_name(model_.coordinates[a].name, k, Format::text)] = {kDerivatives[k], math_of(g.jet(a, k))};
     for (std::uint32_t r = 0; r < model_.constraints.size(); ++r)
       for (std::uint32_t k = 0; k < 3; ++k) known[derivative_name("lambda." + model_.constraints[r].name, k, Format::text)] = {"multipliers", math_of(g.multiplier(r, k))};
     for (const Coordinate& c : model_.coordinates) known["N." + c.name] = {"reactions", "<msub><mi>N</mi><mrow>" + mathml_name(c.name) + "</mrow></msub>"};
@@ -108,7 +103,6 @@ class Plots {
       const auto it = known.find(t.columns[k]);
       PlotColumn& c = it == known.end() ? add(t.columns[k], mathml_name(t.columns[k]), "monitors", t.values[k])
                                         : add(t.columns[k], it->second.second, it->second.first, t.values[k]);
-      if (const auto unit = units.find(c.name); unit != units.end()) c.unit = unit->second;
       if (const auto unit = run_.units.find(c.name); unit != run_.units.end()) c.unit = unit->second;
     }
   }
@@ -301,22 +295,14 @@ std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::s
   return rows;
 }
 
-std::string base64(const std::vector<double>& values) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+std::string packed(const std::vector<double>& values) {
   std::string bytes;
   bytes.reserve(values.size() * 8);
   for (double x : values) {
     const auto bits = std::bit_cast<std::uint64_t>(x);
     for (int k = 0; k < 8; ++k) bytes += static_cast<char>(bits >> (8 * k) & 0xFF);
   }
-  std::string out;
-  out.reserve(bytes.size() * 4 / 3 + 4);
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t b = 0; b < 3; ++b) three = three << 8 | (k + b < bytes.size() ? static_cast<unsigned char>(bytes[k + b]) : 0U);
-    for (std::size_t d = 0; d < 4; ++d) out += k + d > bytes.size() ? '=' : digits[three >> (18 - 6 * d) & 63];
-  }
-  return out;
+  return to_base64(bytes);
 }
 
 }  // namespace anholon

@@ -43,7 +43,7 @@ PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conse
 // At most about `most` of the rows: of each stretch the least and the greatest, of all the first and the last, and every gap.
 std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most);
 
-// Base64 of the numbers as little-endian doubles.
-std::string base64(const std::vector<double>& values);
+// The numbers as little-endian doubles, in base64.
+std::string packed(const std::vector<double>& values);
 
 }  // namespace anholon

@@ -1,29 +1,20 @@
 #include "report/page.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "expr/print_names.h"
 #include "numeric/number.h"
 #include "report/assets.h"
 #include "report/bibliography.h"
-#include "report/columns.h"
+#include "report/markup.h"
 #include "report/math_lines.h"
-#include "report/observer_path.h"
+#include "report/page_data.h"
+#include "report/run_report.h"
 #include "structure/blocks.h"
 
 namespace anholon {
 
 namespace {
-
-using Json = nlohmann::json;
-
-std::string math(const std::string& row) { return "<math>" + row + "</math>"; }
-
-// Text of a model: escaped, and kept apart where it runs the other way.
-std::string user(const std::string& text) { return "<bdi>" + html_escape(text) + "</bdi>"; }
-
-std::string attribute(const char* name, const std::string& value) { return std::string(" ") + name + "=\"" + html_escape(value) + "\""; }
 
 // The comment at the head of a model file that says what it is.
 std::string picture_in_words(const std::string& source) {
@@ -51,7 +42,9 @@ std::string picture_in_words(const std::string& source) {
 
 class Writer {
  public:
-  explicit Writer(const Page& p) : p_(p), model_(*p.cases[0].scenario->model) {}
+  explicit Writer(const Page& p) : p_(p), model_(*p.cases[0].scenario->model) {
+    for (const PageCase& c : p.cases) reports_.push_back(read_run_report(c.run.report));
+  }
 
   std::string write() {
     sources();
@@ -80,19 +73,12 @@ class Writer {
     if (const std::string words = picture_in_words(p_.source.text); !words.empty()) out += "<p class=\"lead\" dir=\"auto\">" + html_escape(words) + "</p>\n";
     out += "</header>\n<nav aria-label=\"Contents\"><ul>" + contents_ + "</ul></nav>\n<main>\n" + sections + "</main>\n";
     out += "<footer><p>Made by " + html_escape(p_.version) + ". The page needs nothing but itself.</p></footer>\n";
-    if (!viewer_script().empty()) out += "<script type=\"application/json\" id=\"anholon-data\">" + data() + "</script>\n<script>" + std::string(viewer_script()) + "</script>\n";
-    return out + "</body>\n</html>\n";
-  }
-
-  std::string stage(bool dark, const std::string& script) const {
-    std::string out = "<!doctype html>\n<html lang=\"en\" data-theme=\"" + std::string(dark ? "dark" : "light") + "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + html_escape(title()) + "</title>\n";
-    out += "<style>\n" + std::string(page_style()) + std::string(viewer_style()) + "</style>\n</head>\n<body>\n<div class=\"player\" data-case=\"0\"></div>\n";
-    out += "<script type=\"application/json\" id=\"anholon-data\">" + data() + "</script>\n<script>" + std::string(viewer_script()) + "</script>\n<script>\n" + script + "</script>\n";
+    if (!viewer_script().empty()) out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(p_) + "</script>\n<script>" + std::string(viewer_script()) + "</script>\n";
     return out + "</body>\n</html>\n";
   }
 
  private:
-  std::string title() const { return model_.title.empty() ? p_.source.name : model_.title; }
+  std::string title() const { return page_title(p_); }
 
   // ---- motion -----------------------------------------------------------------------------------
 
@@ -103,7 +89,7 @@ class Writer {
       const std::string which = " data-case=\"" + std::to_string(k) + "\"";
       out += "<article class=\"case\">\n";
       if (p_.cases.size() > 1) out += "<h3 dir=\"auto\">" + html_escape(c.name.empty() ? "As the file says" : c.name) + "</h3>\n";
-      out += outcome(c);
+      out += outcome(reports_[k]);
       if (viewer_script().empty())
         out += "<p class=\"note\">This program was built without the viewer, so the page has no animation; the numbers are below, and <code>anholon plot</code> draws the run.</p>\n" + table_of_rows(c);
       else
@@ -125,39 +111,19 @@ class Writer {
     return out + "</tbody></table></div>\n";
   }
 
-  static Json report(const PageCase& c) {
-    const Json j = Json::parse(c.run.report, nullptr, false);
-    return j.is_object() ? j : Json::object();
+  static std::string outcome(const RunReport& r) {
+    if (r.outcome == "finished") return "";
+    const std::string words = r.outcome.empty() ? "The run was not finished; the rows up to here are shown." : r.message.empty() ? r.outcome : r.message;
+    return warning({words, r.hint});
   }
 
-  std::string outcome(const PageCase& c) const {
-    const Json j = report(c);
-    const std::string kind = j.value("outcome", "");
-    if (kind == "finished") return "";
-    const std::string words = kind.empty() ? "The run was not finished; the rows up to here are shown." : j.value("message", kind);
-    std::string out = "<p class=\"warning\" role=\"note\" dir=\"auto\">" + html_escape(words);
-    if (const std::string hint = j.value("hint", ""); !hint.empty()) out += " <span class=\"hint\">" + html_escape(hint) + "</span>";
+  static std::string warning(const Warning& w) {
+    std::string out = "<p class=\"warning\" role=\"note\" dir=\"auto\">" + html_escape(w.message);
+    if (!w.hint.empty()) out += " <span class=\"hint\">" + html_escape(w.hint) + "</span>";
     return out + "</p>\n";
   }
 
   // ---- system -----------------------------------------------------------------------------------
-
-  static std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
-    std::string out = "<tr>";
-    for (std::size_t k = 0; k < cells.size(); ++k)
-      out += k == 0 && tag[1] == 'd' ? "<th scope=\"row\">" + cells[k] + "</th>" : std::string("<") + tag + ">" + cells[k] + "</" + tag + ">";
-    return out + "</tr>\n";
-  }
-
-  // `caption` is ours.
-  static std::string table(const std::string& caption, const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows) {
-    if (rows.empty()) return "";
-    std::string out = "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" + caption + "\"><table><caption>" + caption + "</caption>";
-    if (!head.empty()) out += "<thead>" + row(head, "th") + "</thead>";
-    out += "<tbody>\n";
-    for (const auto& r : rows) out += row(r);
-    return out + "</tbody></table></div>\n";
-  }
 
   std::string name_math(const std::string& name, unsigned order = 0) const {
     const auto chosen = model_.names.notation.find(name);
@@ -224,7 +190,7 @@ class Writer {
     for (std::size_t a = 0; a < std::min(x.q.size(), kMost); ++a)
       rows.push_back({name_math(model_.coordinates[a].name), html_escape(number_text(x.q[a])), name(x.q_origin[a]), name_math(model_.coordinates[a].name, 1), html_escape(number_text(x.qd[a])), name(x.qd_origin[a])});
     for (const StateEntry& e : higher_state(*c.scenario)) rows.push_back({user(e.name), html_escape(number_text(e.value)), name(e.origin), "", "", ""});
-    return table("Initial data at t = " + number_text(x.t) + (c.name.empty() ? "" : ", " + html_escape(c.name)), {"", "position", "", "", "velocity", ""}, rows);
+    return table("Initial data at t = " + number_text(x.t) + (c.name.empty() ? "" : ", " + c.name), {"", "position", "", "", "velocity", ""}, rows);
   }
 
   // ---- equations --------------------------------------------------------------------------------
@@ -366,56 +332,37 @@ class Writer {
 
   // ---- report -----------------------------------------------------------------------------------
 
-  static std::string number_of(const Json& j, const char* key) { return j.contains(key) && !j[key].is_null() ? html_escape(j[key].is_string() ? j[key].get<std::string>() : j[key].dump()) : "–"; }
-
   std::string trust() const {
     std::string out = "<p>By another way than the equations that were integrated: Newton's law point by point, and the balance of power, each in relation to its largest term.</p>\n";
     std::vector<std::string> head = {""};
     std::vector<std::vector<std::string>> rows = {{"Newton's law with ideal reactions"}, {"the same without multipliers"}, {"constraints and their derivatives, at the rows"}, {"before projection"},
                                                   {"balance of power"}, {"digits to trust, estimated"}, {"smallest scaled singular value of the system Jacobian"}, {"steps, order"}};
-    for (const PageCase& c : p_.cases) {
-      head.push_back(c.name.empty() ? (p_.cases.size() > 1 ? "as the file says" : "") : user(c.name));
-      const Json j = report(c);
-      const Json residuals = j.value("residuals", Json::object()), error = j.value("error_estimate", Json::object());
-      const auto shown = [&](std::size_t k, const std::string& s) { rows[k].push_back(s); };
-      shown(0, number_of(residuals, "newton"));
-      shown(1, number_of(residuals, "projected"));
-      shown(2, number_of(residuals, "constraints"));
-      shown(3, number_of(residuals, "constraints_before_projection"));
-      shown(4, number_of(residuals, "power"));
-      shown(5, error.contains("digits") && !error["digits"].is_null() ? number_of(error, "digits") + ", by " + user(error.value("means", "")) : user(error.value("reason", "not estimated")));
-      shown(6, number_of(residuals, "smallest_sigma") + " at t = " + number_of(j, "smallest_sigma_t"));
-      shown(7, number_of(j, "steps") + ", " + number_of(j, "order"));
+    for (std::size_t k = 0; k < reports_.size(); ++k) {
+      const RunReport& r = reports_[k];
+      const std::string& name = p_.cases[k].name;
+      head.push_back(name.empty() ? (reports_.size() > 1 ? "as the file says" : "") : user(name));
+      const std::vector<std::string> shown = {html_escape(r.newton), html_escape(r.projected), html_escape(r.constraints), html_escape(r.before_projection), html_escape(r.power), user(r.digits),
+                                              html_escape(r.smallest_sigma + " at t = " + r.smallest_sigma_t), html_escape(r.steps + ", " + r.order)};
+      for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(shown[i]);
     }
-    out += table("Residual report", p_.cases.size() > 1 ? head : std::vector<std::string>{}, rows);
-    for (const PageCase& c : p_.cases) out += watched(c);
+    out += table("Residual report", reports_.size() > 1 ? head : std::vector<std::string>{}, rows);
+    for (std::size_t k = 0; k < reports_.size(); ++k) out += watched(reports_[k], p_.cases[k].name.empty() ? "" : ", " + p_.cases[k].name);
     return out;
   }
 
-  std::string watched(const PageCase& c) const {
-    const Json j = report(c);
-    std::string out;
+  static std::string watched(const RunReport& r, const std::string& of) {
+    constexpr std::size_t kMostEvents = 50;
     std::vector<std::vector<std::string>> rows;
-    for (const char* list : {"conserved", "monitors"}) {
-      const Json all = j.value(list, Json::object());
-      for (const auto& [name, w] : all.items())
-        rows.push_back({user(name), number_of(w, "first"), number_of(w, "last"), number_of(w, "min"), number_of(w, "max"), number_of(w, "largest_change")});
-    }
-    out += table("Integrals of the motion and what was watched" + (c.name.empty() ? "" : ", " + html_escape(c.name)), {"", "first", "last", "least", "greatest", "largest change, relative"}, rows);
+    for (const RunReport::Watched& w : r.watched) rows.push_back({user(w.name), html_escape(w.first), html_escape(w.last), html_escape(w.least), html_escape(w.greatest), html_escape(w.change)});
+    std::string out = table("Integrals of the motion and what was watched" + of, {"", "first", "last", "least", "greatest", "largest change, relative"}, rows);
     std::vector<std::vector<std::string>> events;
-    const Json fired = j.value("events", Json::array());
-    for (const Json& e : fired) {
+    for (std::size_t k = 0; k < std::min(r.events.size(), kMostEvents); ++k) {
       std::string set;
-      const Json changes = e.value("set", Json::object());
-      for (const auto& [name, change] : changes.items())
-        set += (set.empty() ? "" : ", ") + user(name) + " " + number_of(change, "before") + " → " + number_of(change, "after");
-      events.push_back({user(e.value("name", "")), number_of(e, "t"), set});
-      if (events.size() == 50) break;
+      for (const auto& c : r.events[k].changes) set += (set.empty() ? "" : ", ") + user(c.name) + " " + html_escape(c.before + " → " + c.after);
+      events.push_back({user(r.events[k].name), html_escape(r.events[k].t), set});
     }
-    out += table("Events" + (c.name.empty() ? "" : ", " + html_escape(c.name)), {"", "t", "what was set"}, events);
-    const Json warnings = j.value("warnings", Json::array());
-    for (const Json& w : warnings)
-      out += "<p class=\"warning\" role=\"note\" dir=\"auto\">" + html_escape(w.value("message", "")) + " <span class=\"hint\">" + html_escape(w.value("hint", "")) + "</span></p>\n";
+    out += table("Events" + of, {"", "t", "what was set"}, events);
+    for (const Warning& w : r.warnings) out += warning(w);
     return out;
   }
 
@@ -439,11 +386,9 @@ class Writer {
     for (const Derivation& d : p_.equations) literature_.source(d.form->source);
     literature_.key("Pryce2001");
     literature_.key("NedialkovPryce2005");
-    for (const PageCase& c : p_.cases) {
-      const Json j = report(c);
-      const std::string text = j.dump();
-      if (text.find("cvode") != std::string::npos || text.find("\"ida\"") != std::string::npos || text.find("bdf") != std::string::npos) literature_.key("Hindmarsh2005");
-      if (text.find("\"rk\"") != std::string::npos) literature_.key("PrinceDormand1981");
+    for (const RunReport& r : reports_) {
+      if (r.used("cvode") || r.used("ida") || r.used("bdf")) literature_.key("Hindmarsh2005");
+      if (r.used("rk")) literature_.key("PrinceDormand1981");
     }
     literature_.key("JorbaZou2005");
     literature_.key("Neumaier1974");
@@ -455,73 +400,9 @@ class Writer {
     return out + "</ol>\n";
   }
 
-  // ---- data of the viewer -----------------------------------------------------------------------
-
-  std::string data() const {
-    JsonWriter j;
-    j.open_object().key("format").integer(1).key("title").string(title()).key("cases").open_array();
-    for (const PageCase& c : p_.cases) case_data(j, c);
-    j.close().close();
-    // "</script>" in a name must not end the element.
-    std::string out;
-    for (char ch : j.text()) out += ch == '<' ? "\\u003c" : std::string(1, ch);
-    return out;
-  }
-
-  void case_data(JsonWriter& j, const PageCase& c) const {
-    const Scenario& s = *c.scenario;
-    const Graph& g = *s.model->graph;
-    const Scene picture = scene(*s.mechanics);
-    const PlotData d = plot_data(s, c.conserved, c.run, picture);
-    const auto numbers = [&](const char* key, const std::vector<double>& list) { j.key(key).string(base64(list)); };
-    const bool units = !s.model->coordinate_units.empty();
-    j.open_object().key("name").string(c.name).key("rows").integer(static_cast<long long>(d.rows)).key("shown").integer(static_cast<long long>(d.shown));
-    numbers("t", d.t);
-    j.key("unit").string(units ? "s" : "").key("columns").open_array();
-    for (const PlotColumn& k : d.columns) {
-      j.open_object().key("name").string(k.name).key("html").string("<math>" + k.math + "</math>").key("unit").string(k.unit).key("group").string(k.group);
-      numbers("data", k.values);
-      if (!k.t.empty()) numbers("t", k.t);
-      j.close();
-    }
-    j.close().key("groups").open_array();
-    for (const PlotGroup& k : d.groups) j.open_object().key("id").string(k.id).key("title").string(k.title).key("log").boolean(k.log).close();
-    j.close().key("left_out").integer(static_cast<long long>(d.left_out)).key("frames");
-    if (d.frame_t.empty()) j.null();
-    else {
-      j.open_object();
-      numbers("t", d.frame_t);
-      j.key("data").open_object();
-      for (const auto& [column, values] : d.frames) j.key(std::to_string(column)).string(base64(values));
-      j.close().close();
-    }
-    j.key("events").open_array();
-    const Json events = report(c).value("events", Json::array());
-    for (const Json& e : events) j.open_object().key("t").number(number_of(e, "t")).key("name").string(e.value("name", "")).close();
-    j.close().key("scene");
-    // In the page the time is no column.
-    const ColumnOf in_table = column_of(*s.model, c.run.table);
-    const ColumnOf column = [&](const Node& n) -> std::optional<int> {
-      const auto k = in_table(n);
-      return k && *k >= 0 ? std::optional<int>(*k - 1) : k;
-    };
-    write_scene(j, picture, g, column, s.model->observer.inertial ? std::function<void(JsonWriter&)>() : [&](JsonWriter& w) { observer(w, s, d); });
-    j.close();
-  }
-
-  static void observer(JsonWriter& j, const Scenario& s, const PlotData& d) {
-    const std::vector<double>& all = d.frame_t.empty() ? d.t : d.frame_t;
-    const std::vector<ObserverPose> poses = observer_path(*s.model, parameter_values<double>(*s.model), all);
-    std::vector<double> quaternions, origins;
-    for (const ObserverPose& p : poses) {
-      quaternions.insert(quaternions.end(), p.quaternion.begin(), p.quaternion.end());
-      origins.insert(origins.end(), p.origin.begin(), p.origin.end());
-    }
-    j.open_object().key("t").string(base64(all)).key("quaternion").string(base64(quaternions)).key("origin").string(base64(origins)).close();
-  }
-
   const Page& p_;
   const Model& model_;
+  std::vector<RunReport> reports_;  // of the cases
   Bibliography literature_;
   std::string contents_;
 };
@@ -529,20 +410,5 @@ class Writer {
 }  // namespace
 
 std::string html(const Page& page) { return Writer(page).write(); }
-
-std::string stage_html(const Page& page, bool dark, const std::string& script) { return Writer(page).stage(dark, script); }
-
-std::string html_escape(const std::string& text) {
-  std::string out;
-  for (char c : text) switch (c) {
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '&': out += "&amp;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += c;
-    }
-  return out;
-}
 
 }  // namespace anholon

@@ -37,7 +37,4 @@ std::string html(const Page& page);
 // The picture of the first case alone, for whoever records it: `script` runs after the viewer's. Needs no explanation and no equations.
 std::string stage_html(const Page& page, bool dark, const std::string& script);
 
-// "&lt;"
-std::string html_escape(const std::string& text);
-
 }  // namespace anholon

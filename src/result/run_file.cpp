@@ -1,7 +1,5 @@
 #include "result/run_file.h"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -59,19 +57,6 @@ bool write_csv(std::FILE* file, const RunTable& table) {
     line.clear();
   }
   return std::fwrite(line.data(), 1, line.size(), file) == line.size() && std::fflush(file) == 0;
-}
-
-std::string write_file(const std::string& path, const std::string& beside, bool (*write)(std::FILE*, const RunFile&), const RunFile& run) {
-  const auto failed = [&] {
-    const std::string why = "cannot write " + path + ": " + std::strerror(errno);
-    std::remove(beside.c_str());
-    return why;
-  };
-  std::FILE* file = std::fopen(beside.c_str(), "w");
-  if (!file) return failed();
-  const bool written = write(file, run);
-  if (std::fclose(file) != 0 || !written || std::rename(beside.c_str(), path.c_str()) != 0) return failed();
-  return {};
 }
 
 bool write_text(std::FILE* file, RunFormat format, const RunFile& run) {
@@ -143,11 +128,9 @@ RunFile read_run(const std::string& path, SourceText* source) {
 }
 
 std::string write_run(const std::string& path, RunFormat format, const RunFile& run) {
-  const std::string beside = path + ".part";
-  if (format == RunFormat::hdf5) return write_hdf5(path, beside, run);
+  if (format == RunFormat::hdf5) return write_hdf5(path, path + ".part", run);
   if (path.empty() || path == "-") return write_text(stdout, format, run) ? std::string() : "cannot write the output: " + std::string(std::strerror(errno));
-  return format == RunFormat::csv ? write_file(path, beside, [](std::FILE* f, const RunFile& r) { return write_text(f, RunFormat::csv, r); }, run)
-                                  : write_file(path, beside, [](std::FILE* f, const RunFile& r) { return write_text(f, RunFormat::json, r); }, run);
+  return write_whole(path, [&](std::FILE* file) { return write_text(file, format, run); });
 }
 
 }  // namespace anholon

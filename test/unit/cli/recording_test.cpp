@@ -27,30 +27,6 @@ std::string refused(const Options& o) {
   return "";
 }
 
-TEST(Base64, LettersPaddingAndWhatIsNone) {
-  EXPECT_EQ(from_base64("TWFu"), "Man");
-  EXPECT_EQ(from_base64("TWE="), "Ma");
-  EXPECT_EQ(from_base64("TQ=="), "M");
-  EXPECT_EQ(from_base64("+/+/"), "\xfb\xff\xbf");
-  EXPECT_EQ(from_base64("AAAA"), std::string(3, '\0'));
-  for (const char* none : {"", "TWF", "TWFu!", "TW u", "TQ=a", "===="}) EXPECT_EQ(from_base64(none), "") << none;
-}
-
-TEST(Base64, ThereAndBack) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  for (int k = 0; k < 300; ++k) {
-    bytes += static_cast<char>(k * 37 + k / 7);
-    std::string text;
-    for (std::size_t at = 0; at < bytes.size(); at += 3) {
-      unsigned bits = 0;
-      for (std::size_t j = 0; j < 3; ++j) bits = bits << 8 | (at + j < bytes.size() ? static_cast<unsigned char>(bytes[at + j]) : 0U);
-      for (std::size_t j = 0; j < 4; ++j) text += at + j > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * j) & 63];
-    }
-    ASSERT_EQ(from_base64(text), bytes) << k;
-  }
-}
-
 TEST(Pictures, OutOfAPage) {
   const std::string png = "data:image/png;base64," + std::string(kPixel);
   const std::string page = "<html><pre data-frame=\"7\">" + png + "</pre><pre data-frame=\"8\">" + png + "</pre></html>";

@@ -29,11 +29,11 @@ TEST(Extremes, FewRowsAreKeptWhole) {
   EXPECT_TRUE(keep_extremes({}, 10).empty());
 }
 
-TEST(Base64, HoldsTheBitsOfTheNumbers) {
-  EXPECT_EQ(base64({}), "");
-  EXPECT_EQ(base64({1.0}), "AAAAAAAA8D8=");              // 00 00 00 00 00 00 f0 3f
-  EXPECT_EQ(base64({-2.5, 0.0}), "AAAAAAAABMAAAAAAAAAAAA==");
-  EXPECT_EQ(base64({0, 0, 0}), std::string(32, 'A'));
+TEST(Packed, HoldsTheBitsOfTheNumbers) {
+  EXPECT_EQ(packed({}), "");
+  EXPECT_EQ(packed({1.0}), "AAAAAAAA8D8=");              // 00 00 00 00 00 00 f0 3f
+  EXPECT_EQ(packed({-2.5, 0.0}), "AAAAAAAABMAAAAAAAAAAAA==");
+  EXPECT_EQ(packed({0, 0, 0}), std::string(32, 'A'));
 }
 
 // The frame of a table that turns at a constant rate, and one whose origin goes in a circle.

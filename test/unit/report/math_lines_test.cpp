@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "report/page.h"
+#include "mechanics/mechanics.h"
+#include "report/markup.h"
 #include "support/models.h"
 
 namespace anholon {

@@ -1,0 +1,12 @@
+// Bytes as text and back (RFC 4648, section 4).
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace anholon {
+
+std::string to_base64(std::string_view bytes);
+// Empty where the text is no base64 of anything.
+std::string from_base64(std::string_view text);
+
+}  // namespace anholon

@@ -1,0 +1,107 @@
+#include "report/page_data.h"
+
+#include "report/assets.h"
+#include "report/columns.h"
+#include "report/markup.h"
+#include "report/observer_path.h"
+#include "report/run_report.h"
+
+namespace anholon {
+
+namespace {
+
+void numbers(JsonWriter& j, const char* key, const std::vector<double>& list) { j.key(key).string(packed(list)); }
+
+void columns(JsonWriter& j, const PlotData& d) {
+  j.key("columns").open_array();
+  for (const PlotColumn& k : d.columns) {
+    j.open_object().key("name").string(k.name).key("html").string(math(k.math)).key("unit").string(k.unit).key("group").string(k.group);
+    numbers(j, "data", k.values);
+    if (!k.t.empty()) numbers(j, "t", k.t);
+    j.close();
+  }
+  j.close().key("groups").open_array();
+  for (const PlotGroup& k : d.groups) j.open_object().key("id").string(k.id).key("title").string(k.title).key("log").boolean(k.log).close();
+  j.close().key("left_out").integer(static_cast<long long>(d.left_out));
+}
+
+void frames(JsonWriter& j, const PlotData& d) {
+  j.key("frames");
+  if (d.frame_t.empty()) {
+    j.null();
+    return;
+  }
+  j.open_object();
+  numbers(j, "t", d.frame_t);
+  j.key("data").open_object();
+  for (const auto& [column, values] : d.frames) numbers(j, std::to_string(column).c_str(), values);
+  j.close().close();
+}
+
+void events(JsonWriter& j, const RunReport& r) {
+  j.key("events").open_array();
+  for (const RunReport::Event& e : r.events) j.open_object().key("t").number(e.t).key("name").string(e.name).close();
+  j.close();
+}
+
+void observer(JsonWriter& j, const Model& model, const PlotData& d) {
+  const std::vector<double>& t = d.frame_t.empty() ? d.t : d.frame_t;
+  std::vector<double> quaternions, origins;
+  for (const ObserverPose& p : observer_path(model, parameter_values<double>(model), t)) {
+    quaternions.insert(quaternions.end(), p.quaternion.begin(), p.quaternion.end());
+    origins.insert(origins.end(), p.origin.begin(), p.origin.end());
+  }
+  j.open_object();
+  numbers(j, "t", t);
+  numbers(j, "quaternion", quaternions);
+  numbers(j, "origin", origins);
+  j.close();
+}
+
+void one_case(JsonWriter& j, const PageCase& c) {
+  const Model& model = *c.scenario->model;
+  const Scene picture = scene(*c.scenario->mechanics);
+  const PlotData d = plot_data(*c.scenario, c.conserved, c.run, picture);
+  j.open_object().key("name").string(c.name).key("rows").integer(static_cast<long long>(d.rows)).key("shown").integer(static_cast<long long>(d.shown));
+  numbers(j, "t", d.t);
+  j.key("unit").string(model.coordinate_units.empty() ? "" : "s");
+  columns(j, d);
+  frames(j, d);
+  events(j, read_run_report(c.run.report));
+  j.key("scene");
+  // In the page the time is no column.
+  const ColumnOf in_table = column_of(model, c.run.table);
+  const ColumnOf column = [&](const Node& n) -> std::optional<int> {
+    const auto k = in_table(n);
+    return k && *k >= 0 ? std::optional<int>(*k - 1) : k;
+  };
+  write_scene(j, picture, *model.graph, column, model.observer.inertial ? std::function<void(JsonWriter&)>() : [&](JsonWriter& w) { observer(w, model, d); });
+  j.close();
+}
+
+}  // namespace
+
+std::string page_title(const Page& page) {
+  const std::string& title = page.cases[0].scenario->model->title;
+  return title.empty() ? page.source.name : title;
+}
+
+std::string page_data(const Page& page) {
+  JsonWriter j;
+  j.open_object().key("format").integer(1).key("title").string(page_title(page)).key("cases").open_array();
+  for (const PageCase& c : page.cases) one_case(j, c);
+  j.close().close();
+  // "</script>" in a name must not end the element.
+  std::string out;
+  for (char ch : j.text()) out += ch == '<' ? "\\u003c" : std::string(1, ch);
+  return out;
+}
+
+std::string stage_html(const Page& page, bool dark, const std::string& script) {
+  std::string out = "<!doctype html>\n<html lang=\"en\" data-theme=\"" + std::string(dark ? "dark" : "light") + "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + html_escape(page_title(page)) + "</title>\n";
+  out += "<style>\n" + std::string(page_style()) + std::string(viewer_style()) + "</style>\n</head>\n<body>\n<div class=\"player\" data-case=\"0\"></div>\n";
+  out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(page) + "</script>\n<script>" + std::string(viewer_script()) + "</script>\n<script>\n" + script + "</script>\n";
+  return out + "</body>\n</html>\n";
+}
+
+}  // namespace anholon
