@@ -116,8 +116,8 @@ template <Number N>
 std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
   constexpr int kBisections = 60;
-  // A singular value that vanishes within the step has fallen by more than half in one as long.
-  const bool suspected = by_kernel_ || record_.last_step == W(0) || sigma_ < record_.sigma_before * N(kFaster) || abs(h) > record_.last_step * W(kLonger);
+  // A singular value that vanishes within the step has fallen by more than half in one as long; what it was is not known after steps by the kernel.
+  const bool suspected = by_kernel_ || suspected_ || record_.last_step == W(0) || sigma_ < record_.sigma_before * N(kFaster) || abs(h) > record_.last_step * W(kLonger);
   if (!suspected) return std::nullopt;
   settle();
   const std::size_t n = program_->system->coordinates;

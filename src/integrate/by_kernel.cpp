@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "integrate/kink.h"
 #include "integrate/taylor.h"
 #include "kernel/kernel.h"
 
@@ -186,11 +187,27 @@ bool Stepper<N>::take_from_kernel() {
     point_loaded_ = point_valued_ = false;
     if (const W drift(kernel_->drift(lane_)); record_.worst_constraint < drift) record_.worst_constraint = drift;
     horizon_ = kernel_->reach(lane_);
-    for (const auto& [slot, at] : kink_series_)
-      for (int k = 0; k < order_; ++k) expansion_.adopt_coefficient(slot, k, kernel_->series({at, true}, k, lane_));
+    heed_integrals();
+    show_roots();
     return true;
   } else {
     return false;
+  }
+}
+
+// Of what may touch zero within the step, the series are shown to those who look.
+template <Number N>
+void Stepper<N>::show_roots() {
+  if constexpr (std::same_as<N, double>) {
+    may_touch_zero_ = false;
+    for (const auto& [slot, at] : kink_series_) {
+      narrow_y_.resize(static_cast<std::size_t>(order_));
+      for (int k = 0; k < order_; ++k) narrow_y_[static_cast<std::size_t>(k)] = kernel_->series({at, true}, k, lane_);
+      may_touch_zero_ = may_touch_zero_ || !stays_positive(narrow_y_.data(), order_ - 1, horizon_);
+    }
+    if (!may_touch_zero_) return;
+    for (const auto& [slot, at] : kink_series_)
+      for (int k = 0; k < order_; ++k) expansion_.adopt_coefficient(slot, k, kernel_->series({at, true}, k, lane_));
   }
 }
 
@@ -292,6 +309,7 @@ void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std:
   template void Stepper<N>::settle() const;                                                   \
   template void Stepper<N>::settle_as_begun();                                                \
   template void Stepper<N>::settle_at_base();                                                 \
+  template void Stepper<N>::show_roots();                                                      \
   template bool Stepper<N>::take_from_kernel();                                               \
   template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;                          \
   template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;                         \

@@ -185,11 +185,12 @@ Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
   const double reach = std::min(kinks_log_reach<N>(expansion_.machine(), kinks_end(), order_ - 1, settings_.log_tolerance),
                                 events_.log_reach(expansion_, order_ - 1, settings_.log_tolerance));
   if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
+  heed_integrals();
   expanded_ = true;
   return {};
 }
 
-// h = (rho / e^2) exp(-0.7/(p-1)), rho the smaller root of |x| / |x_k| for the last two orders k,
+// h = (rho / e^shrink) exp(-0.7/(p-1)), rho the smaller root of |x| / |x_k| for the last two orders k,
 // in the greatest norm, relative to the size of x but at least 1 (Jorba & Zou 2005). Positions,
 // velocities, … are measured each against their own size: an angle that has turned a thousand times
 // must not loosen the tolerance of the velocities.
@@ -231,10 +232,36 @@ N Stepper<N>::step_size() const {
   return N(std::exp(std::min(log_rho - shrink() - 0.7 / (order_ - 1), log_pole - 0.7)));
 }
 
-// e^-2 per order suits order = -ln(tol)/2 + 1; another order keeps h^p rho^-p = tol.
+// An integral along the motion carries no error on, but it is to be as good as the motion. A power is a product: where the motion is smooth everywhere (an
+// oscillator) its series converges much more slowly. The last two terms over the step stay below the tolerance, in relation to the first three, to the
+// integral so far and to 1.
+template <Number N>
+void Stepper<N>::heed_integrals() {
+  for (std::size_t i = 0; i < std::min(settings_.integrals, integrals_.size()); ++i) {
+    const double h = to_double(horizon_);
+    const auto coefficient = [&](int k) { return std::abs(to_double(quadrature_coefficient(i, k))); };
+    double power = 1, square = h;
+    for (int p = order_ - 1; p > 0; p >>= 1, square *= square)
+      if (p & 1) power *= square;
+    const double whole = std::max(1.0, std::abs(to_double(integrals_[i]))), tail = power * std::max(coefficient(order_ - 1) * h / order_, coefficient(order_ - 2) / (order_ - 1));
+    const double first = h * std::max({coefficient(0), coefficient(1) * h / 2, coefficient(2) * h * h / 3});
+    if (tail <= std::exp(settings_.log_tolerance) * std::max(whole, first)) continue;
+    // Closely; what leaves the range of double has a logarithm.
+    constexpr double kNothing = -1e300;
+    const double log_h = to_double(N(log(horizon_)));
+    const auto term = [&](int k) {
+      const N c = abs(quadrature_coefficient(i, k));
+      return c > N(0) ? to_double(N(log(c))) + (k + 1) * log_h - std::log(k + 1) : kNothing;
+    };
+    const double excess = std::max(term(order_ - 1), term(order_ - 2)) - settings_.log_tolerance - std::max({std::log(whole), term(0), term(1), term(2)});
+    if (excess > 0) horizon_ *= N(std::exp(-excess / order_));
+  }
+}
+
+// (h / rho)^p = tol / e^2, as e^-2 per order is for p = -ln(tol)/2 + 1.
 template <Number N>
 double Stepper<N>::shrink() const {
-  return settings_.order > 0 ? -settings_.log_tolerance / order_ : 2.0;
+  return (2 - settings_.log_tolerance) / order_;
 }
 
 #define INSTANTIATE(N)                                                     \
@@ -248,6 +275,7 @@ double Stepper<N>::shrink() const {
   template const StepperState<N>& Stepper<N>::begun() const;               \
   template Outcome Stepper<N>::expand_by_reference(const std::vector<W>&); \
   template N Stepper<N>::step_size() const;                                \
+  template void Stepper<N>::heed_integrals();                              \
   template double Stepper<N>::shrink() const;
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -6,9 +6,18 @@
 
 namespace anholon {
 
+static constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
+
+template <Number N>
+bool stays_positive(const N* c, int degree, const N& h) {
+  const N length = abs(h);
+  N most(0);
+  for (int k = degree; k >= 1; --k) most = (most + abs(c[k])) * length;
+  return most < c[0] * N(1 - 2 * kTouches);
+}
+
 namespace {
 
-constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
 constexpr int kNoise = 64;         // values below so many round-offs of what they are made of are zero
 
 bool turns_at_zero(const Instruction& in) {
@@ -64,7 +73,7 @@ class Search {
 
   // A root goes on as another one where its argument, falling, turns at zero.
   void touches_zero(const N* c) {
-    if ((c[1] > N(0)) == (h_ > N(0))) return;  // it grows
+    if ((c[1] > N(0)) == (h_ > N(0)) || stays_positive(c, degree_, h_)) return;  // it grows, or is far away
     std::vector<N> slope;
     for (int k = 1; k <= degree_; ++k) slope.push_back(c[1] > N(0) ? N(c[k] * N(k)) : N(-(c[k] * N(k))));
     const auto x = first_below<N>(slope.data(), degree_ - 1, h_, N(0));
@@ -107,6 +116,10 @@ double kinks_log_reach(const Machine<N>& machine, std::uint32_t end, int degree,
   return reach;
 }
 
+template bool stays_positive(const double*, int, const double&);
+template bool stays_positive(const long double*, int, const long double&);
+template bool stays_positive(const Quad*, int, const Quad&);
+template bool stays_positive(const Multi*, int, const Multi&);
 template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&);
 template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&);
 template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&);

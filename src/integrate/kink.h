@@ -16,6 +16,10 @@ struct Kink {
 template <Number N>
 Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h);
 
+// Whether a polynomial that is positive at 0 surely stays so over [0, h], and its root the same root: by the sizes of its coefficients.
+template <Number N>
+bool stays_positive(const N* c, int degree, const N& h);
+
 // The logarithm of how far the series are known that decide where kinks are.
 template <Number N>
 double kinks_log_reach(const Machine<N>& machine, std::uint32_t end, int degree, double log_tolerance);

@@ -36,7 +36,8 @@ constexpr int kMostShortKinks = 20;
 }  // namespace
 
 int taylor_order(double log_tolerance) {
-  return std::max(4, static_cast<int>(std::ceil(-log_tolerance / 2 + 1)));
+  constexpr int kMore = 4;
+  return std::max(4, static_cast<int>(std::ceil(-log_tolerance / 2 + 1))) + kMore;
 }
 
 template <Number N>
@@ -198,7 +199,7 @@ bool Stepper<N>::aims_with_care(const W& end) {
   const bool last = !(h < abs(left));
   if (last) h = abs(left);
   if (!forward) h = -h;
-  const Kink<N> kink = by_kernel_ && kink_series_.empty() ? Kink<N>{} : first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
+  const Kink<N> kink = by_kernel_ && !may_touch_zero_ ? Kink<N>{} : first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
   bool cut = false;
   if (kink.at_start || kink.ahead) {
     // At a kink functions are taken one-sided along the motion: a very short step finds the side.
@@ -237,7 +238,7 @@ bool Stepper<N>::aims_with_care(const W& end) {
 // An ordinary step, of the length that the series allow.
 template <Number N>
 bool Stepper<N>::nothing_in_the_way() const {
-  return by_kernel_ && !suspected_ && !singular_ahead_ && kink_series_.empty() && short_kinks_ == 0 && fired_.empty() && events_.empty() &&
+  return by_kernel_ && !suspected_ && !singular_ahead_ && !may_touch_zero_ && short_kinks_ == 0 && fired_.empty() && events_.empty() &&
          to_double(horizon_) > std::abs(to_double(t_)) * (2 * kCollapsedRoundoffs * unit_roundoff<double>());
 }
 

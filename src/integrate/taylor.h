@@ -19,10 +19,12 @@ struct StepSettings {
   std::function<bool()> cancelled;   // asked between steps
   bool kernel = true;                // where there is one
   bool measure = true;               // how regular J is, where the kernel does not ask for it
+  std::size_t integrals = 0;         // so many of the first quadratures are integrated to the tolerance; the others as the motion's steps have it
   bool multipliers = false;          // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
 };
 
-// ceil(-ln(tolerance)/2 + 1): the order that makes the least work for the tolerance.
+// ceil(-ln(tolerance)/2 + 1), which makes the least work for the tolerance if that grows with the square of the order (Jorba & Zou 2005), and four
+// more: here it grows more slowly (measured, bench/RESULTS.md).
 int taylor_order(double log_tolerance);
 
 template <Number To, Number From>
@@ -104,6 +106,11 @@ class Stepper {
     settle();
     return state_;
   }
+  // First guesses of what leads it, out of the last step's polynomial.
+  const std::vector<W>& leading() const {
+    settle();
+    return leading_;
+  }
   // Where the present expansion was made: the start of the last step, or of the next one if that is expanded already. A step
   // cut short by its end is thus repeated in full by whoever resumes.
   const StepperState<N>& begun() const;
@@ -174,6 +181,7 @@ class Stepper {
   void settle_as_begun();
   void settle_at_base();
   bool take_from_kernel();
+  void show_roots();
   N coefficient(std::size_t j, int k) const;
   void expand_again(const StepperState<N>& last);
   Outcome look_back();
@@ -183,6 +191,7 @@ class Stepper {
   N quadrature_coefficient(std::size_t i, int k) const;
   N step_size() const;
   double shrink() const;
+  void heed_integrals();
   std::vector<W> leading_at_base() const;
   W on_the_branch(W h);
   bool near_in_branch(const W& h);
@@ -218,6 +227,7 @@ class Stepper {
   W aimed_{0};           // where the step ends
   bool arrives_ = false; // at what the caller has set
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
+  bool may_touch_zero_ = false;                               // one of them, within the present horizon
   bool by_kernel_ = false;                                    // the present expansion
   Pivots pivots_before_;                                      // of the kernel, at the last expansion
   bool suspected_ = false;                                    // J may have been singular within the last step by the kernel, or may be so within the next

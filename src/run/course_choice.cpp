@@ -24,10 +24,18 @@ constexpr double kEarly = 0.25, kFar = 0.05;
 constexpr double kReference = 6;
 
 // Operations of an expansion by a plan. What it takes to come to a step, and to an expansion, weighs as much as so many of them.
+constexpr double kExpansion = 300;
 double work(const KernelPlan& plan) {
-  constexpr double kStep = 16, kExpansion = 300;
+  constexpr double kStep = 16;
   const double steps = static_cast<double>(plan.plan().stage.size() + plan.plan().after.size());
   return plan.work() + kStep * steps * (plan.plan().stages + 1) + kExpansion;
+}
+
+// Of the rates alone: values are quicker than series, and all that is known of J is asked for at every point.
+double work_of_rates(const KernelPlan& plan) {
+  constexpr double kStep = 11, kEntry = 6;
+  const double steps = static_cast<double>(plan.plan().point.size() + plan.plan().after.size());
+  return plan.work() + kStep * steps + kEntry * (plan.elimination().work() + static_cast<double>(plan.elimination().update_list.size() + plan.plan().entries.size())) + kExpansion;
 }
 
 std::shared_ptr<const Program> program_of(const std::shared_ptr<const KernelPlan>& plan, const Program& otherwise) {
@@ -93,7 +101,7 @@ double Course<N>::spent(StateStepper& stepper) const {
   const KernelPlan* plan = stepper.rate().plan();
   const StateRate& f = stepper.rate();
   const double evaluations = static_cast<double>(f.evaluations()) + (kReference - 1) * static_cast<double>(f.by_reference());
-  return plan ? evaluations * work(*plan) + stepper.more_work() : std::numeric_limits<double>::infinity();
+  return plan ? evaluations * work_of_rates(*plan) + stepper.more_work() : std::numeric_limits<double>::infinity();
 }
 
 // Whether another method would come as far as Taylor's last steps did, from here on, with `factor` times fewer operations.

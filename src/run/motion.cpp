@@ -7,7 +7,7 @@ namespace anholon {
 template <Number N>
 Motion<N>::Leg::Leg(const Motion& m, System of, Structure structured)
     : system(std::move(of)), structure(std::move(structured)), program(anholon::program(system, structure, m.with_events())),
-      stepper(program, m.narrow_parameters_, m.parameters_, m.settings_), point(program, m.parameters_, std::max(1, m.stages_)) {
+      stepper(program, m.narrow_parameters_, m.parameters_, m.settings_), point(program, m.parameters_, std::max(1, m.stages_)), present(program, m.parameters_, 1) {
   stepper.watch(m.watched());
 }
 
@@ -23,7 +23,9 @@ template <Number N>
 Outcome Motion<N>::start(const StateChoice& choice) {
   if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
   accelerate(*leg_);
-  return leg_->stepper.start(start_.t, start_.state, start_.leading);
+  Outcome o = leg_->stepper.start(start_.t, start_.state, start_.leading);
+  note_pivots();
+  return o;
 }
 
 // Pivots are chosen at the start of the whole motion, so that a run that goes on has the same.
@@ -73,7 +75,7 @@ static bool can_go_on(OutcomeKind kind) {
 
 template <Number N>
 Outcome Motion<N>::step(const W& end) {
-  if (stepped_ && pivots_ && pivot_is_small(leg_->stepper.point())) eliminate_again();
+  if (stepped_ && pivots_ && pivot_is_small(present())) eliminate_again();
   if (stepped_) write_anew();
   code_.step(leg_->plan);
   const Mark before{choices_.size(), chosen_};
@@ -119,11 +121,24 @@ bool Motion<N>::pivot_is_small(const Expansion<W>& at) {
   return small;
 }
 
-// The point where the last step began.
+// What the pivots are where they were chosen.
 template <Number N>
-InitialState<double> Motion<N>::here() const {
+void Motion<N>::note_pivots() {
+  chosen_.clear();
+  if (pivots_) pivot_is_small(present());
+}
+
+// Where the motion has come to; what leads it is a guess.
+template <Number N>
+const Expansion<typename Motion<N>::W>& Motion<N>::present() {
+  leg_->present.load(leg_->stepper.time(), leg_->stepper.state(), leg_->stepper.leading());
+  return leg_->present;
+}
+
+template <Number N>
+InitialState<double> Motion<N>::here() {
   InitialState<double> here;
-  const Expansion<W>& point = leg_->stepper.point();
+  const Expansion<W>& point = present();
   here.t = to_double(point.time());
   const auto level = [&](std::size_t k) {
     std::vector<double> values;
@@ -168,18 +183,23 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialSt
   }
 }
 
-// Another choice of dependent coordinates where the last step began; false if there is none better.
+// Another choice of dependent coordinates where the motion has come to; false if there is none better.
 template <Number N>
 bool Motion<N>::eliminate_again() {
+  const Elimination before = elimination_;
   choices_.push_back({here(), false});
   auto next = eliminate_at(choices_.back().here);
   if (next) accelerate(*next);
-  if (!next || !next->stepper.take_over(leg_->stepper).ok()) return false;
-  leg_ = std::move(next);
-  choices_.back().taken = true;
-  mark_ = {choices_.size(), {}};
-  ++eliminations_;
-  return true;
+  const bool taken = next && next->stepper.take_over(leg_->stepper).ok();
+  if (next && !taken) watch_pivots(before);
+  if (taken) {
+    leg_ = std::move(next);
+    choices_.back().taken = true;
+    ++eliminations_;
+  }
+  note_pivots();
+  if (taken) mark_ = {choices_.size(), chosen_};
+  return taken;
 }
 
 template <Number N>
@@ -240,8 +260,10 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
     for (std::size_t k = 2; k < levels(); ++k) c.here.higher.push_back({level(), {}});
     for (std::size_t i = 0; i < states; ++i) c.here.states.push_back(*at++);
     for (std::size_t i = 0; i < states; ++i) c.here.state_rates.push_back(*at++);
+    const Elimination before = elimination_;
     auto next = eliminate_at(c.here);
     if (c.taken && !next) SavedRun::unfit("eliminations");
+    if (next && !c.taken) watch_pivots(before);
     if (c.taken) leg_ = std::move(next), ++eliminations_;
     choices_.push_back(std::move(c));
   }

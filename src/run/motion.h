@@ -74,7 +74,7 @@ class Motion {
     Structure structure;
     Program program;
     Stepper<N> stepper;
-    Expansion<W> point;
+    Expansion<W> point, present;
     std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
     std::shared_ptr<const KernelPlan> unmapped_plan;
     Writing writing = Writing::derived;
@@ -93,7 +93,9 @@ class Motion {
   };
 
   void watch_pivots(const Elimination& e);
-  InitialState<double> here() const;
+  void note_pivots();
+  const Expansion<W>& present();
+  InitialState<double> here();
   void accelerate(Leg& leg) const;
   void write_anew();
   std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);

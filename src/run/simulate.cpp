@@ -13,6 +13,7 @@ namespace {
 
 StepSettings step_settings(const SimulationOptions& o) {
   StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
+  s.integrals = 1;  // the power
   s.multipliers = o.rigorous.has_value();
   return s;
 }
@@ -304,7 +305,7 @@ class Run {
     // Nobody asked for an end here.
     const bool stopped_by_itself = report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
     if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
-        report_.outcome.kind == OutcomeKind::no_convergence || stopped_by_itself)
+        report_.outcome.kind == OutcomeKind::no_convergence || report_.outcome.kind == OutcomeKind::not_a_number || stopped_by_itself)
       explain_stop(s_, motion(), report_.outcome);
     // The last good state is worth a row of its own.
     if (course_.steps() > 0 && !every_step_) {

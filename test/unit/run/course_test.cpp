@@ -162,7 +162,7 @@ TEST(Course, NothingElseGoesByBdf) {
   EXPECT_EQ(sharp.report.method.trials, 0U);
   const Result smooth = motion(test::shipped_text("zoo/chaplygin-sleigh"), 4000, {Method::automatic, power_of_ten(8)});
   EXPECT_EQ(smooth.report.method.steps, 0U);
-  const Result disc = motion(test::shipped_text("zoo/disc"), 300, {Method::automatic, power_of_ten(8)});
+  const Result disc = motion(test::shipped_text("zoo/disc"), 450, {Method::automatic, power_of_ten(8)});
   EXPECT_GT(disc.report.method.taylor_steps, 4096U);
   EXPECT_GT(disc.report.method.trials, 0U) << "it was not even tried";
   EXPECT_EQ(disc.report.method.steps, 0U);
@@ -184,17 +184,30 @@ TEST(Course, StepsEndAtKinks) {
   EXPECT_LT(rk.report.method.refused, rk.report.method.steps / 10);
 }
 
+// A particle among so many others that are held: much to evaluate, few unknowns.
+std::string among_many() {
+  std::string x, y;
+  for (int k = -6; k <= 6; ++k) {
+    const std::string a = std::to_string(k), b = std::to_string(k * k % 7), force = "((x - (" + a + "))^2 + (y - " + b + ")^2 + 1)^(-3/2)";
+    x += " + (" + a + " - x)*" + force;
+    y += " + (" + b + " - y)*" + force;
+  }
+  return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"(" + x.substr(3) +
+         ")*ex + (" + y.substr(3) + ")*ey\"\n[initial]\nx = 0.3\ny = 0.1\n\"x'\" = 0.5\n\"y'\" = 0.2\n";
+}
+
 TEST(Course, LooseTolerancesGoByRungeKutta) {
-  // In Kane's equations: Routh's would go in quasi-velocities, where Taylor's are cheaper.
-  const std::string coin = test::shipped_text("zoo/rolling-coin");
-  const Result found = motion(coin, 10, {Method::automatic, power_of_ten(5)}, "kane"), taylor = motion(coin, 10, {Method::taylor, power_of_ten(5)}, "kane");
-  const Result exact = motion(coin, 10, {Method::taylor, power_of_ten(12)}, "kane");
+  const std::string text = among_many();
+  const Result found = motion(text, 150, {Method::automatic, power_of_ten(4)}), taylor = motion(text, 150, {Method::taylor, power_of_ten(4)});
   ASSERT_TRUE(found.report.outcome.ok()) << found.report.outcome.message;
   ASSERT_EQ(found.report.method.turns.size(), 1U);
   EXPECT_EQ(found.report.method.turns[0].to, Method::runge_kutta);
   EXPECT_LT(found.report.method.taylor_steps, 100U);
-  EXPECT_LT(difference(found, exact), 10 * difference(taylor, exact)) << "cheaper, not worse";
-  const Result sharp = motion(coin, 10, {Method::automatic, power_of_ten(7)}, "kane");
+  EXPECT_GT(taylor.report.method.taylor_steps, 200U);
+  // Over a time that it does not forget its start in.
+  const Result exact = motion(text, 10, {Method::taylor, power_of_ten(12)});
+  EXPECT_LT(difference(motion(text, 10, {Method::runge_kutta, power_of_ten(4)}), exact), 10 * difference(motion(text, 10, {Method::taylor, power_of_ten(4)}), exact)) << "cheaper, not worse";
+  const Result sharp = motion(text, 150, {Method::automatic, power_of_ten(7)});
   EXPECT_EQ(sharp.report.method.steps, 0U);
 }
 
