@@ -8,6 +8,7 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/method.h"
 #include "cli/progress.h"
 #include "cli/show.h"
 #include "cli/vary.h"
@@ -157,6 +158,14 @@ Rational end_of(const Options& o, const Model& model) {
   return to;
 }
 
+Method method_of_cases(const Options& o, const Scenario& s, const EnsembleOptions& options) {
+  SimulationOptions one;
+  one.tolerance = options.tolerance;
+  one.order = options.order;
+  choose_method(o, s, one);
+  return one.method;
+}
+
 void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
@@ -194,6 +203,7 @@ int sweep(const Options& asked) {
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
+  options.method = method_of_cases(o, s, options);
   if (!start.ok()) start = scenario_of_cases(*s.system.form, options, s);
   if (!start.ok()) {
     print_outcome(start);

@@ -39,7 +39,7 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
   const Model& model = *s.model;
   Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
-  plain = !s.routh && s.redundant.empty() && s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
+  plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() && s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
@@ -350,6 +350,7 @@ void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& 
   std::sort(options.at.begin(), options.at.end());
   options.tolerance = o.tolerance;
   options.order = o.order;
+  options.method = o.method;
   options.most_steps = o.most_steps;
   options.cancelled = o.cancelled;
   options.kernel = o.kernel;

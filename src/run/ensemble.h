@@ -34,6 +34,7 @@ struct EnsembleOptions {
   std::vector<Rational> at;                         // rows at these times, ascending; none: the final state alone is kept
   Rational tolerance{1, 1000000000000};
   int order = 0;                                    // of the Taylor polynomials; 0: from the tolerance
+  Method method = Method::automatic;                // rk, bdf: one case after the other, as `simulate` does; else Taylor's, and `simulate` for what it cannot finish
   std::size_t most_steps = 50'000'000;              // of a case
   bool kernel = true;                               // as in SimulationOptions; without, a case has the bits of `simulate`
   std::size_t threads = 0;                          // 0: as many as the machine has

@@ -202,6 +202,28 @@ TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
   EXPECT_NE(together[0].last, together[1].last);
 }
 
+// By Runge-Kutta and BDF cases go one by one, as `simulate` makes them.
+TEST(Ensemble, CasesGoByTheMethodAskedFor) {
+  for (const Method method : {Method::runge_kutta, Method::bdf}) {
+    Sweep run(kPendulum);
+    run.options.varied = {parameter(run.model(), "l"), parameter(run.model(), "m")};
+    run.options.tolerance = Rational(1, 100000000);
+    run.cases({{Rational(3, 2), Rational(2)}, {Rational(5, 2), Rational(1)}, {Rational(4, 5), Rational(1)}});
+    const auto taylor = run.go();
+    run.options.method = method;
+    const auto list = run.go(1);
+    ASSERT_EQ(list.size(), 3U);
+    EXPECT_EQ(bits(run.go(3)) == bits(list), true) << name(method);
+    EXPECT_EQ(list[2].outcome.kind, OutcomeKind::inconsistent) << "l = 0.8 < x = 1";
+    for (const std::size_t k : {0U, 1U}) {
+      ASSERT_TRUE(list[k].outcome.ok()) << list[k].outcome.message;
+      EXPECT_GT(list[k].steps, taylor[k].steps) << name(method);
+      for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(list[k].last[i], taylor[k].last[i], 1e-5) << name(method);
+      EXPECT_NE(list[k].last, taylor[k].last) << name(method);
+    }
+  }
+}
+
 TEST(Ensemble, OneInconsistentCaseStopsNoOther) {
   Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "l"), parameter(run.model(), "m")};
