@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -9,6 +10,7 @@
 #include "base/hash.h"
 #include "cli/result_file.h"
 #include "cli/run_info.h"
+#include "proof/verify.h"
 #include "report/page.h"
 #include "result/file.h"
 
@@ -167,6 +169,11 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     page.proof = &proof;
     page.hypotheses = c.hypotheses;
     page.meaning = c.meaning;
+    // As whoever gets it will check it: from its text.
+    page.certificate = to_json(c);
+    const Verification checked = verify(read_certificate(page.certificate));
+    page.claims = checked.claims.size();
+    page.confirmed = static_cast<std::size_t>(std::count_if(checked.claims.begin(), checked.claims.end(), [](const ClaimFinding& f) { return f.finding == Finding::confirmed; }));
   }
   const std::string text = html(page);
   if (const std::string why = write_whole(o.report, text); !why.empty()) throw UsageError{"error: " + why + "\n"};

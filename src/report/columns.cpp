@@ -9,6 +9,7 @@
 #include "base/base64.h"
 #include "expr/print_names.h"
 #include "numeric/number.h"
+#include "report/run_report.h"
 
 namespace anholon {
 
@@ -31,11 +32,27 @@ const std::vector<PlotGroup>& all_groups() {
   return list;
 }
 
-// Values of expressions at the rows of a table.
+// What an event has set of a mode, which no column holds.
+struct ModeChange {
+  double t;
+  std::size_t parameter;
+  double value;
+};
+
+std::vector<ModeChange> mode_changes(const Model& model, const RunReport& report) {
+  std::vector<ModeChange> list;
+  for (const RunReport::Event& e : report.events)
+    for (const auto& c : e.changes)
+      for (std::size_t k = 0; k < model.parameters.size(); ++k)
+        if (model.parameters[k].mode && model.parameters[k].name == c.name) list.push_back({std::strtod(e.t.c_str(), nullptr), k, std::strtod(c.after.c_str(), nullptr)});
+  return list;
+}
+
+// Values of expressions at the rows of a table. A row at the time of an event is the one before it.
 class AtRows {
  public:
-  AtRows(const Model& model, const RunTable& table, const Column& es, const std::vector<double>& parameters)
-      : tape_(compile(es)), machine_(tape_, 0, parameters), table_(table) {
+  AtRows(const Model& model, const RunTable& table, const Column& es, std::vector<double> parameters, const std::vector<ModeChange>& modes)
+      : tape_(compile(es)), parameters_(std::move(parameters)), modes_(modes), table_(table) {
     const ColumnOf column = column_of(model, table);
     for (const Input& in : tape_.inputs) columns_.push_back(column(model.graph->node(in.symbol)));
   }
@@ -44,17 +61,22 @@ class AtRows {
     return std::all_of(columns_.begin(), columns_.end(), [](const auto& c) { return c.has_value(); });
   }
   void go(const std::function<void(std::size_t row, const Machine<double>&)>& see) {
+    std::size_t next = 0;
+    std::optional<Machine<double>> machine;
     for (std::size_t row = 0; row < table_.rows(); ++row) {
+      for (; next < modes_.size() && modes_[next].t < table_.values[0][row]; ++next) parameters_[modes_[next].parameter] = modes_[next].value, machine.reset();
+      if (!machine) machine.emplace(tape_, 0, parameters_);
       for (std::size_t k = 0; k < columns_.size(); ++k)
-        machine_.series(tape_.inputs[k].slot)[0] = table_.values[*columns_[k] < 0 ? 0 : static_cast<std::size_t>(*columns_[k])][row];
-      machine_.evaluate();
-      see(row, machine_);
+        machine->series(tape_.inputs[k].slot)[0] = table_.values[*columns_[k] < 0 ? 0 : static_cast<std::size_t>(*columns_[k])][row];
+      machine->evaluate();
+      see(row, *machine);
     }
   }
 
  private:
   Tape tape_;
-  Machine<double> machine_;
+  std::vector<double> parameters_;
+  const std::vector<ModeChange>& modes_;
   const RunTable& table_;
   std::vector<std::optional<int>> columns_;
 };
@@ -62,17 +84,14 @@ class AtRows {
 class Plots {
  public:
   Plots(const Scenario& s, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene)
-      : s_(s), model_(*s.model), run_(run), conserved_(conserved), scene_(scene), parameters_(parameter_values<double>(model_)) {}
+      : s_(s), model_(*s.model), run_(run), conserved_(conserved), scene_(scene), parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, read_run_report(run.report))) {}
 
   PlotData make() {
     data_.t = run_.table.values.empty() ? std::vector<double>{} : run_.table.values[0];
     data_.rows = data_.t.size();
     given();
-    // What an event has set is not in the rows: formulas with modes would be evaluated for the wrong ones.
-    if (std::none_of(model_.events.begin(), model_.events.end(), [](const Event& e) { return !e.set.empty(); })) {
-      energies();
-      residuals();
-    }
+    energies();
+    residuals();
     steps();
     shorten();
     for (const PlotGroup& g : all_groups())
@@ -120,7 +139,7 @@ class Plots {
       what.push_back({c.name, "<mtext>" + xml_escape(c.name) + "</mtext>", energy ? "energies" : "integrals"});
     }
     std::vector<std::vector<double>> values(es.size());
-    AtRows rows(model_, run_.table, es, parameters_);
+    AtRows rows(model_, run_.table, es, parameters_, modes_);
     if (!rows.possible()) return;
     rows.go([&](std::size_t, const Machine<double>& m) {
       for (std::size_t k = 0; k < es.size(); ++k) values[k].push_back(m.value(k));
@@ -149,7 +168,7 @@ class Plots {
       es.insert(es.end(), conserved_[c].terms.begin(), conserved_[c].terms.end());
     }
     if (es.empty()) return;
-    AtRows rows(model_, run_.table, es, parameters_);
+    AtRows rows(model_, run_.table, es, parameters_, modes_);
     if (!rows.possible()) return;
     std::vector<std::vector<double>> values(names.size()), integral(conserved_.size());
     std::vector<double> size(conserved_.size(), 0);
@@ -236,6 +255,7 @@ class Plots {
   const std::vector<Conserved>& conserved_;
   const Scene& scene_;
   std::vector<double> parameters_;
+  std::vector<ModeChange> modes_;
   PlotData data_;
   std::size_t most_kept_ = 0;  // rows of the column that keeps most
 };

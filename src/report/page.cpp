@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/base64.h"
 #include "expr/print_names.h"
 #include "numeric/number.h"
 #include "report/assets.h"
@@ -327,7 +328,22 @@ class Writer {
       for (const std::string& h : p_.hypotheses) out += "<li>" + user(h) + "</li>";
       out += "</ul>\n";
     }
-    return out + "<p>The certificate, to be checked by the small program that trusts nobody: <code>anholon prove " + html_escape(p_.source.name) + " -o proof.json</code>, <code>anholon verify proof.json</code>.</p>\n";
+    return out + certificate();
+  }
+
+  // In the page itself, if it is not too long.
+  std::string certificate() const {
+    constexpr std::size_t kMost = 240'000;
+    if (p_.certificate.empty()) return "";
+    const std::string source = p_.source.name.substr(p_.source.name.rfind('/') + 1), name = source.substr(0, source.rfind('.')) + ".proof.json";
+    std::string out = "<p>The certificate holds " + std::to_string(p_.claims) + " claims, " + (p_.confirmed == p_.claims ? "all" : std::to_string(p_.confirmed)) +
+                      " confirmed when this page was made by the checker, which shares nothing with the prover. To check it again: ";
+    if (p_.certificate.size() <= kMost)
+      out += "<a" + attribute("download", name) + " href=\"data:application/json;base64," + to_base64(p_.certificate) + "\">save " + user(name) + "</a> (" +
+             std::to_string((p_.certificate.size() + 999) / 1000) + " kB), ";
+    else
+      out += "<code>anholon prove " + html_escape(p_.source.name) + " -o " + html_escape(name) + "</code>, ";
+    return out + "<code>anholon verify " + html_escape(name) + "</code>.</p>\n";
   }
 
   // ---- report -----------------------------------------------------------------------------------

@@ -27,6 +27,8 @@ struct Page {
   std::string no_proof;                 // why there is none
   std::vector<std::string> hypotheses;  // of the proof's certificate
   std::string meaning;                  // what is proved
+  std::string certificate;              // JSON
+  std::size_t claims = 0, confirmed = 0;  // of the certificate, by the checker
   std::string command;                  // that makes this page again
   std::string version, model_hash;
   SourceText source;

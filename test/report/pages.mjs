@@ -141,6 +141,21 @@ await test('hostile names are text', async () => {
   }
 });
 
+await test('the certificate is in the page', async () => {
+  const { page, faults } = await open(page_of('proved', 'snakeboard'), 1000);
+  const link = page.locator('#proof a[download]');
+  assert.equal(await link.getAttribute('download'), 'snakeboard.proof.json');
+  const [kind, data] = (await link.getAttribute('href')).split(',');
+  assert.equal(kind, 'data:application/json;base64');
+  writeFileSync(join(folder, 'snakeboard.proof.json'), Buffer.from(data, 'base64'));
+  const said = run('verify', 'snakeboard.proof.json');
+  const claims = [...said.matchAll(/(\d+) of (\d+) confirmed/g)].reduce((s, m) => s + Number(m[2]), 0);
+  assert.ok(claims > 20);
+  assert.ok((await page.locator('#proof').innerText()).includes(`The certificate holds ${claims} claims, all confirmed`));
+  assert.deepEqual(faults, []);
+  await page.close();
+});
+
 await test('scenarios stand side by side', async () => {
   const text = `${run('models', 'chaplygin-sleigh')}\n[case.heavy]\nparameters.m = 20\n[case.light]\nparameters.m = 1\n`;
   writeFileSync(join(folder, 'cases.toml'), text);

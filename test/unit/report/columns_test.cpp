@@ -7,6 +7,7 @@
 
 #include "report/bibliography.h"
 #include "report/observer_path.h"
+#include "report/run_report.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -34,6 +35,49 @@ TEST(Packed, HoldsTheBitsOfTheNumbers) {
   EXPECT_EQ(packed({1.0}), "AAAAAAAA8D8=");              // 00 00 00 00 00 00 f0 3f
   EXPECT_EQ(packed({-2.5, 0.0}), "AAAAAAAABMAAAAAAAAAAAA==");
   EXPECT_EQ(packed({0, 0, 0}), std::string(32, 'A'));
+}
+
+// The mass doubles at an event: the kinetic energy of the rows after it is that of the new mass.
+TEST(Plots, KnowWhatEventsHaveSet) {
+  Scenario s;
+  ASSERT_TRUE(make_scenario(test::model_of("coordinates = [\"x\"]\n[mode]\nn = 1\n[[particle]]\nname = \"p\"\nmass = \"n\"\nposition = \"x*ex\"\n"
+                                           "[[event]]\nname = \"catch\"\nwhen = \"x - 1\"\nset = {n = \"2*n\"}\n[initial]\n\"x'\" = 2\n"),
+                            *find_formulation("routh"), {}, s)
+                  .ok());
+  RunFile run;
+  run.table.set_columns({"t", "x", "x'"});
+  for (const char* t : {"0", "0.25", "0.5", "0.75", "1"}) {
+    const std::vector<std::string> row = {t, std::to_string(2 * std::stod(t)), "2"};
+    for (std::size_t k = 0; k < 3; ++k) run.table.add(k, row[k]);
+  }
+  const auto kinetic = [&] {
+    for (const PlotColumn& c : plot_data(s, {}, run, scene(*s.mechanics)).columns)
+      if (c.name == "T") return c.values;
+    return std::vector<double>{};
+  };
+  EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 2, 2}));
+  run.report = R"({"events": [{"name": "catch", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}]})";
+  EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 4, 4}));
+}
+
+// What a report says is shown as it stands; what it does not say is a dash.
+TEST(RunReport, IsReadAsItStands) {
+  const RunReport r = read_run_report(R"({"residuals": {"newton": 1.5e-17, "power": null}, "steps": 12, "outcome": "singular", "message": "here",
+    "error_estimate": {"digits": 11, "means": "a second run"}, "method": {"last": "rk", "turns": [{"to": "bdf"}]},
+    "events": [{"name": "e", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}], "monitors": {"w": {"first": 1, "last": 2}}, "warnings": [{"message": "m", "hint": "h"}]})");
+  EXPECT_EQ(r.newton, "1.5e-17");
+  EXPECT_EQ(r.power, "–");
+  EXPECT_EQ(r.steps, "12");
+  EXPECT_EQ(r.message, "here");
+  EXPECT_EQ(r.digits, "11, by a second run");
+  EXPECT_TRUE(r.used("rk") && r.used("bdf") && !r.used("ida"));
+  ASSERT_EQ(r.events.size(), 1U);
+  EXPECT_EQ(r.events[0].changes[0].after, "2");
+  ASSERT_EQ(r.watched.size(), 1U);
+  EXPECT_EQ(r.watched[0].least, "–");
+  EXPECT_EQ(r.warnings[0].hint, "h");
+  EXPECT_EQ(read_run_report("no JSON").outcome, "");
+  EXPECT_EQ(read_run_report(R"({"events": 3, "residuals": []})").events.size(), 0U) << "of another kind than it should be";
 }
 
 // The frame of a table that turns at a constant rate, and one whose origin goes in a circle.
