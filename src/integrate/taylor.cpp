@@ -311,12 +311,12 @@ typename Stepper<N>::W Stepper<N>::quadrature(std::size_t i, const W& dt) const 
 }
 
 template <Number N>
-Outcome Stepper<N>::at(const W& t, Expansion<W>& point) const {
-  std::vector<W> state, leading;
-  on_polynomial(t - before_, state, leading);
-  point.load(t, state, leading);
+Outcome Stepper<N>::at(const W& t, Expansion<W>& point, bool leading) const {
+  std::vector<W> state, guess;
+  on_polynomial(t - before_, state, guess);
+  point.load(t, state, guess);
   if (Outcome o = point.prepare(); !o.ok()) return o;
-  if (Outcome o = point.project(); !o.ok()) return o;
+  if (Outcome o = point.project(); !o.ok() || !leading) return o;
   return point.solve();
 }
 

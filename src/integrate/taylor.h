@@ -132,8 +132,8 @@ class Stepper {
 
   // The solution where the last step began, or at the start: projected and solved. Its derivatives; with `values` those of all formulas, too.
   const Expansion<W>& point(bool values = false) const;
-  // … and anywhere in the last step, in an expansion of the caller.
-  Outcome at(const W& t, Expansion<W>& point) const;
+  // … and anywhere in the last step, in an expansion of the caller; on request without what leads the state.
+  Outcome at(const W& t, Expansion<W>& point, bool leading = true) const;
 
   // The dense output of the last step as it is: x_j is the sum of dense(j, k) (t - before())^k, k = 0..degree(j). Coefficients up
   // to that of the leading derivative come from the wider point.

@@ -3,6 +3,7 @@
 // Algorithms are written once, as templates over N, with unqualified sin, sqrt, … found for each
 // type, and the functions below for what the built-in types lack.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -49,6 +50,12 @@ N from_rational(const Rational& r) {
   if constexpr (std::same_as<N, Multi>) {
     return Multi(r);
   } else {
+    // A quotient of two whole numbers that N holds is rounded once.
+    if constexpr (!std::same_as<N, Quad>) {
+      constexpr long kHeld = 1L << std::min(std::numeric_limits<N>::digits, 62);
+      if (r.get_num().fits_slong_p() && r.get_den().fits_slong_p())
+        if (const long num = r.get_num().get_si(), den = r.get_den().get_si(); num <= kHeld && num >= -kHeld && den <= kHeld) return static_cast<N>(num) / static_cast<N>(den);
+    }
     // mpq_get_d truncates, and long double has no conversion: go through MPFR, which rounds.
     mpfr_t v;
     mpfr_init2(v, significand_bits<N>());

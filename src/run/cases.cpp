@@ -61,11 +61,13 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
   Column watched;
   for (const Monitor& m : model.monitors) watched.push_back(m.value);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, watched));
+  leading = stages > 0 || std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates), [](int d) { return d < 2; });
   if (watched.empty()) return;
   outputs = compile(OutputTape<Wider<double>>::put(s, watched));
   for (const Input& in : outputs->inputs) {
     const Node& n = g.node(in.symbol);
     output_inputs.push_back({in.slot, s.system.variable(in.symbol), n.kind == Kind::time ? 0 : n.order});
+    leading = leading || (output_inputs.back().variable && output_inputs.back().order >= s.structure.d[*output_inputs.back().variable]);
   }
 }
 
@@ -221,7 +223,7 @@ bool CaseWalk::rows() {
 // What is kept of the state at t, which lies in the last step.
 bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   const System& system = plan_->scenario.system;
-  if (!stepper_->at(t, *point_).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
+  if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
   for (const int k : {0, 1})
     for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
   for (std::size_t j = system.mechanical(); j < system.size(); ++j) values.push_back(to_double(point_->derivative(j, 0)));

@@ -39,6 +39,7 @@ class EnsemblePlan {
   };
   std::vector<Entry> output_inputs;
   int stages = 0;
+  bool leading = false;             // what is kept of a case needs more than its state
   StepSettings settings;
 
  private:
