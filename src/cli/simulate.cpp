@@ -23,10 +23,6 @@ namespace {
 // More rows than this are refused before they fill memory or disk; JSON, which is held in memory, has less room.
 constexpr long kMostRows = 5'000'000, kMostJsonNumbers = 5'000'000;
 
-bool ends_with(const std::string& s, const std::string& end) {
-  return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
-}
-
 bool is_hdf5(const std::string& path) {
   RunFormat format{};
   return format_of(path, format) && format == RunFormat::hdf5;
@@ -61,7 +57,7 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s)
   if (end < start) std::fprintf(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
   if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
-  const bool json = ends_with(o.output, ".json") || (o.json && !is_hdf5(o.output));
+  const bool json = o.output.ends_with(".json") || (o.json && !is_hdf5(o.output));
   const auto columns = static_cast<long>(1 + 4 * scenario.system.coordinates + scenario.system.constraints.size());
   if (s.every && json && columns * abs(Rational(end - start)) > kMostJsonNumbers * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostJsonNumbers) + " numbers of JSON\nhint: write HDF5 or CSV: -o run.h5\n"};
@@ -268,7 +264,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
     static_cast<RunInfo&>(told->run) = run_info(o, in, s, options);
     told->conserved = options.conserved;
   }
-  const bool json = !hdf5 && (o.json || ends_with(o.output, ".json"));
+  const bool json = !hdf5 && (o.json || o.output.ends_with(".json"));
   SimulationReport r;
   std::string write_error;
   {

@@ -18,10 +18,6 @@ namespace anholon::cli {
 
 namespace {
 
-bool ends_with(const std::string& s, const std::string& end) {
-  return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
-}
-
 // Cases that ended in the same way, of which the first is told.
 struct Stopped {
   std::size_t count = 0, first = 0;
@@ -177,7 +173,7 @@ void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out
 
 int sweep(const Options& asked) {
   for (const std::string end : {".h5", ".db"})
-    if (ends_with(asked.output, end)) throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
+    if (asked.output.ends_with(end)) throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
   const Reader in = read(asked);
   const Options o = with_form(asked, in);
   const Variation variation(o, *in.model);
@@ -215,7 +211,7 @@ int sweep(const Options& asked) {
                      number_text(s.state.t) + "\n"};
   catch_stop();
   options.cancelled = stop_requested;
-  const bool json = o.json || ends_with(o.output, ".json");
+  const bool json = o.json || o.output.ends_with(".json");
   const std::vector<std::string> columns = ensemble_columns(*in.model);
   std::unique_ptr<Output> out;
   if (json) out = std::make_unique<Json>(o.output, s, variation, columns);

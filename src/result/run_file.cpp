@@ -14,8 +14,6 @@ namespace anholon {
 
 namespace {
 
-bool ends_with(const std::string& s, const std::string& end) { return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0; }
-
 // Columns and rows, as they stand within the JSON of `simulate`.
 std::string json_rows(const RunTable& table) {
   JsonWriter j;
@@ -94,7 +92,7 @@ std::string write_hdf5(const std::string& path, const std::string& beside, const
 
 bool format_of(const std::string& path, RunFormat& format) {
   for (const auto& [end, f] : {std::pair{".csv", RunFormat::csv}, {".json", RunFormat::json}, {".h5", RunFormat::hdf5}, {".hdf5", RunFormat::hdf5}})
-    if (ends_with(path, end)) {
+    if (path.ends_with(end)) {
       format = f;
       return true;
     }
