@@ -215,8 +215,11 @@ def with_wildcards(patterns, line):
         if difflib.SequenceMatcher(None, pattern, line).ratio() < 0.6:
             continue
         parts, kept = pattern.split(WILD), line
-        for before, after in zip(parts, parts[1:]):
-            around = re.escape(before[-4:]), re.escape(after[:4]) if after else "$"
+        for index, (before, after) in enumerate(zip(parts, parts[1:])):
+            # Words and signs: the numbers beside it may have changed, too.
+            around = [re.escape(re.search(r"[^\d.]{0,4}$", before)[0]), re.escape(re.match(r"[^\d.]{0,4}", after)[0])]
+            if index == len(parts) - 2 and len(after) <= 4:
+                around[1] += "$"
             found = list(re.finditer(f"(?<={around[0]})\\S+?(?={around[1]})" if before else f"^\\S+?(?={around[1]})", kept))
             if len(found) != 1:
                 break

@@ -258,10 +258,10 @@ void Stepper<N>::heed_integrals() {
   }
 }
 
-// (h / rho)^p = tol / e^2, as e^-2 per order is for p = -ln(tol)/2 + 1.
+// (h / rho)^p is what e^-2 per order makes for the order of Jorba & Zou, a whole number: tol / e^2 or less.
 template <Number N>
 double Stepper<N>::shrink() const {
-  return (2 - settings_.log_tolerance) / order_;
+  return 2.0 * least_work_order(settings_.log_tolerance) / order_;
 }
 
 #define INSTANTIATE(N)                                                     \

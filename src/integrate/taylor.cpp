@@ -35,9 +35,11 @@ constexpr int kMostShortKinks = 20;
 
 }  // namespace
 
+int least_work_order(double log_tolerance) { return std::max(4, static_cast<int>(std::ceil(-log_tolerance / 2 + 1))); }
+
 int taylor_order(double log_tolerance) {
   constexpr int kMore = 4;
-  return std::max(4, static_cast<int>(std::ceil(-log_tolerance / 2 + 1))) + kMore;
+  return least_work_order(log_tolerance) + kMore;
 }
 
 template <Number N>

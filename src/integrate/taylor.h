@@ -23,8 +23,9 @@ struct StepSettings {
   bool multipliers = false;          // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
 };
 
-// ceil(-ln(tolerance)/2 + 1), which makes the least work for the tolerance if that grows with the square of the order (Jorba & Zou 2005), and four
-// more: here it grows more slowly (measured, bench/RESULTS.md).
+// ceil(-ln(tolerance)/2 + 1), and at least 4: the order of least work for the tolerance if that grows with the square of the order (Jorba & Zou 2005).
+int least_work_order(double log_tolerance);
+// Four more: here it grows more slowly (measured, bench/RESULTS.md).
 int taylor_order(double log_tolerance);
 
 template <Number To, Number From>
