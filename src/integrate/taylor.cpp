@@ -39,7 +39,8 @@ int least_work_order(double log_tolerance) { return std::max(4, static_cast<int>
 
 int taylor_order(double log_tolerance) {
   constexpr int kMore = 4;
-  return least_work_order(log_tolerance) + kMore;
+  constexpr double kLastDigits = -32.3;  // ln of a little less than 1e-14
+  return least_work_order(log_tolerance) + (log_tolerance > kLastDigits ? kMore : 0);
 }
 
 template <Number N>

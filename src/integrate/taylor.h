@@ -25,7 +25,7 @@ struct StepSettings {
 
 // ceil(-ln(tolerance)/2 + 1), and at least 4: the order of least work for the tolerance if that grows with the square of the order (Jorba & Zou 2005).
 int least_work_order(double log_tolerance);
-// Four more: here it grows more slowly (measured, bench/RESULTS.md).
+// Four more: here it grows more slowly (measured, bench/RESULTS.md). Not below 1e-14, where the longer steps would lose the last digits to round-off.
 int taylor_order(double log_tolerance);
 
 template <Number To, Number From>

@@ -42,7 +42,7 @@ void run(const std::string& model, double seconds_per_step, Motion& m) {
 // Its gait drives it faster and faster.
 TEST(Drift, TheDrivenSnakeboardStaysOnItsConstraints) {
   Motion m;
-  ASSERT_NO_FATAL_FAILURE(run("zoo/snakeboard", all_of_them() ? 0.04 : 0.165, m));
+  ASSERT_NO_FATAL_FAILURE(run("zoo/snakeboard", all_of_them() ? 0.03 : 0.125, m));
   EXPECT_LT(m.report.constraints, kConstraintBound);
   EXPECT_LT(m.report.constraints_kept, kProjectedBound);
 }
@@ -50,14 +50,14 @@ TEST(Drift, TheDrivenSnakeboardStaysOnItsConstraints) {
 // Its motor drives it faster and faster: n steps take a time that grows with the root of n.
 TEST(Drift, TheFourBarStaysClosed) {
   Motion m;
-  ASSERT_NO_FATAL_FAILURE(run("zoo/fourbar", all_of_them() ? 6e-4 : 6e-3, m));
+  ASSERT_NO_FATAL_FAILURE(run("zoo/fourbar", all_of_them() ? 4e-4 : 4.2e-3, m));
   EXPECT_LT(m.report.constraints, kConstraintBound);
   EXPECT_LT(m.report.constraints_kept, kProjectedBound);
 }
 
 TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
   Motion m;
-  ASSERT_NO_FATAL_FAILURE(run("zoo/rolling-coin", 0.029, m));
+  ASSERT_NO_FATAL_FAILURE(run("zoo/rolling-coin", 0.0185, m));
   EXPECT_LT(m.report.constraints, kConstraintBound);
   EXPECT_LT(m.report.constraints_kept, kProjectedBound);
 

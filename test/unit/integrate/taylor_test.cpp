@@ -111,7 +111,9 @@ TEST(Stepper, MeasuredOrderIsTheStatedOne) {
 }
 
 TEST(Stepper, OrderFollowsFromTheTolerance) {
-  EXPECT_EQ(taylor_order(std::log(1e-15)), 23);  // ceil(15 ln(10)/2 + 1) = ceil(18.27), and four
+  EXPECT_EQ(taylor_order(std::log(1e-15)), 19);  // ceil(15 ln(10)/2 + 1) = ceil(18.27)
+  EXPECT_EQ(taylor_order(std::log(1e-12)), 19);  // ceil(12 ln(10)/2 + 1) = ceil(14.8), and four
+  EXPECT_EQ(taylor_order(std::log(1e-14)), 22);
   EXPECT_GT(taylor_order(-400 * std::log(10.0)), 450);
   EXPECT_GE(taylor_order(std::log(0.5)), 8);
 }
