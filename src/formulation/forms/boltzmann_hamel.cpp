@@ -15,9 +15,11 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
     u_by_q.push_back(gradient(u, M.q));
     turned.push_back(total_derivative(gradient(u, M.qd)) - u_by_q.back());
   }
-  const Column T_by_q = gradient(M.T, M.q) - p_u * u_by_q;     // at fixed u: dchi/dq = -beta du/dq
+  // Term by term, as in chaplygin.cpp.
+  const Column by_q = gradient(M.T, M.q), through_u = p_u * u_by_q, T_by_q = by_q - through_u;  // at fixed u: dchi/dq = -beta du/dq
   const Column momentum(p_u.begin(), p_u.begin() + static_cast<std::ptrdiff_t>(E.u.size()));
-  return {E.rate(momentum) - E.contract(T_by_q) + E.contract(p_u * turned), E.contract(forces(M))};
+  const Column first = E.rate(momentum), second = E.contract(T_by_q), third = E.contract(p_u * turned);
+  return {first - second + third, E.contract(forces(M))};
 }
 
 extern const Formulation boltzmann_hamel;

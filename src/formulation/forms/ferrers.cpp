@@ -9,7 +9,9 @@ namespace anholon::forms {
 
 static Equations equations(const Mechanics& M, const Elimination& E) {
   const Column p = E.on(E.D(gradient(M.T, M.qd)));
-  return {E.rate(E.by_u(E.on(M.T))) - p * E.rate(E.f_by_u()) - E.contract(gradient(M.T, M.q)), E.contract(forces(M))};
+  // Term by term, as in chaplygin.cpp.
+  const Column first = E.rate(E.by_u(E.on(M.T))), second = p * E.rate(E.f_by_u()), third = E.contract(gradient(M.T, M.q));
+  return {first - second - third, E.contract(forces(M))};
 }
 
 extern const Formulation ferrers;

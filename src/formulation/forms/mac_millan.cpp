@@ -16,11 +16,16 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   for (const WeightedPoint& point : M.points) {
     const Vector v = total_derivative(point.place);
     for (int i = 0; i < 3; ++i) {
-      const Column turned = E.rate(E.by_u(v[i])) - E.I(E.by(0, v[i]));
-      for (std::size_t a = 0; a < bracket.size(); ++a) bracket[a] += point.weight * E.on(v[i]) * turned[a];
+      // Term by term, as in chaplygin.cpp.
+      const Column rate = E.rate(E.by_u(v[i])), by_q = E.I(E.by(0, v[i])), turned = rate - by_q;
+      for (std::size_t a = 0; a < bracket.size(); ++a) {
+        const Expr speed = point.weight * E.on(v[i]);
+        bracket[a] += speed * turned[a];
+      }
     }
   }
-  return {E.rate(E.by_u(T_bar)) - E.I(E.by(0, T_bar)), E.contract(forces(M)) + bracket};
+  const Column first = E.rate(E.by_u(T_bar)), second = E.I(E.by(0, T_bar));
+  return {first - second, E.contract(forces(M)) + bracket};
 }
 
 extern const Formulation mac_millan;

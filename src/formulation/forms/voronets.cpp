@@ -14,7 +14,10 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   const Column theta = E.on(E.D(gradient(M.T, M.qd)));
   Rows along;  // df_b/dq_nu + sum_c df_b/dq_c df_c/dq_nu'
   for (std::size_t b : E.dependent) along.push_back(E.contract(E.g_by(0)[b]));
-  return {E.rate(E.by_u(Theta)) - E.contract(E.by(0, Theta)) - theta * (E.rate(E.f_by_u()) - along), E.contract(forces(M))};
+  // Term by term, as in chaplygin.cpp.
+  const auto turned = E.rate(E.f_by_u());
+  const Column first = E.rate(E.by_u(Theta)), second = E.contract(E.by(0, Theta)), third = theta * (turned - along);
+  return {first - second - third, E.contract(forces(M))};
 }
 
 extern const Formulation voronets;
