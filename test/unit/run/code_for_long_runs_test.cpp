@@ -31,7 +31,7 @@ void leave_some_behind(int milliseconds) {
     for (int asked = 0; asked < 64; ++asked) runs[k]->step(plans[k]);
   runs.clear();
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));  // the next motion
-  std::exit(compiling_for_nobody() || !compiler() ? 0 : 1);
+  std::exit(0);  // on a fast machine some are done by now
 }
 
 // The compiler's statics are destroyed at exit, those that it makes as it goes first.
