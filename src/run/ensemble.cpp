@@ -22,8 +22,8 @@ std::size_t together(std::size_t cases) {
   return std::clamp<std::size_t>(cases / kFew, 1, kMost);
 }
 
-// Groups of cases on their way for each thread: room for one that takes long while the others go on.
-constexpr std::size_t kWindow = 32;
+// Cases on their way for each thread, however they are grouped: room for one that takes long while the others go on.
+constexpr std::size_t kWindow = 256;
 
 // Debian's libtbb is not compiled for ThreadSanitizer, which so sees neither that what a thread is given was ready before, nor that
 // one stage ends before the next begins. `joined`, `ready` and the lock of the two stages in order say it once more; so all other
@@ -96,7 +96,7 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
   tbb::task_arena arena(static_cast<int>(report.threads));
   joined();
   arena.execute([&] {
-    tbb::parallel_pipeline(kWindow * report.threads, tbb::make_filter<void, Group*>(tbb::filter_mode::serial_in_order, begin) &
+    tbb::parallel_pipeline(kWindow / group * report.threads, tbb::make_filter<void, Group*>(tbb::filter_mode::serial_in_order, begin) &
                                                          tbb::make_filter<Group*, Group*>(tbb::filter_mode::parallel, integrate) &
                                                          tbb::make_filter<Group*, void>(tbb::filter_mode::serial_in_order, deliver));
   });

@@ -1,8 +1,6 @@
 // A run that is laid down and taken up again gives the rows of the run that never stopped, bit by bit.
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "run/simulate.h"
 #include "support/models.h"
 
@@ -25,7 +23,8 @@ struct Result {
   std::string saved;
 };
 
-Result run(const Case& c, const Rational& to, const SavedRun* resume, const std::string& set_apart = {}) {
+// With `most_steps` it ends between rows that are asked for, and has no row of its own there.
+Result run(const Case& c, const Rational& to, const SavedRun* resume, const std::string& set_apart = {}, std::size_t most_steps = 0) {
   Scenario s;
   EXPECT_TRUE(make_scenario(test::model_of(test::shipped_text(c.model) + set_apart), *find_formulation(c.form), {}, s).ok());
   SimulationOptions o;
@@ -35,22 +34,14 @@ Result run(const Case& c, const Rational& to, const SavedRun* resume, const std:
   o.digits = c.digits;
   if (c.digits > 16) o.tolerance = Rational(1, mpz_class("1" + std::string(static_cast<std::size_t>(c.digits), '0')));
   o.resume = resume;
+  if (most_steps > 0) o.most_steps = most_steps;
   Result r;
   o.save = [&](const SavedRun& run) { r.saved = print(run); };
   MemorySink sink;
   r.report = simulate(s, o, sink);
-  EXPECT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+  EXPECT_EQ(r.report.outcome.kind, most_steps > 0 ? OutcomeKind::interrupted : OutcomeKind::finished) << r.report.outcome.message;
   r.rows = sink.rows();
   return r;
-}
-
-// Where rows are those of the steps, the end of the first run is one more row.
-std::string without_residuals(const std::string& saved, bool really) {
-  std::istringstream lines(saved);
-  std::string kept, line;
-  while (std::getline(lines, line))
-    if (!really || (line.rfind("residuals", 0) != 0 && line.rfind("hash", 0) != 0)) kept += line + "\n";
-  return kept;
 }
 
 class Restart : public testing::TestWithParam<Case> {};
@@ -58,7 +49,9 @@ class Restart : public testing::TestWithParam<Case> {};
 TEST_P(Restart, GoesOnWithTheSameBits) {
   const Case& c = GetParam();
   const std::string monitor = "\n[monitor]\nwatched = \"t^2\"\n";
-  const Result first = run(c, c.half, nullptr, monitor);
+  Result first = run(c, c.half, nullptr, monitor);
+  // Where rows are those of the steps, the end of the first run would be one more row, with residuals of its own.
+  if (c.steps) first = run(c, c.whole, nullptr, monitor, first.report.steps);
   const SavedRun saved = read_saved({"run.state", first.saved});
   const Result second = run(c, c.whole, &saved, monitor), whole = run(c, c.whole, nullptr, monitor);
   ASSERT_GT(second.rows.size(), 2U);
@@ -74,7 +67,7 @@ TEST_P(Restart, GoesOnWithTheSameBits) {
   EXPECT_EQ(second.report.newton, whole.report.newton);
   EXPECT_EQ(second.report.constraints, whole.report.constraints);
   EXPECT_EQ(second.report.smallest_sigma, whole.report.smallest_sigma);
-  EXPECT_EQ(without_residuals(second.saved, c.steps), without_residuals(whole.saved, c.steps));
+  EXPECT_EQ(second.saved, whole.saved);
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, Restart,
