@@ -48,7 +48,7 @@ struct Request {
 struct Ready {
   Scenario scenario;
   std::unique_ptr<Program> stepping;
-  std::map<std::pair<double, bool>, std::shared_ptr<const KernelPlan>> plans;  // by tolerance, alone or in lanes
+  std::map<std::pair<double, Company>, std::shared_ptr<const KernelPlan>> plans;  // by tolerance, alone or in lanes
   double read = 0, scenario_made = 0, program_made = 0;       // seconds
   double plan_made = 0, compiled = 0;                         // of the last of the plans
 };
@@ -89,16 +89,16 @@ std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& 
 }
 
 // The kernel of a motion that is long enough for the dearest writing and for machine code.
-const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, const Start<long double>& start, bool alone = true) {
-  auto& plan = r.plans[{tolerance, alone}];
+const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, const Start<long double>& start, Company company = Company::alone) {
+  auto& plan = r.plans[{tolerance, company}];
   if (plan) return plan;
   Stopwatch watch;
   const std::vector<long double> parameters = parameter_values<long double>(*r.scenario.model);
   const std::vector<double> state(start.state.begin(), start.state.end());
   const double t = static_cast<double>(start.t);
-  const auto derived = KernelPlan::make(std::make_shared<const Program>(*r.stepping), taylor_order(std::log(tolerance)) - 1, parameters, t, state);
+  const auto derived = KernelPlan::make(std::make_shared<const Program>(*r.stepping), taylor_order(std::log(tolerance)) - 1, parameters, t, state, company);
   if (!derived) return plan;
-  plan = cheapest(representations({derived, r.scenario.structure, {}, parameters, t, state, r.scenario.mechanics.get()}, WritingEffort::very_long_motion), alone).plan;
+  plan = cheapest(representations({derived, r.scenario.structure, {}, parameters, t, state, r.scenario.mechanics.get()}, WritingEffort::very_long_motion)).plan;
   r.plan_made = watch.seconds();
   watch = {};
   plan->compile({});
@@ -274,7 +274,7 @@ void answer_batch(Ready& r, double tolerance, double seconds, const std::string&
   using W = Wider<double>;
   const auto starts = neighbours<W>(r, name);
   const W end = from_rational<W>(*r.scenario.model->simulate.to);
-  const auto plan = plan_of(r, tolerance, starts[0], false);
+  const auto plan = plan_of(r, tolerance, starts[0], Company::in_lanes);
   if (!plan) throw Failed{"no kernel for this model"};
   const Stopwatch compiling;
   plan->compile({}, static_cast<int>(starts.size()));

@@ -10,10 +10,11 @@ namespace {
 constexpr std::size_t kSideBySide = 8;
 // The same where four orders of a convolution are four sums of lanes.
 constexpr std::size_t kSideBySideInLanes = 3;
+// So few steps are written out for the first four stages and for every place in a block.
+constexpr std::size_t kFewSteps = 64;
 }  // namespace
 
 void Emitter::stage(const std::vector<Step>& steps, bool solved) {
-  known_.clear();
   for (const Step& s : steps) coefficient(s);
   if (!solved) return;
   sides();
@@ -153,87 +154,78 @@ void Emitter::over_blocks(const std::function<void(Value*)>& before, const std::
   b_.SetInsertPoint(done);
 }
 
-// One function for all stages: four of them, one for each place in a block, were no faster and took twice as long to make. What is new in a block is
-// added to the sums as it comes.
 void Emitter::stages(const std::vector<Step>& steps, bool solved) {
-  const std::string list = solved ? "stage" : "after";
   bulk_.clear();
   for (const Step& s : steps)
     for (const Convolution& c : convolutions(s)) bulk_.try_emplace(c, 0U);
   unsigned count = 0;
   for (auto& [c, place] : bulk_) place = count++;
-
-  llvm::Function* const whole = function_;
-  Value* const arena = w_;
-  const auto back = b_.saveIP();
-
-  // The first block knows little before it: its histories are made stage by stage.
-  llvm::Function *first[kBlock] = {}, *add[kBlock - 1] = {}, *before_block = nullptr;
-  for (stage_ = 1; stage_ <= std::min(p_.stages, kBlock); ++stage_) {
-    first[stage_ - 1] = begin_part(list + "_first" + std::to_string(stage_));
-    for (const auto& [c, place] : bulk_) {
-      const auto [old, new_of_a] = history(c);
-      b_.CreateAlignedStore(old, scratch(place, static_cast<unsigned>(stage_ - 1)), align());
-      b_.CreateAlignedStore(new_of_a, scratch(place, static_cast<unsigned>(stage_ - 1), true), align());
-    }
-    end();
-  }
-  relative_ = true;
-  if (p_.stages > kBlock) {
-    before_block = begin_part(list + "_known");
-    bulk();
-    for (const auto& [c, place] : bulk_)
-      for (unsigned i = 0; i < kBlock; ++i) b_.CreateAlignedStore(number(0), scratch(place, i, true), align());
-    end();
-    for (int m = 0; m + 1 < kBlock; ++m) {
-      add[m] = begin_part(list + "_add" + std::to_string(m));
-      add_newest(m);
-      end();
-    }
-  }
-  llvm::Function* const any = begin_part(list + "_any");
-  stage(steps, solved);
-  relative_ = false;
-  end();
-
-  function_ = whole;
-  w_ = arena;
-  b_.restoreIP(back);
+  scratch_ = scratch_memory();
   known_.clear();
-  Value* scratch = scratch_memory();
-  const auto make = [&](Value* k, int i) { b_.CreateCall(any, {w_, b_.CreateConstInBoundsGEP1_64(lane_, scratch, static_cast<std::uint64_t>(i)), k}); };
-  for (int i = 0; i < std::min(kBlock, p_.stages); ++i) {
-    Value* k = b_.getInt64(static_cast<std::uint64_t>(i + 1));
-    b_.CreateCall(first[i], {w_, scratch, k});
-    make(k, i);
-  }
-  if (!before_block) return;
-  over_blocks([&](Value* k0) { b_.CreateCall(before_block, {w_, scratch, k0}); },
-              [&](Value* k0, int i) {
-                Value* k = b_.CreateAdd(k0, b_.getInt64(static_cast<std::uint64_t>(i)));
-                make(k, i);
-                if (i + 1 < kBlock) b_.CreateCall(add[i], {w_, scratch, k});
+  if (steps.size() <= kFewSteps) stages_in_line(steps, solved);
+  else stages_in_parts(steps, solved);
+  relative_ = false;
+  known_.clear();
+}
+
+// What is new of a block stays in registers.
+void Emitter::stages_in_line(const std::vector<Step>& steps, bool solved) {
+  for (stage_ = 1; stage_ <= std::min(p_.stages, kBlock); ++stage_) stage(steps, solved);
+  if (p_.stages <= kBlock) return;
+  over_blocks([&](Value* k0) { begin_block(k0), bulk(); },
+              [&](Value*, int i) {
+                stage_ = i;
+                stage(steps, solved);
               });
 }
 
-// After stage m of a block: what its coefficients, the newest, add to the orders after it.
-void Emitter::add_newest(int m) {
-  // For one lane, four orders at once: those up to m are done with.
-  auto* orders = lanes_ == 1 ? static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock)) : lane_;
-  const llvm::Align at_any = lanes_ == 1 ? llvm::Align(8) : align(), at_four = lanes_ == 1 ? llvm::Align(32) : align();
-  for (const auto& [c, place] : bulk_) {
-    Value *a = load(std::int64_t{c.a} + c.lead, true), *b = load(std::int64_t{c.b} + c.lead, true);
-    if (lanes_ == 1) a = b_.CreateVectorSplat(kBlock, a), b = b_.CreateVectorSplat(kBlock, b);
-    for (int i = lanes_ == 1 ? 0 : m + 1; i < (lanes_ == 1 ? 1 : kBlock); ++i) {
-      const auto add = [&](bool new_of_a, std::uint32_t older, Value* newest) {
-        Value* sum = scratch(place, static_cast<unsigned>(i), new_of_a);
-        Value* x = b_.CreateAlignedLoad(orders, address(std::int64_t{older} + i - m, false), at_any);
-        b_.CreateAlignedStore(fma(x, newest, b_.CreateAlignedLoad(orders, sum, at_four)), sum, at_four);
-      };
-      add(false, c.a, b);
-      add(true, c.b, a);
+void Emitter::begin_block(Value* k0) {
+  relative_ = true;
+  k0_ = k0;
+  block_ = b_.CreateInBoundsGEP(lane_, w_, k0);
+  known_.clear();
+}
+
+// A function for each place in a block. That of the first place serves the first block as well, whose histories are made stage by stage.
+void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
+  const std::string list = solved ? "stage" : "after";
+  llvm::Function* const whole = function_;
+  Value *const arena = w_, *const scratch_of_whole = scratch_;
+  const auto back = b_.saveIP();
+  llvm::Function *first[kBlock] = {}, *in_block[kBlock] = {}, *before_block = nullptr;
+  for (stage_ = 1; stage_ <= std::min(p_.stages, kBlock); ++stage_) {
+    first[stage_ - 1] = begin_part(list + "_first" + std::to_string(stage_));
+    relative_ = false;
+    for (const auto& [c, place] : bulk_) {
+      const auto [old, new_of_a] = history(c);
+      b_.CreateAlignedStore(old, scratch(place, 0), align());
+      b_.CreateAlignedStore(new_of_a, scratch(place, 0, true), align());
     }
+    end();
   }
+  if (p_.stages > kBlock) {
+    before_block = begin_part(list + "_known");
+    bulk();
+    for (const auto& [c, place] : bulk_) b_.CreateAlignedStore(number(0), scratch(place, 0, true), align());
+    end();
+  }
+  for (stage_ = 0; stage_ < (before_block ? kBlock : 1); ++stage_) {
+    history_is_whole_ = stage_ == 0;
+    in_block[stage_] = begin_part(list + std::to_string(stage_));
+    stage(steps, solved);
+    end();
+  }
+  history_is_whole_ = false;
+  function_ = whole;
+  w_ = arena;
+  b_.restoreIP(back);
+  for (int k = 1; k <= std::min(kBlock, p_.stages); ++k) {
+    b_.CreateCall(first[k - 1], {w_, scratch_of_whole, b_.getInt64(static_cast<std::uint64_t>(k))});
+    b_.CreateCall(in_block[0], {w_, scratch_of_whole, b_.getInt64(static_cast<std::uint64_t>(k))});
+  }
+  if (!before_block) return;
+  over_blocks([&](Value* k0) { b_.CreateCall(before_block, {w_, scratch_of_whole, k0}); },
+              [&](Value* k0, int i) { b_.CreateCall(in_block[i], {w_, scratch_of_whole, k0}); });
 }
 
 void Emitter::extend() {

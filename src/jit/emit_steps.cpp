@@ -21,18 +21,20 @@ llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
 std::pair<llvm::Value*, llvm::Value*> Emitter::history(const Convolution& c) {
   Value *s, *t = number(0);
   if (relative_) {
-    const unsigned place = bulk_.at(c);
-    s = b_.CreateAlignedLoad(lane_, scratch(place, 0), align());
-    t = b_.CreateAlignedLoad(lane_, scratch(place, 0, true), align());
-  } else {
-    const std::int64_t p = stage_ + c.lead, block = stage_ > 0 ? (stage_ - 1) / kBlock * kBlock + 1 + c.lead : 0, known = std::min(block, p), i = p - known;
-    const auto at = [&](std::uint32_t x, std::int64_t order) { return order == p ? newest(x, c.lead) : load(x + order); };
-    s = number(0);
-    for (std::int64_t j = kBlock; j < known; ++j) s = fma(at(c.a, j), at(c.b, p - j), s);
-    for (std::int64_t j = std::min<std::int64_t>(known, kBlock) - 1; j > i; --j) s = fma(at(c.a, j), at(c.b, p - j), s);
-    for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = fma(at(c.a, j), at(c.b, p - j), s);
-    for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = fma(at(c.a, j), at(c.b, p - j), t);
+    const unsigned place = bulk_.at(c), stage = static_cast<unsigned>(stage_);
+    s = b_.CreateAlignedLoad(lane_, scratch(place, stage), align());
+    if (history_is_whole_) return {s, b_.CreateAlignedLoad(lane_, scratch(place, stage, true), align())};
+    for (int j = stage_; j >= 1; --j) s = fma(load(std::int64_t{c.a} + j), earlier(c.b, stage_ + c.lead - j), s);
+    for (int j = 0; j < stage_; ++j) t = fma(earlier(c.a, c.lead + j), load(std::int64_t{c.b} + stage_ - j), t);
+    return {s, t};
   }
+  const int p = stage_ + c.lead, block = stage_ > 0 ? (stage_ - 1) / kBlock * kBlock + 1 + c.lead : 0, known = std::min(block, p), i = p - known;
+  s = number(0);
+  const auto product = [&](int j, Value* sum) { return fma(earlier(c.a, j), earlier(c.b, p - j), sum); };
+  for (int j = kBlock; j < known; ++j) s = product(j, s);
+  for (int j = std::min(known, kBlock) - 1; j > i; --j) s = product(j, s);
+  for (int j = i < known ? i : known - 1; j >= 1; --j) s = product(j, s);
+  for (int j = std::max(known, 1); j < p; ++j) t = product(j, t);
   return {s, t};
 }
 
@@ -71,7 +73,7 @@ void Emitter::coefficient(const Step& s) {
     case Act::input: {
       const auto key = "rising" + std::to_string(s.index);
       const std::vector<double> row(k_.rising_.begin() + static_cast<std::ptrdiff_t>(s.index * k_.orders), k_.rising_.begin() + static_cast<std::ptrdiff_t>((s.index + 1) * k_.orders));
-      Value* x = relative_ ? load(std::int64_t{s.a.at} + l + s.index, true) : load(std::int64_t{s.a.at} + stage_ + l + s.index);
+      Value* x = earlier(s.a.at, stage_ + l + static_cast<int>(s.index));
       put(s.out, l, b_.CreateFMul(x, table(key.c_str(), row, l)));
       break;
     }
@@ -138,7 +140,7 @@ void Emitter::value(const Step& s) {
     case Act::divide: {
       Value* r = b_.CreateFDiv(number(1), get(s.b, l));
       store(r, s.c.at);
-      known_[{s.c.at, -1000}] = r;
+      known_[{s.c.at, kNoOrder}] = r;
       put(s.out, l, b_.CreateFMul(a, r));
       break;
     }
@@ -154,8 +156,8 @@ void Emitter::value(const Step& s) {
         const auto at = [&](Value* all) { return b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), all, static_cast<std::uint64_t>(lane)); };
         call_scalar("anholon_sincos", {of_lane(a, lane), at(sine), at(cosine)}, b_.getVoidTy());
       }
-      known_.erase({s.out.at, l});
-      known_.erase({s.c.at, l});
+      known_.erase({s.out.at, 0});
+      known_.erase({s.c.at, 0});
       break;
     }
     case Act::function: put(s.out, l, call("anholon_function", {b_.getInt32(s.index), a})); break;

@@ -19,7 +19,8 @@ Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes)
 }
 
 void Emitter::run() {
-  if (k_.refine || (k_.elimination->influences.empty() && k_.elimination->work() > kLongElimination)) substitution();
+  const SparseLu& e = *k_.elimination;
+  if (k_.refine || (e.influences.empty() ? e.work() > kLongElimination : lanes_ > 1 && !e.own.empty())) substitution();
   values();
   factor();
   lead();
@@ -48,10 +49,9 @@ llvm::Function* Emitter::begin_part(const std::string& name) {
   function_->addFnAttr(llvm::Attribute::NoUnwind);
   w_ = function_->getArg(0);
   scratch_ = function_->getArg(1);
-  k0_ = function_->getArg(2);
+  function_->addParamAttr(1, llvm::Attribute::NoAlias);
   b_.SetInsertPoint(llvm::BasicBlock::Create(m_.getContext(), "entry", function_));
-  block_ = b_.CreateInBoundsGEP(lane_, w_, k0_);
-  known_.clear();
+  begin_block(function_->getArg(2));
   return function_;
 }
 
@@ -65,21 +65,21 @@ llvm::Value* Emitter::address(std::int64_t slot, bool relative) {
 }
 
 llvm::Value* Emitter::get(const Place& place, int lead) {
-  const auto key = std::make_pair(place.at, place.series ? lead : -1000);
-  if (const auto it = known_.find(key); it != known_.end()) return it->second;
-  Value* v = !place.series ? load(place.at) : relative_ ? load(std::int64_t{place.at} + lead, true) : load(std::int64_t{place.at} + stage_ + lead);
-  return known_[key] = v;
+  if (place.series) return known_[{place.at, stage_ + lead}] = earlier(place.at, stage_ + lead);
+  const auto it = known_.find({place.at, kNoOrder});
+  return it != known_.end() ? it->second : known_[{place.at, kNoOrder}] = load(place.at);
+}
+
+llvm::Value* Emitter::earlier(std::uint32_t at, int order) {
+  const auto it = known_.find({at, order});
+  return it != known_.end() ? it->second : load(std::int64_t{at} + order, relative_);
 }
 
 void Emitter::put(const Place& place, int lead, Value* v) {
-  known_[{place.at, place.series ? lead : -1000}] = v;
-  if (!place.series) {
-    // Beyond stage 0 nobody asks for it again.
-    if (!relative_ && stage_ <= 0) store(v, place.at);
-    return;
-  }
-  if (relative_) store(v, std::int64_t{place.at} + lead, true);
-  else store(v, std::int64_t{place.at} + stage_ + lead);
+  known_[{place.at, place.series ? stage_ + lead : kNoOrder}] = v;
+  if (place.series) store(v, std::int64_t{place.at} + stage_ + lead, relative_);
+  // Beyond stage 0 nobody asks for it again.
+  else if (!relative_ && stage_ <= 0) store(v, place.at);
 }
 
 llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, int offset) {
@@ -90,7 +90,7 @@ llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, in
     t = new llvm::GlobalVariable(m_, data->getType(), true, llvm::GlobalValue::PrivateLinkage, data, name);
   }
   Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), t, k0_);
-  at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at, static_cast<std::uint64_t>(static_cast<std::int64_t>(offset)));
+  at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at, static_cast<std::uint64_t>(static_cast<std::int64_t>(stage_ + offset)));
   Value* x = b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8));
   return lanes_ == 1 ? x : b_.CreateVectorSplat(static_cast<unsigned>(lanes_), x);
 }
@@ -136,7 +136,7 @@ void Emitter::factor() {
   for (std::size_t i = 0; i < p_.entries.size(); ++i) {
     Value* v = b_.CreateFMul(number(p_.entries[i].sign), load(p_.entries[i].from));
     lu[e.place[i]] = b_.CreateFAdd(at(e.place[i]), v);
-    if (k_.refine) store(v, k_.entries + static_cast<std::int64_t>(i));
+    if (k_.keeps_entries()) store(v, k_.entries + static_cast<std::int64_t>(i));
   }
   std::vector<Value*> reciprocal(e.pivots.size(), nullptr);
   for (std::size_t k = 0; k < e.pivots.size(); ++k) {
@@ -158,21 +158,71 @@ void Emitter::factor() {
   end();
 }
 
-// Without what is always zero.
 void Emitter::invert(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal) {
   const SparseLu& e = *k_.elimination;
-  const auto minus = [&](Value* s, std::uint32_t entry, Value* x) { return x && lu[entry] ? fma(b_.CreateFNeg(lu[entry]), x, s ? s : number(0)) : s; };
+  if (!e.own.empty()) {
+    if (lanes_ == 1) invert_sides_at_once(lu, reciprocal);
+    else invert_sides_by_call();
+    return;
+  }
   for (const std::uint32_t side : p_.sides) {
-    std::vector<Value*> rhs(p_.rows, nullptr), y(p_.rows, nullptr);
+    std::vector<Value*> rhs(p_.rows, nullptr);
     rhs[side] = number(1);
-    for (const SparseLu::Forward& f : e.forward) rhs[f.to] = minus(rhs[f.to], f.entry, rhs[f.from]);
-    for (const SparseLu::Backward& b : e.backward) {
-      Value* s = b.zero_side ? nullptr : rhs[b.row];
-      for (std::uint32_t i = b.first; i < b.first + b.count; ++i) s = minus(s, e.terms[i].entry, y[e.terms[i].column]);
-      y[b.column] = !s || e.pivots[b.pivot].one ? s : b_.CreateFMul(s, reciprocal[b.pivot]);
-    }
+    const std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
     for (std::size_t i = 0; i < e.influences.size(); ++i)
       if (e.influences[i].side == side) store(y[e.influences[i].column], k_.inverse + static_cast<std::int64_t>(i));
+  }
+}
+
+// Without what is always zero. Right sides may be vectors of several.
+std::vector<llvm::Value*> Emitter::solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal) {
+  const SparseLu& e = *k_.elimination;
+  std::vector<Value*> y(p_.rows, nullptr);
+  const auto as = [&](Value* v, Value* x) { return v->getType() == x->getType() ? v : b_.CreateVectorSplat(llvm::cast<llvm::FixedVectorType>(x->getType())->getNumElements(), v); };
+  const auto minus = [&](Value* s, std::uint32_t entry, Value* x) {
+    return x && lu[entry] ? fma(as(b_.CreateFNeg(lu[entry]), x), x, s ? s : llvm::ConstantFP::get(x->getType(), 0)) : s;
+  };
+  for (const SparseLu::Forward& f : e.forward) rhs[f.to] = minus(rhs[f.to], f.entry, rhs[f.from]);
+  for (const SparseLu::Backward& b : e.backward) {
+    Value* s = b.zero_side ? nullptr : rhs[b.row];
+    for (std::uint32_t i = b.first; i < b.first + b.count; ++i) s = minus(s, e.terms[i].entry, y[e.terms[i].column]);
+    y[b.column] = !s || e.pivots[b.pivot].one ? s : b_.CreateFMul(s, as(reciprocal[b.pivot], s));
+  }
+  return y;
+}
+
+// Every right side is an element of vectors.
+void Emitter::invert_sides_at_once(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal) {
+  const SparseLu& e = *k_.elimination;
+  std::vector<Value*> rhs(p_.rows, nullptr);
+  std::vector<std::size_t> rank(p_.sides.size());
+  for (std::size_t r = 0; r < p_.sides.size(); ++r) {
+    std::vector<double> unit(p_.sides.size(), 0.0);
+    unit[r] = 1;
+    rhs[p_.sides[r]] = llvm::ConstantDataVector::get(m_.getContext(), unit);
+    rank[p_.sides[r]] = r;
+  }
+  const std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
+  for (std::size_t i = 0; i < e.influences.size();) {
+    const std::uint32_t column = e.influences[i].column;
+    std::size_t end = i;
+    bool all = true;  // in their order
+    for (; end < e.influences.size() && e.influences[end].column == column; ++end) all = all && rank[e.influences[end].side] == end - i;
+    if (all && end - i == p_.sides.size()) b_.CreateAlignedStore(y[column], address(k_.inverse + static_cast<std::int64_t>(i), false), llvm::Align(8));
+    else
+      for (std::size_t k = i; k < end; ++k) store(b_.CreateExtractElement(y[column], rank[e.influences[k].side]), k_.inverse + static_cast<std::int64_t>(k));
+    i = end;
+  }
+}
+
+// Side by side, by a function of its own: in many lanes they would be most of the code.
+void Emitter::invert_sides_by_call() {
+  const SparseLu& e = *k_.elimination;
+  for (const std::uint32_t side : p_.sides) {
+    for (const std::uint32_t other : p_.sides) store(number(other == side ? 1 : 0), k_.side + std::int64_t{other});
+    b_.CreateCall(substitution_, {w_});
+    for (std::size_t i = 0; i < e.influences.size(); ++i)
+      if (e.influences[i].side == side) store(load(k_.solution + std::int64_t{e.influences[i].column}), k_.inverse + static_cast<std::int64_t>(i));
   }
 }
 
@@ -208,6 +258,12 @@ void Emitter::solve() {
       Value*& y = solution_[e.influences[i].column];
       y = fma(load(k_.inverse + static_cast<std::int64_t>(i)), side_[e.influences[i].side], y ? y : number(0));
     }
+    for (const SparseLu::Own& own : e.own) {
+      Value* y = nullptr;
+      for (std::uint32_t i = own.first; i < own.first + own.count; ++i)
+        if (Value* x = solution_[e.own_terms[i].column]) y = minus_entry(e.own_terms[i].entry, x, y);
+      solution_[own.column] = y;
+    }
     for (std::uint32_t j = 0; j < p_.rows; ++j)
       if (asked_[j] && !solution_[j]) solution_[j] = number(0);
     return;
@@ -218,6 +274,15 @@ void Emitter::solve() {
   b_.CreateCall(substitution_, {w_});
   solution_.clear();
   for (std::uint32_t j = 0; j < p_.rows; ++j) solution_.push_back(asked_[j] ? load(k_.solution + j) : nullptr);
+}
+
+// s - an entry of the linearized tape times x; by 1 and -1 it is exact without the product.
+llvm::Value* Emitter::minus_entry(std::uint32_t entry, Value* x, Value* s) {
+  const Entry& e = p_.entries[entry];
+  const Coefficient* const c = e.from < p_.coefficients.size() ? &p_.coefficients[e.from] : nullptr;
+  if (!s) s = number(0);
+  if (!c || !(c->one() || c->minus_one())) return fma(b_.CreateFNeg(load(k_.entries + std::int64_t{entry})), x, s);
+  return (e.sign > 0) == c->one() ? b_.CreateFSub(s, x) : b_.CreateFAdd(s, x);
 }
 
 // Forward and backward, from side_ to solution_.
@@ -256,7 +321,7 @@ void Emitter::substitution() {
     for (std::uint32_t j = 0; j < p_.rows; ++j) solution_[j] = b_.CreateFAdd(first[j], solution_[j]);
   }
   for (std::uint32_t j = 0; j < p_.rows; ++j)
-    if (asked_[j]) store(solution_[j], k_.solution + j);
+    if (asked_[j] && solution_[j]) store(solution_[j], k_.solution + j);
   end();
   substitution_ = function_;
 }

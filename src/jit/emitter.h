@@ -1,8 +1,9 @@
 // LLVM IR for a kernel of one lane or several: the arithmetic of kernel/sweep.h, operation by operation in the same order, so the bits are the same.
 //
-// Shape of the code: one function for all stages, in a loop over blocks of four. What a convolution knows before a block is summed for its four orders
-// at once, several convolutions side by side; what becomes known in a block is added to the orders after it. The first block, where little is known,
-// makes these sums stage by stage. Where the elimination is long it is a function of its own.
+// Shape of the code: blocks of four stages. What a convolution knows before a block is summed for its four orders at once, several convolutions side by
+// side; what is new in the block is added stage by stage. Few steps are written out for each of the first four stages and for each place in a block, so
+// that what is new stays in registers; of many, each place in a block is a function, and the first block, where little is known, uses that of the first
+// place. Where the elimination is long it is a function of its own.
 #pragma once
 #include <llvm/IR/IRBuilder.h>
 #include <llvm/IR/Module.h>
@@ -42,6 +43,10 @@ class Emitter {
   void values();
   void factor();
   void invert(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
+  void invert_sides_at_once(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
+  void invert_sides_by_call();
+  std::vector<Value*> solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
+  Value* minus_entry(std::uint32_t entry, Value* x, Value* s);
   void lead();
   void level(int level);
   void advance();
@@ -49,12 +54,14 @@ class Emitter {
   void extend();
   // All stages from 1 of a list, in blocks.
   void stages(const std::vector<Step>& steps, bool solved);
+  void stages_in_line(const std::vector<Step>& steps, bool solved);
+  void stages_in_parts(const std::vector<Step>& steps, bool solved);
+  void begin_block(Value* k0);
   void stage(const std::vector<Step>& steps, bool solved);
   // A loop over the blocks after the first; `body` is for stage k0 + i.
   void over_blocks(const std::function<void(Value* k0)>& before, const std::function<void(Value* k0, int i)>& body);
   void bulk();
   Value* scratch_memory();
-  void add_newest(int m);
   void known_before(const Convolution* group, std::size_t count);
   void known_before_in_lanes(const Convolution* group, std::size_t count);
   // A loop over j = 4 .. order of the block - 1; `body` takes j and the sums so far, and gives the new ones.
@@ -107,8 +114,9 @@ class Emitter {
   Value* scratch(unsigned place, unsigned order, bool new_of_a = false) {
     return b_.CreateConstInBoundsGEP1_64(lane_, scratch_, std::uint64_t{kBlock} * (2 * place + new_of_a) + order);
   }
-  // The coefficient of order stage + lead.
+  // The coefficient of order stage + lead; of an order counted as `stage_` is.
   Value* get(const Place& place, int lead);
+  Value* earlier(std::uint32_t at, int order);
   void put(const Place& place, int lead, Value* v);
   Value* newest(std::uint32_t at, int lead) { return get({at, true}, lead); }
   // Element stage + offset of a table.
@@ -130,8 +138,11 @@ class Emitter {
   llvm::Function* function_ = nullptr;
   Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr;  // arena; arena + stage; that stage, or the first of a block
   bool relative_ = false;
-  int stage_ = 0;                                          // absolute
-  std::map<std::pair<std::uint32_t, int>, Value*> known_;  // of the present stage
+  int stage_ = 0;  // absolute, or from the first of its block
+  bool history_is_whole_ = false;  // in the scratch memory lies all that a convolution sums before the newest coefficients
+  // What need not be loaded, by its order, counted as `stage_` is.
+  static constexpr int kNoOrder = -1000;
+  std::map<std::pair<std::uint32_t, int>, Value*> known_;
   std::map<Convolution, unsigned> bulk_;                    // place in the scratch memory
   std::map<std::string, llvm::GlobalVariable*> tables_;
   std::vector<Value*> side_, solution_;

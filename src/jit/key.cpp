@@ -78,6 +78,11 @@ void Writer::add(const SparseLu::Influence& influence) {
   all(column, side);
 }
 
+void Writer::add(const SparseLu::Own& own) {
+  const auto& [column, first, count] = own;
+  all(column, first, count);
+}
+
 void Writer::add(const SparseLu::Term& term) {
   const auto& [entry, column] = term;
   all(entry, column);
@@ -102,8 +107,8 @@ void Writer::add(const Plan& plan) {
 }
 
 void Writer::add(const SparseLu& elimination) {
-  const auto& [entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences] = elimination;
-  all(entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences);
+  const auto& [entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences, own, own_terms] = elimination;
+  all(entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences, own, own_terms);
 }
 
 void Writer::add(const KernelTables& tables) {

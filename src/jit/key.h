@@ -46,6 +46,7 @@ class Writer {
   void add(const SparseLu::Update& update);
   void add(const SparseLu::Forward& forward);
   void add(const SparseLu::Backward& backward);
+  void add(const SparseLu::Own& own);
   void add(const SparseLu::Term& term);
   void add(const SparseLu::Influence& influence);
   void add(const JudgedPivot& pivot);

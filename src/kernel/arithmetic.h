@@ -61,6 +61,7 @@ struct KernelTables {
   std::uint32_t motion_size() const { return 2 * state_size + static_cast<std::uint32_t>(plan->x.size()); }
   std::vector<JudgedPivot> judged;
   bool refine = false;  // solutions, by one step of iterative refinement
+  bool keeps_entries() const { return refine || !elimination->own.empty(); }  // of the linearized tape
   std::vector<double> factorial, inverse_factorial, reciprocal_of, order;  // k!, 1 / k!, 1 / k, k
 
   // (s + m)! / s! and its reciprocal, m up to kMostRising.

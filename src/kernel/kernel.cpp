@@ -19,6 +19,10 @@ constexpr double kAround = 3.3;
 constexpr double kWaiting = 5;
 // Steps of a stage, operations of the elimination: more would be compiled for more than some five seconds.
 constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 6000;
+// The inverse of J takes the place of an elimination while it has so few entries: more operations, that do not wait for each other. First all that a stage
+// asks for, then the unknowns alone.
+constexpr std::size_t kMostInfluences = 64;
+constexpr std::size_t kMostInfluencesOfUnknowns = 300, kMostInLanes = 100;
 // Solutions are refined where that changes them by more.
 constexpr double kRefined = 64 * 0x1p-53;
 
@@ -61,8 +65,8 @@ const std::vector<Tier>& tiers() {
   return list;
 }
 
-KernelPlan::KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages)
-    : program_(std::move(program)), map_(std::move(map)), plan_(anholon::plan(*program_, stages, judged)) {
+KernelPlan::KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages, Company company)
+    : program_(std::move(program)), map_(std::move(map)), plan_(anholon::plan(*program_, stages, judged)), company_(company) {
   if (map_) plan_.apart = plan_.x.size() - map_->velocities();
   for (int d : plan_.d) tables_.state_size += static_cast<std::uint32_t>(d);
   levels_ = *std::max_element(plan_.c.begin(), plan_.c.end());
@@ -102,7 +106,7 @@ void KernelPlan::lay_out() {
   tables_.solution = tables_.side + static_cast<std::uint32_t>(plan_.roots.size());
   tables_.refined = tables_.solution + plan_.rows;
   tables_.entries = tables_.refined + plan_.rows;
-  tables_.step = tables_.entries + (tables_.refine ? static_cast<std::uint32_t>(plan_.entries.size()) : 0);
+  tables_.step = tables_.entries + (tables_.keeps_entries() ? static_cast<std::uint32_t>(plan_.entries.size()) : 0);
   tables_.increments = tables_.step + 1;
   std::uint32_t at = tables_.increments + tables_.state_size + static_cast<std::uint32_t>(plan_.x.size());
   const auto take = [&](std::uint32_t count) { return std::exchange(at, at + count); };
@@ -116,12 +120,12 @@ void KernelPlan::lay_out() {
 }
 
 std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
-                                                   const std::vector<double>& state) {
-  return make(std::move(program), nullptr, false, stages, parameters, t, state);
+                                                   const std::vector<double>& state, Company company) {
+  return make(std::move(program), nullptr, false, stages, parameters, t, state, company);
 }
 
 std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages,
-                                                   const std::vector<long double>& parameters, double t, const std::vector<double>& motion) {
+                                                   const std::vector<long double>& parameters, double t, const std::vector<double>& motion, Company company) {
   if (!no_plan(*program).empty()) return nullptr;
   std::vector<double> state = motion;
   if (map) {
@@ -129,7 +133,7 @@ std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program
     StateReader(*map, parameters).own(t, {motion.begin(), motion.end()}, own);
     state.assign(own.begin(), own.end());
   }
-  std::shared_ptr<KernelPlan> p(new KernelPlan(std::move(program), std::move(map), judged, stages));
+  std::shared_ptr<KernelPlan> p(new KernelPlan(std::move(program), std::move(map), judged, stages, company));
   // Whether solutions need a second look is seen at the state itself.
   p->tables_.refine = true;
   if (!p->choose_pivots(parameters, t, state)) return nullptr;
@@ -186,7 +190,16 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   }
   for (SparseLu::Pivot& p : elimination_.pivots)
     for (std::size_t k = samples; k < kSamples; ++k) p.value[k] = p.value[0];
-  if (!tables_.refine && !elimination_.pivots.empty()) invert(elimination_, plan_.sides, needed);
+  if (!tables_.refine && !elimination_.pivots.empty() && !invert(elimination_, plan_.sides, needed, kMostInfluences)) {
+    const std::uint32_t n = static_cast<std::uint32_t>(plan_.d.size());
+    std::vector<bool> unknowns(plan_.rows, false);
+    std::fill_n(unknowns.begin(), n, true);
+    SparseLu e = eliminate_sparse(plan_.rows, entries, samples, sides, unknowns);
+    if (invert(e, plan_.sides, unknowns, company_ == Company::alone ? kMostInfluencesOfUnknowns : kMostInLanes)) {
+      leave_to_own_rows(e, n, entries, needed);
+      elimination_ = std::move(e);
+    }
+  }
   lay_out();
   tables_.judged.clear();
   for (const SparseLu::Pivot& p : elimination_.pivots)
@@ -196,7 +209,7 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   return !elimination_.pivots.empty();
 }
 
-double KernelPlan::cost_alone() const { return work() + kWaiting * waits_ * (plan_.stages + 1); }
+double KernelPlan::cost() const { return company_ == Company::alone ? work() + kWaiting * waits_ * (plan_.stages + 1) : work(); }
 
 std::string KernelPlan::compile(const std::string& cache, int lanes) const {
   const CompilerModule* module = compiler();

@@ -14,14 +14,18 @@
 
 namespace anholon {
 
+// What a plan is laid out for: one motion, where operations wait for each other, or many side by side, where their number and the memory they touch count.
+enum class Company { alone, in_lanes };
+
 class KernelPlan {
  public:
   // `state`: where the pivots are chosen, and around it. Nothing if the program has no plan, or the equations are singular there.
   static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
-                                                const std::vector<double>& state);
+                                                const std::vector<double>& state, Company company = Company::alone);
   // Of a program for other unknowns than those of the motion; `judged`: its last quadrature is the determinant of the motion's J, up to a factor.
   static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages,
-                                                const std::vector<long double>& parameters, double t, const std::vector<double>& state);
+                                                const std::vector<long double>& parameters, double t, const std::vector<double>& state,
+                                                Company company = Company::alone);
   KernelPlan(const KernelPlan&) = delete;
   KernelPlan& operator=(const KernelPlan&) = delete;
 
@@ -32,8 +36,8 @@ class KernelPlan {
   std::size_t state_size() const { return tables_.state_size; }
   // To the state of the motion, where the kernel has unknowns of its own; else null.
   const StateMap* map() const { return map_.get(); }
+  Company company() const { return company_; }
   int waits() const { return waits_; }
-  double cost_alone() const;
   int levels() const { return levels_; }  // of hidden constraints
   // Makes machine code for one lane, or for so many, with the same bits; such kernels take it up at their next expansion. At most once for each, from
   // any thread. Why there is none, or nothing.
@@ -43,12 +47,12 @@ class KernelPlan {
     const Code* ready = c.ready.load(std::memory_order_acquire);
     return ready && c.lanes == lanes ? ready : nullptr;
   }
-  // Operations of one expansion: what it costs in a lane among others. And how many of them a stage makes one after the other (latency.h); with that, what it
-  // costs alone, in operations.
+  // Operations of one expansion; and what it costs, in operations: alone, it counts how many a stage makes one after the other (latency.h).
+  double cost() const;
   double work() const { return plan_.work() + elimination_.work() * (plan_.stages + 2) + static_cast<double>(elimination_.update_list.size()); }
 
  private:
-  KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages);
+  KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages, Company company);
   bool choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state);
   void lay_out();
 
@@ -58,6 +62,7 @@ class KernelPlan {
   SparseLu elimination_;
   KernelTables tables_;
   int levels_ = 0, waits_ = 0;
+  Company company_;
   struct Compiled {
     Code code;
     int lanes = 1;

@@ -83,6 +83,8 @@ class Clock {
     solution_.assign(p_.rows, 0);
     if (!e_.influences.empty()) {
       for (const SparseLu::Influence& of : e_.influences) solution_[of.column] = std::max(solution_[of.column], side[of.side]) + 1;
+      for (const SparseLu::Own& own : e_.own)
+        for (std::uint32_t i = own.first; i < own.first + own.count; ++i) solution_[own.column] = std::max(solution_[own.column], solution_[e_.own_terms[i].column]) + 1;
       return;
     }
     for (const SparseLu::Forward& f : e_.forward) side[f.to] = std::max(side[f.to], side[f.from]) + 1;

@@ -231,9 +231,7 @@ SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entr
   return out;
 }
 
-void invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed) {
-  // More operations, that do not wait for each other: while they are few.
-  constexpr std::size_t kMost = 64;
+bool invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most) {
   std::vector<std::vector<std::uint32_t>> met(needed.size());
   std::size_t count = 0;
   for (const std::uint32_t side : sides) {
@@ -250,9 +248,25 @@ void invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vec
       if (needed[b.column]) met[b.column].push_back(side), ++count;
     }
   }
-  if (count > kMost) return;
+  if (count > most) return false;
   for (std::uint32_t column = 0; column < met.size(); ++column)
     for (const std::uint32_t side : met[column]) e.influences.push_back({column, side});
+  return true;
+}
+
+void leave_to_own_rows(SparseLu& e, std::uint32_t first, std::span<const SampledEntry> entries, const std::vector<bool>& needed) {
+  std::vector<std::vector<SparseLu::Term>> rows(needed.size());
+  for (std::uint32_t i = 0; i < entries.size(); ++i)
+    if (entries[i].row >= first && entries[i].column != entries[i].row) rows[entries[i].row].push_back({i, entries[i].column});
+  std::vector<bool> wanted = needed;
+  for (std::uint32_t column = static_cast<std::uint32_t>(needed.size()); column-- > first;)
+    if (wanted[column])
+      for (const SparseLu::Term& t : rows[column]) wanted[t.column] = true;
+  for (std::uint32_t column = first; column < needed.size(); ++column) {
+    if (!wanted[column]) continue;
+    e.own.push_back({column, static_cast<std::uint32_t>(e.own_terms.size()), static_cast<std::uint32_t>(rows[column].size())});
+    e.own_terms.insert(e.own_terms.end(), rows[column].begin(), rows[column].end());
+  }
 }
 
 }  // namespace anholon

@@ -56,21 +56,30 @@ struct SparseLu {
   std::vector<Backward> backward;
   std::vector<Term> terms;
 
-  // Of a small system, the inverse in place of the two: solution[column] = sum of influence * side, column by column, what becomes known last
-  // last. It is made of solutions for sides of one.
+  // Of a system that is not large, the inverse in place of the two: solution[column] = sum of influence * side, column by column, what becomes known
+  // last last. It is made of solutions for sides of one.
   struct Influence {
     std::uint32_t column, side;
   };
   std::vector<Influence> influences;
+  // Columns that are left to their own rows, once those before are solved: solution[column] = -sum given entry * solution[other].
+  struct Own {
+    std::uint32_t column, first, count;  // into `own_terms`
+  };
+  std::vector<Own> own;
+  std::vector<Term> own_terms;  // of entries as they are given
 
-  double work() const { return static_cast<double>(influences.empty() ? forward.size() + terms.size() + backward.size() : influences.size()); }
+  double work() const { return static_cast<double>(influences.empty() ? forward.size() + terms.size() + backward.size() : influences.size() + own_terms.size()); }
 };
 
 // `sides`: rows 0..sides-1 have a right side, all others zero. `needed`: the columns whose solution is asked for. Empty pivots if the matrix is singular at a sample.
 SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, std::uint32_t sides, const std::vector<bool>& needed);
 
-// The inverse for the columns needed, if the system is small: a solution then waits for its last side only, not for a chain of eliminations.
-// `sides`: in the order in which they become known.
-void invert(SparseLu& elimination, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed);
+// The inverse for the columns needed, if it has no more than `most` entries: a solution then waits for its last side only, not for a chain of
+// eliminations. `sides`: in the order in which they become known.
+bool invert(SparseLu& elimination, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most);
+
+// Of all columns from `first` on, each with 1 on its diagonal and no column after it in its row, those that are needed are left to their own rows.
+void leave_to_own_rows(SparseLu& elimination, std::uint32_t first, std::span<const SampledEntry> entries, const std::vector<bool>& needed);
 
 }  // namespace anholon

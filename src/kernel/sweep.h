@@ -35,7 +35,7 @@ class Sweep final : public SweepSteps<L> {
       const Entry& entry = p_.entries[i];
       const V value = T::broadcast(entry.sign) * w_[entry.from];
       lu[e.place[i]] += value;
-      if (k_.refine) w_[k_.entries + i] = value;
+      if (k_.keeps_entries()) w_[k_.entries + i] = value;
     }
     V* reciprocal = w_ + k_.reciprocal;
     const V one = T::broadcast(1);
@@ -313,6 +313,10 @@ class Sweep final : public SweepSteps<L> {
       std::fill(y, y + p_.rows, T::broadcast(0));
       const V* influence = w_ + k_.inverse;
       for (const SparseLu::Influence& of : e.influences) y[of.column] = T::fma(*influence++, side[of.side], y[of.column]);
+      const V* entries = w_ + k_.entries;
+      for (const SparseLu::Own& own : e.own)
+        for (std::uint32_t i = own.first; i < own.first + own.count; ++i)
+          y[own.column] = T::fma(-entries[e.own_terms[i].entry], y[e.own_terms[i].column], y[own.column]);
       return;
     }
     std::copy(side, side + n, rhs);

@@ -53,8 +53,8 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
     const std::vector<double> state(at.state.begin(), at.state.end());
     const double t = static_cast<double>(at.t);
     const int order = o.order > 0 ? o.order : taylor_order(settings.log_tolerance);
-    if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state))
-      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion), false).plan;
+    if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state, Company::in_lanes))
+      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion)).plan;
   }
   constexpr std::size_t kMany = 32;
   if (kernel && o.cases >= kMany) lanes = tiers().back().lanes;

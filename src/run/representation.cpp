@@ -137,7 +137,7 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   first_order.c.assign(r->system.size(), 0);
   first_order.d.assign(r->system.size(), 1);
   r->program = program(r->system, first_order, q->others, true);
-  found.plan = KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t, e.state);
+  found.plan = KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t, e.state, e.derived->company());
   if (!found.plan || !(difference(e, e.derived, found.plan) < kAgree)) return std::nullopt;
   return found;
 }
@@ -166,7 +166,7 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
   // for them in any writing, sooner or later.
   const bool large = derived.unknowns() > kMostUnknowns;
   const auto add = [&](Writing writing, std::shared_ptr<const Program> p) {
-    auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state) : nullptr;
+    auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state, first->company()) : nullptr;
     if (plan && (large || plan->tables().refine == first->tables().refine) && plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
       list.push_back({writing, std::move(plan), {}});
   };
@@ -197,13 +197,12 @@ WritingEffort effort_after(std::size_t steps) {
   return most;
 }
 
-const Representation& cheapest(const std::vector<Representation>& list, bool alone) {
-  const auto cost = [&](const Representation& r) { return alone ? r.plan->cost_alone() : r.plan->work(); };
-  return *std::min_element(list.begin(), list.end(), [&](const Representation& a, const Representation& b) { return cost(a) < cost(b); });
+const Representation& cheapest(const std::vector<Representation>& list) {
+  return *std::min_element(list.begin(), list.end(), [](const Representation& a, const Representation& b) { return a.plan->cost() < b.plan->cost(); });
 }
 
 const Representation& cheapest_unmapped(const std::vector<Representation>& list) {
-  const auto cost = [](const Representation& r) { return r.plan->map() ? std::numeric_limits<double>::infinity() : r.plan->cost_alone(); };
+  const auto cost = [](const Representation& r) { return r.plan->map() ? std::numeric_limits<double>::infinity() : r.plan->cost(); };
   return *std::min_element(list.begin(), list.end(), [&](const Representation& a, const Representation& b) { return cost(a) < cost(b); });
 }
 
@@ -219,7 +218,7 @@ ExpansionWork work_of(const KernelPlan& plan) {
   w.solve = static_cast<std::size_t>(plan.elimination().work());
   w.operations = plan.work();
   w.waits = plan.waits();
-  w.total = plan.cost_alone();
+  w.total = plan.cost();
   return w;
 }
 

@@ -49,8 +49,8 @@ WritingEffort effort_after(std::size_t steps);
 // All that can be had with that effort, the derived one first. Where solutions have to be refined, equations that are written out would lose the digits
 // that refinement saves: there, and where a kernel has to know the slots of the derived tape, others are left out.
 std::vector<Representation> representations(const ToRepresent& equations, WritingEffort effort);
-// The first of the cheapest, for a motion alone or many side by side in lanes.
-const Representation& cheapest(const std::vector<Representation>& list, bool alone = true);
+// The first of the cheapest.
+const Representation& cheapest(const std::vector<Representation>& list);
 // … of those in the motion's own unknowns.
 const Representation& cheapest_unmapped(const std::vector<Representation>& list);
 
