@@ -29,6 +29,7 @@ void Emitter::begin_motion() {
   for (std::size_t j = 0; j < p_.x.size(); ++j)
     for (int k = 0; k <= p_.d[j]; ++k)
       store(times(load_from(function_->getArg(1), k < p_.d[j] ? high++ : guess++), k_.inverse_factorial[static_cast<std::size_t>(k)]), std::int64_t{p_.x[j]} + k);
+  for (const Beyond& b : p_.beyond_double) store(load_from(function_->getArg(1), std::int64_t{k_.state_size} + b.index), b.at);
   end();
 }
 

@@ -42,6 +42,11 @@ void Writer::add(const Partial& partial) {
   all(kind, out, a, b, value);
 }
 
+void Writer::add(const Beyond& beyond) {
+  const auto& [at, index] = beyond;
+  all(at, index);
+}
+
 void Writer::add(const Entry& entry) {
   const auto& [row, column, from, sign] = entry;
   all(row, column, from, sign);
@@ -101,9 +106,9 @@ void Writer::add(const Findings& found) {
 
 void Writer::add(const Plan& plan) {
   // What roots of even powers are is for whoever chooses steps; the determinant is among what is judged.
-  [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures,
+  [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
                                 roots_of_even_powers, rows, largest_lead, largest_d, c, d, apart, determinant] = plan;
-  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, rows, largest_lead, largest_d, c, d, apart);
+  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double, rows, largest_lead, largest_d, c, d, apart);
 }
 
 void Writer::add(const SparseLu& elimination) {

@@ -40,6 +40,7 @@ class Writer {
   void add(const PlanTerm& term);
   void add(const Coefficient& coefficient);
   void add(const Partial& partial);
+  void add(const Beyond& beyond);
   void add(const Entry& entry);
   void add(const Completion& completion);
   void add(const SparseLu::Pivot& pivot);

@@ -94,6 +94,7 @@ class Kernel {
       for (int k = 0; k < d; ++k, x += stride) *x = static_cast<double>(*from++) * inverse[k];
       *x = leading.empty() ? 0 : static_cast<double>(leading[j]) * inverse[d];
     }
+    for (const Beyond& b : p.beyond_double) number(b.at, lane) = 0;
     set_time(lane, t);
   }
   // Projects the state on the hidden constraints where it has left them (or leaves it as it is), solves for the leading derivatives, and computes

@@ -77,6 +77,7 @@ class Planner {
         place_[s] = {zero_, true};
       } else if (in.op == Op::input && slots_.inputs[s]->order == 0) {
         place_[s] = {plan_.x[slots_.inputs[s]->variable], true};
+        coordinate_at_[place_[s].at] = s;
       } else if (slots_.series[s]) {
         place_[s] = {take(plan_.stride), true};
       }
@@ -125,6 +126,35 @@ class Planner {
     return it->second;
   }
 
+  // What the value of a slot is beyond its double: of a coordinate, or of a sum with coordinates in it.
+  Place beyond_double(std::uint32_t s) {
+    if (const auto it = beyond_.find(s); it != beyond_.end()) return it->second;
+    Place& out = beyond_[s];
+    if (const ProgramInput* const in = code_[s].op == Op::input ? slots_.inputs[s] : nullptr) {
+      if (in->kind != ProgramInput::Kind::variable || in->order > 0 || p_.d[in->variable] == 0) return out;
+      std::uint32_t index = 0;
+      for (std::size_t j = 0; j < in->variable; ++j) index += static_cast<std::uint32_t>(p_.d[j]);
+      out = {take(1), false};
+      plan_.beyond_double.push_back({out.at, index});
+    } else if (const auto sum = sums_.find(s); sum != sums_.end()) {
+      Step step = sum->second;
+      std::vector<PlanTerm> terms;
+      bool any = false;
+      for (std::uint32_t k = step.first; k < step.first + step.count; ++k) {
+        terms.push_back({plan_.terms[k].coefficient, {}});
+        if (const auto x = coordinate_at_.find(plan_.terms[k].x.at); x != coordinate_at_.end()) terms.back().x = beyond_double(x->second);
+        any = any || terms.back().x.at != 0;
+      }
+      if (!any) return out;
+      step.act = Act::rest;
+      step.out = out = {take(1), false};
+      step.index = static_cast<std::uint32_t>(plan_.terms.size());
+      plan_.terms.insert(plan_.terms.end(), terms.begin(), terms.end());
+      list(s, false).push_back(step);
+    }
+    return out;
+  }
+
   void emit_sum(std::uint32_t s) {
     // Those known early first, so that the sum waits for the last only.
     std::vector<Slots::Summand> terms = slots_.sums[s];
@@ -148,6 +178,7 @@ class Planner {
         }
       }
       list(s, beyond).push_back(step);
+      if (!beyond) sums_[s] = step;
     }
   }
 
@@ -207,6 +238,7 @@ class Planner {
             step.b = weighted(slots_.same_as(in.a), after);
             step.out = place_[sine];
             step.c = place_[cosine];
+            step.d = beyond_double(slots_.same_as(in.a));
           } else {
             step.act = Act::function;
             step.c = weighted(slots_.same_as(in.a), after);
@@ -376,6 +408,9 @@ class Planner {
   std::map<std::string, std::uint32_t> coefficient_;
   std::map<std::uint32_t, std::uint32_t> reciprocal_;
   std::map<std::pair<std::uint32_t, bool>, Place> weighted_;
+  std::map<std::uint32_t, Place> beyond_;                  // what slots are beyond their doubles, if that is known
+  std::map<std::uint32_t, Step> sums_;                     // of slots
+  std::map<std::uint32_t, std::uint32_t> coordinate_at_;  // slots of coordinates by their places
   std::uint32_t zero_ = 0;
   bool again_ = false;  // the weighted series of a power depends on the unknowns of the stage
 };
@@ -420,6 +455,7 @@ double Plan::work() const {
         case Act::square: case Act::square_root: w += convolution / 2; break;
         case Act::power: case Act::sine_cosine: case Act::arctan2: w += 2 * convolution; break;
         case Act::input: case Act::weigh: case Act::select: case Act::lookup: w += orders; break;
+        case Act::rest: break;  // once only
       }
   return w;
 }

@@ -28,12 +28,13 @@ struct Place {
 enum class Act : std::uint8_t {
   input,        // x^(k): a = series of x, index = k
   linear,       // sum of coefficient * value
+  rest,         // of such a sum, what it is beyond its double; the terms from `index` on: its coefficients, what its values are beyond their doubles
   multiply,     // a * b
   square,       // a^2
   divide,       // a / b; c: 1 / b_0
   square_root,  // sqrt(a)
   power,        // a^value; b: 1 / a_0, c, d = weighted series of a and of itself
-  sine_cosine,  // out = sin a, c = cos a; b = weighted series of a
+  sine_cosine,  // out = sin a, c = cos a; b = weighted series of a; d: what a is beyond its double, where that is known
   function,     // elementary function `index` of a; b = its derivative, c = weighted series of a
   arctan2,      // atan2(a, b); c, d = derivatives by a and b; e, f = weighted series of a and b
   weigh,        // order * a
@@ -88,6 +89,12 @@ struct Completion {
   bool fresh;  // out is zero before (beyond stage 0)
 };
 
+// The state is kept in more digits than a double has. An angle that has turned often would lose those of its sine: `at` gets what number `index` of the
+// state (x_j^(k), k < d_j, one after the other) is beyond its double.
+struct Beyond {
+  std::uint32_t at, index;
+};
+
 struct Plan {
   int stages = 0;
   std::uint32_t stride = 0;
@@ -106,6 +113,7 @@ struct Plan {
   std::vector<char> root_is_zero;     // beyond stage 0, before the unknowns of the stage are known
   std::vector<std::uint32_t> sides;   // roots as they become known in a stage
   std::vector<Place> quadratures;
+  std::vector<Beyond> beyond_double;  // of the angles of sines
   std::vector<std::pair<std::uint32_t, Place>> roots_of_even_powers;  // slot of the tape of what roots are taken of: they may pass zero
   std::uint32_t rows = 0;             // of the linearized tape
   int largest_lead = 0, largest_d = 0;

@@ -38,6 +38,8 @@ class SweepSteps : public Arithmetic {
       for (int k = 0; k < d; ++k) x[k] = *high++ * T::broadcast(k_.inverse_factorial[static_cast<std::size_t>(k)]);
       x[d] = guess[j] * T::broadcast(k_.inverse_factorial[static_cast<std::size_t>(d)]);
     }
+    const V* low = reinterpret_cast<const V*>(from) + k_.state_size;
+    for (const Beyond& b : p_.beyond_double) w_[b.at] = low[b.index];
   }
 
   void adopt(const double* from) override {

@@ -14,7 +14,6 @@ namespace {
 // What one step loses, relative to the state; what is left after projection, relative to the terms of the constraint: round-off of
 // the wider numbers the state is kept in.
 constexpr double kConstraintBound = 1e-13, kProjectedBound = 1e-18;
-// Up to 10^5 steps. Round-off gathers: after 10^6 it may be ten times as much.
 constexpr double kEnergyBound = 1e-12;
 
 bool all_of_them() { return std::getenv("ANHOLON_LONG") != nullptr; }
@@ -57,7 +56,7 @@ TEST(Drift, TheFourBarStaysClosed) {
 
 TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
   Motion m;
-  ASSERT_NO_FATAL_FAILURE(run("zoo/rolling-coin", 0.0185, m));
+  ASSERT_NO_FATAL_FAILURE(run("zoo/rolling-coin", 0.022, m));
   EXPECT_LT(m.report.constraints, kConstraintBound);
   EXPECT_LT(m.report.constraints_kept, kProjectedBound);
 
@@ -71,15 +70,15 @@ TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
     for (const Input& in : tape.inputs) {
       const Node& node = model.graph->node(in.symbol);
       machine.series(in.slot)[0] = column(1 + node.order * n + node.index);
+      // The heading has turned so often that its 17 digits tell where x' and y' point to 1e-11 only: along it, as the coin rolls (R = 1/2).
+      if (const long double heading = column(1 + 2), rate = -column(1 + n + 4) / 2; node.order == 1 && node.index < 2)
+        machine.series(in.slot)[0] = rate * (node.index == 0 ? std::cos(heading) : std::sin(heading));
     }
     machine.evaluate();
     return machine.value(0) + 9.81L / 2 * std::sin(column(1 + 3));  // m = 1, R = 1/2, g = 9.81
   };
   const long double first = energy(m.rows.rows().front());
-  // Rows are evenly spaced, and so are the steps.
-  const std::size_t count = m.rows.rows().size(), early = all_of_them() ? count / 10 : count;
-  for (std::size_t i = 0; i < count; ++i)
-    EXPECT_LT(std::abs(static_cast<double>(energy(m.rows.rows()[i]) / first - 1)), i < early ? kEnergyBound : 10 * kEnergyBound) << "row " << i;
+  for (std::size_t i = 0; i < m.rows.rows().size(); ++i) EXPECT_LT(std::abs(static_cast<double>(energy(m.rows.rows()[i]) / first - 1)), kEnergyBound) << "row " << i;
 }
 
 }  // namespace
