@@ -378,18 +378,57 @@ void Emitter::advance() {
   advance_ = function_;
 }
 
+// Alone, four orders are a vector.
 std::vector<llvm::Value*> Emitter::increments() {
-  Value* step = load(k_.step);
+  const int most = p_.stages + p_.largest_d, groups = (most + kBlock - 1) / kBlock;
+  const bool alone = lanes_ == 1;
+  auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock);
+  // weights[k]: those of the orders i = 1.., or of four orders at once.
+  std::vector<std::vector<Value*>> weights(static_cast<std::size_t>(p_.largest_d) + 1);
+  Value *h = load(k_.step), *square = b_.CreateFMul(h, h), *fourth = b_.CreateFMul(square, square);
+  std::vector<Value*> powers{h, square, b_.CreateFMul(square, h), fourth};
+  if (alone) {
+    Value* first = llvm::PoisonValue::get(four);
+    for (std::uint64_t i = 0; i < kBlock; ++i) first = b_.CreateInsertElement(first, powers[i], i);
+    powers = {first};
+    fourth = b_.CreateVectorSplat(kBlock, fourth);
+  }
+  const std::size_t before = powers.size(), count = static_cast<std::size_t>(alone ? groups : most);
+  while (powers.size() < count) powers.push_back(b_.CreateFMul(powers[powers.size() - before], fourth));
+  for (int k = 0; k <= p_.largest_d; ++k)
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto rising = [&](int order) { return order <= most - k ? k_.rising(k, order) : 0; };
+      const int order = static_cast<int>(i) * (alone ? kBlock : 1) + 1;
+      Value* factor = alone ? llvm::ConstantDataVector::get(m_.getContext(), std::vector<double>{rising(order), rising(order + 1), rising(order + 2), rising(order + 3)})
+                            : number(rising(order));
+      weights[static_cast<std::size_t>(k)].push_back(k == 0 ? powers[i] : b_.CreateFMul(powers[i], factor));
+    }
   std::vector<Value*> all;
   for (std::size_t j = 0; j < p_.x.size(); ++j)
     for (int k = 0; k <= p_.d[j]; ++k) {
-      Value* s = number(0);
-      for (int i = p_.stages + p_.d[j] - k; i >= 1; --i) {
-        Value* x = load(std::int64_t{p_.x[j]} + k + i);
-        const double rising = k_.rising(k, i);
-        s = fma(s, step, rising == 1 ? x : b_.CreateFMul(x, number(rising)));
+      const int last = p_.stages + p_.d[j] - k;
+      std::vector<Value*> s(kBlock, number(0));
+      if (alone) {
+        Value* sum = llvm::ConstantAggregateZero::get(four);
+        for (int i = (last - 1) / kBlock * kBlock + 1; i >= 1; i -= kBlock) {
+          Value *at = address(std::int64_t{p_.x[j]} + k + i, false), *x = nullptr;
+          if (i + kBlock - 1 <= last) {
+            x = b_.CreateAlignedLoad(four, at, llvm::Align(8));
+          } else {
+            std::vector<llvm::Constant*> mask;
+            for (int order = i; order < i + kBlock; ++order) mask.push_back(b_.getInt1(order <= last));
+            x = b_.CreateMaskedLoad(four, at, llvm::Align(8), llvm::ConstantVector::get(mask), llvm::ConstantAggregateZero::get(four));
+          }
+          sum = fma(x, weights[static_cast<std::size_t>(k)][static_cast<std::size_t>((i - 1) / kBlock)], sum);
+        }
+        for (std::uint64_t r = 0; r < kBlock; ++r) s[r] = b_.CreateExtractElement(sum, r);
+      } else {
+        for (int i = last; i >= 1; --i) {
+          Value*& sum = s[static_cast<std::size_t>((i - 1) % kBlock)];
+          sum = fma(load(std::int64_t{p_.x[j]} + k + i), weights[static_cast<std::size_t>(k)][static_cast<std::size_t>(i - 1)], sum);
+        }
       }
-      all.push_back(b_.CreateFMul(s, step));
+      all.push_back(b_.CreateFAdd(s[0], b_.CreateFAdd(s[1], b_.CreateFAdd(s[2], s[3]))));
       store(all.back(), k_.increments + static_cast<std::int64_t>(all.size()) - 1);
     }
   return all;

@@ -118,9 +118,9 @@ void Writer::add(const SparseLu& elimination) {
 
 void Writer::add(const KernelTables& tables) {
   // Knots: models that look tables up are not compiled. The code is told which places of motions it is to read and write.
-  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, increments, motions, projected, margin,
+  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments, motions, projected, margin,
                                 inverse_pivots, found, size, state_size, judged, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders] = tables;
-  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, increments, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial,
+  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial,
       reciprocal_of, order, rising, falling, orders);
 }
 

@@ -48,7 +48,7 @@ struct KernelTables {
   };
   std::vector<Knots> knots;
   // Where in the arena.
-  std::uint32_t lu = 0, reciprocal = 0, inverse = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, step = 0, increments = 0;
+  std::uint32_t lu = 0, reciprocal = 0, inverse = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0, step = 0, weights = 0, increments = 0;
   // Of motions: x_j^(k), k < d_j, as sums of two doubles, first all the larger parts, and first guesses of x_j^(d_j). There are three places: where the
   // next expansion begins, the present one was begun, the one before; they take turns. Without the guesses: where projection has put the present one.
   std::array<std::uint32_t, 3> motions{};
@@ -58,6 +58,8 @@ struct KernelTables {
   Findings found;
   std::uint32_t size = 0;
   std::uint32_t state_size = 0;
+  // Of the series of x^(k), what their coefficients of order k + i = 1.. weigh in a change over a step h: (k + i)! / i! h^i.
+  std::uint32_t weight(int k, int i) const { return weights + static_cast<std::uint32_t>(k * (plan->stages + plan->largest_d + 1) + i); }
   std::uint32_t motion_size() const { return 2 * state_size + static_cast<std::uint32_t>(plan->x.size()); }
   std::vector<JudgedPivot> judged;
   bool refine = false;  // solutions, by one step of iterative refinement

@@ -107,7 +107,8 @@ void KernelPlan::lay_out() {
   tables_.refined = tables_.solution + plan_.rows;
   tables_.entries = tables_.refined + plan_.rows;
   tables_.step = tables_.entries + (tables_.keeps_entries() ? static_cast<std::uint32_t>(plan_.entries.size()) : 0);
-  tables_.increments = tables_.step + 1;
+  tables_.weights = tables_.step + 1;
+  tables_.increments = tables_.weight(plan_.largest_d + 1, 0);
   std::uint32_t at = tables_.increments + tables_.state_size + static_cast<std::uint32_t>(plan_.x.size());
   const auto take = [&](std::uint32_t count) { return std::exchange(at, at + count); };
   for (std::uint32_t& place : tables_.motions) place = take(tables_.motion_size());
