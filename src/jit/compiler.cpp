@@ -97,7 +97,7 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
   const auto add = [&](const char* symbol, auto* function) {
     symbols[(*jit)->mangleAndIntern(symbol)] = {llvm::orc::ExecutorAddr::fromPtr(function), llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
   };
-  add("anholon_sincos", called.sincos);
+  add("anholon_sines", called.sines);
   add("anholon_power", called.power);
   add("anholon_function", called.function);
   add("atan2", static_cast<double (*)(double, double)>(&std::atan2));

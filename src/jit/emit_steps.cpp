@@ -146,7 +146,7 @@ void Emitter::coefficient(const Step& s) {
 
 void Emitter::value(const Step& s) {
   const std::uint8_t l = s.lead;
-  Value* a = s.act == Act::linear || s.act == Act::rest ? nullptr : get(s.a, l);
+  Value* a = s.act == Act::linear || s.act == Act::rest || s.act == Act::sine_cosine ? nullptr : get(s.a, l);
   switch (s.act) {
     case Act::input: put(s.out, l, b_.CreateFMul(load(s.a.at + s.index), number(k_.factorial[s.index]))); break;
     case Act::linear: put(s.out, l, sum(s, s.count + s.constants)); break;
@@ -167,18 +167,10 @@ void Emitter::value(const Step& s) {
       put(s.d, l, number(0));
       break;
     case Act::sine_cosine: {
-      Value *sine = address(s.out.at, false), *cosine = address(s.c.at, false);
-      for (int lane = 0; lane < lanes_; ++lane) {
-        const auto at = [&](Value* all) { return b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), all, static_cast<std::uint64_t>(lane)); };
-        call_scalar("anholon_sincos", {of_lane(a, lane), at(sine), at(cosine)}, b_.getVoidTy());
-      }
+      Value* beyond = s.d.at != 0 ? address(s.d.at, false) : llvm::ConstantPointerNull::get(b_.getPtrTy());
+      call_scalar("anholon_sines", {address(s.a.at, false), beyond, address(s.out.at, false), address(s.c.at, false)}, b_.getVoidTy());
       known_.erase({s.out.at, 0});
       known_.erase({s.c.at, 0});
-      if (s.d.at != 0) {
-        Value *rest = load(s.d.at), *plain_sine = get(s.out, l), *plain_cosine = get(s.c, l);
-        put(s.out, l, fma(rest, plain_cosine, plain_sine));
-        put(s.c, l, fma(b_.CreateFNeg(rest), plain_sine, plain_cosine));
-      }
       break;
     }
     case Act::function: put(s.out, l, call("anholon_function", {b_.getInt32(s.index), a})); break;

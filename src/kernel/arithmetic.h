@@ -107,16 +107,20 @@ class Arithmetic {
   virtual void go_on(const double* base, double* to) = 0;
 };
 
-// Functions of the C library, in one place for every tier.
+// Functions of the C library, in one place for every tier; sines of angles that are very large, or on machines without fused multiplication.
 double power_of(double x, double exponent);
 double function_of(std::uint32_t function, double x);
 void sine_and_cosine(double x, double& sine, double& cosine);
+
+// Of angles in all lanes and what they are beyond their doubles (null: nothing).
+using SinesOfLanes = void (*)(const double* angle, const double* beyond, double* sine, double* cosine);
 
 // An instruction set this program was built for.
 struct Tier {
   const char* name;
   int lanes;  // the most
   std::unique_ptr<Arithmetic> (*make)(const KernelTables&, double* arena, int lanes);  // lanes: 1 or the most
+  SinesOfLanes sines_of_one, sines_of_all;
 };
 // Those that this machine has, the best last.
 const std::vector<Tier>& tiers();

@@ -223,7 +223,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
       if (s.act == Act::lookup) return "tables are looked up";
   Code code;
   std::string message;
-  module->compile(tables_, lanes, {power_of, function_of, sine_and_cosine}, cache, code, message);
+  module->compile(tables_, lanes, {power_of, function_of, lanes == 1 ? tiers().back().sines_of_one : tiers().back().sines_of_all}, cache, code, message);
   if (!code.values) return message;
   Compiled& made = lanes == 1 ? one_ : several_;
   made.code = std::move(code);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/sines.h"
 #include "kernel/sweep_steps.h"
 
 namespace anholon {
@@ -209,19 +210,7 @@ class Sweep final : public SweepSteps<L> {
         w_[s.b.at] = T::broadcast(1) / a;
         w_[s.d.at] = T::broadcast(0);
         break;
-      case Act::sine_cosine:
-        for (int lane = 0; lane < L; ++lane) {
-          double sine, cosine;
-          sine_and_cosine(T::get(a, lane), sine, cosine);
-          T::set(out, lane, sine);
-          T::set(w_[s.c.at], lane, cosine);
-        }
-        if (s.d.at != 0) {
-          const V rest = w_[s.d.at], sine = out, cosine = w_[s.c.at];
-          out = T::fma(rest, cosine, sine);
-          w_[s.c.at] = T::fma(-rest, sine, cosine);
-        }
-        break;
+      case Act::sine_cosine: Sines<L>::of(a, s.d.at != 0 ? w_[s.d.at] : T::broadcast(0), out, w_[s.c.at]); break;
       case Act::function: out = each(a, [&](double x) { return function_of(s.index, x); }); break;
       case Act::arctan2:
         for (int lane = 0; lane < L; ++lane) T::set(out, lane, std::atan2(T::get(a, lane), T::get(w_[s.b.at], lane)));

@@ -9,6 +9,6 @@ static std::unique_ptr<Arithmetic> make(const KernelTables& tables, double* aren
   return std::make_unique<Sweep<1>>(tables, arena);
 }
 
-const Tier tier_avx2{"avx2", 4, make};
+const Tier tier_avx2{"avx2", 4, make, Sines<1>::at, Sines<4>::at};
 
 }  // namespace anholon

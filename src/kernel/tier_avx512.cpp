@@ -9,6 +9,6 @@ static std::unique_ptr<Arithmetic> make(const KernelTables& tables, double* aren
   return std::make_unique<Sweep<1>>(tables, arena);
 }
 
-const Tier tier_avx512{"avx512", 8, make};
+const Tier tier_avx512{"avx512", 8, make, Sines<1>::at, Sines<8>::at};
 
 }  // namespace anholon

@@ -9,6 +9,6 @@ static std::unique_ptr<Arithmetic> make(const KernelTables& tables, double* aren
   return std::make_unique<Sweep<1>>(tables, arena);
 }
 
-const Tier tier_plain{"plain", 1, make};
+const Tier tier_plain{"plain", 1, make, Sines<1>::at, Sines<1>::at};
 
 }  // namespace anholon

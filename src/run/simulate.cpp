@@ -300,17 +300,23 @@ class Run {
   }
 
   void stopped() {
-    if (report_.outcome.message.find(" t = ") != std::string::npos) return;
-    report_.outcome.message += " at t = " + number_text(to_double(course_.time()), 12);
-    // Nobody asked for an end here.
-    const bool stopped_by_itself = report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
-    if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
-        report_.outcome.kind == OutcomeKind::no_convergence || report_.outcome.kind == OutcomeKind::not_a_number || stopped_by_itself)
-      explain_stop(s_, motion(), report_.outcome);
+    if (report_.outcome.message.find(" t = ") == std::string::npos) {
+      report_.outcome.message += " at t = " + number_text(to_double(course_.time()), 12);
+      // Nobody asked for an end here.
+      const bool stopped_by_itself = report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
+      if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
+          report_.outcome.kind == OutcomeKind::no_convergence || report_.outcome.kind == OutcomeKind::not_a_number || stopped_by_itself)
+        explain_stop(s_, motion(), report_.outcome);
+    } else if (report_.outcome.kind != OutcomeKind::singular) {
+      return;  // it has its row
+    }
     // The last good state is worth a row of its own.
     if (course_.steps() > 0 && !every_step_) {
       const Outcome why = report_.outcome;
+      report_.outcome = {};
       row(course_.before(), "");
+      // So near to where J is singular that it cannot be solved to all digits any more: the series reach as far back as forward.
+      if (!report_.outcome.ok() && course_.by_taylor()) report_.outcome = {}, row(course_.before() - (course_.time() - course_.before()), "");
       report_.outcome = why;
     }
   }
