@@ -46,6 +46,7 @@ class Emitter {
   void invert_sides_at_once(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
   void invert_sides_by_call();
   std::vector<Value*> solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
+  std::uint32_t multiply_by_inverse();
   Value* minus_entry(std::uint32_t entry, Value* x, Value* s);
   void lead();
   void level(int level);

@@ -249,8 +249,9 @@ bool invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vec
     }
   }
   if (count > most) return false;
-  for (std::uint32_t column = 0; column < met.size(); ++column)
-    for (const std::uint32_t side : met[column]) e.influences.push_back({column, side});
+  for (const std::uint32_t side : sides)
+    for (std::uint32_t column = 0; column < met.size(); ++column)
+      if (std::find(met[column].begin(), met[column].end(), side) != met[column].end()) e.influences.push_back({column, side});
   return true;
 }
 

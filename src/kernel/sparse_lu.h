@@ -56,8 +56,8 @@ struct SparseLu {
   std::vector<Backward> backward;
   std::vector<Term> terms;
 
-  // Of a system that is not large, the inverse in place of the two: solution[column] = sum of influence * side, column by column, what becomes known
-  // last last. It is made of solutions for sides of one.
+  // Of a system that is not large, the inverse in place of the two: solution[column] = sum of influence * side, side by side, what becomes known last
+  // last. It is made of solutions for sides of one.
   struct Influence {
     std::uint32_t column, side;
   };
