@@ -460,7 +460,8 @@ TEST(Kernels, AreNotCompiledForTheseReasonsOnly) {
   }
 }
 
-TEST(Kernels, HaveACompilerWhereOneWasBuilt) { EXPECT_EQ(compiler() != nullptr, test::compiler_expected()); }
+// Where none was built, that of another build may lie beside.
+TEST(Kernels, HaveACompilerWhereOneWasBuilt) { EXPECT_TRUE(compiler() || !test::compiler_expected()); }
 
 }  // namespace
 }  // namespace anholon
