@@ -255,7 +255,10 @@ void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions, co
   const auto all = [&](const auto& part) {
     bool any = false;
     for (Trajectory<double>& m : motions)
-      if (!(m.stepper.time() == end)) must(part(m.stepper)), any = true;
+      if (!(m.stepper.time() == end)) {
+        if (!part(m.stepper)) must(m.stepper.trouble());
+        any = true;
+      }
     return any;
   };
   while (all([](Stepper<double>& s) { return s.begin_step(); })) {

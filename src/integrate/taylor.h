@@ -120,10 +120,11 @@ class Stepper {
   // One step towards `end`, at most up to it.
   Outcome step(const W& end);
   // Its parts, for steppers in the lanes of one kernel: after `begin_step` of all of them the kernel is to be expanded, after `aim` of all it is to
-  // advance, and nothing else may happen to it in between.
-  Outcome begin_step() { return outcome(begins()); }
-  Outcome aim(const W& end) { return outcome(aims(end)); }
-  Outcome finish_step() { return outcome(finishes()); }
+  // advance, and nothing else may happen to it in between. Where one fails, `trouble` is what there was, asked for once.
+  [[nodiscard]] bool begin_step() { return begins(); }
+  [[nodiscard]] bool aim(const W& end) { return aims(end); }
+  [[nodiscard]] bool finish_step() { return finishes(); }
+  Outcome trouble() { return outcome(false); }
 
   const W& time() const { return t_; }
   const W& before() const { return before_; }

@@ -177,18 +177,15 @@ CaseWay CaseWalk::stopped(const Outcome& why) {
 }
 
 CaseWay CaseWalk::begin_step() {
-  const Outcome o = stepper_->begin_step();
-  return o.ok() ? CaseWay::plain : stopped(o);
+  return stepper_->begin_step() ? CaseWay::plain : stopped(stepper_->trouble());
 }
 
 CaseWay CaseWalk::aim() {
-  const Outcome o = stepper_->aim(end_);
-  return o.ok() ? CaseWay::plain : stopped(o);
+  return stepper_->aim(end_) ? CaseWay::plain : stopped(stepper_->trouble());
 }
 
 CaseWay CaseWalk::finish_step() {
-  if (const Outcome o = stepper_->finish_step(); !o.ok()) return stopped(o);
-  return after_step();
+  return stepper_->finish_step() ? after_step() : stopped(stepper_->trouble());
 }
 
 CaseWay CaseWalk::step() {
