@@ -70,13 +70,13 @@ template <Number N>
 std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side) {
   const int forward = h > N(0) ? 1 : -1;
   std::vector<Crossing> list;
-  N from(0);
+  N from(0), noise = floor;
   std::vector<N> p(c, c + degree + 1);
   for (int k = 0; side != 0 && k < kMostCrossings; ++k) {
     std::vector<N> turned = p;
     if (side < 0)
       for (N& x : turned) x = -x;
-    const auto x = first_below<N>(turned.data(), degree, N(h - from), floor);
+    const auto x = first_below<N>(turned.data(), degree, N(h - from), noise);
     if (!x) break;
     side = -side;
     list.push_back({N(from + *x), side});
@@ -84,6 +84,11 @@ std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* 
     if (*x == N(0) && k > 0) break;
     from = list.back().where;
     p = shifted(c, degree, from);
+    // Far from the expansion the terms are larger that cancel at a crossing.
+    N terms(0), power(1);
+    for (int j = 0; j <= degree; ++j, power *= from) terms += abs(c[j] * power);
+    const N there = unit_roundoff<N>() * N(kNoise) * terms;
+    noise = floor < there ? there : floor;
   }
   return list;
 }

@@ -67,6 +67,19 @@ TEST(Events, AreAtTheZeroOfTheFormula) {
   EXPECT_NEAR(std::stod(r.report.events[0].t), std::acos(1.0 / 3) / 2, 1e-11);
 }
 
+// One step from bounce to bounce, longer than its terms: far from where it begins they cancel to more than their round-off there.
+TEST(Events, KeepTheirDirectionFarFromTheExpansion) {
+  const Result r = run(mass_on_a_line("-1.98", R"(event = [
+  {name = "above", when = "x^2 - 1.13^2", direction = "up"},
+  {name = "floor", when = "x^2 - 0.21^2", direction = "down", set = {"x'" = "-0.89*x'"}},
+]
+initial = {x = 2.90, "x'" = -1.84}
+)"), 5);
+  std::string found;
+  for (const EventReport& e : r.report.events) found += e.name + ' ';
+  EXPECT_EQ(found, "floor above floor above ") << "falling through 1.13 at t = 4.028 is no way up";
+}
+
 TEST(Events, TakenBackwardsKeepTheirDirection) {
   const std::string text = mass_on_a_line("0", "initial = {x = 1, \"x'\" = 1}\nevent = [{name = \"up\", when = \"x\", direction = \"up\"}, {name = \"down\", when = \"x\", direction = \"down\"}]\n");
   const Result back = run(text, -2);
