@@ -4,9 +4,10 @@
 
 namespace anholon {
 
+// Kernels, which only doubles have, know the slots of the tape as it is derived; others share what products have in common.
 template <Number N>
 Motion<N>::Leg::Leg(const Motion& m, System of, Structure structured)
-    : system(std::move(of)), structure(std::move(structured)), program(anholon::program(system, structure, m.with_events())),
+    : system(std::move(of)), structure(std::move(structured)), program(anholon::program(system, structure, m.with_events(), !std::same_as<N, double>)),
       stepper(program, m.narrow_parameters_, m.parameters_, m.settings_), point(program, m.parameters_, std::max(1, m.stages_)), present(program, m.parameters_, 1) {
   stepper.watch(m.watched());
 }
