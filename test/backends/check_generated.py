@@ -33,6 +33,8 @@ except ImportError:
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = ["disc", "luo-zhao-example-2", "snakeboard", "rheonomic-order-1", "second-order-linear", "fourbar",
            "mass-depends-on-velocity", "falling-chain", "appell-hamel", "trailers"]  # fmt: skip
+# Shipped models that programs are not written for yet; each says so.
+NOT_WRITTEN = ["constant-acceleration", "constant-jerk-central", "constant-jerk", "launcher", "rheonomic-order-2", "rheonomic-order-3", "third-order-linear"]  # fmt: skip
 FLAGS = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"]
 SAME = 1e-10  # relative, of two ways to compute the same
 MOTION = 1e-8  # of the Runge-Kutta method with its step, against the Taylor series
@@ -295,6 +297,8 @@ def gathered(path, known):
     """A program keeps one of two constraints that say the same; `evaluate` and `simulate` spread the reaction over both."""
     if Path(path).stem == "redundant":
         known["lambda.edge"] += 2 * known["lambda.twice"]  # the second is twice the first
+    if "pull" in known:  # the tether's reaction is an input, and in rows goes by its name
+        known["lambda.reel"] = known["pull"]
     return known
 
 
@@ -443,6 +447,14 @@ def module_of(text):
 
 
 def check(program, form, name, path, folder):
+    if name in NOT_WRITTEN:
+        try:
+            run([program, "derive", path, "--format", "c", "--form", form])
+        except Failure as refused:
+            if "not written yet" in str(refused):
+                return f"{name:32} is refused, as it has to be,"
+            raise
+        raise Failure("a program is written: it is to be checked")
     points = [Point.evaluated(program, path)]
     points.append(Point.later(program, path, points[0].t + 0.0625))
     text = run([program, "derive", path, "--format", "c", "--form", form])
