@@ -172,6 +172,7 @@ class Stepper {
   Outcome expand_by_reference(const std::vector<W>& guess);
   void note_begun(const std::vector<W>& guess);
   bool kernel_serves() const;
+  double least_health() const;
   void load_kernel(const std::vector<W>& guess);
   void settle() const;
   StepperState<N>& settled(int which) const;
