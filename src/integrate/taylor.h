@@ -25,8 +25,10 @@ struct StepSettings {
 
 // ceil(-ln(tolerance)/2 + 1), and at least 4: the order of least work for the tolerance if that grows with the square of the order (Jorba & Zou 2005).
 int least_work_order(double log_tolerance);
-// Four more: here it grows more slowly (measured, bench/RESULTS.md). Not below 1e-14, where the longer steps would lose the last digits to round-off.
+// Four more: here it grows more slowly (measured, bench/RESULTS.md). Not where the last digits are asked for, which longer steps would lose to round-off.
 int taylor_order(double log_tolerance);
+// Below 1e-14.
+bool asks_for_last_digits(double log_tolerance);
 
 template <Number To, Number From>
 void convert_all(const std::vector<From>& from, std::vector<To>& to) {
@@ -164,7 +166,11 @@ class Stepper {
   bool finishes();
   bool goes_on(const W& h);
   bool ends_expansion(const std::vector<W>& guess);
-  bool fail(Outcome o) { return trouble_ = std::move(o), false; }
+  // Where the next expansion is made already, its polynomial is what is left, not that of the last step.
+  bool fail(Outcome o) {
+    if (expanded_) before_ = t_;
+    return trouble_ = std::move(o), false;
+  }
   Outcome outcome(bool good) { return good ? Outcome{} : std::exchange(trouble_, {}); }
   Outcome expand(const std::vector<W>& guess);
   void begin_expansion(const std::vector<W>& guess);
@@ -172,7 +178,7 @@ class Stepper {
   Outcome expand_by_reference(const std::vector<W>& guess);
   void note_begun(const std::vector<W>& guess);
   bool kernel_serves() const;
-  double least_health() const;
+  double trusted_health() const;
   void load_kernel(const std::vector<W>& guess);
   void settle() const;
   StepperState<N>& settled(int which) const;

@@ -247,6 +247,25 @@ TEST(Course, TheEndsOfAMotionAreTaylors) {
   }
 }
 
+// x = -cos t, and x y' = 0 loses its hold at x = 0. A stop is met by a step that ends before it, or that cannot be made.
+TEST(Course, TheLastRowOfAStopIsOfItsTime) {
+  const std::string text = R"(coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+force = [{name = "f", on = "p", vector = "-x*ex"}]
+constraint = [{name = "hold", equation = "x*y' = 0"}]
+initial = {x = -1, "x'" = 0, y = 0, "y'" = 0}
+)";
+  for (const int digits : {4, 6, 8, 10, 12, 14, 15}) {
+    const Result r = motion(text, 4, {Method::taylor, power_of_ten(digits)});
+    EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular) << r.report.outcome.message;
+    ASSERT_EQ(r.rows.rows().size(), 3U) << "at 0, at 1, and the last good state";
+    const double t = r.number(2, "t");
+    EXPECT_GT(t, 1);
+    EXPECT_LT(t, std::numbers::pi / 2);
+    EXPECT_NEAR(r.number(2, "x"), -std::cos(t), 1e-3 * std::pow(10, 4 - digits) + 1e-14) << "at t = " << t << ", to " << digits << " digits";
+  }
+}
+
 TEST(Course, ShippedModelsStayTaylors) {
   for (const char* name : {"zoo/disc", "zoo/chaplygin-sleigh", "zoo/rocket", "zoo/tether"}) {
     const std::string text = test::shipped_text(name);
