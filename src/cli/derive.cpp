@@ -34,7 +34,8 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
     return kBadInput;
   }
   Scenario s;
-  const Outcome outcome = ready(in, f, state_choice(o, *in.model), s);
+  const StateChoice choice = state_choice(o, *in.model);
+  const Outcome outcome = ready(in, f, choice, s);
   if (!outcome.ok()) {
     print_outcome(outcome);
     return kStopped;
@@ -44,6 +45,14 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   options.made_by = "anholon derive " + o.model + " --format " + o.format + (o.form_given ? " --form " + o.form : "");
   for (const std::string& set : o.set) options.made_by += " --set " + set;
   options.start = {s.state.t, s.state.q, s.state.qd};
+  // What constraints settle is solved for in wider numbers, as for a motion.
+  if (Start<long double> start; initial_state(s, choice, start).ok()) {
+    const long double* x = start.state.data();
+    for (std::size_t a = 0; a < s.system.coordinates; x += s.structure.d[a++]) {
+      if (s.structure.d[a] > 0) options.start->q[a] = static_cast<double>(x[0]);
+      if (s.structure.d[a] > 1) options.start->qd[a] = static_cast<double>(x[1]);
+    }
+  }
   try {
     OpenSystem open = open_inputs(s);
     options.inputs = std::move(open.inputs);

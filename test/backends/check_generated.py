@@ -297,7 +297,7 @@ def gathered(path, known):
     """A program keeps one of two constraints that say the same; `evaluate` and `simulate` spread the reaction over both."""
     if Path(path).stem == "redundant":
         known["lambda.edge"] += 2 * known["lambda.twice"]  # the second is twice the first
-    if "pull" in known:  # the tether's reaction is an input, and in rows goes by its name
+    if Path(path).stem == "tether-by-servo" and "pull" in known:  # its reaction is an input, and in rows goes by that name
         known["lambda.reel"] = known["pull"]
     return known
 
