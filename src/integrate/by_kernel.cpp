@@ -178,7 +178,7 @@ bool Stepper<N>::take_from_kernel() {
     const double health = pivots.health;
     suspected_ = by_kernel_ && may_have_vanished(pivots_before_, pivots);
     pivots_before_ = pivots;
-    if (!(health > least_health()) || (settings_.measure && health < record_.least_health * kNewsOfPivots) || !kernel_->reaches(lane_)) {
+    if (!(health > trusted_health()) || (settings_.measure && health < record_.least_health * kNewsOfPivots) || !kernel_->reaches(lane_)) {
       record_.least_health = std::min(record_.least_health, health);
       return false;
     }
@@ -197,10 +197,9 @@ bool Stepper<N>::take_from_kernel() {
 
 // Who asks for the last digits gets them from the reference, which refines its solutions in wider numbers, where an elimination begins to lose some.
 template <Number N>
-double Stepper<N>::least_health() const {
-  constexpr double kLastDigits = -33.8;  // ln 2e-15
+double Stepper<N>::trusted_health() const {
   constexpr double kLosesNone = 0.25;
-  return settings_.log_tolerance < kLastDigits && !mapped() ? kLosesNone : kHealthy;
+  return asks_for_last_digits(settings_.log_tolerance) && !mapped() ? kLosesNone : kHealthy;
 }
 
 // Of what may touch zero within the step, the series are shown to those who look.
@@ -319,7 +318,7 @@ void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std:
   template void Stepper<N>::settle_at_base();                                                 \
   template void Stepper<N>::show_roots();                                                      \
   template bool Stepper<N>::take_from_kernel();                                               \
-  template double Stepper<N>::least_health() const;                                           \
+  template double Stepper<N>::trusted_health() const;                                         \
   template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;                          \
   template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;                         \
   template std::optional<std::size_t> Stepper<N>::kernel_unknown(std::size_t) const;          \

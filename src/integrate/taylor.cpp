@@ -39,8 +39,12 @@ int least_work_order(double log_tolerance) { return std::max(4, static_cast<int>
 
 int taylor_order(double log_tolerance) {
   constexpr int kMore = 4;
-  constexpr double kLastDigits = -32.3;  // ln of a little less than 1e-14
-  return least_work_order(log_tolerance) + (log_tolerance > kLastDigits ? kMore : 0);
+  return least_work_order(log_tolerance) + (asks_for_last_digits(log_tolerance) ? 0 : kMore);
+}
+
+bool asks_for_last_digits(double log_tolerance) {
+  constexpr double kLog = -32.3;  // of a little less than 1e-14
+  return log_tolerance <= kLog;
 }
 
 template <Number N>

@@ -18,18 +18,18 @@ llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
   return r;
 }
 
-llvm::Value* Emitter::rest_of_sum(const Step& s) {
-  Value *r = number(0), *rest = r;
+llvm::Value* Emitter::beyond_of_sum(const Step& s) {
+  Value *r = number(0), *beyond = r;
   for (std::uint32_t k = 0; k < s.count + s.constants; ++k) {
     const PlanTerm& t = p_.terms[s.first + k];
     Value *c = load(t.coefficient), *x = k < s.count ? get(t.x, s.lead) : number(1);
     Value *product = b_.CreateFMul(c, x), *sum = b_.CreateFAdd(product, r), *part = b_.CreateFSub(sum, product), *rounded = fma(c, x, r);
     Value* of_addition = b_.CreateFAdd(b_.CreateFSub(product, b_.CreateFSub(sum, part)), b_.CreateFSub(r, part));
-    rest = b_.CreateFAdd(rest, b_.CreateFAdd(b_.CreateFAdd(b_.CreateFSub(sum, rounded), of_addition), fma(c, x, b_.CreateFNeg(product))));
-    if (k < s.count && p_.terms[s.index + k].x.at != 0) rest = fma(c, load(p_.terms[s.index + k].x.at), rest);
+    beyond = b_.CreateFAdd(beyond, b_.CreateFAdd(b_.CreateFAdd(b_.CreateFSub(sum, rounded), of_addition), fma(c, x, b_.CreateFNeg(product))));
+    if (k < s.count && p_.terms[s.index + k].x.at != 0) beyond = fma(c, load(p_.terms[s.index + k].x.at), beyond);
     r = rounded;
   }
-  return rest;
+  return beyond;
 }
 
 std::pair<llvm::Value*, llvm::Value*> Emitter::history(const Convolution& c) {
@@ -76,7 +76,7 @@ std::vector<Emitter::Convolution> Emitter::convolutions(const Step& s) {
       if (!s.b_constant) r.push_back({s.f.at, s.d.at, s.lead});
       return r;
     }
-    case Act::input: case Act::linear: case Act::rest: case Act::weigh: case Act::select: case Act::lookup: return {};
+    case Act::input: case Act::linear: case Act::beyond: case Act::weigh: case Act::select: case Act::lookup: return {};
   }
   return {};
 }
@@ -92,7 +92,7 @@ void Emitter::coefficient(const Step& s) {
       break;
     }
     case Act::linear: put(s.out, l, sum(s, s.count)); break;
-    case Act::rest: break;
+    case Act::beyond: break;
     case Act::multiply: put(s.out, l, convolution(s.a.at, s.b.at, l, !s.b_unknown, !s.a_unknown, s.b_later)); break;
     case Act::square: put(s.out, l, convolution(s.a.at, s.a.at, l, !s.a_unknown, !s.a_unknown)); break;
     case Act::divide: {
@@ -146,11 +146,11 @@ void Emitter::coefficient(const Step& s) {
 
 void Emitter::value(const Step& s) {
   const std::uint8_t l = s.lead;
-  Value* a = s.act == Act::linear || s.act == Act::rest || s.act == Act::sine_cosine ? nullptr : get(s.a, l);
+  Value* a = s.act == Act::linear || s.act == Act::beyond || s.act == Act::sine_cosine ? nullptr : get(s.a, l);
   switch (s.act) {
     case Act::input: put(s.out, l, b_.CreateFMul(load(s.a.at + s.index), number(k_.factorial[s.index]))); break;
     case Act::linear: put(s.out, l, sum(s, s.count + s.constants)); break;
-    case Act::rest: put(s.out, l, rest_of_sum(s)); break;
+    case Act::beyond: put(s.out, l, beyond_of_sum(s)); break;
     case Act::multiply: put(s.out, l, b_.CreateFMul(a, get(s.b, l))); break;
     case Act::square: put(s.out, l, b_.CreateFMul(a, a)); break;
     case Act::divide: {

@@ -72,7 +72,7 @@ class Emitter {
   void coefficient(const Step& s);
   void partial(const Partial& d);
   Value* sum(const Step& s, std::uint32_t count);
-  Value* rest_of_sum(const Step& s);
+  Value* beyond_of_sum(const Step& s);
   // Its sums over what is older than the newest coefficients, those that end with what is new of a in a block apart.
   std::pair<Value*, Value*> history(const Convolution& c);
   Value* convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later = false);

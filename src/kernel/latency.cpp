@@ -72,7 +72,7 @@ class Clock {
       case Act::arctan2: finish(s.out, l, std::max(ready(s.e, l), ready(s.f, l)) + 4); break;
       case Act::weigh: finish(s.out, l, a + 1); break;
       case Act::select: finish(s.out, l, std::max(a, ready(s.b, l)) + 1); break;
-      case Act::rest: case Act::lookup: break;
+      case Act::beyond: case Act::lookup: break;
     }
   }
 

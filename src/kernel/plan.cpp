@@ -146,7 +146,7 @@ class Planner {
         any = any || terms.back().x.at != 0;
       }
       if (!any) return out;
-      step.act = Act::rest;
+      step.act = Act::beyond;
       step.out = out = {take(1), false};
       step.index = static_cast<std::uint32_t>(plan_.terms.size());
       plan_.terms.insert(plan_.terms.end(), terms.begin(), terms.end());
@@ -455,7 +455,7 @@ double Plan::work() const {
         case Act::square: case Act::square_root: w += convolution / 2; break;
         case Act::power: case Act::sine_cosine: case Act::arctan2: w += 2 * convolution; break;
         case Act::input: case Act::weigh: case Act::select: case Act::lookup: w += orders; break;
-        case Act::rest: break;  // once only
+        case Act::beyond: break;  // once only
       }
   return w;
 }

@@ -28,7 +28,7 @@ struct Place {
 enum class Act : std::uint8_t {
   input,        // x^(k): a = series of x, index = k
   linear,       // sum of coefficient * value
-  rest,         // of such a sum, what it is beyond its double; the terms from `index` on: its coefficients, what its values are beyond their doubles
+  beyond,       // of such a sum, what it is beyond its double; the terms from `index` on: its coefficients, what its values are beyond their doubles
   multiply,     // a * b
   square,       // a^2
   divide,       // a / b; c: 1 / b_0

@@ -195,7 +195,7 @@ class Sweep final : public SweepSteps<L> {
     switch (s.act) {
       case Act::input: out = w_[s.a.at + s.index] * T::broadcast(k_.factorial[s.index]); break;
       case Act::linear: out = sum(s, 0, s.count + s.constants); break;
-      case Act::rest: out = rest_of_sum(s); break;
+      case Act::beyond: out = beyond_of_sum(s); break;
       case Act::multiply: out = a * w_[s.b.at]; break;
       case Act::square: out = a * a; break;
       case Act::divide: {
@@ -229,17 +229,17 @@ class Sweep final : public SweepSteps<L> {
   }
 
   // Each product and each addition leaves what it rounds away.
-  V rest_of_sum(const Step& s) {
-    const PlanTerm *term = &p_.terms[s.first], *beyond = &p_.terms[s.index];
-    V r = T::broadcast(0), rest = r;
+  V beyond_of_sum(const Step& s) {
+    const PlanTerm *term = &p_.terms[s.first], *low = &p_.terms[s.index];
+    V r = T::broadcast(0), beyond = r;
     for (std::uint32_t k = 0; k < s.count + s.constants; ++k) {
       const V c = w_[term[k].coefficient], x = k < s.count ? *at(term[k].x, 0) : T::broadcast(1);
       const V product = c * x, sum = product + r, part = sum - product, rounded = T::fma(c, x, r);
-      rest += ((sum - rounded) + ((product - (sum - part)) + (r - part))) + T::fma(c, x, -product);
-      if (k < s.count && beyond[k].x.at != 0) rest = T::fma(c, w_[beyond[k].x.at], rest);
+      beyond += ((sum - rounded) + ((product - (sum - part)) + (r - part))) + T::fma(c, x, -product);
+      if (k < s.count && low[k].x.at != 0) beyond = T::fma(c, w_[low[k].x.at], beyond);
       r = rounded;
     }
-    return rest;
+    return beyond;
   }
 
   V chosen(const Step& s, std::uint32_t p) {
@@ -261,7 +261,7 @@ class Sweep final : public SweepSteps<L> {
     switch (s.act) {
       case Act::input: out = a[p + s.index] * T::broadcast(k_.rising(static_cast<int>(s.index), static_cast<int>(p))); break;
       case Act::linear: out = sum(s, p, s.count); break;
-      case Act::rest: break;
+      case Act::beyond: break;
       case Act::multiply: out = convolution(a, b, n, newest_b, newest, s.b_later); break;
       case Act::square: out = convolution(a, a, n, newest, newest); break;
       case Act::divide: {

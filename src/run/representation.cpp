@@ -213,7 +213,7 @@ ExpansionWork work_of(const KernelPlan& plan) {
         case Act::linear: w.sums += s.count; break;
         case Act::multiply: case Act::divide: case Act::function: case Act::square: case Act::square_root: case Act::power: case Act::sine_cosine:
         case Act::arctan2: ++w.products; break;
-        case Act::input: case Act::rest: case Act::weigh: case Act::select: case Act::lookup: break;
+        case Act::input: case Act::beyond: case Act::weigh: case Act::select: case Act::lookup: break;
       }
   w.solve = static_cast<std::size_t>(plan.elimination().work());
   w.operations = plan.work();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "kernel/kernel.h"
@@ -444,6 +445,38 @@ b = 0.5
     kernel.begin();
     // As doubles the angles are off by 5e-13.
     EXPECT_LT(difference(*plan, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); }), 2e-14) << tier.name;
+  }
+}
+
+// The inverse for the unknowns alone, all that depends on them by its own row: of so many links, alone and in lanes, to the same bits.
+TEST(Kernels, InvertForUpToSeventeenUnknowns) {
+  const std::string chain = test::shipped_text("zoo/chain");
+  for (const auto& [links, company, inverted] : {std::tuple(6, Company::alone, true), {6, Company::in_lanes, true}, {9, Company::alone, true}, {10, Company::in_lanes, true},
+                                                 {11, Company::in_lanes, false}, {17, Company::alone, true}, {18, Company::alone, false}}) {
+    const Reference r(test::model_of(test::replaced(chain, "n = 4", "n = " + std::to_string(links))));
+    ASSERT_EQ(r.why, "");
+    const auto plan = KernelPlan::make(r.stepping, kStages, r.parameters, 0, Reference::narrow(r.start.state), company);
+    ASSERT_TRUE(plan && !plan->tables().refine) << links;
+    const SparseLu& e = plan->elimination();
+    EXPECT_EQ(e.influences.size(), inverted ? static_cast<std::size_t>(links) * links : 0U) << links;
+    EXPECT_EQ(e.own.empty(), !inverted) << links;
+    Expansion<long double> reference(*r.stepping, r.parameters, kStages);
+    reference.load(0, r.start.state, r.start.leading);
+    ASSERT_TRUE(reference.prepare().ok() && reference.solve().ok() && reference.extend().ok());
+    Kernel tables(plan), compiled(plan);
+    for (Kernel* k : {&tables, &compiled}) {
+      k->set_parameters(0, r.parameters);
+      k->place(0, r.start.state, r.start.leading);
+      k->set_time(0, 0);
+      if (k == &compiled && test::compiler_expected()) {
+        ASSERT_EQ(plan->compile({}), "");
+      }
+      k->begin();
+      EXPECT_LT(difference(*plan, reference, [&](std::size_t j, int order) { return k->coefficient(j, order); }), 1e-12) << links;
+    }
+    EXPECT_EQ(difference_of_motions(tables, 0, compiled, 0), "") << links;
+    for (std::size_t j = 0; j < r.stepping->unknowns(); ++j)
+      for (int order = 0; order <= kStages + 2; ++order) EXPECT_EQ(tables.coefficient(j, order), compiled.coefficient(j, order)) << links;
   }
 }
 
