@@ -151,17 +151,32 @@ void Emitter::solve() {
   for (std::uint32_t j = 0; j < p_.rows; ++j) solution_.push_back(asked_[j] ? load(k_.solution + j) : nullptr);
 }
 
-// Four columns of a full inverse at once; how many that are.
+// As many columns of a full inverse at once as a vector takes, four at least; how many that are.
 std::uint32_t Emitter::multiply_by_inverse() {
-  auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), 4);
   const std::size_t n = p_.x.size(), whole = n / 4 * 4;
-  std::vector<Value*> sums(n / 4, llvm::ConstantAggregateZero::get(four));
-  for (std::size_t r = 0; r < p_.sides.size(); ++r) {
-    Value* side = b_.CreateVectorSplat(4, side_[p_.sides[r]]);
-    for (std::size_t c = 0; c < sums.size(); ++c)
-      sums[c] = fma(b_.CreateAlignedLoad(four, address(k_.inverse + static_cast<std::int64_t>(r * n + 4 * c), false), llvm::Align(8)), side, sums[c]);
+  struct Columns {
+    std::size_t first;
+    llvm::FixedVectorType* type;
+    Value* sum;
+  };
+  std::vector<Columns> all;
+  for (std::size_t first = 0; first < whole;) {
+    const std::size_t count = whole - first >= 8 && width_ == 8 ? 8 : 4;
+    auto* type = llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(count));
+    all.push_back({first, type, llvm::ConstantAggregateZero::get(type)});
+    first += count;
   }
-  for (std::size_t j = 0; j < whole; ++j) solution_[j] = b_.CreateExtractElement(sums[j / 4], j % 4);
+  for (std::size_t r = 0; r < p_.sides.size(); ++r) {
+    Value* sides[2] = {};  // four times, eight times
+    for (Columns& c : all) {
+      const unsigned count = c.type->getNumElements();
+      Value*& side = sides[count / 8];
+      if (!side) side = b_.CreateVectorSplat(count, side_[p_.sides[r]]);
+      c.sum = fma(b_.CreateAlignedLoad(c.type, address(k_.inverse + static_cast<std::int64_t>(r * n + c.first), false), llvm::Align(8)), side, c.sum);
+    }
+  }
+  for (const Columns& c : all)
+    for (std::size_t j = 0; j < c.type->getNumElements(); ++j) solution_[c.first + j] = b_.CreateExtractElement(c.sum, j);
   return static_cast<std::uint32_t>(whole);
 }
 
@@ -170,7 +185,7 @@ llvm::Value* Emitter::minus_entry(std::uint32_t entry, Value* x, Value* s) {
   const Entry& e = p_.entries[entry];
   const Coefficient* const c = e.from < p_.coefficients.size() ? &p_.coefficients[e.from] : nullptr;
   if (!s) s = number(0);
-  if (!c || !(c->one() || c->minus_one())) return fma(b_.CreateFNeg(load(k_.entries + std::int64_t{entry})), x, s);
+  if (!c || !(c->one() || c->minus_one())) return fma(b_.CreateFNeg(constant(k_.entries + std::int64_t{entry})), x, s);
   return (e.sign > 0) == c->one() ? b_.CreateFSub(s, x) : b_.CreateFAdd(s, x);
 }
 

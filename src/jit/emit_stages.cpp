@@ -1,6 +1,8 @@
 // Stages in blocks of four, and what is known before a block.
 #include <llvm/IR/Intrinsics.h>
 
+#include <set>
+
 #include "jit/emitter.h"
 
 namespace anholon::jit {
@@ -73,27 +75,28 @@ void Emitter::known_before(const Convolution* group, std::size_t count) {
       Value* b = b_.CreateShuffleVector(b_at(group[k].b, b_.getInt64(static_cast<std::uint64_t>(j))), zero, mask);
       sums[k] = fma(a_at(group[k].a, b_.getInt64(static_cast<std::uint64_t>(j))), b, sums[k]);
     }
-  for (std::size_t k = 0; k < count; ++k) b_.CreateAlignedStore(sums[k], scratch(bulk_.at(group[k]), 0), llvm::Align(32));
+  for (std::size_t k = 0; k < count; ++k) b_.CreateAlignedStore(sums[k], own(place_of_sum(group[k], 0, false)), llvm::Align(32));
 }
 
 // The same where every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move on by one with j.
-void Emitter::known_before_in_lanes(const Convolution* group, std::size_t count) {
-  const std::uint8_t l = group[0].lead;
+void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const std::vector<InLanes>& group) {
   constexpr std::size_t n = kBlock;
-  std::vector<Value*> sums(count * n, number(0));
-  const auto b_at = [&](std::uint32_t b, Value* j, int i) {
-    return b_.CreateAlignedLoad(lane_, b_.CreateInBoundsGEP(lane_, address(std::int64_t{b} + l + i, true), b_.CreateNeg(j)), align());
+  const std::size_t count = group.size();
+  const llvm::Align align(m_.getDataLayout().getTypeStoreSize(lane).getFixedValue());
+  std::vector<Value*> sums(count * n, llvm::ConstantFP::get(lane, 0));
+  const auto b_at = [&](const InLanes& c, Value* j, int i) {
+    return b_.CreateAlignedLoad(lane, b_.CreateInBoundsGEP(lane, b_.CreateConstInBoundsGEP1_64(lane, c.b, static_cast<std::uint64_t>(i)), b_.CreateNeg(j)), align);
   };
-  const auto a_at = [&](std::uint32_t a, Value* j) { return b_.CreateAlignedLoad(lane_, b_.CreateInBoundsGEP(lane_, address(a, false), j), align()); };
+  const auto a_at = [&](const InLanes& c, Value* j) { return b_.CreateAlignedLoad(lane, b_.CreateInBoundsGEP(lane, c.a, j), align); };
   // After the sums: b of the orders 0 .. 2 of the block for the present j.
-  for (std::size_t k = 0; k < count; ++k)
-    for (int i = 0; i + 1 < kBlock; ++i) sums.push_back(b_at(group[k].b, b_.getInt64(kBlock), i + 1));
-  sums = over_known(l, sums, [&](Value* j, const std::vector<Value*>& so_far) {
+  for (const InLanes& c : group)
+    for (int i = 0; i + 1 < kBlock; ++i) sums.push_back(b_at(c, b_.getInt64(kBlock), i + 1));
+  sums = over_known(lead, sums, [&](Value* j, const std::vector<Value*>& so_far) {
     std::vector<Value*> r(so_far.size(), nullptr);
     for (std::size_t k = 0; k < count; ++k) {
-      Value* a = a_at(group[k].a, j);
+      Value* a = a_at(group[k], j);
       Value* const* window = &so_far[count * n + k * (n - 1)];
-      Value* newest = b_at(group[k].b, j, 0);
+      Value* newest = b_at(group[k], j, 0);
       for (std::size_t i = 0; i < n; ++i) r[k * n + i] = fma(a, i == 0 ? newest : window[i - 1], so_far[k * n + i]);
       for (std::size_t i = 0; i + 1 < n; ++i) r[count * n + k * (n - 1) + i] = i == 0 ? newest : window[i - 1];
     }
@@ -102,30 +105,46 @@ void Emitter::known_before_in_lanes(const Convolution* group, std::size_t count)
   for (int j = kBlock - 1; j >= 1; --j)
     for (std::size_t k = 0; k < count; ++k) {
       Value* at = b_.getInt64(static_cast<std::uint64_t>(j));
-      Value* a = a_at(group[k].a, at);
-      for (int i = 0; i < j; ++i) sums[k * n + static_cast<std::size_t>(i)] = fma(a, b_at(group[k].b, at, i), sums[k * n + static_cast<std::size_t>(i)]);
+      Value* a = a_at(group[k], at);
+      for (int i = 0; i < j; ++i) sums[k * n + static_cast<std::size_t>(i)] = fma(a, b_at(group[k], at, i), sums[k * n + static_cast<std::size_t>(i)]);
     }
   for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t i = 0; i < n; ++i) b_.CreateAlignedStore(sums[k * n + i], scratch(bulk_.at(group[k]), static_cast<unsigned>(i)), align());
+    for (std::size_t i = 0; i < n; ++i) b_.CreateAlignedStore(sums[k * n + i], b_.CreateConstInBoundsGEP1_64(lane, group[k].sums, i), align);
 }
 
 void Emitter::bulk() {
-  std::vector<Convolution> all;
-  for (const auto& [c, place] : bulk_) all.push_back(c);
-  for (std::size_t from = 0; from < all.size();) {
-    std::size_t to = from + 1;
-    while (to < all.size() && to - from < (lanes_ == 1 ? kSideBySide : kSideBySideInLanes) && all[to].lead == all[from].lead) ++to;
-    if (lanes_ == 1) known_before(&all[from], to - from);
-    else known_before_in_lanes(&all[from], to - from);
-    from = to;
+  const std::vector<Convolution>& all = memory_->alone();
+  const auto groups = [](std::size_t size, std::size_t most, const auto& lead, const auto& body) {
+    for (std::size_t from = 0, to; from < size; from = to) {
+      to = from + 1;
+      while (to < size && to - from < most && lead(to) == lead(from)) ++to;
+      body(from, to);
+    }
+  };
+  const auto lead_alone = [&](std::size_t i) { return all[i].lead; };
+  if (lanes_ == 1) {
+    groups(all.size(), kSideBySide, lead_alone, [&](std::size_t from, std::size_t to) { known_before(&all[from], to - from); });
+    pack_histories();
+    return;
   }
+  groups(all.size(), kSideBySideInLanes, lead_alone, [&](std::size_t from, std::size_t to) {
+    std::vector<InLanes> group;
+    for (std::size_t i = from; i < to; ++i)
+      group.push_back({address(all[i].a, false), address(std::int64_t{all[i].b} + all[i].lead, true), own(place_of_sum(all[i], 0, false))});
+    known_before_in_lanes(lane_, all[from].lead, group);
+  });
 }
 
-// Scratch memory for the sums of all convolutions.
-llvm::Value* Emitter::scratch_memory() {
+std::uint32_t Emitter::place_of_sum(const Convolution& c, int order, bool new_of_a) const {
+  const PackedMemory::Sums& sums = memory_->sums(c);
+  return sums.at + sums.step * static_cast<std::uint32_t>(order + kBlock * new_of_a);
+}
+
+// Scratch memory for the sums of all convolutions, and for what is packed.
+llvm::AllocaInst* Emitter::scratch_memory() {
   llvm::BasicBlock& entry = function_->getEntryBlock();
   llvm::IRBuilder<> top(&entry, entry.begin());
-  auto* memory = top.CreateAlloca(lane_, top.getInt32(static_cast<std::uint32_t>(2 * kBlock * (bulk_.size() + 1))));
+  auto* memory = top.CreateAlloca(lane_, top.getInt32(std::max(memory_->size(), 1U)));
   memory->setAlignment(llvm::Align(64));
   return memory;
 }
@@ -155,17 +174,19 @@ void Emitter::over_blocks(const std::function<void(Value*)>& before, const std::
 }
 
 void Emitter::stages(const std::vector<Step>& steps, bool solved) {
-  bulk_.clear();
+  const bool in_parts = steps.size() > kFewSteps, packed = in_parts && solved && lanes_ == 1 && width_ > 1 && p_.stages > 2 * kBlock;
+  std::set<Convolution> all;
   for (const Step& s : steps)
-    for (const Convolution& c : convolutions(s)) bulk_.try_emplace(c, 0U);
-  unsigned count = 0;
-  for (auto& [c, place] : bulk_) place = count++;
-  scratch_ = scratch_memory();
-  known_.clear();
-  if (steps.size() <= kFewSteps) stages_in_line(steps, solved);
-  else stages_in_parts(steps, solved);
+    for (const Convolution& c : convolutions(s)) all.insert(c);
+  memory_.emplace(p_, packed ? choose_packs(p_, width_) : Packs{}, width_, std::vector<Convolution>(all.begin(), all.end()));
+  llvm::AllocaInst* const memory = scratch_memory();
+  scratch_ = memory;
+  forget();
+  if (in_parts) stages_in_parts(steps, solved);
+  else stages_in_line(steps, solved);
+  memory->setOperand(0, b_.getInt32(std::max(memory_->size(), 1U)));
   relative_ = false;
-  known_.clear();
+  forget();
 }
 
 // What is new of a block stays in registers.
@@ -183,7 +204,7 @@ void Emitter::begin_block(Value* k0) {
   relative_ = true;
   k0_ = k0;
   block_ = b_.CreateInBoundsGEP(lane_, w_, k0);
-  known_.clear();
+  forget();
 }
 
 // A function for each place in a block. That of the first place serves the first block as well, whose histories are made stage by stage.
@@ -196,17 +217,21 @@ void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
   for (stage_ = 1; stage_ <= std::min(p_.stages, kBlock); ++stage_) {
     first[stage_ - 1] = begin_part(list + "_first" + std::to_string(stage_));
     relative_ = false;
-    for (const auto& [c, place] : bulk_) {
+    for (const Convolution& c : memory_->alone()) {
       const auto [old, new_of_a] = history(c);
-      b_.CreateAlignedStore(old, scratch(place, 0), align());
-      b_.CreateAlignedStore(new_of_a, scratch(place, 0, true), align());
+      b_.CreateAlignedStore(old, own(place_of_sum(c, 0, false)), align());
+      b_.CreateAlignedStore(new_of_a, own(place_of_sum(c, 0, true)), align());
     }
+    for (const Packs::Pack& pack : memory_->packs().packs)
+      for (const std::optional<Convolution>& c : pack.lanes)
+        if (c) history(*c);
     end();
+    pack_stage();
   }
   if (p_.stages > kBlock) {
     before_block = begin_part(list + "_known");
     bulk();
-    for (const auto& [c, place] : bulk_) b_.CreateAlignedStore(number(0), scratch(place, 0, true), align());
+    for (const Convolution& c : memory_->alone()) b_.CreateAlignedStore(number(0), own(place_of_sum(c, 0, true)), align());
     end();
   }
   for (stage_ = 0; stage_ < (before_block ? kBlock : 1); ++stage_) {
@@ -214,11 +239,14 @@ void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
     in_block[stage_] = begin_part(list + std::to_string(stage_));
     stage(steps, solved);
     end();
+    pack_stage();
   }
   history_is_whole_ = false;
   function_ = whole;
   w_ = arena;
+  scratch_ = scratch_of_whole;
   b_.restoreIP(back);
+  fill_packed_memory();
   for (int k = 1; k <= std::min(kBlock, p_.stages); ++k) {
     b_.CreateCall(first[k - 1], {w_, scratch_of_whole, b_.getInt64(static_cast<std::uint64_t>(k))});
     b_.CreateCall(in_block[0], {w_, scratch_of_whole, b_.getInt64(static_cast<std::uint64_t>(k))});
@@ -233,7 +261,7 @@ void Emitter::extend() {
   stages(p_.stage, true);
   if (!p_.after.empty()) {
     stage_ = 0;
-    known_.clear();
+    forget();
     for (const Step& s : p_.after) value(s);
     stages(p_.after, false);
   }

@@ -13,7 +13,7 @@ llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
     const Coefficient& c = p_.coefficients[t.coefficient];
     // 1 x + 0 and 1 x + r are exact without the product.
     if (c.one() || c.minus_one()) r = c.one() ? b_.CreateFAdd(x, r) : b_.CreateFSub(r, x);
-    else r = fma(load(t.coefficient), x, r);
+    else r = fma(constant(t.coefficient), x, r);
   }
   return r;
 }
@@ -35,12 +35,11 @@ llvm::Value* Emitter::beyond_of_sum(const Step& s) {
 std::pair<llvm::Value*, llvm::Value*> Emitter::history(const Convolution& c) {
   Value *s, *t = number(0);
   if (relative_) {
-    const unsigned place = bulk_.at(c), stage = static_cast<unsigned>(stage_);
-    s = b_.CreateAlignedLoad(lane_, scratch(place, stage), align());
-    if (history_is_whole_) return {s, b_.CreateAlignedLoad(lane_, scratch(place, stage, true), align())};
-    for (int j = stage_; j >= 1; --j) s = fma(load(std::int64_t{c.a} + j), earlier(c.b, stage_ + c.lead - j), s);
-    for (int j = 0; j < stage_; ++j) t = fma(earlier(c.a, c.lead + j), load(std::int64_t{c.b} + stage_ - j), t);
-    return {s, t};
+    s = sum_before(c, stage_, false);
+    if (history_is_whole_) return histories_[c] = {s, sum_before(c, stage_, true)};
+    for (int j = stage_; j >= 1; --j) s = fma(read(c.a, j, false), earlier(c.b, stage_ + c.lead - j), s);
+    for (int j = 0; j < stage_; ++j) t = fma(earlier(c.a, c.lead + j), read(c.b, stage_ - j, false), t);
+    return histories_[c] = {s, t};
   }
   const int p = stage_ + c.lead, block = stage_ > 0 ? (stage_ - 1) / kBlock * kBlock + 1 + c.lead : 0, known = std::min(block, p), i = p - known;
   s = number(0);
@@ -49,36 +48,16 @@ std::pair<llvm::Value*, llvm::Value*> Emitter::history(const Convolution& c) {
   for (int j = std::min(known, kBlock) - 1; j > i; --j) s = product(j, s);
   for (int j = i < known ? i : known - 1; j >= 1; --j) s = product(j, s);
   for (int j = std::max(known, 1); j < p; ++j) t = product(j, t);
-  return {s, t};
+  return histories_[c] = {s, t};
 }
 
 llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later) {
   const auto [old, new_of_a] = history({a, b, lead});
   Value* s = b_.CreateFAdd(old, new_of_a);
-  if (first && !b_later) s = fma(load(a), newest(b, lead), s);
-  if (last) s = fma(newest(a, lead), load(b), s);
-  if (first && b_later) s = fma(load(a), newest(b, lead), s);
+  if (first && !b_later) s = fma(read(a, 0, false), newest(b, lead), s);
+  if (last) s = fma(newest(a, lead), read(b, 0, false), s);
+  if (first && b_later) s = fma(read(a, 0, false), newest(b, lead), s);
   return s;
-}
-
-std::vector<Emitter::Convolution> Emitter::convolutions(const Step& s) {
-  switch (s.act) {
-    case Act::multiply: return {{s.a.at, s.b.at, s.lead}};
-    case Act::square: return {{s.a.at, s.a.at, s.lead}};
-    case Act::divide: return {{s.b.at, s.out.at, s.lead}};
-    case Act::square_root: return {{s.out.at, s.out.at, s.lead}};
-    case Act::power: return {{s.c.at, s.out.at, s.lead}, {s.d.at, s.a.at, s.lead}};
-    case Act::sine_cosine: return {{s.b.at, s.c.at, s.lead}, {s.b.at, s.out.at, s.lead}};
-    case Act::function: if (s.b_constant) return {}; return {{s.c.at, s.b.at, s.lead}};
-    case Act::arctan2: {
-      std::vector<Convolution> r;
-      if (!s.a_constant) r.push_back({s.e.at, s.c.at, s.lead});
-      if (!s.b_constant) r.push_back({s.f.at, s.d.at, s.lead});
-      return r;
-    }
-    case Act::input: case Act::linear: case Act::beyond: case Act::weigh: case Act::select: case Act::lookup: return {};
-  }
-  return {};
 }
 
 void Emitter::coefficient(const Step& s) {
@@ -98,7 +77,7 @@ void Emitter::coefficient(const Step& s) {
     case Act::divide: {
       Value* r = b_.CreateFNeg(convolution(s.b.at, s.out.at, l, false, !s.b_unknown));
       if (!s.a_constant && !s.a_unknown) r = b_.CreateFAdd(r, get(s.a, l));
-      put(s.out, l, b_.CreateFMul(r, load(s.c.at)));
+      put(s.out, l, b_.CreateFMul(r, constant(s.c.at)));
       break;
     }
     case Act::square_root: {
@@ -110,7 +89,7 @@ void Emitter::coefficient(const Step& s) {
     case Act::power: {
       Value* r = b_.CreateFMul(number(s.value), convolution(s.c.at, s.out.at, l, false, !s.a_unknown));
       r = b_.CreateFSub(r, convolution(s.d.at, s.a.at, l, false, false));
-      r = b_.CreateFMul(b_.CreateFMul(r, table("reciprocal", k_.reciprocal_of, l)), load(s.b.at));
+      r = b_.CreateFMul(b_.CreateFMul(r, table("reciprocal", k_.reciprocal_of, l)), constant(s.b.at));
       put(s.out, l, r);
       put(s.d, l, b_.CreateFMul(r, table("order", k_.order, l)));
       break;

@@ -11,8 +11,8 @@ namespace {
 constexpr double kLongElimination = 100;
 }  // namespace
 
-Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes)
-    : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes),
+Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes, unsigned width)
+    : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes), width_(width),
       lane_(lanes == 1 ? b_.getDoubleTy() : static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(lanes)))), asked_(p_.rows, false) {
   for (std::size_t j = 0; j < p_.x.size(); ++j) asked_[j] = true;
   for (const Completion& c : p_.completions) asked_[c.column] = true;
@@ -39,7 +39,7 @@ void Emitter::begin(const char* name, unsigned places, bool answers) {
   w_ = function_->getArg(0);
   b_.SetInsertPoint(llvm::BasicBlock::Create(m_.getContext(), "entry", function_));
   relative_ = false;
-  known_.clear();
+  forget();
 }
 
 // Functions of moderate size: what the compiler does grows faster than they.
@@ -72,7 +72,20 @@ llvm::Value* Emitter::get(const Place& place, int lead) {
 
 llvm::Value* Emitter::earlier(std::uint32_t at, int order) {
   const auto it = known_.find({at, order});
-  return it != known_.end() ? it->second : load(std::int64_t{at} + order, relative_);
+  return it != known_.end() ? it->second : read(at, order, relative_);
+}
+
+llvm::Value* Emitter::constant(std::int64_t slot) { return noted(load(slot), {Origin::Kind::constant, static_cast<std::uint32_t>(slot)}); }
+
+llvm::Value* Emitter::read(std::uint32_t at, int order, bool relative) {
+  return noted(load(std::int64_t{at} + order, relative), {Origin::Kind::series, at, order, relative});
+}
+
+void Emitter::forget() {
+  known_.clear();
+  elements_.clear();
+  origins_.clear();
+  histories_.clear();
 }
 
 void Emitter::put(const Place& place, int lead, Value* v) {
@@ -84,6 +97,8 @@ void Emitter::put(const Place& place, int lead, Value* v) {
 
 llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, int offset) {
   if (!relative_) return number(row[static_cast<std::size_t>(stage_ + offset)]);
+  Value*& element = elements_[{name, stage_ + offset}];
+  if (element) return element;
   llvm::GlobalVariable*& t = tables_[name];
   if (!t) {
     llvm::Constant* data = llvm::ConstantDataArray::get(m_.getContext(), llvm::ArrayRef<double>(row));
@@ -92,7 +107,7 @@ llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, in
   Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), t, k0_);
   at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at, static_cast<std::uint64_t>(static_cast<std::int64_t>(stage_ + offset)));
   Value* x = b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8));
-  return lanes_ == 1 ? x : b_.CreateVectorSplat(static_cast<unsigned>(lanes_), x);
+  return element = lanes_ == 1 ? x : b_.CreateVectorSplat(static_cast<unsigned>(lanes_), x);
 }
 
 llvm::Value* Emitter::fma(Value* a, Value* b, Value* c) { return b_.CreateIntrinsic(llvm::Intrinsic::fma, {c->getType()}, {a, b, c}); }
@@ -118,7 +133,7 @@ llvm::Value* Emitter::call(const char* name, const std::vector<Value*>& argument
 void Emitter::values() {
   begin("values");
   for (stage_ = -p_.largest_lead; stage_ <= 0; ++stage_) {
-    known_.clear();
+    forget();
     for (const Step& s : p_.point) {
       if (stage_ + s.lead == 0) value(s);
       else if (stage_ + s.lead > 0) coefficient(s);

@@ -3,7 +3,7 @@
 // Shape of the code: blocks of four stages. What a convolution knows before a block is summed for its four orders at once, several convolutions side by
 // side; what is new in the block is added stage by stage. Few steps are written out for each of the first four stages and for each place in a block, so
 // that what is new stays in registers; of many, each place in a block is a function, and the first block, where little is known, uses that of the first
-// place. Where the elimination is long it is a function of its own.
+// place. Where the elimination is long it is a function of its own. Of one motion with many steps, those that do the same are lanes of vectors (packs.h).
 #pragma once
 #include <llvm/IR/IRBuilder.h>
 #include <llvm/IR/Module.h>
@@ -12,15 +12,18 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
+#include "jit/packed_memory.h"
 #include "kernel/code.h"
 
 namespace anholon::jit {
 
 class Emitter {
  public:
-  Emitter(const KernelTables& tables, llvm::Module& module, int lanes);
+  // `width`: of the vectors that the machine has for one motion.
+  Emitter(const KernelTables& tables, llvm::Module& module, int lanes, unsigned width);
   // The parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend", "measure", "advance", "begin", "go_on", and
   // "level1", …: the solution for the residuals of hidden constraints.
   void run();
@@ -29,10 +32,9 @@ class Emitter {
 
  private:
   using Value = llvm::Value;
-  struct Convolution {
-    std::uint32_t a, b;
-    std::uint8_t lead;
-    bool operator<(const Convolution& o) const { return std::tie(lead, a, b) < std::tie(o.lead, o.a, o.b); }
+  // Series and sums of a convolution where orders are vectors: of the first factor from order 0 on, of the second from that of the block.
+  struct InLanes {
+    Value *a, *b, *sums;
   };
 
   // Of the arena, and so many places in it.
@@ -62,9 +64,12 @@ class Emitter {
   // A loop over the blocks after the first; `body` is for stage k0 + i.
   void over_blocks(const std::function<void(Value* k0)>& before, const std::function<void(Value* k0, int i)>& body);
   void bulk();
-  Value* scratch_memory();
+  llvm::AllocaInst* scratch_memory();
   void known_before(const Convolution* group, std::size_t count);
-  void known_before_in_lanes(const Convolution* group, std::size_t count);
+  void known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const std::vector<InLanes>& group);
+  void pack_histories();
+  void pack_stage();
+  void fill_packed_memory();
   // A loop over j = 4 .. order of the block - 1; `body` takes j and the sums so far, and gives the new ones.
   std::vector<Value*> over_known(std::uint8_t lead, const std::vector<Value*>& sums, const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body);
 
@@ -82,7 +87,6 @@ class Emitter {
   void substitute(bool all_sides = false);
   void substitution();
   void complete();
-  static std::vector<Convolution> convolutions(const Step& s);
 
   void begin_motion();
   void judge(const std::vector<Value*>& lu);
@@ -112,10 +116,14 @@ class Emitter {
   Value* load_from(Value* place, std::int64_t i) { return b_.CreateAlignedLoad(lane_, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align()); }
   void store_to(Value* v, Value* place, std::int64_t i) { b_.CreateAlignedStore(v, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align()); }
   llvm::Align align() const { return llvm::Align(8 * static_cast<std::uint64_t>(lanes_)); }
-  // The sums that known_before has left for a convolution and an order of the block: of what both knew before, and of what is new of a.
-  Value* scratch(unsigned place, unsigned order, bool new_of_a = false) {
-    return b_.CreateConstInBoundsGEP1_64(lane_, scratch_, std::uint64_t{kBlock} * (2 * place + new_of_a) + order);
-  }
+  // Loads of which it is noted what they read.
+  Value* constant(std::int64_t slot);
+  Value* read(std::uint32_t at, int order, bool relative);
+  Value* sum_before(const Convolution& c, int order, bool new_of_a);
+  Value* noted(Value* v, Origin origin) { return origins_[v] = origin, v; }
+  Value* own(std::uint32_t at) { return b_.CreateConstInBoundsGEP1_64(lane_, scratch_, at); }
+  std::uint32_t place_of_sum(const Convolution& c, int order, bool new_of_a) const;
+  void forget();
   // The coefficient of order stage + lead; of an order counted as `stage_` is.
   Value* get(const Place& place, int lead);
   Value* earlier(std::uint32_t at, int order);
@@ -134,6 +142,7 @@ class Emitter {
   llvm::Module& m_;
   llvm::IRBuilder<> b_;
   const int lanes_;
+  const unsigned width_;
   llvm::Type* const lane_;  // double, or a vector of them
   std::vector<bool> asked_;      // columns of the solution
   llvm::Function *substitution_ = nullptr, *advance_ = nullptr;
@@ -145,7 +154,10 @@ class Emitter {
   // What need not be loaded, by its order, counted as `stage_` is.
   static constexpr int kNoOrder = -1000;
   std::map<std::pair<std::uint32_t, int>, Value*> known_;
-  std::map<Convolution, unsigned> bulk_;                    // place in the scratch memory
+  std::map<std::pair<std::string, int>, Value*> elements_;  // of tables, by what is added to the stage
+  std::optional<PackedMemory> memory_;                      // where in the scratch memory
+  std::unordered_map<Value*, Origin> origins_;
+  std::map<Convolution, std::pair<Value*, Value*>> histories_;
   std::map<std::string, llvm::GlobalVariable*> tables_;
   std::vector<Value*> side_, solution_;
 };

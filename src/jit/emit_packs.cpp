@@ -1,0 +1,89 @@
+// What isomorphic steps of one motion do in lanes (packs.h): their histories, their part of a stage, the memory that serves them.
+#include "jit/emitter.h"
+#include "jit/packer.h"
+
+namespace anholon::jit {
+
+namespace {
+// So many packs are summed side by side.
+constexpr std::size_t kSideBySide = 3;
+}  // namespace
+
+llvm::Value* Emitter::sum_before(const Convolution& c, int order, bool new_of_a) {
+  const std::uint32_t at = place_of_sum(c, order, new_of_a);
+  return noted(b_.CreateAlignedLoad(lane_, own(at), align()), {Origin::Kind::own, at});
+}
+
+// What is known before a block.
+void Emitter::pack_histories() {
+  const std::vector<Packs::Pack>& packs = memory_->packs().packs;
+  if (packs.empty()) return;
+  auto* lane = llvm::FixedVectorType::get(b_.getDoubleTy(), memory_->width());
+  const auto lead = [](const Packs::Pack& p) {
+    for (const std::optional<Convolution>& c : p.lanes)
+      if (c) return c->lead;
+    return std::uint8_t{0};
+  };
+  for (std::size_t from = 0, to; from < packs.size(); from = to) {
+    std::vector<InLanes> group;
+    for (to = from; to < packs.size() && to - from < kSideBySide && lead(packs[to]) == lead(packs[from]); ++to) {
+      Value* b = own(memory_->coefficient(packs[to].b, lead(packs[to]), false).at);
+      group.push_back({own(memory_->coefficient(packs[to].a, 0, false).at), b_.CreateInBoundsGEP(lane, b, k0_), own(memory_->sums_of_pack(to))});
+    }
+    known_before_in_lanes(lane, lead(packs[from]), group);
+    // The first place in a block has nothing new.
+    for (std::size_t i = from; i < to; ++i)
+      b_.CreateAlignedStore(llvm::ConstantAggregateZero::get(lane), own(memory_->sums_of_pack(i) + kBlock * memory_->width()), llvm::Align(8 * memory_->width()));
+  }
+}
+
+// The block that was just written: histories in lanes, to be kept if that is all it makes, else the newest coefficients of the series.
+void Emitter::pack_stage() {
+  const Packs& packs = memory_->packs();
+  if (packs.packs.empty()) return;
+  const unsigned width = memory_->width();
+  Value* relative = nullptr;
+  Packer packer(*b_.GetInsertBlock(), b_, *memory_, origins_, [&](PackedMemory::Place place) -> Value* {
+    if (!place.relative) return own(place.at);
+    if (!relative) relative = b_.CreateInBoundsGEP(llvm::FixedVectorType::get(b_.getDoubleTy(), width), scratch_, k0_);
+    return b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), relative, place.at);
+  });
+  for (std::size_t i = 0; i < packs.packs.size(); ++i) {
+    Packer::Lanes old, new_of_a;
+    for (const std::optional<Convolution>& c : packs.packs[i].lanes) {
+      old.push_back(c ? histories_.at(*c).first : nullptr);
+      new_of_a.push_back(c ? histories_.at(*c).second : nullptr);
+    }
+    if (relative_) {
+      packer.want(old);
+      packer.want(new_of_a);
+    } else {
+      packer.keep(old, {memory_->sums_of_pack(i)});
+      packer.keep(new_of_a, {memory_->sums_of_pack(i) + kBlock * width});
+    }
+  }
+  for (std::size_t i = 0; i < packs.bundles.size() && relative_; ++i) {
+    const Packs::Bundle& bundle = packs.bundles[i];
+    Packer::Lanes newest;
+    for (const std::uint32_t at : bundle.at) newest.push_back(at == Packs::kNobody ? nullptr : known_.at({at, stage_ + bundle.newest}));
+    packer.keep(newest, memory_->coefficient(i, stage_ + bundle.newest, true));
+  }
+  packer.run();
+}
+
+// Before the stages: the coefficients that are known, and what stays as it is.
+void Emitter::fill_packed_memory() {
+  const unsigned width = memory_->width();
+  const auto fill = [&](const Packs::Lanes& from, int order, std::uint32_t to) {
+    Value* all = llvm::ConstantAggregateZero::get(llvm::FixedVectorType::get(b_.getDoubleTy(), width));
+    for (unsigned lane = 0; lane < width; ++lane)
+      if (from[lane] != Packs::kNobody) all = b_.CreateInsertElement(all, load(std::int64_t{from[lane]} + order), lane);
+    b_.CreateAlignedStore(all, own(to), llvm::Align(8 * width));
+  };
+  const std::vector<Packs::Bundle>& bundles = memory_->packs().bundles;
+  for (std::size_t i = 0; i < bundles.size(); ++i)
+    for (int order = 0; order <= bundles[i].newest; ++order) fill(bundles[i].at, order, memory_->coefficient(i, order, false).at);
+  for (const auto& [slots, to] : memory_->constants()) fill(slots, 0, to);
+}
+
+}  // namespace anholon::jit
