@@ -1,4 +1,6 @@
 // What isomorphic steps of one motion do in lanes (packs.h): their histories, their part of a stage, the memory that serves them.
+#include <set>
+
 #include "jit/emitter.h"
 #include "jit/packer.h"
 
@@ -84,6 +86,24 @@ void Emitter::fill_packed_memory() {
   for (std::size_t i = 0; i < bundles.size(); ++i)
     for (int order = 0; order <= bundles[i].newest; ++order) fill(bundles[i].at, order, memory_->coefficient(i, order, false).at);
   for (const auto& [slots, to] : memory_->constants()) fill(slots, 0, to);
+}
+
+// Series that only vectors read any more need not lie in the arena.
+void Emitter::leave_out_what_nobody_reads(const std::vector<llvm::Function*>& parts) {
+  std::set<std::uint32_t> read(p_.x.begin(), p_.x.end());
+  for (const Convolution& c : memory_->alone()) read.insert({c.a, c.b});
+  for (const Step& s : p_.after) {
+    for (const Place& x : {s.a, s.b, s.c, s.d, s.e, s.f}) read.insert(x.at);
+    for (std::uint32_t k = s.first; k < s.first + s.count; ++k) read.insert(p_.terms[k].x.at);
+  }
+  for (const Place& x : p_.quadratures) read.insert(x.at);
+  for (const auto& [slot, x] : p_.roots_of_even_powers) read.insert(x.at);
+  for (const auto& [at, load] : reads_)
+    if (Value* const alive = load; alive && !alive->use_empty()) read.insert(at);
+  for (const auto& [at, store] : puts_)
+    if (Value* const alive = store; alive && read.count(at) == 0) llvm::cast<llvm::StoreInst>(alive)->eraseFromParent();
+  for (llvm::Function* f : parts)
+    for (llvm::BasicBlock& block : *f) erase_dead(block);
 }
 
 }  // namespace anholon::jit

@@ -214,6 +214,8 @@ void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
   Value *const arena = w_, *const scratch_of_whole = scratch_;
   const auto back = b_.saveIP();
   llvm::Function *first[kBlock] = {}, *in_block[kBlock] = {}, *before_block = nullptr;
+  reads_.clear();
+  puts_.clear();
   for (stage_ = 1; stage_ <= std::min(p_.stages, kBlock); ++stage_) {
     first[stage_ - 1] = begin_part(list + "_first" + std::to_string(stage_));
     relative_ = false;
@@ -247,6 +249,7 @@ void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
   scratch_ = scratch_of_whole;
   b_.restoreIP(back);
   fill_packed_memory();
+  if (!memory_->packs().packs.empty()) leave_out_what_nobody_reads({in_block, in_block + (before_block ? kBlock : 1)});
   for (int k = 1; k <= std::min(kBlock, p_.stages); ++k) {
     b_.CreateCall(first[k - 1], {w_, scratch_of_whole, b_.getInt64(static_cast<std::uint64_t>(k))});
     b_.CreateCall(in_block[0], {w_, scratch_of_whole, b_.getInt64(static_cast<std::uint64_t>(k))});

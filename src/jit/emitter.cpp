@@ -78,7 +78,9 @@ llvm::Value* Emitter::earlier(std::uint32_t at, int order) {
 llvm::Value* Emitter::constant(std::int64_t slot) { return noted(load(slot), {Origin::Kind::constant, static_cast<std::uint32_t>(slot)}); }
 
 llvm::Value* Emitter::read(std::uint32_t at, int order, bool relative) {
-  return noted(load(std::int64_t{at} + order, relative), {Origin::Kind::series, at, order, relative});
+  Value* const x = load(std::int64_t{at} + order, relative);
+  reads_.emplace_back(at, x);
+  return noted(x, {Origin::Kind::series, at, order, relative});
 }
 
 void Emitter::forget() {
@@ -86,11 +88,21 @@ void Emitter::forget() {
   elements_.clear();
   origins_.clear();
   histories_.clear();
+  stores_.clear();
 }
 
 void Emitter::put(const Place& place, int lead, Value* v) {
   known_[{place.at, place.series ? stage_ + lead : kNoOrder}] = v;
-  if (place.series) store(v, std::int64_t{place.at} + stage_ + lead, relative_);
+  if (place.series) {
+    llvm::StoreInst* const made = store(v, std::int64_t{place.at} + stage_ + lead, relative_);
+    puts_.emplace_back(place.at, made);
+    // Nobody has read what an earlier one of the same stage left there.
+    if (relative_ || stage_ > 0) {
+      llvm::StoreInst*& before = stores_[{place.at, stage_ + lead}];
+      if (before) before->eraseFromParent();
+      before = made;
+    }
+  }
   // Beyond stage 0 nobody asks for it again.
   else if (!relative_ && stage_ <= 0) store(v, place.at);
 }

@@ -7,6 +7,7 @@
 #pragma once
 #include <llvm/IR/IRBuilder.h>
 #include <llvm/IR/Module.h>
+#include <llvm/IR/ValueHandle.h>
 
 #include <algorithm>
 #include <functional>
@@ -70,6 +71,7 @@ class Emitter {
   void pack_histories();
   void pack_stage();
   void fill_packed_memory();
+  void leave_out_what_nobody_reads(const std::vector<llvm::Function*>& parts);
   // A loop over j = 4 .. order of the block - 1; `body` takes j and the sums so far, and gives the new ones.
   std::vector<Value*> over_known(std::uint8_t lead, const std::vector<Value*>& sums, const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body);
 
@@ -112,7 +114,7 @@ class Emitter {
   Value* number(double x) { return llvm::ConstantFP::get(lane_, x); }
   Value* address(std::int64_t slot, bool relative);
   Value* load(std::int64_t slot, bool relative = false) { return b_.CreateAlignedLoad(lane_, address(slot, relative), align()); }
-  void store(Value* v, std::int64_t slot, bool relative = false) { b_.CreateAlignedStore(v, address(slot, relative), align()); }
+  llvm::StoreInst* store(Value* v, std::int64_t slot, bool relative = false) { return b_.CreateAlignedStore(v, address(slot, relative), align()); }
   Value* load_from(Value* place, std::int64_t i) { return b_.CreateAlignedLoad(lane_, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align()); }
   void store_to(Value* v, Value* place, std::int64_t i) { b_.CreateAlignedStore(v, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align()); }
   llvm::Align align() const { return llvm::Align(8 * static_cast<std::uint64_t>(lanes_)); }
@@ -158,6 +160,10 @@ class Emitter {
   std::optional<PackedMemory> memory_;                      // where in the scratch memory
   std::unordered_map<Value*, Origin> origins_;
   std::map<Convolution, std::pair<Value*, Value*>> histories_;
+  std::map<std::pair<std::uint32_t, int>, llvm::StoreInst*> stores_;  // of coefficients, by their order
+  // Of all parts, by series.
+  std::vector<std::pair<std::uint32_t, llvm::WeakVH>> reads_;
+  std::vector<std::pair<std::uint32_t, llvm::WeakVH>> puts_;
   std::map<std::string, llvm::GlobalVariable*> tables_;
   std::vector<Value*> side_, solution_;
 };

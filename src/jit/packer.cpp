@@ -40,7 +40,7 @@ void Packer::run() {
   for (const Kept& k : kept_) form(k.values);
   for (std::size_t g = 0; g < groups_.size(); ++g) grow(g);
   write();
-  sweep_dead();
+  clear();
 }
 
 // The instructions before the end of the block and what each has to wait for: its operands, and of memory what was written or called before.
@@ -322,15 +322,19 @@ llvm::Value* Packer::vector(const Lanes& values) {
   return made;
 }
 
-void Packer::sweep_dead() {
+void Packer::clear() {
   for (const Group& g : groups_)
     for (Instruction* m : g.lanes)
       if (m) m->replaceAllUsesWith(llvm::PoisonValue::get(m->getType()));
   for (const Group& g : groups_)
     for (Instruction* m : g.lanes)
       if (m) m->eraseFromParent();
-  std::vector<Instruction*> all;
-  for (Instruction& i : block_) all.push_back(&i);
+  erase_dead(block_);
+}
+
+void erase_dead(llvm::BasicBlock& block) {
+  std::vector<llvm::Instruction*> all;
+  for (llvm::Instruction& i : block) all.push_back(&i);
   for (auto i = all.rbegin(); i != all.rend(); ++i)
     if ((*i)->use_empty() && !(*i)->mayHaveSideEffects() && !(*i)->isTerminator()) (*i)->eraseFromParent();
 }

@@ -55,7 +55,7 @@ class Packer {
   void write_group(Group& g);
   Value* vector(const Lanes& values);
   Value* scalar(Value* v);
-  void sweep_dead();
+  void clear();
 
   llvm::BasicBlock& block_;
   llvm::IRBuilder<>& b_;
@@ -74,5 +74,8 @@ class Packer {
   std::vector<Group> groups_;
   std::map<Lanes, Value*> gathered_;
 };
+
+// What has no effect and whose value nobody uses.
+void erase_dead(llvm::BasicBlock& block);
 
 }  // namespace anholon::jit
