@@ -13,10 +13,13 @@ void Emitter::factor() {
   const SparseLu& e = *k_.elimination;
   std::vector<Value*> lu(e.entries, nullptr);
   const auto at = [&](std::uint32_t i) { return lu[i] ? lu[i] : number(0); };
+  std::vector<bool> kept(p_.entries.size(), k_.refine);
+  for (const SparseLu::Term& t : e.own_terms) kept[t.entry] = !unit(t.entry);
   for (std::size_t i = 0; i < p_.entries.size(); ++i) {
-    Value* v = b_.CreateFMul(number(p_.entries[i].sign), load(p_.entries[i].from));
-    lu[e.place[i]] = b_.CreateFAdd(at(e.place[i]), v);
-    if (k_.keeps_entries()) store(v, k_.entries + static_cast<std::int64_t>(i));
+    Value* x = load(p_.entries[i].from);
+    Value*& sum = lu[e.place[i]];
+    sum = p_.entries[i].sign < 0 ? b_.CreateFSub(at(e.place[i]), x) : b_.CreateFAdd(at(e.place[i]), x);
+    if (kept[i]) store(p_.entries[i].sign < 0 ? b_.CreateFNeg(x) : x, k_.entries + static_cast<std::int64_t>(i));
   }
   std::vector<Value*> reciprocal(e.pivots.size(), nullptr);
   for (std::size_t k = 0; k < e.pivots.size(); ++k) {
@@ -30,9 +33,11 @@ void Emitter::factor() {
       lu[u.to] = fma(b_.CreateFNeg(at(u.l)), at(u.u), at(u.to));
     }
   }
-  for (std::uint32_t i = 0; i < e.entries; ++i) store(at(i), k_.lu + i);
-  for (std::size_t k = 0; k < e.pivots.size(); ++k)
-    if (reciprocal[k]) store(reciprocal[k], k_.reciprocal + static_cast<std::int64_t>(k));
+  if (e.influences.empty() || substitution_) {
+    for (std::uint32_t i = 0; i < e.entries; ++i) store(at(i), k_.lu + i);
+    for (std::size_t k = 0; k < e.pivots.size(); ++k)
+      if (reciprocal[k]) store(reciprocal[k], k_.reciprocal + static_cast<std::int64_t>(k));
+  }
   if (!e.influences.empty()) invert(lu, reciprocal);
   judge(lu);
   end();
@@ -82,9 +87,40 @@ void Emitter::invert_sides_at_once(const std::vector<Value*>& lu, const std::vec
     rhs[p_.sides[r]] = llvm::ConstantDataVector::get(m_.getContext(), unit);
     rank[p_.sides[r]] = r;
   }
-  const std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
-  for (std::size_t i = 0; i < e.influences.size(); ++i)
-    store(b_.CreateExtractElement(y[e.influences[i].column], rank[e.influences[i].side]), k_.inverse + static_cast<std::int64_t>(i));
+  std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
+  // Squares of columns and sides are turned as a whole where the inverse is full and its sides come in their order.
+  const std::size_t n = p_.x.size(), m = p_.sides.size(), whole = e.influences.size() == n * m && width_ > 1 ? width_ : 1;
+  for (std::size_t column = 0; column + whole <= n && whole > 1; column += whole)
+    for (std::size_t side = 0; side + whole <= m; side += whole) {
+      std::vector<Value*> square;
+      std::vector<int> part;
+      for (std::size_t r = side; r < side + whole; ++r) part.push_back(static_cast<int>(r));
+      for (std::size_t j = column; j < column + whole; ++j) square.push_back(b_.CreateShuffleVector(y[j], part));
+      transpose(square);
+      for (std::size_t r = 0; r < whole; ++r) b_.CreateAlignedStore(square[r], address(k_.inverse + static_cast<std::int64_t>((side + r) * n + column), false), llvm::Align(8));
+    }
+  for (std::size_t i = 0; i < e.influences.size(); ++i) {
+    const std::size_t column = e.influences[i].column, side = rank[e.influences[i].side];
+    if (whole > 1 && column < n / whole * whole && side < m / whole * whole) continue;
+    store(b_.CreateExtractElement(y[column], side), k_.inverse + static_cast<std::int64_t>(i));
+  }
+}
+
+// Of as many vectors as each has elements, a power of two: halves of ever larger squares change places.
+void Emitter::transpose(std::vector<Value*>& rows) {
+  const std::size_t n = rows.size();
+  for (std::size_t step = 1; step < n; step *= 2)
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i & step) continue;
+      std::vector<int> upper, lower;
+      for (std::size_t l = 0; l < n; ++l) {
+        upper.push_back(static_cast<int>(l & step ? n + l - step : l));
+        lower.push_back(static_cast<int>(l & step ? n + l : l + step));
+      }
+      Value *const a = rows[i], *const b = rows[i + step];
+      rows[i] = b_.CreateShuffleVector(a, b, upper);
+      rows[i + step] = b_.CreateShuffleVector(a, b, lower);
+    }
 }
 
 // Side by side, by a function of its own: in many lanes they would be most of the code.
@@ -182,11 +218,15 @@ std::uint32_t Emitter::multiply_by_inverse() {
 
 // s - an entry of the linearized tape times x; by 1 and -1 it is exact without the product.
 llvm::Value* Emitter::minus_entry(std::uint32_t entry, Value* x, Value* s) {
-  const Entry& e = p_.entries[entry];
-  const Coefficient* const c = e.from < p_.coefficients.size() ? &p_.coefficients[e.from] : nullptr;
   if (!s) s = number(0);
-  if (!c || !(c->one() || c->minus_one())) return fma(b_.CreateFNeg(constant(k_.entries + std::int64_t{entry})), x, s);
-  return (e.sign > 0) == c->one() ? b_.CreateFSub(s, x) : b_.CreateFAdd(s, x);
+  if (!unit(entry)) return fma(b_.CreateFNeg(constant(k_.entries + std::int64_t{entry})), x, s);
+  const Entry& e = p_.entries[entry];
+  return (e.sign > 0) == p_.coefficients[e.from].one() ? b_.CreateFSub(s, x) : b_.CreateFAdd(s, x);
+}
+
+bool Emitter::unit(std::uint32_t entry) const {
+  const std::uint32_t from = p_.entries[entry].from;
+  return from < p_.coefficients.size() && (p_.coefficients[from].one() || p_.coefficients[from].minus_one());
 }
 
 // Forward and backward, from side_ to solution_.

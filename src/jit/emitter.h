@@ -50,7 +50,9 @@ class Emitter {
   void invert_sides_by_call();
   std::vector<Value*> solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
   std::uint32_t multiply_by_inverse();
+  void transpose(std::vector<Value*>& rows);
   Value* minus_entry(std::uint32_t entry, Value* x, Value* s);
+  bool unit(std::uint32_t entry) const;  // 1 or -1
   void lead();
   void level(int level);
   void advance();
