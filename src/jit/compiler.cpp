@@ -72,8 +72,6 @@ bool name(const KernelTables& tables, int lanes, const Builder& builder, Key& ke
   return true;
 }
 
-unsigned vector_width(const Builder& builder) { return builder.getFeatures().getString().find("+avx512f") != std::string::npos ? 8 : 4; }
-
 std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, Builder& builder, std::string& message) {
   auto target = builder.createTargetMachine();
   if (!target) return message = text_of(target.takeError()), nullptr;
@@ -81,7 +79,7 @@ std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lan
   llvm::Module module("kernel", context);
   module.setDataLayout((*target)->createDataLayout());
   module.setTargetTriple((*target)->getTargetTriple().str());
-  Emitter(tables, module, lanes, vector_width(builder)).run();
+  Emitter(tables, module, lanes).run();
   llvm::SmallVector<char, 0> bytes;
   llvm::raw_svector_ostream out(bytes);
   llvm::legacy::PassManager passes;

@@ -87,22 +87,22 @@ void Emitter::invert_sides_at_once(const std::vector<Value*>& lu, const std::vec
     rhs[p_.sides[r]] = llvm::ConstantDataVector::get(m_.getContext(), unit);
     rank[p_.sides[r]] = r;
   }
-  std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
-  // Squares of columns and sides are turned as a whole where the inverse is full and its sides come in their order.
-  const std::size_t n = p_.x.size(), m = p_.sides.size(), whole = e.influences.size() == n * m && width_ > 1 ? width_ : 1;
-  for (std::size_t column = 0; column + whole <= n && whole > 1; column += whole)
-    for (std::size_t side = 0; side + whole <= m; side += whole) {
+  const std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
+  // Where the inverse is full, squares of four columns and sides are turned as a whole.
+  const std::size_t n = p_.x.size(), m = p_.sides.size(), full = e.influences.size() == n * m ? 4 : 0;
+  const auto turned = [&](std::size_t count) { return full ? count / full * full : 0; };
+  for (std::size_t column = 0; column < turned(n); column += full)
+    for (std::size_t side = 0; side < turned(m); side += full) {
       std::vector<Value*> square;
       std::vector<int> part;
-      for (std::size_t r = side; r < side + whole; ++r) part.push_back(static_cast<int>(r));
-      for (std::size_t j = column; j < column + whole; ++j) square.push_back(b_.CreateShuffleVector(y[j], part));
+      for (std::size_t r = side; r < side + full; ++r) part.push_back(static_cast<int>(r));
+      for (std::size_t j = column; j < column + full; ++j) square.push_back(b_.CreateShuffleVector(y[j], part));
       transpose(square);
-      for (std::size_t r = 0; r < whole; ++r) b_.CreateAlignedStore(square[r], address(k_.inverse + static_cast<std::int64_t>((side + r) * n + column), false), llvm::Align(8));
+      for (std::size_t r = 0; r < full; ++r) b_.CreateAlignedStore(square[r], address(k_.inverse + static_cast<std::int64_t>((side + r) * n + column), false), llvm::Align(8));
     }
   for (std::size_t i = 0; i < e.influences.size(); ++i) {
     const std::size_t column = e.influences[i].column, side = rank[e.influences[i].side];
-    if (whole > 1 && column < n / whole * whole && side < m / whole * whole) continue;
-    store(b_.CreateExtractElement(y[column], side), k_.inverse + static_cast<std::int64_t>(i));
+    if (column >= turned(n) || side >= turned(m)) store(b_.CreateExtractElement(y[column], side), k_.inverse + static_cast<std::int64_t>(i));
   }
 }
 
@@ -187,32 +187,17 @@ void Emitter::solve() {
   for (std::uint32_t j = 0; j < p_.rows; ++j) solution_.push_back(asked_[j] ? load(k_.solution + j) : nullptr);
 }
 
-// As many columns of a full inverse at once as a vector takes, four at least; how many that are.
+// Four columns of a full inverse at once; how many that are.
 std::uint32_t Emitter::multiply_by_inverse() {
+  auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), 4);
   const std::size_t n = p_.x.size(), whole = n / 4 * 4;
-  struct Columns {
-    std::size_t first;
-    llvm::FixedVectorType* type;
-    Value* sum;
-  };
-  std::vector<Columns> all;
-  for (std::size_t first = 0; first < whole;) {
-    const std::size_t count = whole - first >= 8 && width_ == 8 ? 8 : 4;
-    auto* type = llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(count));
-    all.push_back({first, type, llvm::ConstantAggregateZero::get(type)});
-    first += count;
-  }
+  std::vector<Value*> sums(n / 4, llvm::ConstantAggregateZero::get(four));
   for (std::size_t r = 0; r < p_.sides.size(); ++r) {
-    Value* sides[2] = {};  // four times, eight times
-    for (Columns& c : all) {
-      const unsigned count = c.type->getNumElements();
-      Value*& side = sides[count / 8];
-      if (!side) side = b_.CreateVectorSplat(count, side_[p_.sides[r]]);
-      c.sum = fma(b_.CreateAlignedLoad(c.type, address(k_.inverse + static_cast<std::int64_t>(r * n + c.first), false), llvm::Align(8)), side, c.sum);
-    }
+    Value* side = b_.CreateVectorSplat(4, side_[p_.sides[r]]);
+    for (std::size_t c = 0; c < sums.size(); ++c)
+      sums[c] = fma(b_.CreateAlignedLoad(four, address(k_.inverse + static_cast<std::int64_t>(r * n + 4 * c), false), llvm::Align(8)), side, sums[c]);
   }
-  for (const Columns& c : all)
-    for (std::size_t j = 0; j < c.type->getNumElements(); ++j) solution_[c.first + j] = b_.CreateExtractElement(c.sum, j);
+  for (std::size_t j = 0; j < whole; ++j) solution_[j] = b_.CreateExtractElement(sums[j / 4], j % 4);
   return static_cast<std::uint32_t>(whole);
 }
 

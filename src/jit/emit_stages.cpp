@@ -12,8 +12,10 @@ namespace {
 constexpr std::size_t kSideBySide = 8;
 // The same where four orders of a convolution are four sums of lanes.
 constexpr std::size_t kSideBySideInLanes = 3;
+// So many numbers of isomorphic steps are a vector. Eight, where the machine has such vectors, are not faster: more lanes stay empty.
+constexpr unsigned kWidth = 4;
 // So few steps are written out for the first four stages and for every place in a block.
-constexpr std::size_t kFewSteps = 64;
+constexpr std::size_t kFewSteps = 16;
 }  // namespace
 
 void Emitter::stage(const std::vector<Step>& steps, bool solved) {
@@ -174,11 +176,11 @@ void Emitter::over_blocks(const std::function<void(Value*)>& before, const std::
 }
 
 void Emitter::stages(const std::vector<Step>& steps, bool solved) {
-  const bool in_parts = steps.size() > kFewSteps, packed = in_parts && solved && lanes_ == 1 && width_ > 1 && p_.stages > 2 * kBlock;
+  const bool in_parts = steps.size() > kFewSteps, packed = in_parts && solved && lanes_ == 1 && p_.stages > 2 * kBlock;
   std::set<Convolution> all;
   for (const Step& s : steps)
     for (const Convolution& c : convolutions(s)) all.insert(c);
-  memory_.emplace(p_, packed ? choose_packs(p_, width_) : Packs{}, width_, std::vector<Convolution>(all.begin(), all.end()));
+  memory_.emplace(p_, packed ? choose_packs(p_, kWidth) : Packs{}, kWidth, std::vector<Convolution>(all.begin(), all.end()));
   llvm::AllocaInst* const memory = scratch_memory();
   scratch_ = memory;
   forget();

@@ -11,8 +11,8 @@ namespace {
 constexpr double kLongElimination = 100;
 }  // namespace
 
-Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes, unsigned width)
-    : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes), width_(width),
+Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes)
+    : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes),
       lane_(lanes == 1 ? b_.getDoubleTy() : static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(lanes)))), asked_(p_.rows, false) {
   for (std::size_t j = 0; j < p_.x.size(); ++j) asked_[j] = true;
   for (const Completion& c : p_.completions) asked_[c.column] = true;

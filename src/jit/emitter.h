@@ -23,8 +23,7 @@ namespace anholon::jit {
 
 class Emitter {
  public:
-  // `width`: of the vectors that the machine has for one motion.
-  Emitter(const KernelTables& tables, llvm::Module& module, int lanes, unsigned width);
+  Emitter(const KernelTables& tables, llvm::Module& module, int lanes);
   // The parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend", "measure", "advance", "begin", "go_on", and
   // "level1", …: the solution for the residuals of hidden constraints.
   void run();
@@ -146,7 +145,6 @@ class Emitter {
   llvm::Module& m_;
   llvm::IRBuilder<> b_;
   const int lanes_;
-  const unsigned width_;
   llvm::Type* const lane_;  // double, or a vector of them
   std::vector<bool> asked_;      // columns of the solution
   llvm::Function *substitution_ = nullptr, *advance_ = nullptr;

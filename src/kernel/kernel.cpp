@@ -18,13 +18,14 @@ constexpr double kAround = 3.3;
 // An operation that waits for the one before costs so many that do not: measured on small systems and chains.
 constexpr double kWaiting = 5;
 // Steps of a stage, operations of the elimination: more would be compiled for more than some five seconds.
-constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 6000;
+constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 12000;
 // The inverse of J takes the place of an elimination while it has so few entries: more operations, that do not wait for each other. First all that a stage
 // asks for, then the unknowns alone.
 constexpr std::size_t kMostInfluences = 64;
-constexpr std::size_t kMostInfluencesOfUnknowns = 300, kMostInLanes = 100;
-// Solutions are refined where that changes them by more.
-constexpr double kRefined = 64 * 0x1p-53;
+constexpr std::size_t kMostInfluencesOfUnknowns = 48 * 48, kMostInLanes = 100;
+// Solutions are refined where that changes them by more. Below, motions are not nearer to their references for it (chains up to 48 links, whose
+// solutions it changes by up to 360 round-offs).
+constexpr double kRefined = 512 * 0x1p-53;
 
 // Numbers in [-1, 1) from a counter (a step of splitmix64).
 double scattered(std::uint64_t i) {
