@@ -449,10 +449,10 @@ b = 0.5
 }
 
 // The inverse for the unknowns alone, all that depends on them by its own row: of so many links, alone and in lanes, to the same bits.
-TEST(Kernels, InvertForUpToFortyEightUnknowns) {
+TEST(Kernels, InvertForManyUnknowns) {
   const std::string chain = test::shipped_text("zoo/chain");
   for (const auto& [links, company, inverted] : {std::tuple(6, Company::alone, true), {6, Company::in_lanes, true}, {9, Company::alone, true}, {10, Company::in_lanes, true},
-                                                 {11, Company::in_lanes, false}, {18, Company::alone, true}, {48, Company::alone, true}, {49, Company::alone, false}}) {
+                                                 {11, Company::in_lanes, false}, {18, Company::alone, true}, {24, Company::alone, true}}) {
     const Reference r(test::model_of(test::replaced(chain, "n = 4", "n = " + std::to_string(links))));
     ASSERT_EQ(r.why, "");
     const auto plan = KernelPlan::make(r.stepping, kStages, r.parameters, 0, Reference::narrow(r.start.state), company);
@@ -460,7 +460,6 @@ TEST(Kernels, InvertForUpToFortyEightUnknowns) {
     const SparseLu& e = plan->elimination();
     EXPECT_EQ(e.influences.size(), inverted ? static_cast<std::size_t>(links) * links : 0U) << links;
     EXPECT_EQ(e.own.empty(), !inverted) << links;
-    if (links > 18) continue;  // their code takes long to make
     Expansion<long double> reference(*r.stepping, r.parameters, kStages);
     reference.load(0, r.start.state, r.start.leading);
     ASSERT_TRUE(reference.prepare().ok() && reference.solve().ok() && reference.extend().ok());
