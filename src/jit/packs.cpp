@@ -1,6 +1,7 @@
 #include "jit/packs.h"
 
 #include <algorithm>
+#include <array>
 
 namespace anholon::jit {
 
@@ -40,8 +41,18 @@ class Chooser {
 
   Packs run() {
     for (const Step& s : p_.stage) place(s);
-    for (const Row& row : rows_)
-      if (std::count_if(row.steps.begin(), row.steps.end(), [](const Step* s) { return s != nullptr; }) >= static_cast<int>(fewest_lanes(width_))) pack(row);
+    for (const Row& row : rows_) {
+      std::vector<const Step*> steps;
+      std::copy_if(row.steps.begin(), row.steps.end(), std::back_inserter(steps), [](const Step* s) { return s != nullptr; });
+      if (steps.size() >= fewest_lanes(width_)) pack(row);
+      else for (const Step* s : steps) leave(*s);
+    }
+    for (const auto& [kind, rest] : left_)
+      for (std::size_t from = 0; from + fewest_lanes(width_) <= rest.size(); from += width_) {
+        std::vector<std::optional<Convolution>> lanes(width_);
+        for (std::size_t l = 0; l < width_ && from + l < rest.size(); ++l) lanes[l] = rest[from + l];
+        pack(lanes);
+      }
     return std::move(out_);
   }
 
@@ -93,17 +104,25 @@ class Chooser {
     for (const Step* s : row.steps)
       if (s) count = convolutions(*s).size();
     for (std::size_t k = 0; k < count; ++k) {
-      Packs::Pack pack;
-      Packs::Lanes a, b;
-      for (const Step* s : row.steps) {
-        pack.lanes.push_back(s ? std::optional(convolutions(*s)[k]) : std::nullopt);
-        a.push_back(s ? pack.lanes.back()->a : Packs::kNobody);
-        b.push_back(s ? pack.lanes.back()->b : Packs::kNobody);
-      }
-      pack.a = bundle(a);
-      pack.b = bundle(b);
-      out_.packs.push_back(std::move(pack));
+      std::vector<std::optional<Convolution>> lanes;
+      for (const Step* s : row.steps) lanes.push_back(s ? std::optional(convolutions(*s)[k]) : std::nullopt);
+      pack(lanes);
     }
+  }
+
+  void pack(const std::vector<std::optional<Convolution>>& lanes) {
+    Packs::Lanes a, b;
+    for (const std::optional<Convolution>& c : lanes) {
+      a.push_back(c ? c->a : Packs::kNobody);
+      b.push_back(c ? c->b : Packs::kNobody);
+    }
+    const std::size_t first = bundle(a), second = bundle(b);
+    out_.packs.push_back({lanes, first, second});
+  }
+
+  // Of what is too little of its kind, the histories at least are packed.
+  void leave(const Step& s) {
+    for (const Convolution& c : convolutions(s)) left_[{c.lead, newest_.at(c.a), newest_.at(c.b)}].push_back(c);
   }
 
   // One that has all of these in their lanes, or room for them.
@@ -137,6 +156,7 @@ class Chooser {
   std::map<std::uint32_t, Seat> seats_;
   std::map<Kind, std::size_t> open_;     // rows that are not full
   std::vector<Row> rows_;
+  std::map<std::array<int, 3>, std::vector<Convolution>> left_;
 };
 
 }  // namespace
