@@ -60,26 +60,26 @@ std::string build_of(const void* address) {
 }
 
 // All that decides the code: this compiler, LLVM, the machine, the plan. Nothing if the builds have no names: no code of another one, then.
-bool name(const KernelTables& tables, int lanes, const Builder& builder, Key& key) {
+bool name(const KernelTables& tables, int lanes, int several_sines, const Builder& builder, Key& key) {
   static const std::string ours = build_of(&anholon_compiler), llvms = build_of(reinterpret_cast<const void*>(&llvm::xxh3_128bits));
   if (ours.empty() || llvms.empty()) return false;
   Writer w;
   w.add(ours), w.add(llvms);
   w.add(builder.getTargetTriple().str()), w.add(builder.getCPU()), w.add(builder.getFeatures().getString());
-  w.add(std::to_string(lanes));
+  w.add(std::to_string(lanes)), w.add(std::to_string(several_sines));
   w.add(tables);
   key = w.key();
   return true;
 }
 
-std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, Builder& builder, std::string& message) {
+std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, int several_sines, Builder& builder, std::string& message) {
   auto target = builder.createTargetMachine();
   if (!target) return message = text_of(target.takeError()), nullptr;
   llvm::LLVMContext context;
   llvm::Module module("kernel", context);
   module.setDataLayout((*target)->createDataLayout());
   module.setTargetTriple((*target)->getTargetTriple().str());
-  Emitter(tables, module, lanes).run();
+  Emitter(tables, module, lanes, several_sines).run();
   llvm::SmallVector<char, 0> bytes;
   llvm::raw_svector_ostream out(bytes);
   llvm::legacy::PassManager passes;
@@ -98,6 +98,7 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
     symbols[(*jit)->mangleAndIntern(symbol)] = {llvm::orc::ExecutorAddr::fromPtr(function), llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
   };
   add("anholon_sines", called.sines);
+  add("anholon_several_sines", called.several_sines);
   add("anholon_power", called.power);
   add("anholon_function", called.function);
   add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
@@ -142,13 +143,13 @@ void compile(const KernelTables& tables, int lanes, const CalledFunctions& calle
   builder->setCodeModel(llvm::CodeModel::Small);
 
   Key key;
-  const Store store(!cache.empty() && name(tables, lanes, *builder, key) ? cache : std::string());
+  const Store store(!cache.empty() && name(tables, lanes, called.several, *builder, key) ? cache : std::string());
   if (auto kept = store.read(key)) {
     std::string why;
     code = linked(std::move(kept), *builder, Emitter::levels(tables), called, why);
     if (code.values) return;
   }
-  auto object = compiled(tables, lanes, *builder, message);
+  auto object = compiled(tables, lanes, called.several, *builder, message);
   if (!object) return;
   store.write(key, *object);
   code = linked(std::move(object), *builder, Emitter::levels(tables), called, message);

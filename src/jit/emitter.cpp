@@ -3,6 +3,7 @@
 #include <llvm/IR/Intrinsics.h>
 
 #include <algorithm>
+#include <set>
 
 namespace anholon::jit {
 
@@ -11,8 +12,8 @@ namespace {
 constexpr double kLongElimination = 100;
 }  // namespace
 
-Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes)
-    : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes),
+Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines)
+    : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes), several_sines_(several_sines),
       lane_(lanes == 1 ? b_.getDoubleTy() : static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(lanes)))), asked_(p_.rows, false) {
   for (std::size_t j = 0; j < p_.x.size(); ++j) asked_[j] = true;
   for (const Completion& c : p_.completions) asked_[c.column] = true;
@@ -39,6 +40,7 @@ void Emitter::begin(const char* name, unsigned places, bool answers) {
   w_ = function_->getArg(0);
   b_.SetInsertPoint(llvm::BasicBlock::Create(m_.getContext(), "entry", function_));
   relative_ = false;
+  sines_ = nullptr;
   forget();
 }
 
@@ -146,13 +148,73 @@ void Emitter::values() {
   begin("values");
   for (stage_ = -p_.largest_lead; stage_ <= 0; ++stage_) {
     forget();
-    for (const Step& s : p_.point) {
-      if (stage_ + s.lead == 0) value(s);
-      else if (stage_ + s.lead > 0) coefficient(s);
-    }
+    values_of_stage();
   }
   for (const Partial& d : p_.partials) partial(d);
   end();
+}
+
+// Sines are left until nothing else can be done without them, and then done several at once.
+void Emitter::values_of_stage() {
+  std::vector<const Step*> left;
+  for (const Step& s : p_.point)
+    if (stage_ + s.lead >= 0) left.push_back(&s);
+  while (!left.empty()) {
+    std::vector<const Step*> sines, later;
+    std::set<std::uint32_t> missing;
+    const auto waits = [&](const Step& s) {
+      for (const Place& x : {s.a, s.b, s.c, s.d, s.e, s.f})
+        if (missing.count(x.at)) return true;
+      const std::uint32_t count = s.count + (s.act == Act::beyond ? 0 : s.constants);
+      for (std::uint32_t k = 0; k < count; ++k)
+        if (missing.count(p_.terms[s.first + k].x.at) || (s.act == Act::beyond && missing.count(p_.terms[s.index + k].x.at))) return true;
+      return false;
+    };
+    for (const Step* s : left) {
+      const bool waiting = waits(*s), sine = s->act == Act::sine_cosine && stage_ + s->lead == 0 && lanes_ == 1;
+      if (!waiting && !sine) {
+        stage_ + s->lead == 0 ? value(*s) : coefficient(*s);
+        continue;
+      }
+      (waiting ? later : sines).push_back(s);
+      missing.insert(s->out.at);
+      if (s->act == Act::sine_cosine || s->act == Act::divide) missing.insert(s->c.at);
+      if (s->act == Act::power) missing.insert({s->b.at, s->d.at});
+    }
+    several_sines(sines);
+    left = std::move(later);
+  }
+}
+
+void Emitter::several_sines(const std::vector<const Step*>& steps) {
+  constexpr std::size_t kFew = 2;
+  const std::size_t most = static_cast<std::size_t>(several_sines_);
+  for (std::size_t from = 0; from < steps.size(); from += most) {
+    const std::size_t count = std::min(most, steps.size() - from);
+    if (count <= kFew) {
+      for (std::size_t i = from; i < from + count; ++i) value(*steps[i]);
+      continue;
+    }
+    // Angles, what they are beyond their doubles, sines, cosines.
+    if (!sines_) {
+      llvm::IRBuilder<> top(&function_->getEntryBlock(), function_->getEntryBlock().begin());
+      auto* memory = top.CreateAlloca(lane_, top.getInt32(static_cast<std::uint32_t>(4 * most)));
+      memory->setAlignment(llvm::Align(64));
+      sines_ = memory;
+    }
+    const auto row = [&](std::size_t r) { return b_.CreateConstInBoundsGEP1_64(lane_, sines_, r * most); };
+    for (std::size_t i = 0; i < most; ++i) {
+      const Step* const s = i < count ? steps[from + i] : nullptr;
+      store_to(s ? get(s->a, s->lead) : number(0), row(0), static_cast<std::int64_t>(i));
+      store_to(s && s->d.at != 0 ? load(s->d.at) : number(0), row(1), static_cast<std::int64_t>(i));
+    }
+    call_scalar("anholon_several_sines", {row(0), row(1), row(2), row(3)}, b_.getVoidTy());
+    for (std::size_t i = 0; i < count; ++i) {
+      const Step& s = *steps[from + i];
+      put(s.out, s.lead, load_from(row(2), static_cast<std::int64_t>(i)));
+      put(s.c, s.lead, load_from(row(3), static_cast<std::int64_t>(i)));
+    }
+  }
 }
 
 void Emitter::complete() {

@@ -23,7 +23,8 @@ namespace anholon::jit {
 
 class Emitter {
  public:
-  Emitter(const KernelTables& tables, llvm::Module& module, int lanes);
+  // `several_sines`: that anholon_several_sines takes.
+  Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines);
   // The parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend", "measure", "advance", "begin", "go_on", and
   // "level1", …: the solution for the residuals of hidden constraints.
   void run();
@@ -43,6 +44,8 @@ class Emitter {
   llvm::Function* begin_part(const std::string& name);
   void end(Value* answer = nullptr);
   void values();
+  void values_of_stage();
+  void several_sines(const std::vector<const Step*>& steps);
   void factor();
   void invert(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
   void invert_sides_at_once(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
@@ -144,12 +147,12 @@ class Emitter {
   const Plan& p_;
   llvm::Module& m_;
   llvm::IRBuilder<> b_;
-  const int lanes_;
+  const int lanes_, several_sines_;
   llvm::Type* const lane_;  // double, or a vector of them
   std::vector<bool> asked_;      // columns of the solution
   llvm::Function *substitution_ = nullptr, *advance_ = nullptr;
   llvm::Function* function_ = nullptr;
-  Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr;  // arena; arena + stage; that stage, or the first of a block
+  Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr, *sines_ = nullptr;  // arena; arena + stage; that stage, or the first of a block
   bool relative_ = false;
   int stage_ = 0;  // absolute, or from the first of its block
   bool history_is_whole_ = false;  // in the scratch memory lies all that a convolution sums before the newest coefficients

@@ -23,6 +23,8 @@ struct CalledFunctions {
   decltype(&power_of) power;
   decltype(&function_of) function;
   SinesOfLanes sines;  // for so many lanes as the code has
+  SinesOfLanes several_sines;
+  int several;  // at once
 };
 
 // What the module exports, under the name anholon_compiler.
@@ -31,7 +33,7 @@ struct CompilerModule {
   // Empty `code.values` and a message where it fails. `cache`: a folder for compiled code, or empty.
   void (*compile)(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache, Code& code, std::string& message);
 };
-inline constexpr int kCompilerVersion = 4;
+inline constexpr int kCompilerVersion = 5;
 
 // The module beside the program; null where there is none, or this machine cannot run what it makes.
 const CompilerModule* compiler();

@@ -224,7 +224,8 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
       if (s.act == Act::lookup) return "tables are looked up";
   Code code;
   std::string message;
-  module->compile(tables_, lanes, {power_of, function_of, lanes == 1 ? tiers().back().sines_of_one : tiers().back().sines_of_all}, cache, code, message);
+  const Tier& tier = tiers().back();
+  module->compile(tables_, lanes, {power_of, function_of, lanes == 1 ? tier.sines_of_one : tier.sines_of_all, tier.sines_of_all, tier.lanes}, cache, code, message);
   if (!code.values) return message;
   Compiled& made = lanes == 1 ? one_ : several_;
   made.code = std::move(code);
