@@ -14,8 +14,8 @@ constexpr std::size_t kSideBySide = 8;
 constexpr std::size_t kSideBySideInLanes = 3;
 // So many numbers of isomorphic steps are a vector. Eight, where the machine has such vectors, are not faster: more lanes stay empty.
 constexpr unsigned kWidth = 4;
-// So few steps are written out for the first four stages and for every place in a block.
-constexpr std::size_t kFewSteps = 16;
+// So few steps are written out for the first four stages and for every place in a block: of one motion, what is packed in parts is faster.
+constexpr std::size_t kFewSteps = 16, kFewStepsInLanes = 64;
 }  // namespace
 
 void Emitter::stage(const std::vector<Step>& steps, bool solved) {
@@ -176,7 +176,7 @@ void Emitter::over_blocks(const std::function<void(Value*)>& before, const std::
 }
 
 void Emitter::stages(const std::vector<Step>& steps, bool solved) {
-  const bool in_parts = steps.size() > kFewSteps, packed = in_parts && solved && lanes_ == 1 && p_.stages > 2 * kBlock;
+  const bool in_parts = steps.size() > (lanes_ == 1 ? kFewSteps : kFewStepsInLanes), packed = in_parts && solved && lanes_ == 1 && p_.stages > 2 * kBlock;
   std::set<Convolution> all;
   for (const Step& s : steps)
     for (const Convolution& c : convolutions(s)) all.insert(c);
@@ -251,7 +251,7 @@ void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
   scratch_ = scratch_of_whole;
   b_.restoreIP(back);
   fill_packed_memory();
-  if (!memory_->packs().packs.empty()) leave_out_what_nobody_reads({in_block, in_block + (before_block ? kBlock : 1)});
+  leave_out_what_nobody_reads({in_block, in_block + (before_block ? kBlock : 1)});
   for (int k = 1; k <= std::min(kBlock, p_.stages); ++k) {
     b_.CreateCall(first[k - 1], {w_, scratch_of_whole, b_.getInt64(static_cast<std::uint64_t>(k))});
     b_.CreateCall(in_block[0], {w_, scratch_of_whole, b_.getInt64(static_cast<std::uint64_t>(k))});
