@@ -86,6 +86,7 @@ endfunction()
 anholon_test_set(oracle      SHARDS 4 LABELS oracle long)
 anholon_test_set(laws        SHARDS 4 LABELS laws long)
 anholon_test_set(backends    SHARDS 2 LABELS backends long)
+target_sources(test_backends PRIVATE src/jit/packs.cpp src/jit/packed_memory.cpp)  # what of the module is not LLVM's
 anholon_test_set(determinism SHARDS 2 LABELS determinism long)
 anholon_test_set(long        SHARDS 4 LABELS long-only)
 

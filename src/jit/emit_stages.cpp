@@ -19,6 +19,7 @@ constexpr std::size_t kFewSteps = 16, kFewStepsInLanes = 64;
 }  // namespace
 
 void Emitter::stage(const std::vector<Step>& steps, bool solved) {
+  histories_.clear();
   for (const Step& s : steps) coefficient(s);
   if (!solved) return;
   sides();

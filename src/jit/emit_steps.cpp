@@ -33,6 +33,7 @@ llvm::Value* Emitter::beyond_of_sum(const Step& s) {
 }
 
 std::pair<llvm::Value*, llvm::Value*> Emitter::history(const Convolution& c) {
+  if (const auto it = histories_.find(c); it != histories_.end()) return it->second;
   Value *s, *t = number(0);
   if (relative_) {
     s = sum_before(c, stage_, false);

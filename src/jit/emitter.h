@@ -162,7 +162,7 @@ class Emitter {
   std::map<std::pair<std::string, int>, Value*> elements_;  // of tables, by what is added to the stage
   std::optional<PackedMemory> memory_;                      // where in the scratch memory
   std::unordered_map<Value*, Origin> origins_;
-  std::map<Convolution, std::pair<Value*, Value*>> histories_;
+  std::map<Convolution, std::pair<Value*, Value*>> histories_;  // of the present stage
   std::map<std::pair<std::uint32_t, int>, llvm::StoreInst*> stores_;  // of coefficients, by their order
   // Of all parts, by series.
   std::vector<std::pair<std::uint32_t, llvm::WeakVH>> reads_;

@@ -34,7 +34,7 @@ class PackedMemory {
   const std::vector<Convolution>& alone() const { return alone_; }
   Place coefficient(std::size_t bundle, int order, bool relative) const;
 
-  // Where all these lie side by side, null where a lane has none. Constants are given a place, if `lasting` says that they are.
+  // Where all these lie side by side, null where a lane has none. Constants are given a place.
   std::optional<Place> find(const std::vector<const Origin*>& lanes);
   // Constants with a place, and where.
   const std::map<Packs::Lanes, std::uint32_t>& constants() const { return constants_; }

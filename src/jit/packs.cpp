@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 namespace anholon::jit {
 
@@ -71,7 +72,7 @@ class Chooser {
 
   void place(const Step& s) {
     const std::vector<Convolution> sums = convolutions(s);
-    if (sums.empty()) return;
+    if (sums.empty() || !std::all_of(sums.begin(), sums.end(), [&](const Convolution& c) { return seen_.insert(c).second; })) return;
     Kind kind{static_cast<int>(s.act), s.lead, s.a_constant, s.b_constant, s.a_unknown, s.b_unknown, s.b_later};
     const Seat* seat = nullptr;
     int position = 0, found_at = 0;
@@ -156,6 +157,7 @@ class Chooser {
   std::map<std::uint32_t, Seat> seats_;
   std::map<Kind, std::size_t> open_;     // rows that are not full
   std::vector<Row> rows_;
+  std::set<Convolution> seen_;           // two steps may ask for the same
   std::map<std::array<int, 3>, std::vector<Convolution>> left_;
 };
 

@@ -1,0 +1,131 @@
+// Isomorphic steps of one motion in lanes: who shares a vector with whom, and the same bits as one by one.
+#include "jit/packs.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "jit/packed_memory.h"
+#include "kernel/kernel.h"
+#include "run/representation.h"
+#include "run/simulate.h"
+#include "support/compiler.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace {
+
+constexpr unsigned kWidth = 4;
+
+struct Motion {
+  explicit Motion(const std::shared_ptr<const Model>& model, int stages = 12) {
+    Outcome o = make_scenario(model, *find_formulation("routh"), {}, scenario);
+    if (o.ok()) o = initial_state(scenario, {}, start);
+    if (!o.ok()) return;
+    parameters = parameter_values<long double>(*scenario.model);
+    plan = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), stages, parameters, static_cast<double>(start.t),
+                            {start.state.begin(), start.state.end()});
+  }
+  void begin(Kernel& k) const {
+    k.set_parameters(0, parameters);
+    k.place(0, start.state, start.leading);
+    k.set_time(0, static_cast<double>(start.t));
+    k.begin();
+  }
+  Scenario scenario;
+  std::vector<long double> parameters;
+  Start<long double> start;
+  std::shared_ptr<const KernelPlan> plan;
+};
+
+std::shared_ptr<const Model> chain(int links) { return test::model_of(test::replaced(test::shipped_text("zoo/chain"), "n = 4", "n = " + std::to_string(links))); }
+
+// Of every shipped model: what lies side by side is what the lanes need.
+TEST(Packs, HoldEachSumOnceInTheLanesOfItsSeries) {
+  std::size_t packed = 0;
+  for (const std::string& name : test::shipped_models()) {
+    const auto model = test::shipped(name);
+    if (not_integrated(*model)) continue;
+    const Motion m(model);
+    if (!m.plan) continue;
+    const jit::Packs packs = jit::choose_packs(m.plan->plan(), kWidth);
+    std::set<jit::Convolution> all, seen;
+    for (const Step& s : m.plan->plan().stage)
+      for (const jit::Convolution& c : jit::convolutions(s)) all.insert(c);
+    for (const jit::Packs::Pack& pack : packs.packs) {
+      ASSERT_EQ(pack.lanes.size(), kWidth) << name;
+      unsigned count = 0;
+      std::set<int> leads;
+      for (unsigned l = 0; l < kWidth; ++l) {
+        if (!pack.lanes[l]) continue;
+        ++count;
+        leads.insert(pack.lanes[l]->lead);
+        EXPECT_EQ(packs.bundles[pack.a].at[l], pack.lanes[l]->a) << name;
+        EXPECT_EQ(packs.bundles[pack.b].at[l], pack.lanes[l]->b) << name;
+        EXPECT_TRUE(all.count(*pack.lanes[l])) << name;
+        EXPECT_TRUE(seen.insert(*pack.lanes[l]).second) << name;
+      }
+      EXPECT_GE(count, jit::fewest_lanes(kWidth)) << name;
+      EXPECT_EQ(leads.size(), 1U) << name;
+      packed += count;
+    }
+    // A series is known up to the same order in all lanes.
+    std::map<std::uint32_t, std::set<int>> newest;
+    for (const jit::Packs::Bundle& b : packs.bundles)
+      for (const std::uint32_t at : b.at)
+        if (at != jit::Packs::kNobody) newest[at].insert(b.newest);
+    for (const auto& [at, orders] : newest) EXPECT_EQ(orders.size(), 1U) << name;
+    const jit::PackedMemory memory(m.plan->plan(), packs, kWidth, {all.begin(), all.end()});
+    EXPECT_EQ(memory.alone().size() + seen.size(), all.size()) << name;
+    std::set<std::uint32_t> taken;
+    for (const jit::Convolution& c : all) {
+      const jit::PackedMemory::Sums& s = memory.sums(c);
+      for (std::uint32_t i = 0; i < 2 * kBlock; ++i) EXPECT_TRUE(taken.insert(s.at + s.step * i).second && s.at + s.step * i < memory.size()) << name;
+    }
+  }
+  EXPECT_GT(packed, 500U);
+}
+
+// Eight links: two packs of sines and two of cosines, and as many of their products with the tensions. Sines and cosines of four links share their angles,
+// their products share them.
+TEST(Packs, FollowTheLinksOfAChain) {
+  Motion m(chain(8));
+  ASSERT_TRUE(m.plan);
+  const std::vector<double> state(m.start.state.begin(), m.start.state.end());
+  m.plan = cheapest(representations({m.plan, m.scenario.structure, {}, m.parameters, 0, state, m.scenario.mechanics.get()}, WritingEffort::very_long_motion)).plan;
+  const jit::Packs packs = jit::choose_packs(m.plan->plan(), kWidth);
+  std::size_t sums = 0;
+  for (const Step& s : m.plan->plan().stage) sums += jit::convolutions(s).size();
+  std::size_t full = 0, shared = 0;
+  for (const jit::Packs::Pack& p : packs.packs) full += std::count_if(p.lanes.begin(), p.lanes.end(), [](const auto& c) { return c.has_value(); }) == kWidth;
+  EXPECT_EQ(packs.packs.size(), sums / kWidth);
+  EXPECT_EQ(full, packs.packs.size());
+  for (std::size_t i = 0; i < packs.packs.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) shared += packs.packs[i].a == packs.packs[j].a || packs.packs[i].a == packs.packs[j].b;
+  EXPECT_EQ(shared, 6U);
+}
+
+// Numbers of links that fill no vector, orders that fill no block, chains with lengths of their own: nothing changes but the time.
+TEST(Packs, ChangeNoBit) {
+  if (!test::compiler_expected()) return;
+  const std::string text = test::shipped_text("zoo/chain");
+  std::string uneven = test::replaced(text, "l = 0.2", "\"l[i]\" = 0.2");
+  uneven = test::replaced(uneven, "P[i-1] + l*(", "P[i-1] + l[i]*(");
+  uneven = test::replaced(uneven, "m = 0.1", "\"m[i]\" = 0.1");
+  uneven = test::replaced(uneven, "mass = \"m\"", "mass = \"m[i]\"");
+  for (const std::string& one : {text, uneven})
+    for (const auto& [links, stages] : {std::pair(2, 11), {3, 9}, {5, 12}, {7, 18}, {9, 10}, {13, 23}}) {
+      const Motion m(test::model_of(test::replaced(one, "n = 4", "n = " + std::to_string(links))), stages);
+      ASSERT_TRUE(m.plan) << links;
+      Kernel tables(m.plan);
+      m.begin(tables);
+      ASSERT_EQ(m.plan->compile({}), "");
+      Kernel compiled(m.plan);
+      m.begin(compiled);
+      for (std::size_t j = 0; j < m.plan->plan().x.size(); ++j)
+        for (int order = 0; order <= stages + m.plan->plan().d[j]; ++order) EXPECT_EQ(tables.coefficient(j, order), compiled.coefficient(j, order)) << links << " " << j << " " << order;
+    }
+}
+
+}  // namespace
+}  // namespace anholon
