@@ -187,7 +187,7 @@ void Emitter::values_of_stage() {
 }
 
 void Emitter::several_sines(const std::vector<const Step*>& steps) {
-  constexpr std::size_t kFew = 2;
+  constexpr std::size_t kFew = 1;
   const std::size_t most = static_cast<std::size_t>(several_sines_);
   for (std::size_t from = 0; from < steps.size(); from += most) {
     const std::size_t count = std::min(most, steps.size() - from);
@@ -203,11 +203,17 @@ void Emitter::several_sines(const std::vector<const Step*>& steps) {
       sines_ = memory;
     }
     const auto row = [&](std::size_t r) { return b_.CreateConstInBoundsGEP1_64(lane_, sines_, r * most); };
-    for (std::size_t i = 0; i < most; ++i) {
-      const Step* const s = i < count ? steps[from + i] : nullptr;
-      store_to(s ? get(s->a, s->lead) : number(0), row(0), static_cast<std::int64_t>(i));
-      store_to(s && s->d.at != 0 ? load(s->d.at) : number(0), row(1), static_cast<std::int64_t>(i));
+    // Whole vectors: what is written by parts waits when it is read at once.
+    auto* all = llvm::FixedVectorType::get(lane_, several_sines_);
+    Value *angles = llvm::ConstantAggregateZero::get(all), *beyond = angles;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Step& s = *steps[from + i];
+      angles = b_.CreateInsertElement(angles, get(s.a, s.lead), i);
+      if (s.d.at != 0) beyond = b_.CreateInsertElement(beyond, load(s.d.at), i);
     }
+    const llvm::Align whole(8 * most);
+    b_.CreateAlignedStore(angles, row(0), whole);
+    b_.CreateAlignedStore(beyond, row(1), whole);
     call_scalar("anholon_several_sines", {row(0), row(1), row(2), row(3)}, b_.getVoidTy());
     for (std::size_t i = 0; i < count; ++i) {
       const Step& s = *steps[from + i];

@@ -28,6 +28,9 @@ std::vector<Convolution> convolutions(const Step& s) {
 
 namespace {
 
+// So few sums that a stage waits for the newest of its numbers and not for their count: gathering them takes time.
+constexpr std::size_t kFewSums = 16;
+
 class Chooser {
  public:
   Chooser(const Plan& plan, unsigned width) : p_(plan), width_(width) {
@@ -48,6 +51,7 @@ class Chooser {
       if (steps.size() >= fewest_lanes(width_)) pack(row);
       else for (const Step* s : steps) leave(*s);
     }
+    if (seen_.size() <= kFewSums) left_.clear();
     for (const auto& [kind, rest] : left_)
       for (std::size_t from = 0; from + fewest_lanes(width_) <= rest.size(); from += width_) {
         std::vector<std::optional<Convolution>> lanes(width_);
