@@ -12,15 +12,23 @@ namespace {
 // A pivot is at least this part of the largest entry of its row.
 constexpr double kThreshold = 0.05;
 constexpr double kVanishes = 1e-12;
-// So many of the shortest rows and columns are looked at for the next pivot.
-constexpr int kCandidates = 6;
 constexpr int kScalings = 3;
+
+// Many pivots cost the same, and which of them is taken decides how much is filled in later.
+struct Order {
+  int candidates;  // so many of the shortest rows and columns are looked at for the next pivot
+  enum class Tie { largest, first_row, last_column } tie;
+};
+constexpr Order kUsual{6, Order::Tie::largest};
+// Where that fills in more for each row, on matrices that are not large, others are tried as well: no rule was found that knows before.
+constexpr std::size_t kMuchFill = 4, kLarge = 1000;
+constexpr Order kOthers[] = {{static_cast<int>(kLarge), Order::Tie::first_row}, {static_cast<int>(kLarge), Order::Tie::last_column}};
 
 using Values = std::array<double, kSamples>;
 
 class Matrix {
  public:
-  Matrix(std::uint32_t n, std::size_t samples, SparseLu& out) : n_(n), samples_(samples), out_(out), rows_(n), columns_(n) {}
+  Matrix(std::uint32_t n, std::size_t samples, const Order& order, SparseLu& out) : n_(n), samples_(samples), order_(order), out_(out), rows_(n), columns_(n) {}
 
   void add(const SampledEntry& e) {
     const auto [it, fresh] = rows_[e.row].try_emplace(e.column, static_cast<std::uint32_t>(entries_.size()));
@@ -61,7 +69,7 @@ class Matrix {
       best_ = {};
       int looked = 0;
       auto row = short_rows_.begin(), column = short_columns_.begin();
-      while (looked < kCandidates && (row != short_rows_.end() || column != short_columns_.end())) {
+      while (looked < order_.candidates && (row != short_rows_.end() || column != short_columns_.end())) {
         if (best_.found && best_.cost == 0 && best_.exact) break;
         if (column == short_columns_.end() || (row != short_rows_.end() && row->first <= column->first)) {
           const std::uint32_t i = (row++)->second;
@@ -117,8 +125,17 @@ class Matrix {
       if (one_sign_ && entries_[e].value[k] * entries_[e].value[0] < 0) return;
       size = std::min(size, here / most);
     }
-    if (best_.found && cost == best_.cost && exact == best_.exact && size <= best_.size) return;
+    if (best_.found && cost == best_.cost && exact == best_.exact && !wins(i, j, size)) return;
     best_ = {true, exact, cost, size, i, j, e};
+  }
+
+  bool wins(std::uint32_t i, std::uint32_t j, double size) const {
+    switch (order_.tie) {
+      case Order::Tie::largest: return size > best_.size;
+      case Order::Tie::first_row: return i < best_.row;
+      case Order::Tie::last_column: return j > best_.column;
+    }
+    return false;
   }
 
   void resize_row(std::uint32_t i, std::size_t from) {
@@ -181,6 +198,7 @@ class Matrix {
 
   std::uint32_t n_;
   std::size_t samples_;
+  const Order order_;
   SparseLu& out_;
   std::vector<Entry> entries_;
   std::vector<std::map<std::uint32_t, std::uint32_t>> rows_, upper_;
@@ -191,14 +209,31 @@ class Matrix {
   bool one_sign_ = true;  // pivots of the same sign at all samples
 };
 
+struct Eliminated {
+  SparseLu lu;
+  std::vector<std::map<std::uint32_t, std::uint32_t>> upper;
+  std::size_t operations() const { return lu.update_list.size() + lu.scaled_entries.size(); }
+};
+
+Eliminated eliminated(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, const Order& order) {
+  Eliminated e;
+  Matrix m(rows, samples, order, e.lu);
+  for (const SampledEntry& entry : entries) m.add(entry);
+  m.scale();
+  if (!m.run()) return {};
+  e.upper = m.upper();
+  return e;
+}
+
 }  // namespace
 
 SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, std::uint32_t sides, const std::vector<bool>& needed) {
-  SparseLu out;
-  Matrix m(rows, samples, out);
-  for (const SampledEntry& e : entries) m.add(e);
-  m.scale();
-  if (!m.run()) return {};
+  Eliminated best = eliminated(rows, entries, samples, kUsual);
+  if (best.lu.pivots.empty()) return {};
+  if (rows <= kLarge && best.operations() > kMuchFill * rows)
+    for (const Order& order : kOthers)
+      if (Eliminated e = eliminated(rows, entries, samples, order); !e.lu.pivots.empty() && e.operations() < best.operations()) best = std::move(e);
+  SparseLu& out = best.lu;
 
   // Where a right side can be other than zero.
   std::vector<bool> side(rows, false);
@@ -218,17 +253,17 @@ SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entr
   for (std::size_t k = 0; k < out.pivots.size(); ++k) {
     kept[k] = wanted[out.pivots[k].column];
     if (kept[k])
-      for (const auto& [column, entry] : m.upper()[k]) wanted[column] = true;
+      for (const auto& [column, entry] : best.upper[k]) wanted[column] = true;
   }
   for (std::size_t k = out.pivots.size(); k-- > 0;) {
     const SparseLu::Pivot& p = out.pivots[k];
     if (!kept[k]) continue;
     SparseLu::Backward b{p.column, p.row, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(out.terms.size()), 0, !side[p.row]};
-    for (const auto& [column, entry] : m.upper()[k]) out.terms.push_back({entry, column});
+    for (const auto& [column, entry] : best.upper[k]) out.terms.push_back({entry, column});
     b.count = static_cast<std::uint32_t>(out.terms.size()) - b.first;
     out.backward.push_back(b);
   }
-  return out;
+  return std::move(out);
 }
 
 bool invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most) {

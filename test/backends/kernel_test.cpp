@@ -480,6 +480,19 @@ TEST(Kernels, InvertForManyUnknowns) {
   }
 }
 
+// What is filled in grows with the links, not faster: the recursion of articulated bodies.
+TEST(Kernels, EliminateLongChainsInOrderN) {
+  const std::string chain = test::shipped_text("zoo/chain");
+  for (const std::size_t links : {8, 16, 32, 64}) {
+    const Reference r(test::model_of(test::replaced(chain, "n = 4", "n = " + std::to_string(links))));
+    ASSERT_EQ(r.why, "");
+    const auto plan = cheapest(r.representations(r.plan(), WritingEffort::very_long_motion)).plan;
+    ASSERT_TRUE(plan);
+    EXPECT_LT(plan->elimination().update_list.size(), 50 * links);
+    EXPECT_LT(plan->elimination().forward.size() + plan->elimination().terms.size(), 30 * links);
+  }
+}
+
 // The other direction: who is on a list belongs there, for the reason given.
 TEST(Kernels, AreMissingForTheseReasonsOnly) {
   for (const auto& [name, why] : kWithoutKernel) EXPECT_EQ(Reference(name).why, why) << name;
