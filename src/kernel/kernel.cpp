@@ -138,19 +138,23 @@ std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program
   std::shared_ptr<KernelPlan> p(new KernelPlan(std::move(program), std::move(map), judged, stages, company));
   // Whether solutions need a second look is seen at the state itself.
   p->tables_.refine = true;
-  if (!p->choose_pivots(parameters, t, state)) return nullptr;
+  const Sampled sampled = p->choose_pivots(parameters, t, state);
+  if (sampled.elimination.lu.pivots.empty()) return nullptr;
+  p->solve_by(sampled);
   Kernel probe(p);
   probe.set_parameters(0, parameters);
   probe.load<double>(0, t, state, {});
   if (probe.correction_of_solution() > kRefined) return p;
   p->tables_.refine = false;
-  return p->choose_pivots(parameters, t, state) ? p : nullptr;
+  p->solve_by(sampled);
+  return p;
 }
 
 // At the state and at some around it, so that a pivot is not one that vanishes when the machine has moved on.
-bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state) {
+KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state) {
   lay_out();
-  std::vector<SampledEntry> entries;
+  Sampled out;
+  std::vector<SampledEntry>& entries = out.entries;
   for (const Entry& e : plan_.entries) {
     const bool exact = e.from < plan_.coefficients.size() && (plan_.coefficients[e.from].one() || plan_.coefficients[e.from].minus_one());
     entries.push_back({e.row, e.column, {}, exact});
@@ -160,7 +164,6 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   std::copy(coefficients.begin(), coefficients.end(), arena.begin());
   const std::unique_ptr<Arithmetic> arithmetic = tier_plain.make(tables_, arena.data(), 1);
   std::size_t samples = 0;
-  double determinant = 1;
   for (std::uint64_t attempt = 0; attempt < 3 * kSamples && samples < kSamples; ++attempt) {
     std::size_t i = 0;
     for (std::size_t j = 0; j < plan_.d.size(); ++j) {
@@ -178,27 +181,33 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
       entries[e].value[samples] = value;
     }
     if (good) ++samples;
-    else if (attempt == 0) return false;
-    if (attempt == 0 && plan_.determinant) determinant = arena[plan_.determinant->at];
+    else if (attempt == 0) return out;
+    if (attempt == 0 && plan_.determinant) out.determinant = arena[plan_.determinant->at];
   }
+  // Samples may lie where the system is singular: fewer, then.
+  for (; samples > 0; --samples) {
+    out.elimination = eliminate_sparse(plan_.rows, entries, samples);
+    if (!out.elimination.lu.pivots.empty()) break;
+  }
+  for (SparseLu::Pivot& p : out.elimination.lu.pivots)
+    for (std::size_t k = samples; k < kSamples; ++k) p.value[k] = p.value[0];
+  return out;
+}
+
+// Solutions by these pivots, refined or not: by the inverse where it is small.
+void KernelPlan::solve_by(const Sampled& sampled) {
   std::vector<bool> needed(plan_.rows, tables_.refine);
   for (std::size_t j = 0; j < plan_.d.size(); ++j) needed[j] = true;
   for (const Completion& c : plan_.completions) needed[c.column] = true;
   const std::uint32_t sides = static_cast<std::uint32_t>(plan_.roots.size());
-  // Samples may lie where the system is singular: fewer, then.
-  for (; samples > 0; --samples) {
-    elimination_ = eliminate_sparse(plan_.rows, entries, samples, sides, needed);
-    if (!elimination_.pivots.empty()) break;
-  }
-  for (SparseLu::Pivot& p : elimination_.pivots)
-    for (std::size_t k = samples; k < kSamples; ++k) p.value[k] = p.value[0];
-  if (!tables_.refine && !elimination_.pivots.empty() && !invert(elimination_, plan_.sides, needed, kMostInfluences)) {
+  elimination_ = solver(sampled.elimination, sides, needed);
+  if (!tables_.refine && !invert(elimination_, plan_.sides, needed, kMostInfluences)) {
     const std::uint32_t n = static_cast<std::uint32_t>(plan_.d.size());
     std::vector<bool> unknowns(plan_.rows, false);
     std::fill_n(unknowns.begin(), n, true);
-    SparseLu e = eliminate_sparse(plan_.rows, entries, samples, sides, unknowns);
+    SparseLu e = solver(sampled.elimination, sides, unknowns);
     if (invert(e, plan_.sides, unknowns, company_ == Company::alone ? kMostInfluencesOfUnknowns : kMostInLanes)) {
-      leave_to_own_rows(e, n, entries, needed);
+      leave_to_own_rows(e, n, sampled.entries, needed);
       elimination_ = std::move(e);
     }
   }
@@ -206,9 +215,8 @@ bool KernelPlan::choose_pivots(const std::vector<long double>& parameters, doubl
   tables_.judged.clear();
   for (const SparseLu::Pivot& p : elimination_.pivots)
     if (!p.one && !p.minus_one) tables_.judged.push_back({tables_.lu + p.entry, 1 / p.value[0]});
-  if (plan_.determinant) tables_.judged.push_back({plan_.determinant->at, 1 / determinant});
+  if (plan_.determinant) tables_.judged.push_back({plan_.determinant->at, 1 / sampled.determinant});
   waits_ = latency(plan_, elimination_);
-  return !elimination_.pivots.empty();
 }
 
 double KernelPlan::cost() const { return company_ == Company::alone ? work() + kWaiting * waits_ * (plan_.stages + 1) : work(); }

@@ -53,7 +53,13 @@ class KernelPlan {
 
  private:
   KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages, Company company);
-  bool choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state);
+  struct Sampled {
+    std::vector<SampledEntry> entries;
+    SparseElimination elimination;
+    double determinant = 1;
+  };
+  Sampled choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state);
+  void solve_by(const Sampled& sampled);
   void lay_out();
 
   std::shared_ptr<const Program> program_;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <set>
 
 namespace anholon {
@@ -21,14 +21,14 @@ struct Order {
 };
 constexpr Order kUsual{6, Order::Tie::largest};
 // Where that fills in more for each row, on matrices that are not large, others are tried as well: no rule was found that knows before.
-constexpr std::size_t kMuchFill = 4, kLarge = 1000;
+constexpr std::size_t kMuchFill = 5, kLarge = 1000;
 constexpr Order kOthers[] = {{static_cast<int>(kLarge), Order::Tie::first_row}, {static_cast<int>(kLarge), Order::Tie::last_column}};
 
 using Values = std::array<double, kSamples>;
 
 class Matrix {
  public:
-  Matrix(std::uint32_t n, std::size_t samples, const Order& order, SparseLu& out) : n_(n), samples_(samples), order_(order), out_(out), rows_(n), columns_(n) {}
+  Matrix(std::uint32_t n, std::size_t samples, const Order& order, SparseLu& out) : n_(n), samples_(samples), order_(order), out_(out), rows_(n), columns_(n), largest_(n) {}
 
   void add(const SampledEntry& e) {
     const auto [it, fresh] = rows_[e.row].try_emplace(e.column, static_cast<std::uint32_t>(entries_.size()));
@@ -117,16 +117,25 @@ class Matrix {
     const bool exact = entries_[e].exact && std::abs(entries_[e].value[0]) == 1;
     if (best_.found && (cost > best_.cost || (cost == best_.cost && best_.exact && !exact))) return;
     double size = 1;
+    const Values& largest = largest_in_row(i);
     for (std::size_t k = 0; k < samples_; ++k) {
-      double most = 0;
-      for (const auto& [other, f] : rows_[i]) most = std::max(most, scaled(i, other, f, k));
-      const double here = scaled(i, j, e, k);
+      const double most = largest[k], here = scaled(i, j, e, k);
       if (!(here > kVanishes) || here < kThreshold * most) return;
       if (one_sign_ && entries_[e].value[k] * entries_[e].value[0] < 0) return;
       size = std::min(size, here / most);
     }
     if (best_.found && cost == best_.cost && exact == best_.exact && !wins(i, j, size)) return;
     best_ = {true, exact, cost, size, i, j, e};
+  }
+
+  const Values& largest_in_row(std::uint32_t i) {
+    std::optional<Values>& largest = largest_[i];
+    if (!largest) {
+      largest.emplace();
+      for (const auto& [j, e] : rows_[i])
+        for (std::size_t k = 0; k < samples_; ++k) (*largest)[k] = std::max((*largest)[k], scaled(i, j, e, k));
+    }
+    return *largest;
   }
 
   bool wins(std::uint32_t i, std::uint32_t j, double size) const {
@@ -172,6 +181,7 @@ class Matrix {
       const std::size_t from = rows_[r].size();
       const std::uint32_t l = rows_[r].at(j);
       rows_[r].erase(j);
+      largest_[r].reset();
       out_.scaled_entries.push_back(l);
       for (std::size_t k = 0; k < samples_; ++k) entries_[l].value[k] /= p.value[k];
       for (const auto& [other, u] : top) {
@@ -204,19 +214,16 @@ class Matrix {
   std::vector<std::map<std::uint32_t, std::uint32_t>> rows_, upper_;
   std::vector<std::set<std::uint32_t>> columns_;
   std::vector<Values> row_scale_, column_scale_;
+  std::vector<std::optional<Values>> largest_;  // of a row as it is, scaled
   std::set<std::pair<std::size_t, std::uint32_t>> short_rows_, short_columns_;
   Best best_;
   bool one_sign_ = true;  // pivots of the same sign at all samples
 };
 
-struct Eliminated {
-  SparseLu lu;
-  std::vector<std::map<std::uint32_t, std::uint32_t>> upper;
-  std::size_t operations() const { return lu.update_list.size() + lu.scaled_entries.size(); }
-};
+std::size_t operations(const SparseElimination& e) { return e.lu.update_list.size() + e.lu.scaled_entries.size(); }
 
-Eliminated eliminated(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, const Order& order) {
-  Eliminated e;
+SparseElimination eliminate_in(const Order& order, std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples) {
+  SparseElimination e;
   Matrix m(rows, samples, order, e.lu);
   for (const SampledEntry& entry : entries) m.add(entry);
   m.scale();
@@ -227,14 +234,17 @@ Eliminated eliminated(std::uint32_t rows, std::span<const SampledEntry> entries,
 
 }  // namespace
 
-SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, std::uint32_t sides, const std::vector<bool>& needed) {
-  Eliminated best = eliminated(rows, entries, samples, kUsual);
-  if (best.lu.pivots.empty()) return {};
-  if (rows <= kLarge && best.operations() > kMuchFill * rows)
+SparseElimination eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples) {
+  SparseElimination best = eliminate_in(kUsual, rows, entries, samples);
+  if (rows <= kLarge && operations(best) > kMuchFill * rows)
     for (const Order& order : kOthers)
-      if (Eliminated e = eliminated(rows, entries, samples, order); !e.lu.pivots.empty() && e.operations() < best.operations()) best = std::move(e);
-  SparseLu& out = best.lu;
+      if (SparseElimination e = eliminate_in(order, rows, entries, samples); !e.lu.pivots.empty() && operations(e) < operations(best)) best = std::move(e);
+  return best;
+}
 
+SparseLu solver(const SparseElimination& e, std::uint32_t sides, const std::vector<bool>& needed) {
+  SparseLu out = e.lu;
+  const std::size_t rows = needed.size();
   // Where a right side can be other than zero.
   std::vector<bool> side(rows, false);
   std::fill(side.begin(), side.begin() + sides, true);
@@ -253,17 +263,17 @@ SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entr
   for (std::size_t k = 0; k < out.pivots.size(); ++k) {
     kept[k] = wanted[out.pivots[k].column];
     if (kept[k])
-      for (const auto& [column, entry] : best.upper[k]) wanted[column] = true;
+      for (const auto& [column, entry] : e.upper[k]) wanted[column] = true;
   }
   for (std::size_t k = out.pivots.size(); k-- > 0;) {
     const SparseLu::Pivot& p = out.pivots[k];
     if (!kept[k]) continue;
     SparseLu::Backward b{p.column, p.row, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(out.terms.size()), 0, !side[p.row]};
-    for (const auto& [column, entry] : best.upper[k]) out.terms.push_back({entry, column});
+    for (const auto& [column, entry] : e.upper[k]) out.terms.push_back({entry, column});
     b.count = static_cast<std::uint32_t>(out.terms.size()) - b.first;
     out.backward.push_back(b);
   }
-  return std::move(out);
+  return out;
 }
 
 bool invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most) {

@@ -5,6 +5,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -72,8 +73,17 @@ struct SparseLu {
   double work() const { return static_cast<double>(influences.empty() ? forward.size() + terms.size() + backward.size() : influences.size() + own_terms.size()); }
 };
 
-// `sides`: rows 0..sides-1 have a right side, all others zero. `needed`: the columns whose solution is asked for. Empty pivots if the matrix is singular at a sample.
-SparseLu eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples, std::uint32_t sides, const std::vector<bool>& needed);
+// The pivots with what they update, and the rows they leave: column and entry.
+struct SparseElimination {
+  SparseLu lu;
+  std::vector<std::map<std::uint32_t, std::uint32_t>> upper;
+};
+
+// No pivots if the matrix is singular at a sample.
+SparseElimination eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples);
+
+// What solves by it. `sides`: rows 0..sides-1 have a right side, all others zero. `needed`: the columns whose solution is asked for.
+SparseLu solver(const SparseElimination& elimination, std::uint32_t sides, const std::vector<bool>& needed);
 
 // The inverse for the columns needed, if it has no more than `most` entries: a solution then waits for its last side only, not for a chain of
 // eliminations. `sides`: in the order in which they become known.
