@@ -149,7 +149,12 @@ void compile(const KernelTables& tables, int lanes, const CalledFunctions& calle
     code = linked(std::move(kept), *builder, Emitter::levels(tables), called, why);
     if (code.values) return;
   }
-  auto object = compiled(tables, lanes, called.several, *builder, message);
+  std::unique_ptr<llvm::MemoryBuffer> object;
+  try {
+    object = compiled(tables, lanes, called.several, *builder, message);
+  } catch (const std::exception& error) {
+    message = error.what();  // the tables go on
+  }
   if (!object) return;
   store.write(key, *object);
   code = linked(std::move(object), *builder, Emitter::levels(tables), called, message);

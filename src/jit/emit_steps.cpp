@@ -1,5 +1,4 @@
-// The steps of a plan: values at the point, Taylor coefficients, partial derivatives.
-#include <llvm/IR/Intrinsics.h>
+// The steps of a plan: Taylor coefficients.
 
 #include "jit/emitter.h"
 
@@ -16,20 +15,6 @@ llvm::Value* Emitter::sum(const Step& s, std::uint32_t count) {
     else r = fma(constant(t.coefficient), x, r);
   }
   return r;
-}
-
-llvm::Value* Emitter::beyond_of_sum(const Step& s) {
-  Value *r = number(0), *beyond = r;
-  for (std::uint32_t k = 0; k < s.count + s.constants; ++k) {
-    const PlanTerm& t = p_.terms[s.first + k];
-    Value *c = load(t.coefficient), *x = k < s.count ? get(t.x, s.lead) : number(1);
-    Value *product = b_.CreateFMul(c, x), *sum = b_.CreateFAdd(product, r), *part = b_.CreateFSub(sum, product), *rounded = fma(c, x, r);
-    Value* of_addition = b_.CreateFAdd(b_.CreateFSub(product, b_.CreateFSub(sum, part)), b_.CreateFSub(r, part));
-    beyond = b_.CreateFAdd(beyond, b_.CreateFAdd(b_.CreateFAdd(b_.CreateFSub(sum, rounded), of_addition), fma(c, x, b_.CreateFNeg(product))));
-    if (k < s.count && p_.terms[s.index + k].x.at != 0) beyond = fma(c, load(p_.terms[s.index + k].x.at), beyond);
-    r = rounded;
-  }
-  return beyond;
 }
 
 std::pair<llvm::Value*, llvm::Value*> Emitter::history(const Convolution& c) {
@@ -122,62 +107,6 @@ void Emitter::coefficient(const Step& s) {
     }
     case Act::lookup: put(s.out, l, number(0)); break;
   }
-}
-
-void Emitter::value(const Step& s) {
-  const std::uint8_t l = s.lead;
-  Value* a = s.act == Act::linear || s.act == Act::beyond || s.act == Act::sine_cosine ? nullptr : get(s.a, l);
-  switch (s.act) {
-    case Act::input: put(s.out, l, b_.CreateFMul(load(s.a.at + s.index), number(k_.factorial[s.index]))); break;
-    case Act::linear: put(s.out, l, sum(s, s.count + s.constants)); break;
-    case Act::beyond: put(s.out, l, beyond_of_sum(s)); break;
-    case Act::multiply: put(s.out, l, b_.CreateFMul(a, get(s.b, l))); break;
-    case Act::square: put(s.out, l, b_.CreateFMul(a, a)); break;
-    case Act::divide: {
-      Value* r = b_.CreateFDiv(number(1), get(s.b, l));
-      store(r, s.c.at);
-      known_[{s.c.at, kNoOrder}] = r;
-      put(s.out, l, b_.CreateFMul(a, r));
-      break;
-    }
-    case Act::square_root: put(s.out, l, b_.CreateIntrinsic(llvm::Intrinsic::sqrt, {lane_}, {a})); break;
-    case Act::power:
-      put(s.out, l, call("anholon_power", {a, llvm::ConstantFP::get(b_.getDoubleTy(), s.value)}));
-      store(b_.CreateFDiv(number(1), a), s.b.at);
-      put(s.d, l, number(0));
-      break;
-    case Act::sine_cosine: {
-      Value* beyond = s.d.at != 0 ? address(s.d.at, false) : llvm::ConstantPointerNull::get(b_.getPtrTy());
-      call_scalar("anholon_sines", {address(s.a.at, false), beyond, address(s.out.at, false), address(s.c.at, false)}, b_.getVoidTy());
-      known_.erase({s.out.at, 0});
-      known_.erase({s.c.at, 0});
-      break;
-    }
-    case Act::function: put(s.out, l, call("anholon_function", {b_.getInt32(s.index), a})); break;
-    case Act::arctan2: put(s.out, l, call("atan2", {a, get(s.b, l)})); break;
-    case Act::weigh: put(s.out, l, number(0)); break;
-    case Act::select: {
-      Value* negative = b_.CreateFCmpOLT(load(s.c.at), number(0));
-      put(s.out, l, b_.CreateSelect(negative, get(s.b, l), get(s.a, l)));
-      break;
-    }
-    case Act::lookup: break;  // refused before
-  }
-}
-
-void Emitter::partial(const Partial& d) {
-  using K = Partial::Kind;
-  Value* a = load(d.a);
-  Value* r = nullptr;
-  switch (d.kind) {
-    case K::twice: r = b_.CreateFAdd(a, a); break;
-    case K::half_reciprocal: r = b_.CreateFDiv(number(0.5), a); break;
-    case K::quotient: r = b_.CreateFMul(a, load(d.b)); break;
-    case K::power: r = b_.CreateFDiv(b_.CreateFMul(number(d.value), a), load(d.b)); break;
-    case K::chosen: r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(0), number(1)); break;
-    case K::not_chosen: r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(1), number(0)); break;
-  }
-  store(r, d.out);
 }
 
 }  // namespace anholon::jit

@@ -3,7 +3,6 @@
 #include <llvm/IR/Intrinsics.h>
 
 #include <algorithm>
-#include <set>
 
 namespace anholon::jit {
 
@@ -142,85 +141,6 @@ llvm::Value* Emitter::call(const char* name, const std::vector<Value*>& argument
     all = b_.CreateInsertElement(all, r, static_cast<std::uint64_t>(lane));
   }
   return all;
-}
-
-void Emitter::values() {
-  begin("values");
-  for (stage_ = -p_.largest_lead; stage_ <= 0; ++stage_) {
-    forget();
-    values_of_stage();
-  }
-  for (const Partial& d : p_.partials) partial(d);
-  end();
-}
-
-// Sines are left until nothing else can be done without them, and then done several at once.
-void Emitter::values_of_stage() {
-  std::vector<const Step*> left;
-  for (const Step& s : p_.point)
-    if (stage_ + s.lead >= 0) left.push_back(&s);
-  while (!left.empty()) {
-    std::vector<const Step*> sines, later;
-    std::set<std::uint32_t> missing;
-    const auto waits = [&](const Step& s) {
-      for (const Place& x : {s.a, s.b, s.c, s.d, s.e, s.f})
-        if (missing.count(x.at)) return true;
-      const std::uint32_t count = s.count + (s.act == Act::beyond ? 0 : s.constants);
-      for (std::uint32_t k = 0; k < count; ++k)
-        if (missing.count(p_.terms[s.first + k].x.at) || (s.act == Act::beyond && missing.count(p_.terms[s.index + k].x.at))) return true;
-      return false;
-    };
-    for (const Step* s : left) {
-      const bool waiting = waits(*s), sine = s->act == Act::sine_cosine && stage_ + s->lead == 0 && lanes_ == 1;
-      if (!waiting && !sine) {
-        stage_ + s->lead == 0 ? value(*s) : coefficient(*s);
-        continue;
-      }
-      (waiting ? later : sines).push_back(s);
-      missing.insert(s->out.at);
-      if (s->act == Act::sine_cosine || s->act == Act::divide) missing.insert(s->c.at);
-      if (s->act == Act::power) missing.insert({s->b.at, s->d.at});
-    }
-    several_sines(sines);
-    left = std::move(later);
-  }
-}
-
-void Emitter::several_sines(const std::vector<const Step*>& steps) {
-  constexpr std::size_t kFew = 1;
-  const std::size_t most = static_cast<std::size_t>(several_sines_);
-  for (std::size_t from = 0; from < steps.size(); from += most) {
-    const std::size_t count = std::min(most, steps.size() - from);
-    if (count <= kFew) {
-      for (std::size_t i = from; i < from + count; ++i) value(*steps[i]);
-      continue;
-    }
-    // Angles, what they are beyond their doubles, sines, cosines.
-    if (!sines_) {
-      llvm::IRBuilder<> top(&function_->getEntryBlock(), function_->getEntryBlock().begin());
-      auto* memory = top.CreateAlloca(lane_, top.getInt32(static_cast<std::uint32_t>(4 * most)));
-      memory->setAlignment(llvm::Align(64));
-      sines_ = memory;
-    }
-    const auto row = [&](std::size_t r) { return b_.CreateConstInBoundsGEP1_64(lane_, sines_, r * most); };
-    // Whole vectors: what is written by parts waits when it is read at once.
-    auto* all = llvm::FixedVectorType::get(lane_, several_sines_);
-    Value *angles = llvm::ConstantAggregateZero::get(all), *beyond = angles;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Step& s = *steps[from + i];
-      angles = b_.CreateInsertElement(angles, get(s.a, s.lead), i);
-      if (s.d.at != 0) beyond = b_.CreateInsertElement(beyond, load(s.d.at), i);
-    }
-    const llvm::Align whole(8 * most);
-    b_.CreateAlignedStore(angles, row(0), whole);
-    b_.CreateAlignedStore(beyond, row(1), whole);
-    call_scalar("anholon_several_sines", {row(0), row(1), row(2), row(3)}, b_.getVoidTy());
-    for (std::size_t i = 0; i < count; ++i) {
-      const Step& s = *steps[from + i];
-      put(s.out, s.lead, load_from(row(2), static_cast<std::int64_t>(i)));
-      put(s.c, s.lead, load_from(row(3), static_cast<std::int64_t>(i)));
-    }
-  }
 }
 
 void Emitter::complete() {
