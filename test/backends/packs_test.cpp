@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <set>
 
 #include "jit/packed_memory.h"
@@ -11,6 +13,7 @@
 #include "run/simulate.h"
 #include "support/compiler.h"
 #include "support/models.h"
+#include "support/random_system.h"
 
 namespace anholon {
 namespace {
@@ -105,6 +108,20 @@ TEST(Packs, FollowTheLinksOfAChain) {
   EXPECT_EQ(shared, 6U);
 }
 
+void expect_same_bits(const Motion& m, const std::string& what) {
+  Kernel tables(m.plan);
+  m.begin(tables);
+  ASSERT_EQ(m.plan->compile({}), "") << what;
+  Kernel compiled(m.plan);
+  m.begin(compiled);
+  const Plan& plan = m.plan->plan();
+  for (std::size_t j = 0; j < plan.x.size(); ++j)
+    for (int order = 0; order <= plan.stages + plan.d[j]; ++order) {
+      const double x = tables.coefficient(j, order), y = compiled.coefficient(j, order);
+      EXPECT_TRUE(x == y || (std::isnan(x) && std::isnan(y))) << what << " " << j << " " << order << ": " << x << " " << y;
+    }
+}
+
 // Numbers of links that fill no vector, orders that fill no block, chains with lengths of their own: nothing changes but the time.
 TEST(Packs, ChangeNoBit) {
   if (!test::compiler_expected()) return;
@@ -117,14 +134,22 @@ TEST(Packs, ChangeNoBit) {
     for (const auto& [links, stages] : {std::pair(2, 11), {3, 9}, {5, 12}, {7, 18}, {9, 10}, {13, 23}}) {
       const Motion m(test::model_of(test::replaced(one, "n = 4", "n = " + std::to_string(links))), stages);
       ASSERT_TRUE(m.plan) << links;
-      Kernel tables(m.plan);
-      m.begin(tables);
-      ASSERT_EQ(m.plan->compile({}), "");
-      Kernel compiled(m.plan);
-      m.begin(compiled);
-      for (std::size_t j = 0; j < m.plan->plan().x.size(); ++j)
-        for (int order = 0; order <= stages + m.plan->plan().d[j]; ++order) EXPECT_EQ(tables.coefficient(j, order), compiled.coefficient(j, order)) << links << " " << j << " " << order;
+      expect_same_bits(m, std::to_string(links) + " links");
     }
+}
+
+TEST(Packs, ChangeNoBitOfRandomSystems) {
+  if (!test::compiler_expected()) return;
+  const std::uint64_t wanted = std::getenv("ANHOLON_LONG") ? 60 : 6;
+  std::uint64_t compared = 0;
+  for (std::uint64_t seed = 1; compared < wanted && seed < 4 * wanted; ++seed) {
+    const test::RandomSystem system(seed);
+    const Motion m(test::model_of(system.text()), 9 + static_cast<int>(seed % 7));
+    if (!m.plan) continue;  // its start has no solution, or its leading derivatives enter nonlinearly
+    expect_same_bits(m, "seed " + std::to_string(seed));
+    ++compared;
+  }
+  EXPECT_EQ(compared, wanted);
 }
 
 }  // namespace
