@@ -37,6 +37,10 @@ foreach(layer IN LISTS layers)
   endif()
 endforeach()
 
+if(ANHOLON_FOUND_hdf5)
+  target_compile_definitions(test_result PRIVATE ANHOLON_HDF5)
+endif()
+
 # A form added as one file: the registry of the build with that file, everything else as it is.
 
 file(GLOB new_form "${PROJECT_SOURCE_DIR}/test/house/forms/*.cpp")

@@ -6,11 +6,6 @@
 
 namespace anholon::jit {
 
-namespace {
-// So many packs are summed side by side.
-constexpr std::size_t kSideBySide = 3;
-}  // namespace
-
 llvm::Value* Emitter::sum_before(const Convolution& c, int order, bool new_of_a) {
   const std::uint32_t at = place_of_sum(c, order, new_of_a);
   return noted(b_.CreateAlignedLoad(lane_, own(at), align()), {Origin::Kind::own, at});
@@ -21,22 +16,17 @@ void Emitter::pack_histories() {
   const std::vector<Packs::Pack>& packs = memory_->packs().packs;
   if (packs.empty()) return;
   auto* lane = llvm::FixedVectorType::get(b_.getDoubleTy(), memory_->width());
-  const auto lead = [](const Packs::Pack& p) {
-    for (const std::optional<Convolution>& c : p.lanes)
-      if (c) return c->lead;
-    return std::uint8_t{0};
-  };
-  for (std::size_t from = 0, to; from < packs.size(); from = to) {
+  for_runs(packs, kSideBySideInLanes, [&](std::size_t from, std::size_t to) {
     std::vector<InLanes> group;
-    for (to = from; to < packs.size() && to - from < kSideBySide && lead(packs[to]) == lead(packs[from]); ++to) {
-      Value* b = own(memory_->coefficient(packs[to].b, lead(packs[to]), false).at);
-      group.push_back({own(memory_->coefficient(packs[to].a, 0, false).at), b_.CreateInBoundsGEP(lane, b, k0_), own(memory_->sums_of_pack(to))});
+    for (std::size_t i = from; i < to; ++i) {
+      Value* b = own(memory_->coefficient(packs[i].b, packs[i].lead, false).at);
+      group.push_back({own(memory_->coefficient(packs[i].a, 0, false).at), b_.CreateInBoundsGEP(lane, b, k0_), own(memory_->sums_of_pack(i))});
     }
-    known_before_in_lanes(lane, lead(packs[from]), group);
+    known_before_in_lanes(lane, packs[from].lead, group);
     // The first place in a block has nothing new.
     for (std::size_t i = from; i < to; ++i)
       b_.CreateAlignedStore(llvm::ConstantAggregateZero::get(lane), own(memory_->sums_of_pack(i) + kBlock * memory_->width()), llvm::Align(8 * memory_->width()));
-  }
+  });
 }
 
 // The block that was just written: histories in lanes, to be kept if that is all it makes, else the newest coefficients of the series.

@@ -10,8 +10,6 @@ namespace anholon::jit {
 namespace {
 // Convolutions summed side by side: enough to hide the latency of a fused multiplication, few enough for the registers.
 constexpr std::size_t kSideBySide = 8;
-// The same where four orders of a convolution are four sums of lanes.
-constexpr std::size_t kSideBySideInLanes = 3;
 // So many numbers of isomorphic steps are a vector. Eight, where the machine has such vectors, are not faster: more lanes stay empty.
 constexpr unsigned kWidth = 4;
 // So few steps are written out for the first four stages and for every place in a block: of one motion, what is packed in parts is faster.
@@ -117,20 +115,12 @@ void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const s
 
 void Emitter::bulk() {
   const std::vector<Convolution>& all = memory_->alone();
-  const auto groups = [](std::size_t size, std::size_t most, const auto& lead, const auto& body) {
-    for (std::size_t from = 0, to; from < size; from = to) {
-      to = from + 1;
-      while (to < size && to - from < most && lead(to) == lead(from)) ++to;
-      body(from, to);
-    }
-  };
-  const auto lead_alone = [&](std::size_t i) { return all[i].lead; };
   if (lanes_ == 1) {
-    groups(all.size(), kSideBySide, lead_alone, [&](std::size_t from, std::size_t to) { known_before(&all[from], to - from); });
+    for_runs(all, kSideBySide, [&](std::size_t from, std::size_t to) { known_before(&all[from], to - from); });
     pack_histories();
     return;
   }
-  groups(all.size(), kSideBySideInLanes, lead_alone, [&](std::size_t from, std::size_t to) {
+  for_runs(all, kSideBySideInLanes, [&](std::size_t from, std::size_t to) {
     std::vector<InLanes> group;
     for (std::size_t i = from; i < to; ++i)
       group.push_back({address(all[i].a, false), address(std::int64_t{all[i].b} + all[i].lead, true), own(place_of_sum(all[i], 0, false))});

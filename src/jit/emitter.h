@@ -21,6 +21,19 @@
 
 namespace anholon::jit {
 
+// So many convolutions are summed side by side where four orders of one are four sums of lanes.
+inline constexpr std::size_t kSideBySideInLanes = 3;
+
+// `body` for runs [from, to) of at most so many with the same lead.
+template <class List, class Body>
+void for_runs(const List& list, std::size_t most, const Body& body) {
+  for (std::size_t from = 0, to; from < list.size(); from = to) {
+    to = from + 1;
+    while (to < list.size() && to - from < most && list[to].lead == list[from].lead) ++to;
+    body(from, to);
+  }
+}
+
 class Emitter {
  public:
   // `several_sines`: that anholon_several_sines takes.

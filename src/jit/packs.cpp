@@ -117,12 +117,14 @@ class Chooser {
 
   void pack(const std::vector<std::optional<Convolution>>& lanes) {
     Packs::Lanes a, b;
+    std::uint8_t lead = 0;
     for (const std::optional<Convolution>& c : lanes) {
+      if (c) lead = c->lead;
       a.push_back(c ? c->a : Packs::kNobody);
       b.push_back(c ? c->b : Packs::kNobody);
     }
     const std::size_t first = bundle(a), second = bundle(b);
-    out_.packs.push_back({lanes, first, second});
+    out_.packs.push_back({lanes, lead, first, second});
   }
 
   // Of what is too little of its kind, the histories at least are packed.

@@ -35,6 +35,7 @@ struct Packs {
   };
   struct Pack {
     std::vector<std::optional<Convolution>> lanes;
+    std::uint8_t lead = 0;     // of all
     std::size_t a = 0, b = 0;  // bundles
   };
   std::vector<Bundle> bundles;

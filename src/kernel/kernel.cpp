@@ -23,8 +23,8 @@ constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 12000;
 // asks for, then the unknowns alone.
 constexpr std::size_t kMostInfluences = 64;
 constexpr std::size_t kMostInfluencesOfUnknowns = 48 * 48, kMostInLanes = 100;
-// Solutions are refined where that changes them by more. Below, motions are not nearer to their references for it (chains up to 48 links, whose
-// solutions it changes by up to 360 round-offs).
+// Solutions are refined where that changes them by more. Below, at the tightest tolerance, motions are nearer to their references for it by a factor of
+// two at most, mostly not at all (chains of 8 to 64 links, whose solutions it changes by 8 to 360 round-offs: bench/RESULTS.md).
 constexpr double kRefined = 512 * 0x1p-53;
 
 // Numbers in [-1, 1) from a counter (a step of splitmix64).

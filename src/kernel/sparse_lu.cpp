@@ -16,13 +16,14 @@ constexpr int kScalings = 3;
 
 // Many pivots cost the same, and which of them is taken decides how much is filled in later.
 struct Order {
-  int candidates;  // so many of the shortest rows and columns are looked at for the next pivot
+  int candidates;  // so many of the shortest rows and columns are looked at for the next pivot, at most
   enum class Tie { largest, first_row, last_column } tie;
 };
 constexpr Order kUsual{6, Order::Tie::largest};
 // Where that fills in more for each row, on matrices that are not large, others are tried as well: no rule was found that knows before.
 constexpr std::size_t kMuchFill = 5, kLarge = 1000;
-constexpr Order kOthers[] = {{static_cast<int>(kLarge), Order::Tie::first_row}, {static_cast<int>(kLarge), Order::Tie::last_column}};
+constexpr int kAll = 2 * static_cast<int>(kLarge);
+constexpr Order kOthers[] = {{kAll, Order::Tie::first_row}, {kAll, Order::Tie::last_column}};
 
 using Values = std::array<double, kSamples>;
 

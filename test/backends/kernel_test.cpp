@@ -480,8 +480,8 @@ TEST(Kernels, InvertForManyUnknowns) {
   }
 }
 
-// What is filled in grows with the links, not faster: the recursion of articulated bodies.
-TEST(Kernels, EliminateLongChainsInOrderN) {
+// Up to 64 links what is filled in grows with them: the recursion of articulated bodies.
+TEST(Kernels, EliminateChainsLinkByLink) {
   const std::string chain = test::shipped_text("zoo/chain");
   for (const std::size_t links : {8, 16, 32, 64}) {
     const Reference r(test::model_of(test::replaced(chain, "n = 4", "n = " + std::to_string(links))));

@@ -111,7 +111,9 @@ TEST(Packs, FollowTheLinksOfAChain) {
 void expect_same_bits(const Motion& m, const std::string& what) {
   Kernel tables(m.plan);
   m.begin(tables);
-  ASSERT_EQ(m.plan->compile({}), "") << what;
+  if (test::compiler_expected()) {
+    ASSERT_EQ(m.plan->compile({}), "") << what;
+  }
   Kernel compiled(m.plan);
   m.begin(compiled);
   const Plan& plan = m.plan->plan();
@@ -124,7 +126,6 @@ void expect_same_bits(const Motion& m, const std::string& what) {
 
 // Numbers of links that fill no vector, orders that fill no block, chains with lengths of their own: nothing changes but the time.
 TEST(Packs, ChangeNoBit) {
-  if (!test::compiler_expected()) return;
   const std::string text = test::shipped_text("zoo/chain");
   std::string uneven = test::replaced(text, "l = 0.2", "\"l[i]\" = 0.2");
   uneven = test::replaced(uneven, "P[i-1] + l*(", "P[i-1] + l[i]*(");
@@ -139,7 +140,6 @@ TEST(Packs, ChangeNoBit) {
 }
 
 TEST(Packs, ChangeNoBitOfRandomSystems) {
-  if (!test::compiler_expected()) return;
   const std::uint64_t wanted = std::getenv("ANHOLON_LONG") ? 60 : 6;
   std::uint64_t compared = 0;
   for (std::uint64_t seed = 1; compared < wanted && seed < 4 * wanted; ++seed) {

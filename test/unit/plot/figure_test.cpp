@@ -1,6 +1,9 @@
 #include "plot/figure.h"
 
 #include <gtest/gtest.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 #include <unistd.h>
 
 #include <algorithm>
@@ -279,23 +282,22 @@ TEST(Tex, NamesAreLatex) {
 }
 
 TEST(Cairo, SaysWhereItCannotWrite) {
-  if (!has_cairo()) GTEST_SKIP() << kNoCairo;
+  const std::string why = has_cairo() ? "No such file or directory" : kNoCairo;
   const Figure f = make_figure(disc(), {});
-  EXPECT_EQ(draw_cairo(f, CairoFormat::pdf, "/no/such/folder/a.pdf"), "No such file or directory");
-  EXPECT_EQ(draw_cairo(f, CairoFormat::png, "/no/such/folder/a.png"), "No such file or directory");
+  EXPECT_EQ(draw_cairo(f, CairoFormat::pdf, "/no/such/folder/a.pdf"), why);
+  EXPECT_EQ(draw_cairo(f, CairoFormat::png, "/no/such/folder/a.png"), why);
 }
 
 TEST(Cairo, DrawsTheSameBytes) {
-  if (!has_cairo()) GTEST_SKIP() << kNoCairo;
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "fontconfig keeps what it has read of fonts until the end";
+  const __lsan::ScopedDisabler kept;  // fontconfig keeps what it has read of fonts until the end
 #endif
   FigureOptions o = of({"theta'", "lambda.*"});
   o.title = "Scheibe";
   const Figure f = make_figure(disc(), o);
   const auto drawn = [&](CairoFormat format) {
     const std::string path = ::testing::TempDir() + "anholon-figure-" + std::to_string(getpid());
-    EXPECT_EQ(draw_cairo(f, format, path), "");
+    EXPECT_EQ(draw_cairo(f, format, path), has_cairo() ? "" : kNoCairo);
     std::string bytes;
     if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
       for (int c; (c = std::fgetc(file)) != EOF;) bytes += static_cast<char>(c);
@@ -305,6 +307,10 @@ TEST(Cairo, DrawsTheSameBytes) {
     return bytes;
   };
   const std::string pdf = drawn(CairoFormat::pdf), png = drawn(CairoFormat::png);
+  if (!has_cairo()) {
+    EXPECT_EQ(pdf + png, "");
+    return;
+  }
   EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
   EXPECT_EQ(png.substr(1, 3), "PNG");
   EXPECT_GT(png.size(), 2000u);
