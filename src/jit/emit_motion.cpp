@@ -28,7 +28,11 @@ void Emitter::begin_motion() {
   std::int64_t high = 0, guess = 2 * std::int64_t{k_.state_size};
   for (std::size_t j = 0; j < p_.x.size(); ++j)
     for (int k = 0; k <= p_.d[j]; ++k)
-      store(times(load_from(function_->getArg(1), k < p_.d[j] ? high++ : guess++), k_.inverse_factorial[static_cast<std::size_t>(k)]), std::int64_t{p_.x[j]} + k);
+    {
+      Value* x = load_from(function_->getArg(1), k < p_.d[j] ? high++ : guess++);
+      x = k <= 2 ? times(x, k_.inverse_factorial[static_cast<std::size_t>(k)]) : b_.CreateFDiv(x, number(factorial(k)));
+      store(x, std::int64_t{p_.x[j]} + k);
+    }
   for (const Beyond& b : p_.beyond_double) store(load_from(function_->getArg(1), std::int64_t{k_.state_size} + b.index), b.at);
   end();
 }
@@ -149,7 +153,7 @@ void Emitter::go_on() {
       for (int i = k + 1; i < d; ++i) {
         const auto place = static_cast<std::size_t>(i);
         s = fma(b_.CreateFAdd(b_.CreateFSub(high[place], times(coefficient_of(j, i), factorial(i))), low[place]), power, s);
-        if (i + 1 < d) power = b_.CreateFMul(power, times(step, k_.reciprocal_of[static_cast<std::size_t>(i - k + 1)]));
+        if (i + 1 < d) power = b_.CreateFMul(power, times(step, k_.order.reciprocal[static_cast<std::size_t>(i - k + 1)]));
       }
       Value *h = high[static_cast<std::size_t>(k)], *sum = b_.CreateFAdd(h, s), *part = b_.CreateFSub(sum, h);
       Value* error = b_.CreateFAdd(b_.CreateFSub(h, b_.CreateFSub(sum, part)), b_.CreateFSub(s, part));

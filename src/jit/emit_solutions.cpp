@@ -55,7 +55,7 @@ void Emitter::invert(const std::vector<Value*>& lu, const std::vector<Value*>& r
     rhs[side] = number(1);
     const std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
     for (std::size_t i = 0; i < e.influences.size(); ++i)
-      if (e.influences[i].side == side) store(y[e.influences[i].column], k_.inverse + static_cast<std::int64_t>(i));
+      if (e.influences[i].side == side && e.influences[i].sign == 0) store(y[e.influences[i].column], k_.inverse + static_cast<std::int64_t>(i));
   }
 }
 
@@ -134,6 +134,11 @@ void Emitter::invert_sides_by_call() {
   }
 }
 
+llvm::Value* Emitter::opposite(Value* x) {
+  auto* negation = llvm::dyn_cast<llvm::UnaryOperator>(x);
+  return negation && negation->getOpcode() == llvm::Instruction::FNeg ? negation->getOperand(0) : b_.CreateFNeg(x);
+}
+
 void Emitter::side(std::size_t i) {
   const int c = p_.c[i];
   if (!relative_ && stage_ == 0) {
@@ -145,13 +150,10 @@ void Emitter::side(std::size_t i) {
     return;
   }
   if (c == 0) {
-    side_.push_back(b_.CreateFNeg(get(p_.roots[i], c)));
+    side_.push_back(opposite(get(p_.roots[i], c)));
     return;
   }
-  const std::vector<double> row(k_.rising_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(c) * k_.orders),
-                                k_.rising_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(c + 1) * k_.orders));
-  Value* factor = b_.CreateFNeg(table(("rising" + std::to_string(c)).c_str(), row, 0));
-  side_.push_back(b_.CreateFMul(get(p_.roots[i], c), factor));
+  side_.push_back(b_.CreateFMul(get(p_.roots[i], c), b_.CreateFNeg(rising(c, 0))));
 }
 
 void Emitter::sides() {
@@ -166,8 +168,10 @@ void Emitter::solve() {
     if (lanes_ == 1 && p_.x.size() >= kManyUnknowns && e.influences.size() == p_.x.size() * p_.sides.size()) from = multiply_by_inverse();
     for (std::size_t i = 0; i < e.influences.size(); ++i) {
       if (e.influences[i].column < from) continue;
-      Value*& y = solution_[e.influences[i].column];
-      y = fma(load(k_.inverse + static_cast<std::int64_t>(i)), side_[e.influences[i].side], y ? y : number(0));
+      const SparseLu::Influence& of = e.influences[i];
+      Value*& y = solution_[of.column];
+      Value* const side = side_[of.side];
+      y = of.sign == 0 ? fma(load(k_.inverse + static_cast<std::int64_t>(i)), side, y ? y : number(0)) : of.sign > 0 ? side : opposite(side);
     }
     for (const SparseLu::Own& own : e.own) {
       Value* y = nullptr;

@@ -37,9 +37,13 @@ std::pair<llvm::Value*, llvm::Value*> Emitter::history(const Convolution& c) {
   return histories_[c] = {s, t};
 }
 
-llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later) {
+llvm::Value* Emitter::whole_history(std::uint32_t a, std::uint32_t b, std::uint8_t lead) {
   const auto [old, new_of_a] = history({a, b, lead});
-  Value* s = b_.CreateFAdd(old, new_of_a);
+  return b_.CreateFAdd(old, new_of_a);
+}
+
+llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later) {
+  Value* s = whole_history(a, b, lead);
   if (first && !b_later) s = fma(read(a, 0, false), newest(b, lead), s);
   if (last) s = fma(newest(a, lead), read(b, 0, false), s);
   if (first && b_later) s = fma(read(a, 0, false), newest(b, lead), s);
@@ -50,10 +54,8 @@ void Emitter::coefficient(const Step& s) {
   const std::uint8_t l = s.lead;
   switch (s.act) {
     case Act::input: {
-      const auto key = "rising" + std::to_string(s.index);
-      const std::vector<double> row(k_.rising_.begin() + static_cast<std::ptrdiff_t>(s.index * k_.orders), k_.rising_.begin() + static_cast<std::ptrdiff_t>((s.index + 1) * k_.orders));
       Value* x = earlier(s.a.at, stage_ + l + static_cast<int>(s.index));
-      put(s.out, l, b_.CreateFMul(x, table(key.c_str(), row, l)));
+      put(s.out, l, b_.CreateFMul(x, rising(static_cast<int>(s.index), l)));
       break;
     }
     case Act::linear: put(s.out, l, sum(s, s.count)); break;
@@ -73,33 +75,43 @@ void Emitter::coefficient(const Step& s) {
       break;
     }
     case Act::power: {
-      Value* r = b_.CreateFMul(number(s.value), convolution(s.c.at, s.out.at, l, false, !s.a_unknown));
-      r = b_.CreateFSub(r, convolution(s.d.at, s.a.at, l, false, false));
-      r = b_.CreateFMul(b_.CreateFMul(r, table("reciprocal", k_.reciprocal_of, l)), constant(s.b.at));
+      Value* r = fma(number(s.value), whole_history(s.c.at, s.out.at, l), b_.CreateFNeg(whole_history(s.d.at, s.a.at, l)));
+      r = b_.CreateFMul(over_order(r, l), constant(s.b.at));
+      if (!s.a_unknown) r = fma(get(s.a, l), constant(s.e.at), r);
       put(s.out, l, r);
-      put(s.d, l, b_.CreateFMul(r, table("order", k_.order, l)));
+      put(s.d, l, b_.CreateFMul(r, order(l)));
       break;
     }
     case Act::sine_cosine: {
-      Value* r = table("reciprocal", k_.reciprocal_of, l);
-      Value* sine = b_.CreateFMul(convolution(s.b.at, s.c.at, l, false, !s.a_unknown), r);
-      Value* cosine = b_.CreateFMul(convolution(s.b.at, s.out.at, l, false, !s.a_unknown), r);
+      Value *sine = over_order(whole_history(s.b.at, s.c.at, l), l), *cosine = over_order(whole_history(s.b.at, s.out.at, l), l);
+      if (!s.a_unknown) {
+        sine = fma(get(s.a, l), read(s.c.at, 0, false), sine);
+        cosine = fma(get(s.a, l), read(s.out.at, 0, false), cosine);
+      }
       put(s.out, l, sine);
       put(s.c, l, b_.CreateFNeg(cosine));
       break;
     }
-    case Act::function:
-      if (s.b_constant) put(s.out, l, s.a_unknown ? number(0) : b_.CreateFMul(load(s.b.at), get(s.a, l)));
-      else put(s.out, l, b_.CreateFMul(convolution(s.c.at, s.b.at, l, false, !s.a_unknown), table("reciprocal", k_.reciprocal_of, l)));
-      break;
-    case Act::arctan2: {
-      Value* r = number(0);
-      if (!s.a_constant) r = b_.CreateFAdd(r, convolution(s.e.at, s.c.at, l, false, !s.a_unknown));
-      if (!s.b_constant) r = b_.CreateFAdd(r, convolution(s.f.at, s.d.at, l, false, !s.b_unknown));
-      put(s.out, l, b_.CreateFMul(r, table("reciprocal", k_.reciprocal_of, l)));
+    case Act::function: {
+      if (s.b_constant) {
+        put(s.out, l, s.a_unknown ? number(0) : b_.CreateFMul(load(s.b.at), get(s.a, l)));
+        break;
+      }
+      Value* r = over_order(whole_history(s.c.at, s.b.at, l), l);
+      put(s.out, l, s.a_unknown ? r : fma(get(s.a, l), read(s.b.at, 0, false), r));
       break;
     }
-    case Act::weigh: put(s.out, l, b_.CreateFMul(get(s.a, l), table("order", k_.order, l))); break;
+    case Act::arctan2: {
+      Value* r = number(0);
+      if (!s.a_constant) r = b_.CreateFAdd(r, whole_history(s.e.at, s.c.at, l));
+      if (!s.b_constant) r = b_.CreateFAdd(r, whole_history(s.f.at, s.d.at, l));
+      r = over_order(r, l);
+      if (!s.a_constant && !s.a_unknown) r = fma(get(s.a, l), read(s.c.at, 0, false), r);
+      if (!s.b_constant && !s.b_unknown) r = fma(get(s.b, l), read(s.d.at, 0, false), r);
+      put(s.out, l, r);
+      break;
+    }
+    case Act::weigh: put(s.out, l, b_.CreateFMul(get(s.a, l), order(l))); break;
     case Act::select: {
       Value* negative = b_.CreateFCmpOLT(load(s.c.at), number(0));
       put(s.out, l, b_.CreateSelect(negative, s.b_constant ? number(0) : get(s.b, l), s.a_constant ? number(0) : get(s.a, l)));

@@ -42,7 +42,7 @@ void Emitter::values_of_stage() {
       (waiting ? later : sines).push_back(s);
       missing.insert(s->out.at);
       if (s->act == Act::sine_cosine || s->act == Act::divide) missing.insert(s->c.at);
-      if (s->act == Act::power) missing.insert({s->b.at, s->d.at});
+      if (s->act == Act::power) missing.insert({s->b.at, s->d.at, s->e.at});
     }
     several_sines(sines);
     left = std::move(later);
@@ -117,11 +117,14 @@ void Emitter::value(const Step& s) {
       break;
     }
     case Act::square_root: put(s.out, l, b_.CreateIntrinsic(llvm::Intrinsic::sqrt, {lane_}, {a})); break;
-    case Act::power:
-      put(s.out, l, call("anholon_power", {a, llvm::ConstantFP::get(b_.getDoubleTy(), s.value)}));
-      store(b_.CreateFDiv(number(1), a), s.b.at);
+    case Act::power: {
+      Value *power = call("anholon_power", {a, llvm::ConstantFP::get(b_.getDoubleTy(), s.value)}), *r = b_.CreateFDiv(number(1), a);
+      put(s.out, l, power);
+      store(r, s.b.at);
       put(s.d, l, number(0));
+      store(b_.CreateFMul(b_.CreateFMul(number(s.value), power), r), s.e.at);
       break;
+    }
     case Act::sine_cosine: {
       Value* beyond = s.d.at != 0 ? address(s.d.at, false) : llvm::ConstantPointerNull::get(b_.getPtrTy());
       call_scalar("anholon_sines", {address(s.a.at, false), beyond, address(s.out.at, false), address(s.c.at, false)}, b_.getVoidTy());
@@ -149,7 +152,6 @@ void Emitter::partial(const Partial& d) {
     case K::twice: r = b_.CreateFAdd(a, a); break;
     case K::half_reciprocal: r = b_.CreateFDiv(number(0.5), a); break;
     case K::quotient: r = b_.CreateFMul(a, load(d.b)); break;
-    case K::power: r = b_.CreateFDiv(b_.CreateFMul(number(d.value), a), load(d.b)); break;
     case K::chosen: r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(0), number(1)); break;
     case K::not_chosen: r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(1), number(0)); break;
   }

@@ -108,6 +108,28 @@ void Emitter::put(const Place& place, int lead, Value* v) {
   else if (!relative_ && stage_ <= 0) store(v, place.at);
 }
 
+// Of a divisor, as kernel/lanes.h has it.
+llvm::Value* Emitter::quotient(Value* x, Value* reciprocal, Value* beyond) {
+  // Where nothing is known before.
+  if (const auto* nothing = llvm::dyn_cast<llvm::Constant>(x); nothing && nothing->isZeroValue()) return x;
+  return fma(x, reciprocal, b_.CreateFMul(x, beyond));
+}
+
+llvm::Value* Emitter::order(int offset) { return table("order", k_.order.number, offset); }
+
+llvm::Value* Emitter::over_order(Value* x, int offset) {
+  return quotient(x, table("reciprocal", k_.order.reciprocal, offset), table("reciprocal_beyond", k_.order.beyond, offset));
+}
+
+llvm::Value* Emitter::row(const char* name, const std::vector<double>& rows, int m, int offset) {
+  const auto first = rows.begin() + static_cast<std::ptrdiff_t>(k_.rising_at(m, 0));
+  return table((name + std::to_string(m)).c_str(), {first, first + static_cast<std::ptrdiff_t>(k_.orders)}, offset);
+}
+
+llvm::Value* Emitter::rising(int m, int offset) { return row("rising", k_.rising_.number, m, offset); }
+
+llvm::Value* Emitter::over_rising(Value* x, int m) { return quotient(x, row("falling", k_.rising_.reciprocal, m, 0), row("falling_beyond", k_.rising_.beyond, m, 0)); }
+
 llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, int offset) {
   if (!relative_) return number(row[static_cast<std::size_t>(stage_ + offset)]);
   Value*& element = elements_[{name, stage_ + offset}];
@@ -145,18 +167,13 @@ llvm::Value* Emitter::call(const char* name, const std::vector<Value*>& argument
 
 void Emitter::complete() {
   const bool start = !relative_ && stage_ == 0;
-  const auto falling = [&](int m) -> Value* {
-    const std::vector<double> row(k_.falling_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(m) * k_.orders),
-                                  k_.falling_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(m + 1) * k_.orders));
-    return table(("falling" + std::to_string(m)).c_str(), row, 0);
-  };
   for (std::size_t j = 0; j < p_.x.size(); ++j) {
-    Value* change = p_.d[j] > 0 ? b_.CreateFMul(solution_[j], falling(p_.d[j])) : solution_[j];
+    Value* change = p_.d[j] > 0 ? over_rising(solution_[j], p_.d[j]) : solution_[j];
     put({p_.x[j], true}, p_.d[j], start ? b_.CreateFAdd(get({p_.x[j], true}, p_.d[j]), change) : change);
   }
   for (const Completion& c : p_.completions) {
     Value* change = solution_[c.column];
-    if (c.lead > 0) change = b_.CreateFMul(change, falling(c.lead));
+    if (c.lead > 0) change = over_rising(change, c.lead);
     put(c.out, c.lead, start || !c.fresh ? b_.CreateFAdd(get(c.out, c.lead), change) : change);
   }
   for (const Step& s : p_.weigh_again) {

@@ -99,7 +99,9 @@ class Emitter {
   Value* beyond_of_sum(const Step& s);
   // Its sums over what is older than the newest coefficients, those that end with what is new of a in a block apart.
   std::pair<Value*, Value*> history(const Convolution& c);
+  Value* whole_history(std::uint32_t a, std::uint32_t b, std::uint8_t lead);
   Value* convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later = false);
+  Value* opposite(Value* x);
   void side(std::size_t root);
   void sides();
   void solve();
@@ -148,8 +150,14 @@ class Emitter {
   Value* earlier(std::uint32_t at, int order);
   void put(const Place& place, int lead, Value* v);
   Value* newest(std::uint32_t at, int lead) { return get({at, true}, lead); }
-  // Element stage + offset of a table.
+  // Element stage + offset of a table; of row m of several.
   Value* table(const char* name, const std::vector<double>& row, int offset);
+  Value* row(const char* name, const std::vector<double>& rows, int m, int offset);
+  Value* order(int offset);
+  Value* rising(int m, int offset);
+  Value* quotient(Value* x, Value* reciprocal, Value* beyond);
+  Value* over_order(Value* x, int offset);
+  Value* over_rising(Value* x, int m);
   Value* fma(Value* a, Value* b, Value* c);
   // A function of doubles, lane by lane.
   Value* call(const char* name, const std::vector<Value*>& arguments);

@@ -38,8 +38,8 @@ void Writer::add(const PlanTerm& term) {
 void Writer::add(const Coefficient& coefficient) { all(coefficient.one(), coefficient.minus_one()); }
 
 void Writer::add(const Partial& partial) {
-  const auto& [kind, out, a, b, value] = partial;
-  all(kind, out, a, b, value);
+  const auto& [kind, out, a, b] = partial;
+  all(kind, out, a, b);
 }
 
 void Writer::add(const Beyond& beyond) {
@@ -79,8 +79,8 @@ void Writer::add(const SparseLu::Backward& backward) {
 }
 
 void Writer::add(const SparseLu::Influence& influence) {
-  const auto& [column, side] = influence;
-  all(column, side);
+  const auto& [column, side, sign] = influence;
+  all(column, side, sign);
 }
 
 void Writer::add(const SparseLu::Own& own) {
@@ -104,6 +104,11 @@ void Writer::add(const Findings& found) {
   all(health, determinant, drift, weight, moved, reach, unfit, largest);
 }
 
+void Writer::add(const KernelTables::Divisors& divisors) {
+  const auto& [number, reciprocal, beyond] = divisors;
+  all(number, reciprocal, beyond);
+}
+
 void Writer::add(const Plan& plan) {
   // What roots of even powers are is for whoever chooses steps; the determinant is among what is judged.
   [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
@@ -119,9 +124,9 @@ void Writer::add(const SparseLu& elimination) {
 void Writer::add(const KernelTables& tables) {
   // Knots: models that look tables up are not compiled. The code is told which places of motions it is to read and write.
   [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments, motions, projected, margin,
-                                inverse_pivots, found, size, state_size, judged, refine, factorial, inverse_factorial, reciprocal_of, order, rising, falling, orders] = tables;
-  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial,
-      reciprocal_of, order, rising, falling, orders);
+                                inverse_pivots, found, size, state_size, judged, refine, factorial, inverse_factorial, order, rising, orders] = tables;
+  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial, order,
+      rising, orders);
 }
 
 }  // namespace anholon::jit

@@ -64,13 +64,19 @@ struct KernelTables {
   std::vector<JudgedPivot> judged;
   bool refine = false;  // solutions, by one step of iterative refinement
   bool keeps_entries() const { return refine || !elimination->own.empty(); }  // of the linearized tape
-  std::vector<double> factorial, inverse_factorial, reciprocal_of, order;  // k!, 1 / k!, 1 / k, k
+  std::vector<double> factorial, inverse_factorial;  // k!, 1 / k!
 
-  // (s + m)! / s! and its reciprocal, m up to kMostRising.
-  std::vector<double> rising_, falling_;
+  // Whole numbers by which every expansion divides, and what it multiplies by instead (lanes.h: quotient): the reciprocal as the sum of two doubles.
+  // Rounded to one, it would be wrong in the same way at every step, and the errors of a motion would grow in proportion to its length.
+  struct Divisors {
+    std::vector<double> number, reciprocal, beyond;
+    void add(long double n);
+  };
+  Divisors order;  // k
+  Divisors rising_;  // (s + m)! / s!, m up to kMostRising; a double holds it for m up to 8
   std::size_t orders = 0;
-  double rising(int m, int s) const { return rising_[static_cast<std::size_t>(m) * orders + static_cast<std::size_t>(s)]; }
-  double falling(int m, int s) const { return falling_[static_cast<std::size_t>(m) * orders + static_cast<std::size_t>(s)]; }
+  std::size_t rising_at(int m, int s) const { return static_cast<std::size_t>(m) * orders + static_cast<std::size_t>(s); }
+  double rising(int m, int s) const { return rising_.number[rising_at(m, s)]; }
 
   double lookup(std::uint32_t function, double x) const;
 };

@@ -33,7 +33,7 @@ struct CompilerModule {
   // Empty `code.values` and a message where it fails. `cache`: a folder for compiled code, or empty.
   void (*compile)(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache, Code& code, std::string& message);
 };
-inline constexpr int kCompilerVersion = 5;
+inline constexpr int kCompilerVersion = 6;
 
 // The module beside the program; null where there is none, or this machine cannot run what it makes.
 const CompilerModule* compiler();

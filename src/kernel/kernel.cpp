@@ -66,6 +66,13 @@ const std::vector<Tier>& tiers() {
   return list;
 }
 
+void KernelTables::Divisors::add(long double n) {
+  const long double reciprocal_of_n = n > 0 ? static_cast<double>(1 / n) : 0;
+  number.push_back(static_cast<double>(n));
+  reciprocal.push_back(static_cast<double>(reciprocal_of_n));
+  beyond.push_back(n > 0 ? static_cast<double>(std::fma(-reciprocal_of_n, n, 1.0L) / n) : 0);
+}
+
 KernelPlan::KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages, Company company)
     : program_(std::move(program)), map_(std::move(map)), plan_(anholon::plan(*program_, stages, judged)), company_(company) {
   if (map_) plan_.apart = plan_.x.size() - map_->velocities();
@@ -84,16 +91,14 @@ KernelPlan::KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<c
     if (k > 0) factorial *= k;
     tables_.factorial.push_back(static_cast<double>(factorial));
     tables_.inverse_factorial.push_back(static_cast<double>(1 / factorial));
-    tables_.reciprocal_of.push_back(k > 0 ? 1 / static_cast<double>(k) : 0);
-    tables_.order.push_back(static_cast<double>(k));
+    tables_.order.add(k);
   }
   tables_.orders = plan_.stride;
   for (int m = 0; m <= kMostRising; ++m)
     for (std::size_t s = 0; s < tables_.orders; ++s) {
       long double r = 1;
       for (int i = 1; i <= m; ++i) r *= static_cast<long double>(s) + i;
-      tables_.rising_.push_back(static_cast<double>(r));
-      tables_.falling_.push_back(static_cast<double>(1 / r));
+      tables_.rising_.add(r);
     }
 }
 
@@ -201,12 +206,12 @@ void KernelPlan::solve_by(const Sampled& sampled) {
   for (const Completion& c : plan_.completions) needed[c.column] = true;
   const std::uint32_t sides = static_cast<std::uint32_t>(plan_.roots.size());
   elimination_ = solver(sampled.elimination, sides, needed);
-  if (!tables_.refine && !invert(elimination_, plan_.sides, needed, kMostInfluences)) {
+  if (!tables_.refine && !invert(elimination_, sampled.entries, plan_.sides, needed, kMostInfluences)) {
     const std::uint32_t n = static_cast<std::uint32_t>(plan_.d.size());
     std::vector<bool> unknowns(plan_.rows, false);
     std::fill_n(unknowns.begin(), n, true);
     SparseLu e = solver(sampled.elimination, sides, unknowns);
-    if (invert(e, plan_.sides, unknowns, company_ == Company::alone ? kMostInfluencesOfUnknowns : kMostInLanes)) {
+    if (invert(e, sampled.entries, plan_.sides, unknowns, company_ == Company::alone ? kMostInfluencesOfUnknowns : kMostInLanes)) {
       leave_to_own_rows(e, n, sampled.entries, needed);
       elimination_ = std::move(e);
     }

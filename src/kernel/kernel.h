@@ -91,14 +91,14 @@ class Kernel {
   template <class State>
   void load(int lane, double t, const std::vector<State>& state, const std::vector<State>& leading) {
     const Plan& p = plan_->plan();
-    const double* inverse = plan_->tables().inverse_factorial.data();
+    const double* factorial = plan_->tables().factorial.data();
     const std::size_t stride = static_cast<std::size_t>(lanes_);
     const State* from = state.data();
     for (std::size_t j = 0; j < p.x.size(); ++j) {
       double* x = &number(p.x[j], lane);
       const int d = p.d[j];
-      for (int k = 0; k < d; ++k, x += stride) *x = static_cast<double>(*from++) * inverse[k];
-      *x = leading.empty() ? 0 : static_cast<double>(leading[j]) * inverse[d];
+      for (int k = 0; k < d; ++k, x += stride) *x = static_cast<double>(*from++) / factorial[k];
+      *x = leading.empty() ? 0 : static_cast<double>(leading[j]) / factorial[d];
     }
     for (const Beyond& b : p.beyond_double) number(b.at, lane) = 0;
     set_time(lane, t);

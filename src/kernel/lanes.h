@@ -63,5 +63,17 @@ struct Lanes<8> : SeveralLanes<8> {
 };
 #endif
 
+// x / n, rounded once: the exact quotient but for 2^-106 of it. 1 / n is `reciprocal` + `beyond`.
+template <class T>
+typename T::V quotient(typename T::V x, double n, double reciprocal, double beyond) {
+#ifdef __FMA__
+  (void)n;
+  return T::fma(x, T::broadcast(reciprocal), x * T::broadcast(beyond));
+#else
+  (void)reciprocal, (void)beyond;
+  return x / T::broadcast(n);
+#endif
+}
+
 }  // namespace
 }  // namespace anholon

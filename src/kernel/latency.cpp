@@ -7,6 +7,9 @@ namespace anholon {
 
 namespace {
 
+// A quotient (lanes.h).
+constexpr int kQuotient = 2;
+
 class Clock {
  public:
   Clock(const Plan& plan, const SparseLu& elimination) : p_(plan), e_(elimination) {}
@@ -15,8 +18,8 @@ class Clock {
     for (const Step& s : p_.stage) run(s);
     solve();
     int last = 0;
-    for (std::size_t j = 0; j < p_.x.size(); ++j) last = std::max(last, finish({p_.x[j], true}, p_.d[j], solution_[j] + (p_.d[j] > 0)));
-    for (const Completion& c : p_.completions) last = std::max(last, finish(c.out, c.lead, solution_[c.column] + (c.lead > 0) + !c.fresh));
+    for (std::size_t j = 0; j < p_.x.size(); ++j) last = std::max(last, finish({p_.x[j], true}, p_.d[j], solution_[j] + (p_.d[j] > 0 ? kQuotient : 0)));
+    for (const Completion& c : p_.completions) last = std::max(last, finish(c.out, c.lead, solution_[c.column] + (c.lead > 0 ? kQuotient : 0) + !c.fresh));
     for (const Step& s : p_.weigh_again) last = std::max(last, finish(s.out, s.lead, ready(s.a, s.lead) + 1));
     return last;
   }
@@ -42,6 +45,9 @@ class Clock {
     return std::max(std::min(a, b) + 1, std::max(a, b)) + 1;
   }
 
+  // What was known before, divided by the order, and the newest coefficient added to it.
+  int newest(int before, const Place& x, int lead, bool missing) const { return missing ? before + kQuotient : std::max(before + kQuotient, ready(x, lead)) + 1; }
+
   void run(const Step& s) {
     const int l = s.lead, a = s.act == Act::linear || s.a_unknown ? 0 : ready(s.a, l);
     switch (s.act) {
@@ -59,17 +65,16 @@ class Clock {
       case Act::divide: finish(s.out, l, std::max(a, ready(s.b, l) + 1) + 2); break;
       case Act::square_root: finish(s.out, l, a + 2); break;
       case Act::power:
-        finish(s.out, l, a + 5);
-        finish(s.d, l, a + 6);
+        finish(s.d, l, finish(s.out, l, newest(3, s.a, l, s.a_unknown)) + 1);
         break;
       case Act::sine_cosine: {
-        const int at = (s.a_unknown ? 0 : ready(s.b, l)) + 2;
+        const int at = newest(0, s.a, l, s.a_unknown);
         finish(s.out, l, at);
         finish(s.c, l, at);
         break;
       }
-      case Act::function: finish(s.out, l, std::max(a, ready(s.c, l)) + 2); break;
-      case Act::arctan2: finish(s.out, l, std::max(ready(s.e, l), ready(s.f, l)) + 4); break;
+      case Act::function: finish(s.out, l, s.b_constant ? a + 1 : newest(0, s.a, l, s.a_unknown)); break;
+      case Act::arctan2: finish(s.out, l, std::max(newest(1, s.a, l, s.a_constant || s.a_unknown), s.b_constant || s.b_unknown ? 0 : ready(s.b, l)) + 1); break;
       case Act::weigh: finish(s.out, l, a + 1); break;
       case Act::select: finish(s.out, l, std::max(a, ready(s.b, l)) + 1); break;
       case Act::beyond: case Act::lookup: break;
@@ -82,7 +87,7 @@ class Clock {
       if (!p_.root_is_zero[i]) side[i] = ready(p_.roots[i], p_.c[i]) + (p_.c[i] > 0);
     solution_.assign(p_.rows, 0);
     if (!e_.influences.empty()) {
-      for (const SparseLu::Influence& of : e_.influences) solution_[of.column] = std::max(solution_[of.column], side[of.side]) + 1;
+      for (const SparseLu::Influence& of : e_.influences) solution_[of.column] = std::max(solution_[of.column], side[of.side]) + (of.sign == 0);
       for (const SparseLu::Own& own : e_.own)
         for (std::uint32_t i = own.first; i < own.first + own.count; ++i) solution_[own.column] = std::max(solution_[own.column], solution_[e_.own_terms[i].column]) + 1;
       return;

@@ -226,6 +226,8 @@ class Planner {
             step.c = weighted(slots_.same_as(in.a), after);
             step.b = {take(1), false};
             step.d = {take(plan_.stride), true};
+            step.e = {take(1), false};
+            derivative_[s] = step.e.at;
             if (slots_.tainted[s]) again_ = true;
           }
           break;
@@ -300,9 +302,9 @@ class Planner {
     return code_[s].op == Op::input ? static_cast<std::uint32_t>(slots_.inputs[s]->variable) : column_[s];
   }
 
-  std::uint32_t partial(Partial::Kind kind, std::uint32_t a, std::uint32_t b, double value = 0) {
+  std::uint32_t partial(Partial::Kind kind, std::uint32_t a, std::uint32_t b) {
     const std::uint32_t out = take(1);
-    plan_.partials.push_back({kind, out, a, b, value});
+    plan_.partials.push_back({kind, out, a, b});
     return out;
   }
 
@@ -342,7 +344,7 @@ class Planner {
         }
         case Op::power:
           if (tape_.rationals[in.index] == Rational(1, 2)) enter(s, a, partial(Partial::Kind::half_reciprocal, w, 0), -1);
-          else enter(s, a, partial(Partial::Kind::power, w, place_[a].at, tape_.rationals[in.index].get_d()), -1);
+          else enter(s, a, derivative_.at(s), -1);
           break;
         case Op::function:
           if (const auto cosine = slots_.cosine_of.find(s); cosine != slots_.cosine_of.end()) enter(s, a, place_[cosine->second].at, -1);
@@ -406,7 +408,7 @@ class Planner {
   std::vector<Place> place_;
   std::vector<std::uint32_t> column_;
   std::map<std::string, std::uint32_t> coefficient_;
-  std::map<std::uint32_t, std::uint32_t> reciprocal_;
+  std::map<std::uint32_t, std::uint32_t> reciprocal_, derivative_;  // of divisors, of powers
   std::map<std::pair<std::uint32_t, bool>, Place> weighted_;
   std::map<std::uint32_t, Place> beyond_;                  // what slots are beyond their doubles, if that is known
   std::map<std::uint32_t, Step> sums_;                     // of slots

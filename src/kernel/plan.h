@@ -33,7 +33,7 @@ enum class Act : std::uint8_t {
   square,       // a^2
   divide,       // a / b; c: 1 / b_0
   square_root,  // sqrt(a)
-  power,        // a^value; b: 1 / a_0, c, d = weighted series of a and of itself
+  power,        // a^value; b: 1 / a_0, c, d = weighted series of a and of itself, e: its derivative value * a_0^value / a_0
   sine_cosine,  // out = sin a, c = cos a; b = weighted series of a; d: what a is beyond its double, where that is known
   function,     // elementary function `index` of a; b = its derivative, c = weighted series of a
   arctan2,      // atan2(a, b); c, d = derivatives by a and b; e, f = weighted series of a and b
@@ -70,9 +70,8 @@ struct Coefficient {
 
 // A partial derivative that is no coefficient of a series: computed once per expansion.
 struct Partial {
-  enum class Kind : std::uint8_t { twice, half_reciprocal, quotient, power, chosen, not_chosen } kind;
-  std::uint32_t out, a, b;  // twice a; 1/(2a); a b; value a / b; a >= 0; a < 0
-  double value = 0;
+  enum class Kind : std::uint8_t { twice, half_reciprocal, quotient, chosen, not_chosen } kind;
+  std::uint32_t out, a, b;  // twice a; 1/(2a); a b; a >= 0; a < 0
 };
 
 // The linearized tape: `row` of it has `sign` * arena[`from`] in `column`. Unknowns come first, then the slots that depend on them.

@@ -277,7 +277,53 @@ SparseLu solver(const SparseElimination& e, std::uint32_t sides, const std::vect
   return out;
 }
 
-bool invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most) {
+namespace {
+
+// A number that is the same at every expansion, if it is one.
+using Known = std::optional<double>;
+
+Known product(const Known& a, const Known& b) {
+  if (a && b) return *a * *b;
+  return a == 0.0 || b == 0.0 ? Known(0) : std::nullopt;
+}
+
+Known difference(const Known& a, const Known& b) { return a && b ? Known(*a - *b) : std::nullopt; }
+
+Known reciprocal(const SparseLu::Pivot& p) { return p.one ? Known(1) : p.minus_one ? Known(-1) : std::nullopt; }
+
+// Of the factors: whole numbers, made of exact entries and pivots of 1 and -1.
+std::vector<Known> known_factors(const SparseLu& e, std::span<const SampledEntry> entries) {
+  std::vector<Known> lu(e.entries, 0.0);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    Known& sum = lu[e.place[i]];
+    sum = entries[i].exact && sum ? Known(*sum + entries[i].value[0]) : std::nullopt;
+  }
+  for (const SparseLu::Pivot& p : e.pivots) {
+    for (std::uint32_t i = p.first_scaled; i < p.first_scaled + p.scaled; ++i) lu[e.scaled_entries[i]] = product(lu[e.scaled_entries[i]], reciprocal(p));
+    for (std::uint32_t i = p.first_update; i < p.first_update + p.updates; ++i) {
+      const SparseLu::Update& u = e.update_list[i];
+      lu[u.to] = difference(lu[u.to], product(lu[u.l], lu[u.u]));
+    }
+  }
+  return lu;
+}
+
+// The solution for a side of one.
+std::vector<Known> known_solution(const SparseLu& e, const std::vector<Known>& lu, std::uint32_t side, std::size_t rows) {
+  std::vector<Known> rhs(rows, 0.0), y(rows, 0.0);
+  rhs[side] = 1.0;
+  for (const SparseLu::Forward& f : e.forward) rhs[f.to] = difference(rhs[f.to], product(lu[f.entry], rhs[f.from]));
+  for (const SparseLu::Backward& b : e.backward) {
+    Known s = rhs[b.row];
+    for (std::uint32_t i = b.first; i < b.first + b.count; ++i) s = difference(s, product(lu[e.terms[i].entry], y[e.terms[i].column]));
+    y[b.column] = product(s, reciprocal(e.pivots[b.pivot]));
+  }
+  return y;
+}
+
+}  // namespace
+
+bool invert(SparseLu& e, std::span<const SampledEntry> entries, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most) {
   std::vector<std::vector<std::uint32_t>> met(needed.size());
   std::size_t count = 0;
   for (const std::uint32_t side : sides) {
@@ -295,9 +341,13 @@ bool invert(SparseLu& e, const std::vector<std::uint32_t>& sides, const std::vec
     }
   }
   if (count > most) return false;
-  for (const std::uint32_t side : sides)
+  const std::vector<Known> lu = known_factors(e, entries);
+  for (const std::uint32_t side : sides) {
+    const std::vector<Known> y = known_solution(e, lu, side, needed.size());
     for (std::uint32_t column = 0; column < met.size(); ++column)
-      if (std::find(met[column].begin(), met[column].end(), side) != met[column].end()) e.influences.push_back({column, side});
+      if (std::find(met[column].begin(), met[column].end(), side) != met[column].end())
+        e.influences.push_back({column, side, met[column].size() > 1 ? 0 : y[column] == 1.0 ? 1 : y[column] == -1.0 ? -1 : 0});
+  }
   return true;
 }
 

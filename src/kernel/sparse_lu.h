@@ -58,9 +58,10 @@ struct SparseLu {
   std::vector<Term> terms;
 
   // Of a system that is not large, the inverse in place of the two: solution[column] = sum of influence * side, side by side, what becomes known last
-  // last. It is made of solutions for sides of one.
+  // last. It is made of solutions for sides of one. `sign`: the solution is that side, always, or its opposite (1, -1); else 0.
   struct Influence {
     std::uint32_t column, side;
+    int sign = 0;
   };
   std::vector<Influence> influences;
   // Columns that are left to their own rows, once those before are solved: solution[column] = -sum given entry * solution[other].
@@ -86,8 +87,8 @@ SparseElimination eliminate_sparse(std::uint32_t rows, std::span<const SampledEn
 SparseLu solver(const SparseElimination& elimination, std::uint32_t sides, const std::vector<bool>& needed);
 
 // The inverse for the columns needed, if it has no more than `most` entries: a solution then waits for its last side only, not for a chain of
-// eliminations. `sides`: in the order in which they become known.
-bool invert(SparseLu& elimination, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most);
+// eliminations. `sides`: in the order in which they become known; `entries`: those that were eliminated.
+bool invert(SparseLu& elimination, std::span<const SampledEntry> entries, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most);
 
 // Of all columns from `first` on, each with 1 on its diagonal and no column after it in its row, those that are needed are left to their own rows.
 void leave_to_own_rows(SparseLu& elimination, std::uint32_t first, std::span<const SampledEntry> entries, const std::vector<bool>& needed);

@@ -112,13 +112,13 @@ class Sweep final : public SweepSteps<L> {
     for (std::size_t j = 0; j < p_.x.size(); ++j) {
       const std::uint32_t order = static_cast<std::uint32_t>(stage + p_.d[j]);
       V& x = w_[p_.x[j] + order];
-      const V change = y[j] * T::broadcast(k_.falling(p_.d[j], stage));
+      const V change = p_.d[j] > 0 ? over(y[j], k_.rising_, k_.rising_at(p_.d[j], stage)) : y[j];
       x = stage > 0 ? change : x + change;
     }
     for (const Completion& c : p_.completions) {
       V& w = w_[c.out.at + static_cast<std::uint32_t>(stage + c.lead)];
       V change = y[c.column];
-      if (c.lead > 0) change *= T::broadcast(k_.falling(c.lead, stage));
+      if (c.lead > 0) change = over(change, k_.rising_, k_.rising_at(c.lead, stage));
       w = stage > 0 && c.fresh ? change : w + change;
     }
     run(p_.weigh_again, stage);
@@ -143,16 +143,23 @@ class Sweep final : public SweepSteps<L> {
  private:
   V* at(const Place& place, std::uint32_t order) { return w_ + place.at + (place.series ? order : 0); }
 
-  // Sum of a_j b_(p-j), j = first..last; first is 0 or 1, last p or p - 1. Orders are computed in blocks of four: what was known before the block
-  // comes first (so that another tier may do that for four orders at once), then what is new of b, and of a. In each part the newest comes last.
-  V convolution(const V* a, const V* b, std::int64_t p, bool first, bool last, bool b_later = false) const {
+  static V over(V x, const KernelTables::Divisors& d, std::size_t i) { return quotient<T>(x, d.number[i], d.reciprocal[i], d.beyond[i]); }
+
+  // Sum of a_j b_(p-j), j = 1..p - 1. Orders are computed in blocks of four: what was known before the block comes first (so that another tier may do
+  // that for four orders at once), then what is new of b, and of a. In each part the newest comes last.
+  V history(const V* a, const V* b, std::int64_t p) const {
     const std::int64_t known = block_ < p ? block_ : p, i = p - known, few = known < kBlock ? known : kBlock;
     V s = T::broadcast(0), t = s;
     for (std::int64_t j = kBlock; j < known; ++j) s = T::fma(a[j], b[p - j], s);
     for (std::int64_t j = few - 1; j > i; --j) s = T::fma(a[j], b[p - j], s);
     for (std::int64_t j = i < known ? i : known - 1; j >= 1; --j) s = T::fma(a[j], b[p - j], s);
     for (std::int64_t j = known > 1 ? known : 1; j < p; ++j) t = T::fma(a[j], b[p - j], t);
-    s += t;
+    return s + t;
+  }
+
+  // The same for j = first..last; first is 0 or 1, last p or p - 1.
+  V convolution(const V* a, const V* b, std::int64_t p, bool first, bool last, bool b_later = false) const {
+    V s = history(a, b, p);
     if (first && !b_later) s = T::fma(a[0], b[p], s);
     if (last) s = T::fma(a[p], b[0], s);
     if (first && b_later) s = T::fma(a[0], b[p], s);
@@ -173,7 +180,6 @@ class Sweep final : public SweepSteps<L> {
       case K::twice: return a + a;
       case K::half_reciprocal: return T::broadcast(0.5) / a;
       case K::quotient: return a * w_[d.b];
-      case K::power: return T::broadcast(d.value) * a / w_[d.b];
       case K::chosen: return each(a, [](double x) { return x < 0 ? 0.0 : 1.0; });
       case K::not_chosen: return each(a, [](double x) { return x < 0 ? 1.0 : 0.0; });
     }
@@ -209,6 +215,7 @@ class Sweep final : public SweepSteps<L> {
         out = each(a, [&](double x) { return power_of(x, s.value); });
         w_[s.b.at] = T::broadcast(1) / a;
         w_[s.d.at] = T::broadcast(0);
+        w_[s.e.at] = T::broadcast(s.value) * out * w_[s.b.at];
         break;
       case Act::sine_cosine: Sines<L>::of(a, s.d.at != 0 ? w_[s.d.at] : T::broadcast(0), out, w_[s.c.at]); break;
       case Act::function: out = each(a, [&](double x) { return function_of(s.index, x); }); break;
@@ -277,33 +284,45 @@ class Sweep final : public SweepSteps<L> {
         break;
       }
       case Act::power: {
-        // p u_0 w_p = r sum (j u_j) w_(p-j) - sum (j w_j) u_(p-j)
+        // u_0 w_p = (r sum (j u_j) w_(p-j) - sum (j w_j) u_(p-j)) / p + r u_p w_0, j = 1..p - 1
         V* const c = w_ + s.c.at;
         V* const d = w_ + s.d.at;
-        const V r = T::broadcast(s.value) * convolution(c, w, n, false, newest) - convolution(d, a, n, false, false);
-        out = r * T::broadcast(k_.reciprocal_of[p]) * w_[s.b.at];
+        const V older = over(T::fma(T::broadcast(s.value), history(c, w, n), -history(d, a, n)), k_.order, p) * w_[s.b.at];
+        out = newest ? T::fma(a[p], w_[s.e.at], older) : older;
         d[p] = out * T::broadcast(static_cast<double>(n));
         break;
       }
       case Act::sine_cosine: {
-        const V r = T::broadcast(k_.reciprocal_of[p]);
         V* const c = w_ + s.c.at;
-        const V sine = convolution(b, c, n, false, newest) * r, cosine = convolution(b, w, n, false, newest) * r;
+        V sine = over(history(b, c, n), k_.order, p), cosine = over(history(b, w, n), k_.order, p);
+        if (newest) {
+          sine = T::fma(a[p], c[0], sine);
+          cosine = T::fma(a[p], w[0], cosine);
+        }
         w[p] = sine;
         c[p] = -cosine;
         break;
       }
       case Act::function: {
         V* const c = w_ + s.c.at;
-        if (s.b_constant) out = s.a_unknown ? T::broadcast(0) : V(b[0] * a[p]);
-        else out = convolution(c, b, n, false, newest) * T::broadcast(k_.reciprocal_of[p]);
+        if (s.b_constant) {
+          out = s.a_unknown ? T::broadcast(0) : V(b[0] * a[p]);
+        } else {
+          const V older = over(history(c, b, n), k_.order, p);
+          out = newest ? T::fma(a[p], b[0], older) : older;
+        }
         break;
       }
       case Act::arctan2: {
+        V* const c = w_ + s.c.at;
+        V* const d = w_ + s.d.at;
         V r = T::broadcast(0);
-        if (!s.a_constant) r += convolution(w_ + s.e.at, w_ + s.c.at, n, false, newest);
-        if (!s.b_constant) r += convolution(w_ + s.f.at, w_ + s.d.at, n, false, newest_b);
-        out = r * T::broadcast(k_.reciprocal_of[p]);
+        if (!s.a_constant) r += history(w_ + s.e.at, c, n);
+        if (!s.b_constant) r += history(w_ + s.f.at, d, n);
+        r = over(r, k_.order, p);
+        if (!s.a_constant && newest) r = T::fma(a[p], c[0], r);
+        if (!s.b_constant && newest_b) r = T::fma(b[p], d[0], r);
+        out = r;
         break;
       }
       case Act::weigh: out = *at(s.a, p) * T::broadcast(static_cast<double>(n)); break;
@@ -322,7 +341,10 @@ class Sweep final : public SweepSteps<L> {
     if (const SparseLu& e = *k_.elimination; !e.influences.empty()) {
       std::fill(y, y + p_.rows, T::broadcast(0));
       const V* influence = w_ + k_.inverse;
-      for (const SparseLu::Influence& of : e.influences) y[of.column] = T::fma(*influence++, side[of.side], y[of.column]);
+      for (const SparseLu::Influence& of : e.influences) {
+        y[of.column] = of.sign == 0 ? T::fma(*influence, side[of.side], y[of.column]) : of.sign > 0 ? side[of.side] : -side[of.side];
+        ++influence;
+      }
       const V* entries = w_ + k_.entries;
       for (const SparseLu::Own& own : e.own)
         for (std::uint32_t i = own.first; i < own.first + own.count; ++i)

@@ -38,8 +38,8 @@ class SweepSteps : public Arithmetic {
     for (std::size_t j = 0; j < p_.x.size(); ++j) {
       V* x = w_ + p_.x[j];
       const int d = p_.d[j];
-      for (int k = 0; k < d; ++k) x[k] = *high++ * T::broadcast(k_.inverse_factorial[static_cast<std::size_t>(k)]);
-      x[d] = guess[j] * T::broadcast(k_.inverse_factorial[static_cast<std::size_t>(d)]);
+      for (int k = 0; k < d; ++k) x[k] = coefficient_of(*high++, k);
+      x[d] = coefficient_of(guess[j], d);
     }
     const V* low = reinterpret_cast<const V*>(from) + k_.state_size;
     for (const Beyond& b : p_.beyond_double) w_[b.at] = low[b.index];
@@ -106,7 +106,7 @@ class SweepSteps : public Arithmetic {
         V s = low[k] + *change++, power = step;
         for (int i = k + 1; i < d; ++i) {
           s = T::fma(high[i] - x[i] * T::broadcast(k_.factorial[static_cast<std::size_t>(i)]) + low[i], power, s);
-          if (i + 1 < d) power *= step * T::broadcast(k_.reciprocal_of[static_cast<std::size_t>(i - k + 1)]);
+          if (i + 1 < d) power *= step * T::broadcast(k_.order.reciprocal[static_cast<std::size_t>(i - k + 1)]);
         }
         const V sum = high[k] + s, part = sum - high[k], error = (high[k] - (sum - part)) + (s - part);
         to[0] = sum;
@@ -130,6 +130,12 @@ class SweepSteps : public Arithmetic {
   V* w_;
 
  private:
+  // That of order k, of a derivative. Up to 2! the product is exact.
+  V coefficient_of(V derivative, int k) const {
+    const auto i = static_cast<std::size_t>(k);
+    return k <= 2 ? V(derivative * T::broadcast(k_.inverse_factorial[i])) : V(derivative / T::broadcast(k_.factorial[i]));
+  }
+
   void weigh() {
     const V h = w_[k_.step], square = h * h;
     V* power = w_ + k_.weight(0, 0);

@@ -20,6 +20,14 @@ double stalled(bool nonlinear, std::size_t unknowns) {
 constexpr int kQuietRoundoffs = 6;
 // An LU whose smallest scaled singular value is below this many round-offs is singular.
 constexpr int kSingularRoundoffs = 50;
+
+// to! / from!. A quotient of factorials is rounded, and in the same way at every step, so that the errors of a motion would add up; this product is exact.
+template <Number N>
+N rising(std::size_t from, std::size_t to) {
+  N product(1);
+  for (std::size_t k = from + 1; k <= to; ++k) product *= N(static_cast<int>(k));
+  return product;
+}
 }  // namespace
 
 template <Number N>
@@ -87,7 +95,7 @@ void Expansion<N>::set_inputs(int stage, std::size_t from, std::size_t to) {
       case ProgramInput::Kind::variable: {
         // (x^(k))_p = x_(p+k) (p+k)! / p!
         const std::size_t up = static_cast<std::size_t>(p), k = up + static_cast<std::size_t>(in.order);
-        w = k < stride_ ? x_[in.variable * stride_ + k] * (factorial_[k] / factorial_[up]) : N(0);
+        w = k < stride_ ? x_[in.variable * stride_ + k] * rising<N>(up, k) : N(0);
         break;
       }
       case ProgramInput::Kind::other: break;
@@ -368,7 +376,7 @@ void Expansion<N>::add_leading(int stage) {
     if (!in.leading) continue;
     const std::size_t order = static_cast<std::size_t>(stage + tape.code[in.slot].lead);
     const std::size_t k = order + static_cast<std::size_t>(in.order);
-    const N ratio = factorial_[k] / factorial_[order];
+    const N ratio = rising<N>(order, k);
     machine_.series(in.slot)[order] = x_[in.variable * stride_ + k] * ratio;
     delta_[in.slot] = delta_x_[in.variable] * ratio;
   }
@@ -386,7 +394,7 @@ void Expansion<N>::add_leading(int stage) {
       if (const bool first = partials_[k].a > N(0); first ? t.a : t.b) change = delta_[first ? in.a : in.b];
     } else if (in.op == Op::rate) {
       const std::size_t order = static_cast<std::size_t>(stage + in.lead);
-      change = delta_[in.a] * (factorial_[order + in.index] / factorial_[order]);
+      change = delta_[in.a] * rising<N>(order, order + in.index);
     } else {
       if (t.a) addmul(change, partials_[k].a, delta_[in.a]);
       if (t.b) addmul(change, partials_[k].b, delta_[in.b]);
@@ -412,12 +420,12 @@ Outcome Expansion<N>::extend() {
     for (int pass = 0; pass < 2; ++pass) {
       for (std::size_t i = 0; i < p.unknowns(); ++i) {
         const std::size_t order = s + static_cast<std::size_t>(p.c[i]);
-        r_[i] = -(machine_.series(p.tape.roots[i])[order] * (factorial_[order] / factorial_[s]));
+        r_[i] = -(machine_.series(p.tape.roots[i])[order] * rising<N>(s, order));
       }
       lu_.solve_once(r_, y_);
       for (std::size_t j = 0; j < p.unknowns(); ++j) {
         const std::size_t order = s + static_cast<std::size_t>(p.d[j]);
-        delta_x_[j] = y_[j] * (factorial_[s] / factorial_[order]);
+        delta_x_[j] = y_[j] / rising<N>(s, order);
         x_[j * stride_ + order] += delta_x_[j];
         if (!is_finite(y_[j]))
           return {OutcomeKind::not_a_number, "a derivative of the motion has no value here",

@@ -154,13 +154,14 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
         w[0] = power_value(u[0], r, tape_->rationals[in.index]);
         return;
       }
-      // u w' = r w u'
-      N s(0);
+      // u w' = r w u'. Multiples of r = 1/3, say, would be rounded in the same way at every step.
+      N rates_of_u(0), rates_of_w(0);
       for (std::size_t j = 0; j < p; ++j) {
-        const N factor = r * N(static_cast<int>(p - j)) - N(static_cast<int>(j));
-        addmul(s, N(factor * u[p - j]), w[j]);
+        const N product = u[p - j] * w[j];
+        addmul(rates_of_u, N(static_cast<int>(p - j)), product);
+        addmul(rates_of_w, N(static_cast<int>(j)), product);
       }
-      w[p] = s / (N(static_cast<int>(p)) * u[0]);
+      w[p] = (r * rates_of_u - rates_of_w) / (N(static_cast<int>(p)) * u[0]);
       return;
     }
     case Op::function: {
