@@ -124,6 +124,9 @@ if(TARGET anholon)
   anholon_script_test(oracle_chaplygin test/oracle/check_models.py $<TARGET_FILE:anholon> --form chaplygin --jobs 1)
   anholon_script_test(oracle_all_forms test/oracle/check_models.py $<TARGET_FILE:anholon> --form all)
   set_tests_properties(script.oracle_all_forms PROPERTIES LABELS long-only)
+  # The digits to trust against 30 digits: some runs; all 434 of them with ./dev long.
+  anholon_script_test(estimate test/estimate/run.py $<TARGET_FILE:anholon> --jobs 2)
+  set_tests_properties(script.estimate PROPERTIES LABELS "script;long" PROCESSORS 2)
   # Sanitizers need more time and address space than the limits leave.
   set(no_limits "")
   if(ANHOLON_SANITIZE)

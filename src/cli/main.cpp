@@ -211,6 +211,8 @@ int run(int argc, char** argv) {
   sweep_command->add_option("--tolerance", o.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
   sweep_command->add_option("--order", o.order, "order of the Taylor polynomials (default: from the tolerance)")->check(CLI::Range(4, 500));
   sweep_command->add_option("--method", o.method, "taylor; rk or bdf, as for simulate: one case after the other on each core; auto (default): Taylor, in the lanes of the processor")->type_name("NAME");
+  sweep_command->add_option("--error-estimate", o.error_estimate, "digits to trust, by a second, sharper run of a few cases: always, never, or of cases up to 5000 steps (short, the default)")
+      ->type_name("WHEN")->check(CLI::IsMember({"always", "never", "short"}));
   sweep_command->add_option("-o,--output", o.output, "FILE.csv or FILE.json (default: CSV on the standard output)")->type_name("FILE");
 
   CLI::App* linearize_command = model_command("linearize", "the linear model of a motion, its eigenvalues and modes, over a range of a parameter", cli::linearize,

@@ -115,9 +115,8 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   if (!o.save.empty() || s.resume) refuse("cannot go on with the same bits", o.save.empty() ? "--continue" : "--save");
   if (s.rigorous) refuse("has no dense output that is enclosed", "--rigorous");
   if (std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return e.ends_step(); })) refuse("does not stop at events", "the events");
-  // How many digits of its rows may be trusted, the difference tells.
+  // How many digits of its rows may be trusted, the difference tells, which costs nothing more.
   if (s.estimate == ErrorEstimate::always) refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
-  s.estimate = ErrorEstimate::never;
   const std::string least = small(kLeastSundialsTolerance);
   if (s.tolerance.get_d() < kLeastSundialsTolerance) std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
 }
@@ -162,11 +161,8 @@ void report(const Scenario& s, const SimulationReport& r) {
   std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
                small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
                worst_constraint(r).c_str(), small(r.power).c_str());
-  if (r.error)
-    std::fprintf(stderr, "digits to trust: about %d (error %s at t = %s, by %s)\n", r.error->digits, small(r.error->error).c_str(), r.error->t.c_str(),
-                 r.error->means.c_str());
-  else if (!r.no_error.empty())
-    std::fprintf(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
+  if (r.error) std::fprintf(stderr, "digits to trust%s\n", digits_to_trust(*r.error).c_str());
+  else if (!r.no_error.empty()) std::fprintf(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
   events(r);
   for (const WatchedReport& w : r.conserved)
     std::fprintf(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(), small(w.largest_change).c_str());
@@ -233,7 +229,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   if (resume) same_model(*resume, in);
   SimulationOptions options;
   options.resume = resume;
-  options.estimate = o.error_estimate == "always" ? ErrorEstimate::always : o.error_estimate == "never" ? ErrorEstimate::never : ErrorEstimate::short_runs;
+  options.estimate = error_estimate(o);
   options.state = state_choice(o, *in.model);
   options.order = o.order;
   Scenario& s = all.scenario;

@@ -7,6 +7,31 @@ namespace anholon::cli {
 
 std::string small(double x) { return number_text(x, 3); }
 
+ErrorEstimate error_estimate(const Options& o) {
+  return o.error_estimate == "always" ? ErrorEstimate::always : o.error_estimate == "never" ? ErrorEstimate::never : ErrorEstimate::short_runs;
+}
+
+std::string digits_to_trust(const ErrorReport& e) {
+  std::string list;
+  for (const KindError& k : e.kinds) list += (list.empty() ? "" : ", ") + std::string(name(k.kind)) + " " + std::to_string(k.digits);
+  const KindError& worst = e.worst();
+  const std::string until = e.until ? ", up to t = " + number_text(*e.until, 6) + ", where the second run stopped (" + e.stopped + ")" : "";
+  return until + ": " + list + " (worst: " + worst.of + ", error " + small(worst.error) + (worst.kind == ColumnKind::event_time ? "" : " of its largest value") + ", at t = " + number_text(worst.t, 6) +
+         "; by " + e.means + ")";
+}
+
+void write_error(JsonWriter& j, const ErrorReport& e) {
+  const KindError& worst = e.worst();
+  j.key("digits").integer(worst.digits).key("error").number(small(worst.error)).key("of").string(worst.of).key("t").number(number_text(worst.t, 6));
+  j.key("kinds").open_array();
+  for (const KindError& k : e.kinds)
+    j.open_object().key("kind").string(name(k.kind)).key("digits").integer(k.digits).key("error").number(small(k.error)).key("of").string(k.of).key("t").number(number_text(k.t, 6)).close();
+  j.close();
+  if (e.lost) j.key("lost_from").number(number_text(*e.lost, 6));
+  if (e.until) j.key("until").number(number_text(*e.until, 6)).key("reason").string("the second run stopped: " + e.stopped);
+  j.key("means").string(e.means);
+}
+
 namespace {
 
 void write_watched(JsonWriter& j, const char* key, const std::vector<WatchedReport>& list) {
@@ -42,8 +67,9 @@ void write_report(JsonWriter& j, const Scenario& s, const SimulationReport& r) {
   }
   j.close();
   if (r.error) {
-    j.key("error_estimate").open_object().key("digits").integer(r.error->digits).key("error").number(small(r.error->error));
-    j.key("t").number(r.error->t).key("means").string(r.error->means).close();
+    j.key("error_estimate").open_object();
+    write_error(j, *r.error);
+    j.close();
   } else if (!r.no_error.empty()) {
     j.key("error_estimate").open_object().key("digits").null().key("reason").string(r.no_error).close();
   }

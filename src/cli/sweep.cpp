@@ -11,6 +11,7 @@
 #include "cli/method.h"
 #include "cli/progress.h"
 #include "cli/show.h"
+#include "cli/simulation_json.h"
 #include "cli/vary.h"
 #include "run/ensemble.h"
 
@@ -83,6 +84,18 @@ class Csv final : public Output {
   CsvSink sink_;
 };
 
+std::string error_json(const CasesError& e) {
+  JsonWriter j;
+  j.open_object();
+  if (!e.error) return j.key("digits").null().key("reason").string(e.none.empty() ? "not asked for" : e.none).close().text();
+  write_error(j, *e.error);
+  j.key("worst_case").integer(static_cast<long long>(e.worst)).key("compared").open_array();
+  for (std::size_t k : e.cases) j.integer(static_cast<long long>(k));
+  std::string text = j.close().close().text();
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
+  return text;
+}
+
 // Written line by line: there may be more cases than memory holds.
 class Json final : public Output {
  public:
@@ -110,7 +123,7 @@ class Json final : public Output {
                    json_escape(s.outcome.hint).c_str());
       first = false;
     }
-    std::fprintf(file_, "%s],\n  \"cases\": %zu,\n  \"finished\": %zu,\n  \"outcome\": \"%s\"\n}\n", first ? "" : "\n  ", report.done,
+    std::fprintf(file_, "%s],\n  \"error_estimate\": %s,\n  \"cases\": %zu,\n  \"finished\": %zu,\n  \"outcome\": \"%s\"\n}\n", first ? "" : "\n  ", error_json(report.error).c_str(), report.done,
                  report.finished, name(report.outcome.kind));
     const bool written = std::fflush(file_) == 0 && std::ferror(file_) == 0;
     return written ? "" : "cannot write " + (path_.empty() ? "the output" : path_) + ": " + std::strerror(errno);
@@ -167,6 +180,13 @@ void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
   std::fprintf(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(), r.seconds,
                r.threads, r.threads == 1 ? "thread" : "threads");
+  std::string cases;
+  for (std::size_t k : r.error.cases) cases += (cases.empty() ? "" : ", ") + std::to_string(k);
+  if (r.error.error)
+    std::fprintf(stderr, "digits to trust%s; %s\n", digits_to_trust(*r.error.error).c_str(),
+                 r.error.cases.size() == 1 ? ("of case " + cases).c_str() : ("of the cases " + cases + " the worst is " + std::to_string(r.error.worst)).c_str());
+  else if (!r.error.none.empty())
+    std::fprintf(stderr, "digits to trust: not estimated, %s\n", r.error.none.c_str());
 }
 
 }  // namespace
@@ -189,6 +209,7 @@ int sweep(const Options& asked) {
   options.to = end_of(o, *in.model);
   options.tolerance = tolerance_of(o, *in.model);
   options.order = o.order;
+  options.estimate = error_estimate(o);
   options.threads = static_cast<std::size_t>(o.threads);
   options.again = in.again;
   Scenario s;

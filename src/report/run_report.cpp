@@ -14,10 +14,16 @@ Json array(const Json& j, const char* key) { return j.contains(key) && j[key].is
 std::string text(const Json& j, const char* key) { return j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : ""; }
 std::string number(const Json& j, const char* key) { return !j.contains(key) || j[key].is_null() ? "–" : j[key].is_string() ? j[key].get<std::string>() : j[key].dump(); }
 
+// "coordinates 13, velocities 12, by a second run …"; of older files one number.
 std::string digits(const Json& estimate) {
-  if (estimate.contains("digits") && !estimate["digits"].is_null()) return number(estimate, "digits") + ", by " + text(estimate, "means");
   const std::string reason = text(estimate, "reason");
-  return reason.empty() ? "not estimated" : reason;
+  if (!estimate.contains("digits") || estimate["digits"].is_null()) return reason.empty() ? "not estimated" : reason;
+  std::string list;
+  const Json kinds = array(estimate, "kinds");
+  for (const Json& k : kinds) list += (list.empty() ? "" : ", ") + text(k, "kind") + " " + number(k, "digits");
+  if (list.empty()) list = number(estimate, "digits");
+  if (estimate.contains("until")) list += ", up to t = " + number(estimate, "until") + " (" + reason + ")";
+  return list + ", by " + text(estimate, "means");
 }
 
 void methods(const Json& j, std::set<std::string>& list) {

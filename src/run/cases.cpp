@@ -8,9 +8,6 @@
 
 namespace anholon {
 
-namespace {
-
-// Without numbers: only which they are.
 std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
   std::vector<StateOverride> list = o.state.overrides;
   for (std::size_t i = 0; i < o.varied.size(); ++i)
@@ -19,12 +16,17 @@ std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const Ensemble
   return list;
 }
 
-void put_parameters(Model& model, const EnsembleOptions& o, const EnsembleCase& numbers) {
+static void put_parameters(Model& model, const EnsembleOptions& o, const EnsembleCase& numbers) {
   for (std::size_t i = 0; i < o.varied.size(); ++i)
     if (o.varied[i].kind == Varied::Kind::parameter) model.parameters[o.varied[i].index].value = model.graph->number(numbers.values[i]);
 }
 
-}  // namespace
+Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers, Scenario& scenario, std::shared_ptr<Model>& model) {
+  model = std::make_shared<Model>(*o.again());
+  StateChoice state = o.state;
+  if (numbers) put_parameters(*model, o, *numbers), state.overrides = overrides_of(o, numbers);
+  return make_scenario(model, form, state, scenario);
+}
 
 std::vector<std::string> ensemble_columns(const Model& model) {
   std::vector<std::string> names;
@@ -82,14 +84,7 @@ struct CaseWorker::Own {
     const EnsembleOptions& o = plan.options;
     std::optional<EnsembleCase> like;
     if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
-    outcome = scenario_of(*plan.scenario.system.form, o, numbers, scenario, model);
-  }
-  static Outcome scenario_of(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers, Scenario& scenario,
-                             std::shared_ptr<Model>& model) {
-    model = std::make_shared<Model>(*o.again());
-    StateChoice state = o.state;
-    if (numbers) put_parameters(*model, o, *numbers), state.overrides = overrides_of(o, numbers);
-    return make_scenario(model, form, state, scenario);
+    outcome = scenario_of_case(*plan.scenario.system.form, o, numbers, scenario, model);
   }
 
   std::shared_ptr<Model> model;
@@ -105,7 +100,7 @@ Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& o, Scenario&
     const EnsembleCase numbers = o.numbers(k);
     std::shared_ptr<Model> model;
     Scenario s;
-    const Outcome outcome = CaseWorker::Own::scenario_of(form, o, &numbers, s, model);
+    const Outcome outcome = scenario_of_case(form, o, &numbers, s, model);
     if (k == 0) first = outcome;
     if (!outcome.ok()) continue;
     scenario = std::move(s);

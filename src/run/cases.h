@@ -14,6 +14,11 @@
 
 namespace anholon {
 
+// The initial values that are given or varied; without numbers only which they are.
+std::vector<StateOverride> overrides_of(const EnsembleOptions& options, const EnsembleCase* numbers);
+// With the numbers of a case, or those of the file, in a graph of its own.
+Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& options, const EnsembleCase* numbers, Scenario& scenario, std::shared_ptr<Model>& model);
+
 // Read by all threads, changed by none.
 class EnsemblePlan {
  public:

@@ -2,15 +2,18 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 
 #include "base/assert.h"
 #include "run/cases.h"
+#include "run/cases_error.h"
 
 namespace anholon {
 
@@ -77,6 +80,8 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
     g->hand_over();
     return g;
   };
+  const std::vector<std::size_t> to_compare = o.estimate == ErrorEstimate::never ? std::vector<std::size_t>{} : cases_to_compare(o.cases);
+  std::vector<CaseResult> compared;
   const auto deliver = [&](Group* g) {
     joined();
     const std::unique_ptr<Group> owned(g);
@@ -85,6 +90,7 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
       // What Ctrl-C cut short is no result.
       if (r.outcome.kind == OutcomeKind::interrupted && cancelled()) continue;
       sink.result(r);
+      if (std::binary_search(to_compare.begin(), to_compare.end(), r.number)) compared.push_back(r);
       ++report.done;
       if (r.outcome.ok()) ++report.finished;
     }
@@ -103,6 +109,8 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
   const std::lock_guard lock(in_order);
   for (const CaseWorker& w : workers) report.again += w.again();
   if (report.done < o.cases) report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
+  else if (o.estimate != ErrorEstimate::never)
+    report.error = cases_error(*s.system.form, o, compared, [&](std::size_t count, const auto& f) { arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, f); }); });
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

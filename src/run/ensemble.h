@@ -36,6 +36,7 @@ struct EnsembleOptions {
   int order = 0;                                    // of the Taylor polynomials; 0: from the tolerance
   Method method = Method::automatic;                // rk, bdf: one case after the other, as `simulate` does; else Taylor's, and `simulate` for what it cannot finish
   std::size_t most_steps = 50'000'000;              // of a case
+  ErrorEstimate estimate = ErrorEstimate::never;    // of the cases that `cases_to_compare` names
   bool kernel = true;                               // as in SimulationOptions; without, a case has the bits of `simulate`
   std::size_t threads = 0;                          // 0: as many as the machine has
   std::function<void(std::size_t done)> progress;   // by one thread at a time
@@ -63,6 +64,16 @@ class CaseSink {
   virtual void result(const CaseResult& result) = 0;
 };
 
+// How exact the results are: cases that lie evenly among all, each compared with a sharper run of it.
+struct CasesError {
+  std::vector<std::size_t> cases;    // that were compared
+  std::optional<ErrorReport> error;  // of each kind the largest of any of them
+  std::size_t worst = 0;             // the case with the largest
+  std::string none;                  // why there is nothing to say, where an estimate was asked for
+};
+// A few: what they cost is little beside many cases.
+std::vector<std::size_t> cases_to_compare(std::size_t cases);
+
 struct EnsembleReport {
   Outcome outcome;               // interrupted, or finished although cases may have stopped
   std::size_t done = 0, finished = 0;
@@ -70,6 +81,7 @@ struct EnsembleReport {
   std::size_t most_held = 0;     // results at once in memory
   std::size_t threads = 0;
   double seconds = 0;
+  CasesError error;
 };
 
 // What is kept of a state: coordinates, velocities, the model's states, outputs.

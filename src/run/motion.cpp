@@ -20,9 +20,20 @@ Motion<N>::Motion(const Scenario& s, const StepSettings& settings, std::vector<E
   watch_pivots(s.elimination);
 }
 
+// Each number by another multiple of its round-off: changes that are alike could be such as the constraints take back.
+template <Number W>
+static void change_last_digits(std::vector<W>& state) {
+  constexpr int kMost = 5, kPeriod = 2 * kMost + 1, kStride = 7, kFirst = 3;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const int by = (static_cast<int>(i % kPeriod) * kStride + kFirst) % kPeriod - kMost;
+    state[i] += state[i] * unit_roundoff<W>() * W(by == 0 ? kMost : by);
+  }
+}
+
 template <Number N>
 Outcome Motion<N>::start(const StateChoice& choice) {
   if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
+  if (other_digits_) change_last_digits(start_.state);
   accelerate(*leg_);
   Outcome o = leg_->stepper.start(start_.t, start_.state, start_.leading);
   note_pivots();

@@ -37,7 +37,8 @@ class Motion {
   // derivatives the points know.
   Motion(const Scenario& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
 
-  // From the consistent state.
+  // From the consistent state; on request from one that differs from it by some round-offs.
+  void start_in_other_digits(bool other) { other_digits_ = other; }
   Outcome start(const StateChoice& choice);
   // What is needed to go on from where the last expansion was made, and how: with the same bits as if the run had never ended.
   void save(SavedRun& to) const;
@@ -116,7 +117,7 @@ class Motion {
   Start<W> start_;
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;
-  bool stepped_ = false;
+  bool stepped_ = false, other_digits_ = false;
   Elimination elimination_;                // the present one
   std::unique_ptr<OutputTape<W>> pivots_;  // its pivots, and what they were when it was chosen
   std::vector<double> chosen_;

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "run/angles.h"
-#include "run/estimate.h"
+#include "run/judge.h"
 #include "run/watch.h"
 
 namespace anholon {
@@ -36,7 +36,7 @@ class Run {
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), power_(anholon::power(*s.mechanics)),
         course_(s, step_settings(o), method(o), watched_quadratures(s, power_), std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
-        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()) {
+        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()), judge_(s, o) {
     report_.constraints_each = constraint_reports(s);
   }
 
@@ -68,7 +68,7 @@ class Run {
     }
     for (std::size_t i = 0; i < o_.conserved.size(); ++i) report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
     warn();
-    estimate();
+    judge_.estimate(course_, report_);
     return report_;
   }
 
@@ -81,15 +81,7 @@ class Run {
 
   std::vector<std::string> column_names() const {
     std::vector<std::string> names = {"t"};
-    const Model& model = *s_.model;
-    for (int k = 0; k <= highest(); ++k)
-      for (const Coordinate& c : model.coordinates) names.push_back(derivative_name(c.name, static_cast<unsigned>(k), Format::text));
-    for (int k = 0; k <= multiplier_orders(s_); ++k)
-      for (const Constraint& c : model.constraints)
-        names.push_back(derivative_name(c.by ? model.controls[*c.by].name : "lambda." + c.name, static_cast<unsigned>(k), Format::text));
-    for (const StateVariable& z : model.states) names.push_back(z.name);
-    for (const Coordinate& c : model.coordinates) names.push_back("N." + c.name);
-    for (const Monitor& m : model.monitors) names.push_back(m.name);
+    for (const RowColumn& c : row_columns(s_, highest())) names.push_back(c.name);
     return names;
   }
 
@@ -115,6 +107,7 @@ class Run {
       if (o_.integrator != Integrator::taylor)
         second_ = std::make_unique<SecondMotion>(s_, o_.state, watched_quadratures(s_, power_)[0],
                                                  SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, end_);
+    if (second_) judge_.look_beside(course_);
   }
 
   // The motion that was asked for, at t.
@@ -198,12 +191,6 @@ class Run {
     }
     every_step_ = times_.empty();
     while (done_ && next_ < times_.size() && reaches(*done_, times_[next_])) ++next_;
-    constexpr int kSamples = 16;
-    if (o_.estimate != ErrorEstimate::never)
-      for (int k = 1; k <= kSamples; ++k) {
-        const W from = done_ ? *done_ : t0_, t = k == kSamples ? end_ : W(from + (end_ - from) * W(k) / W(kSamples));
-        samples_.push_back({t, {}});
-      }
   }
 
   // Whether a motion that has come to `stop` has passed t.
@@ -254,6 +241,7 @@ class Run {
       report_.events.push_back(std::move(r));
       accumulate(o);
     }
+    judge_.events(occurrences);
     if (!report_.outcome.ok()) {
       reached_ = motion().stepper().time();
       return false;
@@ -293,9 +281,6 @@ class Run {
   void rows_until(const W& stop) {
     for (; report_.outcome.ok() && next_ < times_.size() && reaches(stop, times_[next_]); ++next_) row(times_[next_], labels_[next_]);
     if (every_step_ && report_.outcome.ok() && !reaches(*done_, stop)) row(stop, "");
-    for (; next_sample_ < samples_.size() && reaches(stop, samples_[next_sample_].t); ++next_sample_)
-      if (course_.at(samples_[next_sample_].t).ok()) samples_[next_sample_].values = sampled(s_, motion().program(), course_.point());
-      else return;
     if (!reaches(*done_, stop)) done_ = stop;
   }
 
@@ -342,16 +327,6 @@ class Run {
                                     "describe the orientation of '" + angles_.triples[i].body + "' by a quaternion: quat(e0, e1, e2, e3)"});
   }
 
-  void estimate() {
-    if (o_.estimate == ErrorEstimate::never) return;
-    if (o_.estimate == ErrorEstimate::short_runs && report_.steps > kShortRun) {
-      report_.no_error = "the run has more than " + std::to_string(kShortRun) + " steps: --error-estimate makes one";
-      return;
-    }
-    samples_.resize(next_sample_);
-    estimate_error<N>(s_, o_, samples_, report_);
-  }
-
   // The end of the last step, or the earlier time at which a mass passes zero.
   W masses_positive_until() {
     if (!course_.by_taylor()) return course_.time();  // Taylor's steps go to where one vanishes
@@ -394,18 +369,10 @@ class Run {
     if (!report_.outcome.ok()) return;
     const Expansion<W>& here = point();
     report_.outcome = watch_.see(here, report_);
-    const std::size_t n = s_.system.coordinates;
+    const std::vector<W> numbers = row_values(s_, highest(), here, watch_);
+    judge_.row(t, label, numbers, course_);
     std::vector<std::string> values = {label.empty() ? text(t) : label};
-    for (int k = 0; k <= highest(); ++k)
-      for (std::size_t a = 0; a < n; ++a) values.push_back(text(here.derivative(a, k)));
-    for (int k = 0; k <= multiplier_orders(s_); ++k)
-      for (std::size_t r = 0; r < s_.model->constraints.size(); ++r) {
-        const auto j = s_.system.variable(s_.mechanics->lambda[r].id);
-        values.push_back(text(k == 0 ? watch_.multiplier(r) : j ? here.derivative(*j, k) : W(0)));
-      }
-    for (std::size_t j = s_.system.mechanical(); j < s_.system.size(); ++j) values.push_back(text(here.derivative(j, 0)));
-    for (std::size_t a = 0; a < n; ++a) values.push_back(text(watch_.reaction(a)));
-    for (std::size_t i = 0; i < s_.model->monitors.size(); ++i) values.push_back(text(watch_.tracks()[i].last));
+    for (const W& x : numbers) values.push_back(text(x));
     sink_.row(values);
     ++report_.rows;
   }
@@ -418,6 +385,7 @@ class Run {
   std::unique_ptr<SecondMotion> second_;  // what another integrator makes of it
   Watch<W> watch_;
   AngleWatch<W> angles_;
+  Judge<N> judge_;
   std::optional<Defect> defect_;
   std::vector<W> times_;
   std::vector<std::string> labels_;
@@ -429,9 +397,8 @@ class Run {
     W last{0}, interval{0};
   };
   std::vector<Pace> paces_;  // of the events
-  std::size_t next_ = 0, next_sample_ = 0;  // row, sample
-  std::optional<W> done_;                   // all rows up to here have been given
-  std::vector<Sample<W>> samples_;
+  std::size_t next_ = 0;    // row
+  std::optional<W> done_;   // all rows up to here have been given
   std::optional<W> reached_;
   std::size_t negative_ = 0;
   SimulationReport report_;

@@ -4,6 +4,7 @@
 
 #include "mechanics/conserved.h"
 #include "result/rows.h"
+#include "run/row_comparison.h"
 #include "run/course.h"
 #include "run/defect.h"
 #include "run/saved.h"
@@ -70,13 +71,6 @@ struct EventReport {
   std::vector<Change> changes;
   double correction = 0;  // by which constraints made what was set consistent
   bool stop = false;
-};
-
-struct ErrorReport {
-  double error = 0;   // largest |difference| / (1 + |x|) of any position or velocity
-  std::string t;      // where
-  int digits = 0;     // of the trajectory that may be trusted
-  std::string means;  // how it was found
 };
 
 struct SimulationReport {

@@ -45,9 +45,10 @@ class Watch {
   // What was seen, for a run that goes on.
   void save(SavedRun& to) const;
   void resume(const SavedRun& from);
-  // lambda of every constraint and N at the point seen last.
+  // lambda of every constraint, N and the monitors at the point seen last.
   const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
+  const W& monitor(std::size_t i) const { return tracks_[i].last; }
 
   // The first and the last point: the energy balance goes from one to the other, between which the work is integrated.
   void start(const Expansion<W>& point);

@@ -468,5 +468,57 @@ TEST(Ensemble, TheFileNeedsNoStartOfItsOwn) {
   EXPECT_EQ(results.list[2].last[0], simulated(kPendulum, {}, 1)[1]);
 }
 
+// Of nine pendulums the first, the middle and the last are compared with sharper runs.
+TEST(Ensemble, SaysHowExactItsResultsAre) {
+  Sweep s(kPendulum);
+  s.options.varied = {parameter(s.model(), "g")};
+  std::vector<std::vector<Rational>> values;
+  for (int k = 0; k < 9; ++k) values.push_back({Rational(5 + k)});
+  s.cases(values);
+  s.options.to = 5;
+  s.options.tolerance = Rational(1, 1'000'000);
+  s.go();
+  EXPECT_FALSE(s.report.error.error) << "nobody asked";
+  s.options.estimate = ErrorEstimate::short_runs;
+  const std::vector<CaseResult> loose = s.go();
+  const CasesError coarse = s.report.error;
+  ASSERT_TRUE(coarse.error) << coarse.none;
+  EXPECT_EQ(coarse.cases, (std::vector<std::size_t>{0, 4, 8}));
+  s.options.tolerance = Rational(1, mpz_class("1000000000000000"));
+  const std::vector<CaseResult> sharp = s.go();
+  ASSERT_TRUE(s.report.error.error);
+  EXPECT_LT(s.report.error.error->worst().error, coarse.error->worst().error / 1000);
+  // No case that was looked at is worse than what is said of it, coordinates by their own size.
+  double most[2] = {0, 0};
+  for (const std::size_t k : coarse.cases)
+    for (std::size_t i = 0; i < 2; ++i) most[i] = std::max(most[i], std::abs(loose[k].last[i] - sharp[k].last[i]) / std::abs(sharp[k].last[i]));
+  EXPECT_LE(std::max(most[0], most[1]), coarse.error->kinds[0].error);
+  EXPECT_GE(std::max(most[0], most[1]), coarse.error->kinds[0].error / 10);
+}
+
+// Also where events reset the state and each case goes the way of `simulate`.
+TEST(Ensemble, SaysHowExactCasesWithEventsAre) {
+  Sweep s(kBall);
+  s.options.varied = {parameter(s.model(), "e")};
+  s.cases({{Rational(1, 2)}, {Rational(3, 5)}, {Rational(7, 10)}});
+  s.options.to = Rational(13, 10);
+  s.options.estimate = ErrorEstimate::short_runs;
+  s.go();
+  ASSERT_TRUE(s.report.error.error) << s.report.error.none;
+  EXPECT_GE(s.report.error.error->worst().digits, 12);
+}
+
+TEST(Ensemble, HasNothingToSayWhereNoCaseFinishes) {
+  Sweep s(kPendulum);
+  s.options.varied = {parameter(s.model(), "g")};
+  s.cases({{Rational(5)}, {Rational(6)}});
+  s.options.to = 50;
+  s.options.most_steps = 3;
+  s.options.estimate = ErrorEstimate::short_runs;
+  s.go();
+  EXPECT_FALSE(s.report.error.error);
+  EXPECT_NE(s.report.error.none, "");
+}
+
 }  // namespace
 }  // namespace anholon

@@ -1,10 +1,10 @@
-// What is watched along a motion: monitors, integrals, the digits to trust, singular values, angles.
+// What is watched along a motion: monitors, integrals, singular values, angles.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "run/simulate.h"
-#include "support/oracle.h"
+#include "support/models.h"
 
 namespace anholon {
 namespace {
@@ -75,79 +75,6 @@ TEST(Monitor, MultipliersInEveryForm) {
   EXPECT_EQ(routh.number(1, "hold"), routh.number(1, "lambda.blade_edge"));
   for (const char* name : {"hold", "rate"}) EXPECT_NEAR(routh.number(2, name), chaplygin.number(2, name), 1e-11) << name;
   EXPECT_GT(std::abs(routh.number(2, "rate")), 1e-3);
-}
-
-// Against the reference trajectories: the estimate is no smaller than a tenth of the true error, and no larger than a thousand
-// times it (or the round-off of what is printed).
-class Estimate : public testing::TestWithParam<test::OraclePair> {};
-
-TEST_P(Estimate, OfTheErrorIsHonest) {
-  const nlohmann::json data = test::oracle_data(GetParam().oracle), &path = data["trajectory"];
-  const auto text = [](const nlohmann::json& j) { return j.get<std::string>(); };
-  SimulationOptions o;
-  for (const auto& t : path["times"]) o.at.push_back(parse_rational(text(t)).value());
-  o.tolerance = Rational(1, 10'000'000);
-  o.estimate = ErrorEstimate::always;
-  Result r;
-  ASSERT_NO_FATAL_FAILURE(run(test::shipped_text(GetParam().model), o, r, "routh", false));
-  ASSERT_TRUE(r.report.error) << r.report.no_error;
-  double error = 0;
-  const std::vector<std::string> coordinates = data["coords"].get<std::vector<std::string>>();
-  for (std::size_t k = 0; k < r.rows.rows().size(); ++k)
-    for (const auto& [symbol, value] : path["states"][k].items()) {
-      const auto [name, order] = test::split_order(symbol);
-      if (order > 1 || std::find(coordinates.begin(), coordinates.end(), name) == coordinates.end()) continue;
-      const double exact = std::stod(text(value)), mine = r.number(k, derivative_name(name, order, Format::text));
-      error = std::max(error, std::abs(mine - exact) / (1 + std::abs(exact)));
-    }
-  EXPECT_GE(r.report.error->error, error / 10);
-  EXPECT_LE(r.report.error->error, 1000 * std::max(error, 1.2e-16));
-}
-
-INSTANTIATE_TEST_SUITE_P(Model, Estimate, testing::ValuesIn(test::oracle_pairs()), [](const auto& p) { return test::test_name(p.param.model); });
-
-TEST(Estimate, AChaoticMotionLosesItsDigits) {
-  SimulationOptions o;
-  o.estimate = ErrorEstimate::always;
-  // Six times as fast as in the file: it turns over.
-  const std::string text = test::shipped_text("zoo/double-pendulum-cartesian");
-  o.tolerance = Rational(1, 100'000'000);
-  o.state.overrides = {{1, 0, Rational(24, 5)}, {1, 1, Rational(18, 5)}, {1, 2, Rational(48, 5)}, {1, 3, Rational(36, 5)}};
-  int before = 16;
-  double error = 0;
-  for (const int to : {1, 15, 45}) {
-    o.at = {Rational(to)};
-    Result r;
-    ASSERT_NO_FATAL_FAILURE(run(text, o, r, "routh", false));
-    ASSERT_TRUE(r.report.error) << r.report.no_error;
-    // Digits are whole: the error itself grows every time.
-    EXPECT_LT(r.report.error->digits, before + (to > 15 ? 1 : 0)) << to;
-    EXPECT_GT(r.report.error->error, 2 * error) << to;
-    before = r.report.error->digits;
-    error = r.report.error->error;
-  }
-  EXPECT_LE(before, 6);
-}
-
-TEST(Estimate, InManyDigitsAndNotOfLongRuns) {
-  SimulationOptions o;
-  o.at = {Rational(1)};
-  o.estimate = ErrorEstimate::always;
-  o.tolerance = Rational(1, mpz_class("10000000000000000000000"));
-  o.precision = Precision::multi;
-  o.digits = 20;
-  Result many, lengthy;
-  ASSERT_NO_FATAL_FAILURE(run(kPendulum, o, many));
-  ASSERT_TRUE(many.report.error);
-  EXPECT_GE(many.report.error->digits, 19);
-  EXPECT_LE(many.report.error->digits, 26);
-  SimulationOptions p;
-  p.at = {Rational(1500)};
-  p.estimate = ErrorEstimate::short_runs;
-  ASSERT_NO_FATAL_FAILURE(run(kPendulum, p, lengthy));
-  ASSERT_GT(lengthy.report.steps, kShortRun);
-  EXPECT_FALSE(lengthy.report.error);
-  EXPECT_NE(lengthy.report.no_error.find("--error-estimate"), std::string::npos);
 }
 
 // A disc that lies down: Euler's angles fail, and the warning says so; upright it rolls without one.
