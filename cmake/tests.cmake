@@ -124,7 +124,8 @@ if(TARGET anholon)
   anholon_script_test(oracle_chaplygin test/oracle/check_models.py $<TARGET_FILE:anholon> --form chaplygin --jobs 1)
   anholon_script_test(oracle_all_forms test/oracle/check_models.py $<TARGET_FILE:anholon> --form all)
   set_tests_properties(script.oracle_all_forms PROPERTIES LABELS long-only)
-  # The digits to trust against 30 digits: some runs; all 434 of them with ./dev long.
+  # The digits to trust against 30 digits: some runs; all 650 of them, and 60 sweeps, with ./dev long.
+  anholon_script_test(estimate_selftest test/estimate/run.py $<TARGET_FILE:anholon> --jobs 1 --self-test)
   anholon_script_test(estimate test/estimate/run.py $<TARGET_FILE:anholon> --jobs 2)
   set_tests_properties(script.estimate PROPERTIES LABELS "script;long" PROCESSORS 2)
   # Sanitizers need more time and address space than the limits leave.

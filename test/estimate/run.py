@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """The digits to trust, against the digits that are true.
 
-Each motion of MOTIONS is computed once with 30 digits or more, then by several methods, tolerances and number types, at the same
-times. The true error of each kind of columns is compared with what `simulate` claims: none may be above ten times the claim
+Each motion of MOTIONS, and each shipped model with one of its parameters changed, is computed once with 30 digits or more, then by several
+methods, tolerances and number types, at the same times; sweeps by the final states of the cases that they compare. The true error of each kind of columns is compared with what `simulate` claims: none may be above ten times the claim
 without a warning in the report, and the median of true error over claim must lie between 0.1 and 1.
 
-    run.py PROGRAM [--all] [--jobs N] [--only TEXT] [--verbose]
+    run.py PROGRAM [--all] [--jobs N] [--only TEXT] [--verbose] [--self-test]
 
-Without --all (or ANHOLON_LONG=1) every eighth run is made. The scale of a column is the one that
-doc/results.md describes.
+Without --all (or ANHOLON_LONG=1) every eighth motion is taken. The scale of a column is the one that doc/results.md describes. The
+self-test makes every claim a hundred times smaller, and must find that out.
 """
 import argparse
 import concurrent.futures
@@ -19,6 +19,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import tomllib
 import zlib
 from decimal import Decimal, getcontext
 from pathlib import Path
@@ -60,6 +61,9 @@ TEXTS = {
     "scales": PLANE + force("-1e6*x*ex - y*ey") + '[initial]\nx = 1e-6\ny = 1e3\n"x\'" = 0\n"y\'" = 0\n',
     "growing": PARTICLE + force("x*ex") + '[initial]\nx = 1e-3\n"x\'" = 1e-3\n',
     "decaying": PARTICLE + force("(-2*x - 3*x')*ex") + '[initial]\nx = 1\n"x\'" = 0\n',
+    "blow-up": PARTICLE + force("6*x^2*ex") + '[initial]\nx = 1\n"x\'" = 2\n',
+    "falling-in": PARTICLE + force("-1/x^2*ex") + '[initial]\nx = 1\n"x\'" = 0\n',
+    "rod-through-its-end": PLANE + 'constraint = [{name = "slot", equation = "y = sqrt(1 - x)"}]\n[initial]\nx = 0\n"x\'" = 1\n',
     "three-body": 'coordinates = ["x", "y", "u", "v"]\nparticle = [{name = "a", mass = 1, position = "x*ex + y*ey"}, {name = "b", mass = 1, position = "u*ex + v*ey"}]\n'
                   'force = [{on = "a", vector = "-a.center/norm(a.center)^3 - 0.1*(a.center - b.center)/norm(a.center - b.center)^3"},\n'
                   ' {on = "b", vector = "-b.center/norm(b.center)^3 - 0.1*(b.center - a.center)/norm(a.center - b.center)^3"}]\n'
@@ -76,6 +80,7 @@ MOTIONS = [
     ("upright", "", 4, 30), ("upright", "", 7, 34), ("upright", "", 12, 40), ("nearly-upright", "--set off=1e-9", 12, 40), ("nearly-upright", "", 10, 30), ("circle", "", 10, 30), ("circle", "", 40, 30),
     ("dry", "", 10, 30), ("kinks", "", 15, 30), ("drag", "", 5, 30), ("bouncing", "", 3, 30), ("two-springs", "", 5, 30), ("relaxing", "", 3, 30),
     ("swing-table", "", 20, 30), ("swing-table-linear", "", 20, 30), ("scales", "", 5, 30), ("growing", "", 30, 30), ("decaying", "", 30, 40), ("three-body", "", 30, 30),
+    ("blow-up", "", 1.5, 30), ("falling-in", "", 1.2, 30), ("rod-through-its-end", "", 1.2, 30),
     ("zoo/appell-hamel", "", 2, 30), ("zoo/appell-hamel-regularised", "", 2, 30), ("zoo/ball-on-tilted-turntable", "", 1, 30), ("zoo/ball-on-turntable", "", 2, 30),
     ("zoo/ball-on-turntable-rotating", "", 2, 30), ("zoo/car-three-trailers", "", 2, 30), ("zoo/chain", "--set n=4", 2, 30), ("zoo/chaplygin-sleigh", "", 5, 30), ("zoo/chaplygin-sleigh", "", 40, 30),
     ("zoo/constant-acceleration", "", 2, 30), ("zoo/constant-jerk-central", "", 2, 30), ("zoo/constant-jerk", "", 2, 30), ("zoo/disc", "", 4, 30), ("zoo/disc", "--q theta=0.05", 1, 30),
@@ -92,6 +97,13 @@ WAYS = [
     "", "--tolerance 1e-8", "--method rk --tolerance 1e-9", "--integrator cvode --tolerance 1e-9", "--tolerance 2e-16", "--method bdf --tolerance 1e-7", "--integrator ida --tolerance 1e-8",
     "--method rk --tolerance 1e-5", "--numbers long-double --tolerance 1e-18", "--tolerance 1e-4", "--every-step", "--form chaplygin",
 ]
+# Shipped models and their ends: with another parameter, and in sweeps over it.
+VARIED = {"zoo/" + k: v for k, v in {
+    "appell-hamel": 1.5, "appell-hamel-regularised": 1.5, "ball-on-turntable": 1.5, "car-three-trailers": 1.5, "chaplygin-sleigh": 6, "constant-acceleration": 1.5, "constant-jerk": 1.5, "disc": 2.5,
+    "double-pendulum-cartesian": 1.5, "fourbar": 0.6, "isokinetic": 0.8, "mass-depends-on-velocity": 3, "rheonomic-order-1": 0.8, "rheonomic-order-2": 0.4, "rocket": 3, "rolling-coin": 1.5,
+    "second-order-linear": 1.5, "snake": 1, "snakeboard": 1.5, "third-order-linear": 0.8, "trailers": 1.5, "variable-mass-pendulum": 5, "vertical-disc": 4, "whipple": 0.7,
+}.items()} | {"papers/luo-zhao-example-1": 1.5, "papers/luo-zhao-example-2-regular": 3, "templates/cart": 2, "templates/pendulum": 4, "templates/rolling": 1.5, "templates/vehicle": 1.5}
+
 # Of these each motion gets the first ones, then some of the others.
 ALWAYS, OTHERS = 2, 3
 
@@ -108,9 +120,13 @@ def simulate(program, arguments, seconds=SECONDS):
     return json.loads(done.stdout, parse_float=Decimal, parse_int=Decimal), ""
 
 
+STARTS = {"zoo/falling-chain": 1}  # where it is not 0
+
+
 def times_of(name, end):
     chosen = random.Random(zlib.crc32(f"{name} {end}".encode()))
-    return [f"{chosen.uniform(0.02, 1) * end:.6f}" for _ in range(39)] + [str(end)]
+    start = STARTS.get(name, 0)
+    return [f"{start + chosen.uniform(0.02, 1) * (end - start):.6f}" for _ in range(39)] + [str(end)]
 
 
 def kinds_of(columns, run):
@@ -177,6 +193,19 @@ def true_errors(run, reference, tolerance, roundoff):
     return errors
 
 
+def changed_parameter(name):
+    """One of the numbers of a shipped model, and what it is."""
+    with open(ROOT / "models" / (name + ".toml"), "rb") as file:
+        numbers = [(k, v) for k, v in tomllib.load(file).get("parameters", {}).items() if isinstance(v, (int, float)) and v != 0 and "[" not in k]
+    return numbers[zlib.crc32(name.encode()) % len(numbers)]
+
+
+def variations():
+    for name, end in VARIED.items():
+        parameter, value = changed_parameter(name)
+        yield name, f"--set {parameter}={value * 1.125:.6g}", end, 30
+
+
 class Motion:
     def __init__(self, index, entry, folder):
         self.index, (self.name, self.options, self.end, self.digits) = index, entry
@@ -211,8 +240,6 @@ def judge(program, motion, way, common):
     if run is None:
         return label, None, why
     estimate = run.get("error_estimate")
-    if run["outcome"] != "finished":
-        return label, None, f"the run ended: {run['outcome']}"
     if not estimate or estimate["digits"] is None:
         return label, [], f"no claim: {estimate and estimate['reason']}"
     reference = common
@@ -238,6 +265,37 @@ def judge(program, motion, way, common):
     return label, lines, ""
 
 
+def judge_sweep(program, name, end, tolerance):
+    """A sweep over one parameter: its claim, against the cases that it compared."""
+    parameter, value = changed_parameter(name)
+    label = f"sweep of {name} over {parameter} to {end} [{tolerance}]"
+    values = [f"{value * factor:.6g}" for factor in (0.9, 1, 1.05)]
+    model = str(ROOT / "models" / (name + ".toml"))
+    done = subprocess.run([program, "sweep", model, "--vary", f"{parameter}={','.join(values)}", "--to", str(end), "--tolerance", tolerance, "--json", "--quiet", "--threads", "1"], capture_output=True, text=True,
+                          timeout=SECONDS, env={**os.environ, "ANHOLON_CACHE": ""}, check=False)
+    if not done.stdout.startswith("{"):
+        return label, None, done.stderr.strip()
+    sweep = json.loads(done.stdout, parse_float=Decimal, parse_int=Decimal)
+    estimate = sweep["error_estimate"]
+    if estimate["digits"] is None:
+        return label, None, estimate["reason"]
+    worst = {}
+    first = sweep["columns"].index("t")
+    for case in estimate["compared"]:
+        reference, why = simulate(program, [model, "--set", f"{parameter}={values[int(case)]}", "--at", str(end), "--digits", "32", "--tolerance", "1e-30", "--numbers", "quad", "--error-estimate", "never"])
+        if reference is None:
+            return label, None, "no reference: " + why
+        run = {"columns": reference["columns"], "error_estimate": estimate, "rows": [[None] * len(reference["columns"])]}
+        row = sweep["rows"][int(case)]
+        for column, number in zip(sweep["columns"][first:], row[first:]):
+            run["rows"][0][run["columns"].index(column)] = number
+        run["rows"][0][0] = reference["rows"][0][0]
+        for kind, error in true_errors(run, reference, float(tolerance), 2.0**-53).items():
+            worst[kind] = max(worst.get(kind, (0.0, "", 0.0)), error)
+    claims = {k["kind"]: float(k["error"]) for k in estimate["kinds"]}
+    return label, [(error / claims[kind], error, claims[kind], kind, column, t, False) for kind, (error, column, t) in worst.items() if kind in claims], ""
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
@@ -245,22 +303,29 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", default="")
     parser.add_argument("--verbose", action="store_true")
+    parser.add_argument("--self-test", action="store_true")
     o = parser.parse_args()
     o.program = str(Path(o.program).resolve())
     every = o.all or os.environ.get("ANHOLON_LONG") == "1" or o.only
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(o.jobs) as pool:
-        motions = [Motion(i, entry, Path(folder)) for i, entry in enumerate(MOTIONS)]
+        motions = [Motion(i, entry, Path(folder)) for i, entry in enumerate([*MOTIONS, *variations()])]
+        sweeps = [(name, end, tolerance) for name, end in VARIED.items() for tolerance in ("1e-12", "1e-7") if o.only in "sweep of " + name]
         motions = [m for m in motions if o.only in m.title]
         if not every:
-            motions = motions[::8]
+            motions, sweeps = motions[::8] if not o.self_test else motions, sweeps[::15]
 
         def all_ways(motion):
             common, why = motion.reference(o.program, motion.times)
-            if common is None or common["outcome"] != "finished":
+            if common is None or not common["rows"]:
                 return [(motion.title, None, "no reference: " + (why or str(common["outcome"])))]
             return [judge(o.program, motion, way, common) for way in motion.ways()]
 
-        results = [r for list_ in pool.map(all_ways, motions) for r in list_]
+        if o.self_test:
+            false_claims = [(label, lines and [(100 * ratio, error, claim / 100, *rest) for ratio, error, claim, *rest in lines], why) for label, lines, why in all_ways(next(m for m in motions if m.name == "kepler"))]
+            return 0 if tell(false_claims, False) == 1 else 1
+
+        of_sweeps = [pool.submit(judge_sweep, o.program, *s) for s in sweeps]
+        results = [r for list_ in pool.map(all_ways, motions) for r in list_] + [s.result() for s in of_sweeps]
     return tell(results, o.verbose)
 
 

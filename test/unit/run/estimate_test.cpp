@@ -154,6 +154,17 @@ TEST(DigitsToTrust, RowsAtKinksAreComparedOnTheirSide) {
   EXPECT_LT(r.error(ColumnKind::acceleration), 1e-9);
 }
 
+// A kick so short that no step sees it: the rows do.
+TEST(DigitsToTrust, OfAMotionThatSteppedOverAKickAreNone) {
+  const std::string kicked = kPoint + "[[force]]\non = \"P\"\nvector = \"exp(-((t - 2.5)/0.01)^2)*ex\"\n[initial]\nx = 1\n\"x'\" = 0.01\n";
+  SimulationOptions o;
+  o.every = Rational(1, 10);
+  const Result r = until(kicked, 5, o);
+  const double gained = 0.01 * std::sqrt(std::acos(-1.0)), error = std::abs(r.number(r.rows.rows().size() - 1, "x'") - 0.01 - gained) / (0.01 + gained);
+  EXPECT_GE(r.error(ColumnKind::velocity), error / 10);
+  EXPECT_EQ(r.report.error->lost.has_value(), error > 0.1);
+}
+
 TEST(DigitsToTrust, AMotionThatEndsWithoutAValueHasNone) {
   SimulationOptions o;
   o.to = 5;
