@@ -57,6 +57,10 @@ OUTSIDE = [
     (r"(gtest|gmock|benchmark)/", "a test library", set(), None),
 ]  # fmt: skip
 
+# What the commands say goes through one file, which shows what would steer a terminal.
+SAYING = re.compile(r"\b(?:std::)?(printf|fprintf|vfprintf|puts|fputs|putchar|fputc|fwrite|cout|cerr|clog)\b")
+SAYS = ("cli/say.cpp", "cli/say.h")
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 SOURCES = {".h", ".hpp", ".cpp", ".c", ".def", ".inc"}
 
@@ -143,6 +147,10 @@ def check(root):
                     if layer not in layers:
                         place = " and ".join(f"{x}/" for x in sorted(layers)) or "test/"
                         problems.append(f"{where}: {name} belongs into {place} only")
+        if layer == "cli" and str(inside) not in SAYS and path.suffix in (".cpp", ".h"):
+            text = NO_CODE.sub(lambda m: "\n" * m[0].count("\n"), path.read_text(encoding="utf-8"))
+            for match in SAYING.finditer(text):
+                problems.append(f"src/{inside}:{text.count(chr(10), 0, match.start()) + 1}: {match[1]}: the commands print by cli/say.h")
     for _, name, layers, limit in OUTSIDE:
         for layer in sorted(layers):
             files = sorted(users.get((name, layer), ()))
@@ -175,6 +183,8 @@ GOOD = {
     "src/jit/emitter.cpp": '#include <llvm/IR/Module.h>\n#include "kernel/code.h"\n',
     "src/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "run/run.h"\n',
     "include/anholon/api.h": "#include <vector>\n",
+    "src/cli/say.cpp": "void f() { std::fwrite(text, 1, 1, stdout); }\n",
+    "src/cli/words.cpp": 'const char* kText = "std::printf";  // not fputs\nint n = std::snprintf(buffer, 1, "x");\n',
     # The same names where they are different types.
     "src/kernel/plan.h": "namespace anholon {\nstruct Entry {\n  struct Place {};\n};\ntemplate <> struct Of<int> {};\n}\n",
     "src/run/plan.cpp": "namespace anholon {\nnamespace {\nstruct Entry {};\n}\nstruct Entry;\nstruct Own { struct Place {}; };\n}\nnamespace anholon::cli {\nclass Entry {};\n}\n",
@@ -213,6 +223,7 @@ MUTANTS = {
     "two types of one name": ("src/report/words.h", "namespace anholon {\n// {\nstruct Entry {\n  int k;\n};\n}\n"),
     "two classes of one name": ("src/run/bad.cpp", "namespace anholon {\nconst char* kText = \"}\";\nclass Own final : public Base {\n};\n}\n"),
     "an enumeration and a type": ("src/run/bad.cpp", "namespace anholon {\nenum class Own : int { a };\n}\n"),
+    "a command prints by itself": ("src/cli/bad.cpp", "void f() { std::printf(title); }\n"),
     "public header": ("include/anholon/bad.h", '#include "expr/graph.h"\n'),
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/escape.h"
 #include "base/utf8.h"
 
 namespace anholon {
@@ -41,32 +42,18 @@ static const char* word(Severity s) {
   return "";
 }
 
-// A line of the file as it may be shown on a terminal: a control character or an invalid byte is
-// replaced by one character, so that columns still fit.
-static std::string printable(const std::string& line) {
-  std::string out;
-  for (std::size_t i = 0; i < line.size();) {
-    const std::size_t width = utf8_width(line, i);
-    const unsigned char c = static_cast<unsigned char>(line[i]);
-    if (width == 1 && (c < 0x20 || c >= 0x7f)) out += c == '\t' ? " " : "\uFFFD";
-    else out += line.substr(i, width);
-    i += width;
-  }
-  return out;
-}
-
 // A source line is shown whole up to this many characters, else the part around the caret.
 static constexpr std::size_t kShownWidth = 160;
 
 std::string print(const Diagnostic& d, const SourceText& main) {
   const SourceText& source = main.of(d.span);
-  std::string out = source.name;
+  std::string out = shown(source.name);
   if (d.span.line > 0)
     out += ":" + std::to_string(d.span.line) + ":" + std::to_string(d.span.column);
-  out += std::string(": ") + word(d.severity) + ": " + d.message + "\n";
+  out += std::string(": ") + word(d.severity) + ": " + shown(d.message) + "\n";
   if (d.span.line > 0) {
     const std::string number = std::to_string(d.span.line);
-    std::string line = printable(source.line(d.span.line));
+    std::string line = shown(source.line(d.span.line));
     std::size_t column = d.span.column > 0 ? d.span.column - 1 : 0;
     if (utf8_length(line) > kShownWidth) {
       const std::size_t from = column > kShownWidth / 2 ? column - kShownWidth / 2 : 0;
@@ -81,7 +68,7 @@ std::string print(const Diagnostic& d, const SourceText& main) {
     out += "  " + std::string(number.size(), ' ') + " | " + std::string(column, ' ') + "^" +
            std::string(length - 1, '~') + "\n";
   }
-  if (!d.hint.empty()) out += "hint: " + d.hint + "\n";
+  if (!d.hint.empty()) out += "hint: " + shown(d.hint) + "\n";
   return out;
 }
 

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/escape.h"
+
 namespace anholon {
 
 class JsonWriter {
@@ -28,7 +30,5 @@ class JsonWriter {
   std::vector<char> open_;
   bool first_ = true, after_key_ = false, new_line_ = false;
 };
-
-std::string json_escape(std::string_view s);
 
 }  // namespace anholon

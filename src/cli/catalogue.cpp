@@ -2,6 +2,7 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/say.h"
 
 namespace anholon::cli {
 
@@ -20,14 +21,14 @@ int forms(const Options& o) {
       j.open_object().key("name").string(f->name).key("title").string(f->title).key("equation").string(f->equation);
       j.key("source").string(f->source).key("applies").boolean(why.empty()).key("reason").string(why).close();
     }
-    std::printf("%s\n", j.close().text().c_str());
+    hand_out(j.close().text() + "\n");
     return kOk;
   }
   for (const Formulation* f : formulations()) {
-    std::printf("%-28s %s\n%-28s %s\n", f->name, f->title, "", citation(*f).c_str());
+    say(stdout, "%-28s %s\n%-28s %s\n", f->name, f->title, "", citation(*f).c_str());
     if (m) {
       const std::string why = obstacle(*f, *m);
-      std::printf("%-28s %s\n", "", why.empty() ? "applies" : ("does not apply: " + why).c_str());
+      say(stdout, "%-28s %s\n", "", why.empty() ? "applies" : ("does not apply: " + why).c_str());
     }
   }
   return kOk;
@@ -37,17 +38,17 @@ int models(const Options& o) {
   const std::vector<ShippedModel> list = shipped_models();
   if (!o.model.empty()) {
     const Reader r = read(o);
-    std::fputs(r.source.text.c_str(), stdout);
+    hand_out(r.source.text);
     return kOk;
   }
   if (o.json) {
     JsonWriter j;
     j.open_array();
     for (const ShippedModel& m : list) j.open_object().key("name").string(m.name).key("title").string(m.title).close();
-    std::printf("%s\n", j.close().text().c_str());
+    hand_out(j.close().text() + "\n");
     return kOk;
   }
-  for (const ShippedModel& m : list) std::printf("%-34s %s\n", m.name.c_str(), m.title.c_str());
+  for (const ShippedModel& m : list) say(stdout, "%-34s %s\n", m.name.c_str(), m.title.c_str());
   return kOk;
 }
 

@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "cli/check_report.h"
 #include "cli/conserved.h"
+#include "cli/say.h"
 
 namespace anholon::cli {
 
@@ -147,7 +148,7 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
   j.key("outcome").string(name(outcome.kind));
   if (!outcome.ok()) j.key("message").string(outcome.message).key("hint").string(outcome.hint);
   j.close();
-  std::printf("%s\n", j.text().c_str());
+  hand_out(j.text() + "\n");
 }
 
 }  // namespace anholon::cli

@@ -4,6 +4,7 @@
 
 #include "cli/check_report.h"
 #include "cli/conserved.h"
+#include "cli/say.h"
 
 namespace anholon::cli {
 
@@ -25,11 +26,11 @@ void reactions(const Scenario& s, const Explanation& x) {
     const std::vector<std::size_t> list = with(h);
     if (list.empty()) return;
     const std::string whose = list.size() < x.constraints.size() ? " of " + listed(*s.model, list) : "";
-    std::printf("  reactions%s: %s\n", whose.c_str(), in_words(h));
+    say(stdout, "  reactions%s: %s\n", whose.c_str(), in_words(h));
   };
   for (std::size_t r = 0; r < x.constraints.size(); ++r)
     if (const auto by = s.model->constraints[r].by)
-      std::printf("  %s is kept by the input %s (servo): no ideal reaction\n", s.model->constraints[r].name.c_str(), s.model->controls[*by].name.c_str());
+      say(stdout, "  %s is kept by the input %s (servo): no ideal reaction\n", s.model->constraints[r].name.c_str(), s.model->controls[*by].name.c_str());
   line(Hypothesis::dalembert);
   line(Hypothesis::chetaev);
   line(Hypothesis::niu);
@@ -48,8 +49,8 @@ void units(const Model& model) {
   };
   add(model.names.coordinates, model.coordinate_units);
   add(model.names.parameters, model.parameter_units);
-  if (!lists.empty()) std::printf("\nunits\n");
-  for (const auto& [unit, names] : lists) std::printf("  %-14s %s\n", unit.c_str(), names.c_str());
+  if (!lists.empty()) say(stdout, "\nunits\n");
+  for (const auto& [unit, names] : lists) say(stdout, "  %-14s %s\n", unit.c_str(), names.c_str());
 }
 
 void integrability(const Scenario& s, const Explanation& x) {
@@ -59,7 +60,7 @@ void integrability(const Scenario& s, const Explanation& x) {
   for (int d : i.flag) flag += (flag.empty() ? "" : ", ") + std::to_string(d);
   if (!i.undecided.empty()) {
     const std::string most = i.flag.empty() ? "" : "; no more than " + std::to_string(i.integrable()) + " of " + std::to_string(i.constraints.size()) + " are integrable (derived flag " + flag + ", …)";
-    std::printf("  integrability: not decided: %s%s\n", i.undecided.c_str(), most.c_str());
+    say(stdout, "  integrability: not decided: %s%s\n", i.undecided.c_str(), most.c_str());
     return;
   }
   if (i.constraints.empty()) return;
@@ -70,19 +71,19 @@ void integrability(const Scenario& s, const Explanation& x) {
                                   : "of the " + std::to_string(count) + " linear constraints on velocities " + counted(p, "combination is", "combinations are") + " integrable";
   if (p > 0 && !i.proved) text += ", as it seems by numbers; it was not proved";
   if (i.these_values) text += ", for these values of the parameters";
-  std::printf("  integrability: %s (derived flag %s%s)\n", text.c_str(), flag.c_str(), i.time ? ", t as a coordinate" : "");
+  say(stdout, "  integrability: %s (derived flag %s%s)\n", text.c_str(), flag.c_str(), i.time ? ", t as a coordinate" : "");
   for (const IntegrableCombination& c : i.combinations) {
     std::vector<std::size_t> members;
     for (std::size_t r = 0; r < c.coefficients.size(); ++r)
       if (!is_zero(c.coefficients[r])) members.push_back(r);
     const std::string whose = listed(model, members);
-    if (!c.integral) std::printf("    %s: in the integrable part; no elementary integral was found\n", whose.c_str());
-    else std::printf("    %s %s: %s = const\n", whose.c_str(), members.size() > 1 ? "together" : "alone", print(*c.integral, model.names, Format::text).c_str());
+    if (!c.integral) say(stdout, "    %s: in the integrable part; no elementary integral was found\n", whose.c_str());
+    else say(stdout, "    %s %s: %s = const\n", whose.c_str(), members.size() > 1 ? "together" : "alone", print(*c.integral, model.names, Format::text).c_str());
   }
   if (!x.accessible) return;
   const int all = s.structure.configuration_dimension;
-  if (*x.accessible == all) std::printf("    all %d dimensions of the configuration can be reached\n", all);
-  else std::printf("    %d of the %d dimensions of the configuration can be reached\n", *x.accessible, all);
+  if (*x.accessible == all) say(stdout, "    all %d dimensions of the configuration can be reached\n", all);
+  else say(stdout, "    %d of the %d dimensions of the configuration can be reached\n", *x.accessible, all);
 }
 
 std::string derivative_of(int order) {
@@ -95,10 +96,10 @@ std::string hidden_name(const Scenario& s, const HiddenConstraint& h) {
 }
 
 void structure(const Scenario& s, const Explanation& x) {
-  std::printf("%s\n", print(s.system, s.structure).c_str());
-  if (x.blocks.size() > 1) std::printf("%s\n", print(s.system, s.structure, x.blocks).c_str());
+  say_lines(stdout, print(s.system, s.structure) + "\n");
+  if (x.blocks.size() > 1) say_lines(stdout, print(s.system, s.structure, x.blocks) + "\n");
   if (x.hidden.empty()) return;
-  std::printf("what the state must satisfy (hidden constraints)\n");
+  say(stdout, "what the state must satisfy (hidden constraints)\n");
   // By the derivatives that they bind.
   std::map<int, std::string> on;
   for (const HiddenConstraint& h : x.hidden)
@@ -106,8 +107,8 @@ void structure(const Scenario& s, const Explanation& x) {
       std::string& list = on[h.orders[k]];
       list += (list.empty() ? "" : ", ") + derivative_name(hidden_name(s, h), static_cast<unsigned>(k), Format::text);
     }
-  for (const auto& [order, list] : on) std::printf("  on %s: %s\n", derivative_of(order).c_str(), list.c_str());
-  std::printf("\n");
+  for (const auto& [order, list] : on) say(stdout, "  on %s: %s\n", derivative_of(order).c_str(), list.c_str());
+  say(stdout, "\n");
 }
 
 // What initial data the structure asks for, and who said what.
@@ -139,53 +140,53 @@ std::string data_needed(const Scenario& s, const std::vector<StateEntry>& higher
 void state_table(const Scenario& s) {
   const InitialState<double>& x = s.state;
   const std::vector<StateEntry> higher = higher_state(s);
-  if (!x.q.empty()) std::printf("%s\n", data_needed(s, higher).c_str());
-  std::printf("initial state at t = %s\n", number_text(x.t).c_str());
+  if (!x.q.empty()) say(stdout, "%s\n", data_needed(s, higher).c_str());
+  say(stdout, "initial state at t = %s\n", number_text(x.t).c_str());
   for (std::size_t a = 0; a < x.q.size(); ++a)
-    std::printf("  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
+    say(stdout, "  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
                 name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(), number_text(x.qd[a]).c_str(), name(x.qd_origin[a]));
-  for (const StateEntry& e : higher) std::printf("  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
-  std::printf("  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
+  for (const StateEntry& e : higher) say(stdout, "  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
+  say(stdout, "  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
 }
 
 }  // namespace
 
 void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome) {
   const Model& model = *s.model;
-  std::printf("%s\n", model.title.empty() ? model.source_text.name.c_str() : model.title.c_str());
-  if (!model.source.empty()) std::printf("source: %s\n", model.source.c_str());
+  say(stdout, "%s\n", model.title.empty() ? model.source_text.name.c_str() : model.title.c_str());
+  if (!model.source.empty()) say(stdout, "source: %s\n", model.source.c_str());
   std::string cases;
   for (const std::string& c : model.cases) cases += (cases.empty() ? "" : ", ") + c;
-  if (!cases.empty()) std::printf("cases (--case NAME): %s\n", cases.c_str());
-  std::printf("\n%s, %s, %s, %s\n", counted(model.coordinates.size(), "coordinate", "coordinates").c_str(),
+  if (!cases.empty()) say(stdout, "cases (--case NAME): %s\n", cases.c_str());
+  say(stdout, "\n%s, %s, %s, %s\n", counted(model.coordinates.size(), "coordinate", "coordinates").c_str(),
               counted(model.bodies.size(), "body or particle", "bodies and particles").c_str(),
               counted(model.constraints.size(), "constraint", "constraints").c_str(),
               counted(model.parameters.size(), "parameter", "parameters").c_str());
-  for (const std::string& e : effects(model)) std::printf("  %s\n", e.c_str());
+  for (const std::string& e : effects(model)) say(stdout, "  %s\n", e.c_str());
   const std::vector<std::string> external = external_forces(model);
-  for (const std::string& f : external) std::printf("  external force %s (it has no 'from')\n", f.c_str());
+  for (const std::string& f : external) say(stdout, "  external force %s (it has no 'from')\n", f.c_str());
   units(model);
-  if (!model.constraints.empty()) std::printf("\nconstraints\n");
+  if (!model.constraints.empty()) say(stdout, "\nconstraints\n");
   for (std::size_t r = 0; r < model.constraints.size(); ++r) {
     const Constraint& c = model.constraints[r];
-    std::printf("  %-14s %s\n", c.name.c_str(), c.equation.c_str());
+    say(stdout, "  %-14s %s\n", c.name.c_str(), c.equation.c_str());
     std::string redundant;
     if (s.classes[r].redundant)
       redundant = x.constraints[r].follows_from.empty() ? "; redundant here" : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
     // One component of a vector equation too many.
     if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x') redundant += "; 'along' names the directions that count";
-    std::printf("  %-14s %s; %s%s\n", "", description(s.classes[r], c.order).c_str(), work(s, x, r, kLongestPower).c_str(), redundant.c_str());
+    say(stdout, "  %-14s %s; %s%s\n", "", description(s.classes[r], c.order).c_str(), work(s, x, r, kLongestPower).c_str(), redundant.c_str());
   }
   reactions(s, x);
   integrability(s, x);
   if (outcome.ok()) {
-    std::printf("\ndegrees of freedom %d, configuration dimension %d, state dimension %d\n", s.structure.degrees_of_freedom,
+    say(stdout, "\ndegrees of freedom %d, configuration dimension %d, state dimension %d\n", s.structure.degrees_of_freedom,
                 s.structure.configuration_dimension, s.structure.state_dimension);
     structure(s, x);
     state_table(s);
     print_conserved(*s.mechanics);
   }
-  for (const std::string& n : s.notes) std::printf("note: %s\n", n.c_str());
+  for (const std::string& n : s.notes) say(stdout, "note: %s\n", n.c_str());
 }
 
 }  // namespace anholon::cli

@@ -7,6 +7,7 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/say.h"
 #include "spec/equations.h"
 
 namespace anholon::cli {
@@ -75,22 +76,22 @@ std::string shortened(std::string text) {
 
 void print_text(const PublishedEquation& e, const Comparison& c, std::size_t width, const SourceText& source, const SymbolNames& names) {
   const std::string indent(width + 10, ' ');
-  std::printf("%-*s  %-7s %s\n", static_cast<int>(width), e.label.c_str(), word(c.verdict),
+  say(stdout, "%-*s  %-7s %s\n", static_cast<int>(width), e.label.c_str(), word(c.verdict),
               c.verdict == Verdict::proved ? c.what.c_str() : c.verdict == Verdict::unknown ? c.detail.c_str() : ("nearest: " + c.what).c_str());
   if (c.verdict != Verdict::refuted) return;
-  if (c.difference) std::printf("%sleft - right differs from it by %s\n", indent.c_str(), shortened(print(*c.difference, names, Format::text)).c_str());
-  std::printf("%sleft - right = %s at a point of the motion\n", indent.c_str(), c.detail.c_str());
+  if (c.difference) say(stdout, "%sleft - right differs from it by %s\n", indent.c_str(), shortened(print(*c.difference, names, Format::text)).c_str());
+  say(stdout, "%sleft - right = %s at a point of the motion\n", indent.c_str(), c.detail.c_str());
   const auto show = [&](const Change& k) {
-    std::printf("%s%s:%u:%u: %s: %s should be %s%s\n", indent.c_str(), source.name.c_str(), k.span.line, k.span.column, place(k).c_str(), k.from.c_str(), k.to.c_str(),
+    say(stdout, "%s%s:%u:%u: %s: %s should be %s%s\n", indent.c_str(), source.name.c_str(), k.span.line, k.span.column, place(k).c_str(), k.from.c_str(), k.to.c_str(),
                 k.proved ? "" : " (not proved)");
   };
   if (c.changes.size() == 1) show(c.changes[0]);
   if (c.changes.size() > 1) {
-    std::printf("%s%zu changes would each make it true:\n", indent.c_str(), c.changes.size());
+    say(stdout, "%s%zu changes would each make it true:\n", indent.c_str(), c.changes.size());
     for (std::size_t i = 0; i < c.changes.size() && i < kListed; ++i) show(c.changes[i]);
-    if (c.changes.size() > kListed) std::printf("%s…\n", indent.c_str());
+    if (c.changes.size() > kListed) say(stdout, "%s…\n", indent.c_str());
   }
-  if (c.changes.empty()) std::printf("%sno change of one term makes it true\n", indent.c_str());
+  if (c.changes.empty()) say(stdout, "%sno change of one term makes it true\n", indent.c_str());
 }
 
 void write_json(JsonWriter& j, const PublishedEquation& e, const Comparison& c, const SymbolNames& names) {
@@ -133,10 +134,10 @@ int compare(const Options& o) {
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   std::vector<Comparison> found;
   for (const PublishedEquation& p : equations) {
-    if (terminal) std::fprintf(stderr, "\r\033[K%zu of %zu: %s", found.size() + 1, equations.size(), p.label.c_str());
+    if (terminal) say(stderr, "\r\033[K%zu of %zu: %s", found.size() + 1, equations.size(), p.label.c_str());
     found.push_back(comparer.compare(p, *in.names, alphabet));
   }
-  if (terminal) std::fprintf(stderr, "\r\033[K");
+  if (terminal) say(stderr, "\r\033[K");
   std::size_t width = 0, counts[3] = {0, 0, 0};
   for (std::size_t i = 0; i < found.size(); ++i) {
     width = std::max(width, equations[i].label.size());
@@ -150,11 +151,11 @@ int compare(const Options& o) {
       write_json(j, equations[i], found[i], names);
     }
     j.close().close();
-    std::printf("%s\n", j.text().c_str());
+    hand_out(j.text() + "\n");
   } else {
-    std::printf("%s\n\n", model.title.c_str());
+    say(stdout, "%s\n\n", model.title.c_str());
     for (std::size_t i = 0; i < found.size(); ++i) print_text(equations[i], found[i], width, source, names);
-    std::printf("\n%zu true, %zu false, %zu unknown\n", counts[static_cast<std::size_t>(Verdict::proved)],
+    say(stdout, "\n%zu true, %zu false, %zu unknown\n", counts[static_cast<std::size_t>(Verdict::proved)],
                 counts[static_cast<std::size_t>(Verdict::refuted)], counts[static_cast<std::size_t>(Verdict::unknown)]);
   }
   return counts[static_cast<std::size_t>(Verdict::proved)] == found.size() ? kOk : kStopped;

@@ -1,7 +1,8 @@
 #include "cli/conserved.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "cli/say.h"
 
 namespace anholon::cli {
 
@@ -17,10 +18,10 @@ void print_conserved(const Mechanics& m) {
   const bool resets = std::any_of(m.model->events.begin(), m.model->events.end(), [](const Event& e) { return !e.set.empty(); });
   for (const Conserved& c : list)
     if (cyclic(c)) names += (names.empty() ? "" : ", ") + c.name.substr(12);
-  std::printf("\nconserved along every motion%s (proved)%s\n", resets ? " between events" : "", names.empty() ? "" : (", cyclic: " + names).c_str());
+  say(stdout, "\nconserved along every motion%s (proved)%s\n", resets ? " between events" : "", names.empty() ? "" : (", cyclic: " + names).c_str());
   for (const Conserved& c : list) {
     const std::string formula = print(c.value, m.model->names, Format::text);
-    std::printf("  %s%s\n", c.name.c_str(), formula.size() > kLongest ? "" : (" = " + formula).c_str());
+    say(stdout, "  %s%s\n", c.name.c_str(), formula.size() > kLongest ? "" : (" = " + formula).c_str());
   }
 }
 

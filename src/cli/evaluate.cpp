@@ -2,6 +2,7 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/say.h"
 #include "cli/show.h"
 #include "run/evaluate.h"
 
@@ -61,34 +62,34 @@ std::string json(const Scenario& s, const StateReport& r) {
 void print_text(const Scenario& s, const StateReport& r, int digits) {
   const int width = std::max(12, std::min(digits, 16) + 8);
   const auto line = [&](const std::string& name, const std::string& value) {
-    std::printf("  %-18s %*s\n", name.c_str(), width, value.c_str());
+    say(stdout, "  %-18s %*s\n", name.c_str(), width, value.c_str());
   };
-  std::printf("%s\n%s, %s\n\nstate at t = %s\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation, r.t.c_str());
+  say(stdout, "%s\n%s, %s\n\nstate at t = %s\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation, r.t.c_str());
   for (const auto& [name, value] : r.q) line(name, value);
   for (const auto& [name, value] : r.qdot) line(name + "'", value);
-  std::printf("\naccelerations\n");
+  say(stdout, "\naccelerations\n");
   for (const auto& [name, value] : r.derivatives) line(name, value);
-  if (!r.lambda.empty()) std::printf("\nmultipliers\n");
+  if (!r.lambda.empty()) say(stdout, "\nmultipliers\n");
   for (const auto& [name, value] : r.lambda) line("lambda." + name, value);
-  std::printf("\ngeneralized forces\n  %-14s", "");
-  for (const Coordinate& c : s.model->coordinates) std::printf(" %*s", width, c.name.c_str());
-  std::printf("\n");
+  say(stdout, "\ngeneralized forces\n  %-14s", "");
+  for (const Coordinate& c : s.model->coordinates) say(stdout, " %*s", width, c.name.c_str());
+  say(stdout, "\n");
   for (const auto& [name, column] : r.forces) {
-    std::printf("  %-14s", name.c_str());
-    for (const std::string& v : column) std::printf(" %*s", width, v.c_str());
-    std::printf("\n");
+    say(stdout, "  %-14s", name.c_str());
+    for (const std::string& v : column) say(stdout, " %*s", width, v.c_str());
+    say(stdout, "\n");
   }
-  std::printf("\nenergy and power\n");
+  say(stdout, "\nenergy and power\n");
   for (const auto& [name, value] : r.numbers) line(name, value);
-  std::printf("\nreactions (force; torque about the mass centre)\n");
+  say(stdout, "\nreactions (force; torque about the mass centre)\n");
   for (const StateReport::Reaction& x : r.reactions) {
-    std::printf("  %-14s", x.body.c_str());
-    for (const std::string& v : x.force) std::printf(" %*s", width, v.c_str());
-    std::printf("  ;");
-    for (const std::string& v : x.torque) std::printf(" %*s", width, v.c_str());
-    std::printf("\n");
+    say(stdout, "  %-14s", x.body.c_str());
+    for (const std::string& v : x.force) say(stdout, " %*s", width, v.c_str());
+    say(stdout, "  ;");
+    for (const std::string& v : x.torque) say(stdout, " %*s", width, v.c_str());
+    say(stdout, "\n");
   }
-  std::printf("\nresiduals (relative)\n");
+  say(stdout, "\nresiduals (relative)\n");
   for (const auto& [name, value] : r.residuals) line(name, value);
 }
 
@@ -112,12 +113,12 @@ int evaluate(const Options& o) {
       JsonWriter j;
       j.open_object().key("outcome").string(name(outcome.kind)).key("message").string(outcome.message);
       j.key("hint").string(outcome.hint).close();
-      std::printf("%s\n", j.text().c_str());
+      hand_out(j.text() + "\n");
     }
     print_outcome(outcome);
     return kStopped;
   }
-  if (o.json) std::fputs(json(s, report).c_str(), stdout);
+  if (o.json) hand_out(json(s, report));
   else print_text(s, report, o.digits);
   return kOk;
 }

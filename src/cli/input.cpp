@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "cli/say.h"
 #include "run/form_choice.h"
 
 namespace anholon::cli {
@@ -59,13 +60,13 @@ std::vector<ShippedModel> templates() { return shipped(".toml", true); }
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source) {
   std::fflush(stdout);
-  std::fputs(print(d, source).c_str(), stderr);
+  say_lines(stderr, print(d, source));
 }
 
 void print_outcome(const Outcome& o) {
   std::fflush(stdout);
-  std::fprintf(stderr, "stopped (%s): %s\n", name(o.kind), o.message.c_str());
-  if (!o.hint.empty()) std::fprintf(stderr, "hint: %s\n", o.hint.c_str());
+  say(stderr, "stopped (%s): %s\n", name(o.kind), o.message.c_str());
+  if (!o.hint.empty()) say(stderr, "hint: %s\n", o.hint.c_str());
 }
 
 std::vector<std::string> split(const std::vector<std::string>& words) {
@@ -156,7 +157,7 @@ Reader read(const Options& o, SourceText source) {
         diagnostics.list().begin(), diagnostics.list().end(), [](const Diagnostic& d) { return d.severity == Severity::error; }));
     throw UsageError{diagnostics.print(r.source) + std::to_string(n) + (n == 1 ? " error\n" : " errors\n")};
   }
-  std::fputs(diagnostics.print(r.source).c_str(), stderr);
+  say_lines(stderr, diagnostics.print(r.source));
   r.again = [source = r.source, overrides, cases = o.cases, was = all_text(model->model->source_text)]() -> std::shared_ptr<const Model> {
     Diagnostics ignored;
     const auto copy = open_model(source, ignored, overrides, cases);
@@ -209,7 +210,7 @@ Options with_form(Options o, const Reader& in) {
   const FormChoice choice = choose_form(in.again, state_choice(o, *in.model));
   o.form = choice.form->name;
   o.form_given = true;
-  if (!o.quiet) std::fprintf(stderr, "form %s: %s\n", choice.form->name, choice.why.c_str());
+  if (!o.quiet) say(stderr, "form %s: %s\n", choice.form->name, choice.why.c_str());
   return o;
 }
 

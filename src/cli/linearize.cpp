@@ -5,6 +5,7 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/say.h"
 #include "cli/show.h"
 
 namespace anholon::cli {
@@ -234,7 +235,7 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) line += "  " + std::string(c ? width[c] - row[c].size() : 0, ' ') + row[c] + std::string(c ? 0 : width[c] - row[c].size(), ' ');
-    std::printf("%s\n", line.c_str());
+    say(stdout, "%s\n", line.c_str());
   }
 }
 
@@ -247,27 +248,27 @@ void print_matrix(const char* name, const std::vector<std::string>& rows, const 
     table.push_back({rows[r]});
     for (std::size_t c = 0; c < columns.size(); ++c) table.back().push_back(short_text(a(r, c)));
   }
-  std::printf("\n%s\n", name);
+  say(stdout, "\n%s\n", name);
   print_table(table);
 }
 
 void print_model(const LinearModel& m, int digits) {
-  std::printf("about %s\n\n%zu states at t = %s", motion_text(m).c_str(), m.states.size(), text(m.t, digits).c_str());
+  say(stdout, "about %s\n\n%zu states at t = %s", motion_text(m).c_str(), m.states.size(), text(m.t, digits).c_str());
   if (!m.dependent.empty()) {
     std::string list;
     for (const std::string& d : m.dependent) list += (list.empty() ? "" : ", ") + d;
-    std::printf("; %s follow from them", list.c_str());
+    say(stdout, "; %s follow from them", list.c_str());
   }
-  std::printf("\n");
-  for (std::size_t i = 0; i < m.states.size(); ++i) std::printf("  %-14s %24s\n", m.states[i].c_str(), text(m.values[i], digits).c_str());
+  say(stdout, "\n");
+  for (std::size_t i = 0; i < m.states.size(); ++i) say(stdout, "  %-14s %24s\n", m.states[i].c_str(), text(m.values[i], digits).c_str());
   print_matrix("A", m.states, m.states, m.A);
   if (!m.inputs.empty()) print_matrix("B", m.states, m.inputs, m.B);
   if (!m.outputs.empty()) print_matrix("C", m.outputs, m.states, m.C);
   if (!m.inputs.empty() && !m.outputs.empty()) print_matrix("D", m.outputs, m.inputs, m.D);
-  for (const std::string& n : m.notes) std::printf("note: %s\n", n.c_str());
-  std::printf("\neigenvalues");
-  if (!m.cyclic.empty()) std::printf(" of the states with influence; the %zu without add as many 0", m.cyclic.size());
-  std::printf("\n");
+  for (const std::string& n : m.notes) say(stdout, "note: %s\n", n.c_str());
+  say(stdout, "\neigenvalues");
+  if (!m.cyclic.empty()) say(stdout, " of the states with influence; the %zu without add as many 0", m.cyclic.size());
+  say(stdout, "\n");
   const auto width = [&](const Eigenvalue& e) { return pair_text(e, digits).size() - (e.value.im == Multi(0) ? 0 : 1); };  // "±" has two bytes
   std::size_t widest = 0;
   for (const Eigenvalue& e : m.spectrum) widest = std::max(widest, width(e));
@@ -283,9 +284,9 @@ void print_model(const LinearModel& m, int digits) {
       note += "  time constant " + short_text(Multi(1) / abs(e.value.re));
     }
     if (!note.empty()) note.insert(0, widest - width(e), ' ');
-    std::printf("  %s%s\n", pair_text(e, digits).c_str(), note.c_str());
+    say(stdout, "  %s%s\n", pair_text(e, digits).c_str(), note.c_str());
   }
-  std::printf("\nmodes (largest entry 1)\n");
+  say(stdout, "\nmodes (largest entry 1)\n");
   std::vector<std::vector<std::string>> rows{{""}};
   for (std::size_t i : m.core) rows[0].push_back(m.states[i]);
   for (const Eigenvalue& e : m.spectrum) {
@@ -301,12 +302,12 @@ void print_model(const LinearModel& m, int digits) {
 
 void print_range(const Scenario& s, const Linearization& l, const ParameterRange& range, int digits) {
   const std::string& parameter = s.model->parameters[range.parameter].name;
-  std::printf("eigenvalues over %s\n", parameter.c_str());
+  say(stdout, "eigenvalues over %s\n", parameter.c_str());
   std::string before;
   for (std::size_t k = 0; k < l.results.size(); ++k) {
     const LinearResult& r = l.results[k];
     const std::string about = r.outcome.ok() ? "about " + motion_text(r.model) : "no linear model (" + std::string(name(r.outcome.kind)) + "): " + r.outcome.message;
-    if (about != before) std::printf("%s\n", about.c_str());
+    if (about != before) say(stdout, "%s\n", about.c_str());
     before = about;
     std::string line = text(Multi(range.values[k]), digits);
     if (r.outcome.ok()) {
@@ -316,14 +317,14 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
         if (!told(r.model.spectrum, i)) line += "   " + pair_text(e, digits) + (e.multiplicity > 1 ? " (" + std::to_string(e.multiplicity) + "-fold)" : "");
       }
     }
-    std::printf("  %s\n", line.c_str());
+    say(stdout, "  %s\n", line.c_str());
   }
-  std::printf("\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
+  say(stdout, "\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
   for (const Crossing& c : l.crossings)
-    std::printf("  %s = %s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(),
+    say(stdout, "  %s = %s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(),
                 c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0",
                 c.destabilizes ? "unstable above" : "stable above");
-  for (const std::string& n : l.notes) std::printf("note: %s\n", n.c_str());
+  for (const std::string& n : l.notes) say(stdout, "note: %s\n", n.c_str());
 }
 
 void print_csv(const Scenario& s, const Linearization& l, const std::optional<ParameterRange>& range, int digits) {
@@ -331,12 +332,12 @@ void print_csv(const Scenario& s, const Linearization& l, const std::optional<Pa
   for (const LinearResult& r : l.results) most = std::max(most, r.model.spectrum.size());
   std::string line = range ? s.model->parameters[range->parameter].name : "t";
   for (std::size_t i = 1; i <= most; ++i) line += ",re." + std::to_string(i) + ",im." + std::to_string(i);
-  std::printf("%s\n", line.c_str());
+  say(stdout, "%s\n", line.c_str());
   for (std::size_t k = 0; k < l.results.size(); ++k) {
     const LinearModel& m = l.results[k].model;
     line = text(range ? Multi(range->values[k]) : m.t, digits);
     for (std::size_t i = 0; i < most; ++i) line += i < m.spectrum.size() ? "," + text(m.spectrum[i].value.re, digits) + "," + text(m.spectrum[i].value.im, digits) : ",,";
-    std::printf("%s\n", line.c_str());
+    say(stdout, "%s\n", line.c_str());
   }
 }
 
@@ -367,10 +368,10 @@ int linearize(const Options& o) {
     if (o.about == "equilibrium") say_no_rest(r.outcome);
     if (failed.ok()) failed = r.outcome;
   }
-  if (o.json) std::fputs(json(s, l, start.ok() ? values : std::nullopt, o.digits).c_str(), stdout);
+  if (o.json) hand_out(json(s, l, start.ok() ? values : std::nullopt, o.digits));
   else if (o.csv) print_csv(s, l, start.ok() ? values : std::nullopt, o.digits);
   else if (failed.ok() || l.results.size() > 1) {
-    std::printf("%s\n%s, %s\n\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation);
+    say(stdout, "%s\n%s, %s\n\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation);
     if (values) print_range(s, l, *values, o.digits);
     else print_model(l.results[0].model, o.digits);
   }

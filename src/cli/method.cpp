@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "cli/input.h"
+#include "cli/say.h"
 
 namespace anholon::cli {
 
@@ -50,7 +51,7 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
   if (options.method == Method::bdf && tolerance < kLeastBdfTolerance)
     refuse("is of order 5 at most, for tolerances of " + small(kLeastBdfTolerance) + " and more", "--tolerance 1e-8");
   if (tolerance < kLeastRungeKuttaTolerance)
-    std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastRungeKuttaTolerance).c_str(),
+    say(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastRungeKuttaTolerance).c_str(),
                  small(kLeastRungeKuttaTolerance).c_str(), which.c_str());
 }
 
@@ -59,20 +60,20 @@ static bool worth_saying(const MethodReport& r) { return r.steps > 0 || r.trials
 void print_method(const MethodReport& r) {
   if (!worth_saying(r)) return;
   std::string text;
-  const auto say = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   if (r.asked == Method::automatic) {
-    if (r.turns.empty()) say("Taylor, others were tried and not cheaper");
-    for (const MethodReport::Turn& turn : r.turns) say(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
+    if (r.turns.empty()) add("Taylor, others were tried and not cheaper");
+    for (const MethodReport::Turn& turn : r.turns) add(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
   } else {
-    say(title(r.asked) + ", as asked");
-    for (const MethodReport::Turn& turn : r.turns) say(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
+    add(title(r.asked) + ", as asked");
+    for (const MethodReport::Turn& turn : r.turns) add(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
   }
   if (r.steps > 0) {
-    say(std::to_string(r.steps) + " steps (" + std::to_string(r.refused) + " refused), " + std::to_string(r.evaluations) + " evaluations");
-    if (r.taylor_steps > 0) say(std::to_string(r.taylor_steps) + " steps by Taylor");
+    add(std::to_string(r.steps) + " steps (" + std::to_string(r.refused) + " refused), " + std::to_string(r.evaluations) + " evaluations");
+    if (r.taylor_steps > 0) add(std::to_string(r.taylor_steps) + " steps by Taylor");
   }
-  if (r.trials > 0) say(std::to_string(r.trials) + (r.trials == 1 ? " trial, " : " trials, ") + std::to_string(r.trial_evaluations) + " evaluations");
-  std::fprintf(stderr, "method: %s\n", text.c_str());
+  if (r.trials > 0) add(std::to_string(r.trials) + (r.trials == 1 ? " trial, " : " trials, ") + std::to_string(r.trial_evaluations) + " evaluations");
+  say(stderr, "method: %s\n", text.c_str());
 }
 
 void write_method(JsonWriter& j, const MethodReport& r) {

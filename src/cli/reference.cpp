@@ -3,12 +3,13 @@
 #include <cstdio>
 
 #include "cli/input.h"
+#include "cli/say.h"
 
 namespace anholon::cli {
 
 int reference(const Options& o) {
   const std::string text = o.schema ? reference_schema() : o.model.empty() ? reference_page() : reference_section(o.model);
-  std::fputs(text.c_str(), stdout);
+  hand_out(text);
   return kOk;
 }
 

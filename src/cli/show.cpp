@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "base/json.h"
+#include "cli/say.h"
 #include "run/form_choice.h"
 #include "structure/blocks.h"
 
@@ -12,15 +13,15 @@ namespace anholon::cli {
 static void column(const char* name, const Column& c, const Scenario& s) {
   const std::vector<std::string> texts = print(c, s.model->names, Format::text);
   for (std::size_t a = 0; a < texts.size(); ++a)
-    if (texts[a] != "0") std::printf("%s.%s = %s\n", name, s.model->coordinates[a].name.c_str(), texts[a].c_str());
+    if (texts[a] != "0") say(stdout, "%s.%s = %s\n", name, s.model->coordinates[a].name.c_str(), texts[a].c_str());
 }
 
 static void show_mechanics(const Scenario& s) {
   const Mechanics& m = *s.mechanics;
   const SymbolNames& names = s.model->names;
-  const auto one = [&](const char* name, Expr e) { std::printf("%s = %s\n", name, print(e, names, Format::text).c_str()); };
+  const auto one = [&](const char* name, Expr e) { say(stdout, "%s = %s\n", name, print(e, names, Format::text).c_str()); };
   for (std::size_t i = 0; i < s.model->masses.size(); ++i)
-    std::printf("%s = %s    (frozen in what follows)\n", names.masses[i].c_str(), print(s.model->masses[i].value, names, Format::text).c_str());
+    say(stdout, "%s = %s    (frozen in what follows)\n", names.masses[i].c_str(), print(s.model->masses[i].value, names, Format::text).c_str());
   one("T", m.T);
   one("S", m.S);
   one("V_O", m.V_O);
@@ -46,12 +47,12 @@ int show(const Options& o, const Scenario& s) {
   } else if (o.show == "system") {
     const std::vector<std::string> texts = print(s.system.equations, s.model->names, Format::text);
     for (std::size_t i = 0; i < texts.size(); ++i)
-      std::printf("%s: %s = 0\n", s.system.equation_names[i].c_str(), texts[i].c_str());
+      say(stdout, "%s: %s = 0\n", s.system.equation_names[i].c_str(), texts[i].c_str());
   } else if (o.show == "structure") {
-    std::fputs(print(s.system, s.structure).c_str(), stdout);
-    if (const std::vector<Block> list = blocks(s.structure); list.size() > 1) std::printf("\n%s", print(s.system, s.structure, list).c_str());
+    hand_out(print(s.system, s.structure));
+    if (const std::vector<Block> list = blocks(s.structure); list.size() > 1) hand_out("\n" + print(s.system, s.structure, list));
   } else if (o.show == "program") {
-    std::fputs(print(program(s.system, s.structure)).c_str(), stdout);
+    hand_out(print(program(s.system, s.structure)));
   } else {
     throw UsageError{"error: --show: there is no stage '" + o.show + "'\nhint: mechanics, system, structure, program; of check also cost\n"};
   }
@@ -81,31 +82,31 @@ static void cost_json(const FormChoice& c) {
     j.close().close();
   }
   j.close().key("auto").string(c.form->name).key("reason").string(c.why).close();
-  std::printf("%s\n", j.text().c_str());
+  hand_out(j.text() + "\n");
 }
 
 int show_cost(const Options& o, const Reader& in) {
   const FormChoice c = choose_form(in.again, state_choice(o, *in.model), Costs::all);
   if (o.json) return cost_json(c), kOk;
-  std::puts("one expansion at tolerance 1e-12\n");
-  std::printf("%-8s  %-9s  %8s  %6s  %6s  %10s  %5s  %8s  taken\n", "form", "writing", "products", "sums", "solve", "operations", "waits", "cost");
+  say(stdout, "one expansion at tolerance 1e-12\n\n");
+  say(stdout, "%-8s  %-9s  %8s  %6s  %6s  %10s  %5s  %8s  taken\n", "form", "writing", "products", "sums", "solve", "operations", "waits", "cost");
   for (const FormCost& f : c.costs) {
-    if (f.writings.empty()) std::printf("%-8s  no kernel: %s\n", f.form->name, f.why.c_str());
+    if (f.writings.empty()) say(stdout, "%-8s  no kernel: %s\n", f.form->name, f.why.c_str());
     for (const WritingCost& w : f.writings) {
       const std::string taken = !w.after ? "" : *w.after == 0 ? "at once" : "after " + std::to_string(*w.after) + " steps";
-      std::printf("%-8s  %-9s  %8zu  %6zu  %6zu  %10.0f  %5d  %8.0f%s%s\n", f.form->name, name(w.writing), w.work.products, w.work.sums, w.work.solve, w.work.operations, w.work.waits,
+      say(stdout, "%-8s  %-9s  %8zu  %6zu  %6zu  %10.0f  %5d  %8.0f%s%s\n", f.form->name, name(w.writing), w.work.products, w.work.sums, w.work.solve, w.work.operations, w.work.waits,
                   w.work.total,
                   taken.empty() ? "" : "  ", taken.c_str());
     }
   }
-  std::puts("\nwaits: of a stage, one operation after the other; cost: operations, and for each stage five for each wait");
+  say(stdout, "\nwaits: of a stage, one operation after the other; cost: operations, and for each stage five for each wait\n");
   for (const FormCost& f : c.costs)
     for (const WritingCost& w : f.writings) {
       if (w.velocities.empty()) continue;
-      std::puts("quasi: in velocities that make the kinetic energy a sum of squares,");
-      for (std::size_t i = 0; i < w.velocities.size(); ++i) std::printf("  p%zu = %s\n", i + 1, w.velocities[i].c_str());
+      say(stdout, "quasi: in velocities that make the kinetic energy a sum of squares,\n");
+      for (std::size_t i = 0; i < w.velocities.size(); ++i) say(stdout, "  p%zu = %s\n", i + 1, w.velocities[i].c_str());
     }
-  std::printf("--form auto takes %s: %s\n", c.form->name, c.why.c_str());
+  say(stdout, "--form auto takes %s: %s\n", c.form->name, c.why.c_str());
   return kOk;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/say.h"
 
 namespace anholon::cli {
 
@@ -41,19 +42,12 @@ std::string describe(const Claim& c) {
   return "";
 }
 
-// The words of a stranger, without what would steer the terminal.
-std::string plain(std::string s) {
-  for (char& ch : s)
-    if (static_cast<unsigned char>(ch) < 0x20 || ch == 0x7f) ch = '?';
-  return s;
-}
-
 void text(const Certificate& c, const Verification& v) {
-  std::printf("certificate of %s, written by %s\n", plain(c.model).c_str(), plain(c.program).c_str());
-  if (!c.source_hash.empty()) std::printf("source: %s\n", plain(c.source_hash).c_str());
-  if (!c.hypotheses.empty()) std::printf("\nhypotheses\n");
-  for (const std::string& h : c.hypotheses) std::printf("  %s\n", plain(h).c_str());
-  if (!c.meaning.empty()) std::printf("\nmeaning\n  %s\n", plain(c.meaning).c_str());
+  say(stdout, "certificate of %s, written by %s\n", c.model.c_str(), c.program.c_str());
+  if (!c.source_hash.empty()) say(stdout, "source: %s\n", c.source_hash.c_str());
+  if (!c.hypotheses.empty()) say(stdout, "\nhypotheses\n");
+  for (const std::string& h : c.hypotheses) say(stdout, "  %s\n", h.c_str());
+  if (!c.meaning.empty()) say(stdout, "\nmeaning\n  %s\n", c.meaning.c_str());
 
   // In the order of the certificate.
   std::vector<std::pair<std::string, Count>> table;
@@ -61,7 +55,7 @@ void text(const Certificate& c, const Verification& v) {
   double weakest = -INFINITY;
   std::size_t longest = 0;
   for (std::size_t k = 0; k < c.claims.size(); ++k) {
-    const std::string what = plain(describe(c.claims[k]));
+    const std::string what = shown(describe(c.claims[k]));
     const auto [it, is_new] = row.emplace(what, table.size());
     if (is_new) table.push_back({what, {}});
     Count& count = table[it->second].second;
@@ -72,20 +66,20 @@ void text(const Certificate& c, const Verification& v) {
     ++count.confirmed;
     if (!f.proved) weakest = std::max(weakest, f.log2_chance);
   }
-  std::printf("\nclaims\n");
+  say(stdout, "\nclaims\n");
   for (const auto& [what, count] : table)
-    std::printf("  %-*s  %d of %d confirmed\n", static_cast<int>(longest), what.c_str(), count.confirmed, count.all);
+    say(stdout, "  %-*s  %d of %d confirmed\n", static_cast<int>(longest), what.c_str(), count.confirmed, count.all);
   for (std::size_t k = 0; k < c.claims.size(); ++k) {
     const ClaimFinding& f = v.claims[k];
     if (f.finding == Finding::confirmed) continue;
-    std::printf("%s\n", plain(std::string(name(f.finding)) + ": " + describe(c.claims[k]) + ", component " + c.claims[k].component + ": " + f.detail).c_str());
+    say(stdout, "%s\n", (std::string(name(f.finding)) + ": " + describe(c.claims[k]) + ", component " + c.claims[k].component + ": " + f.detail).c_str());
   }
-  std::printf("\n");
-  if (c.claims.empty()) std::printf("nothing is claimed\n");
-  else if (!v.all_confirmed()) std::printf("NOT verified\n");
-  else if (!std::isfinite(weakest)) std::printf("verified\n");
-  else std::printf("verified; the chance that a false claim passed is below %s for each\n", chance_text(weakest).c_str());
-  if (v.all_confirmed()) std::printf("The forms agree given the same energy, forces and constraints; the model itself is not proved.\n");
+  say(stdout, "\n");
+  if (c.claims.empty()) say(stdout, "nothing is claimed\n");
+  else if (!v.all_confirmed()) say(stdout, "NOT verified\n");
+  else if (!std::isfinite(weakest)) say(stdout, "verified\n");
+  else say(stdout, "verified; the chance that a false claim passed is below %s for each\n", chance_text(weakest).c_str());
+  if (v.all_confirmed()) say(stdout, "The forms agree given the same energy, forces and constraints; the model itself is not proved.\n");
 }
 
 void json(const Certificate& c, const Verification& v) {
@@ -105,7 +99,7 @@ void json(const Certificate& c, const Verification& v) {
     j.close();
   }
   j.close().close();
-  std::printf("%s\n", j.text().c_str());
+  hand_out(j.text() + "\n");
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ class Printer {
         const bool plain = chosen == names_.notation.end();
         const std::string own = "\\mathrm{" + latex_escape(indexed ? indexed->first : base) + "}" + (indexed ? "," + indexed->second : "");
         const std::string name = latex()    ? "\\lambda_{" + (plain ? own : chosen->second.latex) + "}"
-                                 : mathml() ? "<msub><mi>λ</mi>" + (plain ? "<mtext>" + xml_escape(base) + "</mtext>" : chosen->second.mathml) + "</msub>"
+                                 : mathml() ? "<msub><mi>λ</mi>" + (plain ? "<mtext>" + markup_escape(base) + "</mtext>" : chosen->second.mathml) + "</msub>"
                                             : "lambda." + base;
         return {derivative_name(name, n.order, format_)};
       }

@@ -22,18 +22,6 @@ static bool is_greek(const std::string& s) {
   return std::find(kGreekNames.begin(), kGreekNames.end(), s) != kGreekNames.end();
 }
 
-std::string latex_escape(const std::string& name) {
-  std::string escaped;
-  for (char c : name) escaped += c == '_' ? "\\_" : std::string(1, c);
-  return escaped;
-}
-
-std::string xml_escape(const std::string& text) {
-  std::string escaped;
-  for (char c : text) escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return escaped;
-}
-
 std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name) {
   const std::size_t open = name.find('['), close = name.find(']');
   if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
@@ -76,7 +64,7 @@ std::string mathml_name(const std::string& name) {
   }
   const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
   if (greek != kGreekNames.end()) return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
-  if (name.size() == 1) return "<mi>" + xml_escape(name) + "</mi>";
+  if (name.size() == 1) return "<mi>" + markup_escape(name) + "</mi>";
   std::size_t digits = name.size();
   while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
   if (digits == 0) return "<mn>" + name + "</mn>";
@@ -85,7 +73,7 @@ std::string mathml_name(const std::string& name) {
     return "<msub>" + mathml_name(name.substr(0, digits)) + "<mn>" + name.substr(digits) + "</mn></msub>";
   if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
     return "<msub>" + mathml_name(name.substr(0, underscore)) + mathml_name(name.substr(underscore + 1)) + "</msub>";
-  return "<mi mathvariant=\"normal\">" + xml_escape(name) + "</mi>";
+  return "<mi mathvariant=\"normal\">" + markup_escape(name) + "</mi>";
 }
 
 std::string derivative_name(const std::string& name, unsigned order, Format format) {

@@ -4,10 +4,10 @@
 #include <string>
 #include <utility>
 
+#include "base/escape.h"
+
 namespace anholon {
 
-std::string latex_escape(const std::string& name);
-std::string xml_escape(const std::string& text);
 inline std::string row(const std::string& mathml) { return "<mrow>" + mathml + "</mrow>"; }
 // "th[3]" is th with the index 3, "rolling[2].x" rolling.x with the index 2; nothing where there is no bracket.
 std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name);

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "base/escape.h"
 #include "base/utf8.h"
 #include "expr/print.h"
 
@@ -99,20 +100,21 @@ std::string marks(unsigned order, bool letter) {
   return order > 3 ? superscript(order) : letter ? kDots[order] : kPrimes[order];
 }
 
-std::string in_unit(const std::string& unit) { return unit.empty() || unit == "1" ? "" : " (" + unit + ")"; }
+std::string in_unit(const std::string& unit) { return unit.empty() || unit == "1" ? "" : " (" + shown(unit) + ")"; }
 
 }  // namespace
 
-std::string text_label(const std::string& column, const std::string& unit, LabelStyle style) {
+std::string text_label(const std::string& as_written, const std::string& unit, LabelStyle style) {
+  if (style == LabelStyle::latex) return latex_label(as_written, unit);
+  const std::string column = shown(as_written);
   if (style == LabelStyle::plain) return column + in_unit(unit);
-  if (style == LabelStyle::latex) return latex_label(column, unit);
   const Symbol s = symbol(column);
   return s.root + marks(s.order, one_letter(s.root)) + subscript(s.sub) + in_unit(unit);
 }
 
 RichText rich_label(const std::string& column, const std::string& unit, LabelStyle style) {
   if (style != LabelStyle::unicode) return {{text_label(column, unit, style)}};
-  const Symbol s = symbol(column);
+  const Symbol s = symbol(shown(column));
   const bool letter = one_letter(s.root);
   RichText text = {{s.root, letter, false, letter && s.order <= 3 ? s.order : 0}};
   if (s.order > 3 || (s.order > 0 && !letter)) text.push_back({marks(s.order, false)});
@@ -121,27 +123,13 @@ RichText rich_label(const std::string& column, const std::string& unit, LabelSty
   return text;
 }
 
-std::string latex_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '\\': out += "\\textbackslash{}"; break;
-      case '~': out += "\\textasciitilde{}"; break;
-      case '^': out += "\\textasciicircum{}"; break;
-      case '_': case '%': case '&': case '#': case '$': case '{': case '}': out += '\\', out += c; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
-
 std::string latex_label(const std::string& column, const std::string& unit) {
   const Symbol s = symbol(column);
-  if (s.root == column && utf8_length(column) != 1 && !is_identifier(column)) return latex_text(column + in_unit(unit));
+  if (s.root == column && utf8_length(column) != 1 && !is_identifier(column)) return latex_escape(column + in_unit(unit));
   std::string name = s.name;
   // A point makes a subscript, as an underscore does.
   if (const std::size_t point = name.find('.'); point != std::string::npos && name.find('_') > point) name[point] = '_';
-  return "$" + derivative_name(latex_name(name), s.order, Format::latex) + "$" + (in_unit(unit).empty() ? "" : " (" + latex_text(unit) + ")");
+  return "$" + derivative_name(latex_name(name), s.order, Format::latex) + "$" + (in_unit(unit).empty() ? "" : " (" + latex_escape(unit) + ")");
 }
 
 std::size_t shown_width(const std::string& text) {

@@ -24,7 +24,5 @@ std::string latex_label(const std::string& column, const std::string& unit);
 // How wide it is on a terminal: what combines with the letter before has no width.
 std::size_t shown_width(const std::string& text);
 std::string plain_text(const RichText& text);
-// With TeX's own signs escaped.
-std::string latex_text(const std::string& text);
 
 }  // namespace anholon::plot

@@ -1,5 +1,6 @@
 #include <charconv>
 
+#include "base/escape.h"
 #include "plot/drawing.h"
 
 namespace anholon::plot {
@@ -14,17 +15,6 @@ std::string number(double x) {
   while (s.back() == '0') s.pop_back();
   if (s.back() == '.') s.pop_back();
   return s == "-0" ? "0" : s;
-}
-
-std::string escape(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (static_cast<unsigned char>(c) >= 0x20) out += c;
-  }
-  return out;
 }
 
 std::string path(const std::vector<Point>& points) {
@@ -48,7 +38,7 @@ std::string draw_svg(const Figure& figure) {
   const Drawing d = lay_out(figure);
   const std::string w = number(d.width), h = number(d.height);
   std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "pt\" height=\"" + h + "pt\" viewBox=\"0 0 " + w + " " + h + "\" class=\"anholon-plot\">\n";
-  if (!figure.title.empty()) out += "<title>" + escape(figure.title) + "</title>\n";
+  if (!figure.title.empty()) out += "<title>" + markup_escape(figure.title) + "</title>\n";
   out += "<style>\n.anholon-plot{background:var(--paper,#fff)}\n.anholon-plot path{fill:none;stroke-linejoin:round}\n.anholon-plot .grid{stroke:var(--grid,#e4e4e4);stroke-width:.5}\n"
          ".anholon-plot .axis{stroke:var(--ink,#222);stroke-width:.6}\n.anholon-plot .s{stroke-width:1.1}\n.anholon-plot .dashed{stroke-dasharray:4 2}\n"
          ".anholon-plot text{fill:var(--ink,#222);font-family:var(--font,\"STIX Two Text\",\"Liberation Serif\",\"Times New Roman\",serif)}\n";
@@ -62,7 +52,7 @@ std::string draw_svg(const Figure& figure) {
     out += ">";
     bool low = false;
     for (const TextPiece& p : word.text) {
-      const std::string text = escape(plain_text({{p.text, false, false, p.dots}}));
+      const std::string text = markup_escape(plain_text({{p.text, false, false, p.dots}}));
       std::string style = p.italic ? " font-style=\"italic\"" : "";
       if (p.sub) style += " font-size=\"" + number(0.7 * word.size) + "\"";
       if (p.sub != low) style += " dy=\"" + number((p.sub ? 0.25 : -0.25) * word.size) + "\"";

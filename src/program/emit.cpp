@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "base/assert.h"
+#include "base/escape.h"
 #include "program/emit_text.h"
 
 namespace anholon::emit {
@@ -22,29 +23,6 @@ constexpr const char* kReserved[] = {
 
 std::string times_differentiated(int c) {
   return c == 0 ? "" : c == 1 ? ", differentiated once" : ", differentiated " + std::to_string(c) + " times";
-}
-
-// No control characters, no marks that turn the direction of writing, nothing that ends a comment.
-std::string harmless(const std::string& s) {
-  std::string out;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    const unsigned char c = static_cast<unsigned char>(s[i]);
-    if (c == 0xE2 && i + 2 < s.size()) {
-      const unsigned char b = static_cast<unsigned char>(s[i + 1]), a = static_cast<unsigned char>(s[i + 2]);
-      if ((b == 0x80 && (a == 0x8E || a == 0x8F || (a >= 0xA8 && a <= 0xAE))) || (b == 0x81 && a >= 0xA6 && a <= 0xA9)) {
-        i += 2;
-        out += ' ';
-        continue;
-      }
-    }
-    if (c < 0x20 || c == 0x7F) {
-      out += ' ';
-      continue;
-    }
-    if (!out.empty() && ((out.back() == '*' && c == '/') || (out.back() == '/' && c == '*'))) out += ' ';
-    out += s[i];
-  }
-  return out;
 }
 
 }  // namespace
@@ -237,7 +215,7 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
   const Model& model = *s.model;
   std::vector<std::string> out;
   const auto add = [&](const std::string& line) {
-    std::string kept = harmless(line);
+    std::string kept = comment_line(line);
     while (!kept.empty() && kept.back() == ' ') kept.pop_back();
     out.push_back(kept);
   };

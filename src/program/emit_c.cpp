@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/escape.h"
 #include "numeric/number.h"
 #include "program/emit_text.h"
 
@@ -119,7 +120,7 @@ std::string unused(std::initializer_list<std::pair<const char*, bool>> arguments
 
 std::string names_table(const std::string& name, const std::vector<std::string>& list) {
   std::string out = "const char *const " + name + "[] = {\n";
-  for (const std::string& s : list) out += "  \"" + s + "\",\n";
+  for (const std::string& s : list) out += "  \"" + code_string(s) + "\",\n";
   return out + "  0};\n";
 }
 

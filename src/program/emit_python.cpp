@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/escape.h"
 #include "numeric/number.h"
 #include "program/emit_text.h"
 
@@ -51,19 +52,9 @@ def leading(t, state, p=None, start=None@GIVEN):
 
 std::string put(std::string text, const std::string& mark, const std::string& by) { return text.replace(text.find(mark), mark.size(), by); }
 
-// In a text between quotes.
-std::string quoted(const std::string& s) {
-  std::string out;
-  for (char c : s) {
-    if (c == '\\' || c == '"') out += '\\';
-    out += c;
-  }
-  return out;
-}
-
 std::string table(const std::string& name, const std::vector<std::string>& list) {
   std::string out = name + " = (\n";
-  for (const std::string& s : list) out += "    \"" + quoted(s) + "\",\n";
+  for (const std::string& s : list) out += "    \"" + code_string(s) + "\",\n";
   return list.empty() ? name + " = ()\n" : out + ")\n";
 }
 
@@ -109,7 +100,7 @@ std::string emit_python(const System& system, const Structure& structure, const 
   std::string out = "\"\"\"";
   std::vector<std::string> about = head(system, structure, m, options);
   if (!about.empty() && about[0].empty()) about[0] = "A motion";
-  for (const std::string& l : about) out += quoted(l) + "\n";
+  for (const std::string& l : about) out += code_string(l) + "\n";
   out += R"(
 residual, jacobian and hidden also take many states at once: state[:, k] at time t[k].
 With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)

@@ -214,7 +214,7 @@ Derivation derivation(const Mechanics& m, const Formulation& form, const Elimina
 }
 
 std::string as_text(const std::vector<Derivation>& list) {
-  std::string out = list[0].model->title + "\n";
+  std::string out = shown(list[0].model->title) + "\n";
   for (const Derivation& d : list) {
     out += (list.size() > 1 ? "\n" : "") + std::string(d.form->title) + ", " + citation(*d.form) + "\n\n";
     for (const auto& [heading, lines] : d.steps) {
@@ -244,7 +244,7 @@ std::string as_latex(const std::vector<Derivation>& list) {
     out += "\\end{align}\n";
   };
   for (const Derivation& d : list) {
-    out += "% " + d.model->title + ": " + d.form->title + ", " + citation(*d.form) + "\n";
+    out += "% " + shown(d.model->title) + ": " + d.form->title + ", " + citation(*d.form) + "\n";
     for (const auto& [heading, lines] : d.steps) {
       out += "% " + heading + "\n";
       std::vector<std::string> rows;

@@ -2,22 +2,9 @@
 
 namespace anholon {
 
-std::string html_escape(const std::string& text) {
-  std::string out;
-  for (char c : text) switch (c) {
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '&': out += "&amp;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += c;
-    }
-  return out;
-}
+std::string user(const std::string& text) { return "<bdi>" + markup_escape(text) + "</bdi>"; }
 
-std::string user(const std::string& text) { return "<bdi>" + html_escape(text) + "</bdi>"; }
-
-std::string attribute(const char* name, const std::string& value) { return std::string(" ") + name + "=\"" + html_escape(value) + "\""; }
+std::string attribute(const char* name, const std::string& value) { return std::string(" ") + name + "=\"" + markup_escape(value) + "\""; }
 
 std::string math(const std::string& row) { return "<math>" + row + "</math>"; }
 
@@ -30,7 +17,7 @@ static std::string row(const std::vector<std::string>& cells, const char* tag) {
 
 std::string table(const std::string& caption, const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows) {
   if (rows.empty()) return "";
-  std::string out = "<div class=\"wide\" tabindex=\"0\" role=\"region\"" + attribute("aria-label", caption) + "><table><caption>" + html_escape(caption) + "</caption>";
+  std::string out = "<div class=\"wide\" tabindex=\"0\" role=\"region\"" + attribute("aria-label", caption) + "><table><caption>" + markup_escape(caption) + "</caption>";
   if (!head.empty()) out += "<thead>" + row(head, "th") + "</thead>";
   out += "<tbody>\n";
   for (const auto& r : rows) out += row(r, "td");

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "base/escape.h"
+
 namespace anholon {
 
-// "&lt;"
-std::string html_escape(const std::string& text);
 // Text of a model or a run: escaped, and kept apart where it runs the other way.
 std::string user(const std::string& text);
 // " name="value"", escaped.

@@ -66,14 +66,14 @@ class Writer {
 
     std::string out = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n";
-    out += "<meta name=\"generator\" content=\"" + html_escape(p_.version) + "\">\n<title>" + html_escape(title()) + "</title>\n";
+    out += "<meta name=\"generator\" content=\"" + markup_escape(p_.version) + "\">\n<title>" + markup_escape(title()) + "</title>\n";
     out += "<style>\n" + std::string(page_style()) + std::string(viewer_style()) + "</style>\n</head>\n<body>\n";
     out += "<a class=\"skip\" href=\"#motion\">Skip to the motion</a>\n<header class=\"page\">\n<div class=\"tools\"></div>\n";
-    out += "<h1 dir=\"auto\">" + html_escape(title()) + "</h1>\n";
-    if (!model_.source.empty()) out += "<p class=\"source\" dir=\"auto\">" + html_escape(model_.source) + "</p>\n";
-    if (const std::string words = picture_in_words(p_.source.text); !words.empty()) out += "<p class=\"lead\" dir=\"auto\">" + html_escape(words) + "</p>\n";
+    out += "<h1 dir=\"auto\">" + markup_escape(title()) + "</h1>\n";
+    if (!model_.source.empty()) out += "<p class=\"source\" dir=\"auto\">" + markup_escape(model_.source) + "</p>\n";
+    if (const std::string words = picture_in_words(p_.source.text); !words.empty()) out += "<p class=\"lead\" dir=\"auto\">" + markup_escape(words) + "</p>\n";
     out += "</header>\n<nav aria-label=\"Contents\"><ul>" + contents_ + "</ul></nav>\n<main>\n" + sections + "</main>\n";
-    out += "<footer><p>Made by " + html_escape(p_.version) + ". The page needs nothing but itself.</p></footer>\n";
+    out += "<footer><p>Made by " + markup_escape(p_.version) + ". The page needs nothing but itself.</p></footer>\n";
     if (!viewer_script().empty()) out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(p_) + "</script>\n<script>" + std::string(viewer_script()) + "</script>\n";
     return out + "</body>\n</html>\n";
   }
@@ -89,7 +89,7 @@ class Writer {
       const PageCase& c = p_.cases[k];
       const std::string which = " data-case=\"" + std::to_string(k) + "\"";
       out += "<article class=\"case\">\n";
-      if (p_.cases.size() > 1) out += "<h3 dir=\"auto\">" + html_escape(c.name.empty() ? "As the file says" : c.name) + "</h3>\n";
+      if (p_.cases.size() > 1) out += "<h3 dir=\"auto\">" + markup_escape(c.name.empty() ? "As the file says" : c.name) + "</h3>\n";
       out += outcome(reports_[k]);
       if (viewer_script().empty())
         out += "<p class=\"note\">This program was built without the viewer, so the page has no animation; the numbers are below, and <code>anholon plot</code> draws the run.</p>\n" + table_of_rows(c);
@@ -108,7 +108,7 @@ class Writer {
     constexpr std::size_t kMostColumns = 64;
     std::string out = "<div class=\"wide\"><table><thead><tr><th></th><th>first row</th><th>last row</th></tr></thead><tbody>\n";
     for (std::size_t k = 0; k < std::min(t.columns.size(), kMostColumns); ++k)
-      out += "<tr><th scope=\"row\">" + user(t.columns[k]) + "</th><td>" + html_escape(t.text(0, k)) + "</td><td>" + html_escape(t.text(t.rows() - 1, k)) + "</td></tr>\n";
+      out += "<tr><th scope=\"row\">" + user(t.columns[k]) + "</th><td>" + markup_escape(t.text(0, k)) + "</td><td>" + markup_escape(t.text(t.rows() - 1, k)) + "</td></tr>\n";
     return out + "</tbody></table></div>\n";
   }
 
@@ -119,8 +119,8 @@ class Writer {
   }
 
   static std::string warning(const Warning& w) {
-    std::string out = "<p class=\"warning\" role=\"note\" dir=\"auto\">" + html_escape(w.message);
-    if (!w.hint.empty()) out += " <span class=\"hint\">" + html_escape(w.hint) + "</span>";
+    std::string out = "<p class=\"warning\" role=\"note\" dir=\"auto\">" + markup_escape(w.message);
+    if (!w.hint.empty()) out += " <span class=\"hint\">" + markup_escape(w.hint) + "</span>";
     return out + "</p>\n";
   }
 
@@ -152,7 +152,7 @@ class Writer {
     constexpr std::size_t kMost = 40;
     for (std::size_t k = 0; k < std::min(model_.bodies.size(), kMost); ++k) {
       const Body& b = model_.bodies[k];
-      rows.push_back({user(b.name), b.particle ? "particle" : b.shape ? html_escape(b.shape->kind) : "body", wrapping_math(print(put_masses(model_, b.mass), model_.names, Format::mathml)),
+      rows.push_back({user(b.name), b.particle ? "particle" : b.shape ? markup_escape(b.shape->kind) : "body", wrapping_math(print(put_masses(model_, b.mass), model_.names, Format::mathml)),
                       b.expelled_velocity ? "expels or collects matter" : ""});
     }
     return table("Bodies", {"", "kind", "mass", ""}, rows);
@@ -168,7 +168,7 @@ class Writer {
       std::string kind = description(s.classes[r], c.order);
       if (s.classes[r].redundant) kind += "; redundant here";
       const std::string reaction = c.by ? "kept by the input " + model_.controls[*c.by].name : std::string(in_words(x.constraints[r].hypothesis));
-      rows.push_back({user(c.name), "<code>" + user(c.equation) + "</code>", html_escape(kind), html_escape(work(s, x, r, kLongestPower)), html_escape(reaction)});
+      rows.push_back({user(c.name), "<code>" + user(c.equation) + "</code>", markup_escape(kind), markup_escape(work(s, x, r, kLongestPower)), markup_escape(reaction)});
     }
     return table("Constraints", {"", "as written", "kind", "its reaction", "hypothesis"}, rows);
   }
@@ -179,7 +179,7 @@ class Writer {
     constexpr std::size_t kMost = 80;
     for (std::size_t k = 0; k < std::min(values.size(), kMost); ++k) {
       const std::string unit = k < model_.parameter_units.size() ? model_.parameter_units[k] : "";
-      rows.push_back({math(print(model_.graph->parameter(static_cast<std::uint32_t>(k)), model_.names, Format::mathml)), html_escape(number_text(values[k])), user(unit), user(model_.parameters[k].doc)});
+      rows.push_back({math(print(model_.graph->parameter(static_cast<std::uint32_t>(k)), model_.names, Format::mathml)), markup_escape(number_text(values[k])), user(unit), user(model_.parameters[k].doc)});
     }
     return table("Parameters", {"", "value", "unit", ""}, rows);
   }
@@ -189,8 +189,8 @@ class Writer {
     std::vector<std::vector<std::string>> rows;
     constexpr std::size_t kMost = 60;
     for (std::size_t a = 0; a < std::min(x.q.size(), kMost); ++a)
-      rows.push_back({name_math(model_.coordinates[a].name), html_escape(number_text(x.q[a])), name(x.q_origin[a]), name_math(model_.coordinates[a].name, 1), html_escape(number_text(x.qd[a])), name(x.qd_origin[a])});
-    for (const StateEntry& e : higher_state(*c.scenario)) rows.push_back({user(e.name), html_escape(number_text(e.value)), name(e.origin), "", "", ""});
+      rows.push_back({name_math(model_.coordinates[a].name), markup_escape(number_text(x.q[a])), name(x.q_origin[a]), name_math(model_.coordinates[a].name, 1), markup_escape(number_text(x.qd[a])), name(x.qd_origin[a])});
+    for (const StateEntry& e : higher_state(*c.scenario)) rows.push_back({user(e.name), markup_escape(number_text(e.value)), name(e.origin), "", "", ""});
     return table("Initial data at t = " + number_text(x.t) + (c.name.empty() ? "" : ", " + c.name), {"", "position", "", "", "velocity", ""}, rows);
   }
 
@@ -220,7 +220,7 @@ class Writer {
     for (std::size_t k = 0; k < list.size(); ++k)
       out += zero ? equation(user(list[k].name), wrapping_math(a.mathml[k]), math("<mn>0</mn>"), a.latex[k] + " = 0", a.text[k] + " = 0")
              : list[k].left ? equation(user(list[k].name), wrapping_math(a.mathml[k]), wrapping_math(b.mathml[k]), a.latex[k] + " = " + b.latex[k], a.text[k] + " = " + b.text[k])
-                            : equation(user(list[k].name), math("<mtext>" + xml_escape(list[k].name) + "</mtext>"), wrapping_math(b.mathml[k]), b.latex[k], list[k].name + " = " + b.text[k]);
+                            : equation(user(list[k].name), math("<mtext>" + markup_escape(list[k].name) + "</mtext>"), wrapping_math(b.mathml[k]), b.latex[k], list[k].name + " = " + b.text[k]);
     return out;
   }
 
@@ -228,7 +228,7 @@ class Writer {
     constexpr std::size_t kMost = 200;
     if (d.parts.empty()) return "";
     if (d.parts.size() > kMost)
-      return "<p class=\"note\">The names stand for " + std::to_string(d.parts.size()) + " parts: <code>anholon derive " + html_escape(p_.source.name) + " --form " + d.form->name + " --expand parts</code> prints them.</p>\n";
+      return "<p class=\"note\">The names stand for " + std::to_string(d.parts.size()) + " parts: <code>anholon derive " + markup_escape(p_.source.name) + " --form " + d.form->name + " --expand parts</code> prints them.</p>\n";
     const std::vector<std::string> mathml = print_contents(d.parts, d.names, Format::mathml), latex = print_contents(d.parts, d.names, Format::latex),
                                    text = print_contents(d.parts, d.names, Format::text);
     std::string out = "<details><summary>" + std::to_string(d.parts.size()) + " parts, each with a name</summary>\n";
@@ -255,7 +255,7 @@ class Writer {
     std::string out;
     for (std::size_t k = 0; k < p_.equations.size(); ++k) {
       const Derivation& d = p_.equations[k];
-      out += "<article class=\"form\"><h3>" + html_escape(d.form->title) + "</h3><p class=\"source\">" + html_escape(citation(*d.form)) + "</p>\n";
+      out += "<article class=\"form\"><h3>" + markup_escape(d.form->title) + "</h3><p class=\"source\">" + markup_escape(citation(*d.form)) + "</p>\n";
       if (k < p_.eliminations.size() && !p_.eliminations[k].empty()) out += "<p>" + user(p_.eliminations[k]) + "</p>\n";
       out += lines(d, d.equations, false);
       if (!d.constraints.empty()) out += "<h4>with the constraints</h4>\n" + lines(d, d.constraints, true);
@@ -305,10 +305,10 @@ class Writer {
     const Proof& proof = *p_.proof;
     std::string out = "<p>Every form against every other, by exact algebra: <b class=\"eq\">=</b> proved equal, <b class=\"ne\">≠</b> shown different at a point, <b>?</b> not decided.</p>\n";
     out += "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Proof matrix\"><table class=\"matrix\"><caption>Proof matrix</caption><thead><tr><th></th><th></th>";
-    for (std::size_t k = 0; k < proof.forms.size(); ++k) out += "<th scope=\"col\" title=\"" + html_escape(proof.forms[k].form->title) + "\">" + std::to_string(k + 1) + "</th>";
+    for (std::size_t k = 0; k < proof.forms.size(); ++k) out += "<th scope=\"col\" title=\"" + markup_escape(proof.forms[k].form->title) + "\">" + std::to_string(k + 1) + "</th>";
     out += "</tr></thead><tbody>\n";
     for (std::size_t i = 0; i < proof.forms.size(); ++i) {
-      out += "<tr><th scope=\"row\">" + std::to_string(i + 1) + "</th><th scope=\"row\" class=\"form\">" + html_escape(proof.forms[i].form->title) + "</th>";
+      out += "<tr><th scope=\"row\">" + std::to_string(i + 1) + "</th><th scope=\"row\" class=\"form\">" + markup_escape(proof.forms[i].form->title) + "</th>";
       for (std::size_t j = 0; j < proof.forms.size(); ++j) {
         const Verdict v = i == j ? Verdict::proved : proof.between(i, j);
         out += i == j ? "<td class=\"self\">·</td>" : v == Verdict::proved ? "<td class=\"eq\">=</td>" : v == Verdict::refuted ? "<td class=\"ne\">≠</td>" : "<td>?</td>";
@@ -319,7 +319,7 @@ class Writer {
     for (const FormProof& f : proof.forms)
       for (const Difference& d : f.differences) {
         if (d.verdict == Verdict::proved) continue;
-        out += "<p>" + html_escape(f.form->title) + (d.verdict == Verdict::refuted ? " differ" : " may differ") + " from Routh's equations in the equation of " + user(d.component) + ": " + user(d.detail) + ".</p>\n";
+        out += "<p>" + markup_escape(f.form->title) + (d.verdict == Verdict::refuted ? " differ" : " may differ") + " from Routh's equations in the equation of " + user(d.component) + ": " + user(d.detail) + ".</p>\n";
         break;
       }
     if (!p_.meaning.empty()) out += "<p>" + user(p_.meaning) + "</p>\n";
@@ -342,8 +342,8 @@ class Writer {
       out += "<a" + attribute("download", name) + " href=\"data:application/json;base64," + to_base64(p_.certificate) + "\">save " + user(name) + "</a> (" +
              std::to_string((p_.certificate.size() + 999) / 1000) + " kB), ";
     else
-      out += "<code>anholon prove " + html_escape(p_.source.name) + " -o " + html_escape(name) + "</code>, ";
-    return out + "<code>anholon verify " + html_escape(name) + "</code>.</p>\n";
+      out += "<code>anholon prove " + markup_escape(p_.source.name) + " -o " + markup_escape(name) + "</code>, ";
+    return out + "<code>anholon verify " + markup_escape(name) + "</code>.</p>\n";
   }
 
   // ---- report -----------------------------------------------------------------------------------
@@ -357,8 +357,8 @@ class Writer {
       const RunReport& r = reports_[k];
       const std::string& name = p_.cases[k].name;
       head.push_back(name.empty() ? (reports_.size() > 1 ? "as the file says" : "") : user(name));
-      const std::vector<std::string> shown = {html_escape(r.newton), html_escape(r.projected), html_escape(r.constraints), html_escape(r.before_projection), html_escape(r.power), user(r.digits),
-                                              html_escape(r.smallest_sigma + " at t = " + r.smallest_sigma_t), html_escape(r.steps + ", " + r.order)};
+      const std::vector<std::string> shown = {markup_escape(r.newton), markup_escape(r.projected), markup_escape(r.constraints), markup_escape(r.before_projection), markup_escape(r.power), user(r.digits),
+                                              markup_escape(r.smallest_sigma + " at t = " + r.smallest_sigma_t), markup_escape(r.steps + ", " + r.order)};
       for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(shown[i]);
     }
     out += table("Residual report", reports_.size() > 1 ? head : std::vector<std::string>{}, rows);
@@ -369,13 +369,13 @@ class Writer {
   static std::string watched(const RunReport& r, const std::string& of) {
     constexpr std::size_t kMostEvents = 50;
     std::vector<std::vector<std::string>> rows;
-    for (const RunReport::Watched& w : r.watched) rows.push_back({user(w.name), html_escape(w.first), html_escape(w.last), html_escape(w.least), html_escape(w.greatest), html_escape(w.change)});
+    for (const RunReport::Watched& w : r.watched) rows.push_back({user(w.name), markup_escape(w.first), markup_escape(w.last), markup_escape(w.least), markup_escape(w.greatest), markup_escape(w.change)});
     std::string out = table("Integrals of the motion and what was watched" + of, {"", "first", "last", "least", "greatest", "largest change, relative"}, rows);
     std::vector<std::vector<std::string>> events;
     for (std::size_t k = 0; k < std::min(r.events.size(), kMostEvents); ++k) {
       std::string set;
-      for (const auto& c : r.events[k].changes) set += (set.empty() ? "" : ", ") + user(c.name) + " " + html_escape(c.before + " → " + c.after);
-      events.push_back({user(r.events[k].name), html_escape(r.events[k].t), set});
+      for (const auto& c : r.events[k].changes) set += (set.empty() ? "" : ", ") + user(c.name) + " " + markup_escape(c.before + " → " + c.after);
+      events.push_back({user(r.events[k].name), markup_escape(r.events[k].t), set});
     }
     out += table("Events" + of, {"", "t", "what was set"}, events);
     for (const Warning& w : r.warnings) out += warning(w);
@@ -385,12 +385,12 @@ class Writer {
   // ---- the rest ---------------------------------------------------------------------------------
 
   std::string again() const {
-    std::string out = "<pre class=\"command\"><code>" + html_escape(p_.command) + "</code></pre>\n<p>" + html_escape(p_.version) + "; SHA-256 of the model <code class=\"hash\">" + html_escape(p_.model_hash) +
+    std::string out = "<pre class=\"command\"><code>" + markup_escape(p_.command) + "</code></pre>\n<p>" + markup_escape(p_.version) + "; SHA-256 of the model <code class=\"hash\">" + markup_escape(p_.model_hash) +
                       "</code>.</p>\n";
     for (const PageCase& c : p_.cases)
-      if (!c.run.command.empty() && c.run.command != p_.command) out += "<p>The run: <code>" + html_escape(c.run.command) + "</code></p>\n";
+      if (!c.run.command.empty() && c.run.command != p_.command) out += "<p>The run: <code>" + markup_escape(c.run.command) + "</code></p>\n";
     const auto file = [&](const SourceText& s) {
-      out += "<details><summary>The model file " + user(s.name) + "</summary><pre dir=\"ltr\"><code>" + html_escape(s.text) + "</code></pre></details>\n";
+      out += "<details><summary>The model file " + user(s.name) + "</summary><pre dir=\"ltr\"><code>" + markup_lines(s.text) + "</code></pre></details>\n";
     };
     file(p_.source);
     for (const SourceText& s : p_.source.others) file(s);
@@ -412,7 +412,7 @@ class Writer {
 
   std::string literature_list() const {
     std::string out = "<ol class=\"literature\">";
-    for (const std::string& e : literature_.entries()) out += "<li dir=\"auto\">" + html_escape(e) + "</li>\n";
+    for (const std::string& e : literature_.entries()) out += "<li dir=\"auto\">" + markup_escape(e) + "</li>\n";
     return out + "</ol>\n";
   }
 

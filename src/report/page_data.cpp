@@ -98,7 +98,7 @@ std::string page_data(const Page& page) {
 }
 
 std::string stage_html(const Page& page, bool dark, const std::string& script) {
-  std::string out = "<!doctype html>\n<html lang=\"en\" data-theme=\"" + std::string(dark ? "dark" : "light") + "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + html_escape(page_title(page)) + "</title>\n";
+  std::string out = "<!doctype html>\n<html lang=\"en\" data-theme=\"" + std::string(dark ? "dark" : "light") + "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + markup_escape(page_title(page)) + "</title>\n";
   out += "<style>\n" + std::string(page_style()) + std::string(viewer_style()) + "</style>\n</head>\n<body>\n<div class=\"player\" data-case=\"0\"></div>\n";
   out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(page) + "</script>\n<script>" + std::string(viewer_script()) + "</script>\n<script>\n" + script + "</script>\n";
   return out + "</body>\n</html>\n";

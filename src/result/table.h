@@ -35,7 +35,4 @@ std::string json_number(std::string_view written);
 
 // The names in the first row of a CSV file. A comma in brackets or quotes belongs to a name: P[1,2], D(x,4).
 std::vector<std::string> split_csv(std::string_view line);
-// A name as it stands there, in quotes where it needs them.
-std::string csv_name(const std::string& name);
-
 }  // namespace anholon

@@ -1,7 +1,7 @@
 #include "run/saved.h"
 
+#include "base/escape.h"
 #include "base/hash.h"
-#include "base/json.h"
 #include "spec/toml.h"
 
 namespace anholon {
@@ -29,7 +29,7 @@ std::string print(const SavedRun& run) {
   std::string text = "# A run of anholon: anholon simulate MODEL --continue THIS_FILE --to T goes on with it.\n";
   for (const auto& [name, texts] : run.entries_) {
     text += name + " = [";
-    for (std::size_t i = 0; i < texts.size(); ++i) text += (i ? ", \"" : "\"") + json_escape(texts[i]) + "\"";
+    for (std::size_t i = 0; i < texts.size(); ++i) text += (i ? ", \"" : "\"") + toml_escape(texts[i]) + "\"";
     text += "]\n";
   }
   return text + kHash + sha256_text(text) + "\"]\n";

@@ -78,7 +78,7 @@ TEST(MathLines, NothingOfAnEquationIsLostOnAnyShippedModel) {
 }
 
 TEST(Page, TextIsNeverMarkup) {
-  EXPECT_EQ(html_escape("</script><b a='1' b=\"2\">&"), "&lt;/script&gt;&lt;b a=&#39;1&#39; b=&quot;2&quot;&gt;&amp;");
+  EXPECT_EQ(markup_escape("</script><b a='1' b=\"2\">&"), "&lt;/script&gt;&lt;b a=&#39;1&#39; b=&quot;2&quot;&gt;&amp;");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostic.h"
+#include "base/escape.h"
 #include "result/run_file.h"
 
 namespace anholon {
@@ -49,9 +50,9 @@ TEST(RunTable, HoldsNoTextsWhereTheNumbersSayItAll) {
 
 TEST(Csv, CommasInBracketsAndQuotesBelongToNames) {
   EXPECT_EQ(split_csv("t,P[1,2],D(x,4),\"a,\"\"b\",y'"), (std::vector<std::string>{"t", "P[1,2]", "D(x,4)", "a,\"b", "y'"}));
-  EXPECT_EQ(csv_name("D(x,4)"), "\"D(x,4)\"");
-  EXPECT_EQ(split_csv(csv_name("a,\"b")), std::vector<std::string>{"a,\"b"});
-  EXPECT_EQ(csv_name("x'"), "x'");
+  EXPECT_EQ(csv_cell("D(x,4)"), "\"D(x,4)\"");
+  EXPECT_EQ(split_csv(csv_cell("a,\"b")), std::vector<std::string>{"a,\"b"});
+  EXPECT_EQ(csv_cell("x'"), "x'");
 }
 
 TEST(Csv, ForeignFilesAreRead) {
