@@ -1,4 +1,5 @@
 #include "cli/result_file.h"
+#include "cli/say.h"
 
 #include <cstdio>
 
@@ -8,7 +9,7 @@ RunFile read_result(const std::string& path) {
   SourceText source{path == "-" ? "<standard input>" : path, {}};
   try {
     RunFile run = read_run(path, &source);
-    for (const std::string& note : run.notes) std::fprintf(stderr, "note: %s: %s\n", source.name.c_str(), note.c_str());
+    for (const std::string& note : run.notes) say(stderr, "note: %s: %s\n", source.name.c_str(), note.c_str());
     return run;
   } catch (const Failure& e) {
     throw UsageError{print(e.diagnostic, source)};

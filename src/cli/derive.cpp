@@ -4,6 +4,7 @@
 
 #include "report/equations.h"
 #include "cli/input.h"
+#include "cli/say.h"
 #include "cli/show.h"
 #include "program/emit.h"
 #include "run/inputs.h"
@@ -56,7 +57,7 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   try {
     OpenSystem open = open_inputs(s);
     options.inputs = std::move(open.inputs);
-    std::fputs((o.format == "c" ? emit_c : emit_python)(open.system, s.structure, options).c_str(), stdout);
+    hand_out((o.format == "c" ? emit_c : emit_python)(open.system, s.structure, options));
   } catch (const Failure& failure) {
     print_diagnostic(failure.diagnostic, in.source);
     return kBadInput;
@@ -97,7 +98,7 @@ int derive(const Options& o) {
     list.push_back(derivation(m, *f, eliminations.at(f->unknowns), arranger, o.steps));
   }
   const std::string text = o.json || o.format == "json" ? as_json(list, all) : o.format == "latex" ? as_latex(list) : o.format == "mathml" ? as_mathml(list) : as_text(list);
-  std::fputs(text.c_str(), stdout);
+  hand_out(text);
   return kOk;
 }
 

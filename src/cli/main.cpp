@@ -10,6 +10,7 @@
 
 #include "base/diagnostic.h"
 #include "cli/input.h"
+#include "cli/say.h"
 #include "run/code_for_long_runs.h"
 
 using namespace anholon;
@@ -58,7 +59,7 @@ std::string command_line(int argc, char** argv) {
 int finish(int code) {
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (written || code != kOk) return code;  // what went wrong before was said already
-  std::fprintf(stderr, "error: cannot write the output: %s\n", std::strerror(errno));
+  say(stderr, "error: cannot write the output: %s\n", std::strerror(errno));
   return kBadInput;
 }
 
@@ -304,14 +305,14 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
     const bool known = argc > 1 && argv[1][0] != '-';
-    std::fprintf(stderr, "error: %s\nhint: anholon %s%s--help\n", e.what(), known ? argv[1] : "", known ? " " : "");
+    say(stderr, "error: %s\nhint: anholon %s%s--help\n", e.what(), known ? argv[1] : "", known ? " " : "");
     return kBadInput;
   }
   rescue_model(o);
   const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models") || verify_command->parsed() || new_command->parsed() ||
                              format_command->parsed() || reference_command->parsed());
   if (needs_model && o.model.empty()) {
-    std::fputs("error: no model is named\nhint: a path to a .toml file, or a name that `anholon models` lists\n", stderr);
+    say_lines(stderr, "error: no model is named\nhint: a path to a .toml file, or a name that `anholon models` lists\n");
     return kBadInput;
   }
   return command(o);
@@ -329,18 +330,18 @@ int main(int argc, char** argv) {
     std::_Exit(status);
   } catch (const UsageError& e) {
     std::fflush(stdout);
-    std::fputs(e.text.c_str(), stderr);
+    say_lines(stderr, e.text);
     return kBadInput;
   } catch (const Failure& e) {
     // Not met in one element of the file, but in the equations made of all of them.
     std::fflush(stdout);
-    std::fprintf(stderr, "error: %s%s%s\n", e.what(), e.diagnostic.hint.empty() ? "" : "\nhint: ", e.diagnostic.hint.c_str());
+    say(stderr, "error: %s%s%s\n", e.what(), e.diagnostic.hint.empty() ? "" : "\nhint: ", e.diagnostic.hint.c_str());
     return kBadInput;
   } catch (const std::bad_alloc&) {
-    std::fputs("stopped (too_large): out of memory\nhint: the model is too large for this machine\n", stderr);
+    say_lines(stderr, "stopped (too_large): out of memory\nhint: the model is too large for this machine\n");
     return kStopped;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "internal fault: %s\nplease report this with the model\n", e.what());
+    say(stderr, "internal fault: %s\nplease report this with the model\n", e.what());
     return kFault;
   }
 }

@@ -1,8 +1,8 @@
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <filesystem>
 
 #include "cli/input.h"
+#include "cli/say.h"
+#include "result/file.h"
 
 namespace anholon::cli {
 
@@ -10,7 +10,7 @@ int new_model(const Options& o) {
   const std::vector<ShippedModel> list = templates();
   if (o.model.empty()) {
     if (!o.output.empty()) throw UsageError{"error: which template is to be written to '" + o.output + "'?\nhint: `anholon new` lists them\n"};
-    for (const ShippedModel& t : list) std::printf("%-12s %s\n", t.name.c_str(), t.title.c_str());
+    for (const ShippedModel& t : list) say(stdout, "%-12s %s\n", t.name.c_str(), t.title.c_str());
     return kOk;
   }
   std::vector<std::string> known;
@@ -24,15 +24,16 @@ int new_model(const Options& o) {
     throw UsageError{"error: there is no template '" + o.model + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: `anholon new` lists them\n"};
   }
   if (o.output.empty()) {
-    std::fputs(text.c_str(), stdout);
+    hand_out(text);
     return kOk;
   }
-  // "x": a file that is there stays as it is.
-  std::FILE* file = std::fopen(o.output.c_str(), "wx");
-  if (!file && errno == EEXIST) throw UsageError{"error: there is a file '" + o.output + "' already\nhint: give another name after -o, or remove it\n"};
-  const bool good = file && std::fputs(text.c_str(), file) >= 0;
-  if (!file || std::fclose(file) != 0 || !good) throw UsageError{"error: cannot write '" + o.output + "': " + std::strerror(errno) + "\n"};
-  std::fprintf(stderr, "wrote %s\nnext: anholon check %s\n", o.output.c_str(), o.output.c_str());
+  // A file that is there stays as it is.
+  std::error_code none;
+  const auto kind = std::filesystem::symlink_status(o.output, none).type();
+  if (kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::symlink || kind == std::filesystem::file_type::directory)
+    throw UsageError{"error: there is a file '" + o.output + "' already\nhint: give another name after -o, or remove it\n"};
+  if (const std::string why = write_whole(o.output, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
+  say(stderr, "wrote %s\nnext: anholon check %s\n", o.output.c_str(), o.output.c_str());
   return kOk;
 }
 

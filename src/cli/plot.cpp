@@ -11,6 +11,7 @@
 
 #include "base/json.h"
 #include "cli/result_file.h"
+#include "cli/say.h"
 #include "plot/drawing.h"
 #include "plot/terminal.h"
 #include "result/file.h"
@@ -184,9 +185,9 @@ int plot(const Options& o) {
   } else if (!o.json) {
     TerminalSize size = terminal_size(figure.panels.size());
     if (given.rows > 0) size.columns = given.columns, size.rows = given.rows;
-    std::fputs(draw_terminal(figure, size).c_str(), stdout);
+    hand_out(draw_terminal(figure, size));
   }
-  if (o.json) std::fputs(ranges(figure).c_str(), stdout);
+  if (o.json) hand_out(ranges(figure));
   return kOk;
 }
 

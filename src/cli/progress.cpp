@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdio>
 #include <string>
+
+#include "cli/say.h"
 
 namespace anholon::cli {
 
@@ -14,9 +15,12 @@ extern "C" {
 static void request_stop(int) { stop_flag = 1; }
 }
 
-void catch_stop() {
+void catch_stop(const std::string& output) {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
+  // What nohup has set stays.
+  if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  if (!output.empty() && output != "-") std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool stop_requested() { return stop_flag != 0; }
@@ -37,12 +41,13 @@ void Progress::operator()(double fraction, double place, std::size_t count) {
   any_ = terminal_;
   const int bar = static_cast<int>(done * 30);
   const std::string filled(static_cast<std::size_t>(bar), '#'), empty(static_cast<std::size_t>(30 - bar), '.');
-  std::fprintf(stderr, "%s[%s%s] %3.0f %%  %s = %.6g  %.3g %s/s  %.0f s left%s", terminal_ ? "\r" : "", filled.c_str(), empty.c_str(),
-               100 * done, where_, place, static_cast<double>(count) / elapsed, unit_, left, terminal_ ? "\033[K" : "\n");
+  if (terminal_) say(stderr, "\r");
+  say(stderr, "[%s%s] %3.0f %%  %s = %.6g  %.3g %s/s  %.0f s left", filled.c_str(), empty.c_str(), 100 * done, where_, place, static_cast<double>(count) / elapsed, unit_, left);
+  say(stderr, terminal_ ? "\033[K" : "\n");
 }
 
 Progress::~Progress() {
-  if (any_) std::fputs("\r\033[K", stderr);
+  if (any_) say(stderr, "\r\033[K");
 }
 
 }  // namespace anholon::cli

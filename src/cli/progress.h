@@ -2,11 +2,13 @@
 #pragma once
 #include <chrono>
 #include <cstddef>
+#include <string>
 
 namespace anholon::cli {
 
-// From here on Ctrl-C (SIGINT, SIGTERM) is a request, which any thread may ask about.
-void catch_stop();
+// From here on Ctrl-C, a request of the system to end and a terminal that goes away are requests, which any thread may ask about.
+// Where the rows go to a file, nobody who leaves the other outputs ends the run.
+void catch_stop(const std::string& output);
 bool stop_requested();
 
 // Progress on stderr: a bar on a terminal, a plain line each ten per cent elsewhere.

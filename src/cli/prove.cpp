@@ -2,14 +2,14 @@
 
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 
 #include "base/hash.h"
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/say.h"
+#include "result/file.h"
 
 namespace anholon::cli {
 
@@ -36,14 +36,14 @@ void print_matrix(const Proof& p) {
   std::size_t width = 0;
   for (const FormProof& f : p.forms) width = std::max(width, std::strlen(f.form->name));
   for (std::size_t i = 0; i < p.forms.size(); ++i) {
-    std::printf("%3zu  %-*s ", i + 1, static_cast<int>(width), p.forms[i].form->name);
+    say(stdout, "%3zu  %-*s ", i + 1, static_cast<int>(width), p.forms[i].form->name);
     for (std::size_t j = 0; j < p.forms.size(); ++j) {
       const Verdict v = i == j ? Verdict::proved : p.between(i, j);
-      std::printf(" %s", i == j ? "." : v == Verdict::proved ? "=" : v == Verdict::refuted ? "X" : "?");
+      say(stdout, " %s", i == j ? "." : v == Verdict::proved ? "=" : v == Verdict::refuted ? "X" : "?");
     }
-    std::printf("  %s\n", p.forms[i].form->equation[0] ? p.forms[i].form->equation : p.forms[i].form->source);
+    say(stdout, "  %s\n", p.forms[i].form->equation[0] ? p.forms[i].form->equation : p.forms[i].form->source);
   }
-  std::printf("\n=  proved equal    X  shown different    ?  unknown\n");
+  say(stdout, "\n=  proved equal    X  shown different    ?  unknown\n");
 }
 
 std::string point_text(const WitnessPoint& w, const SymbolNames& names) {
@@ -58,13 +58,13 @@ void print_differences(const Proof& p, const SymbolNames& names) {
   for (const FormProof& f : p.forms)
     for (const Difference& d : f.differences) {
       if (d.verdict == Verdict::proved) continue;
-      std::printf("%s differs from routh in the equation of %s%s: %s\n", f.form->name, d.component.c_str(),
+      say(stdout, "%s differs from routh in the equation of %s%s: %s\n", f.form->name, d.component.c_str(),
                   d.verdict == Verdict::unknown ? " (perhaps)" : "", d.detail.c_str());
-      if (d.witness) std::printf("  at %s\n", point_text(*d.witness, names).c_str());
+      if (d.witness) say(stdout, "  at %s\n", point_text(*d.witness, names).c_str());
       if (d.verdict == Verdict::refuted) break;  // one point is enough
     }
   for (const Difference& d : p.kernel)
-    if (d.verdict != Verdict::proved) std::printf("not shown: the tangents of the constraints, %s: %s\n", d.component.c_str(), d.detail.c_str());
+    if (d.verdict != Verdict::proved) say(stdout, "not shown: the tangents of the constraints, %s: %s\n", d.component.c_str(), d.detail.c_str());
 }
 
 std::string json(const Model& model, const Proof& p, const Certificate& c, const SymbolNames& names, double seconds) {
@@ -95,11 +95,8 @@ std::string json(const Model& model, const Proof& p, const Certificate& c, const
   return j.text();
 }
 
-void write(const std::string& path, const std::string& text) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  const bool good = file && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  if (!file || (std::fclose(file) != 0) || !good)
-    throw UsageError{"error: cannot write '" + path + "': " + std::strerror(errno) + "\n"};
+void must_be_written(const std::string& why) {
+  if (!why.empty()) throw UsageError{"error: " + why + "\n"};
 }
 
 }  // namespace
@@ -108,6 +105,7 @@ int prove(const Options& o) {
   const auto start = std::chrono::steady_clock::now();
   const Reader in = read(o);
   const Model& model = *in.model;
+  if (!o.output.empty()) must_be_written(obstacle_to_writing(o.output));
   const Mechanics m = mechanics(model);
   const std::vector<const Formulation*> forms = wanted_forms(o, m);
   const std::vector<Eliminations> eliminations = eliminations_of(in, m, state_choice(o, model));
@@ -116,24 +114,24 @@ int prove(const Options& o) {
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   std::size_t done = 0;
   if (terminal)
-    options.progress = [&](const Formulation& f) { std::fprintf(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name); };
+    options.progress = [&](const Formulation& f) { say(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name); };
   const Proof p = anholon::prove(m, forms, eliminations, options);
-  if (terminal) std::fprintf(stderr, "\r\033[K");
+  if (terminal) say(stderr, "\r\033[K");
   const Certificate c = certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, sha256_text(all_text(in.source)));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SymbolNames names = model.names;
   if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.names;
-  if (!o.output.empty()) write(o.output, to_json(c) + "\n");
+  if (!o.output.empty()) must_be_written(write_whole(o.output, to_json(c) + "\n"));
   if (o.json) {
-    std::printf("%s\n", json(model, p, c, names, seconds).c_str());
+    hand_out(json(model, p, c, names, seconds) + "\n");
   } else {
-    std::printf("%s\n\n", model.title.c_str());
+    say(stdout, "%s\n\n", model.title.c_str());
     print_matrix(p);
-    std::printf("\n");
+    say(stdout, "\n");
     print_differences(p, names);
-    for (const std::string& h : c.hypotheses) std::printf("given: %s\n", h.c_str());
-    std::printf("%s\n", c.meaning.c_str());
-    if (!o.output.empty()) std::printf("certificate: %s (anholon verify %s)\n", o.output.c_str(), o.output.c_str());
+    for (const std::string& h : c.hypotheses) say(stdout, "given: %s\n", h.c_str());
+    say(stdout, "%s\n", c.meaning.c_str());
+    if (!o.output.empty()) say(stdout, "certificate: %s (anholon verify %s)\n", o.output.c_str(), o.output.c_str());
   }
   bool unknown = false;
   for (std::size_t a = 0; a < p.forms.size(); ++a)

@@ -15,6 +15,7 @@
 #include "cli/progress.h"
 #include "cli/recording.h"
 #include "cli/report.h"
+#include "cli/say.h"
 #include "numeric/number.h"
 #include "report/assets.h"
 #include "report/page.h"
@@ -214,7 +215,7 @@ void note_others(const Recording& r, const Moments& m) {
     const std::string name = f.path().filename().string();
     if (name.rfind("frame-", 0) == 0 && (name.size() != frame_name(0, m.count).size() || name > frame_name(m.count - 1, m.count))) ++others;
   }
-  if (others) std::fprintf(stderr, "note: %s holds %zu more pictures, of a recording before\n", r.output.c_str(), others);
+  if (others) say(stderr, "note: %s holds %zu more pictures, of a recording before\n", r.output.c_str(), others);
 }
 
 }  // namespace
@@ -224,7 +225,7 @@ int render(const Options& o) {
   if (viewer_script().empty()) refuse("this program was built without the viewer, which draws the pictures", "./dev build, which makes the viewer where there is npm");
   const std::string chromium = browser(), ffmpeg = film_maker(r);
   check_place(r);
-  catch_stop();
+  catch_stop(o.output.empty() ? o.model : o.output);
 
   std::deque<Told> cases(1);
   Told& x = cases[0];
@@ -233,7 +234,7 @@ int render(const Options& o) {
   const std::size_t time = table.find("t");
   if (table.rows() == 0 || stop_requested()) return code == kOk ? kStopped : code;
   if (time == table.columns.size()) refuse("the run has no column t", "");
-  if (!o.frame.empty() && x.in.model->observer.inertial) std::fprintf(stderr, "note: the observer of this model is an inertial one; --frame makes no difference\n");
+  if (!o.frame.empty() && x.in.model->observer.inertial) say(stderr, "note: the observer of this model is an inertial one; --frame makes no difference\n");
   const Moments m = moments(r, table.values[time].front(), table.values[time].back());
 
   Page page;
@@ -262,13 +263,13 @@ int render(const Options& o) {
       JsonWriter j;
       j.open_object().key("output").string(r.output).key("width").integer(r.width).key("height").integer(r.height).key("pictures").integer(static_cast<long long>(m.count));
       j.key("first").number(number_text(m.first)).key("last").number(number_text(m.last)).key("seconds").number(text_of(seconds)).close();
-      std::printf("%s\n", j.text().c_str());
+      hand_out(j.text() + "\n");
     }
     if (!o.quiet) {
-      std::fprintf(stderr, "recorded: %s, %dx%d, %zu picture%s in %.1f s\n", r.output.c_str(), r.width, r.height, m.count, m.count == 1 ? "" : "s", seconds);
+      say(stderr, "recorded: %s, %dx%d, %zu picture%s in %.1f s\n", r.output.c_str(), r.width, r.height, m.count, m.count == 1 ? "" : "s", seconds);
     }
   } catch (const Stopped&) {
-    std::fputs("stopped: nothing more is recorded\n", stderr);
+    say_lines(stderr, "stopped: nothing more is recorded\n");
     return kStopped;
   }
   return code;

@@ -10,6 +10,7 @@
 #include "base/hash.h"
 #include "cli/result_file.h"
 #include "cli/run_info.h"
+#include "cli/say.h"
 #include "proof/verify.h"
 #include "report/page.h"
 #include "result/file.h"
@@ -162,9 +163,9 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     ProofOptions options;
     const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
     std::size_t done = 0;
-    if (terminal) options.progress = [&](const Formulation& f) { std::fprintf(stderr, "\r\033[Kproof: %zu of %zu, %s", ++done, forms.size(), f.name); };
+    if (terminal) options.progress = [&](const Formulation& f) { say(stderr, "\r\033[Kproof: %zu of %zu, %s", ++done, forms.size(), f.name); };
     proof = anholon::prove(own, forms, offered, options);
-    if (terminal) std::fprintf(stderr, "\r\033[K");
+    if (terminal) say(stderr, "\r\033[K");
     const Certificate c = certificate(own, proof, offered.front(), page.version, page.model_hash);
     page.proof = &proof;
     page.hypotheses = c.hypotheses;
@@ -177,7 +178,7 @@ void write_page(const Options& o, std::deque<Told>& cases) {
   }
   const std::string text = html(page);
   if (const std::string why = write_whole(o.report, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
-  if (!o.quiet) std::fprintf(stderr, "page: %s, %.0f kB\n", o.report.c_str(), static_cast<double>(text.size()) / 1000);
+  if (!o.quiet) say(stderr, "page: %s, %.0f kB\n", o.report.c_str(), static_cast<double>(text.size()) / 1000);
 }
 
 int report(const Options& asked) {

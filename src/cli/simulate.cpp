@@ -10,6 +10,7 @@
 #include "cli/report.h"
 #include "cli/run_info.h"
 #include "cli/saved.h"
+#include "cli/say.h"
 #include "cli/show.h"
 #include "cli/simulation_json.h"
 #include "result/file.h"
@@ -54,7 +55,7 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s)
   if (!s.at.empty() && s.at.front() < start && s.at.back() > start)
     throw UsageError{"error: the time " + s.at.front().get_str() + " lies before the start, t = " + start.get_str() + "\n"};
   const Rational end = s.at.empty() ? *s.to : s.at.front() < start ? s.at.front() : s.at.back();
-  if (end < start) std::fprintf(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
+  if (end < start) say(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
   if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
   const bool json = o.output.ends_with(".json") || (o.json && !is_hdf5(o.output));
@@ -77,7 +78,7 @@ void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
   if (s.precision == Precision::multi) return;
   const std::string floor = s.precision == Precision::real ? "2e-16" : s.precision == Precision::long_real ? "1e-19" : "2e-34";
   if (s.tolerance < exact(floor, "")) {
-    std::fprintf(stderr, "note: a tolerance below %s means %s in these numbers\n", floor.c_str(), floor.c_str());
+    say(stderr, "note: a tolerance below %s means %s in these numbers\n", floor.c_str(), floor.c_str());
     s.tolerance = exact(floor, "");
   }
 }
@@ -118,7 +119,7 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   // How many digits of its rows may be trusted, the difference tells, which costs nothing more.
   if (s.estimate == ErrorEstimate::always) refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
   const std::string least = small(kLeastSundialsTolerance);
-  if (s.tolerance.get_d() < kLeastSundialsTolerance) std::fprintf(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
+  if (s.tolerance.get_d() < kLeastSundialsTolerance) say(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
 }
 
 // "blade'" for the first derivative of the constraint that holds worst.
@@ -136,7 +137,7 @@ std::string beside(const SimulationReport& r) { return r.method.steps > 0 ? "the
 
 void second_opinion(const Scenario& s, const SimulationReport& r) {
   const SecondOpinion& o = *r.second;
-  std::fprintf(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from %s by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
+  say(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from %s by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
                name(o.integrator), o.form == s.system.form->name ? "" : " on Routh's equations", o.steps, o.evaluations, o.seconds, beside(r).c_str(),
                small(o.difference).c_str(), o.of.c_str(), number_text(o.t, 6).c_str(), o.of.c_str());
 }
@@ -149,36 +150,36 @@ void events(const SimulationReport& r) {
     std::string list;
     for (const auto& c : e.changes) list += (list.empty() ? ": " : ", ") + c.name + " " + c.before + " -> " + c.after;
     if (e.correction > 0) list += "; made consistent by " + small(e.correction);
-    std::fprintf(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.c_str(), list.c_str(), e.stop ? ": the motion ends here" : "");
+    say(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.c_str(), list.c_str(), e.stop ? ": the motion ends here" : "");
   }
-  if (r.events.size() > kMostLines) std::fprintf(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
+  if (r.events.size() > kMostLines) say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
 }
 
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
-  for (const std::string& n : s.notes) std::fprintf(stderr, "note: %s\n", n.c_str());
+  for (const std::string& n : s.notes) say(stderr, "note: %s\n", n.c_str());
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
-  std::fprintf(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
+  say(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
                small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
                worst_constraint(r).c_str(), small(r.power).c_str());
-  if (r.error) std::fprintf(stderr, "digits to trust%s\n", digits_to_trust(*r.error).c_str());
-  else if (!r.no_error.empty()) std::fprintf(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
+  if (r.error) say(stderr, "digits to trust%s\n", digits_to_trust(*r.error).c_str());
+  else if (!r.no_error.empty()) say(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
   events(r);
   for (const WatchedReport& w : r.conserved)
-    std::fprintf(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(), small(w.largest_change).c_str());
+    say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(), small(w.largest_change).c_str());
   for (const WatchedReport& w : r.monitors)
-    std::fprintf(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(), w.first.c_str(),
+    say(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(), w.first.c_str(),
                  w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;
-    std::fprintf(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, constraints %s, steps join within %s\n",
+    say(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, constraints %s, steps join within %s\n",
                  (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
-  std::fprintf(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", (r.second ? beside(r) + ": " : "").c_str(),
+  say(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", (r.second ? beside(r) + ": " : "").c_str(),
                r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
   print_method(r.method);
   if (r.second) second_opinion(s, r);
-  for (const Warning& w : r.warnings) std::fprintf(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
+  for (const Warning& w : r.warnings) say(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
 }
 
 // Writes the runs that --save asks for; the first failure ends it and is kept.
@@ -305,7 +306,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
       if (hdf5) {
         Hdf5Sink rows(o.output, run_info(o, in, s, options));
         into(rows);
-        if (o.json) std::printf("%s\n", report_json(s, r).c_str());
+        if (o.json) hand_out(report_json(s, r) + "\n");
       } else {
         CsvSink rows(o.output);
         into(rows);
@@ -316,11 +317,11 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   if (!o.quiet && r.rows > 0) report(s, r);
   if (!r.outcome.ok()) {
     print_outcome(r.outcome);
-    if (r.rows > 0 && !o.output.empty()) std::fprintf(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
+    if (r.rows > 0 && !o.output.empty()) say(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
   }
   if (write_error.empty()) write_error = saver.error;
   if (!write_error.empty()) {
-    std::fprintf(stderr, "error: %s\n", write_error.c_str());
+    say(stderr, "error: %s\n", write_error.c_str());
     return kBadInput;
   }
   return r.outcome.ok() ? kOk : kStopped;

@@ -1,8 +1,7 @@
 #include <algorithm>
-#include <cerrno>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <map>
 
@@ -10,9 +9,11 @@
 #include "cli/input.h"
 #include "cli/method.h"
 #include "cli/progress.h"
+#include "cli/say.h"
 #include "cli/show.h"
 #include "cli/simulation_json.h"
 #include "cli/vary.h"
+#include "result/file.h"
 #include "run/ensemble.h"
 
 namespace anholon::cli {
@@ -34,10 +35,14 @@ class Output : public CaseSink {
       if (s.count++ == 0) s.first = r.number, s.outcome = r.outcome;
     }
     write(r);
+    failed_ = !error().empty();
   }
+  // Asked by all threads.
+  bool failed() const { return failed_; }
   const std::map<OutcomeKind, Stopped>& stopped() const { return stopped_; }
   // Empty, or why the file could not be written.
   virtual std::string close(const EnsembleReport& report) = 0;
+  virtual const std::string& error() const = 0;
 
  protected:
   virtual void write(const CaseResult& r) = 0;
@@ -51,6 +56,7 @@ class Output : public CaseSink {
 
  private:
   std::size_t width_;
+  std::atomic<bool> failed_{false};
   std::map<OutcomeKind, Stopped> stopped_;
 };
 
@@ -70,6 +76,7 @@ class Csv final : public Output {
     sink_.columns(header(v, columns));
   }
   std::string close(const EnsembleReport&) override { return sink_.close(); }
+  const std::string& error() const override { return sink_.error(); }
 
  protected:
   void write(const CaseResult& r) override {
@@ -100,34 +107,27 @@ std::string error_json(const CasesError& e) {
 class Json final : public Output {
  public:
   Json(const std::string& path, const Scenario& s, const Variation& v, const std::vector<std::string>& columns)
-      : Output(columns), path_(path) {
-    file_ = path.empty() || path == "-" ? stdout : std::fopen(path.c_str(), "w");
-    if (!file_) throw UsageError{"error: cannot write " + path + ": " + std::strerror(errno) + "\n"};
+      : Output(columns), file_(path) {
+    if (!file_.error().empty()) throw UsageError{"error: " + file_.error() + "\n"};
     std::string names;
     for (const std::string& n : header(v, columns)) names += (names.empty() ? "\"" : ", \"") + json_escape(n) + "\"";
-    std::fprintf(file_, "{\n  \"model\": \"%s\",\n  \"form\": \"%s\",\n  \"columns\": [%s],\n  \"rows\": [",
-                 json_escape(s.model->title).c_str(), s.system.form->name, names.c_str());
+    file_.write("{\n  \"model\": \"" + json_escape(s.model->title) + "\",\n  \"form\": \"" + s.system.form->name + "\",\n  \"columns\": [" + names + "],\n  \"rows\": [");
   }
-  ~Json() override {
-    if (file_ && file_ != stdout) std::fclose(file_);
-  }
-  Json(const Json&) = delete;
-  Json& operator=(const Json&) = delete;
 
   std::string close(const EnsembleReport& report) override {
-    std::fprintf(file_, "%s],\n  \"stopped\": [", any_ ? "\n  " : "");
+    std::string end = std::string(any_ ? "\n  " : "") + "],\n  \"stopped\": [";
     bool first = true;
     for (const auto& [kind, s] : stopped()) {
-      std::fprintf(file_, "%s\n    {\"outcome\": \"%s\", \"cases\": %zu, \"first\": %zu, \"message\": \"%s\", \"hint\": \"%s\"}",
-                   first ? "" : ",", name(kind), s.count, s.first, json_escape(s.outcome.message).c_str(),
-                   json_escape(s.outcome.hint).c_str());
+      end += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) + "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) + ", \"message\": \"" +
+             json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) + "\"}";
       first = false;
     }
-    std::fprintf(file_, "%s],\n  \"error_estimate\": %s,\n  \"cases\": %zu,\n  \"finished\": %zu,\n  \"outcome\": \"%s\"\n}\n", first ? "" : "\n  ", error_json(report.error).c_str(), report.done,
-                 report.finished, name(report.outcome.kind));
-    const bool written = std::fflush(file_) == 0 && std::ferror(file_) == 0;
-    return written ? "" : "cannot write " + (path_.empty() ? "the output" : path_) + ": " + std::strerror(errno);
+    end += std::string(first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) + ",\n  \"cases\": " + std::to_string(report.done) + ",\n  \"finished\": " + std::to_string(report.finished) +
+           ",\n  \"outcome\": \"" + name(report.outcome.kind) + "\"\n}\n";
+    file_.write(end);
+    return file_.close();
   }
+  const std::string& error() const override { return file_.error(); }
 
  protected:
   void write(const CaseResult& r) override {
@@ -136,13 +136,12 @@ class Json final : public Output {
     for (double v : r.values) j.number(number_text(v));
     j.string(name(r.outcome.kind));
     for (double v : numbers(r)) j.number(number_text(v));
-    std::fprintf(file_, "%s\n    %s", any_ ? "," : "", j.close().text().c_str());
+    file_.write((any_ ? ",\n    " : "\n    ") + j.close().text());
     any_ = true;
   }
 
  private:
-  std::string path_;
-  std::FILE* file_ = nullptr;
+  GrowingFile file_;
   bool any_ = false;
 };
 
@@ -153,7 +152,7 @@ Rational tolerance_of(const Options& o, const Model& model) {
                                           : Rational(1, 1000000000000);
   if (t <= 0 || t >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
   if (t >= least) return t;
-  std::fprintf(stderr, "note: a tolerance below 2e-16 means 2e-16 in these numbers\n");
+  say(stderr, "note: a tolerance below 2e-16 means 2e-16 in these numbers\n");
   return least;
 }
 
@@ -178,15 +177,15 @@ Method method_of_cases(const Options& o, const Scenario& s, const EnsembleOption
 void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
-  std::fprintf(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(), r.seconds,
+  say(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(), r.seconds,
                r.threads, r.threads == 1 ? "thread" : "threads");
   std::string cases;
   for (std::size_t k : r.error.cases) cases += (cases.empty() ? "" : ", ") + std::to_string(k);
   if (r.error.error)
-    std::fprintf(stderr, "digits to trust%s; %s\n", digits_to_trust(*r.error.error).c_str(),
+    say(stderr, "digits to trust%s; %s\n", digits_to_trust(*r.error.error).c_str(),
                  r.error.cases.size() == 1 ? ("of case " + cases).c_str() : ("of the cases " + cases + " the worst is " + std::to_string(r.error.worst)).c_str());
   else if (!r.error.none.empty())
-    std::fprintf(stderr, "digits to trust: not estimated, %s\n", r.error.none.c_str());
+    say(stderr, "digits to trust: not estimated, %s\n", r.error.none.c_str());
 }
 
 }  // namespace
@@ -230,13 +229,14 @@ int sweep(const Options& asked) {
   if (reset && options.to < Rational(s.state.t))
     throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after the start, t = " +
                      number_text(s.state.t) + "\n"};
-  catch_stop();
-  options.cancelled = stop_requested;
+  catch_stop(o.output);
   const bool json = o.json || o.output.ends_with(".json");
   const std::vector<std::string> columns = ensemble_columns(*in.model);
   std::unique_ptr<Output> out;
   if (json) out = std::make_unique<Json>(o.output, s, variation, columns);
   else out = std::make_unique<Csv>(o.output, variation, columns);
+  // Nobody waits for rows that have no place.
+  options.cancelled = [&] { return stop_requested() || out->failed(); };
   EnsembleReport r;
   {
     Progress progress(o.quiet, "case", "cases");
@@ -248,14 +248,14 @@ int sweep(const Options& asked) {
   const std::string write_error = out->close(r);
   if (!o.quiet) report(r, options, *out);
   for (const auto& [kind, stopped] : out->stopped())
-    std::fprintf(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
+    say(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
                  stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(), stopped.outcome.hint.c_str());
-  if (!r.outcome.ok()) {
+  if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);
-    if (!o.output.empty()) std::fprintf(stderr, "the %zu cases before that are in %s\n", r.done, o.output.c_str());
+    if (!o.output.empty() && write_error.empty()) say(stderr, "the %zu cases before that are in %s\n", r.done, o.output.c_str());
   }
   if (!write_error.empty()) {
-    std::fprintf(stderr, "error: %s\n", write_error.c_str());
+    say(stderr, "error: %s\n", write_error.c_str());
     return kBadInput;
   }
   return r.outcome.ok() && r.finished == r.done ? kOk : kStopped;

@@ -58,8 +58,8 @@ fs::path path_of(const std::string& folder, const Key& key) { return fs::path(fo
 std::unique_ptr<llvm::MemoryBuffer> Store::read(const Key& key) const {
   if (folder_.empty()) return nullptr;
   const fs::path path = path_of(folder_, key);
-  // Whatever lies there: a pipe must not make us wait.
-  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  // Whatever lies there: a pipe must not make us wait, and a link may lead to what others put there.
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
   struct stat about;
   if (file.number < 0 || fstat(file.number, &about) != 0 || !S_ISREG(about.st_mode)) return nullptr;
   // Code that somebody else could have written is not run.

@@ -1,32 +1,174 @@
 #include "result/file.h"
 
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <thread>
+
+#include "base/hash.h"
 
 namespace anholon {
 
+namespace fs = std::filesystem;
+
 static std::string cannot_write(const std::string& path, int why) { return "cannot write " + path + ": " + std::strerror(why); }
 
-static std::string beside(const std::string& path) { return path + ".part"; }
+static std::string part_of(const std::string& path) { return path + ".part"; }
+
+// A link stays one; what it leads to is written.
+std::string target_of_link(const std::string& path) {
+  std::error_code none;
+  if (!fs::is_symlink(path, none)) return path;
+  const fs::path target = fs::canonical(path, none);
+  return none ? path : target.string();
+}
+
+static bool is_other_kind(const std::string& path) {
+  struct stat info {};
+  return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+}
+
+// Why a file of this name cannot be replaced; 0 if it can. Whether the folder lets one in shows when the part is made.
+static int obstacle(const std::string& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return 0;
+  if (S_ISDIR(info.st_mode)) return EISDIR;
+  return ::access(path.c_str(), W_OK) == 0 ? 0 : errno;
+}
+
+// The part, empty, with the mode of what it will replace. A link that lies there is not followed.
+static int open_part(const std::string& target, int flags) {
+  const std::string beside = part_of(target);
+  const int fd = ::open(beside.c_str(), flags | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+  struct stat info {};
+  if (fd >= 0 && ::stat(target.c_str(), &info) == 0 && ::fchmod(fd, info.st_mode & 07777) != 0) errno = 0;
+  return fd;
+}
+
+// A socket in the abstract name space, named by the folder and the name: taken by one process at a time, freed by the kernel.
+WritingClaim::WritingClaim(const std::string& path, double seconds) {
+  if (path.empty()) return;
+  std::error_code none;
+  const fs::path name = target_of_link(path);
+  const fs::path folder = name.has_parent_path() ? name.parent_path() : fs::path(".");
+  struct stat info {};
+  if (::stat(folder.c_str(), &info) != 0) return;  // the part will not be made, which says why
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string key = "anholon-" + sha256_text(std::to_string(info.st_dev) + "/" + std::to_string(info.st_ino) + "/" + name.filename().string());
+  std::memcpy(address.sun_path + 1, key.data(), std::min(key.size(), sizeof address.sun_path - 1));
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + key.size());
+  // Where there are no sockets, nobody claims anything.
+  socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket_ < 0) return;
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), length) != 0 && errno == EADDRINUSE) {
+    if (std::chrono::steady_clock::now() >= until) {
+      error_ = "cannot write " + path + ": another process writes it";
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+WritingClaim::~WritingClaim() {
+  if (socket_ >= 0) ::close(socket_);
+}
+
+GrowingFile::GrowingFile(const std::string& path)
+    : shown_(path.empty() || path == "-" ? "the output" : path), target_(target_of_link(path)), claim_(path.empty() || path == "-" || is_other_kind(path) ? std::string() : path) {
+  if (path.empty() || path == "-") {
+    file_ = stdout;
+    return;
+  }
+  error_ = claim_.error();
+  if (!error_.empty()) return;
+  if (is_other_kind(target_)) {
+    file_ = std::fopen(target_.c_str(), "w");
+    if (!file_) fail(errno);
+    return;
+  }
+  if (const int why = obstacle(target_)) {
+    fail(why);
+    return;
+  }
+  beside_ = part_of(target_);
+  const int fd = open_part(target_, O_WRONLY);
+  if (fd < 0 || !(file_ = ::fdopen(fd, "w"))) fail(errno);
+}
+
+GrowingFile::~GrowingFile() {
+  if (file_ && !begun_) remove();
+  if (file_ && file_ != stdout) std::fclose(file_);
+}
+
+void GrowingFile::fail(int why) {
+  if (error_.empty()) error_ = cannot_write(shown_, why);
+}
+
+void GrowingFile::write(const std::string& text) {
+  begun_ = true;
+  if (file_ && error_.empty() && std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
+}
+
+void GrowingFile::flush() {
+  if (file_ && error_.empty() && std::fflush(file_) != 0) fail(errno);
+}
+
+std::string GrowingFile::close() {
+  if (!file_) return error_;
+  flush();
+  if (error_.empty() && std::ferror(file_)) fail(EIO);
+  // The bytes are on disk before the name is.
+  if (error_.empty() && !beside_.empty() && ::fsync(::fileno(file_)) != 0) fail(errno);
+  if (file_ != stdout && std::fclose(file_) != 0) fail(errno);
+  file_ = nullptr;
+  if (!beside_.empty() && error_.empty() && std::rename(beside_.c_str(), target_.c_str()) != 0) fail(errno);
+  closed_ = error_.empty();
+  return error_;
+}
+
+void GrowingFile::remove() {
+  if (file_ && file_ != stdout) std::fclose(file_), file_ = nullptr;
+  if (!beside_.empty()) std::remove(beside_.c_str());
+}
+
+// Others write for a moment only.
+static constexpr double kPatience = 20;
+
+std::string write_whole_by_name(const std::string& path, const std::function<std::string(const std::string& beside)>& write) {
+  if (is_other_kind(path)) return write(path);
+  const WritingClaim claim(path, kPatience);
+  if (!claim.error().empty()) return claim.error();
+  const std::string target = target_of_link(path), beside = part_of(target);
+  if (const int why = obstacle(target)) return cannot_write(path, why);
+  const int fd = open_part(target, O_WRONLY);
+  if (fd < 0) return cannot_write(path, errno);
+  ::close(fd);
+  std::string why = write(beside);
+  if (why.empty() && std::rename(beside.c_str(), target.c_str()) != 0) why = cannot_write(path, errno);
+  if (!why.empty()) std::remove(beside.c_str());
+  return why;
+}
 
 std::string write_whole(const std::string& path, const std::function<bool(std::FILE*)>& write) {
-  const auto failed = [&] {
+  return write_whole_by_name(path, [&](const std::string& beside) -> std::string {
+    std::FILE* file = std::fopen(beside.c_str(), "w");
+    if (!file) return cannot_write(path, errno);
+    // What is no regular file has no disk to wait for.
+    const bool written = write(file) && std::fflush(file) == 0 && (::fsync(::fileno(file)) == 0 || errno == EINVAL || errno == EROFS);
     const int why = errno;
-    std::remove(beside(path).c_str());
-    return cannot_write(path, why);
-  };
-  std::FILE* file = std::fopen(beside(path).c_str(), "w");
-  if (!file) return failed();
-  const bool written = write(file) && std::fflush(file) == 0 && fsync(fileno(file)) == 0;
-  const int why = errno;
-  if (std::fclose(file) != 0 || !written || std::rename(beside(path).c_str(), path.c_str()) != 0) {
-    if (!written) errno = why;
-    return failed();
-  }
-  return {};
+    if (std::fclose(file) != 0 && written) return cannot_write(path, errno);
+    return written ? std::string() : cannot_write(path, why);
+  });
 }
 
 std::string write_whole(const std::string& path, const std::string& text) {
@@ -34,12 +176,15 @@ std::string write_whole(const std::string& path, const std::string& text) {
 }
 
 std::string obstacle_to_writing(const std::string& path) {
-  std::error_code none;
-  if (std::filesystem::is_directory(path, none)) return cannot_write(path, EISDIR);
-  std::FILE* file = std::fopen(beside(path).c_str(), "w");
-  if (!file) return cannot_write(path, errno);
-  std::fclose(file);
-  std::remove(beside(path).c_str());
+  if (is_other_kind(path)) return ::access(path.c_str(), W_OK) == 0 ? std::string() : cannot_write(path, errno);
+  const WritingClaim claim(path);
+  if (!claim.error().empty()) return claim.error();
+  const std::string target = target_of_link(path);
+  if (const int why = obstacle(target)) return cannot_write(path, why);
+  const int fd = open_part(target, O_WRONLY);
+  if (fd < 0) return cannot_write(path, errno);
+  ::close(fd);
+  std::remove(part_of(target).c_str());
   return {};
 }
 

@@ -1,6 +1,7 @@
 #include "result/hdf5.h"
 
 #include "base/diagnostic.h"
+#include "base/escape.h"
 
 #ifdef ANHOLON_HDF5
 #include <hdf5.h>
@@ -31,6 +32,19 @@ void RowBlock::add(const std::vector<std::string>& row) {
     own.resize(before);
     own.push_back(plain ? std::string() : row[j]);
     text_bytes += sizeof(std::string) + own.back().size();
+  }
+}
+
+void RowBlock::add(const RunTable& table, std::size_t from, std::size_t to) {
+  columns = table.columns.size();
+  const std::size_t before = rows();
+  for (std::size_t k = from; k < to; ++k)
+    for (std::size_t j = 0; j < columns; ++j) numbers.push_back(table.values[j][k]);
+  for (std::size_t j = 0; j < columns; ++j) {
+    if (table.texts[j].size() <= from && texts.count(j) == 0) continue;
+    std::vector<std::string>& own = texts[j];
+    own.resize(before);
+    for (std::size_t k = from; k < to; ++k) own.push_back(k < table.texts[j].size() ? table.texts[j][k] : std::string()), text_bytes += sizeof(std::string) + own.back().size();
   }
 }
 
@@ -107,7 +121,12 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-void quietly() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+// Before anything else of HDF5. What it would do when the program ends crashes where a file could not be written; all our files are closed by then.
+void quietly() {
+  static const herr_t without_exit = H5dont_atexit();
+  static_cast<void>(without_exit);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 Handle text_type() {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -133,22 +152,26 @@ Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
 void put_texts(hid_t file, const std::string& name, const std::vector<std::string>& texts) {
   const Handle type = text_type(), space = space_of(texts.size());
   const Handle set = new_dataset(file, name, type, space);
+  std::vector<std::string> held;
   std::vector<const char*> pointers;
-  for (const std::string& t : texts) pointers.push_back(t.c_str());
+  for (const std::string& t : texts) held.push_back(hdf5_text(t));
+  for (const std::string& t : held) pointers.push_back(t.c_str());
   if (!texts.empty()) checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
 }
 
 void put_text(hid_t file, const std::string& name, const std::string& text) {
   const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle set = new_dataset(file, name, type, space);
-  const char* pointer = text.c_str();
+  const std::string held = hdf5_text(text);
+  const char* pointer = held.c_str();
   checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &pointer));
 }
 
 void put_attribute(hid_t object, const char* name, const std::string& text) {
   const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  const char* pointer = text.c_str();
+  const std::string held = hdf5_text(text);
+  const char* pointer = held.c_str();
   checked(H5Awrite(attribute, type, &pointer));
 }
 

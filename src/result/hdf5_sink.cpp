@@ -15,18 +15,11 @@ namespace anholon {
 static constexpr std::size_t kMostSteps = 5'000'000;
 
 Hdf5Sink::Hdf5Sink(std::string path, RunInfo info, Pace pace)
-    : path_(std::move(path)), beside_(path_ + ".part"), info_(std::move(info)), pace_(pace) {
-  if (!has_hdf5()) {
-    error_ = kNoHdf5;
-    return;
-  }
-  const int fd = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd < 0) {
-    error_ = "cannot write " + path_ + ": " + std::strerror(errno);
-    return;
-  }
-  ::close(fd);
-  std::remove(beside_.c_str());
+    : path_(std::move(path)), target_(target_of_link(path_)), beside_(target_ + ".part"), info_(std::move(info)), pace_(pace) {
+  error_ = has_hdf5() ? obstacle_to_writing(path_) : kNoHdf5;
+  if (!error_.empty()) return;
+  claim_.emplace(path_);
+  error_ = claim_->error();
 }
 
 Hdf5Sink::~Hdf5Sink() {
@@ -34,8 +27,16 @@ Hdf5Sink::~Hdf5Sink() {
   if (last_ >= 0) ::close(last_);
 }
 
+void Hdf5Sink::go_on(const RunFile& before, std::size_t rows, std::size_t steps) {
+  block_.add(before.table, 0, std::min(rows, before.table.rows()));
+  names_before_ = before.table.columns;
+  block_.steps.assign(before.steps.begin(), before.steps.begin() + static_cast<std::ptrdiff_t>(std::min(steps, before.steps.size())));
+  steps_ = block_.steps.size();
+}
+
 void Hdf5Sink::columns(const std::vector<std::string>& names) {
   names_ = names;
+  if (!names_before_.empty() && names_before_ != names) block_.clear(), steps_ = 0;
   begun_ = true;
   checkpoint();
 }
@@ -68,7 +69,7 @@ bool Hdf5Sink::fail(const std::string& why) {
 
 // Room for what will be added is taken before HDF5 sees the file: it does not end well on a full disk.
 bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
-  const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (out < 0) return fail(std::strerror(errno));
   const auto failed = [&] {
     const int why = errno;
@@ -122,7 +123,7 @@ void Hdf5Sink::checkpoint() {
   const int fd = ::open(beside_.c_str(), O_RDWR | O_CLOEXEC);
   struct stat info {};
   // What was taken and not used goes back; the bytes are on disk before the name is.
-  if (fd < 0 || ::fstat(fd, &info) != 0 || ::ftruncate(fd, info.st_size) != 0 || ::fdatasync(fd) != 0 || std::rename(beside_.c_str(), path_.c_str()) != 0) {
+  if (fd < 0 || ::fstat(fd, &info) != 0 || ::ftruncate(fd, info.st_size) != 0 || ::fdatasync(fd) != 0 || std::rename(beside_.c_str(), target_.c_str()) != 0) {
     const int why = errno;
     if (fd >= 0) ::close(fd);
     return static_cast<void>(fail(std::strerror(why)));

@@ -7,7 +7,9 @@
 // memory are 32 MB, and a quarter of what was written, so that all copies together stay within a few times the size of the result.
 #pragma once
 #include <chrono>
+#include <optional>
 
+#include "result/file.h"
 #include "result/hdf5.h"
 #include "result/rows.h"
 
@@ -28,6 +30,8 @@ class Hdf5Sink final : public RowSink {
   Hdf5Sink(const Hdf5Sink&) = delete;
   Hdf5Sink& operator=(const Hdf5Sink&) = delete;
 
+  // Before `columns`: the first rows and steps of a run, which the rows to come follow; left out where that has other columns.
+  void go_on(const RunFile& before, std::size_t rows, std::size_t steps);
   void columns(const std::vector<std::string>& names) override;
   void row(const std::vector<std::string>& values) override;
   void step(double t) override;
@@ -47,11 +51,13 @@ class Hdf5Sink final : public RowSink {
   bool fail(const std::string& why);
   bool copy_last(const std::string& to, std::size_t room);
 
-  std::string path_, beside_, error_;
+  std::string path_, target_, beside_, error_;
+  std::optional<WritingClaim> claim_;
   RunInfo info_;
   Pace pace_;
   std::vector<std::string> names_;
   RowBlock block_;
+  std::vector<std::string> names_before_;
   std::size_t written_ = 0, steps_ = 0, size_ = 0;
   int last_ = -1;  // the last complete file, also where its name was taken away
   bool begun_ = false, closed_ = false;

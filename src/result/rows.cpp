@@ -1,50 +1,46 @@
 #include "result/rows.h"
 
-#include <cerrno>
-#include <cstring>
+#include <unistd.h>
 
-#include "result/table.h"
+#include "base/escape.h"
 
 namespace anholon {
 
-CsvSink::CsvSink(const std::string& path) : path_(path) {
-  file_ = path.empty() || path == "-" ? stdout : std::fopen(path.c_str(), "w");
-  if (!file_) error_ = "cannot write " + path + ": " + std::strerror(errno);
-}
-
-CsvSink::~CsvSink() { close(); }
+CsvSink::~CsvSink() { flush(); }
 
 void CsvSink::columns(const std::vector<std::string>& names) {
   std::vector<std::string> quoted;
-  for (const std::string& n : names) quoted.push_back(csv_name(n));
+  for (const std::string& n : names) quoted.push_back(csv_cell(n));
   row(quoted);
+  flush();
 }
 
 void CsvSink::row(const std::vector<std::string>& values) {
-  if (!file_ || !error_.empty()) return;
-  std::string line;
+  if (!file_.stream() || !error().empty()) return;
+  bool first = true;
   for (const std::string& v : values) {
-    if (!line.empty()) line += ',';
-    line += v;
+    if (!first) waiting_ += ',';
+    waiting_ += v;
+    first = false;
   }
-  line += '\n';
-  if (std::fwrite(line.data(), 1, line.size(), file_) != line.size())
-    error_ = "cannot write " + (path_.empty() ? std::string("the output") : path_) + ": " + std::strerror(errno);
+  waiting_ += '\n';
+  constexpr std::size_t kTogether = 1u << 16;
+  if (waiting_.size() >= kTogether || std::chrono::steady_clock::now() >= next_) flush();
 }
 
 void CsvSink::flush() {
-  if (file_ && std::fflush(file_) != 0 && error_.empty())
-    error_ = "cannot write " + (path_.empty() ? std::string("the output") : path_) + ": " + std::strerror(errno);
+  constexpr auto kPause = std::chrono::milliseconds(500);
+  if (!file_.stream()) return;
+  file_.write(waiting_);
+  file_.flush();
+  waiting_.clear();
+  next_ = std::chrono::steady_clock::now();
+  if (!::isatty(::fileno(file_.stream()))) next_ += kPause;
 }
 
 std::string CsvSink::close() {
-  if (!file_) return error_;
-  const bool failed = std::fflush(file_) != 0;
-  if (failed && error_.empty())
-    error_ = "cannot write " + (path_.empty() ? std::string("the output") : path_) + ": " + std::strerror(errno);
-  if (file_ != stdout) std::fclose(file_);
-  file_ = nullptr;
-  return error_;
+  flush();
+  return file_.close();
 }
 
 }  // namespace anholon

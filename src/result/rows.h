@@ -1,9 +1,11 @@
 // Rows of a result on their way to a file or to the standard output: columns once, then rows of
 // numbers as text. Writing stops at the first failure of the file, which `close` reports.
 #pragma once
-#include <cstdio>
+#include <chrono>
 #include <string>
 #include <vector>
+
+#include "result/file.h"
 
 namespace anholon {
 
@@ -16,11 +18,11 @@ class RowSink {
   virtual void step(double) {}
 };
 
-// CSV with one header row. Flushes at every row when the output is watched by a person.
+// CSV with one header row. Rows go to the file whole: on a terminal one by one, else many together or those of half a second.
 class CsvSink final : public RowSink {
  public:
   // An empty path or "-" is the standard output. Check `error` before use.
-  explicit CsvSink(const std::string& path);
+  explicit CsvSink(const std::string& path) : file_(path) {}
   ~CsvSink() override;
   CsvSink(const CsvSink&) = delete;
   CsvSink& operator=(const CsvSink&) = delete;
@@ -30,11 +32,13 @@ class CsvSink final : public RowSink {
   void flush();
   // Empty, or why the file could not be written.
   std::string close();
-  const std::string& error() const { return error_; }
+  const std::string& error() const { return file_.error(); }
+  std::string part() const { return file_.part(); }
 
  private:
-  std::string path_, error_;
-  std::FILE* file_ = nullptr;
+  GrowingFile file_;
+  std::string waiting_;
+  std::chrono::steady_clock::time_point next_{};
 };
 
 // To two places.

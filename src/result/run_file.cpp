@@ -41,7 +41,7 @@ std::string json_text(const RunFile& run) {
 // Writes line by line; false at the first failure.
 bool write_csv(std::FILE* file, const RunTable& table) {
   std::string line;
-  for (std::size_t j = 0; j < table.columns.size(); ++j) line += (j ? "," : "") + csv_name(table.columns[j]);
+  for (std::size_t j = 0; j < table.columns.size(); ++j) line += (j ? "," : "") + csv_cell(table.columns[j]);
   line += '\n';
   constexpr std::size_t kBuffer = 1u << 16;
   for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -64,10 +64,7 @@ bool write_text(std::FILE* file, RunFormat format, const RunFile& run) {
 }
 
 std::string write_hdf5(const std::string& path, const std::string& beside, const RunFile& run) {
-  const auto failed = [&](const std::string& why) {
-    std::remove(beside.c_str());
-    return "cannot write " + path + ": " + why;
-  };
+  const auto failed = [&](const std::string& why) { return "cannot write " + path + ": " + why; };
   if (const std::string why = create_hdf5(beside, run, run.table.columns); !why.empty()) return failed(why);
   constexpr std::size_t kBlockRows = 100'000;
   RowBlock block;
@@ -76,15 +73,10 @@ std::string write_hdf5(const std::string& path, const std::string& beside, const
   if (!run.report.empty()) block.report = run.report;
   for (std::size_t i = 0; i == 0 || i < run.table.rows(); i += kBlockRows) {
     const std::size_t end = std::min(run.table.rows(), i + kBlockRows);
-    for (std::size_t k = i; k < end; ++k)
-      for (std::size_t j = 0; j < block.columns; ++j) block.numbers.push_back(run.table.values[j][k]);
-    for (std::size_t j = 0; j < block.columns; ++j)
-      if (const auto& texts = run.table.texts[j]; i < texts.size())
-        block.texts[j].assign(texts.begin() + static_cast<std::ptrdiff_t>(i), texts.begin() + static_cast<std::ptrdiff_t>(std::min(end, texts.size())));
+    block.add(run.table, i, end);
     if (const std::string why = extend_hdf5(beside, block); !why.empty()) return failed(why);
     block.clear();
   }
-  if (std::rename(beside.c_str(), path.c_str()) != 0) return failed(std::strerror(errno));
   return {};
 }
 
@@ -126,7 +118,7 @@ RunFile read_run(const std::string& path, SourceText* source) {
 }
 
 std::string write_run(const std::string& path, RunFormat format, const RunFile& run) {
-  if (format == RunFormat::hdf5) return write_hdf5(path, path + ".part", run);
+  if (format == RunFormat::hdf5) return write_whole_by_name(path, [&](const std::string& beside) { return write_hdf5(path, beside, run); });
   if (path.empty() || path == "-") return write_text(stdout, format, run) ? std::string() : "cannot write the output: " + std::string(std::strerror(errno));
   return write_whole(path, [&](std::FILE* file) { return write_text(file, format, run); });
 }

@@ -61,6 +61,7 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
   tbb::enumerable_thread_specific<CaseWorker> workers([&] { return CaseWorker(plan); });
   std::mutex in_order;
   std::size_t next = 0, held = 0;
+  bool cut = false;
   const auto begin = [&](tbb::flow_control& flow) -> Group* {
     joined();
     const std::lock_guard lock(in_order);
@@ -87,8 +88,9 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
     const std::unique_ptr<Group> owned(g);
     const std::lock_guard lock(in_order);
     for (const CaseResult& r : g->take()) {
-      // What Ctrl-C cut short is no result.
-      if (r.outcome.kind == OutcomeKind::interrupted && cancelled()) continue;
+      // What Ctrl-C cut short is no result, and neither is what comes after it: the results are the first ones, without a gap.
+      cut = cut || (r.outcome.kind == OutcomeKind::interrupted && cancelled());
+      if (cut) continue;
       sink.result(r);
       if (std::binary_search(to_compare.begin(), to_compare.end(), r.number)) compared.push_back(r);
       ++report.done;

@@ -139,6 +139,25 @@ TEST_P(Cache, TakesNoCodeThatOthersMayWrite) {
   EXPECT_EQ(fs::status(file).permissions() & fs::perms::others_write, fs::perms::none) << "not made anew";
 }
 
+// A link may lead to what others put there.
+TEST_P(Cache, FollowsNoLink) {
+  const fs::path file = entry(), elsewhere = folder_ + "/elsewhere";
+  fs::rename(file, elsewhere);
+  fs::create_symlink(elsewhere, file);
+  EXPECT_EQ(sleigh().check(folder_), "");
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(file))) << "not made anew";
+}
+
+TEST_P(Cache, TakesNoCodeOfAnotherOwner) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root may give files away";
+  const fs::path file = entry();
+  ASSERT_EQ(chown(file.c_str(), 65534, 65534), 0);
+  EXPECT_EQ(sleigh().check(folder_), "");
+  struct stat about {};
+  ASSERT_EQ(stat(file.c_str(), &about), 0);
+  EXPECT_EQ(about.st_uid, 0U) << "not made anew";
+}
+
 TEST_P(Cache, DoesWithoutAFolder) {
   put(folder_ + "/file", "x");
   for (const std::string& place : {folder_ + "/file", folder_ + "/file/below", std::string("/dev/full"), std::string("/proc/none"), folder_ + "/" + std::string(5000, 'x')})

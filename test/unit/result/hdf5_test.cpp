@@ -150,7 +150,7 @@ TEST_F(Hdf5, CheckpointsComeByTimeAndByBytes) {
   pace = {};
   pace.seconds = 0.01;
   pace.share = 0;
-  Hdf5Sink by_time(path_, info(), pace);
+  Hdf5Sink by_time((folder_ / "other.h5").string(), info(), pace);
   by_time.columns({"t"});
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   by_time.row({"1"});
