@@ -14,6 +14,7 @@ struct Options {
   std::string form = "routh";
   bool form_given = false;
   std::string format = "text";
+  bool format_given = false;
   std::string expand = "auto";
   std::string show;
   std::string output;
@@ -40,7 +41,7 @@ struct Options {
   std::string abscissa, from, size, title, labels = "unicode";
   std::string fps, seconds, picture_at, frame;  // of render
   bool dark = false;
-  bool log_axis = false, each = false, together = false;
+  bool log_axis = false, each = false, together = false, equal = false;
   bool check_only = false, to_stdout = false, schema = false;
   bool json = false, quiet = false, steps = false, csv = false;
 };

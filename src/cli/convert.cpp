@@ -1,7 +1,7 @@
 #include "cli/result_file.h"
 #include "cli/say.h"
 
-#include <cstdio>
+#include "cli/say.h"
 
 namespace anholon::cli {
 

@@ -2,16 +2,32 @@
 #include <filesystem>
 #include <map>
 
-#include "report/equations.h"
 #include "cli/input.h"
 #include "cli/say.h"
 #include "cli/show.h"
 #include "program/emit.h"
+#include "report/equations.h"
+#include "result/file.h"
 #include "run/inputs.h"
 
 namespace anholon::cli {
 
 namespace {
+
+// --format, else what the end of the name says.
+std::string format_of_equations(const Options& o) {
+  const std::string end = std::filesystem::path(o.output).extension().string();
+  if (!o.format_given && !o.output.empty())
+    for (const auto& [ending, format] : {std::pair{".tex", "latex"}, {".html", "mathml"}, {".json", "json"}, {".c", "c"}, {".py", "python"}})
+      if (end == ending) return format;
+  return o.format;
+}
+
+// To the file, or to the standard output.
+void deliver(const Options& o, const std::string& text) {
+  if (o.output.empty() || o.output == "-") return hand_out(text);
+  if (const std::string why = write_whole(o.output, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
+}
 
 // Programs do not solve for what enters nonlinearly, and do not start from more than positions and velocities.
 std::optional<Diagnostic> not_written(const Model& model, const Mechanics& m) {
@@ -57,7 +73,7 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   try {
     OpenSystem open = open_inputs(s);
     options.inputs = std::move(open.inputs);
-    hand_out((o.format == "c" ? emit_c : emit_python)(open.system, s.structure, options));
+    deliver(o, (o.format == "c" ? emit_c : emit_python)(open.system, s.structure, options));
   } catch (const Failure& failure) {
     print_diagnostic(failure.diagnostic, in.source);
     return kBadInput;
@@ -67,7 +83,9 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
 
 }  // namespace
 
-int derive(const Options& o) {
+int derive(const Options& asked) {
+  Options o = asked;
+  o.format = format_of_equations(asked);
   const Reader in = read(o);
   const Model& model = *in.model;
   if (o.format != "text" && o.format != "latex" && o.format != "mathml" && o.format != "c" && o.format != "python" && o.format != "json")
@@ -88,6 +106,8 @@ int derive(const Options& o) {
     ready(in, *wanted[0], state_choice(o, model), s);
     return show(o, s);
   }
+  if (!o.output.empty() && o.output != "-")
+    if (const std::string why = obstacle_to_writing(o.output); !why.empty()) throw UsageError{"error: " + why + "\n"};
   if (program) return write_program(o, in, m, *wanted[0]);
 
   std::vector<Derivation> list;
@@ -98,7 +118,7 @@ int derive(const Options& o) {
     list.push_back(derivation(m, *f, eliminations.at(f->unknowns), arranger, o.steps));
   }
   const std::string text = o.json || o.format == "json" ? as_json(list, all) : o.format == "latex" ? as_latex(list) : o.format == "mathml" ? as_mathml(list) : as_text(list);
-  hand_out(text);
+  deliver(o, text);
   return kOk;
 }
 

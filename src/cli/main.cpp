@@ -120,7 +120,8 @@ int run(int argc, char** argv) {
   CLI::App* derive_command = model_command("derive", "print the equations of motion", cli::derive,
                                            "Example: anholon derive disc --format latex");
   parameters(derive_command), form_option(derive_command);
-  derive_command->add_option("--format", o.format, "text, latex, mathml or json; c (C99) or python (NumPy): a program that computes the motion's right side")->type_name("FORMAT");
+  derive_command->add_option("--format", o.format, "text, latex, mathml or json; c (C99) or python (NumPy): a program that computes the motion's right side\n(default: by the end of FILE, else text)")->type_name("FORMAT")->each([&o](const std::string&) { o.format_given = true; });
+  derive_command->add_option("-o,--output", o.output, "FILE.txt, FILE.tex, FILE.html, FILE.json, FILE.c or FILE.py (default: the standard output)")->type_name("FILE");
   derive_command->add_option("--expand", o.expand, "auto or paper (grouped), none, full (written out), parts (named, for many coordinates)")->type_name("HOW");
 
   derive_command->add_flag("--steps", o.steps, "show T, S, forces, constraints and the elimination on the way");
@@ -278,6 +279,7 @@ int run(int argc, char** argv) {
   plot_command->add_option("--from", o.from, "no rows before this time")->type_name("T");
   plot_command->add_option("--to", o.to, "no rows after this time")->type_name("T");
   plot_command->add_flag("--log", o.log_axis, "logarithmic vertical axis; what is not positive is left out");
+  plot_command->add_flag("--equal", o.equal, "one unit is as long along both axes, for paths: plot run.h5 y --x x --equal");
   plot_command->add_flag("--together", o.together, "all columns in one panel (the default)");
   plot_command->add_flag("--each", o.each, "a panel for each column");
   plot_command->add_option("--labels", o.labels, "unicode (θ̇), latex ($\\dot{\\theta}$, for programs that set it) or plain (theta')")->type_name("STYLE")->check(CLI::IsMember({"unicode", "latex", "plain"}));
@@ -335,7 +337,8 @@ int main(int argc, char** argv) {
   } catch (const Failure& e) {
     // Not met in one element of the file, but in the equations made of all of them.
     std::fflush(stdout);
-    say(stderr, "error: %s%s%s\n", e.what(), e.diagnostic.hint.empty() ? "" : "\nhint: ", e.diagnostic.hint.c_str());
+    say(stderr, "error: %s\n", e.what());
+    if (!e.diagnostic.hint.empty()) say(stderr, "hint: %s\n", e.diagnostic.hint.c_str());
     return kBadInput;
   } catch (const std::bad_alloc&) {
     say_lines(stderr, "stopped (too_large): out of memory\nhint: the model is too large for this machine\n");

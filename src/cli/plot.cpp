@@ -11,6 +11,7 @@
 
 #include "base/json.h"
 #include "cli/result_file.h"
+#include "cli/run_formulas.h"
 #include "cli/say.h"
 #include "plot/drawing.h"
 #include "plot/terminal.h"
@@ -138,14 +139,11 @@ std::string write_figure(const Figure& f, Target t, const std::string& path) {
     case Target::svg: return write_whole(path, draw_svg(f));
     case Target::tex: return write_whole(path, draw_tex(f));
     case Target::pdf:
-    case Target::png: {
-      const std::string beside = path + ".part";
-      std::string why = draw_cairo(f, t == Target::pdf ? CairoFormat::pdf : CairoFormat::png, beside);
-      if (why.empty() && std::rename(beside.c_str(), path.c_str()) != 0) why = std::strerror(errno);
-      if (why.empty()) return {};
-      std::remove(beside.c_str());
-      return "cannot write " + path + ": " + why;
-    }
+    case Target::png:
+      return write_whole_by_name(path, [&](const std::string& beside) {
+        const std::string why = draw_cairo(f, t == Target::pdf ? CairoFormat::pdf : CairoFormat::png, beside);
+        return why.empty() ? why : "cannot write " + path + ": " + why;
+      });
     case Target::terminal: break;
   }
   return {};
@@ -165,6 +163,8 @@ int plot(const Options& o) {
   if (!o.to.empty()) options.to = time(o.to, "--to");
   options.log = o.log_axis;
   options.each = o.each;
+  options.equal = o.equal;
+  if (o.equal && o.log_axis) throw UsageError{"error: --equal and --log exclude each other\n"};
   options.smooth = true;
   options.title = o.title;
   options.labels = o.labels == "latex" ? LabelStyle::latex : o.labels == "plain" ? LabelStyle::plain : LabelStyle::unicode;
@@ -172,7 +172,8 @@ int plot(const Options& o) {
   given.rows = 0;
   take_size(o.size, t, options, given);
 
-  const RunFile run = read_result(o.model);
+  RunFile run = read_result(o.model);
+  add_formulas(run, o);
   Figure figure;
   try {
     figure = make_figure(run, options);
@@ -185,7 +186,7 @@ int plot(const Options& o) {
   } else if (!o.json) {
     TerminalSize size = terminal_size(figure.panels.size());
     if (given.rows > 0) size.columns = given.columns, size.rows = given.rows;
-    hand_out(draw_terminal(figure, size));
+    draw(draw_terminal(figure, size));
   }
   if (o.json) hand_out(ranges(figure));
   return kOk;

@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "cli/result_file.h"
+#include "cli/run_formulas.h"
 #include "cli/run_info.h"
 #include "cli/say.h"
 #include "proof/verify.h"
@@ -104,9 +105,7 @@ void take_up(const Options& o, Told& x) {
   if (x.run.model.empty())
     throw UsageError{"error: '" + o.model + "' holds rows, but not their model\nhint: anholon report MODEL --rows " + o.model + ", or a run in HDF5: anholon simulate MODEL -o run.h5\n"};
   const Options was = options_of(x.run, o);
-  SourceText source{x.run.model[0].name, x.run.model[0].text};
-  for (std::size_t k = 1; k < x.run.model.size(); ++k) source.others.push_back({x.run.model[k].name, x.run.model[k].text});
-  x.in = read(was, std::move(source));
+  x.in = model_of(x.run, was);
   make_ready(was, x);
 }
 

@@ -3,7 +3,9 @@
 #include <cstdio>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 
+#include "base/hash.h"
 #include "cli/input.h"
 #include "cli/method.h"
 #include "cli/progress.h"
@@ -29,7 +31,8 @@ bool is_hdf5(const std::string& path) {
   return format_of(path, format) && format == RunFormat::hdf5;
 }
 
-Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s) {
+// drawn: the motion is for a page or a film, which has an end of its own where nobody says one.
+Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s, bool drawn) {
   const Model& model = *scenario.model;
   const SimulationSettings& file = model.simulate;
   s.to = o.to.empty() ? file.to : std::optional<Rational>(exact(o.to, "--to"));
@@ -45,13 +48,17 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s)
   std::sort(s.at.begin(), s.at.end());
   // With --at these rows and no more; the end in the file is for runs without.
   if (!o.at.empty() && o.to.empty()) s.to.reset();
-  if (s.at.empty() && !s.to)
-    throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
-  if (s.to && abs(*s.to) > Rational(mpz_class("1000000000000000000"))) throw UsageError{"error: an end time beyond 1e18\n"};
-
   Rational start(scenario.state.t);
   if (s.state.t) start = *s.state.t;
   else if (is_number(model.initial.t)) start = number_value(model.initial.t);
+  if (s.at.empty() && !s.to) {
+    if (!drawn) throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
+    constexpr int kShown = 10;
+    s.to = start + kShown;
+    if (!o.quiet) say(stderr, "note: nobody says where the motion ends: it is shown up to t = %s; --to T, or [simulate] to = T in the model file, shows more or less\n", number_text(s.to->get_d()).c_str());
+  }
+  if (s.to && abs(*s.to) > Rational(mpz_class("1000000000000000000"))) throw UsageError{"error: an end time beyond 1e18\n"};
+
   if (!s.at.empty() && s.at.front() < start && s.at.back() > start)
     throw UsageError{"error: the time " + s.at.front().get_str() + " lies before the start, t = " + start.get_str() + "\n"};
   const Rational end = s.at.empty() ? *s.to : s.at.front() < start ? s.at.front() : s.at.back();
@@ -157,7 +164,8 @@ void events(const SimulationReport& r) {
 
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
-  for (const std::string& n : s.notes) say(stderr, "note: %s\n", n.c_str());
+  // What is known of the model, whatever the run, `check` says.
+  for (const std::string& n : s.state.notes) say(stderr, "note: %s\n", n.c_str());
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
   say(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
                small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
@@ -211,6 +219,23 @@ SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSin
   }
 }
 
+// A run that goes on into its own file adds its rows to those that are there; any other file is replaced.
+void go_on(Hdf5Sink& rows, const Options& o, const SavedRun& resume, const Reader& in) {
+  std::error_code none;
+  if (!rows.error().empty() || !resume.has("given") || !std::filesystem::is_regular_file(o.output, none)) return;
+  try {
+    const RunFile before = read_run(o.output);
+    const auto model = before.settings.find("model_sha256");
+    const std::vector<double> given = resume.numbers<double>("given", 2);
+    const auto count = static_cast<std::size_t>(given[0]);
+    if (model == before.settings.end() || model->second != std::vector<std::string>{sha256_text(all_text(in.source))} || before.table.rows() < count) return;
+    rows.go_on(before, count, static_cast<std::size_t>(given[1]));
+    if (!o.quiet) say(stderr, "note: rows are added to the first %zu of %s\n", count, o.output.c_str());
+  } catch (const Failure&) {
+    // It holds no run, or is damaged.
+  }
+}
+
 // Rows of a motion that is drawn, where nobody says how many: as many as a page holds whole.
 int rows_to_look_at(const Mechanics& m) {
   constexpr std::size_t kNumbers = 22000;
@@ -241,7 +266,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
-  const Rational last = times(o, s, options);
+  const Rational last = times(o, s, options, told && o.output.empty());
   if (resume) beyond(*resume, o, last);
   if (told && o.output.empty() && !options.every && options.at.empty() && last != Rational(s.state.t)) options.every = abs(Rational(last - Rational(s.state.t))) / rows_to_look_at(*s.mechanics);
   // What an event sets is not conserved.
@@ -254,7 +279,8 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   choose_method(o, s, options);
   if (!reset) options.conserved = conserved(*s.mechanics);
   Saver saver(o, in, *s.system.form, options);
-  catch_stop();
+  if (!o.quiet) options.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
+  catch_stop(told && o.output.empty() ? o.report : o.output);
   options.cancelled = stop_requested;
 
   if (told) {
@@ -263,7 +289,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   }
   const bool json = !hdf5 && (o.json || o.output.ends_with(".json"));
   SimulationReport r;
-  std::string write_error;
+  std::string write_error, part;
   {
     const double end = options.at.empty() ? options.to->get_d() : std::max(options.at.back().get_d(), options.to ? options.to->get_d() : options.at.back().get_d());
     Progress progress(o.quiet || end == s.state.t, "t", "steps");
@@ -278,14 +304,13 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
       r = run(s, options, rows, nullptr);
     } else if (json) {
       MemorySink rows;
-      std::FILE* file = o.output.empty() || o.output == "-" ? stdout : std::fopen(o.output.c_str(), "w");
-      if (!file) throw UsageError{"error: cannot write " + o.output + ": " + std::strerror(errno) + "\n"};
+      GrowingFile file(o.output);
+      if (!file.error().empty()) throw UsageError{"error: " + file.error() + "\n"};
       if (!o.save.empty()) options.save = std::ref(saver);
       if (start.ok()) r = run(s, options, rows, told);
       else r.outcome = start, r.t = number_text(s.state.t);
-      std::fputs(simulation_json(s, rows, r).c_str(), file);
-      if (std::fflush(file) != 0 || std::ferror(file)) write_error = "cannot write " + (o.output.empty() ? "the output" : o.output) + ": " + std::strerror(errno);
-      if (file != stdout) std::fclose(file);
+      file.write(simulation_json(s, rows, r));
+      write_error = file.close();
     } else {
       if (!start.ok()) {
         print_outcome(start);
@@ -299,12 +324,16 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
             rows.flush();
             saver(run);
           };
+        // Nobody waits for rows that have no place.
+        options.cancelled = [&] { return stop_requested() || !rows.error().empty(); };
         r = run(s, options, rows, told);
         if constexpr (std::same_as<decltype(rows), Hdf5Sink&>) rows.report(report_json(s, r));
         write_error = rows.close();
+        if constexpr (std::same_as<decltype(rows), CsvSink&>) part = rows.part();
       };
       if (hdf5) {
         Hdf5Sink rows(o.output, run_info(o, in, s, options));
+        if (resume) go_on(rows, o, *resume, in);
         into(rows);
         if (o.json) hand_out(report_json(s, r) + "\n");
       } else {
@@ -315,13 +344,15 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   }
   if (told) told->run.report = report_json(s, r);
   if (!o.quiet && r.rows > 0) report(s, r);
-  if (!r.outcome.ok()) {
+  // A run that is ended because its rows have no place was not interrupted by anybody.
+  if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);
-    if (r.rows > 0 && !o.output.empty()) say(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
+    if (r.rows > 0 && !o.output.empty() && write_error.empty()) say(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
   }
   if (write_error.empty()) write_error = saver.error;
   if (!write_error.empty()) {
     say(stderr, "error: %s\n", write_error.c_str());
+    if (!part.empty()) say(stderr, "the rows that could be written are in %s\n", part.c_str());
     return kBadInput;
   }
   return r.outcome.ok() ? kOk : kStopped;

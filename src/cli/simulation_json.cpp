@@ -89,6 +89,11 @@ void write_report(JsonWriter& j, const Scenario& s, const SimulationReport& r) {
   }
   write_watched(j, "conserved", r.conserved);
   write_watched(j, "monitors", r.monitors);
+  if (!r.notes.empty()) {
+    j.key("notes").open_array();
+    for (const std::string& n : r.notes) j.string(n);
+    j.close();
+  }
   if (!r.warnings.empty()) {
     j.key("warnings").open_array();
     for (const Warning& w : r.warnings) j.open_object().key("message").string(w.message).key("hint").string(w.hint).close();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/escape.h"
+
 namespace anholon::plot {
 
 const char* const kColour[kColours] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c564b"};
@@ -29,7 +31,7 @@ RichText minus_signs(std::string label) {
 
 class Layout {
  public:
-  explicit Layout(const Figure& f) : f_(f) {
+  explicit Layout(const Figure& f) : own_(f.equal ? std::optional<Figure>(f) : std::nullopt), f_(own_ ? *own_ : f) {
     d_.width = f.width * kPointsPerCm;
     d_.height = f.height * kPointsPerCm;
   }
@@ -37,11 +39,10 @@ class Layout {
   Drawing make() {
     double top = kGap, bottom = d_.height - kGap;
     if (!f_.title.empty()) {
-      d_.words.push_back({{d_.width / 2, top + kSize}, {{f_.title}}, kSize + 1, Anchor::middle});
+      d_.words.push_back({{d_.width / 2, top + kSize}, {{shown(f_.title)}}, kSize + 1, Anchor::middle});
       top += kSize + 1 + 1.5 * kGap;
     }
     bottom -= 0.35 * kSize;
-    x_ticks_ = ticks(f_.x_axis, static_cast<int>(d_.width / 55));
     d_.words.push_back({{0, bottom}, rich_label(f_.x_name, f_.x_unit, f_.labels), kSize, Anchor::middle});
     const std::size_t x_word = d_.words.size() - 1;
     bottom -= kSize + 0.5 * kGap;
@@ -50,16 +51,15 @@ class Layout {
 
     // All panels begin under each other.
     const double each = (bottom - top) / static_cast<double>(f_.panels.size());
-    std::vector<Ticks> y_ticks;
-    double labels = 0;
-    bool any_word = false;
-    for (const Panel& p : f_.panels) {
-      y_ticks.push_back(ticks(p.y, std::max(2, static_cast<int>(each / 28))));
-      for (const std::string& l : y_ticks.back().labels) labels = std::max(labels, width_of(l, kSmall));
-      any_word = any_word || p.series.size() == 1;
+    std::vector<Ticks> y_ticks = scales(each);
+    // The box is as wide as the labels of its ticks let it be, which the first round shows.
+    for (int round = 0; own_ && round < 2; ++round) {
+      make_equal(*own_, right_ - left_, box_ = box_height(each));
+      const double left = left_;
+      y_ticks = scales(each);
+      if (round == 1) left_ = left;
     }
-    left_ = kGap + (any_word ? kSize * 1.3 + kGap : 0) + labels + kTick + 2;
-    right_ = d_.width - 2.5 * kGap;
+    x_ticks_ = ticks(f_.x_axis, static_cast<int>(d_.width / 55));
     d_.words[x_word].at.x = (left_ + right_) / 2;
     if (!x_ticks_.note.empty()) d_.words.push_back({{right_, d_.words[x_word].at.y}, {{x_ticks_.note}}, kSmall, Anchor::end});
     for (std::size_t i = 0; i < f_.panels.size(); ++i) {
@@ -70,6 +70,30 @@ class Layout {
   }
 
  private:
+  // What is surely left of the height of a panel under its legend.
+  double box_height(double each) const {
+    std::size_t most = 1;
+    for (const Panel& p : f_.panels) most = std::max(most, p.series.size());
+    constexpr std::size_t kEntriesOfALine = 3;
+    const double lines = most > 1 ? static_cast<double>((most + kEntriesOfALine - 1) / kEntriesOfALine) : 0;
+    return std::max(10.0, each - (lines + 1) * (kSmall + kGap) - 3.5 * kGap);
+  }
+
+  // The ticks of all panels, and where their boxes begin and end.
+  std::vector<Ticks> scales(double each) {
+    std::vector<Ticks> y_ticks;
+    double labels = 0;
+    bool any_word = false;
+    for (const Panel& p : f_.panels) {
+      y_ticks.push_back(ticks(p.y, std::max(2, static_cast<int>(each / 28))));
+      for (const std::string& l : y_ticks.back().labels) labels = std::max(labels, width_of(l, kSmall));
+      any_word = any_word || p.series.size() == 1;
+    }
+    left_ = kGap + (any_word ? kSize * 1.3 + kGap : 0) + labels + kTick + 2;
+    right_ = d_.width - 2.5 * kGap;
+    return y_ticks;
+  }
+
   void line(Point a, Point b, Role role) { d_.strokes.push_back({{a, b}, role, 0}); }
 
   // One line of entries, or more where they are long; returns where the box begins.
@@ -97,8 +121,9 @@ class Layout {
       d_.words.push_back({{kGap + kSize, (top + bottom) / 2}, rich_label(p.series[0].name, p.series[0].unit, f_.labels), kSize, Anchor::middle, true});
       top += kGap;
     }
-    const double height = std::max(10.0, bottom - top), width = right_ - left_;
-    bottom = top + height;
+    const double height = own_ ? box_ : std::max(10.0, bottom - top), width = right_ - left_;
+    if (own_) top = bottom - height;
+    else bottom = top + height;
     for (std::size_t i = 0; i < x_ticks_.at.size(); ++i) {
       const double x = left_ + width * f_.x_axis.place(x_ticks_.at[i]);
       line({x, top}, {x, bottom}, Role::grid);
@@ -123,10 +148,11 @@ class Layout {
       }
   }
 
+  std::optional<Figure> own_;  // whose axes are made equal
   const Figure& f_;
   Drawing d_;
   Ticks x_ticks_;
-  double left_ = 0, right_ = 0, tick_line_ = 0;
+  double left_ = 0, right_ = 0, tick_line_ = 0, box_ = 0;
 };
 
 }  // namespace

@@ -128,6 +128,17 @@ std::vector<std::size_t> select_columns(const RunTable& table, const std::vector
   return list;
 }
 
+void make_equal(Figure& f, double width, double height) {
+  const auto longer = [](Axis& a, double length) {
+    const double middle = (a.from + a.to) / 2;
+    a.from = middle - length / 2, a.to = middle + length / 2;
+  };
+  double unit = (f.x_axis.to - f.x_axis.from) / width;
+  for (const Panel& p : f.panels) unit = std::max(unit, (p.y.to - p.y.from) / height);
+  longer(f.x_axis, unit * width);
+  for (Panel& p : f.panels) longer(p.y, unit * height);
+}
+
 Figure make_figure(const RunFile& run, const FigureOptions& o) {
   const RunTable& table = run.table;
   const auto unit = [&](const std::string& column) {
@@ -140,7 +151,7 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
   if (x == table.columns.size()) unknown(table, o.x);
 
   Figure f;
-  std::tie(f.title, f.labels, f.width, f.height) = std::tie(o.title, o.labels, o.width, o.height);
+  std::tie(f.title, f.labels, f.width, f.height, f.equal) = std::tie(o.title, o.labels, o.width, o.height, o.equal);
   f.x_name = table.columns[x];
   f.x_unit = unit(f.x_name);
   const std::vector<double>& t = table.values[time < table.columns.size() ? time : x];

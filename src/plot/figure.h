@@ -16,6 +16,7 @@ struct FigureOptions {
   std::string x;                   // the abscissa; empty: t, or the first column
   std::optional<double> from, to;  // only rows with t between these
   bool log = false, each = false;
+  bool equal = false;              // one unit is as long along both axes
   bool smooth = false;             // few rows over t: the curves go between them as their derivatives say
   LabelStyle labels = LabelStyle::unicode;
   std::string title;
@@ -41,10 +42,14 @@ struct Figure {
   std::vector<Panel> panels;
   LabelStyle labels = LabelStyle::unicode;
   double width = 16, height = 9;
+  bool equal = false;
 };
 
 // Throws Failure with the columns there are, where a name is not one of them, or where nothing is left to be shown.
 Figure make_figure(const RunFile& run, const FigureOptions& options);
+
+// Axes that are long enough for what they show, and on which one unit is as long along x as along y, where each panel is a box so wide and high.
+void make_equal(Figure& figure, double width, double height);
 
 // The columns that a list of names and patterns means, in the order of the list.
 std::vector<std::size_t> select_columns(const RunTable& table, const std::vector<std::string>& names, std::size_t x);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/escape.h"
+
 namespace anholon::plot {
 
 namespace {
@@ -90,23 +92,35 @@ void stripped(std::string& out, std::string line) {
 
 class Terminal {
  public:
-  Terminal(const Figure& f, const TerminalSize& size) : f_(f), size_(size) {}
+  Terminal(const Figure& f, const TerminalSize& size) : own_(f.equal ? std::optional<Figure>(f) : std::nullopt), f_(own_ ? *own_ : f), size_(size) {}
 
   std::string draw() {
-    std::vector<Ticks> y_ticks;
-    for (const Panel& p : f_.panels) {
-      y_ticks.push_back(ticks(p.y, std::max(2, size_.rows / 4)));
-      for (const std::string& l : y_ticks.back().labels) margin_ = std::max(margin_, shown_width(l));
+    std::vector<Ticks> y_ticks = scales();
+    // Dots are as wide as they are high.
+    for (int round = 0; own_ && round < 2; ++round) {
+      make_equal(*own_, 2 * columns_ - 1, 4 * size_.rows - 1);
+      const int columns = columns_;
+      y_ticks = scales();
+      if (round == 1) columns_ = columns;
     }
-    columns_ = std::max(10, size_.columns - static_cast<int>(margin_) - 3);
     x_ticks_ = ticks(f_.x_axis, std::max(2, columns_ / 12));
-    if (!f_.title.empty()) stripped(out_, padded(f_.title, (static_cast<std::size_t>(size_.columns) + shown_width(f_.title)) / 2));
+    if (!f_.title.empty()) stripped(out_, padded(shown(f_.title), (static_cast<std::size_t>(size_.columns) + shown_width(shown(f_.title))) / 2));
     for (std::size_t i = 0; i < f_.panels.size(); ++i) panel(f_.panels[i], y_ticks[i], i + 1 == f_.panels.size());
     x_labels();
     return std::move(out_);
   }
 
  private:
+  std::vector<Ticks> scales() {
+    std::vector<Ticks> y_ticks;
+    for (const Panel& p : f_.panels) {
+      y_ticks.push_back(ticks(p.y, std::max(2, size_.rows / 4)));
+      for (const std::string& l : y_ticks.back().labels) margin_ = std::max(margin_, shown_width(l));
+    }
+    columns_ = std::max(10, size_.columns - static_cast<int>(margin_) - 3);
+    return y_ticks;
+  }
+
   int column(double x) const { return static_cast<int>(std::lround(f_.x_axis.place(x) * (columns_ - 1))); }
   char letter(const Series& s) const { return static_cast<char>(s.number < 26 ? 'a' + s.number : 'A' + s.number % 26); }
 
@@ -174,6 +188,7 @@ class Terminal {
     stripped(out_, padded(name, margin_ + 2 + (static_cast<std::size_t>(columns_) + shown_width(name)) / 2));
   }
 
+  std::optional<Figure> own_;  // whose axes are made equal
   const Figure& f_;
   TerminalSize size_;
   std::string out_;

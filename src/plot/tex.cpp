@@ -1,6 +1,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/escape.h"
 #include "plot/drawing.h"
 
 namespace anholon::plot {
@@ -43,13 +44,13 @@ std::string draw_tex(const Figure& f) {
   }
   const std::size_t n = f.panels.size();
   out += "\\begin{tikzpicture}\n\\begin{groupplot}[\n  group style={group size=1 by " + std::to_string(n) + ", x descriptions at=edge bottom, vertical sep=6pt},\n  width=" + number(f.width) +
-         "cm, height=" + number(f.height / static_cast<double>(n)) + "cm, grid=major, grid style={gray!20}, no markers,\n  every axis plot/.append style={line width=0.6pt},\n  xlabel={" +
+         "cm, height=" + number(f.height / static_cast<double>(n)) + "cm, " + (f.equal ? "axis equal, " : "") + "grid=major, grid style={gray!20}, no markers,\n  every axis plot/.append style={line width=0.6pt},\n  xlabel={" +
          latex_label(f.x_name, f.x_unit) + "}, xmin=" + number(f.x_axis.from) + ", xmax=" + number(f.x_axis.to) + ",\n  legend style={draw=none, fill=none, at={(0.5,1.02)}, anchor=south, legend columns=-1, /tikz/every even column/.append style={column sep=6pt}},\n]\n";
   for (std::size_t i = 0; i < n; ++i) {
     const Panel& p = f.panels[i];
     std::string options;
     const auto add = [&](const std::string& o) { options += (options.empty() ? "" : ", ") + o; };
-    if (i == 0 && !f.title.empty()) add("title={" + latex_text(f.title) + "}");
+    if (i == 0 && !f.title.empty()) add("title={" + latex_escape(f.title) + "}");
     if (p.series.size() == 1) add("ylabel={" + latex_label(p.series[0].name, p.series[0].unit) + "}");
     if (p.y.log) add("ymode=log");
     out += "\\nextgroupplot" + (options.empty() ? "" : "[" + options + "]") + "\n";

@@ -131,12 +131,12 @@ class Plots {
     std::vector<std::array<std::string, 3>> what = {{"T", "<mi>T</mi>", "energies"}};
     for (const Potential& p : model_.potentials) {
       es.push_back(put_masses(model_, p.value));
-      what.push_back({"V." + p.name, "<msub><mi>V</mi><mtext>" + xml_escape(p.name) + "</mtext></msub>", "energies"});
+      what.push_back({"V." + p.name, "<msub><mi>V</mi><mtext>" + markup_escape(p.name) + "</mtext></msub>", "energies"});
     }
     for (const Conserved& c : conserved_) {
       es.push_back(c.value);
       const bool energy = c.name == "energy" || c.name == "Jacobi integral";
-      what.push_back({c.name, "<mtext>" + xml_escape(c.name) + "</mtext>", energy ? "energies" : "integrals"});
+      what.push_back({c.name, "<mtext>" + markup_escape(c.name) + "</mtext>", energy ? "energies" : "integrals"});
     }
     std::vector<std::vector<double>> values(es.size());
     AtRows rows(model_, run_.table, es, parameters_, modes_);
@@ -159,7 +159,7 @@ class Plots {
         const std::string name = model_.constraints[r].name;
         es.push_back(put_masses(model_, total_derivative(m.phi[r], static_cast<unsigned>(k))));
         names.push_back({"|" + derivative_name("phi." + name, static_cast<unsigned>(k), Format::text) + "|",
-                         "<mo>|</mo>" + derivative_name("<msub><mi>φ</mi><mtext>" + xml_escape(name) + "</mtext></msub>", static_cast<unsigned>(k), Format::mathml) + "<mo>|</mo>"});
+                         "<mo>|</mo>" + derivative_name("<msub><mi>φ</mi><mtext>" + markup_escape(name) + "</mtext></msub>", static_cast<unsigned>(k), Format::mathml) + "<mo>|</mo>"});
       }
     }
     std::vector<std::size_t> first(conserved_.size());
@@ -186,7 +186,7 @@ class Plots {
       if (!(size[c] > 0)) continue;
       std::vector<double> change;
       for (double x : integral[c]) change.push_back(std::abs(x - integral[c][0]) / size[c]);
-      add("change of " + conserved_[c].name, "<mtext>change of " + xml_escape(conserved_[c].name) + "</mtext>", "residuals", std::move(change));
+      add("change of " + conserved_[c].name, "<mtext>change of " + markup_escape(conserved_[c].name) + "</mtext>", "residuals", std::move(change));
     }
   }
 
@@ -275,6 +275,14 @@ ColumnOf column_of(const Model& model, const RunTable& table) {
     const auto it = places.find(derivative_name(base, n.order, Format::text));
     return it == places.end() ? std::nullopt : std::optional<int>(it->second);
   };
+}
+
+bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>& values) {
+  const std::vector<ModeChange> modes = mode_changes(model, read_run_report(run.report));
+  AtRows rows(model, run.table, {e}, parameter_values<double>(model), modes);
+  if (!rows.possible()) return false;
+  rows.go([&](std::size_t, const Machine<double>& m) { values.push_back(m.value(0)); });
+  return true;
 }
 
 PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene) {

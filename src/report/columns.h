@@ -38,6 +38,9 @@ struct PlotData {
 // The place in the table of a symbol of the model: -1 the time, none if the run does not hold it.
 ColumnOf column_of(const Model& model, const RunTable& table);
 
+// The values of an expression at the rows of a run, with the modes that events had set; false if it needs what the run does not hold.
+bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>& values);
+
 PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene);
 
 // At most about `most` of the rows: of each stretch the least and the greatest, of all the first and the last, and every gap.

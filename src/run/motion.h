@@ -54,6 +54,8 @@ class Motion {
   Outcome settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on);
   // Not ok if the argument of a table lies outside of it at the start.
   Outcome within_bounds();
+  // The formula of an event at the start.
+  double at_start(std::size_t event) const { return to_double(leg_->stepper.quadrature(quadratures_.size() + event, W(0))); }
 
   const Stepper<N>& stepper() const { return leg_->stepper; }
   const Program& program() const { return leg_->program; }

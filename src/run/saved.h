@@ -15,6 +15,7 @@ class SavedRun {
  public:
   using Texts = std::vector<std::string>;
 
+  bool has(const std::string& name) const { return entries_.count(name) > 0; }
   void set(const std::string& name, Texts texts) { entries_[name] = std::move(texts); }
   // Throws Failure if there is no such entry; `one`: if it is not a single text.
   const Texts& texts(const std::string& name) const;

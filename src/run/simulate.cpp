@@ -5,6 +5,7 @@
 
 #include "run/angles.h"
 #include "run/judge.h"
+#include "run/supports.h"
 #include "run/watch.h"
 
 namespace anholon {
@@ -36,7 +37,7 @@ class Run {
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), power_(anholon::power(*s.mechanics)),
         course_(s, step_settings(o), method(o), watched_quadratures(s, power_), std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
-        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()), judge_(s, o) {
+        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()), judge_(s, o), supports_(s) {
     report_.constraints_each = constraint_reports(s);
   }
 
@@ -67,6 +68,7 @@ class Run {
       (declared_conserved(m) ? report_.conserved : report_.monitors).push_back(watched(m.name, watch_.tracks()[i]));
     }
     for (std::size_t i = 0; i < o_.conserved.size(); ++i) report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
+    for (const std::string& text : supports_.notes()) note(text);
     warn();
     judge_.estimate(course_, report_);
     return report_;
@@ -99,6 +101,26 @@ class Run {
     schedule();
     if (course_.at(t0_).ok()) watch_.start(course_.point());
     report_.outcome = motion().within_bounds();
+    if (report_.outcome.ok()) limits();
+  }
+
+  void note(const std::string& text) {
+    report_.notes.push_back(text);
+    if (o_.note) o_.note(text);
+  }
+
+  // Events that look out for a limit which is passed at the start do not happen.
+  void limits() {
+    if (!forward_) return;
+    // A limit at which the motion starts is not passed by round-off.
+    constexpr double kPassed = 1e-12;
+    for (std::size_t i = 0; i < s_.model->events.size(); ++i) {
+      const Event& e = s_.model->events[i];
+      const double value = e.direction * motion().at_start(i);
+      if (!e.ends_step() || !(value > kPassed)) continue;
+      note("event '" + e.name + "' is past its limit at the start: its formula is " + number_text(e.direction * value, 6) + ", and it happens where that passes zero " +
+           (e.direction > 0 ? "upwards" : "downwards") + "; until it has come back, nothing happens");
+    }
   }
 
   // Another integrator, whose motion is then the one that is written.
@@ -134,6 +156,10 @@ class Run {
     if (Outcome o = motion().resume(o_.state, from); !o.ok()) return o;
     t0_ = from.number<W>("start");
     done_ = from.number<W>("rows");
+    if (from.has("given")) {
+      const std::vector<double> given = from.numbers<double>("given", 2);
+      given_rows_ = static_cast<std::size_t>(given[0]), given_steps_ = static_cast<std::size_t>(given[1]);
+    }
     watch_.resume(from);
     const std::vector<double*> residuals = carried();
     const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
@@ -159,6 +185,8 @@ class Run {
     watch_.save(to);
     to.set_numbers<W>("start", {t0_});
     to.set_numbers<W>("rows", {*done_});
+    // The last step will be made again.
+    to.set_numbers<double>("given", {static_cast<double>(given_rows_), static_cast<double>(given_steps_ > 0 ? given_steps_ - 1 : 0)});
     std::vector<double> worst, angles;
     for (const double* x : carried()) worst.push_back(*x);
     for (const auto& least : angles_.least) angles.insert(angles.end(), {least.value, to_double(least.t)});
@@ -206,7 +234,10 @@ class Run {
       return;  // nothing is left
     }
     if (o_.rigorous) defect_.emplace(s_, *o_.rigorous, Ball(*done_), Ball(end_), significand_bits<W>());
+    // Soon at first, so that a run that is killed early can go on, too; then at longer and longer intervals.
+    constexpr double kFirst = 0.5, kLonger = 1.5;
     auto saved = std::chrono::steady_clock::now();
+    double pause = std::min(kFirst, o_.save_seconds);
     while (report_.outcome.ok() && !(course_.time() == end_)) {
       report_.outcome = course_.step(end_);
       if (!report_.outcome.ok()) break;
@@ -217,11 +248,13 @@ class Run {
       if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
       rows_until(stop);
       sink_.step(to_double(stop));
+      ++given_steps_;
       if (report_.outcome.ok() && !(stop == course_.time())) negative_mass(stop);
       if (report_.outcome.ok() && course_.by_taylor() && motion().fired() && !events()) break;
-      if (!o_.save || std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() < o_.save_seconds) continue;
+      if (!o_.save || std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() < pause) continue;
       save();
       saved = std::chrono::steady_clock::now();
+      pause = std::min(kLonger * pause, o_.save_seconds);
     }
     if (report_.outcome.ok() && course_.steps() > 0 && at(course_.time()).ok()) watch_.end(point(), work(), report_);
     if (o_.save) save();
@@ -373,8 +406,10 @@ class Run {
     judge_.row(t, label, numbers, course_);
     std::vector<std::string> values = {label.empty() ? text(t) : label};
     for (const W& x : numbers) values.push_back(text(x));
+    supports_.see(to_double(t), [&](std::size_t r) { return to_double(watch_.multiplier(r)); });
     sink_.row(values);
     ++report_.rows;
+    ++given_rows_;
   }
 
   const Scenario& s_;
@@ -386,6 +421,7 @@ class Run {
   Watch<W> watch_;
   AngleWatch<W> angles_;
   Judge<N> judge_;
+  SupportWatch supports_;
   std::optional<Defect> defect_;
   std::vector<W> times_;
   std::vector<std::string> labels_;
@@ -398,6 +434,7 @@ class Run {
   };
   std::vector<Pace> paces_;  // of the events
   std::size_t next_ = 0;    // row
+  std::size_t given_rows_ = 0, given_steps_ = 0;  // since the start of the motion
   std::optional<W> done_;   // all rows up to here have been given
   std::optional<W> reached_;
   std::size_t negative_ = 0;

@@ -34,6 +34,7 @@ struct SimulationOptions {
   std::vector<std::string> at_text;  // the times as written, to be printed as given
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;
+  std::function<void(const std::string&)> note;  // told of the notes of the report as soon as there is one
   std::size_t most_steps = 50'000'000;
   bool kernel = true;              // where there is one: its pivots, chosen at the start, are seen in the last digits
   ErrorEstimate estimate = ErrorEstimate::never;
@@ -90,6 +91,7 @@ struct SimulationReport {
   std::optional<ErrorReport> error;
   std::string no_error;          // why there is no estimate, where one was asked for
   std::vector<Warning> warnings;
+  std::vector<std::string> notes;  // limits that are passed at the start, floors that pull
   std::vector<EventReport> events;
   std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way

@@ -267,10 +267,45 @@ TEST(Svg, EscapesAndNamesItsClasses) {
   FigureOptions o = of({"x", "theta'"});
   o.title = "a < b & \"c\"";
   const std::string svg = draw_svg(make_figure(disc(), o));
-  EXPECT_NE(svg.find("<title>a &lt; b &amp; \"c\"</title>"), std::string::npos);
+  EXPECT_NE(svg.find("<title>a &lt; b &amp; &quot;c&quot;</title>"), std::string::npos);
   EXPECT_EQ(svg.find("a < b"), std::string::npos);
   for (const char* part : {"class=\"s s0\"", "class=\"s s1\"", "class=\"axis\"", "class=\"grid\"", "var(--s0,", "viewBox=\"0 0 "}) EXPECT_NE(svg.find(part), std::string::npos) << part;
   EXPECT_EQ(svg.substr(svg.size() - 7), "</svg>\n");
+}
+
+TEST(Figure, EqualAxesAreAsLongAsWhatTheyShow) {
+  FigureOptions o = of({"theta"});
+  o.x = "x";
+  o.equal = true;
+  Figure f = make_figure(disc(), o);
+  const Figure before = f;
+  make_equal(f, 300, 100);
+  const double x = f.x_axis.to - f.x_axis.from, y = f.panels[0].y.to - f.panels[0].y.from;
+  EXPECT_NEAR(x / 300, y / 100, 1e-15);
+  EXPECT_LE(f.x_axis.from, before.x_axis.from);
+  EXPECT_GE(f.x_axis.to, before.x_axis.to);
+  EXPECT_LE(f.panels[0].y.from, before.panels[0].y.from);
+  EXPECT_GE(f.panels[0].y.to, before.panels[0].y.to);
+}
+
+// A circle is one: as wide as it is high, on paper and in the dots of a terminal.
+TEST(Figure, ACircleIsRound) {
+  std::vector<double> t, x, y;
+  for (int k = 0; k <= 200; ++k) t.push_back(k), x.push_back(3 * std::cos(k * 0.0314159265)), y.push_back(3 * std::sin(k * 0.0314159265));
+  const RunFile circle = run({"t", "x", "y"}, {t, x, y});
+  FigureOptions o = of({"y"});
+  o.x = "x";
+  for (const bool equal : {true, false}) {
+    o.equal = equal;
+    double least_x = 1e9, most_x = -1e9, least_y = 1e9, most_y = -1e9;
+    for (const Stroke& s : lay_out(make_figure(circle, o)).strokes) {
+      if (s.role != Role::series) continue;
+      for (const Point& p : s.points) least_x = std::min(least_x, p.x), most_x = std::max(most_x, p.x), least_y = std::min(least_y, p.y), most_y = std::max(most_y, p.y);
+    }
+    const double ratio = (most_x - least_x) / (most_y - least_y);
+    if (equal) EXPECT_NEAR(ratio, 1, 0.01);
+    else EXPECT_GT(ratio, 1.3);
+  }
 }
 
 TEST(Tex, NamesAreLatex) {

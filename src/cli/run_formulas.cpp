@@ -1,0 +1,54 @@
+#include "cli/run_formulas.h"
+
+#include <algorithm>
+
+#include "cli/run_info.h"
+#include "expr/formula.h"
+#include "plot/figure.h"
+#include "report/columns.h"
+#include "spec/read.h"
+
+namespace anholon::cli {
+
+namespace {
+
+bool holds(const RunTable& table, const std::string& name) {
+  return table.find(name) < table.columns.size() || std::any_of(table.columns.begin(), table.columns.end(), [&](const std::string& c) { return plot::matches(name, c); });
+}
+
+void add(RunFile& run, const Reader& in, const std::string& name) {
+  Value value;
+  try {
+    value = evaluate(parse_formula(FormulaText(name, Span{1, 1, 1})), *in.names);
+  } catch (const Failure&) {
+    return;
+  }
+  const Expr* e = std::get_if<Expr>(&value);
+  if (!e)
+    throw UsageError{"error: '" + name + "' is " + type_name(value) + ", no number\nhint: " + (std::holds_alternative<Vector>(value) ? "a component, as " + name + ".x, or its length, norm(" + name + ")" : "a formula that is a number") + "\n"};
+  std::vector<double> values;
+  if (!at_rows(*in.model, run, put_masses(*in.model, *e), values)) throw UsageError{"error: '" + name + "' needs numbers that the run does not hold\nhint: write it into the model as an [output], and simulate anew\n"};
+  run.table.columns.push_back(name);
+  run.table.values.push_back(std::move(values));
+  run.table.texts.emplace_back();
+}
+
+}  // namespace
+
+Reader model_of(const RunFile& run, const Options& was) {
+  SourceText source{run.model[0].name, run.model[0].text};
+  for (std::size_t k = 1; k < run.model.size(); ++k) source.others.push_back({run.model[k].name, run.model[k].text});
+  return read(was, std::move(source));
+}
+
+void add_formulas(RunFile& run, const Options& o) {
+  std::vector<std::string> names = split(o.columns);
+  if (!o.abscissa.empty()) names.push_back(o.abscissa);
+  std::erase_if(names, [&](const std::string& n) { return holds(run.table, n); });
+  if (names.empty() || run.model.empty() || run.table.rows() == 0) return;
+  const Reader in = model_of(run, options_of(run, o));
+  for (const std::string& name : names)
+    if (run.table.find(name) == run.table.columns.size()) add(run, in, name);
+}
+
+}  // namespace anholon::cli
