@@ -7,8 +7,16 @@
 #include <hdf5.h>
 #endif
 
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 
 namespace anholon {
@@ -455,7 +463,32 @@ std::string extend_hdf5(const std::string& path, const RowBlock& block) {
   });
 }
 
+// HDF5 follows what stands in a file, and crashes where a damaged one leads it astray. So a child goes there first; whether it comes back is all it says.
+static bool is_passable(const std::string& path) {
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child < 0) return true;
+  if (child == 0) {
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    for (const int s : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) std::signal(s, SIG_DFL);
+    // What a C library says of itself as it ends is not for the user.
+    if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    try {
+      Hdf5Reader(path).read();
+    } catch (...) {
+      // Said again by whoever reads it next.
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return true;
+  return WIFEXITED(status);
+}
+
 RunFile read_hdf5(const std::string& path) {
+  if (!is_passable(path)) throw Failure(Span{}, "the file cannot be read: it is damaged", "a whole run, as `anholon simulate MODEL -o run.h5` writes it");
   try {
     return Hdf5Reader(path).read();
   } catch (const Trouble& t) {

@@ -267,6 +267,42 @@ TEST_F(Hdf5, DamagedFilesAreRefused) {
   EXPECT_GT(refused, 30u);
 }
 
+// The library itself follows what stands in the file.
+TEST_F(Hdf5, FlippedBytesAreNoCrash) {
+  {
+    Hdf5Sink sink(path_, info());
+    sink.columns({"t", "x"});
+    for (int i = 0; i < 10; ++i) sink.row({std::to_string(i), "0.50"});
+    sink.close();
+  }
+  std::string bytes;
+  {
+    std::FILE* f = std::fopen(path_.c_str(), "rb");
+    char buffer[4096];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, f)) > 0;) bytes.append(buffer, n);
+    std::fclose(f);
+  }
+  unsigned random = 1;
+  std::size_t refused = 0;
+  for (int k = 0; k < 400; ++k) {
+    std::string damaged = bytes;
+    for (int flips = 0; flips < 8; ++flips) {
+      random = random * 1664525u + 1013904223u;
+      damaged[(random >> 4) % damaged.size()] = static_cast<char>(random >> 24);
+    }
+    std::FILE* f = std::fopen(path_.c_str(), "wb");
+    std::fwrite(damaged.data(), 1, damaged.size(), f);
+    std::fclose(f);
+    try {
+      read_run(path_);
+    } catch (const Failure& e) {
+      EXPECT_NE(e.diagnostic.message, "");
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 10u);
+}
+
 #endif
 
 }  // namespace
