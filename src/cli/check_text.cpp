@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -137,14 +138,24 @@ std::string data_needed(const Scenario& s, const std::vector<StateEntry>& higher
   return out + " (" + names + ")";
 }
 
+// A value that was found and is the round-off of others is 0 for the eye.
+std::string value_text(double value, Origin origin, const InitialState<double>& x) {
+  constexpr double kRoundOff = 1e-30;
+  double largest = 0;
+  for (const std::vector<double>* level : {&x.q, &x.qd})
+    for (double v : *level) largest = std::max(largest, std::abs(v));
+  const bool found = origin != Origin::given && origin != Origin::guessed;
+  return number_text(found && std::abs(value) < kRoundOff * largest ? 0.0 : value);
+}
+
 void state_table(const Scenario& s) {
   const InitialState<double>& x = s.state;
   const std::vector<StateEntry> higher = higher_state(s);
   if (!x.q.empty()) say(stdout, "%s\n", data_needed(s, higher).c_str());
   say(stdout, "initial state at t = %s\n", number_text(x.t).c_str());
   for (std::size_t a = 0; a < x.q.size(); ++a)
-    say(stdout, "  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), number_text(x.q[a]).c_str(),
-                name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(), number_text(x.qd[a]).c_str(), name(x.qd_origin[a]));
+    say(stdout, "  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), value_text(x.q[a], x.q_origin[a], x).c_str(),
+                name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(), value_text(x.qd[a], x.qd_origin[a], x).c_str(), name(x.qd_origin[a]));
   for (const StateEntry& e : higher) say(stdout, "  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
   say(stdout, "  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
 }

@@ -71,65 +71,7 @@ Column generalized_forces(const Mechanics& m, const std::vector<Load>& loads) {
   return positions.back(m.q) + rates.back(m.qd);
 }
 
-void apply(std::vector<Load>& loads, const Model& model, const Force::Place& place, const Vector& force) {
-  Load& load = loads[place.body];
-  load.force = load.force + force;
-  if (!place.at_center) load.torque = load.torque + cross(place.point - model.bodies[place.body].center, force);
-}
-
 }  // namespace
-
-std::vector<Load> given_loads(const Model& model) {
-  Graph& g = *model.graph;
-  std::vector<Load> loads(model.bodies.size(), Load{zero_vector(g), zero_vector(g)});
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    if (!is_zero(model.bodies[b].gravity)) loads[b].force = model.bodies[b].mass * model.bodies[b].gravity;
-  // Where the field varies over the body it turns it: sum e_k u_k x (dg/dr u_k), to first order in the body's size.
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const std::vector<Vector>& by = model.bodies[b].gravity_gradient;
-    if (by.empty()) continue;
-    for (const Axis& axis : model.bodies[b].axes) {
-      const Vector x = axis.vector.x * by[0], y = axis.vector.y * by[1], z = axis.vector.z * by[2];
-      loads[b].torque = loads[b].torque + axis.weight * cross(axis.vector, x + y + z);
-    }
-  }
-  const Expr minus = g.number(-1);
-  for (const Force& f : model.forces) {
-    switch (f.kind) {
-      case Force::Kind::vector:
-        apply(loads, model, f.on, f.vector);
-        if (f.from) apply(loads, model, *f.from, minus * f.vector);
-        break;
-      case Force::Kind::torque:
-        loads[f.on.body].torque = loads[f.on.body].torque + f.vector;
-        if (f.from) loads[f.from->body].torque = loads[f.from->body].torque - f.vector;
-        break;
-      case Force::Kind::tension: {
-        const Vector line = f.from->point - f.on.point;
-        const Vector pull = (f.tension * pow(norm2(line), {-1, 2})) * line;
-        apply(loads, model, f.on, pull);
-        apply(loads, model, *f.from, minus * pull);
-        break;
-      }
-      case Force::Kind::generalized: break;
-    }
-  }
-  return loads;
-}
-
-std::vector<Load> reactive_loads(const Model& model) {
-  Graph& g = *model.graph;
-  std::vector<Load> loads(model.bodies.size(), Load{zero_vector(g), zero_vector(g)});
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Body& body = model.bodies[b];
-    if (!body.expelled_velocity) continue;
-    const Expr mdot = total_derivative(put_masses(model, body.mass));
-    const Vector thrust = mdot * *body.expelled_velocity;
-    loads[b].force = thrust;
-    loads[b].torque = cross(body.exit_point - body.center, thrust);
-  }
-  return loads;
-}
 
 Mechanics mechanics(const Model& model) {
   Graph& g = *model.graph;
@@ -184,35 +126,6 @@ Mechanics mechanics(const Model& model) {
 }
 
 Column forces(const Mechanics& m) { return m.Q + m.QR + m.QD + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma; }
-
-std::vector<Load> reactions(const Mechanics& m) {
-  const Model& model = *m.model;
-  Graph& g = m.graph();
-  const Vector &omega = model.observer.spin, &a0 = model.observer.origin_acceleration;
-  const Vector omega_dot = total_derivative(omega);
-  std::vector<Load> total(model.bodies.size(), Load{zero_vector(g), zero_vector(g)});
-  for (const WeightedPoint& p : m.points) {
-    const Vector v = total_derivative(p.place), two_v = g.number(2) * v;
-    Vector a = total_derivative(v);
-    if (!is_zero(omega))
-      a = a + cross(omega_dot, p.place) + cross(omega, cross(omega, p.place)) + cross(omega, two_v);
-    if (p.uniform_field) total[p.body].force = total[p.body].force + p.weight * (a + a0);
-    else total[p.body].torque = total[p.body].torque + cross(p.place, p.weight * a);
-  }
-  const std::vector<Load> given = given_loads(model), reactive = reactive_loads(model);
-  for (std::size_t b = 0; b < total.size(); ++b) {
-    const Expr parts[] = {
-        total[b].force.x - given[b].force.x - reactive[b].force.x,
-        total[b].force.y - given[b].force.y - reactive[b].force.y,
-        total[b].force.z - given[b].force.z - reactive[b].force.z,
-        total[b].torque.x - given[b].torque.x - reactive[b].torque.x,
-        total[b].torque.y - given[b].torque.y - reactive[b].torque.y,
-        total[b].torque.z - given[b].torque.z - reactive[b].torque.z};
-    const Column r = put_masses(model, parts);
-    total[b] = {{r[0], r[1], r[2]}, {r[3], r[4], r[5]}};
-  }
-  return total;
-}
 
 // The partial derivative by explicit time, coordinates, velocities and masses held; an unknown given
 // function f(t), a state and an input are explicit time, too.

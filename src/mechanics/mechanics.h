@@ -4,7 +4,7 @@
 // derivative D/Dt of the papers. After the last differentiation put_masses puts m(t, q, q') in.
 // mdot inside QR is the full total derivative of the mass, as it must be.
 #pragma once
-#include "model/model.h"
+#include "model/loads.h"
 
 namespace anholon {
 
@@ -48,18 +48,6 @@ Mechanics mechanics(const Model& model);
 
 // Q + QR + QD + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces.
 Column forces(const Mechanics& m);
-
-// Resultant force and torque about the mass centre on each body: given forces, gravity, reactive
-// force. Potentials, dissipation and generalized forces have no place and are not among them.
-struct Load {
-  Vector force, torque;
-};
-std::vector<Load> given_loads(const Model& model);
-std::vector<Load> reactive_loads(const Model& model);
-
-// The total constraint reaction on each body: m a - F - mdot u - fictitious forces, and its torque
-// about the mass centre (theory: certificate). Masses put in.
-std::vector<Load> reactions(const Mechanics& m);
 
 // Energy and its rate (theory: certificate). Masses put in.
 struct Power {

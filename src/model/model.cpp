@@ -55,6 +55,11 @@ Expr put_state_rates(const Model& model, Expr e, unsigned from) {
 
 Expr put_masses(const Model& model, Expr e) { return put_masses(model, std::span<const Expr>(&e, 1))[0]; }
 
+std::string multiplier_name(const Model& model, std::size_t r) {
+  const Constraint& c = model.constraints[r];
+  return c.by ? model.controls[*c.by].name : "lambda." + c.name;
+}
+
 Column jets(const Model& model, unsigned order) {
   Column q;
   for (std::size_t a = 0; a < model.coordinates.size(); ++a)

@@ -253,6 +253,9 @@ Column put_controls(const Model& model, std::span<const Expr> es);
 // z^(k) -> D^(k-from) of the rate, k >= from >= 1: no derivative of a state beyond `from` - 1 is left.
 Expr put_state_rates(const Model& model, Expr e, unsigned from);
 
+// The unknown that keeps constraint r: "lambda.rolling", or the input's name where the constraint is kept by one.
+std::string multiplier_name(const Model& model, std::size_t r);
+
 // Coordinates q, q', q'', … as columns of symbols.
 Column jets(const Model& model, unsigned order);
 

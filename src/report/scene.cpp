@@ -74,6 +74,25 @@ class SceneMaker {
     for (const Expr& e : s.sizes) sizes_.push_back({scene_.items.size() - 1, root(e)});
   }
 
+  // A body without a shape is drawn as the homogeneous box that has its moments of inertia: along its axis k, with the second
+  // moment E_k, it is sqrt(12 E_k/m) long.
+  void inertia_box(SceneItem& i, const Body& b) {
+    i.shape = "point";
+    Graph& g = *model_.graph;
+    Column moment(3, g.zero());
+    if (b.axes.empty() || !b.orientation || is_zero(b.mass)) return;
+    for (const Axis& axis : b.axes) {
+      if (axis.own.empty()) return;
+      for (std::size_t k = 0; k < 3; ++k) moment[k] += axis.weight * axis.own[k] * axis.own[k];
+    }
+    for (const Expr& e : moment)
+      for (Expr part : {e, b.mass})
+        for (NodeId id : symbols({&part, 1}))
+          if (g.node(id).kind != Kind::parameter) return;  // it varies
+    i.shape = "box";
+    for (const Expr& e : moment) sizes_.push_back({scene_.items.size() - 1, root(sqrt(12 * e / b.mass))});
+  }
+
   void body(const Body& b) {
     if (hidden(b.name)) return;
     const auto drawn = std::find_if(view_.elements.begin(), view_.elements.end(), [&](const View::Element& e) { return e.kind == View::Kind::solid && e.name == b.name; });
@@ -82,7 +101,7 @@ class SceneMaker {
     if (e) i.color = e->color;
     const std::optional<Shape>& s = e ? e->shape : b.shape;
     if (s) shape(i, *s);
-    else i.shape = "point";
+    else inertia_box(i, b);
     i.places = {roots(e && !e->places.empty() ? e->places[0] : b.center)};
     if (e && e->axes) i.axes = roots(*e->axes);
     else if (b.orientation) i.axes = roots(*b.orientation);
@@ -134,7 +153,7 @@ class SceneMaker {
 
   void reactions() {
     if (model_.constraints.empty()) return;
-    const std::vector<Load> loads = anholon::reactions(m_);
+    const std::vector<Load> loads = anholon::reactions(*m_.model);
     for (std::size_t k = 0; k < loads.size(); ++k) {
       const Vector& f = loads[k].force;
       if (!hidden(model_.bodies[k].name) && !(is_zero(f.x) && is_zero(f.y) && is_zero(f.z))) arrow("reaction", model_.bodies[k], f);
@@ -164,7 +183,10 @@ class SceneMaker {
     if (floor_) scene_.floor = machine.value(*floor_);
     if (up_)
       for (std::size_t k = 0; k < 3; ++k) scene_.up[k] = machine.value((*up_)[k]);
-    for (const auto& [i, root] : sizes_) scene_.items[i].sizes.push_back(machine.value(root));
+    for (const auto& [i, root] : sizes_) {
+      const double size = machine.value(root);
+      scene_.items[i].sizes.push_back(std::isfinite(size) ? size : 0);  // a moment rounded below 0 has no root
+    }
   }
 
   const Mechanics& m_;

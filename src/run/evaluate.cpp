@@ -84,7 +84,7 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
       {"V_omega", put_masses(model, m.V_omega)}, {"h", p.h}, {"power_noncons", p.noncons},
       {"power_constraint", p.constraint}, {"dh_dt", p.dh_dt}};
   const std::vector<Column> mass = mass_matrix(m);
-  const std::vector<Load> loads = reactions(m);
+  const std::vector<Load> loads = reactions(*m.model);
   Column es;
   for (const auto& [name, column] : forces) es.insert(es.end(), column.begin(), column.end());
   for (const auto& [name, e] : numbers) es.push_back(e);
@@ -125,7 +125,7 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
   for (std::size_t k = 0; k < model.constraints.size(); ++k) {
     const auto j = s.system.variable(m.lambda[k].id);
     for (int order = 0; order <= multiplier_orders(s); ++order)
-      r.lambda.push_back({derivative_name(model.constraints[k].name, static_cast<unsigned>(order), Format::text),
+      r.lambda.push_back({derivative_name(multiplier_name(model, k), static_cast<unsigned>(order), Format::text),
                           text(order == 0 ? multipliers[k] : j ? point.derivative(*j, order) : N(0), digits)});
   }
   N dh(0), rate(0);

@@ -1,4 +1,6 @@
 // Why there are no consistent initial data, in words.
+#include <utility>
+
 #include "expr/normal.h"
 #include "structure/state_solver.h"
 
@@ -6,7 +8,7 @@ namespace anholon {
 
 template <Number N>
 std::string StateSolver<N>::entry_name(const Node& n) const {
-  return derivative_name(n.kind == Kind::multiplier ? "lambda." + model_.constraints[n.index].name : model_.coordinates[n.index].name, n.order, Format::text);
+  return derivative_name(n.kind == Kind::multiplier ? multiplier_name(model_, n.index) : model_.coordinates[n.index].name, n.order, Format::text);
 }
 
 // The derivatives and multipliers of the nonlinear constraints.
@@ -41,19 +43,27 @@ Outcome StateSolver<N>::no_leading(const System& s, const LeadingSolutions<N>& s
 template <Number N>
 std::string StateSolver<N>::kind(const Stage<N>& stage) const {
   const Node& n = stage.unknown(0);
+  for (std::size_t j = 1; j < stage.unknowns(); ++j)
+    if (is_higher(stage.unknown(j)) != is_higher(n)) return "initial data";
   return n.kind != Kind::jet || n.order > 1 ? "higher derivatives" : n.order == 0 ? "positions" : "velocities";
 }
 
 template <Number N>
 Outcome StateSolver<N>::no_value(const Stage<N>& stage) {
-  return {OutcomeKind::inconsistent,
-          "the " + kind(stage) + " cannot be found: " + stage.equation(0).what + " or its neighbours have no value at the initial data",
+  const std::string what = stage.undefined < stage.size() ? equation_text(stage.equation(stage.undefined)) : "the mass matrix";
+  return {OutcomeKind::inconsistent, "the " + kind(stage) + " cannot be found: " + what + " has no value at the initial data",
           "give a guess near the wanted configuration: [initial] guess = {…}"};
 }
 
-// What an equation asks of the unknowns that are free, the values of the others put in: "x'^2 + 1 = 0".
+// "constraint 'edge' (line 10)".
 template <Number N>
-std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row) const {
+std::string StateSolver<N>::equation_text(const StageEquation& e) const {
+  return e.what + (e.span.line ? " (" + line_of(e.span, model_.source_text) + ")" : "");
+}
+
+// What an equation asks of the unknowns that are free or released, the values of the others put in: "x'^2 + 1 = 0".
+template <Number N>
+std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row, const std::vector<std::size_t>& released) const {
   constexpr std::size_t kMostUnknowns = 2, kLongest = 60;
   constexpr long kMostWork = 2000;
   if (p_.plan && !p_.alone) return {};  // it would take an expression
@@ -68,7 +78,8 @@ std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row) const 
   };
   const auto free = [&](NodeId id) {
     for (std::size_t j = 0; j < stage.unknowns(); ++j)
-      if (&stage.unknown(j) == &g.node(id)) return *state_.origin(g.node(id)) != Origin::given;
+      if (&stage.unknown(j) == &g.node(id))
+        return *state_.origin(g.node(id)) != Origin::given || std::find(released.begin(), released.end(), j) != released.end();
     return false;
   };
   const Expr e = substitute({&residual, 1}, [&](NodeId id) {
@@ -82,23 +93,78 @@ std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row) const 
   if (open == 0 || open > kMostUnknowns || !valued || stage.equation(row).span.line == 0) return {};
   const std::optional<Expr> full = expanded(e, kMostWork);
   const std::string text = print(full ? *full : e, model_.names, Format::text);
-  return text.size() > kLongest ? std::string() : "; it asks for " + text + " = 0 here";
+  return text.size() > kLongest ? std::string() : "asks for " + text + " = 0 here";
+}
+
+// "x, y and z".
+static std::string listed(const std::vector<std::string>& parts, const char* last = " and ") {
+  std::string text;
+  for (std::size_t k = 0; k < parts.size(); ++k) text += (k == 0 ? "" : k + 1 == parts.size() ? last : ", ") + parts[k];
+  return text;
+}
+
+// Two numbers with as many digits as tell one from the other.
+static std::pair<std::string, std::string> told_apart(double a, double b) {
+  for (int digits : {6, 9, 12, 17})
+    if (std::pair text(number_text(a, digits), number_text(b, digits)); text.first != text.second || digits == 17) return text;
+  return {};
+}
+
+// The values given and the equations that cannot hold together, in words.
+template <Number N>
+Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& c, const InitialState<N>& before) const {
+  std::vector<std::string> values, names, equations, conditions;
+  std::string wanted;
+  for (std::size_t j : c.given) {
+    const Node& n = stage.unknown(j);
+    const double value = to_double(stage.x_of(before, j));
+    const auto [is, other] = c.wanted ? told_apart(value, to_double(*c.wanted)) : std::pair(number_text(value, 6), std::string());
+    names.push_back(entry_name(n));
+    std::string place;
+    for (const GivenValue& v : model_.initial.given)
+      if (&node(v.symbol) == &n && !overridden(n) && v.span.line) place = " (" + line_of(v.span, model_.source_text) + ")";
+    values.push_back(names.back() + " = " + is + place);
+    if (c.wanted) wanted = names.back() + " = " + other;
+  }
+  const bool alone = c.equations.size() == 1;
+  bool clauses = false;
+  for (std::size_t i : c.equations) {
+    const StageEquation& e = stage.equation(i);
+    if (e.condition) conditions.push_back(e.what);
+    const std::string asks = wanted.empty() || !alone || !stage.linear() ? asked(stage, i, c.given) : "asks for " + wanted + " here";
+    clauses = clauses || !asks.empty();
+    equations.push_back(equation_text(e) + (asks.empty() ? "" : ", which " + asks));
+  }
+  const std::string guess = "where there is a solution, a guess near it helps: [initial] guess = {…}";
+  if (values.empty() && alone)
+    return {OutcomeKind::inconsistent, "no " + kind(stage) + " satisfy " + equations[0],
+            stage.linear() ? "start elsewhere, or change the equation" : "the equation may have no real solution; " + guess};
+  if (values.empty())
+    return {OutcomeKind::inconsistent, listed(equations, clauses ? ", and " : " and ") + ": no " + kind(stage) + " satisfy " + (equations.size() == 2 ? "both" : "all of them"),
+            (conditions.empty() ? "one of them has to go, or the motion starts elsewhere" : "leave out " + listed(conditions, " or ")) +
+                (stage.linear() ? "" : "; " + guess)};
+  std::string message = listed(values) + (values.size() == 1 ? " clashes with " : " clash with ") + listed(equations, clauses ? ", and " : " and ");
+  if (!wanted.empty() && !stage.linear()) message += "; " + wanted + " would fit";
+  else if (!wanted.empty() && !alone) message += "; together they ask for " + wanted + " here";
+  names.insert(names.end(), conditions.begin(), conditions.end());
+  return {OutcomeKind::inconsistent, message,
+          "leave out " + std::string(names.size() == 1 ? "" : "one of ") + listed(names, ", ") + " (what is missing is found from the constraints)" +
+              (stage.linear() || c.wanted ? "" : "; " + guess)};
 }
 
 template <Number N>
-Outcome StateSolver<N>::clash(const Stage<N>& stage, std::size_t row) {
-  const StageEquation& e = stage.equation(row);
-  std::string fixed;
-  for (std::size_t j = 0; j < stage.unknowns(); ++j) {
-    const Node& n = stage.unknown(j);
-    if (*state_.origin(n) == Origin::given && abs(stage.jacobian(row, j)) > N(0)) fixed += (fixed.empty() ? "" : ", ") + entry_name(n);
-  }
-  const std::string at = e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "";
+Outcome StateSolver<N>::clash(Stage<N>& stage, std::size_t worst, const InitialState<N>& before) {
+  std::vector<bool> given;
+  for (std::size_t j = 0; j < stage.unknowns(); ++j) given.push_back(*before.origin(stage.unknown(j)) == Origin::given);
+  const double missed = std::abs(to_double(stage.residual[worst]));
+  const std::string asks = asked(stage, worst, {});
+  InitialState<N> start = before;
+  const auto c = contradiction(stage, start, given, worst);
+  clash_is_told_ = c.has_value();
+  if (c) return clash_of(stage, *c, before);
   return {OutcomeKind::inconsistent,
-          e.what + at + " is missed by " + number_text(std::abs(to_double(stage.residual[row])), 3) + " with the initial data given" + asked(stage, row),
-          fixed.empty() ? "it clashes with another constraint or condition, or has no real solution near the guess: [initial] guess = {…}"
-                        : "leave out " + std::string(fixed.find(',') == std::string::npos ? "" : "one of ") + fixed +
-                              " (what is missing is found from the constraints), if the equation can be satisfied at all"};
+          equation_text(stage.equation(worst)) + " is missed by " + number_text(missed, 3) + " with the initial data given" + (asks.empty() ? "" : "; it " + asks),
+          "it clashes with another constraint or condition, or has no real solution near the guess: [initial] guess = {…}"};
 }
 
 #define INSTANTIATE(N)                                                                                              \
@@ -106,7 +172,7 @@ Outcome StateSolver<N>::clash(const Stage<N>& stage, std::size_t row) {
   template std::string StateSolver<N>::solution_text(const std::vector<N>&, const System&, const Structure&) const; \
   template Outcome StateSolver<N>::no_leading(const System&, const LeadingSolutions<N>&, const std::string&) const; \
   template Outcome StateSolver<N>::no_value(const Stage<N>&);                                                       \
-  template Outcome StateSolver<N>::clash(const Stage<N>&, std::size_t);
+  template Outcome StateSolver<N>::clash(Stage<N>&, std::size_t, const InitialState<N>&);
 INSTANTIATE(double)
 INSTANTIATE(long double)
 INSTANTIATE(Quad)

@@ -182,6 +182,7 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
     if (!(said.worst() > stage_rounding<N>())) return {};
   }
   const InitialState<N> before = state_;
+  Outcome refused;
   for (int lowest : {1, 0}) {
     state_ = before;
     Column unknowns;
@@ -193,9 +194,11 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
       }
     for (Expr u : unknowns)  // values that followed may follow anew
       if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j]) *state_.origin(node(u)) = Origin::derived;
-    if (solve(equations, unknowns, metric).ok()) return {};
+    clash_is_told_ = false;
+    if (refused = solve(equations, unknowns, metric); refused.ok()) return {};
   }
   state_ = before;
+  if (clash_is_told_) return refused;
   Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
   std::size_t worst = 0;
   if (!said.evaluate(state_)) return no_value(said);

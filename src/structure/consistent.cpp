@@ -130,9 +130,10 @@ Outcome StateSolver<N>::solve(const StartPlan::Stages& stages, const std::functi
   const InitialState<N> failed = std::exchange(state_, before);
   for (Expr u : stages->unknowns)
     if (Origin& origin = *state_.origin(node(u)); origin == Origin::given && !overridden(node(u))) origin = Origin::guessed;
-  if (attempt(without()).ok()) return {};
+  const Outcome against_laws = attempt(without());
+  if (against_laws.ok()) return {};
   state_ = failed;
-  return o;
+  return against_laws;
 }
 
 template <Number N>
@@ -152,16 +153,14 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
   const Column& unknowns = stages->unknowns;
   Stage<N> stage(m_, stages, p_.parameters);
   std::vector<std::size_t> free, all;
-  std::vector<N> before;
+  const InitialState<N> before = state_;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     all.push_back(j);
-    before.push_back(stage.x(state_, j));
     if (*state_.origin(stage.unknown(j)) != Origin::given) free.push_back(j);
   }
   std::size_t worst = 0;
   if (!find_by_least_change(stage, state_, free)) return no_value(stage);
-  for (std::size_t j : free)
-    if (stage.moves(j)) *state_.origin(stage.unknown(j)) = Origin::derived;
+  mark_derived(stage, before, free);
   N miss = stage.worst(&worst);
   if (!(miss > stage_rounding<N>())) return {};
   if (to_double(miss) <= kRounded) {
@@ -169,7 +168,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
     if (find_by_least_change(stage, state_, all) && !(stage.worst(&worst) > stage_rounding<N>())) {
       for (std::size_t j : all)
         if (Origin& origin = *state_.origin(stage.unknown(j)); origin == Origin::given)
-          if (N change = abs(N(stage.x(state_, j) - before[j])); change > N(0)) {
+          if (N change = abs(N(stage.x(state_, j) - stage.x_of(before, j))); change > N(0)) {
             origin = Origin::corrected;
             if (change > state_.largest_correction) state_.largest_correction = change;
           }
@@ -177,7 +176,20 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
     }
     miss = stage.worst(&worst);
   }
-  return clash(stage, worst);
+  return clash(stage, worst, before);
+}
+
+// What the equations hold is derived from them, and so is what they move along through the mass matrix. Round-off of that is none.
+template <Number N>
+void StateSolver<N>::mark_derived(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free) {
+  const auto change = [&](std::size_t j) { return N(abs(N(stage.x(state_, j) - stage.x_of(before, j)))); };
+  N largest(0);
+  for (std::size_t j : free)
+    if (N c = change(j); c > largest) largest = c;
+  for (std::size_t j : free) {
+    if (stage.moves(j) || change(j) > largest * unit_roundoff<N>() * N(64)) *state_.origin(stage.unknown(j)) = Origin::derived;
+    else stage.x(state_, j) = stage.x_of(before, j);
+  }
 }
 
 StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass)

@@ -9,19 +9,21 @@ constexpr int kMostIterations = 60;
 }  // namespace
 
 static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equations, const Column& unknowns,
-                     const std::vector<Column>* mass) {
+                     const std::vector<Column>* mass, bool& linear) {
   Column es;
   for (const StageEquation& e : equations) es.push_back(e.residual);
   for (const StageEquation& e : equations) {
     const Column d = gradient(e.residual, unknowns);
     es.insert(es.end(), d.begin(), d.end());
   }
+  const std::vector<NodeId> met = symbols(std::span<const Expr>(es).subspan(equations.size()));
+  linear = std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return std::find(met.begin(), met.end(), u.id) != met.end(); });
   for (const Column& row : mass && !mass->empty() ? *mass : mass_matrix(m)) es.insert(es.end(), row.begin(), row.end());
   return compile(es);
 }
 
 StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column in, unsigned measured, const std::vector<Column>* mass)
-    : equations(std::move(of)), unknowns(std::move(in)), metric(measured), tape(compiled(m, equations, unknowns, mass)) {}
+    : equations(std::move(of)), unknowns(std::move(in)), metric(measured), tape(compiled(m, equations, unknowns, mass, linear)) {}
 
 template <Number N>
 Stage<N>::Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const std::vector<N>& parameters)
@@ -46,6 +48,11 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   for (std::size_t j = 0; j < n; ++j)
     if (N v = abs(*s.value(unknown(j))); v > largest_unknown) largest_unknown = v;
   for (std::size_t i = 0; i < size(); ++i) {
+    if (!kept_.empty() && !kept_[i]) {
+      scale[i] = N(1);
+      continue;
+    }
+    undefined = i;
     residual[i] = machine_.value(i);
     if (!is_finite(residual[i])) return false;
     scale[i] = machine_.terms(i, 0);
@@ -58,6 +65,7 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
     if (floor_[i] > scale[i]) scale[i] = floor_[i];
     if (!(scale[i] > N(0))) scale[i] = N(1);
   }
+  undefined = size();
   const std::size_t first = size() * (n + 1);
   const auto mass = [&](std::size_t a, std::size_t b) -> const N& { return machine_.value(first + a * q + b); };
   N largest(0);

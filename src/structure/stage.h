@@ -28,6 +28,7 @@ struct StagePlan {
   std::vector<StageEquation> equations;
   Column unknowns;
   unsigned metric;
+  bool linear = false;  // every equation is, in the unknowns
   Tape tape;
 };
 
@@ -46,8 +47,16 @@ class Stage {
   const StageEquation& equation(std::size_t i) const { return plan_->equations[i]; }
   const Node& unknown(std::size_t j) const { return m_.graph().node(plan_->unknowns[j].id); }
   N& x(InitialState<N>& s, std::size_t j) const { return *s.value(unknown(j)); }
+  const N& x_of(const InitialState<N>& s, std::size_t j) const { return *s.value(unknown(j)); }
+  bool linear() const { return plan_->linear; }
+  const Mechanics& mechanics() const { return m_; }
 
-  // Values, scales and partial derivatives at a state; false if a formula has no value there.
+  // From now on only these equations ask for anything; then all again.
+  void keep(std::vector<bool> rows) { kept_ = std::move(rows); }
+  void keep_all() { kept_.clear(); }
+
+  // Values, scales and partial derivatives at a state; false if a formula has no value there (`undefined` is its row, or the
+  // number of equations where it is an entry of the mass matrix).
   bool evaluate(const InitialState<N>& s);
   // True if the equations say anything about unknown j.
   bool moves(std::size_t j) const {
@@ -62,9 +71,11 @@ class Stage {
 
   std::vector<N> residual, scale;
   Matrix<N> jacobian, metric;
+  std::size_t undefined = 0;
 
  private:
   std::vector<N> floor_;
+  std::vector<bool> kept_;  // empty: all
 
   const Mechanics& m_;
   std::shared_ptr<const StagePlan> plan_;

@@ -5,6 +5,7 @@
 
 #include "structure/branch.h"
 #include "structure/consistent.h"
+#include "structure/contradiction.h"
 
 namespace anholon {
 
@@ -45,6 +46,7 @@ class StateSolver {
   Outcome solve(const StageEquations& equations, const Column& unknowns, unsigned metric);
   StartPlan::Stages kept_of(const StartPlan::Stages& s) const;
   Outcome attempt(const StartPlan::Stages& stages);
+  void mark_derived(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
 
   // Beyond velocities (completion.cpp).
   void make_room(const System& s, const Structure& t);
@@ -71,13 +73,16 @@ class StateSolver {
   Outcome no_leading(const System& s, const LeadingSolutions<N>& solutions, const std::string& others) const;
   std::string kind(const Stage<N>& stage) const;
   Outcome no_value(const Stage<N>& stage);
-  std::string asked(const Stage<N>& stage, std::size_t row) const;
-  Outcome clash(const Stage<N>& stage, std::size_t row);
+  std::string equation_text(const StageEquation& e) const;
+  std::string asked(const Stage<N>& stage, std::size_t row, const std::vector<std::size_t>& released) const;
+  Outcome clash(Stage<N>& stage, std::size_t worst, const InitialState<N>& before);
+  Outcome clash_of(const Stage<N>& stage, const Contradiction<N>& c, const InitialState<N>& before) const;
 
   const InitialProblem<N>& p_;
   const Mechanics& m_;
   const Model& model_;
   InitialState<N>& state_;
+  bool clash_is_told_ = false;  // of the last stage that failed: which values and equations
 };
 
 }  // namespace anholon

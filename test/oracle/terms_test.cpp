@@ -107,7 +107,7 @@ class OracleTerms : public testing::TestWithParam<test::OraclePair> {
     std::vector<std::size_t> bodies;  // those with a mass or an inertia, in the order of the file
     for (std::size_t b = 0; b < model->bodies.size(); ++b)
       if (!is_zero(model->bodies[b].mass) || !model->bodies[b].axes.empty()) bodies.push_back(b);
-    const std::vector<Load> loads = reactions(m);
+    const std::vector<Load> loads = reactions(*m.model);
     for (const auto& [key, vector] : values.items())
       if (key.rfind("R_total_body", 0) == 0) {
         const Vector& r = loads.at(bodies.at(std::stoul(key.substr(12)))).force;

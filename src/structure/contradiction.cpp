@@ -1,0 +1,194 @@
+#include "structure/contradiction.h"
+
+#include "structure/state_solver.h"
+
+namespace anholon {
+
+namespace {
+
+// ---- linear equations ------------------------------------------------------------------------
+
+template <Number N>
+class Circuits {
+ public:
+  Circuits(Stage<N>& stage, const InitialState<N>& state, const std::vector<bool>& given) : s_(stage), state_(state), given_(given) {
+    for (std::size_t j = 0; j < given.size(); ++j)
+      if (!given[j]) free_.push_back(j);
+  }
+
+  std::optional<Contradiction<N>> smallest() {
+    Matrix<N> a(s_.size(), free_.size());
+    for (std::size_t i = 0; i < s_.size(); ++i)
+      for (std::size_t j = 0; j < free_.size(); ++j) a(i, j) = s_.jacobian(i, free_[j]);
+    const RowChoice<N> rows = choose_rows(a, N(kDependent));
+    basis_ = rows.independent;
+    const std::size_t n = basis_.size();
+    Matrix<N> transposed(n, n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) transposed(j, i) = a(basis_[i], rows.pivot_columns[j]);
+    Lu<N> lu;
+    if (n > 0 && !lu.factor(transposed)) return std::nullopt;
+    std::optional<Contradiction<N>> best;
+    for (std::size_t r : rows.dependent) {
+      std::vector<N> right(n, N(0)), c;
+      for (std::size_t j = 0; j < n; ++j) right[j] = a(r, rows.pivot_columns[j]);
+      if (n > 0) lu.solve(right, c);
+      const auto found = circuit(a, r, c);
+      if (found && (!best || members(*found) < members(*best))) best = found;
+    }
+    return best;
+  }
+
+ private:
+  static std::size_t members(const Contradiction<N>& c) { return c.equations.size() + c.given.size(); }
+
+  // Of row r with its combination of the basis; nothing where the combination holds.
+  std::optional<Contradiction<N>> circuit(const Matrix<N>& a, std::size_t r, const std::vector<N>& c) const {
+    std::vector<N> part(c.size(), N(0));
+    N largest(0);
+    for (std::size_t j = 0; j < a.cols; ++j) {
+      if (N v = abs(a(r, j)); v > largest) largest = v;
+      for (std::size_t i = 0; i < c.size(); ++i)
+        if (N v = abs(N(c[i] * a(basis_[i], j))); v > part[i]) part[i] = v;
+    }
+    for (const N& v : part)
+      if (v > largest) largest = v;
+    Contradiction<N> out;
+    std::vector<std::pair<std::size_t, N>> terms = {{r, N(1)}};
+    for (std::size_t i = 0; i < c.size(); ++i)
+      if (part[i] > N(kDependent) * largest) terms.push_back({basis_[i], N(-c[i])});
+    N rho(0), scale(0);
+    for (const auto& [i, factor] : terms) {
+      out.equations.push_back(i);
+      rho += factor * s_.residual[i];
+      scale += abs(factor) * s_.scale[i];
+    }
+    if (!(abs(rho) > N(kRounded) * scale)) return std::nullopt;
+    std::sort(out.equations.begin(), out.equations.end());
+    N coefficient(0);
+    for (std::size_t j = 0; j < given_.size(); ++j) {
+      if (!given_[j]) continue;
+      N sum(0), size(0);
+      for (const auto& [i, factor] : terms) {
+        const N term = factor * s_.jacobian(i, j);
+        sum += term;
+        size += abs(term);
+      }
+      if (abs(sum) > N(kDependent) * size) out.given.push_back(j), coefficient = sum;
+    }
+    if (out.given.size() == 1) out.wanted = s_.x_of(state_, out.given[0]) - rho / coefficient;
+    return out;
+  }
+
+  Stage<N>& s_;
+  const InitialState<N>& state_;
+  const std::vector<bool>& given_;
+  std::vector<std::size_t> free_, basis_;
+};
+
+// ---- nonlinear equations ---------------------------------------------------------------------
+
+constexpr std::size_t kMostMembers = 40;   // each is a search for a solution
+constexpr std::size_t kMostUnknowns = 60;
+
+template <Number N>
+class DeletionFilter {
+ public:
+  DeletionFilter(const Mechanics& m, Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given)
+      : s_(stage), state_(state), start_(state), given_(given), holds_(stage.size(), std::vector<bool>(stage.unknowns(), false)) {
+    for (std::size_t i = 0; i < s_.size(); ++i) {
+      const std::vector<NodeId> all = symbols({&s_.equation(i).residual, 1});
+      for (std::size_t j = 0; j < s_.unknowns(); ++j)
+        holds_[i][j] = std::any_of(all.begin(), all.end(), [&](NodeId id) { return &m.graph().node(id) == &s_.unknown(j); });
+    }
+  }
+  ~DeletionFilter() {
+    s_.keep_all();
+    state_ = start_;
+  }
+
+  std::optional<Contradiction<N>> run(std::size_t worst) {
+    std::vector<bool> rows = neighbours(worst), fixed(given_.size(), false);
+    std::size_t members = 0, unknowns = 0;
+    for (std::size_t j = 0; j < given_.size(); ++j) {
+      const bool met = touched(rows, j);
+      fixed[j] = given_[j] && met;
+      members += fixed[j] ? 1 : 0;
+      unknowns += met ? 1 : 0;
+    }
+    members += static_cast<std::size_t>(std::count(rows.begin(), rows.end(), true));
+    if (members > kMostMembers || unknowns > kMostUnknowns || solvable(rows, fixed)) return std::nullopt;
+    // Equations that contradict each other do so whatever is given.
+    if (const std::vector<bool> none(given_.size(), false); !solvable(rows, none)) fixed = none;
+    for (std::vector<bool>* list : {&rows, &fixed})
+      for (std::size_t k = 0; k < list->size(); ++k) {
+        if (!(*list)[k]) continue;
+        (*list)[k] = false;
+        if (solvable(rows, fixed)) (*list)[k] = true;
+      }
+    Contradiction<N> out;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (rows[i]) out.equations.push_back(i);
+    for (std::size_t j = 0; j < fixed.size(); ++j)
+      if (fixed[j]) out.given.push_back(j);
+    if (out.given.size() == 1)
+      if (fixed[out.given[0]] = false; solvable(rows, fixed)) out.wanted = s_.x(state_, out.given[0]);
+    return out;
+  }
+
+ private:
+  bool touched(const std::vector<bool>& rows, std::size_t j) const {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (rows[i] && holds_[i][j]) return true;
+    return false;
+  }
+
+  // The equations that are tied to this one through free unknowns.
+  std::vector<bool> neighbours(std::size_t row) const {
+    std::vector<bool> rows(s_.size(), false);
+    std::vector<std::size_t> open = {row};
+    rows[row] = true;
+    while (!open.empty()) {
+      const std::size_t i = open.back();
+      open.pop_back();
+      for (std::size_t j = 0; j < given_.size(); ++j) {
+        if (given_[j] || !holds_[i][j]) continue;
+        for (std::size_t k = 0; k < s_.size(); ++k)
+          if (holds_[k][j] && !rows[k]) rows[k] = true, open.push_back(k);
+      }
+    }
+    return rows;
+  }
+
+  // Is there a solution of these equations with these values given?
+  bool solvable(const std::vector<bool>& rows, const std::vector<bool>& fixed) {
+    state_ = start_;
+    s_.keep(rows);
+    std::vector<std::size_t> free;
+    for (std::size_t j = 0; j < fixed.size(); ++j)
+      if (!fixed[j] && touched(rows, j)) free.push_back(j);
+    return find_by_least_change(s_, state_, free) && to_double(s_.worst()) <= kRounded;
+  }
+
+  Stage<N>& s_;
+  InitialState<N>& state_;
+  const InitialState<N> start_;
+  const std::vector<bool>& given_;
+  std::vector<std::vector<bool>> holds_;  // equation by unknown
+};
+
+}  // namespace
+
+template <Number N>
+std::optional<Contradiction<N>> contradiction(Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given, std::size_t worst) {
+  if (!stage.linear()) return DeletionFilter<N>(stage.mechanics(), stage, state, given).run(worst);
+  if (!stage.evaluate(state)) return std::nullopt;
+  return Circuits<N>(stage, state, given).smallest();
+}
+
+template std::optional<Contradiction<double>> contradiction(Stage<double>&, InitialState<double>&, const std::vector<bool>&, std::size_t);
+template std::optional<Contradiction<long double>> contradiction(Stage<long double>&, InitialState<long double>&, const std::vector<bool>&, std::size_t);
+template std::optional<Contradiction<Quad>> contradiction(Stage<Quad>&, InitialState<Quad>&, const std::vector<bool>&, std::size_t);
+template std::optional<Contradiction<Multi>> contradiction(Stage<Multi>&, InitialState<Multi>&, const std::vector<bool>&, std::size_t);
+
+}  // namespace anholon
