@@ -18,7 +18,7 @@ std::vector<LanguageSection> language_of_bodies() {
         {"axes", any, "expert form instead of inertia: a list of `{weight, vector}`"},
         {"expelled_velocity", vector, "of the matter that leaves or joins, relative to the material point at `exit_point`"},
         {"exit_point", vector, "where it does; an array is along the body axes from the centre; the centre without it"},
-        {"shape", text, "a homogeneous solid: `disc(R)`, `ring(R)`, `cylinder(R, h)` about z, `rod(l)` along x, `ball(R)`, `shell(R)`, `box(a, b, c)`, `ellipsoid(a, b, c)` of these half axes"}},
+        {"shape", text, "a homogeneous solid: `disc(R)`, `ring(R)`, `cylinder(R, h)`, `torus(R, r)` (a full tube of radius r around the circle of radius R) about z, `rod(l)` along x, `ball(R)`, `shell(R)`, `box(a, b, c)`, `ellipsoid(a, b, c)` of these half axes; beside `inertia` it is only the picture"}},
        R"md(```toml
 [[body]]
 name = "wheel"
@@ -41,7 +41,7 @@ orientation = "rotz(0.3*t)"
 
 - Only `name` and `center` must be there. Without inertia and orientation a body is a point.
 - An inertia needs an orientation. `inertia` wins over `shape`. A matrix holds J_xz = −∫ x z dm; one that no body can have is an error.
-- A body is not a point: write `wheel.center`. `wheel.x` is an axis, `wheel(a, b, c)` is a `wheel.x` + b `wheel.y` + c `wheel.z`.
+- A body with an `orientation` is a frame wherever one is wanted: `wheel*rotx(0.2)`. It is not a point: write `wheel.center`. `wheel.x` is an axis, `wheel(a, b, c)` is a `wheel.x` + b `wheel.y` + c `wheel.z`.
 - The centre and the orientation are formulas of coordinates and t, not of velocities, nor of inputs.
 - A mass that varies pushes by the matter that leaves or joins: `expelled_velocity` says how. Without it that matter has the
   velocity of the body's point, and there is no push.
@@ -82,7 +82,7 @@ axes = [{weight = "1/12", vector = ["cos(theta)", "sin(theta)", "0"]}]
       {"particle", Form::elements, any,
        {{"name", name, ""},
         {"mass", formula, ""},
-        {"position", vector, "`p.position` or `p.center` in formulas"},
+        {"position", vector, "a particle is a point: `vel(p)`, `p + ex`; also `p.position`, `p.center`; its coordinates are `p.x`, `p.y`, `p.z`"},
         {"expelled_velocity", vector, "of the matter that leaves or joins, relative to the particle"}},
        R"md(```toml
 functions.mr = "5 - t/10"
@@ -138,7 +138,7 @@ generalized = {theta = "-theta'"}
 
 - A force without `from` acts from outside; `check` lists these.
 - A force works through the velocity of the material point: at a place that moves over the body, the velocity of the body there counts.
-- Forces may depend on anything but `lambda.NAME`.
+- Forces may depend on anything but `lambda.NAME` and `reaction(B)`, and definitions that hold them.
 )md"},
       {"force.on", Form::part, any,
        {{"body", name, "a body or particle"},
@@ -175,7 +175,7 @@ damper = "0.2*x'^2/2"              # the force -0.2 x'
 - Forces are −∂R/∂q′.
 )md"},
       {"constraint", Form::elements, any,
-       {{"name", name, "its multiplier is `lambda.NAME`"},
+       {{"name", name, "its multiplier is `lambda.NAME`; where the constraint is kept by an input, that input is it"},
         {"equation", equation, "of numbers or vectors, of any order"},
         {"along", any, "a vector equation: a frame or a list of vectors, along which components are taken"},
         {"by", names, "the inputs that keep it (servo constraint), one name or as many as equations"}},

@@ -28,6 +28,7 @@ const std::vector<Solid>& solids() {
       {"rod", "rod(l)", 1, {row(0), row(twelfth), row(twelfth)}},
       {"box", "box(a, b, c)", 3, {row(0, twelfth, twelfth), row(twelfth, 0, twelfth), row(twelfth, twelfth, 0)}},
       {"ellipsoid", "ellipsoid(a, b, c)", 3, {row(0, Rational(1, 5), Rational(1, 5)), row(Rational(1, 5), 0, Rational(1, 5)), row(Rational(1, 5), Rational(1, 5), 0)}},
+      {"torus", "torus(R, r)", 2, {row(half, Rational(5, 8)), row(half, Rational(5, 8)), row(1, Rational(3, 4))}},
       {"cylinder", "cylinder(R, h)", 2, {row(fourth, twelfth), row(fourth, twelfth), row(half, 0)}},
   };
   return list;
@@ -69,6 +70,9 @@ Shape read_shape(const Item& item, Scope& scope, Model& model) {
     if (value && !(*value > 0)) throw Failure(a.span, "the size of the " + shape.kind + " is " + number_text(*value, 6) + ": a size is positive");
     shape.sizes.push_back(size);
   }
+  if (shape.kind == "torus")
+    if (const auto hole = constant_value(model, shape.sizes[0] - shape.sizes[1]); hole && *hole < 0)
+      throw Failure(s.span, "the tube of the torus is thicker than its middle circle: r is at most R", "R is the radius of the circle in the middle of the tube, r that of the tube");
   return shape;
 }
 

@@ -20,6 +20,7 @@ export function radius(item: Item): number {
   if (s.length === 0) return 0;
   switch (item.shape) {
     case 'disc': case 'ring': case 'ball': case 'shell': return s[0];
+    case 'torus': return s[0] + (s[1] ?? 0);
     case 'cylinder': return Math.hypot(s[0], (s[1] ?? 0) / 2);
     case 'rod': return s[0] / 2;
     case 'box': return Math.hypot(...s) / 2;
@@ -35,6 +36,7 @@ export function body(item: Item, unit: number, t: Tones): Object3D {
   switch (sized ? item.shape : 'point') {
     case 'disc': return disc(a, t);
     case 'ring': return ring(a, t);
+    case 'torus': return torus(a, b ?? 0.2 * a, t);
     case 'cylinder': return cylinder(a, b ?? a, t);
     case 'ball': return ball(a, t, false);
     case 'shell': return ball(a, t, true);
@@ -102,6 +104,14 @@ function ring(R: number, t: Tones): Object3D {
   const spokes = [0, 1, 2, 3].map((k) => new CylinderGeometry(0.25 * tube, 0.25 * tube, 2 * (R - tube), 8).rotateZ((k * Math.PI) / 4));
   for (const s of spokes) group.add(patterned(s, () => t.base));
   group.add(patterned(new SphereGeometry(1.5 * tube, 20, 12).translate(R - tube, 0, 0), () => t.mark));
+  return group;
+}
+
+// The circle in the middle of the tube has the radius R, the tube r; a mark towards the body's x axis.
+function torus(R: number, r: number, t: Tones): Object3D {
+  const group = new Group();
+  group.add(patterned(new TorusGeometry(R, r, 28, 96), (x, y) => (around(x, y, 12) % 2 === 0 ? t.base : t.light)));
+  group.add(patterned(new SphereGeometry(0.3 * r, 20, 12).translate(R + r, 0, 0), () => t.mark));
   return group;
 }
 

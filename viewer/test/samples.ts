@@ -223,7 +223,7 @@ export function decimated(columns_count = 24): RawCase {
 export function shapes(): RawCase {
   const code = new Code(), zero = code.c(0), t = range(61, (k) => k / 10);
   const turn = code.product(code.rotz(code.i(0)), code.rotx(code.c(0.5)));
-  const list: [string, number[]][] = [['disc', [0.5]], ['ring', [0.5]], ['cylinder', [0.4, 0.6]], ['ball', [0.45]], ['shell', [0.45]], ['rod', [1]], ['box', [0.8, 0.5, 0.3]], ['point', []]];
+  const list: [string, number[]][] = [['disc', [0.5]], ['ring', [0.5]], ['cylinder', [0.4, 0.6]], ['torus', [0.35, 0.12]], ['ball', [0.45]], ['shell', [0.45]], ['rod', [1]], ['box', [0.8, 0.5, 0.3]], ['point', []]];
   return {
     name: 'shapes', rows: 61, shown: 61, t: encode(t), unit: '', columns: [column('a', mi('a'), '', 'g', t)], groups: [], frames: null, events: [],
     scene: {
