@@ -1,6 +1,8 @@
 #include "base/diagnostic.h"
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 
 #include "base/escape.h"
 #include "base/utf8.h"
@@ -92,6 +94,32 @@ std::string Diagnostics::print(const SourceText& source) const {
   for (std::size_t i = 0; i < sorted.size() && i < kShown; ++i) out += anholon::print(*sorted[i], all);
   if (sorted.size() > kShown) out += "… and " + std::to_string(sorted.size() - kShown) + " more\n";
   return out;
+}
+
+static bool before(const Span& a, const Span& b) {
+  return std::tuple(a.file, a.line, a.column) < std::tuple(b.file, b.line, b.column);
+}
+
+void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) {
+  std::map<std::string, std::vector<std::size_t>> alike;
+  for (std::size_t k = 0; k < list_.size(); ++k)
+    if (is_one(list_[k].message)) alike[list_[k].message + "\n" + list_[k].hint].push_back(k);
+  std::vector<bool> left_out(list_.size(), false);
+  for (auto& [message, places] : alike) {
+    std::stable_sort(places.begin(), places.end(), [&](std::size_t a, std::size_t b) { return before(list_[a].span, list_[b].span); });
+    std::size_t others = 0;
+    for (std::size_t k = 1; k < places.size(); ++k) {
+      left_out[places[k]] = true;
+      others += before(list_[places[k - 1]].span, list_[places[k]].span) ? 1 : 0;
+    }
+    if (others == 0) continue;
+    std::string& hint = list_[places[0]].hint;
+    hint += (hint.empty() ? "" : "; ") + std::string("it stands in ") + std::to_string(others) + (others == 1 ? " other place, too" : " other places, too");
+  }
+  std::vector<Diagnostic> kept;
+  for (std::size_t k = 0; k < list_.size(); ++k)
+    if (!left_out[k]) kept.push_back(std::move(list_[k]));
+  list_ = std::move(kept);
 }
 
 static std::size_t edit_distance(const std::string& a, const std::string& b) {

@@ -6,6 +6,7 @@
 #pragma once
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,8 @@ class Diagnostics {
   void warning(Span span, std::string message, std::string hint = {});
   bool has_errors() const;
   const std::vector<Diagnostic>& list() const { return list_; }
+  // One report stands for all that differ in their place only, where `is_one` says so of the message: the first, which says how many there are.
+  void gather(const std::function<bool(const std::string&)>& is_one);
   // `file:line:col: error: …`, the source line, a caret range, `hint: …`; in order of position.
   std::string print(const SourceText& source) const;
   // The files beside the main one, where they were found by what reports here.

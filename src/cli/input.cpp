@@ -11,6 +11,7 @@
 
 #include "cli/say.h"
 #include "run/form_choice.h"
+#include "spec/constant.h"
 
 namespace anholon::cli {
 
@@ -99,8 +100,12 @@ Precision precision(const Options& o, Precision usual) {
 }
 
 Rational exact(const std::string& text, const std::string& option) {
-  if (const auto r = parse_rational(text)) return *r;
-  throw UsageError{"error: " + option + ": '" + text + "' is not a number\nhint: a decimal such as 0.25, 1e-12, or a fraction 1/3\n"};
+  try {
+    return read_constant(text).value;
+  } catch (const Failure& f) {
+    const std::string why = f.diagnostic.message.rfind("'" + text, 0) == 0 ? "" : ": " + f.diagnostic.message;
+    throw UsageError{"error: " + option + ": '" + text + "' is not a number" + why + "\nhint: a decimal such as 0.25, 1e-12, a fraction 1/3, pi/2 or a number with a unit, '30 deg'\n"};
+  }
 }
 
 static std::pair<std::string, std::string> assignment(const std::string& text, const std::string& option) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "numeric/philox.h"
+#include "spec/constant.h"
 
 namespace anholon::cli {
 
@@ -39,13 +40,33 @@ std::vector<Part> parts(const std::string& word, std::size_t from, std::size_t t
 
 constexpr const char* kHint = "--vary m=1:3:5 (from, to, how many), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
 
-Rational number(const std::string& word, const Part& p) {
+// A number, a formula of numbers and pi, or a number with a unit, which is that of what is varied.
+Rational number(const std::string& word, const Part& p, const std::string& unit) {
   std::size_t skip = 0;
   while (skip < p.text.size() && p.text[skip] == ' ') ++skip;
   std::string text = p.text.substr(skip);
   while (!text.empty() && text.back() == ' ') text.pop_back();
-  if (const auto r = parse_rational(text)) return *r;
-  wrong(word, p.at + skip, text.size(), text.empty() ? "a number is missing here" : "'" + text + "' is not a number", kHint);
+  if (text.empty()) wrong(word, p.at + skip, 1, "a number is missing here", kHint);
+  Constant c;
+  try {
+    c = read_constant(text);
+  } catch (const Failure& f) {
+    const std::string& why = f.diagnostic.message;
+    wrong(word, p.at + skip, text.size(), "'" + text + "' is not a number" + (why.rfind("'" + text, 0) == 0 ? "" : ": " + why), kHint);
+  }
+  const std::optional<Unit> own = unit == "1" ? Unit{} : read_unit(unit);
+  if (c.dimension && own && own->dimension != *c.dimension)
+    wrong(word, p.at + skip, text.size(), describe(own->dimension) + " is expected here, this is " + describe(*c.dimension), unit == "1" ? "a bare number, or an angle: 30 deg" : "in " + unit + ", or a bare number in SI units");
+  return c.value;
+}
+
+// The unit in SI of what is varied; empty where nothing tells.
+std::string unit_of(const Varied& v, const Model& model) {
+  const std::vector<std::string>& units = v.kind == Varied::Kind::parameter ? model.parameter_units : model.coordinate_units;
+  const std::string base = v.index < units.size() ? units[v.index] : std::string();
+  if (base.empty() || v.order == 0) return base;
+  const std::string power = std::to_string(v.order);
+  return base == "1" ? "s^-" + power : base + "/s" + (v.order > 1 ? "^" + power : "");
 }
 
 Varied named(const std::string& word, const std::string& text, const Model& model) {
@@ -89,6 +110,7 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
     for (const Varied& before : varied_)
       if (before.name == v.name) wrong(word, 0, sign, "'" + v.name + "' is varied twice", "one --vary for each name");
     varied_.push_back(v);
+    const std::string unit = unit_of(v, model);
     Values values;
     if (word[sign] == '~') {
       const std::size_t open = word.find('(', sign);
@@ -103,7 +125,7 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
       const auto list = parts(word, open + 1, word.size() - 1, ',');
       if (list.size() != 2)
         wrong(word, open, word.size() - open, "two numbers are expected here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
-      const Rational a = number(word, list[0]), b = number(word, list[1]);
+      const Rational a = number(word, list[0], unit), b = number(word, list[1], unit);
       values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
       if (values.law == Values::Law::normal ? b < 0 : b < a)
         wrong(word, list[1].at, list[1].text.size(), law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
@@ -116,7 +138,7 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
       if (list.size() != 3)
         wrong(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
               "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
-      const Rational from = number(word, list[0]), to = number(word, list[1]), count = number(word, list[2]);
+      const Rational from = number(word, list[0], unit), to = number(word, list[1], unit), count = number(word, list[2], "");
       if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) || (count == 1 && from != to))
         wrong(word, list[2].at, list[2].text.size(), "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
               "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
@@ -127,7 +149,7 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
         values.list.push_back(from + (to - from) * part);
       }
     } else {
-      for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p));
+      for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p, unit));
     }
     if (!values.list.empty()) {
       if (values.list.size() > kMostCases / grid_)

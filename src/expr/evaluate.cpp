@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "expr/formula.h"
 #include "expr/functions.h"
+#include "expr/habits.h"
 #include "expr/normal.h"
 #include "expr/table.h"
 #include "expr/units.h"
@@ -33,32 +34,42 @@ Rotation* rotation(Value& v) { return std::get_if<Rotation>(&v); }
   throw Failure(at, std::string(what) + " of " + type_name(a) + " and " + type_name(b), std::move(hint));
 }
 
+// The hint about whichever of both is a body.
+std::string body_hint(const Value& a, const Value& b, const Names& names) {
+  const std::string of_a = body_hint(a, names);
+  return of_a.empty() ? body_hint(b, names) : of_a;
+}
+
 // The number 0 stands for the zero vector where the other side is a vector.
 void lift_zero(Value& a, Value& b) {
   if (number(a) && vector(b) && is_zero(*number(a))) a = zero_vector(*vector(b)->x.graph);
   if (number(b) && vector(a) && is_zero(*number(b))) b = zero_vector(*vector(a)->x.graph);
 }
 
-Value add(Value a, Value b, bool minus, Span at) {
+Value add(Value a, Value b, bool minus, Span at, Names& names) {
+  a = as_point(std::move(a), names, at);
+  b = as_point(std::move(b), names, at);
   lift_zero(a, b);
   if (number(a) && number(b)) return minus ? *number(a) - *number(b) : *number(a) + *number(b);
   if (vector(a) && vector(b)) return minus ? *vector(a) - *vector(b) : *vector(a) + *vector(b);
-  const bool body = a.index() == 3 || b.index() == 3;
-  mismatch(minus ? "difference" : "sum", a, b, at, body ? "a body is not a point: write B.center" : "");
+  mismatch(minus ? "difference" : "sum", a, b, at, body_hint(a, b, names));
 }
 
-Value divide(Value a, Value b, Span at) {
+Value divide(Value a, Value b, Span at, Names& names) {
+  a = as_point(std::move(a), names, at);
   if (!number(b)) throw Failure(at, std::string("division by ") + type_name(b));
   if (is_zero(*number(b))) throw Failure(at, "division by zero");
   if (number(a)) return *number(a) / *number(b);
   if (vector(a)) return pow(*number(b), -1) * *vector(a);
-  mismatch("quotient", a, b, at);
+  mismatch("quotient", a, b, at, body_hint(a, names));
 }
 
 // A product of more different factors is refused: its derivative has as many terms, each as long.
 constexpr std::uint32_t kMostFactors = 500;
 
-Value multiply(Value a, Value b, Syntax::Op sign, Span at) {
+Value multiply(Value a, Value b, Syntax::Op sign, Span at, Names& names) {
+  a = as_point(as_frame(std::move(a), names, at), names, at);
+  b = as_point(rotation(a) ? as_frame(std::move(b), names, at) : std::move(b), names, at);
   if (number(a) && number(b)) {
     const Expr product = *number(a) * *number(b);
     if (product.graph->node(product.id).count > kMostFactors && product.graph->node(product.id).kind == Kind::product)
@@ -74,8 +85,7 @@ Value multiply(Value a, Value b, Syntax::Op sign, Span at) {
   }
   if (rotation(a) && rotation(b)) return *rotation(a) * *rotation(b);
   if (rotation(a) && vector(b)) return *rotation(a) * *vector(b);
-  const bool body = a.index() == 3 || b.index() == 3;
-  mismatch("product", a, b, at, body ? "a body is not a point: write B.center" : "");
+  mismatch("product", a, b, at, body_hint(a, b, names));
 }
 
 Expr integer_power(Expr base, const Rational& exponent, Span at) {
@@ -93,12 +103,13 @@ Value power(Value a, Value b, Span at) {
   return exp(exponent * log(base));
 }
 
-Value differentiate(Value v, int times, Span at) {
+Value differentiate(Value v, int times, Span at, Names& names) {
+  v = as_point(std::move(v), names, at);
   if (times > kHighestDerivative)
     throw Failure(at, "a derivative of order " + std::to_string(times) + "; at most " +
                           std::to_string(kHighestDerivative) + " are read");
   if (v.index() == 3)
-    throw Failure(at, "derivative of a body", "a body is not a point: write B.center, or angvel(B)");
+    throw Failure(at, "derivative of a body", body_hint(v, names) + "; its angular velocity is angvel(" + names.body_name(std::get<BodyName>(v)) + ")");
   const auto rough = [&](Expr e) {
     if (const auto name = too_rough(e, times))
       throw Failure(at, "a derivative of order " + std::to_string(times) + " of the table '" + *name + "', which its fit does not have",
@@ -120,11 +131,13 @@ Value differentiate(Value v, int times, Span at) {
 struct Arguments {
   const Syntax& call;
   std::vector<Value>& values;
+  Names& names;
 
   void expect(std::size_t n) const {
     if (values.size() != n)
       throw Failure(call.span, call.text + " takes " + std::to_string(n) + (n == 1 ? " argument, " : " arguments, ") +
-                                   std::to_string(values.size()) + (values.size() == 1 ? " is" : " are") + " given");
+                                   std::to_string(values.size()) + (values.size() == 1 ? " is" : " are") + " given",
+                    habit_of_call(call));
   }
   Expr number(std::size_t i) const {
     if (Expr* e = std::get_if<Expr>(&values[i])) return *e;
@@ -132,11 +145,12 @@ struct Arguments {
                                          type_name(values[i]) + ", not a number");
   }
   Vector vector(std::size_t i) const {
+    values[i] = as_point(values[i], names, call.args[i].span);
     if (Vector* v = std::get_if<Vector>(&values[i])) return *v;
     if (Expr* e = std::get_if<Expr>(&values[i]); e && is_zero(*e)) return zero_vector(*e->graph);
     throw Failure(call.args[i].span, "argument " + std::to_string(i + 1) + " of " + call.text + " is " +
                                          type_name(values[i]) + ", not a vector",
-                  values[i].index() == 3 ? "a body is not a point: write " + call.args[i].text + ".center" : "");
+                  body_hint(values[i], names));
   }
   long integer(std::size_t i, long most) const {
     const Expr e = number(i);
@@ -201,7 +215,9 @@ Rotation matrix(const Syntax& call, Names& names) {
 }
 
 // a where s >= 0, else b: of two numbers or two vectors.
-Value branch(Expr s, Value a, Value b, Span at) {
+Value branch(Expr s, Value a, Value b, Span at, Names& names) {
+  a = as_point(std::move(a), names, at);
+  b = as_point(std::move(b), names, at);
   lift_zero(a, b);
   if (number(a) && number(b)) return select(s, *number(a), *number(b));
   if (vector(a) && vector(b)) {
@@ -226,7 +242,7 @@ Value piecewise(const Syntax& call, Names& names) {
     // x >= 0 and its opposite x < 0; x <= 0 and its opposite x > 0.
     const bool greater = c.text[0] == '>', or_equal = c.text.size() > 1;
     const Expr gap = greater == or_equal ? left - right : right - left;
-    value = or_equal ? branch(gap, then, value, c.span) : branch(gap, value, then, c.span);
+    value = or_equal ? branch(gap, then, value, c.span, names) : branch(gap, value, then, c.span, names);
   }
   return value;
 }
@@ -238,8 +254,29 @@ Value choose(const Arguments& in) {
   const Expr k = in.number(0);
   Value value = in.values[n - 1];
   for (std::size_t i = n - 1; i-- > 1;)
-    value = branch(Expr(in.number(0).graph->number(Rational(2 * static_cast<int>(i) + 1, 2))) - k, in.values[i], value, in.call.args[i].span);
+    value = branch(Expr(in.number(0).graph->number(Rational(2 * static_cast<int>(i) + 1, 2))) - k, in.values[i], value, in.call.args[i].span, in.names);
   return value;
+}
+
+// A call of what does not exist, as other systems write it: diff(x, t), if(x > 0, a, b), x(t).
+void answer_habits(const Syntax& s, Names& names) {
+  if (const std::string habit = habit_of_call(s); !habit.empty()) throw Failure(s.span, "unknown function '" + s.text + "'", habit);
+  if (s.args.size() != 1) return;
+  std::optional<Value> value;
+  try {
+    value = names.name(s.text, s.span);
+  } catch (const Failure&) {
+    return;  // no name either
+  }
+  if (!number(*value)) return;
+  const bool of_time = s.args[0].op == Syntax::Op::name && s.args[0].text == "t";
+  throw Failure(s.span, "'" + s.text + "' is not a function" + (of_time ? ": it is the value at t" : ""),
+                "write " + s.text + (of_time ? "" : "*" + (s.args[0].op == Syntax::Op::add ? "(" + print(s.args[0]) + ")" : print(s.args[0])) + " for a product"));
+}
+
+bool is_built_in(const std::string& f) {
+  const std::vector<std::string> list = function_names();
+  return std::find(list.begin(), list.end(), f) != list.end();
 }
 
 Value call(const Syntax& s, Names& names) {
@@ -256,8 +293,10 @@ Value call(const Syntax& s, Names& names) {
     for (std::size_t i = 1; i < s.args.size(); ++i) values.push_back(evaluate(s.args[i], names));
     return euler(s, values, g);
   }
+  // Conditions stand among the arguments of an "if" from elsewhere.
+  if (std::any_of(s.args.begin(), s.args.end(), [](const Syntax& a) { return a.op == Syntax::Op::compare; }) && !is_built_in(f)) answer_habits(s, names);
   for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
-  const Arguments in{s, values};
+  const Arguments in{s, values, names};
 
   Value result = g.zero();
   if (names.call(f, values, s, result)) return result;
@@ -294,7 +333,7 @@ Value call(const Syntax& s, Names& names) {
   }
   if (f == "D") {
     in.expect(2);
-    return differentiate(values[0], static_cast<int>(in.integer(1, kHighestDerivative)), s.span);
+    return differentiate(values[0], static_cast<int>(in.integer(1, kHighestDerivative)), s.span, names);
   }
   if (f == "rotx" || f == "roty" || f == "rotz") return in.expect(1), turn(f[3] - 'x', in.number(0));
   if (f == "rot") {
@@ -311,6 +350,7 @@ Value call(const Syntax& s, Names& names) {
     return quaternion(e[0], e[1], e[2], e[3]);
   }
 
+  answer_habits(s, names);
   std::vector<std::string> known = names.functions();
   const std::vector<std::string> built_in = function_names();
   known.insert(known.end(), built_in.begin(), built_in.end());
@@ -343,19 +383,20 @@ static Value value_of(const Syntax& s, Names& names) {
       return Vector{evaluate_number(s.args[0], names), evaluate_number(s.args[1], names),
                     evaluate_number(s.args[2], names)};
     }
-    case Syntax::Op::compare: throw Failure(s.span, "a condition stands in piecewise only", "piecewise(x > 0, x, 0)");
+    case Syntax::Op::compare:
+      throw Failure(s.span, "a condition is not a number: it stands in piecewise only", "write piecewise(" + print(s) + ", 1, 0) in place of (" + print(s) + ")");
     case Syntax::Op::negate: {
-      Value v = evaluate(s.args[0], names);
+      Value v = as_point(evaluate(s.args[0], names), names, s.span);
       if (Expr* e = number(v)) return -*e;
       if (Vector* a = vector(v)) return g.number(-1) * *a;
-      throw Failure(s.span, std::string("minus ") + type_name(v));
+      throw Failure(s.span, std::string("minus ") + type_name(v), body_hint(v, names));
     }
     case Syntax::Op::prime: {
       // x''' is three nested primes: count them here, so that each order is one step.
       int times = 1;
       const Syntax* inner = &s.args[0];
       for (; inner->op == Syntax::Op::prime; inner = &inner->args[0]) ++times;
-      return differentiate(evaluate(*inner, names), times, s.span);
+      return differentiate(evaluate(*inner, names), times, s.span, names);
     }
     case Syntax::Op::power:
       return power(evaluate(s.args[0], names), evaluate(s.args[1], names), s.span);
@@ -385,7 +426,7 @@ static Value value_of(const Syntax& s, Names& names) {
       }
       Value total = values[0];
       for (std::size_t i = 1; i < values.size(); ++i)
-        total = add(total, values[i], s.operators[i - 1].op == Syntax::Op::subtract, s.operators[i - 1].span);
+        total = add(total, values[i], s.operators[i - 1].op == Syntax::Op::subtract, s.operators[i - 1].span, names);
       return total;
     }
     case Syntax::Op::multiply: {
@@ -393,8 +434,8 @@ static Value value_of(const Syntax& s, Names& names) {
       for (std::size_t i = 1; i < s.args.size(); ++i) {
         const Syntax::Operator& o = s.operators[i - 1];
         Value factor = evaluate(s.args[i], names);
-        product = o.op == Syntax::Op::divide ? divide(product, factor, o.span)
-                                             : multiply(product, factor, o.op, o.span);
+        product = o.op == Syntax::Op::divide ? divide(product, factor, o.span, names)
+                                             : multiply(product, factor, o.op, o.span, names);
       }
       return product;
     }
@@ -405,6 +446,23 @@ static Value value_of(const Syntax& s, Names& names) {
   }
   ANHOLON_ASSERT(false);
   return g.zero();
+}
+
+Value as_point(Value v, Names& names, Span use) {
+  if (const BodyName* b = std::get_if<BodyName>(&v))
+    if (const std::optional<Vector> p = names.point(*b, use)) return *p;
+  return v;
+}
+
+Value as_frame(Value v, Names& names, Span use) {
+  if (const BodyName* b = std::get_if<BodyName>(&v))
+    if (const std::optional<Rotation> r = names.frame(*b, use)) return *r;
+  return v;
+}
+
+std::string body_hint(const Value& v, const Names& names) {
+  const BodyName* b = std::get_if<BodyName>(&v);
+  return b ? "a body is not a point: write " + names.body_name(*b) + ".center" : std::string();
 }
 
 // What fails below without a place of its own (a division by zero, a number too long) failed here.
@@ -425,19 +483,20 @@ Expr evaluate_number(const Syntax& s, Names& names) {
 }
 
 Vector evaluate_vector(const Syntax& s, Names& names) {
-  Value v = evaluate(s, names);
+  Value v = as_point(evaluate(s, names), names, s.span);
   if (Vector* a = vector(v)) return *a;
   if (Expr* e = number(v); e && is_zero(*e)) return zero_vector(names.graph());
   throw Failure(s.span, std::string("a vector is expected, this is ") + type_name(v),
-                v.index() == 3 ? "a body is not a point: write " + s.text + ".center"
+                v.index() == 3 ? body_hint(v, names)
                 : v.index() == 0 ? "along the first axis: x*ex, or [\"x\", \"0\", \"0\"]" : "");
 }
 
 Rotation evaluate_rotation(const Syntax& s, Names& names) {
-  Value v = evaluate(s, names);
+  Value v = as_frame(evaluate(s, names), names, s.span);
   if (Rotation* r = rotation(v)) return *r;
   throw Failure(s.span, std::string("a rotation is expected, this is ") + type_name(v),
-                "rotx(…), roty(…), rotz(…), rot(axis, angle) and products of these");
+                v.index() == 3 ? names.body_name(std::get<BodyName>(v)) + " has no orientation, and so no axes"
+                               : "rotx(…), roty(…), rotz(…), rot(axis, angle) and products of these");
 }
 
 }  // namespace anholon

@@ -7,6 +7,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -115,7 +116,8 @@ Rotation turn(const Vector& unit_axis, Expr angle);
 // The rotation with the given axes; its rate is 1/2 sum_k u_k x u_k' (theory: weighted-points).
 Rotation rotation_from_axes(const Vector& x, const Vector& y, const Vector& z);
 
-// A body named in a formula: not a point and not a number, only `B.center`, `B.x`, vel(B, P), ….
+// A body named in a formula. Where a point is wanted a particle is one, and where a frame is wanted a body with an orientation
+// is one (Names::point, Names::frame); of all bodies there are `B.center`, `B.x`, vel(B, P), ….
 struct BodyName {
   std::size_t index;
 };
@@ -134,9 +136,19 @@ struct Names {
                     const Syntax& syntax, Value& result) = 0;
   virtual Value member(const Value& object, const Syntax& syntax) = 0;
   virtual std::vector<std::string> functions() const = 0;  // for "did you mean"
+  // What a body is where a point or a frame is wanted; nothing where it is none.
+  virtual std::optional<Vector> point(const BodyName& /*body*/, Span /*use*/) { return std::nullopt; }
+  virtual std::optional<Rotation> frame(const BodyName& /*body*/, Span /*use*/) { return std::nullopt; }
+  virtual std::string body_name(const BodyName& /*body*/) const { return "B"; }
   // Told of each quat(…): it is a rotation only where its norm is 1.
   virtual void quaternion(const std::array<Expr, 4>& /*components*/, const Syntax& /*call*/) {}
 };
+
+// A vector or rotation in place of a body that is one there; other values as they are.
+Value as_point(Value v, Names& names, Span use);
+Value as_frame(Value v, Names& names, Span use);
+// What to write in place of a body that is no point, and no frame: "write shell.center for its point".
+std::string body_hint(const Value& v, const Names& names);
 
 Value evaluate(const Syntax& s, Names& names);
 Expr evaluate_number(const Syntax& s, Names& names);

@@ -3,6 +3,7 @@
 #include <cctype>
 
 #include "base/utf8.h"
+#include "expr/habits.h"
 
 namespace anholon {
 
@@ -118,7 +119,8 @@ class Lexer {
           const bool printable = width > 1 || std::isprint(static_cast<unsigned char>(c[0]));
           throw Failure(source_.span(offset, 1),
                         printable ? "'" + std::string(c) + "' means nothing in a formula"
-                                  : "a character that means nothing in a formula");
+                                  : "a character that means nothing in a formula",
+                        habit_of_sign(std::string(c)));
         }
       }
     }

@@ -1,5 +1,9 @@
+#include <algorithm>
+
 #include "base/utf8.h"
 #include "expr/formula.h"
+#include "expr/functions.h"
+#include "expr/habits.h"
 #include "expr/indices.h"
 #include "expr/lexer.h"
 #include "expr/units.h"
@@ -40,6 +44,7 @@ class Parser {
       sides.push_back(expression(0));
       if (peek().token == Token::equals) fail(peek(), "an equation has one '='", "write two constraints");
     }
+    if (peek().token == Token::compare) inequality(sides[0]);
     finish();
     return sides;
   }
@@ -47,6 +52,16 @@ class Parser {
  private:
   [[noreturn]] void fail(const Lexeme& at, std::string message, std::string hint = {}) const {
     throw Failure(source_.span(at.offset, at.length), std::move(message), std::move(hint));
+  }
+
+  // "x <= c" where an equation should be.
+  [[noreturn]] void inequality(const Syntax& left) {
+    const Lexeme sign = next();
+    const Syntax right = expression(0);
+    const bool zero = right.op == Syntax::Op::number && parse_rational(right.text).value_or(1) == 0;
+    const bool sum = right.op == Syntax::Op::add || right.op == Syntax::Op::negate;
+    const std::string gap = print(left) + (zero ? "" : " - " + (sum ? "(" + print(right) + ")" : print(right)));
+    fail(sign, "an equation is expected, '" + sign.text + "' makes an inequality", "an [[event]] finds where its two sides meet: when = \"" + gap + "\"");
   }
 
   const Lexeme& peek() const { return lexemes_[at_]; }
@@ -152,6 +167,10 @@ class Parser {
       }
       case Token::open: {
         Syntax s = expression(0);
+        if (peek().token == Token::compare) {
+          const Lexeme sign = next();
+          s = make(Syntax::Op::compare, sign, two(std::move(s), expression(0)));
+        }
         if (peek().token != Token::close)
           fail(peek(), peek().token == Token::end ? "')' is missing at the end" : "')' is expected here");
         s.offset = at.offset;
@@ -191,6 +210,8 @@ class Parser {
     for (;;) {
       const Lexeme name = next();
       if (text.size() > kLongestUnit) fail(lexemes_[first], "this unit is out of all proportion");
+      if (name.text == "and" || name.text == "or")
+        fail(name, "conditions are not joined by '" + name.text + "'", habit_of_sign(name.text == "and" ? "&" : "∨"));
       if (!find_unit(name.text)) {
         const std::string near = did_you_mean(name.text, unit_names());
         fail(name, "'" + name.text + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "a name after a number is a unit; write " + number.text + "*" + name.text + " for a product");
@@ -242,6 +263,9 @@ class Parser {
       if (at.token == close) return args;
       if (at.token != Token::comma) {
         if (at.token == Token::end) fail(opened, std::string("this bracket is not closed: '") + closer + "' is missing");
+        if (at.token == Token::equals) fail(at, "a condition compares with <, <=, > or >=", "a mode is told by choose(mode, v1, v2)");
+        if (at.token == Token::name && (at.text == "and" || at.text == "or"))
+          fail(at, "conditions are not joined by '" + at.text + "'", habit_of_sign(at.text == "and" ? "&" : "∨"));
         fail(at, std::string("',' or '") + closer + "' is expected here");
       }
     }
@@ -251,6 +275,7 @@ class Parser {
     for (int count = 0;; ++count) {
       const Lexeme at = peek();
       if (count > kDeepest) fail(at, "more than " + std::to_string(kDeepest) + " signs after one another");
+      if (at.token == Token::open && s.op == Syntax::Op::prime) argument_of_derivative(s);
       if (at.token == Token::prime) {
         next();
         s = make(Syntax::Op::prime, at, one(std::move(s)));
@@ -273,21 +298,40 @@ class Parser {
     }
   }
 
+  // "x'(t)": a coordinate and its derivatives stand for their values at t.
+  [[noreturn]] void argument_of_derivative(const Syntax& s) const {
+    const auto token = [&](std::size_t k) { return lexemes_[std::min(at_ + k, lexemes_.size() - 1)]; };
+    const bool of_time = token(1).token == Token::name && token(1).text == "t" && token(2).token == Token::close;
+    if (of_time) fail(peek(), "a derivative has no argument: it is the value at t", "write " + print(s));
+    fail(peek(), "an operator is missing before '('", "write " + print(s) + "*(…) for a product");
+  }
+
+  // What to write where an operator is missing.
+  std::string hint_for_missing(const Lexeme& before, const Lexeme& at) const {
+    if (before.token == Token::prime && at_ > 1) return "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product";
+    if (at.text == "and" || at.text == "or") return habit_of_sign(at.text == "and" ? "&" : "∨");
+    if (before.token != Token::name && before.token != Token::number) return "a product is written with '*'";
+    const std::vector<std::string> functions = function_names();
+    // sin^2(x)
+    if (at_ > 2 && lexemes_[at_ - 2].token == Token::caret && std::find(functions.begin(), functions.end(), lexemes_[at_ - 3].text) != functions.end())
+      return "write " + lexemes_[at_ - 3].text + "(…)^" + before.text;
+    if (before.token == Token::name && std::find(functions.begin(), functions.end(), before.text) != functions.end())
+      return "write " + before.text + "(" + at.text + (at.token == Token::open ? "…" : "") + ")";
+    return "write " + before.text + "*" + at.text + (at.token == Token::open ? "…)" : "") + " for a product" +
+           (before.token == Token::number && at.token == Token::name && find_unit(at.text) ? ", " + before.text + " " + at.text + " for a unit" : "");
+  }
+
   void finish() {
     const Lexeme& at = peek();
     if (at.token == Token::end) return;
     if (at.token == Token::compare)
       fail(at, "'" + at.text + "' stands in a condition of piecewise only", "piecewise(x > 0, x, 0)");
+    if (at.token == Token::comma && at_ > 0 && lexemes_[at_ - 1].token == Token::number && touches(at_) && touches(at_ + 1) && lexemes_[at_ + 1].token == Token::number)
+      fail(at, "',' is not expected here", "a decimal has a point: " + lexemes_[at_ - 1].text + "." + lexemes_[at_ + 1].text);
     if (at.token == Token::close || at.token == Token::right) fail(at, "'" + at.text + "' closes nothing");
     const Lexeme& before = lexemes_[at_ - 1];
     if (at.token == Token::name || at.token == Token::number || at.token == Token::open) {
-      fail(at, "an operator is missing before '" + at.text + "'",
-           before.token == Token::prime && at_ > 1
-               ? "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product"
-           : before.token == Token::name || before.token == Token::number
-               ? "write " + before.text + "*" + at.text + (at.token == Token::open ? "…)" : "") + " for a product" +
-                     (before.token == Token::number && at.token == Token::name && find_unit(at.text) ? ", " + before.text + " " + at.text + " for a unit" : "")
-               : "a product is written with '*'");
+      fail(at, "an operator is missing before '" + at.text + "'", hint_for_missing(before, at));
     }
     fail(at, "'" + at.text + "' is not expected here");
   }

@@ -13,6 +13,7 @@ int strength(const Syntax& s) {
     case Syntax::Op::multiply: return kProduct;
     case Syntax::Op::negate: return kMinus;
     case Syntax::Op::power: return kPower;
+    case Syntax::Op::compare: return 0;
     case Syntax::Op::quantity: return kMinus;  // 2 m^2 is not (2 m)^2
     default: return kPostfix;
   }

@@ -1,5 +1,7 @@
 #include "spec/dimensions.h"
 
+#include <map>
+
 #include <algorithm>
 #include <cctype>
 #include <functional>
@@ -216,6 +218,26 @@ class Elements {
 
 }  // namespace
 
+// A number without a unit among others that have one may be meant in theirs: "b = 18" beside "r = 8 cm".
+static void note_bare_numbers(const Scope& scope, Model& model) {
+  const auto& names = model.names.parameters;
+  std::map<std::string, std::string> measured;  // the unit in SI: a parameter that is given with a unit, as it is written
+  std::vector<std::pair<std::size_t, std::string>> bare;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Scope::Declaration& d = scope.declarations().at(names[i]);
+    const std::string& si = model.parameter_units[i];
+    if (si.empty() || si == "1" || d.item) continue;
+    const Syntax s = parse_formula(d.formula);
+    const Syntax& number = s.op == Syntax::Op::negate ? s.args[0] : s;
+    if (number.op == Syntax::Op::quantity) measured.emplace(si, names[i] + " = " + d.formula.text());
+    else if (!d.unit.empty()) measured.emplace(si, names[i] + " = " + d.formula.text() + " " + d.unit);
+    else if (number.op == Syntax::Op::number && parse_rational(number.text).value_or(0) != 0) bare.push_back({i, d.formula.text()});
+  }
+  for (const auto& [i, text] : bare)
+    if (const auto other = measured.find(model.parameter_units[i]); other != measured.end())
+      model.notes.push_back("parameter " + names[i] + " = " + text + " has no unit and is " + text + " " + model.parameter_units[i] + ", beside " + other->second);
+}
+
 void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagnostics& diagnostics) {
   if (!may_have_units(root)) return;
   Elements elements(root, scope, model);
@@ -231,6 +253,7 @@ void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagno
   };
   model.coordinate_units = units(model.names.coordinates);
   model.parameter_units = units(model.names.parameters);
+  note_bare_numbers(scope, model);
 }
 
 }  // namespace anholon
