@@ -38,7 +38,10 @@ std::string json(const Scenario& s, const StateReport& r) {
     j.close();
   }
   named(j, "derivatives", r.derivatives);
-  named(j, "lambda", r.lambda);
+  std::vector<std::pair<std::string, std::string>> multipliers = r.lambda;  // in "lambda" a constraint has its own name
+  for (auto& [name, value] : multipliers)
+    if (name.rfind("lambda.", 0) == 0) name = name.substr(7);
+  named(j, "lambda", multipliers);
   for (const auto& [name, value] : r.numbers) j.key(name).number(value);
   j.key("mass_matrix").open_array();
   for (const auto& row : r.mass_matrix) vector(j, row);
@@ -70,7 +73,7 @@ void print_text(const Scenario& s, const StateReport& r, int digits) {
   say(stdout, "\naccelerations\n");
   for (const auto& [name, value] : r.derivatives) line(name, value);
   if (!r.lambda.empty()) say(stdout, "\nmultipliers\n");
-  for (const auto& [name, value] : r.lambda) line("lambda." + name, value);
+  for (const auto& [name, value] : r.lambda) line(name, value);
   say(stdout, "\ngeneralized forces\n  %-14s", "");
   for (const Coordinate& c : s.model->coordinates) say(stdout, " %*s", width, c.name.c_str());
   say(stdout, "\n");

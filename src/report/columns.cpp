@@ -115,7 +115,10 @@ class Plots {
     for (std::uint32_t a = 0; a < model_.coordinates.size(); ++a)
       for (std::uint32_t k = 0; k < std::size(kDerivatives); ++k) known[derivative_name(model_.coordinates[a].name, k, Format::text)] = {kDerivatives[k], math_of(g.jet(a, k))};
     for (std::uint32_t r = 0; r < model_.constraints.size(); ++r)
-      for (std::uint32_t k = 0; k < 3; ++k) known[derivative_name("lambda." + model_.constraints[r].name, k, Format::text)] = {"multipliers", math_of(g.multiplier(r, k))};
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::optional<std::size_t> by = model_.constraints[r].by;
+        known[derivative_name(multiplier_name(model_, r), k, Format::text)] = {"multipliers", math_of(by ? g.control(static_cast<std::uint32_t>(*by), k) : g.multiplier(r, k))};
+      }
     for (const Coordinate& c : model_.coordinates) known["N." + c.name] = {"reactions", "<msub><mi>N</mi><mrow>" + mathml_name(c.name) + "</mrow></msub>"};
     for (std::uint32_t k = 0; k < model_.states.size(); ++k) known[model_.states[k].name] = {"states", math_of(g.state(k, 0))};
     for (std::size_t k = 1; k < t.columns.size(); ++k) {
@@ -269,7 +272,7 @@ ColumnOf column_of(const Model& model, const RunTable& table) {
     if (n.kind == Kind::time) return -1;
     std::string base;
     if (n.kind == Kind::jet) base = model.coordinates[n.index].name;
-    else if (n.kind == Kind::multiplier) base = "lambda." + model.constraints[n.index].name;
+    else if (n.kind == Kind::multiplier) base = multiplier_name(model, n.index);
     else if (n.kind == Kind::state && n.order == 0) base = model.states[n.index].name;
     else return std::nullopt;
     const auto it = places.find(derivative_name(base, n.order, Format::text));

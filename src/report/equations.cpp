@@ -107,11 +107,18 @@ class Derive {
     d_.steps.push_back({"constraints and their derivatives by the highest ones", lines});
   }
 
+  // A quasi-velocity of lower order than the constraints is lifted: its derivative is what stays free.
+  std::string free_name(std::size_t a) const {
+    for (const QuasiVelocity& u : d_.model->quasi)
+      if (u.name == e_.names[a]) return derivative_name(u.name, e_.m - static_cast<unsigned>(u.order), Format::text);
+    return e_.names[a];
+  }
+
   void elimination() {
     std::vector<Line> lines;
     const Column top = jets(*d_.model, e_.m), next = jets(*d_.model, e_.m + 1);
     if (e_.quasi)
-      for (std::size_t a = 0; a < e_.names.size(); ++a) lines.push_back({e_.names[a], std::nullopt, arranged(e_.w[a])});
+      for (std::size_t a = 0; a < e_.names.size(); ++a) lines.push_back({free_name(a), std::nullopt, arranged(e_.w[a])});
     for (std::size_t s = 0; s < top.size(); ++s) {
       if (!e_.solved || e_.g[s] == top[s]) continue;
       lines.push_back({text(top[s]), std::nullopt, arranged(e_.g[s])});
@@ -120,7 +127,7 @@ class Derive {
     for (std::size_t s = 0; s < top.size(); ++s)
       for (std::size_t a = 0; a < e_.names.size(); ++a) {
         const bool trivial = !e_.quasi && std::find(e_.dependent.begin(), e_.dependent.end(), s) == e_.dependent.end();
-        if (!trivial) add(lines, "d " + text(top[s]) + "/d " + (e_.quasi ? e_.names[a] : text(e_.u[a])), e_.g_by_u()[s][a]);
+        if (!trivial) add(lines, "d " + text(top[s]) + "/d " + (e_.quasi ? free_name(a) : text(e_.u[a])), e_.g_by_u()[s][a]);
       }
     std::string heading = e_.constraints.empty() ? "no constraints: nothing is eliminated" : "elimination of ";
     for (std::size_t k = 0; k < e_.dependent.size(); ++k) heading += (k ? ", " : "") + d_.model->coordinates[e_.dependent[k]].name;

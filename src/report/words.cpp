@@ -39,10 +39,10 @@ std::vector<StateEntry> higher_state(const Scenario& s) {
     for (std::size_t j = 0; j < s.routh->size(); ++j) {
       if (k >= s.routh_structure.d[j] || (j < s.routh->coordinates && k < 2)) continue;
       const Node& n = g.node(s.routh->symbol(j, static_cast<unsigned>(k)).id);
-      list.push_back({derivative_name(s.routh->variable_names[j], static_cast<unsigned>(k), Format::text), *s.state.value(n), *s.state.origin(n)});
+      list.push_back({derivative_name(s.routh->variable_names[j], static_cast<unsigned>(k), Format::text), *s.state.value(n), *s.state.origin(n), n.kind == Kind::multiplier});
     }
   // Coordinates first, by order.
-  std::stable_partition(list.begin(), list.end(), [](const StateEntry& e) { return e.name.rfind("lambda.", 0) != 0; });
+  std::stable_partition(list.begin(), list.end(), [](const StateEntry& e) { return !e.multiplier; });
   return list;
 }
 

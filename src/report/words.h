@@ -22,6 +22,7 @@ struct StateEntry {
   std::string name;
   double value;
   Origin origin;
+  bool multiplier = false;
 };
 std::vector<StateEntry> higher_state(const Scenario& s);
 

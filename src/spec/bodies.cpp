@@ -103,6 +103,7 @@ void BodyReader::declare(const Item& root) {
         throw Failure(e.item->span, std::string("a ") + (e.particle ? "particle" : "body") + " has no name", "name = \"…\"");
       e.index = scope_.body_names().size();
       Scope::BodyParts parts;
+      parts.particle = e.particle;
       parts.center = e.item->find(e.particle ? "position" : "center");
       if (!e.particle) {
         parts.orientation = e.item->find("orientation");
@@ -355,6 +356,9 @@ void BodyReader::check_inertia(const Body& body, const Expr (&moment)[3][3], Spa
       if (!v) return;
       j[i][k] = *v;
     }
+  for (int i = 0; i < 3; ++i)
+    if (j[i][i] < 0)
+      throw Failure(span, "the moment of inertia of '" + body.name + "' about " + "xyz"[i] + " is " + number_text(j[i][i], 6) + ": it is not negative");
   const double trace = j[0][0] + j[1][1] + j[2][2], slack = 1e-9 * std::abs(trace);
   double e[3][3];
   for (int i = 0; i < 3; ++i)

@@ -36,10 +36,10 @@ std::size_t Scope::body_argument(const Value& value, const Syntax& argument) con
   throw Failure(argument.span, std::string("a body is expected, this is ") + type_name(value));
 }
 
-static Vector point_argument(const Value& v, const Syntax& argument) {
-  if (const Vector* a = std::get_if<Vector>(&v)) return *a;
-  throw Failure(argument.span, std::string("a point is expected, this is ") + type_name(v),
-                v.index() == 3 ? "a body is not a point: write " + argument.text + ".center" : "");
+Vector Scope::point_argument(const Value& v, const Syntax& argument) {
+  const Value p = as_point(v, *this, argument.span);
+  if (const Vector* a = std::get_if<Vector>(&p)) return *a;
+  throw Failure(argument.span, std::string("a point is expected, this is ") + type_name(v), body_hint(v, *this));
 }
 
 // The three numbers of B(a, b, c): components along the axes of B.
@@ -133,6 +133,11 @@ bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax
   }
   const auto it = declarations_.find(f);
   if (it == declarations_.end()) {
+    if (is_reaction(f)) {
+      count(1, 1);
+      result = reaction_on(body_argument(a[0], s.args[0]), s);
+      return true;
+    }
     const std::size_t* b = find_body(f);
     if (!b) return false;
     count(3, 3);

@@ -109,11 +109,12 @@ void ConstraintReader::read(const Item& root) {
   });
 }
 
-Vector ConstraintReader::evaluate_vector_side(const Value& v, const Syntax& s) const {
+Vector ConstraintReader::evaluate_vector_side(const Value& side, const Syntax& s) const {
+  const Value v = as_point(side, scope_, s.span);
   if (const Vector* a = std::get_if<Vector>(&v)) return *a;
   if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
   throw Failure(s.span, std::string("one side of the equation is a vector, the other is ") + type_name(v),
-                v.index() == 3 ? "a body is not a point: write " + s.text + ".center" : v.index() == 0 ? "0 is also the zero vector" : "");
+                v.index() == 3 ? body_hint(v, scope_) : v.index() == 0 ? "0 is also the zero vector" : "");
 }
 
 }  // namespace anholon

@@ -23,7 +23,7 @@ class ConstraintReader {
  private:
   int true_order(Expr& phi) const;
   void add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place);
-  Vector evaluate_vector_side(const Value& v, const Syntax& s) const;
+  Vector evaluate_vector_side(const Value& side, const Syntax& s) const;
 
   Scope& scope_;
   Model& model_;

@@ -6,7 +6,6 @@
 #include "expr/units.h"
 #include "spec/bodies.h"
 #include "spec/keys.h"
-#include "spec/multipliers.h"
 
 namespace anholon {
 
@@ -126,7 +125,7 @@ static void record(const std::string& column, Expr value, const OutputQuantity& 
   model.monitors.push_back({column, value, output.span});
 }
 
-static void read_output(const Item& i, Names& names, Model& model, Diagnostics& diagnostics) {
+static void read_output(const Item& i, Scope& scope, Model& model, Diagnostics& diagnostics) {
   OutputQuantity out;
   out.name = i.key;
   out.span = i.key_span;
@@ -148,11 +147,11 @@ static void read_output(const Item& i, Names& names, Model& model, Diagnostics& 
   }
   Value v;
   if (value->kind == Item::Kind::array && value->items.size() == 3) {
-    const auto component = [&](std::size_t k) { return evaluate_number(parse_formula(value->items[k].formula), names); };
+    const auto component = [&](std::size_t k) { return evaluate_number(parse_formula(value->items[k].formula), scope); };
     const Expr x = component(0), y = component(1), z = component(2);
     v = Vector{x, y, z};
   } else if (value->is_formula()) {
-    v = evaluate(parse_formula(value->formula), names);
+    v = evaluate(parse_formula(value->formula), scope);
   } else {
     throw Failure(value->span, "an output is a formula, a vector, or a table with its value", "height = {value = \"norm(P) - R\", unit = \"km\"}");
   }
@@ -168,8 +167,8 @@ static void read_output(const Item& i, Names& names, Model& model, Diagnostics& 
 void read_outputs(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   const Item* section = find_section(root, "output", diagnostics);
   if (!section) return;
-  WithMultipliers names(scope, model);
-  for (const Item& i : section->items) collect(diagnostics, [&] { read_output(i, names, model, diagnostics); }, i);
+  const Scope::Multipliers allowed(scope);
+  for (const Item& i : section->items) collect(diagnostics, [&] { read_output(i, scope, model, diagnostics); }, i);
 }
 
 }  // namespace anholon

@@ -75,7 +75,10 @@ Measured FormulaDimensions::named(const std::string& name) {
   if (name == "here" && in_field) return vector(unit("m"));
   if (const auto it = names_.find(name); it != names_.end()) return it->second;
   const auto it = scope_.declarations().find(name);
-  if (it == scope_.declarations().end()) return is_body(name) ? Measured{Type::body, {}} : anything();
+  if (it == scope_.declarations().end()) {
+    const std::size_t* body = scope_.find_body(name);
+    return !body ? anything() : scope_.is_particle(*body) ? vector(unit("m")) : Measured{Type::body, {}};
+  }
   if (!it->second.arguments.empty() || std::find(open_.begin(), open_.end(), name) != open_.end()) return anything();
   // A definition means the same wherever it is used.
   const auto arguments = std::exchange(arguments_, {});
@@ -178,7 +181,7 @@ Measured FormulaDimensions::product(const Syntax& s) {
       continue;
     }
     const bool both = total.type == Type::vector && factor.type == Type::vector;
-    if (total.type == Type::rotation) total.type = factor.type;
+    if (total.type == Type::rotation || total.type == Type::body) total.type = factor.type;
     else if (both) total.type = op == Syntax::Op::dot ? Type::number : Type::vector;
     else if (factor.type == Type::vector) total.type = Type::vector;
     total.dimension = op == Syntax::Op::divide ? total.dimension / factor.dimension : total.dimension * factor.dimension;
@@ -246,7 +249,7 @@ Measured FormulaDimensions::measured(const Syntax& s) {
       const bool axis = s.text == "x" || s.text == "y" || s.text == "z";
       if (object.type == Type::vector && axis) return number(object.dimension);
       if ((object.type == Type::rotation || object.type == Type::body) && axis) return vector();
-      if (object.type == Type::body) return vector(unit("m"));
+      if (object.type == Type::body || (object.type == Type::vector && (s.text == "center" || s.text == "position"))) return vector(unit("m"));
       return anything();
     }
     case Syntax::Op::call: return call(s);

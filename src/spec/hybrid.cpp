@@ -4,7 +4,6 @@
 
 #include "spec/bodies.h"
 #include "spec/keys.h"
-#include "spec/multipliers.h"
 
 namespace anholon {
 
@@ -45,7 +44,7 @@ void no_multiplier(const Model& model, Expr e, Span span, const std::string& wha
 
 class EventReader {
  public:
-  EventReader(Scope& scope, Model& model, Diagnostics& diagnostics) : scope_(scope), names_(scope, model), model_(model), diagnostics_(diagnostics) {}
+  EventReader(Scope& scope, Model& model, Diagnostics& diagnostics) : scope_(scope), allowed_(scope), model_(model), diagnostics_(diagnostics) {}
 
   void read(const Item& e, std::size_t number) {
     check_keys(e, "an event", "event", diagnostics_);
@@ -59,7 +58,7 @@ class EventReader {
     const Item* when = e.find("when");
     if (!when) throw Failure(event.span, "the event '" + event.name + "' does not say when", "when = \"x - 1\": a formula that passes zero then");
     if (!when->is_formula()) throw Failure(when->span, "'when' is a formula that passes zero at the event");
-    event.when = put_masses(model_, evaluate_number(parse_formula(when->formula), names_));
+    event.when = put_masses(model_, evaluate_number(parse_formula(when->formula), scope_));
     const std::vector<NodeId> all = symbols({&event.when, 1});
     if (std::none_of(all.begin(), all.end(), [&](NodeId id) { return model_.graph->node(id).kind != Kind::parameter; }))
       throw Failure(when->span, "nothing in this formula changes along the motion: it never passes zero");
@@ -82,7 +81,7 @@ class EventReader {
  private:
   Assignment assignment(const Item& i) {
     if (!i.is_formula()) throw Failure(i.span, "a new value is a number or a formula");
-    const Expr value = put_masses(model_, evaluate_number(parse_formula(i.formula), names_));
+    const Expr value = put_masses(model_, evaluate_number(parse_formula(i.formula), scope_));
     std::string name = i.key;
     unsigned order = 0;
     while (!name.empty() && name.back() == '\'') name.pop_back(), ++order;
@@ -113,7 +112,7 @@ class EventReader {
   }
 
   Scope& scope_;
-  WithMultipliers names_;
+  const Scope::Multipliers allowed_;
   Model& model_;
   Diagnostics& diagnostics_;
 };
@@ -130,14 +129,14 @@ void declare_hybrid(const Item& root, Scope& scope, Model& model, Diagnostics& d
 void read_states(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   const Item* section = root.find("state");
   if (!section || section->kind != Item::Kind::table) return;
-  WithMultipliers names(scope, model);
+  const Scope::Multipliers allowed(scope);
   for (const Item& i : section->items) {
     const auto z = std::find_if(model.states.begin(), model.states.end(), [&](const StateVariable& s) { return s.name == i.key; });
     if (z == model.states.end()) continue;
     collect(diagnostics, [&] {
       const Item& rate = *i.find("rate");
       if (!rate.is_formula()) throw Failure(rate.span, "a rate is a formula");
-      z->rate = put_masses(model, evaluate_number(parse_formula(rate.formula), names));
+      z->rate = put_masses(model, evaluate_number(parse_formula(rate.formula), scope));
       for (NodeId id : symbols({&z->rate, 1}))
         if (const Node& n = model.graph->node(id); n.kind == Kind::state && n.order > 0)
           throw Failure(rate.span, "the rate of '" + i.key + "' holds the rate of '" + model.states[n.index].name + "'", "write out the formula of that rate");

@@ -5,7 +5,6 @@
 #include "expr/indices.h"
 #include "spec/bodies.h"
 #include "spec/keys.h"
-#include "spec/multipliers.h"
 
 namespace anholon {
 
@@ -148,8 +147,8 @@ class InitialReader {
     for (const Item& c : list.items)
       collect(diagnostics_, [&] {
         const std::vector<Syntax> sides = scope_.equation(c);
-        WithMultipliers names(scope_, model_);
-        const Value left = evaluate(sides[0], names), right = evaluate(sides[1], names);
+        const Scope::Multipliers allowed(scope_);
+        const Value left = as_point(evaluate(sides[0], scope_), scope_, sides[0].span), right = as_point(evaluate(sides[1], scope_), scope_, sides[1].span);
         const auto push = [&](Expr residual, const std::string& suffix) {
           if (is_zero(residual)) return;
           const std::vector<NodeId> all = symbols({&residual, 1});

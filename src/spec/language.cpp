@@ -53,6 +53,8 @@ const std::vector<FunctionRow>& kinematic_functions() {
       {"acc", "acc(P)", "acceleration relative to the observer, `P''`; `acc(P, inertial)` as seen inertially", "acc(P, inertial)"},
       {"angvel", "angvel(B)", "angular velocity of a body or frame relative to the observer; `angvel(B, C)` as seen from C; `angvel(B, inertial)`", "angvel(B, inertial)"},
       {"angacc", "angacc(B)", "its derivative", "angacc(plate)"},
+      {"reaction", "reaction(B)", "force of all constraints on the body B, m·a less the given forces, in monitors, events and what these use; `reaction_torque(B)` is its torque about the mass centre", ""},
+      {"reaction_torque", "reaction_torque(B)", "torque of all constraints on the body B about its mass centre", ""},
       {"gravity", "gravity(P)", "the field of `[gravity]` at the point P", ""},
   };
   return list;

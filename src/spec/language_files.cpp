@@ -38,7 +38,7 @@ name = "b"
 center = "0"
 ```
 ```text
-error: in table header: cannot redefine existing array 'body' as array-of-tables
+error: 'body' is a list in one place and [[body]] in another
 ```
 
 - All errors of a file are reported at once. An unknown key is an error, never skipped:

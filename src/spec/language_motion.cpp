@@ -63,7 +63,7 @@ stop = true
 
 - An event happens where the formula strictly changes its sign. It does not happen at the start, nor right after an event where its formula
   is zero: the side on which the motion goes on counts. A formula that touches zero without changing sign does not fire.
-- Its time is located on the Taylor polynomial to round-off, whatever the tolerance. Events may hold `lambda.NAME` and accelerations.
+- Its time is located on the Taylor polynomial to round-off, whatever the tolerance. Events may hold `lambda.NAME`, `reaction(B)` and accelerations, also through `[define]`.
 - Several at one moment are taken in the order of the file. All formulas of one `set` use the values before this event; a later
   event at the same moment sees what the earlier ones have set.
 - Then velocities (and, where positions were set, positions) are made consistent with the constraints by the least change in the mass norm; the change is reported.
@@ -177,7 +177,7 @@ height = "P.y"
 reach  = "norm(P) - 2"
 ```
 
-- Numbers to watch along the motion: columns, with their range in the report. May hold `lambda.NAME` and derivatives of any order.
+- Numbers to watch along the motion: columns, with their range in the report. May hold `lambda.NAME`, `reaction(B)` and derivatives of any order, also through `[define]`.
 )md"},
       {"simulate", Form::keys, any,
        {{"to", number, "end time, absolute; it may lie before the start"},

@@ -47,6 +47,7 @@ turn  = "rotz(2*theta)"            # a rotation; with axes turn.x
 ```
 
 - A name for a formula of any type. Equations print the name where the formula occurs as a whole.
+- One that holds `lambda.NAME` or `reaction(B)` is for monitors, outputs, rates, conditions and events; forces and constraints refuse it.
 )md"},
       {"frame", Form::named, rotation, {},
        R"md(```toml

@@ -4,14 +4,13 @@
 
 #include "expr/indices.h"
 #include "spec/bodies.h"
-#include "spec/multipliers.h"
 
 namespace anholon {
 
 // Derivatives beyond this order would be computed at every row.
 static constexpr int kHighestOrder = 20;
 
-static void read_one(const Item& i, Names& names, Model& model) {
+static void read_one(const Item& i, Scope& scope, Model& model) {
   const std::string name = normal_name(i.key);
   if (!is_element_name(name)) throw Failure(i.key_span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
   const auto& taken = model.names.coordinates;
@@ -20,7 +19,7 @@ static void read_one(const Item& i, Names& names, Model& model) {
   for (const Monitor& m : model.monitors)
     if (m.name == name) throw Failure(i.key_span, "there are two monitors '" + name + "'");
   if (!i.is_formula()) throw Failure(i.span, "a monitor is a formula", "speed = \"norm(vel(P.center))\"");
-  const Value v = evaluate(parse_formula(i.formula), names);
+  const Value v = evaluate(parse_formula(i.formula), scope);
   if (const Expr* e = std::get_if<Expr>(&v)) {
     const Expr value = put_masses(model, *e);
     for (NodeId id : symbols({&value, 1}))
@@ -34,8 +33,8 @@ static void read_one(const Item& i, Names& names, Model& model) {
 }
 
 void read_monitors(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics) {
-  WithMultipliers names(scope, model);
-  for (const Item& i : section.items) collect(diagnostics, [&] { read_one(i, names, model); }, i);
+  const Scope::Multipliers allowed(scope);
+  for (const Item& i : section.items) collect(diagnostics, [&] { read_one(i, scope, model); }, i);
 }
 
 }  // namespace anholon

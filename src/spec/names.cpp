@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "expr/habits.h"
 #include "expr/indices.h"
 
 #include "expr/units.h"
@@ -80,6 +81,11 @@ void Scope::unknown(const std::string& name, Span span) const {
   const bool member = name.find('[') != std::string::npos;
   if (const std::string members = members_known(member ? name : name + "[", known); !members.empty())
     throw Failure(span, member ? "there is no '" + name + "'" + members : "'" + name + "' is a family, not a name" + members);
+  const auto varies = [&](const std::string& n) {
+    const auto it = declarations_.find(n);
+    return it != declarations_.end() && (it->second.role == Role::coordinate || it->second.role == Role::state || it->second.role == Role::control);
+  };
+  if (const std::string habit = habit_of_name(name, varies); !habit.empty()) throw Failure(span, "unknown name '" + name.substr(0, 60) + "'", habit);
   const std::string near = did_you_mean(name, known);
   throw Failure(span, "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 near.empty() ? "give it a value under [parameters] or [define]" : "");
@@ -297,6 +303,8 @@ void Scope::resolve_all() {
     const std::string& name = *named;
     Declaration& d = *declared;
     try {
+      std::optional<Multipliers> allowed;
+      if (d.role == Role::define) allowed.emplace(*this);
       if (d.arguments.empty()) resolve(name, d, d.span);
       else if (!d.parsed) parse_formula(d.formula);
     } catch (const Failure& f) {
@@ -317,13 +325,16 @@ Value Scope::name(const std::string& name, Span span) {
     if (!here_) throw Failure(span, "'here' has a meaning only in the field of [gravity]");
     return *here_;
   }
-  if (name == "lambda")
-    throw Failure(span, "a multiplier has no meaning here: it follows from the equations of which this formula is a part",
-                  "lambda.NAME stands in conditions, monitors, outputs, rates and events");
+  if (name == "lambda") {
+    if (multipliers_ > 0) return InertialName{};  // means something with a member only
+    throw Failure(span, "a multiplier has no meaning here: it follows from the equations of which this formula is a part", kWhereMultipliers);
+  }
   const auto it = declarations_.find(name);
   if (it != declarations_.end()) {
     if (it->second.role == Role::table || !it->second.arguments.empty())
       throw Failure(span, "the function '" + name + "' is used without its arguments", name + "(…)");
+    if (multipliers_ == 0 && holds_multiplier(name))
+      throw Failure(span, "'" + name + "' holds a multiplier or a reaction, which follow from the equations of which this formula is a part", kWhereMultipliers);
     const Value v = resolve(name, it->second, span);
     if (freeze_masses)
       if (const Expr* e = std::get_if<Expr>(&v))
@@ -349,7 +360,8 @@ Value Scope::member(const Value& object, const Syntax& s) {
   const int axis = m.size() == 1 && m[0] >= 'x' && m[0] <= 'z' ? m[0] - 'x' : -1;
   if (const Vector* v = std::get_if<Vector>(&object)) {
     if (axis >= 0) return (*v)[axis];
-    throw Failure(s.span, "a vector has the members x, y and z");
+    const std::string habit = habit_of_member(s);
+    throw Failure(s.span, "a vector has the members x, y and z", habit);
   }
   if (const Rotation* r = std::get_if<Rotation>(&object)) {
     if (axis >= 0) return (*r)[axis];
@@ -357,10 +369,22 @@ Value Scope::member(const Value& object, const Syntax& s) {
   }
   if (const BodyName* b = std::get_if<BodyName>(&object)) {
     if (m == "center" || m == "position") return center(b->index, s.span);
+    if (axis >= 0 && parts_[b->index].particle) return center(b->index, s.span)[axis];
     if (axis >= 0) return orientation(b->index, s.span)[axis];
-    throw Failure(s.span, "a body has the members center, x, y and z");
+    throw Failure(s.span, parts_[b->index].particle ? "a particle has the members position, x, y and z" : "a body has the members center, x, y and z");
   }
-  throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'");
+  if (multipliers_ > 0 && object.index() == 4)
+    if (const std::string path = multiplier_path(s); !path.empty()) return multiplier(path, s.span);
+  throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'", object.index() == 0 ? habit_of_member(s) : "");
+}
+
+// A particle is the point where it is. (Of a body that merely has no orientation the centre is meant less surely.)
+std::optional<Vector> Scope::point(const BodyName& body, Span use) {
+  return parts_[body.index].particle ? std::optional(center(body.index, use)) : std::nullopt;
+}
+
+std::optional<Rotation> Scope::frame(const BodyName& body, Span use) {
+  return has_orientation(body.index) ? std::optional(orientation(body.index, use)) : std::nullopt;
 }
 
 Vector Scope::center(std::size_t body, Span use) {
@@ -369,14 +393,24 @@ Vector Scope::center(std::size_t body, Span use) {
   return *parts_[body].center_value;
 }
 
+// What fails once is reported once: whoever needs it afterwards fails in silence.
+static void keep_failure(bool& failed, const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Failure&) {
+    failed = true;
+    throw;
+  }
+}
+
 void Scope::settle_center(std::size_t body, Span use) {
   BodyParts& p = parts_[body];
   if (p.center_value) return;
-  if (!p.center) throw silent_failure();
+  if (!p.center || p.center_failed) throw silent_failure();
   if (p.center_open) throw Failure(use, "the centre of '" + body_names_[body] + "' is defined through itself");
   if (depth_ > kDeepest) throw TooDeep{body_names_[body] + ".center", nullptr, use, [this, body, use] { settle_center(body, use); }};
   const Opened opened(p.center_open, depth_);
-  p.center_value = vector(*p.center);
+  keep_failure(p.center_failed, [&] { p.center_value = vector(*p.center); });
 }
 
 const Rotation& Scope::orientation(std::size_t body, Span use) {
@@ -388,13 +422,14 @@ const Rotation& Scope::orientation(std::size_t body, Span use) {
 void Scope::settle_orientation(std::size_t body, Span use) {
   BodyParts& p = parts_[body];
   if (p.orientation_value) return;
+  if (p.orientation_failed) throw silent_failure();
   if (!has_orientation(body))
     throw Failure(use, "the body '" + body_names_[body] + "' has no orientation",
                   "give it orientation = \"…\", or angle = \"…\" in the plane");
   if (p.orientation_open) throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
   if (depth_ > kDeepest) throw TooDeep{body_names_[body] + ".orientation", nullptr, use, [this, body, use] { settle_orientation(body, use); }};
   const Opened opened(p.orientation_open, depth_);
-  p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle));
+  keep_failure(p.orientation_failed, [&] { p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle)); });
 }
 
 Vector Scope::gravity_at(const Vector& place, Span use) {

@@ -48,12 +48,15 @@ class Scope final : public Names {
     const Item* center = nullptr;
     const Item* orientation = nullptr;
     const Item* angle = nullptr;
+    bool particle = false;
     bool center_open = false, orientation_open = false;
+    bool center_failed = false, orientation_failed = false;  // and said so
     std::optional<Vector> center_value;
     std::optional<Rotation> orientation_value;
   };
   BodyParts& parts(std::size_t body) { return parts_[body]; }
   Vector center(std::size_t body, Span use);
+  bool is_particle(std::size_t body) const { return parts_[body].particle; }
   bool has_orientation(std::size_t body) const { return parts_[body].orientation || parts_[body].angle; }
   const Rotation& orientation(std::size_t body, Span use);
   std::size_t body(const std::string& name, Span span) const;  // throws if there is none
@@ -71,6 +74,17 @@ class Scope final : public Names {
 
   // In potentials the name of a varying mass means its frozen symbol.
   bool freeze_masses = false;
+  // Within its life formulas may hold multipliers and reactions, and definitions that do: constraints are known then.
+  class Multipliers {
+   public:
+    explicit Multipliers(Scope& scope) : scope_(scope) { ++scope_.multipliers_; }
+    ~Multipliers() { --scope_.multipliers_; }
+    Multipliers(const Multipliers&) = delete;
+    Multipliers& operator=(const Multipliers&) = delete;
+
+   private:
+    Scope& scope_;
+  };
   Vector gravity_at(const Vector& place, Span use);
   // Its derivatives by the three coordinates of the place; none where the field is uniform.
   bool gravity_gradient = false;  // asked for by [gravity] gradient
@@ -84,6 +98,9 @@ class Scope final : public Names {
             Value& result) override;
   Value member(const Value& object, const Syntax& syntax) override;
   std::vector<std::string> functions() const override;
+  std::optional<Vector> point(const BodyName& body, Span use) override;
+  std::optional<Rotation> frame(const BodyName& body, Span use) override;
+  std::string body_name(const BodyName& body) const override { return body_names_[body.index]; }
   void quaternion(const std::array<Expr, 4>& components, const Syntax& call) override { quaternions_.push_back({components, call.span}); }
 
   // The quaternions met so far, in the order of their evaluation.
@@ -112,8 +129,13 @@ class Scope final : public Names {
   [[noreturn]] void unknown(const std::string& name, Span span) const;
   Vector material_velocity(std::size_t body, const Vector& place, Span use);
   Vector inertial_rate(const Vector& v);
+  bool speaks_of_multipliers();
+  bool holds_multiplier(const std::string& name);
+  Value multiplier(const std::string& path, Span use);
+  Vector reaction_on(std::size_t body, const Syntax& call);
   Expr look_up(std::size_t table, Expr x, Span use);
   std::size_t body_argument(const Value& value, const Syntax& argument) const;
+  Vector point_argument(const Value& value, const Syntax& argument);
 
   Model& model_;
   std::map<std::string, Declaration> declarations_;
@@ -133,8 +155,17 @@ class Scope final : public Names {
   std::vector<std::string> open_;                        // path of names being evaluated
   std::size_t depth_ = 0;                                // of definitions and parts of bodies within each other
   std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
+  int multipliers_ = 0;                                  // how many allow them
+  std::optional<bool> speaks_of_multipliers_;            // some definition may hold one
+  std::map<std::string, bool> holds_multiplier_;
   std::size_t calls_ = 0;                                // of given functions, over the whole file
 };
+
+// Where multipliers and reactions may stand.
+inline constexpr const char* kWhereMultipliers = "such a formula stands in conditions, monitors, outputs, rates and events, or in a [define] that these use";
+bool is_reaction(const std::string& function);
+// "rolling.x" of lambda.rolling.x; empty for other members.
+std::string multiplier_path(const Syntax& member);
 
 bool is_reserved(const std::string& name);
 // Does a number with a unit occur in it?

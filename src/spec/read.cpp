@@ -105,6 +105,7 @@ class Reader {  // what it refers to is asked only while it runs
     guard([&] { read_simulate(root, scope_, model_, diagnostics_); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
+    diagnostics_.gather([](const std::string& message) { return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0; });
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
     // What is made of the model from here on grows in proportion to it.
@@ -315,6 +316,9 @@ class DerivedNames final : public Names {
   }
   Value member(const Value& object, const Syntax& syntax) override { return scope_.member(object, syntax); }
   std::vector<std::string> functions() const override { return scope_.functions(); }
+  std::optional<Vector> point(const BodyName& body, Span use) override { return scope_.point(body, use); }
+  std::optional<Rotation> frame(const BodyName& body, Span use) override { return scope_.frame(body, use); }
+  std::string body_name(const BodyName& body) const override { return scope_.body_name(body); }
 
  private:
   Value multiplier(const std::string& name, Span span) {

@@ -56,7 +56,7 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
   for (std::size_t r : constraints) {
     s.equations.push_back(put_masses(*model, m.phi[r]));
     s.equation_names.push_back(model->constraints[r].name);
-    s.variable_names.push_back("lambda." + model->constraints[r].name);
+    s.variable_names.push_back(multiplier_name(*model, r));
   }
   for (std::size_t i = 0; i < model->states.size(); ++i) {
     const StateVariable& z = model->states[i];
