@@ -26,9 +26,9 @@ std::vector<RowColumn> row_columns(const Scenario& s, int highest) {
   for (int k = 0; k <= highest; ++k)
     for (const Coordinate& c : model.coordinates) columns.push_back({derivative_name(c.name, static_cast<unsigned>(k), Format::text), kByOrder[std::min(k, 3)]});
   for (int k = 0; k <= multiplier_orders(s); ++k)
-    for (const Constraint& c : model.constraints)
-      columns.push_back({derivative_name(c.by ? model.controls[*c.by].name : "lambda." + c.name, static_cast<unsigned>(k), Format::text),
-                         k > 0 ? ColumnKind::multiplier_rate : c.by ? ColumnKind::input : ColumnKind::multiplier});
+    for (std::size_t r = 0; r < model.constraints.size(); ++r)
+      columns.push_back({derivative_name(multiplier_name(model, r), static_cast<unsigned>(k), Format::text),
+                         k > 0 ? ColumnKind::multiplier_rate : model.constraints[r].by ? ColumnKind::input : ColumnKind::multiplier});
   for (const StateVariable& z : model.states) columns.push_back({z.name, ColumnKind::state});
   for (const Coordinate& c : model.coordinates) columns.push_back({"N." + c.name, ColumnKind::reaction});
   for (const Monitor& m : model.monitors) columns.push_back({m.name, ColumnKind::monitor});
