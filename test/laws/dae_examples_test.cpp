@@ -47,7 +47,7 @@ std::map<std::string, double> at_the_start(const std::shared_ptr<const Model>& m
   EXPECT_TRUE(evaluate(s, {}, 16, r).ok());
   std::map<std::string, double> values;
   for (const auto& [name, value] : r.derivatives) values[name] = std::stod(value);
-  for (const auto& [name, value] : r.lambda) values["lambda." + name] = std::stod(value);
+  for (const auto& [name, value] : r.lambda) values[name] = std::stod(value);
   for (const auto& [name, column] : r.forces)
     if (std::string(name) == "N")
       for (std::size_t a = 0; a < column.size(); ++a) values["N." + r.q[a].first] = std::stod(column[a]);

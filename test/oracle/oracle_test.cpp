@@ -120,7 +120,7 @@ class Oracle : public testing::TestWithParam<Pair> {
     compare_reactions(worst, r, values, force, at);
     for (const auto& [symbol, v] : stored["solution"].items()) {
       const bool lambda = is_multiplier(symbol);
-      const std::string key = lambda ? multiplier(symbol) : jet_name(symbol);
+      const std::string key = lambda ? "lambda." + multiplier(symbol) : jet_name(symbol);
       worst.compare(find(lambda ? r.lambda : r.derivatives, key), text(v), magnitude(text(v)), key + at);
     }
   }
