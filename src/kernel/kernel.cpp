@@ -1,6 +1,7 @@
 #include "kernel/kernel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -122,7 +123,7 @@ void KernelPlan::lay_out() {
   tables_.margin = take(1);
   tables_.inverse_pivots = take(static_cast<std::uint32_t>(elimination_.pivots.size()) + (plan_.determinant ? 1 : 0));
   Findings& f = tables_.found;
-  for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest}) *place = take(1);
+  for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest, &f.defect}) *place = take(1);
   tables_.size = even(at);
 }
 
@@ -262,6 +263,23 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
   const KernelTables& t = plan_->tables();
   for (std::uint32_t i = 0; i < t.judged.size(); ++i) set_all(t.inverse_pivots + i, t.judged[i].inverse);
   set_shrink(2);
+  const Plan& p = plan_->plan();
+  for (std::size_t j = 0; j < p.x.size(); ++j) low_orders_.push_back({p.x[j], static_cast<std::uint32_t>(p.d[j]) + 1});
+  for (const Place& q : p.quadratures) low_orders_.push_back({q.at, q.series ? static_cast<std::uint32_t>(p.largest_lead) + 1 : 1});
+  for (const Plan::HidingSlot& slot : p.hiding)
+    for (const Place& place : {slot.argument, slot.value}) low_orders_.push_back({place.at, static_cast<std::uint32_t>(p.largest_lead) + 1});
+  // Without overlaps.
+  std::sort(low_orders_.begin(), low_orders_.end(), [](const LowOrders& a, const LowOrders& b) { return a.at < b.at; });
+  std::size_t numbers = 0;
+  std::uint32_t end = 0;
+  for (LowOrders& low : low_orders_) {
+    const std::uint32_t to = std::max(end, low.at + low.count);
+    low.at = std::max(low.at, end);
+    low.count = to - low.at;
+    numbers += low.count;
+    end = to;
+  }
+  aside_.resize(numbers * static_cast<std::size_t>(lanes_));
 }
 
 void Kernel::set_all(std::uint32_t slot, double x) {
@@ -279,6 +297,14 @@ void Kernel::set_parameters(int lane, const std::vector<long double>& parameters
 }
 
 bool Kernel::expand(const Code* code, bool projected) {
+  started_ = false;
+  const bool moved = solve(code, projected);
+  extend(code);
+  return moved;
+}
+
+// Up to the leading derivatives.
+bool Kernel::solve(const Code* code, bool projected) {
   if (code) {
     code->values(arena_);
     code->factor(arena_);
@@ -290,13 +316,16 @@ bool Kernel::expand(const Code* code, bool projected) {
   const bool moved = projected && project(code);
   if (code) {
     code->lead(arena_);
-    code->extend(arena_);
   } else {
     arithmetic_->residual(0);
     arithmetic_->complete(0);
-    arithmetic_->extend();
   }
   return moved;
+}
+
+void Kernel::extend(const Code* code) {
+  if (code) code->extend(arena_);
+  else arithmetic_->extend();
 }
 
 double Kernel::correction_of_solution() {
@@ -328,23 +357,35 @@ bool Kernel::project(const Code* code) {
 void Kernel::place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading) {
   const KernelTables& t = plan_->tables();
   const std::uint32_t n = t.state_size, m = static_cast<std::uint32_t>(plan_->plan().x.size());
+  bool same = true;
+  const auto put = [&](std::uint32_t at, double x) {
+    double& there = number(at, lane);
+    same = same && std::bit_cast<std::uint64_t>(there) == std::bit_cast<std::uint64_t>(x);
+    there = x;
+  };
   for (std::uint32_t i = 0; i < n; ++i) {
     const double high = static_cast<double>(state[i]);
-    number(next_ + i, lane) = high;
-    number(next_ + n + i, lane) = static_cast<double>(state[i] - high);
+    put(next_ + i, high);
+    put(next_ + n + i, static_cast<double>(state[i] - high));
   }
-  for (std::uint32_t j = 0; j < m; ++j) number(next_ + 2 * n + j, lane) = leading.empty() ? 0 : static_cast<double>(leading[j]);
+  for (std::uint32_t j = 0; j < m; ++j) put(next_ + 2 * n + j, leading.empty() ? 0 : static_cast<double>(leading[j]));
+  // What was read and is put back has not moved.
+  if (!same) started_ = false;
   gone_on_ = true;
 }
 
 void Kernel::begin() {
-  next_ = std::exchange(before_, std::exchange(begun_, next_));
-  gone_on_ = false;
-  base_ = begun_;
   const Code* code = this->code();
-  if (code) code->begin(arena_, slot(begun_));
-  else arithmetic_->begin(slot(begun_));
-  if (expand(code, true)) {
+  if (started_) {
+    if (shows_last_) swap_low_orders();
+  } else {
+    start(code);
+  }
+  started_ = gone_on_ = false;
+  next_ = std::exchange(before_, std::exchange(begun_, next_));
+  base_ = begun_;
+  extend(code);
+  if (moved_) {
     arithmetic_->adopt(slot(begun_));
     base_ = plan_->tables().projected;
   }
@@ -352,7 +393,37 @@ void Kernel::begin() {
   else arithmetic_->measure();
 }
 
+// The expansion at the next place.
+void Kernel::start(const Code* code) {
+  if (code) code->begin(arena_, slot(next_));
+  else arithmetic_->begin(slot(next_));
+  moved_ = solve(code, true);
+}
+
+void Kernel::start_next() {
+  double* to = aside_.data();
+  const std::size_t lanes = static_cast<std::size_t>(lanes_);
+  for (const LowOrders& low : low_orders_) to = std::copy_n(slot(low.at), low.count * lanes, to);
+  start(code());
+  arithmetic_->compare(slot(next_));
+  started_ = true;
+  shows_last_ = false;
+}
+
+void Kernel::swap_low_orders() const {
+  double* aside = aside_.data();
+  const std::size_t lanes = static_cast<std::size_t>(lanes_);
+  for (const LowOrders& low : low_orders_) {
+    double* there = arena_ + low.at * lanes;
+    std::swap_ranges(there, there + low.count * lanes, aside);
+    aside += low.count * lanes;
+  }
+  shows_last_ = !shows_last_;
+}
+
 void Kernel::advance() {
+  show_last();
+  started_ = false;
   if (const Code* code = this->code()) {
     code->go_on(arena_, slot(base_), slot(next_));
   } else {
@@ -378,6 +449,7 @@ void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std
 void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(base_, lane, state); }
 
 void Kernel::change_over_step() {
+  show_last();
   if (const Code* code = this->code()) code->advance(arena_);
   else arithmetic_->advance();
 }

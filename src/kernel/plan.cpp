@@ -386,6 +386,8 @@ class Planner {
     for (std::uint32_t s = 0; s < code_.size(); ++s)
       if (slots_.live[s] && !code_[s].constant && code_[s].op == Op::power && tape_.rationals[code_[s].index].get_den() % 2 == 0)
         plan_.roots_of_even_powers.push_back({code_[s].a, at(code_[s].a)});
+    for (std::uint32_t s = 0; s < tape_.main_end; ++s)
+      if (const auto function = slots_.live[s] && !code_[s].constant ? may_hide(tape_, code_[s]) : std::nullopt) plan_.hiding.push_back({*function, at(hidden_argument(code_[s])), at(s)});
     for (std::uint32_t s = 0; s < tape_.main_end; ++s) {
       if (!slots_.live[s] || !slots_.tainted[s] || !slots_.series[s]) continue;
       if (code_[s].op == Op::input) {
@@ -418,6 +420,24 @@ class Planner {
 };
 
 }  // namespace
+
+std::optional<Hiding> may_hide(const Tape& tape, const Instruction& in) {
+  if (in.constant) return std::nullopt;
+  if (in.op == Op::power) {
+    // A wall; lower powers show from afar.
+    constexpr double kSteep = 6;
+    const double exponent = tape.rationals[in.index].get_d();
+    return std::abs(exponent) < kSteep ? std::nullopt : std::optional(Hiding{std::nullopt, exponent});
+  }
+  if (in.op == Op::divide) return tape.code[in.b].constant ? std::nullopt : std::optional(Hiding{std::nullopt, -1});
+  if (in.op != Op::function) return std::nullopt;
+  switch (const Function f = static_cast<Function>(in.index)) {
+    case Function::exp: case Function::tanh: case Function::sinh: case Function::cosh: case Function::atan: return Hiding{f, 0};
+    case Function::sin: case Function::cos: case Function::tan: case Function::asin: case Function::acos: case Function::asinh: case Function::acosh: case Function::atanh:
+    case Function::log: case Function::abs: case Function::sign: break;
+  }
+  return std::nullopt;
+}
 
 std::string no_plan(const Program& p) {
   if (p.nonlinear) return "the leading derivatives enter nonlinearly";
