@@ -101,30 +101,62 @@ TEST_P(Saturation, IsNotSteppedOver) {
   }
 }
 
-// In the lanes of one kernel each motion ends its steps where it has to, whatever those beside it do.
-TEST_P(Saturation, IsNotSteppedOverBySweeps) {
+// A run that goes on repeats its last step in full, wherever that was cut short, and whatever was looked at.
+TEST_P(Saturation, RunsGoOnWithTheSameBits) {
+  const auto go = [&](const Rational& to, const SavedRun* resume, SavedRun* saved, bool kernel) {
+    Scenario s;
+    EXPECT_TRUE(make_scenario(test::model_of(text(GetParam())), *find_formulation("routh"), {}, s).ok());
+    SimulationOptions o;
+    o.to = to;
+    o.kernel = kernel;
+    o.resume = resume;
+    if (saved) o.save = [saved](const SavedRun& r) { *saved = r; };
+    MemorySink rows;
+    EXPECT_TRUE(simulate(s, o, rows).outcome.ok());
+    return rows.rows().back();
+  };
+  for (const bool kernel : {true, false}) {
+    const Rational to = GetParam().to;
+    SavedRun saved;
+    go(to * Rational(3, 8), nullptr, &saved, kernel);
+    EXPECT_EQ(go(to, &saved, nullptr, kernel), go(to, nullptr, nullptr, kernel));
+  }
+}
+
+std::vector<CaseResult> swept(const Case& c, std::vector<Rational> masses) {
   Scenario s;
-  ASSERT_TRUE(make_scenario(test::model_of(text(GetParam())), *find_formulation("routh"), {}, s).ok());
+  EXPECT_TRUE(make_scenario(test::model_of(text(c)), *find_formulation("routh"), {}, s).ok());
   EnsembleOptions o;
-  o.to = GetParam().to;
+  o.to = c.to;
   o.threads = 1;
-  o.again = [t = text(GetParam())] { return test::model_of(t); };
+  o.again = [t = text(c)] { return test::model_of(t); };
   o.varied = {{Varied::Kind::parameter, 0, 0, "a"}};
-  o.cases = 11;
-  const auto mass = [](std::size_t k) -> Rational { return Rational(10 + static_cast<int>(k)) / 10; };
-  o.numbers = [&](std::size_t k) { return EnsembleCase{{mass(k)}, {}}; };
+  o.cases = masses.size();
+  o.numbers = [&](std::size_t k) { return EnsembleCase{{masses[k]}, {}}; };
   struct Results final : CaseSink {
     void result(const CaseResult& r) override { list.push_back(r); }
     std::vector<CaseResult> list;
   } results;
   ensemble(s, o, results);
-  ASSERT_EQ(results.list.size(), 11U);
-  for (const std::size_t k : {0UL, 4UL, 10UL}) {
-    const std::vector<double> expected = by_short_steps(GetParam(), mass(k));
+  return results.list;
+}
+
+// In the lanes of one kernel each motion ends its steps where it has to, whatever those beside it do.
+TEST_P(Saturation, IsNotSteppedOverBySweeps) {
+  std::vector<Rational> masses;
+  for (int k = 0; k < 70; ++k) masses.push_back(Rational(40 + k) / 40);
+  const std::vector<CaseResult> together = swept(GetParam(), masses);
+  ASSERT_EQ(together.size(), masses.size());
+  for (const std::size_t k : {0UL, 13UL, 39UL}) {
+    const std::vector<double> expected = by_short_steps(GetParam(), masses[k]);
     ASSERT_EQ(expected.size(), 2U);
-    ASSERT_TRUE(results.list[k].outcome.ok()) << results.list[k].outcome.message;
-    EXPECT_NEAR(results.list[k].last[0], expected[0], 1e-9) << k;
-    EXPECT_NEAR(results.list[k].last[1], expected[1], 1e-9) << k;
+    ASSERT_TRUE(together[k].outcome.ok()) << together[k].outcome.message;
+    EXPECT_NEAR(together[k].last[0], expected[0], 1e-8) << k;
+    EXPECT_NEAR(together[k].last[1], expected[1], 1e-8) << k;
+    const std::vector<CaseResult> alone = swept(GetParam(), {masses[k]});
+    ASSERT_EQ(alone.size(), 1U);
+    EXPECT_EQ(alone[0].steps, together[k].steps);
+    EXPECT_EQ(alone[0].last, together[k].last);
   }
 }
 
