@@ -58,23 +58,33 @@ Expansion<N>* Stepper<N>::ahead(const W& h) {
 
 template <Number N>
 Expansion<N>* Stepper<N>::prepared(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+  Expansion<N>& there = loaded_ahead(t, state, leading);
+  there.set_weakest_direction({});
+  return there.prepare().ok() ? &there : nullptr;
+}
+
+template <Number N>
+Expansion<N>& Stepper<N>::loaded_ahead(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
   if (!ahead_) ahead_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
-  std::vector<N> narrow_state, narrow_leading;
-  convert_all(state, narrow_state);
-  convert_all(leading, narrow_leading);
-  ahead_->load(convert<N>(t), narrow_state, narrow_leading);
-  ahead_->set_weakest_direction({});
-  return ahead_->prepare().ok() ? ahead_.get() : nullptr;
+  convert_all(state, narrow_state_);
+  convert_all(leading, narrow_leading_);
+  ahead_->load(convert<N>(t), narrow_state_, narrow_leading_);
+  return *ahead_;
 }
 
 // Of the polynomial itself, in formulas that follow from it without derivatives beyond the leading ones.
 template <Number N>
 std::optional<N> Stepper<N>::quadrature_ahead(std::size_t i, const N& h) {
-  Expansion<N>* there = ahead(convert<W>(h));
-  if (!there) return std::nullopt;
-  there->evaluate_quadratures();
-  const N value = there->quadrature(i)[0];
-  return is_finite(value) ? std::optional<N>(value) : std::nullopt;
+  const std::optional<N> value = ahead(convert<W>(h)) ? quadrature_there(i) : std::nullopt;
+  return value && is_finite(*value) ? value : std::nullopt;
+}
+
+// … where that was looked at last.
+template <Number N>
+std::optional<N> Stepper<N>::quadrature_there(std::size_t i) {
+  ahead_->evaluate_quadratures();
+  const N value = ahead_->quadrature(i)[0];
+  return value == value ? std::optional<N>(value) : std::nullopt;
 }
 
 template <Number N>
@@ -144,7 +154,9 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   template void Stepper<N>::on_polynomial(const W&, std::vector<W>&, std::vector<W>&) const;           \
   template Expansion<N>* Stepper<N>::ahead(const W&);                                                  \
   template Expansion<N>* Stepper<N>::prepared(const W&, const std::vector<W>&, const std::vector<W>&); \
+  template Expansion<N>& Stepper<N>::loaded_ahead(const W&, const std::vector<W>&, const std::vector<W>&); \
   template std::optional<N> Stepper<N>::quadrature_ahead(std::size_t, const N&);                       \
+  template std::optional<N> Stepper<N>::quadrature_there(std::size_t);                                 \
   template bool Stepper<N>::near_in_branch(const W&);                                                  \
   template Wider<N> Stepper<N>::on_the_branch(W);                                                      \
   template std::optional<Mode<N>> Stepper<N>::mode_ahead(const W&);                                    \

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "integrate/kink.h"
+#include "integrate/passed_over.h"
 #include "integrate/taylor.h"
 #include "kernel/kernel.h"
 
@@ -238,6 +239,7 @@ const Expansion<typename Stepper<N>::W>& Stepper<N>::point(bool values) const {
 template <Number N>
 std::vector<typename Stepper<N>::W> Stepper<N>::leading_at_base() const {
   std::vector<W> leading(program_->unknowns());
+  kernel_->show_last();
   for (std::size_t j = 0; j < leading.size(); ++j)
     if (const auto own = kernel_unknown(j)) leading[j] = W(kernel_->derivative(*own, program_->d[j], lane_));
   return leading;
@@ -253,6 +255,7 @@ template <Number N>
 N Stepper<N>::coefficient(std::size_t j, int k) const {
   if constexpr (std::same_as<N, double>)
     if (by_kernel_) {
+      kernel_->show_last();
       const auto own = kernel_unknown(j);
       return own && k <= kernel_->plan().plan().stages + kernel_->plan().plan().d[*own] ? kernel_->coefficient(*own, k, lane_) : 0;
     }
@@ -262,8 +265,33 @@ N Stepper<N>::coefficient(std::size_t j, int k) const {
 template <Number N>
 N Stepper<N>::quadrature_coefficient(std::size_t i, int k) const {
   if constexpr (std::same_as<N, double>)
-    if (by_kernel_) return kernel_->quadrature(i, k, lane_);
+    if (by_kernel_) return kernel_->show_last(), kernel_->quadrature(i, k, lane_);
   return expansion_.quadrature(i)[k];
+}
+
+template <Number N>
+void Stepper<N>::find_hidden_by_kernel(const N& h) {
+  if constexpr (std::same_as<N, double>) {
+    const Plan& plan = kernel_->plan().plan();
+    if (plan.hiding.empty()) return;
+    kernel_->show_last();
+    std::vector<double> argument(static_cast<std::size_t>(order_)), value = argument;
+    for (const Plan::HidingSlot& slot : plan.hiding) {
+      for (int k = 0; k < order_; ++k) {
+        argument[static_cast<std::size_t>(k)] = kernel_->series(slot.argument, k, lane_);
+        value[static_cast<std::size_t>(k)] = kernel_->series(slot.value, k, lane_);
+      }
+      add_hidden(slot.function, argument.data(), value.data(), order_ - 1, h, hidden_);
+    }
+  } else {
+    (void)h;
+  }
+}
+
+template <Number N>
+N Stepper<N>::defect_by_kernel() const {
+  if constexpr (std::same_as<N, double>) return kernel_->defect(lane_);
+  else return N(0);
 }
 
 template <Number N>
@@ -276,6 +304,7 @@ void Stepper<N>::advance_kernel(const W& h) const {
 template <Number N>
 void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std::vector<W>& state, std::vector<W>& leading) const {
   if constexpr (std::same_as<N, double>) {
+    kernel_->show_last();
     const Program& p = kernel_->plan().program();
     const std::size_t stride = static_cast<std::size_t>(kernel_->lanes());
     const double *increment = kernel_->increments(lane_), *factorial = kernel_->plan().tables().factorial.data();
@@ -307,6 +336,8 @@ void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std:
 #define INSTANTIATE(N)                                                                        \
   template N Stepper<N>::coefficient(std::size_t, int) const;                                 \
   template N Stepper<N>::quadrature_coefficient(std::size_t, int) const;                      \
+  template void Stepper<N>::find_hidden_by_kernel(const N&);                                  \
+  template N Stepper<N>::defect_by_kernel() const;                                            \
   template void Stepper<N>::advance_kernel(const W&) const;                                   \
   template void Stepper<N>::advanced_by_kernel(const W&, const std::vector<W>&, std::vector<W>&, std::vector<W>&) const; \
   template void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan>);                    \

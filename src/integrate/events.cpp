@@ -104,7 +104,70 @@ double EventWatch<N>::log_reach(const Expansion<N>& e, int degree, double log_to
 }
 
 template <Number N>
-std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h, const Values& values) {
+bool EventWatch<N>::has_series(const N* c, int degree) {
+  return std::all_of(c, c + degree + 1, [](const N& x) { return is_finite(x); });
+}
+
+template <Number N>
+bool EventWatch<N>::without_series(const Expansion<N>& e, int degree) const {
+  return std::any_of(series_.begin(), series_.end(), [&](const WatchedSeries& s) { return s.of_state && !has_series(e.quadrature(s.quadrature), degree); });
+}
+
+template <Number N>
+bool EventWatch<N>::as_foretold(const Expansion<N>& e, int degree, const N& where, double log_tolerance, const ValueThere& value) const {
+  // Measured as the steps of the motion are (end_check.cpp); where there is no value, the motion is what ends.
+  constexpr double kTolerances = 100, kRoundoffs = 4096;
+  for (const WatchedSeries& s : series_) {
+    const N* c = e.quadrature(s.quadrature);
+    if (!s.of_state || !has_series(c, degree)) continue;
+    const std::optional<N> is = value(s.quadrature);
+    if (!is) continue;
+    if (!is_finite(*is)) return false;
+    N terms = e.quadrature_terms(s.quadrature), power(1);
+    for (int k = 0; k <= degree; ++k, power *= where) terms = std::max(terms, N(abs(N(c[k] * power))));
+    if (const N size = abs(*is); size > terms) terms = size;
+    const N most = std::max(N(N(exp(N(log_tolerance))) * N(kTolerances)), N(unit_roundoff<N>() * N(kRoundoffs)));
+    if (!(abs(N(*is - value_at(c, degree, where))) <= most * terms)) return false;
+  }
+  return true;
+}
+
+// All that values at the ends of parts of (0, h] show, up to the first that ends the step.
+template <Number N>
+std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings_of_values(const WatchedSeries& s, int& side, const N& h, const Values& values) {
+  constexpr int kParts = 32, kHalvings = 120;
+  const int forward = h > N(0) ? 1 : -1;
+  std::vector<Crossing> list;
+  const auto sign_at = [&](const N& x) {
+    const std::optional<N> v = values(s.quadrature, x);
+    return !v ? 0 : *v > N(0) ? 1 : *v < N(0) ? -1 : 0;
+  };
+  int now = side;
+  N from(0);
+  for (int i = 1; i <= kParts; ++i) {
+    const N to = h * N(i) / N(kParts);
+    const int there = sign_at(to);
+    if (there == 0) continue;
+    if (now == 0) {
+      now = side = there;
+    } else if (there != now) {
+      N low = from, high = to;
+      for (int k = 0; k < kHalvings; ++k) {
+        const N middle = (low + high) / N(2);
+        if (middle == low || middle == high) break;
+        (sign_at(middle) == there ? high : low) = middle;
+      }
+      now = there;
+      list.push_back({high, there});
+      if (s.ends_step && s.fires(there * forward)) break;
+    }
+    from = to;
+  }
+  return list;
+}
+
+template <Number N>
+std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h, const std::optional<N>& kink, const Values& values) {
   const N eps = unit_roundoff<N>();
   const int forward = h > N(0) ? 1 : -1;
   std::vector<std::vector<Crossing>> each;
@@ -117,9 +180,22 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     // What a value is made of, and the rounding of the time at which it is taken.
     const N floor = eps * N(kNoise) * (e.quadrature_terms(s.quadrature) + abs(c[1]) * abs(t));
     floors.push_back(floor);
+    if (s.of_state && !has_series(c, degree)) {
+      if (is_finite(c[0]) && abs(c[0]) > N(0) && sides_[i] == 0) sides_[i] = c[0] > N(0) ? 1 : -1;
+      if (abs(sides_[i]) > 1) sides_[i] /= 2;
+      each.push_back(crossings_of_values(s, sides_[i], h, values));
+      if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards * forward)) continue;
+      if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
+      continue;
+    }
     if (sides_[i] == 0) sides_[i] = side_after(c, degree, h, floor);
     else if (abs(sides_[i]) > 1) sides_[i] = abs(c[0]) > floor ? (c[0] > N(0) ? 1 : -1) : sides_[i] / 2;
     each.push_back(crossings(c, degree, h, floor, s, sides_[i]));
+    // What the series do beyond a kink is not what the formula does: it may touch zero there, and turn.
+    if (s.of_state && kink && !each[i].empty() && !(abs(each[i].back().where) < abs(*kink))) {
+      const std::optional<N> there = values(s.quadrature, h);
+      if (there && !(each[i].back().towards > 0 ? *there > N(0) : *there < N(0))) each[i].pop_back();
+    }
     if (s.of_state)
       for (Crossing& x : each[i]) x.where = improved<N>(c, degree, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
     if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards * forward)) continue;

@@ -5,7 +5,7 @@
 // leaves at zero keeps its side: it may be about to pass.
 //
 // A series is cut off like the state's, and a formula of the state converges more slowly than the state: its zeros are improved on
-// values of the formula itself, by Newton's method.
+// values of the formula itself, by Newton's method. Where a formula has no series, its values tell.
 #pragma once
 #include <functional>
 #include <vector>
@@ -46,15 +46,23 @@ class EventWatch {
 
   // The value of a quadrature on the state at a time from the start of the step, where it has one.
   using Values = std::function<std::optional<N>(std::size_t quadrature, const N& where)>;
+  // Whether the series of formulas of the state, finite ones, have their values at a point on the way; `value`: of a quadrature there.
+  using ValueThere = std::function<std::optional<N>(std::size_t quadrature)>;
+  bool as_foretold(const Expansion<N>& e, int degree, const N& where, double log_tolerance, const ValueThere& value) const;
+  // A formula of the state that has a value, but no series: the root of what is zero.
+  bool without_series(const Expansion<N>& e, int degree) const;
   // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time, those of
   // one moment in the order of the series. Sides become those after it. `t`: the time of the expansion.
-  std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h, const Values& values);
+  // `kink`: series hold up to there only, and the step ends shortly after.
+  std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h, const std::optional<N>& kink, const Values& values);
 
  private:
   struct Crossing {
     N where{0};
     int towards = 0;
   };
+  static bool has_series(const N* c, int degree);
+  static std::vector<Crossing> crossings_of_values(const WatchedSeries& s, int& side, const N& h, const Values& values);
   static std::vector<Crossing> crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side);
 
   std::vector<WatchedSeries> series_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrate/kink.h"
 #include "kernel/kernel.h"
 
 namespace anholon {
@@ -28,11 +27,6 @@ Outcome blow_up() { return {OutcomeKind::blow_up, "the motion grows without boun
 
 Outcome becomes_singular() { return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"}; }
 
-// A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other side.
-constexpr int kPastKink = 32;
-// Kinks met so soon after another one are other kinks, until they are too many.
-constexpr int kMostShortKinks = 20;
-
 }  // namespace
 
 int least_work_order(double log_tolerance) { return std::max(4, static_cast<int>(std::ceil(-log_tolerance / 2 + 1))); }
@@ -50,7 +44,9 @@ bool asks_for_last_digits(double log_tolerance) {
 template <Number N>
 Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters, const StepSettings& settings)
     : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
-      parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1) {}
+      parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1), check_(settings_.log_tolerance) {
+  find_hiding(program.tape.main_end);
+}
 
 template <Number N>
 Stepper<N>::~Stepper() = default;
@@ -69,6 +65,8 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
   expansions_ = by_kernel_count_ = 0;
   by_kernel_ = suspected_ = loaded_ = away_ = expanded_ = singular_ahead_ = false;
   short_kinks_ = 0;
+  limit_ = W(0);
+  check_.forget();
   sigma_ = N(0);
   expansion_.set_weakest_direction({});
   fired_.clear();
@@ -101,6 +99,8 @@ Outcome Stepper<N>::restart(const std::vector<W>& state) {
   events_.restart();
   fired_.clear();
   short_kinks_ = 0;
+  limit_ = W(0);
+  check_.forget();
   // How far what was set lies from the constraints is no drift.
   const W drift = record_.worst_constraint;
   Outcome o = expand(leading_);
@@ -112,6 +112,8 @@ template <Number N>
 void Stepper<N>::adopt(const Stepper& other) {
   other.settle();
   away_ = false;
+  limit_ = W(0);
+  check_.forget();
   events_ = other.events_;
   started_ = other.started_;
   t_ = before_ = other.t_;
@@ -134,6 +136,8 @@ void Stepper<N>::adopt(const Stepper& other) {
 template <Number N>
 Outcome Stepper<N>::resume(const StepperState<N>& b) {
   away_ = false;
+  limit_ = W(0);
+  check_.forget();
   started_ = t_ = before_ = b.t;
   record_ = b;
   sigma_ = b.sigma_before;
@@ -174,7 +178,12 @@ Outcome Stepper<N>::step(const W& end) {
   if (!begins()) return outcome(false);
   if (loaded_) kernel_->begin();
   if (!aims(end)) return outcome(false);
-  if (by_kernel_) kernel_->advance();
+  for (EndOfStep there = EndOfStep::elsewhere; by_kernel_ && there == EndOfStep::elsewhere;) {
+    kernel_->advance();
+    kernel_->start_next();
+    there = looks_at_end(end);
+    if (there == EndOfStep::failed) return outcome(false);
+  }
   return outcome(finishes());
 }
 
@@ -185,6 +194,7 @@ bool Stepper<N>::begins() {
   if (record_.steps >= settings_.most_steps)
     return fail({OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"});
   if (!expanded_) begin_expansion(leading_);
+  kinks_before_ = kinks_;
   return true;
 }
 
@@ -192,7 +202,7 @@ template <Number N>
 bool Stepper<N>::aims_with_care(const W& end) {
   const W left = end - t_;
   const bool forward = left > W(0);
-  W h = convert<W>(horizon_);
+  W h = horizon();
   // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from there.
   if (program_->nonlinear) h = abs(on_the_branch(forward ? h : W(-h)));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
@@ -203,41 +213,27 @@ bool Stepper<N>::aims_with_care(const W& end) {
     return fail({OutcomeKind::interrupted, "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(to_double(h), 2) + " long",
                  "end the motion earlier, or take what is very fast or very stiff out of the model"});
   if (singular_ahead_) return fail(becomes_singular());
-  const bool last = !(h < abs(left));
-  if (last) h = abs(left);
+  const W whole = h;
+  if (!(h < abs(left))) h = abs(left);
   if (!forward) h = -h;
-  const Kink<N> kink = by_kernel_ && !may_touch_zero_ ? Kink<N>{} : first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
-  bool cut = false;
-  if (kink.at_start || kink.ahead) {
-    // At a kink functions are taken one-sided along the motion: a very short step finds the side.
-    const W roundoff = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t_) > abs(h) ? W(abs(t_)) : W(abs(h)));
-    const W past = roundoff + W(std::exp(settings_.log_tolerance)) * abs(h);
-    const W where = kink.at_start ? W(0) : convert<W>(kink.where);
-    short_kinks_ = !kink.at_start && !(abs(where) > past * W(4)) ? short_kinks_ + 1 : 0;
-    if (short_kinks_ > kMostShortKinks)
-      return fail({OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
-                   "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such as tanh(x/0.01) for sign(x)"});
-    const W beyond = where + (forward ? past : W(-past));
-    if (abs(beyond) < abs(h)) h = beyond, cut = true, ++kinks_;
-  } else {
-    short_kinks_ = 0;
-  }
+  if (!ends_as_foretold(h, whole)) return false;
   if (const std::optional<W> met = by_kernel_ && !suspected_ ? std::nullopt : singular_within(h)) {
     // Up to where J is still regular.
     constexpr double kShortOf = 1 - 1e-7;
     h = *met * W(kShortOf);
-    cut = singular_ahead_ = true;
+    singular_ahead_ = true;
     if (!(abs(h) > floor)) return fail(becomes_singular());
   }
   fired_.clear();
   if (!events_.empty()) {
     N to = convert<N>(h);
-    const N whole = to;
-    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to, [this](std::size_t i, const N& where) { return quadrature_ahead(i, where); });
-    if (to != whole) h = convert<W>(to), cut = true, singular_ahead_ = false;
+    const N length = to;
+    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to, at_kink_ ? std::optional<N>(convert<N>(looked_)) : std::nullopt,
+                          [this](std::size_t i, const N& where) { return quadrature_ahead(i, where); });
+    if (to != length) h = convert<W>(to), singular_ahead_ = false;
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
-  if (last && !cut) aim_at(end, true);
+  if (h == left) aim_at(end, true);
   else aim_at(convert<W>(convert<N>(W(t_ + h))), false);
   return true;
 }
@@ -246,15 +242,18 @@ bool Stepper<N>::aims_with_care(const W& end) {
 template <Number N>
 bool Stepper<N>::nothing_in_the_way() const {
   return by_kernel_ && !suspected_ && !singular_ahead_ && !may_touch_zero_ && short_kinks_ == 0 && fired_.empty() && events_.empty() &&
-         to_double(horizon_) > std::abs(to_double(t_)) * (2 * kCollapsedRoundoffs * unit_roundoff<double>());
+         to_double(horizon()) > std::abs(to_double(t_)) * (2 * kCollapsedRoundoffs * unit_roundoff<double>());
 }
 
 template <Number N>
 bool Stepper<N>::aims_freely(const W& end) {
   if (!nothing_in_the_way()) return false;
-  const W left = end - t_, h = convert<W>(horizon_);
+  const W left = end - t_, h = horizon();
   if (!(h < abs(left)) || end_out_of_reach(h, left)) return false;
-  aim_at(convert<W>(convert<N>(W(left > W(0) ? t_ + h : t_ - h))), false);
+  const W to = convert<W>(convert<N>(W(left > W(0) ? t_ + h : t_ - h)));
+  looked_ = to - t_;
+  at_kink_ = false;
+  aim_at(to, false);
   return true;
 }
 
@@ -262,7 +261,13 @@ template <Number N>
 void Stepper<N>::aim_at(const W& t, bool arrives) {
   aimed_ = t;
   arrives_ = arrives;
-  if (by_kernel_) kernel_->set_step(lane_, to_double(W(t - t_)));
+  if (!by_kernel_) return;
+  const W h = t - t_;
+  if (looked_ != W(0) && abs(h) < abs(looked_)) looked_ = h;
+  if (looked_ == W(0)) return send_kernel(h);
+  find_hidden(looked_);
+  check_.begin(convert<N>(looked_), hidden_);
+  send_kernel(convert<W>(check_.where()));
 }
 
 // Where the state is not with the kernel.
@@ -304,6 +309,8 @@ bool Stepper<N>::finishes() {
   before_ = t_;
   t_ = aimed_;
   expanded_ = false;
+  limit_ = W(0);
+  check_.forget();
   ++record_.steps;
   // Others in the kernel go on while this one has arrived.
   if (arrives_) settle();

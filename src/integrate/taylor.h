@@ -1,14 +1,16 @@
-// The motion by Taylor steps: order from the tolerance, step size after Jorba & Zou, projection on
-// all hidden constraints at every step, compensated update of the state, dense output.
+// The motion by Taylor steps: order from the tolerance, step size after Jorba & Zou, a look at the equations where
+// a step ends, projection on all hidden constraints at every step, compensated update of the state, dense output.
 #pragma once
 #include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "integrate/end_check.h"
 #include "integrate/events.h"
 #include "integrate/regular.h"
 #include "kernel/pivots.h"
+#include "kernel/plan.h"
 
 namespace anholon {
 
@@ -98,7 +100,10 @@ class Stepper {
   bool accelerated() const { return kernel_ != nullptr; }
   std::size_t expansions_by_kernel() const { return by_kernel_count_; }
   // Series to be watched for changes of sign; a step ends where one does that asks for it.
-  void watch(std::vector<WatchedSeries> series) { events_ = EventWatch<N>(std::move(series)); }
+  void watch(std::vector<WatchedSeries> series) {
+    events_ = EventWatch<N>(std::move(series));
+    find_hiding(kinks_end());
+  }
   // What fired in the last step, in order.
   const std::vector<Fired<N>>& fired() const { return fired_; }
   // Goes on from another state at the same time (after `adopt`, if another stepper was there): an event has changed it. It is
@@ -122,9 +127,11 @@ class Stepper {
   // One step towards `end`, at most up to it.
   Outcome step(const W& end);
   // Its parts, for steppers in the lanes of one kernel: after `begin_step` of all of them the kernel is to be expanded, after `aim` of all it is to
-  // advance, and nothing else may happen to it in between. Where one fails, `trouble` is what there was, asked for once.
+  // advance and to start the next expansion, again as long as one of them then asks for another end (`look_at_end`), and nothing else may happen to it
+  // in between. Where one fails, `trouble` is what there was, asked for once.
   [[nodiscard]] bool begin_step() { return begins(); }
   [[nodiscard]] bool aim(const W& end) { return aims(end); }
+  [[nodiscard]] EndOfStep look_at_end(const W& end) { return looks_at_end(end); }
   [[nodiscard]] bool finish_step() { return finishes(); }
   Outcome trouble() { return outcome(false); }
 
@@ -161,6 +168,10 @@ class Stepper {
   // The parts of a step and of its expansion; where they fail, trouble_ says why.
   bool begins();
   bool aims(const W& end) { return (expanded_ || ends_expansion(leading_)) && (aims_freely(end) || aims_with_care(end)); }
+  EndOfStep looks_at_end(const W& end);
+  bool may_end_at(const W& h);
+  W horizon() const { return limit_ > W(0) ? limit_ : convert<W>(horizon_); }
+  N defect_at(const W& h);
   bool aims_freely(const W& end);
   bool aims_with_care(const W& end);
   bool finishes();
@@ -206,6 +217,7 @@ class Stepper {
   bool near_in_branch(const W& h);
   Expansion<N>* ahead(const W& h);
   Expansion<N>* prepared(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
+  Expansion<N>& loaded_ahead(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
   std::optional<N> quadrature_ahead(std::size_t i, const N& h);
   std::optional<Mode<N>> mode_ahead(const W& h);
   std::optional<Mode<N>> mode_at(const W& t, const std::vector<W>& state);
@@ -214,6 +226,13 @@ class Stepper {
   bool end_out_of_reach(const W& h, const W& left) const;
   bool nothing_in_the_way() const;
   void aim_at(const W& t, bool arrives);
+  void send_kernel(const W& h);
+  N defect_by_kernel() const;
+  void find_hiding(std::uint32_t end);
+  void find_hidden(const W& h);
+  void find_hidden_by_kernel(const N& h);
+  std::optional<N> quadrature_there(std::size_t i);
+  bool ends_as_foretold(W& h, const W& whole);
   void advance_kernel(const W& h) const;
   void advanced_by_kernel(const W& h, const std::vector<W>& base, std::vector<W>& state, std::vector<W>& leading) const;
   void on_polynomial(const W& h, std::vector<W>& state, std::vector<W>& leading) const;
@@ -235,6 +254,13 @@ class Stepper {
   mutable bool away_ = false;
   W aimed_{0};           // where the step ends
   bool arrives_ = false; // at what the caller has set
+  EndCheck<N> check_;    // of the present step
+  std::vector<std::pair<std::uint32_t, Hiding>> hiding_;  // slots of the tape
+  std::vector<N> hidden_;                                 // points within the step to be looked at
+  bool at_kink_ = false;                                  // the step ends past one
+  W limit_{0};           // of its length, where that check has shortened it; else 0
+  W looked_{0};          // how far the equations are looked at: to its end, or shortly before a kink; 0 where they are not
+  W sent_{0};            // how far the kernel was sent to look
   std::vector<std::pair<std::uint32_t, std::uint32_t>> kink_series_;  // what kernel expansions have to show of possible kinks: slot, where the kernel has it
   bool may_touch_zero_ = false;                               // one of them, within the present horizon
   bool by_kernel_ = false;                                    // the present expansion
@@ -245,7 +271,7 @@ class Stepper {
   std::unique_ptr<Expansion<N>> ahead_;  // for looks at J further on the polynomial
   N sigma_{0};                           // where the present step began
   bool singular_ahead_ = false;          // right after the present state
-  std::size_t kinks_ = 0;
+  std::size_t kinks_ = 0, kinks_before_ = 0;
   int short_kinks_ = 0;                  // steps in a row that were cut by a kink at their very start
   EventWatch<N> events_{{}};
   std::vector<Fired<N>> fired_;

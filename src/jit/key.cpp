@@ -100,7 +100,8 @@ void Writer::add(const JudgedPivot& pivot) {
 }
 
 void Writer::add(const Findings& found) {
-  const auto& [health, determinant, drift, weight, moved, reach, unfit, largest] = found;
+  // The defect is found by the tables alone.
+  [[maybe_unused]] const auto& [health, determinant, drift, weight, moved, reach, unfit, largest, defect] = found;
   all(health, determinant, drift, weight, moved, reach, unfit, largest);
 }
 
@@ -110,9 +111,9 @@ void Writer::add(const KernelTables::Divisors& divisors) {
 }
 
 void Writer::add(const Plan& plan) {
-  // What roots of even powers are is for whoever chooses steps; the determinant is among what is judged.
+  // What roots of even powers and functions that hide are is for whoever chooses steps; the determinant is among what is judged.
   [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
-                                roots_of_even_powers, rows, largest_lead, largest_d, c, d, apart, determinant] = plan;
+                                roots_of_even_powers, hiding, rows, largest_lead, largest_d, c, d, apart, determinant] = plan;
   all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double, rows, largest_lead, largest_d, c, d, apart);
 }
 

@@ -36,7 +36,8 @@ struct Findings {
   std::uint32_t reach = 0;                           // the step that the series allow
   std::uint32_t unfit = 0;                           // not 0: a highest coefficient is no number
   std::uint32_t largest = 0;                         // of the state after a step, by absolute value; no number if one is none
-  static constexpr std::uint32_t kCount = 8;
+  std::uint32_t defect = 0;                          // by how much the leading derivatives differ from their first guess, in relation to the derivatives below them
+  static constexpr std::uint32_t kCount = 9;
 };
 
 // Read only once made; shared by the kernels of all threads.
@@ -109,8 +110,10 @@ class Arithmetic {
   virtual void adopt(const double* from) = 0;
   // says how far the series reach and whether they are numbers,
   virtual void measure() = 0;
-  // and goes on by the increments.
+  // goes on by the increments,
   virtual void go_on(const double* base, double* to) = 0;
+  // and says how far the leading derivatives, once solved for, are from their first guess.
+  virtual void compare(const double* from) = 0;
 };
 
 // Functions of the C library, in one place for every tier; sines of angles that are very large, or on machines without fused multiplication.

@@ -122,7 +122,7 @@ void KernelPlan::lay_out() {
   tables_.margin = take(1);
   tables_.inverse_pivots = take(static_cast<std::uint32_t>(elimination_.pivots.size()) + (plan_.determinant ? 1 : 0));
   Findings& f = tables_.found;
-  for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest}) *place = take(1);
+  for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest, &f.defect}) *place = take(1);
   tables_.size = even(at);
 }
 
@@ -262,6 +262,23 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
   const KernelTables& t = plan_->tables();
   for (std::uint32_t i = 0; i < t.judged.size(); ++i) set_all(t.inverse_pivots + i, t.judged[i].inverse);
   set_shrink(2);
+  const Plan& p = plan_->plan();
+  for (std::size_t j = 0; j < p.x.size(); ++j) low_orders_.push_back({p.x[j], static_cast<std::uint32_t>(p.d[j]) + 1});
+  for (const Place& q : p.quadratures) low_orders_.push_back({q.at, q.series ? static_cast<std::uint32_t>(p.largest_lead) + 1 : 1});
+  for (const Plan::HidingSlot& slot : p.hiding)
+    for (const Place& place : {slot.argument, slot.value}) low_orders_.push_back({place.at, static_cast<std::uint32_t>(p.largest_lead) + 1});
+  // Without overlaps.
+  std::sort(low_orders_.begin(), low_orders_.end(), [](const LowOrders& a, const LowOrders& b) { return a.at < b.at; });
+  std::size_t numbers = 0;
+  std::uint32_t end = 0;
+  for (LowOrders& low : low_orders_) {
+    const std::uint32_t to = std::max(end, low.at + low.count);
+    low.at = std::max(low.at, end);
+    low.count = to - low.at;
+    numbers += low.count;
+    end = to;
+  }
+  aside_.resize(numbers * static_cast<std::size_t>(lanes_));
 }
 
 void Kernel::set_all(std::uint32_t slot, double x) {
@@ -279,6 +296,14 @@ void Kernel::set_parameters(int lane, const std::vector<long double>& parameters
 }
 
 bool Kernel::expand(const Code* code, bool projected) {
+  started_ = false;
+  const bool moved = solve(code, projected);
+  extend(code);
+  return moved;
+}
+
+// Up to the leading derivatives.
+bool Kernel::solve(const Code* code, bool projected) {
   if (code) {
     code->values(arena_);
     code->factor(arena_);
@@ -290,13 +315,16 @@ bool Kernel::expand(const Code* code, bool projected) {
   const bool moved = projected && project(code);
   if (code) {
     code->lead(arena_);
-    code->extend(arena_);
   } else {
     arithmetic_->residual(0);
     arithmetic_->complete(0);
-    arithmetic_->extend();
   }
   return moved;
+}
+
+void Kernel::extend(const Code* code) {
+  if (code) code->extend(arena_);
+  else arithmetic_->extend();
 }
 
 double Kernel::correction_of_solution() {
@@ -323,63 +351,6 @@ bool Kernel::project(const Code* code) {
     else arithmetic_->values(-plan_->plan().largest_lead);
   }
   return moved;
-}
-
-void Kernel::place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading) {
-  const KernelTables& t = plan_->tables();
-  const std::uint32_t n = t.state_size, m = static_cast<std::uint32_t>(plan_->plan().x.size());
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double high = static_cast<double>(state[i]);
-    number(next_ + i, lane) = high;
-    number(next_ + n + i, lane) = static_cast<double>(state[i] - high);
-  }
-  for (std::uint32_t j = 0; j < m; ++j) number(next_ + 2 * n + j, lane) = leading.empty() ? 0 : static_cast<double>(leading[j]);
-  gone_on_ = true;
-}
-
-void Kernel::begin() {
-  next_ = std::exchange(before_, std::exchange(begun_, next_));
-  gone_on_ = false;
-  base_ = begun_;
-  const Code* code = this->code();
-  if (code) code->begin(arena_, slot(begun_));
-  else arithmetic_->begin(slot(begun_));
-  if (expand(code, true)) {
-    arithmetic_->adopt(slot(begun_));
-    base_ = plan_->tables().projected;
-  }
-  if (code) code->measure(arena_);
-  else arithmetic_->measure();
-}
-
-void Kernel::advance() {
-  if (const Code* code = this->code()) {
-    code->go_on(arena_, slot(base_), slot(next_));
-  } else {
-    arithmetic_->advance();
-    arithmetic_->go_on(slot(base_), slot(next_));
-  }
-  gone_on_ = true;
-}
-
-void Kernel::sum_up(std::uint32_t at, int lane, std::vector<long double>& state) const {
-  const std::uint32_t n = plan_->tables().state_size;
-  state.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) state[i] = static_cast<long double>(number(at + i, lane)) + number(at + n + i, lane);
-}
-
-void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const {
-  const std::uint32_t at = moment == Moment::before ? before_ : moment == Moment::now && gone_on_ ? next_ : begun_, m = static_cast<std::uint32_t>(plan_->plan().x.size());
-  sum_up(moment == Moment::now && !gone_on_ ? base_ : at, lane, state);
-  leading.resize(m);
-  for (std::uint32_t j = 0; j < m; ++j) leading[j] = number(at + 2 * plan_->tables().state_size + j, lane);
-}
-
-void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(base_, lane, state); }
-
-void Kernel::change_over_step() {
-  if (const Code* code = this->code()) code->advance(arena_);
-  else arithmetic_->advance();
 }
 
 bool Kernel::finite(int lane) const {

@@ -121,10 +121,20 @@ class Kernel {
   // from elsewhere; then `begin` (the expansions at the times set) and, over the steps set, `advance` follow each other.
   void place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading);
   void set_time(int lane, double t) {
-    number(plan_->plan().time, lane) = t;
+    double& now = number(plan_->plan().time, lane);
+    if (now != t) started_ = false;
+    now = t;
     number(plan_->plan().time + 1, lane) = 1;
   }
   void begin();
+  // After `advance`, at the times set: the part of `begin` that solves for the leading derivatives, which says how well the series have foretold them
+  // (`defect`). Until `begin` goes on from there, or another `advance` takes it back, series are those of the last expansion; on request, see below.
+  void start_next();
+  double defect(int lane) const { return number(found().defect, lane); }
+  // Whoever reads series of the last expansion after `start_next` says so first.
+  void show_last() const {
+    if (started_ && !shows_last_) swap_low_orders();
+  }
   void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
   void advance();
   // e^-shrink of the radius of convergence is a step (integrate/taylor.h: step_size).
@@ -160,6 +170,10 @@ class Kernel {
   double* slot(std::uint32_t slot) { return arena_ + slot * static_cast<std::size_t>(lanes_); }
   void set_all(std::uint32_t slot, double x);
   bool expand(const Code* code, bool projected);
+  bool solve(const Code* code, bool projected);
+  void extend(const Code* code);
+  void start(const Code* code);
+  void swap_low_orders() const;
   bool project(const Code* code);
   const Code* code() const { return plan_->code(lanes_); }
   const Findings& found() const { return plan_->tables().found; }
@@ -177,6 +191,14 @@ class Kernel {
   // Places of motions (KernelTables): where the next expansion begins, the present one was begun, the one before; where that was made.
   std::uint32_t next_, begun_, before_, base_;
   bool gone_on_ = true;  // or placed, since the present one was made
+  // What solving for the leading derivatives writes over of the series: so many numbers from each of these places on.
+  struct LowOrders {
+    std::uint32_t at, count;
+  };
+  std::vector<LowOrders> low_orders_;
+  mutable std::vector<double> aside_;  // those of the last expansion, or of the next one
+  bool started_ = false, moved_ = false;  // the next expansion; and moved a state by that
+  mutable bool shows_last_ = false;
 };
 
 }  // namespace anholon

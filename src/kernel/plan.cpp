@@ -386,6 +386,8 @@ class Planner {
     for (std::uint32_t s = 0; s < code_.size(); ++s)
       if (slots_.live[s] && !code_[s].constant && code_[s].op == Op::power && tape_.rationals[code_[s].index].get_den() % 2 == 0)
         plan_.roots_of_even_powers.push_back({code_[s].a, at(code_[s].a)});
+    for (std::uint32_t s = 0; s < tape_.main_end; ++s)
+      if (const auto function = slots_.live[s] && !code_[s].constant ? may_hide(tape_, code_[s]) : std::nullopt) plan_.hiding.push_back({*function, at(hidden_argument(code_[s])), at(s)});
     for (std::uint32_t s = 0; s < tape_.main_end; ++s) {
       if (!slots_.live[s] || !slots_.tainted[s] || !slots_.series[s]) continue;
       if (code_[s].op == Op::input) {

@@ -94,6 +94,15 @@ struct Beyond {
   std::uint32_t at, index;
 };
 
+// A function of one argument that may be all but constant far from where it is not; not a sine, whose series show what it does.
+struct Hiding {
+  std::optional<Function> function;  // else a power
+  double exponent = 0;
+};
+// What an instruction is of that, and its argument: of a quotient, a power of -1, the divisor.
+std::optional<Hiding> may_hide(const Tape& tape, const Instruction& in);
+inline std::uint32_t hidden_argument(const Instruction& in) { return in.op == Op::divide ? in.b : in.a; }
+
 struct Plan {
   int stages = 0;
   std::uint32_t stride = 0;
@@ -114,6 +123,11 @@ struct Plan {
   std::vector<Place> quadratures;
   std::vector<Beyond> beyond_double;  // of the angles of sines
   std::vector<std::pair<std::uint32_t, Place>> roots_of_even_powers;  // slot of the tape of what roots are taken of: they may pass zero
+  struct HidingSlot {
+    Hiding function;
+    Place argument, value;
+  };
+  std::vector<HidingSlot> hiding;
   std::uint32_t rows = 0;             // of the linearized tape
   int largest_lead = 0, largest_d = 0;
   std::vector<int> c, d;

@@ -120,6 +120,27 @@ class SweepSteps : public Arithmetic {
     w_[k_.found.largest] = largest + invalid;
   }
 
+  void compare(const double* from) override {
+    const V* guess = reinterpret_cast<const V*>(from) + 2 * k_.state_size;
+    V worst = T::broadcast(0);
+    for (int d = 1; d <= p_.largest_d; ++d) {
+      V size = T::broadcast(1), most = T::broadcast(0), invalid = most;
+      bool any = false;
+      for (std::size_t j = 0; j < p_.x.size(); ++j) {
+        if (p_.d[j] < d) continue;
+        const V* x = w_ + p_.x[j];
+        size = larger(size, abs(x[d - 1] * T::broadcast(k_.factorial[static_cast<std::size_t>(d - 1)])));
+        if (p_.d[j] > d) continue;
+        const V change = x[d] * T::broadcast(k_.factorial[static_cast<std::size_t>(d)]) - guess[j];
+        most = larger(most, abs(change));
+        invalid += change - change;
+        any = true;
+      }
+      if (any) worst = larger(worst, most / size) + invalid;
+    }
+    w_[k_.found.defect] = worst;
+  }
+
  protected:
   static V abs(V v) { return T::of(T::bits(v) & 0x7fffffffffffffffULL); }
   static V larger(V a, V b) { return a < b ? b : a; }

@@ -179,6 +179,12 @@ CaseWay CaseWalk::aim() {
   return stepper_->aim(end_) ? CaseWay::plain : stopped(stepper_->trouble());
 }
 
+CaseWay CaseWalk::look_at_end() {
+  const EndOfStep there = stepper_->look_at_end(end_);
+  looks_elsewhere_ = there == EndOfStep::elsewhere;
+  return there == EndOfStep::failed ? stopped(stepper_->trouble()) : CaseWay::plain;
+}
+
 CaseWay CaseWalk::finish_step() {
   return stepper_->finish_step() ? after_step() : stopped(stepper_->trouble());
 }
@@ -277,7 +283,15 @@ void CaseWorker::integrate(std::span<CaseResult> results) {
     for (CaseWalk& w : walks_) go(w, &CaseWalk::begin_step);
     if (kernel_) kernel_->begin();
     for (CaseWalk& w : walks_) go(w, &CaseWalk::aim);
-    if (kernel_) kernel_->advance();
+    for (bool again = kernel_ != nullptr; again;) {
+      kernel_->advance();
+      kernel_->start_next();
+      again = false;
+      for (CaseWalk& w : walks_) {
+        go(w, &CaseWalk::look_at_end);
+        again = again || (w.walking() && w.looks_elsewhere());
+      }
+    }
     for (CaseWalk& w : walks_) go(w, &CaseWalk::finish_step);
   }
 }

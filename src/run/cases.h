@@ -69,6 +69,8 @@ class CaseWalk {
   // One step, in the parts of Stepper::step; the kernel works in between. Whoever stops walking after one of them has come to its end on the way it returns.
   CaseWay begin_step();
   CaseWay aim();
+  CaseWay look_at_end();
+  bool looks_elsewhere() const { return looks_elsewhere_; }
   CaseWay finish_step();
   // The whole step, alone in its kernel.
   CaseWay step();
@@ -86,6 +88,7 @@ class CaseWalk {
   std::vector<W> parameters_;
   std::vector<double> narrow_parameters_;
   bool ready_ = false, same_structure_ = true;  // for these parameters
+  bool looks_elsewhere_ = false;                // the step is to end somewhere else
   W end_{0};
   std::vector<W> times_;  // of rows
   InitialState<W> named_;

@@ -1,5 +1,6 @@
 // Random systems whose motion between events is known in closed form, and their events by another way: every zero is bracketed by
-// bounds of the second derivative and bisected in long double, on the exact pieces.
+// bounds of the second derivative and bisected in long double, on the exact pieces. A formula may be written as another one with the
+// same zeros, that saturates, has a kink, or is steep.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -30,6 +31,7 @@ class EventModel {
     make_bodies();
     make_events();
     end_ = decimal(300, 600);
+    for (Event& e : events_) e.writing = draw(8);
   }
 
   std::size_t bodies() const { return bodies_.size(); }
@@ -56,6 +58,7 @@ class EventModel {
     int direction;
     Set set;
     int factor;  // in hundredths
+    std::size_t writing = 0;
   };
   // The state at one time.
   struct State {
@@ -174,11 +177,25 @@ inline std::string EventModel::text() const {
     const std::string i = name(e.i), j = name(e.j);
     list += "[[event]]\nname = \"" + event_name(k) + "\"\nwhen = \"";
     switch (e.when) {
-      case When::level: list += i + " - " + e.level_text; break;
+      case When::level: {
+        const std::string u = i + " - " + e.level_text;
+        switch (e.writing) {
+          case 0: list += "tanh((" + u + ")/0.01)"; break;
+          case 1: list += "1/(1 + exp(-(" + u + ")/0.02)) - 1/2"; break;
+          case 2: list += "atan((" + u + ")/0.001)"; break;
+          default: list += u;
+        }
+        break;
+      }
       case When::gap: list += i + " - " + j; break;
       case When::velocity: list += i + "'"; break;
       case When::time: list += "t - " + e.level_text; break;
-      case When::square: list += i + "^2 - " + e.level_text + "^2"; break;
+      case When::square: {
+        const std::string n = e.writing == 0 ? "8" : e.writing == 1 ? "20" : "2";
+        if (e.writing == 2) list += "abs(" + i + ") - " + e.level_text;
+        else list += i + "^" + n + " - " + e.level_text + "^" + n;
+        break;
+      }
     }
     list += "\"\n";
     if (e.direction != 0) list += std::string("direction = \"") + (e.direction > 0 ? "up" : "down") + "\"\n";

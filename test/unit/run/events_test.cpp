@@ -61,6 +61,47 @@ TEST(Events, AKinkInTheirFormula) {
 }
 
 // x = 3 cos 2t: squares of a series converge more slowly than the series.
+// What the series of a formula does not show, or cannot: it has none where the motion starts, it is all but constant there, or its power is too high.
+TEST(Events, AreFoundWhateverTheirFormula) {
+  const auto moving = [](const std::string& when, const char* x = "0") {
+    return mass_on_a_line("0", "[initial]\nx = " + std::string(x) + "\n\"x'\" = 1\n[[event]]\nname = \"there\"\nwhen = \"" + when + "\"\nstop = true\n");
+  };
+  struct Formula {
+    const char *when, *x;
+    double t;
+  };
+  for (const Formula& f : {Formula{"norm(x*ex) - 2", "0", 2}, Formula{"sqrt(x) - 1", "0", 1}, Formula{"x^20 - 1", "0", 1}, Formula{"x^200 - 1", "0", 1},
+                           Formula{"tanh((x - 1)/0.01)", "0", 1}, Formula{"tanh((x - 1)/0.01)", "-100", 101}, Formula{"1/(1 + exp(-(x - 1)/0.001)) - 1/2", "0", 1},
+                           Formula{"exp(x/0.01) - exp(100)", "-2", 3}, Formula{"exp(-((x - 3)/0.01)^2) - 1/2", "0", 3 - 0.01 * 0.83255461115769776},
+                           Formula{"atan((x - 1)/0.0001)", "0", 1}, Formula{"x^(3/2) - 8", "0", 4}, Formula{"abs(x)^(1/3) - 1", "0", 1}, Formula{"norm(x*ex + x^2*ey) - sqrt(2)", "0", 1}})
+    for (const Precision precision : {Precision::real, Precision::quad}) {
+      const Result r = run(moving(f.when, f.x), 5 + (f.t > 10 ? 200 : 0), "1/1000000000000", [&](SimulationOptions& o) { o.precision = precision; });
+      ASSERT_EQ(r.report.events.size(), 1U) << f.when << " " << r.report.outcome.message;
+      EXPECT_NEAR(std::stod(r.report.events[0].t), f.t, 1e-12) << f.when;
+    }
+}
+
+TEST(Events, WithoutAnySeriesHoldNobodyUp) {
+  // Of what is at rest, of what has no value.
+  for (const char* when : {"sqrt(y) - 1", "norm(y*ey) - 1", "log(y) - 1", "1/y - 1"}) {
+    const Result r = run("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + y*ey\"}]\nevent = [{name = \"e\", when = \"" + std::string(when) +
+                             "\"}]\ninitial = {\"x'\" = 1}\n",
+                         3);
+    EXPECT_TRUE(r.report.outcome.ok()) << when << " " << r.report.outcome.message;
+    EXPECT_LT(r.report.steps, 10U) << when;
+  }
+}
+
+TEST(Events, DoNotFireWhereTheirFormulaOnlyTouches) {
+  for (const char* when : {"abs(x - 1)", "norm((x - 1)*ex)", "abs(x - 1)*(x + 3)", "sqrt((x - 1)^2)"}) {
+    const Result r = run(mass_on_a_line("0", "initial = {x = 0, \"x'\" = 1}\nevent = [{name = \"touch\", when = \"" + std::string(when) + "\"}]\n"), 3);
+    EXPECT_TRUE(r.report.events.empty()) << when;
+  }
+  const Result passes = run(mass_on_a_line("0", "initial = {x = 0, \"x'\" = 1}\nevent = [{name = \"pass\", when = \"(x - 1)*abs(x - 1)\"}]\n"), 3);
+  ASSERT_EQ(passes.report.events.size(), 1U);
+  EXPECT_NEAR(std::stod(passes.report.events[0].t), 1, 1e-9);
+}
+
 TEST(Events, AreAtTheZeroOfTheFormula) {
   const Result r = run(mass_on_a_line("-4*x", "initial = {x = 3}\nevent = [{name = \"e\", when = \"x^2 - 1\", set = {\"x'\" = \"2*x'\"}}]\n"), Rational(6, 5), "1/1000000000");
   ASSERT_EQ(r.report.events.size(), 2U) << "once down, once up";

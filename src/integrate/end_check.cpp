@@ -1,0 +1,83 @@
+#include "integrate/end_check.h"
+
+#include <cmath>
+
+namespace anholon {
+
+namespace {
+
+// Steps end with up to so many times the tolerance, or so many round-offs (the shipped models: up to 10, mostly 0.5); a defect that is so many times what there is
+// near the start of the step is none of round-off.
+constexpr double kTolerances = 100, kRoundoffs = 4096, kAboveNoise = 64;
+// A step that would have to be shorter than 2^-60 of what its series allow is not helped by shortening.
+constexpr int kMostShortened = 60;
+
+}  // namespace
+
+template <Number N>
+EndCheck<N>::EndCheck(double log_tolerance) : allowed_(N(exp(N(log_tolerance))) * N(kTolerances)) {
+  if (const N roundoffs = unit_roundoff<N>() * N(kRoundoffs); allowed_ < roundoffs) allowed_ = roundoffs;
+}
+
+template <Number N>
+void EndCheck<N>::begin(const N& length, const std::vector<N>& on_the_way) {
+  length_ = length;
+  on_the_way_ = on_the_way;
+  index_ = 0;
+  near_ = -1;
+  settled_ = false;
+}
+
+template <Number N>
+typename EndCheck<N>::Next EndCheck<N>::seen(const N& rate) {
+  if (settled_) return Next::good;
+  if (near_ < 0) {
+    rate_ = rate;
+    if (rate * abs(length_) <= allowed_) return go_on();
+    if (noise_ < N(0)) {
+      near_ = 0;
+      return Next::look;
+    }
+  } else {
+    if (is_finite(rate) && (noise_ < N(0) || rate < noise_)) noise_ = rate;
+    if (++near_ < static_cast<int>(std::size(kNear))) return Next::look;
+    near_ = -1;
+    if (noise_ < N(0)) noise_ = N(0);
+    if (is_finite(rate_) && rate_ <= noise_ * N(kAboveNoise)) {
+      // The last look is to be at the end.
+      if (index_ >= on_the_way_.size()) return settled_ = true, Next::look;
+      return go_on();
+    }
+  }
+  return (is_finite(rate_) && rate_ <= noise_ * N(kAboveNoise)) ? go_on() : refuse();
+}
+
+template <Number N>
+typename EndCheck<N>::Next EndCheck<N>::go_on() {
+  if (index_++ < on_the_way_.size()) return Next::look;
+  settled_ = true;
+  return Next::good;
+}
+
+template <Number N>
+typename EndCheck<N>::Next EndCheck<N>::refuse() {
+  if (++shortened_ <= kMostShortened) return Next::shorten;
+  const bool there = index_ >= on_the_way_.size() && near_ < 0;
+  index_ = on_the_way_.size();
+  near_ = -1;
+  settled_ = true;
+  return there ? Next::good : Next::look;
+}
+
+template <Number N>
+void EndCheck<N>::forget() {
+  noise_ = N(-1);
+  shortened_ = 0;
+}
+
+template class EndCheck<double>;
+template class EndCheck<long double>;
+template class EndCheck<Quad>;
+template class EndCheck<Multi>;
+
+}  // namespace anholon

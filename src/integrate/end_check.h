@@ -1,0 +1,52 @@
+// Whether a step may end where its series say. Series tell how far they reach by their highest coefficients, but nothing of a function that is all but
+// constant where they were made: a tanh far from its ramp, a wall that begins further on. There the equations tell: the leading derivatives that the
+// series foretell at the end of the step, and at points of suspicion on the way, are put into them, and what Newton's method changes of them there is
+// the defect of the motion.
+//
+// A defect of x^(d) over a step h moves x^(d-1) by some h times as much; in relation to the size of that it is to stay near the tolerance. Where J is
+// nearly singular, Newton's change is round-off, however short the step: that is looked at near the start of the step before one is refused.
+#pragma once
+#include <vector>
+
+#include "numeric/number.h"
+
+namespace anholon {
+
+enum class EndOfStep { good, elsewhere, failed };
+
+template <Number N>
+class EndCheck {
+ public:
+  explicit EndCheck(double log_tolerance);
+  // A try of another length, with looks at these points on the way.
+  void begin(const N& length, const std::vector<N>& on_the_way);
+  // Where the next look is to be; the last one is at the end.
+  N where() const { return near_ >= 0 ? length_ * N(kNear[near_]) : index_ < on_the_way_.size() ? on_the_way_[index_] : length_; }
+  // Whether it is one of the looks that decide, not one for round-off.
+  bool decides() const { return near_ < 0; }
+  enum class Next { good, look, shorten };
+  // `rate`: the defect there, in relation to the size of what it changes.
+  Next seen(const N& rate);
+  // The length is refused for another reason.
+  Next refuse();
+  // The next step is another one.
+  void forget();
+
+ private:
+  // Parts of a step where nothing but round-off is left.
+  static constexpr double kNear[] = {0x1p-12, 0x1p-24};
+  Next go_on();
+
+  N allowed_, length_{0}, rate_{0}, noise_{-1};
+  std::vector<N> on_the_way_;
+  std::size_t index_ = 0;
+  int near_ = -1, shortened_ = 0;
+  bool settled_ = false;
+};
+
+extern template class EndCheck<double>;
+extern template class EndCheck<long double>;
+extern template class EndCheck<Quad>;
+extern template class EndCheck<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,103 @@
+#include "integrate/passed_over.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/crossing.h"
+
+namespace anholon {
+
+namespace {
+
+// A step is looked at in so many parts; extrema and zeros are found by so many halvings.
+constexpr int kParts = 8, kHalvings = 40;
+// A function whose argument changes by less, in relation to what it takes to change the function, hides nothing.
+constexpr double kMoves = 0.5;
+// In relation to the greatest of the function and 1: what a function is that ramps lies there. The equations decide, not this.
+constexpr double kDiffers = 1e-3;
+// A divisor this small, in relation to what it is at the start, makes a wall or a pole.
+constexpr double kNearZero = 1e-3;
+
+template <Number N>
+N value_of(const Hiding& f, const N& u) {
+  [[maybe_unused]] const auto sign = [](const N& x) { return x > N(0) ? N(1) : x < N(0) ? N(-1) : N(0); };
+  if (f.function) {
+    switch (*f.function) {
+#define ROW(name, derivative, parity, latex, domain) \
+  case Function::name: return name(u);
+#include "expr/elementary.def"
+#undef ROW
+    }
+  }
+  const N size = exp(N(f.exponent) * log(abs(u)));
+  return u < N(0) && std::fmod(f.exponent, 2) != 0 ? N(-size) : size;
+}
+
+}  // namespace
+
+template <Number N>
+void add_hidden(const Hiding& function, const N* argument, const N* value, int degree, const N& h, std::vector<N>& points) {
+  const N length = abs(h);
+  N moves(0);
+  for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
+  const bool quotient = !function.function && function.exponent == -1;
+  if (moves < (function.function ? N(kMoves) : N((quotient ? N(1 - kNearZero) : N(kMoves)) * abs(argument[0])))) return;
+  const auto u = [&](const N& x) { return value_at(argument, degree, x); };
+  const auto ask = [&](const N& x) {
+    if (quotient) {
+      if (abs(u(x)) < abs(argument[0]) * N(kNearZero)) points.push_back(x);
+      return;
+    }
+    const N is = value_of(function, u(x)), foretold = value_at(value, degree, x);
+    const N size = abs(is) > N(1) ? abs(is) : N(1);
+    if (!(abs(N(is - foretold)) <= size * N(kDiffers))) points.push_back(x);
+  };
+  // A point, and those on both sides where the argument is by 1 another one: at its centre a pulse of both signs is zero.
+  const auto ask_around = [&](const N& x, const N& from, const N& to) {
+    ask(x);
+    if (!function.function) return;
+    const N centre = u(x);
+    for (const N& end : {from, to}) {
+      if (!(abs(N(u(end) - centre)) > N(1))) continue;
+      N near = x, far = end;
+      for (int k = 0; k < kHalvings; ++k) {
+        const N middle = (near + far) / N(2);
+        (abs(N(u(middle) - centre)) > N(1) ? far : near) = middle;
+      }
+      ask(far);
+    }
+  };
+  const auto end_of = [&](int part) { return h * N(part) / N(kParts); };
+  N last = argument[0], rise = argument[1] * h;
+  for (int i = 1; i <= kParts; ++i) {
+    const N here = u(end_of(i)), now = here - last;
+    if ((last < N(0)) != (here < N(0))) {
+      N low = end_of(i - 1), high = end_of(i);
+      for (int k = 0; k < kHalvings; ++k) {
+        const N middle = (low + high) / N(2);
+        ((u(middle) < N(0)) == (last < N(0)) ? low : high) = middle;
+      }
+      ask_around(high, end_of(i - 1), end_of(i));
+    }
+    if (const bool up = rise > N(0); (now > N(0)) != up) {
+      // It turns within this part or the one before.
+      N low = end_of(std::max(0, i - 2)), high = end_of(i);
+      for (int k = 0; k < kHalvings; ++k) {
+        const N a = low + (high - low) / N(3), b = high - (high - low) / N(3);
+        if ((u(a) > u(b)) == up) high = b;
+        else low = a;
+      }
+      ask_around((low + high) / N(2), end_of(std::max(0, i - 2)), end_of(i));
+    }
+    rise = now;
+    last = here;
+    if (i < kParts) ask(end_of(i));
+  }
+}
+
+template void add_hidden(const Hiding&, const double*, const double*, int, const double&, std::vector<double>&);
+template void add_hidden(const Hiding&, const long double*, const long double*, int, const long double&, std::vector<long double>&);
+template void add_hidden(const Hiding&, const Quad*, const Quad*, int, const Quad&, std::vector<Quad>&);
+template void add_hidden(const Hiding&, const Multi*, const Multi*, int, const Multi&, std::vector<Multi>&);
+
+}  // namespace anholon

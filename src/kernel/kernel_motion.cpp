@@ -1,0 +1,110 @@
+// Motions of a kernel, step by step: where they are placed, expanded, go on and are fetched.
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "kernel/kernel.h"
+
+namespace anholon {
+
+void Kernel::place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading) {
+  const KernelTables& t = plan_->tables();
+  const std::uint32_t n = t.state_size, m = static_cast<std::uint32_t>(plan_->plan().x.size());
+  bool same = true;
+  const auto put = [&](std::uint32_t at, double x) {
+    double& there = number(at, lane);
+    same = same && std::bit_cast<std::uint64_t>(there) == std::bit_cast<std::uint64_t>(x);
+    there = x;
+  };
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double high = static_cast<double>(state[i]);
+    put(next_ + i, high);
+    put(next_ + n + i, static_cast<double>(state[i] - high));
+  }
+  for (std::uint32_t j = 0; j < m; ++j) put(next_ + 2 * n + j, leading.empty() ? 0 : static_cast<double>(leading[j]));
+  // What was read and is put back has not moved.
+  if (!same) started_ = false;
+  gone_on_ = true;
+}
+
+void Kernel::begin() {
+  const Code* code = this->code();
+  if (started_) {
+    if (shows_last_) swap_low_orders();
+  } else {
+    start(code);
+  }
+  started_ = gone_on_ = false;
+  next_ = std::exchange(before_, std::exchange(begun_, next_));
+  base_ = begun_;
+  extend(code);
+  if (moved_) {
+    arithmetic_->adopt(slot(begun_));
+    base_ = plan_->tables().projected;
+  }
+  if (code) code->measure(arena_);
+  else arithmetic_->measure();
+}
+
+// The expansion at the next place.
+void Kernel::start(const Code* code) {
+  if (code) code->begin(arena_, slot(next_));
+  else arithmetic_->begin(slot(next_));
+  moved_ = solve(code, true);
+}
+
+void Kernel::start_next() {
+  double* to = aside_.data();
+  const std::size_t lanes = static_cast<std::size_t>(lanes_);
+  for (const LowOrders& low : low_orders_) to = std::copy_n(slot(low.at), low.count * lanes, to);
+  start(code());
+  arithmetic_->compare(slot(next_));
+  started_ = true;
+  shows_last_ = false;
+}
+
+void Kernel::swap_low_orders() const {
+  double* aside = aside_.data();
+  const std::size_t lanes = static_cast<std::size_t>(lanes_);
+  for (const LowOrders& low : low_orders_) {
+    double* there = arena_ + low.at * lanes;
+    std::swap_ranges(there, there + low.count * lanes, aside);
+    aside += low.count * lanes;
+  }
+  shows_last_ = !shows_last_;
+}
+
+void Kernel::advance() {
+  show_last();
+  started_ = false;
+  if (const Code* code = this->code()) {
+    code->go_on(arena_, slot(base_), slot(next_));
+  } else {
+    arithmetic_->advance();
+    arithmetic_->go_on(slot(base_), slot(next_));
+  }
+  gone_on_ = true;
+}
+
+void Kernel::sum_up(std::uint32_t at, int lane, std::vector<long double>& state) const {
+  const std::uint32_t n = plan_->tables().state_size;
+  state.resize(n);
+  for (std::uint32_t i = 0; i < n; ++i) state[i] = static_cast<long double>(number(at + i, lane)) + number(at + n + i, lane);
+}
+
+void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const {
+  const std::uint32_t at = moment == Moment::before ? before_ : moment == Moment::now && gone_on_ ? next_ : begun_, m = static_cast<std::uint32_t>(plan_->plan().x.size());
+  sum_up(moment == Moment::now && !gone_on_ ? base_ : at, lane, state);
+  leading.resize(m);
+  for (std::uint32_t j = 0; j < m; ++j) leading[j] = number(at + 2 * plan_->tables().state_size + j, lane);
+}
+
+void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(base_, lane, state); }
+
+void Kernel::change_over_step() {
+  show_last();
+  if (const Code* code = this->code()) code->advance(arena_);
+  else arithmetic_->advance();
+}
+
+}  // namespace anholon
