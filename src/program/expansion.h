@@ -14,6 +14,9 @@
 
 namespace anholon {
 
+// An equation holds while its residual is below this many round-offs of its terms.
+inline constexpr int kQuietRoundoffs = 6;
+
 template <Number N>
 class Expansion {
  public:
