@@ -69,13 +69,13 @@ TEST(NearlySingular, ARattlebackAsItsFormulasAreWritten) {
                         Case{Precision::quad, "100000000000000000000", 1e-14}, Case{Precision::multi, "100000000000000000000", 1e-14}}) {
     const Result r = run(text, 1, c.numbers, c.tolerance, c.numbers == Precision::multi ? 24 : 16);
     ASSERT_TRUE(r.report.outcome.ok()) << name(r.report.outcome.kind) << ": " << r.report.outcome.message << ", tolerance 1/" << c.tolerance;
-    ASSERT_EQ(there["times"].back().get<std::string>(), "1.0");
+    ASSERT_EQ(std::stod(there["times"].back().get<std::string>()), 1);
     for (const char* q : {"x", "y", "ps", "th", "ph"})
       EXPECT_NEAR(r.last(q), std::stod(there["states"].back()[q].get<std::string>()), c.error) << q << ", tolerance 1/" << c.tolerance;
   }
 }
 
-// A disc that friction lays flatter and flatter: theta falls to 2e-3, and J with theta^2.
+// A disc that friction lays flatter and flatter: theta falls below 0.01, and J with theta^2. Steps of Newton's iteration do not shrink from 2.4 s on.
 TEST(NearlySingular, ADiscLaidFlatGoesOn) {
   const std::string disc = R"toml(coordinates = ["x", "y", "psi", "theta", "phi"]
 parameters = {m = 1, R = 0.1, g = 9.81, k = 0.005}
@@ -87,7 +87,7 @@ constraint = [{name = "rolling", equation = "vel(disc, contact) = 0"}]
 force = [{on = "disc", torque = "-k*psi'*ez"}]
 initial = {theta = 0.2, "psi'" = 40, "phi'" = -39.2}
 )toml";
-  const Result r = run(disc, 4);
+  const Result r = run(disc, 5);
   ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
   EXPECT_LT(r.last("theta"), 1e-2);
   EXPECT_LT(r.report.newton, 1e-12);
