@@ -121,6 +121,25 @@ std::optional<Mode<N>> Stepper<N>::mode_of(Expansion<N>* there) {
   return weakest_mode(*there, sigma);
 }
 
+// Whether the weakest direction at one point is mapped to the opposite at another: where several singular values pass zero together, the weakest direction
+// there is any of theirs.
+template <Number N>
+static bool reversed(const Mode<N>& from, const Expansion<N>& there) {
+  constexpr double kOpposite = -0.5;
+  const Matrix<N>& J = there.system_jacobian();
+  double dot = 0, before = 0, after = 0;
+  for (std::size_t i = 0; i < J.rows; ++i) {
+    N image(0), largest(0);
+    for (std::size_t j = 0; j < J.cols; ++j) {
+      addmul(image, J(i, j), from.v[j]);
+      if (N x = abs(J(i, j)); x > largest) largest = x;
+    }
+    const double a = to_double(from.image[i]), b = largest > N(0) ? to_double(N(image / largest)) : 0;
+    dot += a * b, before += a * a, after += b * b;
+  }
+  return dot < kOpposite * std::sqrt(before * after);
+}
+
 // How far from t_ the first singular point is that is met within h; nothing if there is none.
 template <Number N>
 std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
@@ -135,15 +154,19 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   if (!here) return std::nullopt;
   Mode<N> low = *here;
   const N start = low.sigma;
-  const std::optional<Mode<N>> end = mode_ahead(h);
-  if (!end || !crossed(low, *end, n)) return std::nullopt;
+  const auto passed = [&](const Mode<N>& at, Expansion<N>* there) {
+    const std::optional<Mode<N>> m = mode_of(there);
+    return m && (crossed(at, *m, n) || reversed(at, *there));
+  };
+  if (!passed(low, ahead(h))) return std::nullopt;
   W from(0), to = h;
   for (int k = 0; k < kBisections; ++k) {
     const W middle = from + (to - from) * W(0.5);
     if (middle == from || middle == to) break;
-    std::optional<Mode<N>> m = mode_ahead(middle);
+    Expansion<N>* there = ahead(middle);
+    std::optional<Mode<N>> m = mode_of(there);
     if (!m) return middle;
-    if (crossed(low, *m, n)) to = middle;
+    if (crossed(low, *m, n) || reversed(low, *there)) to = middle;
     else from = middle, low = std::move(*m);
   }
   return low.sigma < start * N(kVanished) ? std::optional<W>(from) : std::nullopt;

@@ -3,21 +3,12 @@
 #include <algorithm>
 
 #include "base/assert.h"
+#include "numeric/relative.h"
 
 namespace anholon {
 
 namespace {
-constexpr int kMostNewton = 30;
 constexpr int kMostProjections = 4;
-// Newton steps that no longer shrink are round-off below this many round-offs of the unknowns; more where J depends on them, as
-// it may be small there (the multiplier of a nonlinear constraint goes to zero), and where there are many: the condition of a chain grows as n^2.
-constexpr double kStalled = 1e3, kStalledNonlinear = 1e8, kMany = 32;
-double stalled(bool nonlinear, std::size_t unknowns) {
-  const double more = std::max(1.0, static_cast<double>(unknowns) / kMany);
-  return std::max(nonlinear ? kStalledNonlinear : 0, kStalled * more * more);
-}
-// A hidden constraint is left alone while its residual is below this many round-offs of its terms.
-constexpr int kQuietRoundoffs = 6;
 // An LU whose smallest scaled singular value is below this many round-offs is singular.
 constexpr int kSingularRoundoffs = 50;
 
@@ -168,6 +159,7 @@ void Expansion<N>::jacobian() {
     if (t.a) add(in.a, partials_[k].a);
     if (t.b) add(in.b, partials_[k].b);
   }
+  balance_.reset();
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint32_t row = p.tangent_row[tape.roots[i]];
     for (std::size_t j = 0; j < n; ++j) j_(i, j) = row == Program::kUntainted ? N(0) : tangent_(row, j);
@@ -217,12 +209,54 @@ Outcome Expansion<N>::singular() const {
           "at theta = 0)"};
 }
 
+// The sizes of the terms of equation i at derivative order c_i - level, those that J makes of the unknowns included.
+template <Number N>
+N Expansion<N>::terms_of(std::size_t i, int level) const {
+  const Program& p = *program_;
+  N scale = machine_.terms(i, static_cast<std::size_t>(p.c[i] - level)), moved(0);
+  for (std::size_t j = 0; j < p.unknowns(); ++j)
+    if (const int k = p.d[j] - level; k >= 0 && j_(i, j) != N(0))
+      moved += abs(N(j_(i, j) * x_[j * stride_ + static_cast<std::size_t>(k)]));
+  return moved > scale ? moved : scale;
+}
+
+// The greatest x_j^(d_j - level), or force that makes one, as J balanced measures them. Where a whole level is round-off of what those above and below
+// make of it (the velocities of a motion at rest), that counts.
+template <Number N>
+const N& Expansion<N>::balanced_size(int level) const {
+  const Program& p = *program_;
+  const int deepest = *std::max_element(p.d.begin(), p.d.end());
+  size_.resize(static_cast<std::size_t>(deepest) + 1);
+  std::optional<N>& known = size_[static_cast<std::size_t>(level)];
+  if (known) return *known;
+  if (!balance_) balance_ = balance_of(j_);
+  N size(0);
+  for (std::size_t j = 0; j < p.unknowns(); ++j)
+    if (const int k = p.d[j] - level; k >= 0)
+      if (N v = abs(derivative(j, k)) / N(balance_->column[j]); v > size) size = v;
+  for (std::size_t i = 0; level == 0 && i < p.unknowns(); ++i)
+    if (N v = terms_of(i, 0) * factorial_[static_cast<std::size_t>(p.c[i])] * N(balance_->row[i]); v > size) size = v;
+  if (level > 0 && level < deepest) {
+    const N between = sqrt(N(balanced_size(level - 1) * balanced_size(deepest)));
+    if (is_finite(between) && size < unit_roundoff<N>() * N(kRoundoffsOfSum) * between) size = between;
+  }
+  known = size;
+  return *known;
+}
+
+template <Number N>
+N Expansion<N>::size_of_level(int level, std::size_t i) const {
+  const N& size = balanced_size(level);
+  return size / N(balance_->row[i]);
+}
+
 // Residuals of the equations at derivative order c_i - level, as right sides for J.
 template <Number N>
 bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
   const Program& p = *program_;
   bool any = false;
   worst = N(0);
+  size_.clear();
   for (std::size_t i = 0; i < p.unknowns(); ++i) {
     const int order = p.c[i] - level;
     r[i] = N(0);
@@ -234,17 +268,11 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
       worst = value;
       return true;
     }
-    r[i] = -(value * factorial_[static_cast<std::size_t>(order)]);
-    const N size = abs(value);
-    if (!(size > N(0))) continue;
+    const N& factor = factorial_[static_cast<std::size_t>(order)];
+    r[i] = -(value * factor);
+    if (!(abs(value) > N(0))) continue;
     any = true;
-    N scale = machine_.terms(i, static_cast<std::size_t>(order)), moved(0);
-    for (std::size_t j = 0; j < p.unknowns(); ++j)
-      if (const int k = p.d[j] - level; k >= 0 && j_(i, j) != N(0))
-        moved += abs(N(j_(i, j) * x_[j * stride_ + static_cast<std::size_t>(k)]));
-    if (moved > scale) scale = moved;
-    if (!(scale > N(0))) scale = size;
-    const N relative = size / scale;
+    const N relative = relative_miss(value, terms_of(i, level), [&] { return N(size_of_level(level, i) / factor); });
     if (hidden) *hidden = relative;
     if (relative > worst) worst = relative;
   }
@@ -316,55 +344,6 @@ void Expansion<N>::measure() {
     residual(level, r_, worst);
     if (!(worst <= constraint_residual_)) constraint_residual_ = worst;  // what is not a number, too
   }
-}
-
-template <Number N>
-Outcome Expansion<N>::solve() {
-  return newton([this](const std::vector<N>& r, std::vector<N>& y) { lu_.solve(r, y); }, true);
-}
-
-template <Number N>
-Outcome Expansion<N>::solve(const Solver& solver) {
-  return newton(solver, false);
-}
-
-template <Number N>
-Outcome Expansion<N>::newton(const Solver& solver, bool own) {
-  const Program& p = *program_;
-  const N eps = unit_roundoff<N>();
-  N last(-1);
-  const Outcome failed{OutcomeKind::no_convergence, "Newton's iteration for the leading derivatives did not converge",
-                       "the equations may have no real solution here (a branch ends), or another branch is near: give a guess"};
-  for (int k = 0; k < kMostNewton; ++k) {
-    N worst(0);
-    residual(0, r_, worst);
-    if (!is_finite(worst))
-      return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
-              "the motion leaves the region where the model is defined: stop it before, or change the formula"};
-    equation_residual_ = worst;
-    solver(r_, y_);
-    N step(0), size(0);
-    for (std::size_t j = 0; j < p.unknowns(); ++j) {
-      N& x = x_[j * stride_ + static_cast<std::size_t>(p.d[j])];
-      const N change = y_[j] / factorial_[static_cast<std::size_t>(p.d[j])];
-      if (!is_finite(change)) return failed;
-      x += change;
-      if (abs(y_[j]) > step) step = abs(y_[j]);
-      if (N v = abs(x) * factorial_[static_cast<std::size_t>(p.d[j])]; v > size) size = v;
-    }
-    sweep(0);
-    const N floor = eps * N(4) * (size > N(1) ? size : N(1));
-    if (!(step > floor)) return {};
-    // Round-off reached: steps no longer shrink and are small.
-    if (last >= N(0) && !(step < last * N(0.5)) && step < floor * N(stalled(p.nonlinear, p.unknowns()))) return {};
-    if (own && k >= 2 && last >= N(0) && step > last * N(0.1)) {
-      // Slow: the Jacobian has changed with the leading derivatives.
-      jacobian();
-      if (!lu_.factor(j_)) return failed;
-    }
-    last = step;
-  }
-  return failed;
 }
 
 // Adds the effect of the coefficients just found to all slots that depend on them.

@@ -6,12 +6,16 @@
 // refinement): load -> evaluate() -> adopt_jacobian() -> project(solver) -> solve(solver).
 #pragma once
 #include <functional>
+#include <optional>
 
 #include "base/outcome.h"
-#include "numeric/linear.h"
+#include "numeric/balance.h"
 #include "program/program.h"
 
 namespace anholon {
+
+// An equation holds while its residual is below this many round-offs of its terms.
+inline constexpr int kQuietRoundoffs = 6;
 
 template <Number N>
 class Expansion {
@@ -43,6 +47,7 @@ class Expansion {
   template <Number M>
   void adopt_jacobian(const Matrix<M>& j) {
     for (std::size_t k = 0; k < j.data.size(); ++k) j_.data[k] = convert<N>(j.data[k]);
+    balance_.reset();
   }
   // Takes over the point from a wider expansion, every value correctly rounded: the coefficients of
   // higher order then start from values without round-off of their own (an angle that has turned
@@ -68,7 +73,7 @@ class Expansion {
   // Coefficients of all stages 1..stages().
   Outcome extend();
 
-  // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms, at the state as
+  // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms (numeric/relative.h), at the state as
   // measured or projected last.
   const N& constraint_residual() const { return constraint_residual_; }
   // How far project() found the state from the hidden constraints, in relation to the state's size.
@@ -77,6 +82,9 @@ class Expansion {
   const N& hidden_residual(std::size_t i, int k) const { return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)]; }
   // Residual of the equations at the leading derivatives found, in relation to their terms.
   const N& equation_residual() const { return equation_residual_; }
+  // The greatest of all terms at derivative order c_i - level, in the units of equation i, after prepare(). Round-off of that is what its residual
+  // may be, even where all its own terms vanish: it comes with the numbers that were solved for together.
+  N size_of_level(int level, std::size_t i) const;
   N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
   // The unknowns' change that J shows least; its iteration goes on from here.
   const std::vector<N>& weakest_direction() const { return direction_; }
@@ -105,8 +113,12 @@ class Expansion {
   void sweep_quadratures(int last_stage);
   Outcome newton(const Solver& solver, bool own);
   Outcome singular() const;
+  Outcome unsolved() const;
   void jacobian();
   bool residual(int level, std::vector<N>& r, N& worst);
+  N terms_of(std::size_t i, int level) const;
+  const N& balanced_size(int level) const;
+  bool left_is_roundoff() const;
   N displacement(int level, const std::vector<N>& r) const;
   void add_leading(int stage);
 
@@ -125,6 +137,8 @@ class Expansion {
   std::vector<N> delta_, delta_x_, r_, y_, direction_;
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
   std::vector<N> hidden_;      // residuals of the hidden constraints, equation by equation
+  mutable std::optional<Balance> balance_;   // of J
+  mutable std::vector<std::optional<N>> size_;  // of each level, balanced, as the point is
   std::vector<std::size_t> hidden_offset_;
 };
 

@@ -8,7 +8,7 @@
 
 #include "base/base64.h"
 #include "expr/print_names.h"
-#include "numeric/number.h"
+#include "numeric/relative.h"
 #include "report/run_report.h"
 
 namespace anholon {
@@ -174,21 +174,25 @@ class Plots {
     AtRows rows(model_, run_.table, es, parameters_, modes_);
     if (!rows.possible()) return;
     std::vector<std::vector<double>> values(names.size()), integral(conserved_.size());
-    std::vector<double> size(conserved_.size(), 0);
+    std::vector<double> size(conserved_.size(), 0), made_of(conserved_.size(), 0), made;
     rows.go([&](std::size_t, const Machine<double>& machine) {
       for (std::size_t k = 0; k < names.size(); ++k) values[k].push_back(std::abs(machine.value(k)));
+      if (!conserved_.empty()) machine.made_of(made);
       for (std::size_t c = 0; c < conserved_.size(); ++c) {
         double sum = 0, terms = 0;
         for (std::size_t k = 0; k < conserved_[c].terms.size(); ++k) sum += machine.value(first[c] + k), terms += std::abs(machine.value(first[c] + k));
         integral[c].push_back(sum);
         size[c] = std::max(size[c], terms);
+        double of_terms = 0;
+        for (std::size_t k = 0; k < conserved_[c].terms.size(); ++k) of_terms += made[machine.tape().roots[first[c] + k]];
+        made_of[c] = std::max(made_of[c], of_terms);
       }
     });
     for (std::size_t k = 0; k < names.size(); ++k) add(names[k].first, names[k].second, "residuals", std::move(values[k]));
     for (std::size_t c = 0; c < conserved_.size(); ++c) {
       if (!(size[c] > 0)) continue;
       std::vector<double> change;
-      for (double x : integral[c]) change.push_back(std::abs(x - integral[c][0]) / size[c]);
+      for (double x : integral[c]) change.push_back(relative_miss(x - integral[c][0], size[c], [&] { return made_of[c]; }));
       add("change of " + conserved_[c].name, "<mtext>change of " + markup_escape(conserved_[c].name) + "</mtext>", "residuals", std::move(change));
     }
   }

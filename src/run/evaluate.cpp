@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "numeric/relative.h"
 #include "run/redundant.h"
 
 namespace anholon {
@@ -11,11 +12,10 @@ NewtonResidual<N> certify(const std::vector<N>& inertia, const std::vector<N>& f
                        const Matrix<N>& phi) {
   NewtonResidual<N> c;
   const std::size_t n = inertia.size();
-  N scale(1);
   std::vector<N> a(n, N(0));
   for (std::size_t i = 0; i < n; ++i) {
     for (const N* v : {&inertia[i], &force[i], &reaction[i]})
-      if (abs(*v) > scale) scale = abs(*v);
+      if (abs(*v) > c.largest) c.largest = abs(*v);
     a[i] = inertia[i] - force[i];
     if (N miss = abs(N(a[i] - reaction[i])); miss > c.newton) c.newton = miss;
   }
@@ -38,8 +38,6 @@ NewtonResidual<N> certify(const std::vector<N>& inertia, const std::vector<N>& f
     for (std::size_t i = 0; i < rows.size(); ++i) addmul(left, N(-lambda[i]), phi(rows[i], k));
     if (abs(left) > c.projected) c.projected = abs(left);
   }
-  c.newton /= scale;
-  c.projected /= scale;
   return c;
 }
 
@@ -129,6 +127,7 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
                           text(order == 0 ? multipliers[k] : j ? point.derivative(*j, order) : N(0), digits)});
   }
   N dh(0), rate(0);
+  const std::size_t first_number = at;
   for (const auto& [name, e] : numbers) {
     r.numbers.push_back({name, text(out[at], digits)});
     if (std::string(name) == "power_noncons" || std::string(name) == "power_constraint") rate += out[at];
@@ -155,14 +154,19 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
   Matrix<N> phi(s.system.constraints.size(), n);
   for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = out[phi_first + i];
   const NewtonResidual<N> c = certify(columns[given], force, columns[given + 1], phi);
-  N scale(1);
-  for (const N* v : {&dh, &rate})
-    if (abs(*v) > scale) scale = abs(*v);
+  const auto greatest_made_of = [&](std::size_t first, std::size_t count) {
+    N most(0);
+    for (std::size_t i = first; i < first + count; ++i)
+      if (const N& v = out.made_of(i); v > most) most = v;
+    return most;
+  };
+  const auto of_law = [&](const N& miss) { return relative_miss(miss, c.largest, [&] { return greatest_made_of(0, (given + 2) * n); }); };
+  const N power_miss = relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))), [&] { return greatest_made_of(first_number, numbers.size()); });
   const auto small = [](const N& x) { return number_text(to_double(x), 3); };
-  r.residuals = {{"newton", small(c.newton)},
-                 {"projected", small(c.projected)},
+  r.residuals = {{"newton", small(of_law(c.newton))},
+                 {"projected", small(of_law(c.projected))},
                  {"constraints", small(point.constraint_residual())},
-                 {"power", small(N(abs(N(dh - rate)) / scale))}};
+                 {"power", small(power_miss)}};
   return {};
 }
 

@@ -30,8 +30,9 @@ Outcome evaluate(const Scenario& scenario, const StateChoice& choice, int digits
 // Residuals C1 and C2 (theory: certificate) from E - G and Phi at a state.
 template <Number N>
 struct NewtonResidual {
-  N newton{0};     // |E - G - N| by the points themselves, in relation to the largest of the three
+  N newton{0};     // |E - G - N| by the points themselves
   N projected{0};  // what is left of E - G after the best multipliers: needs no lambda
+  N largest{0};    // of |E|, |G|, |N|
 };
 template <Number N>
 NewtonResidual<N> certify(const std::vector<N>& inertia, const std::vector<N>& force, const std::vector<N>& reaction,

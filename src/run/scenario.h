@@ -101,8 +101,16 @@ class OutputTape {
       machine_.series(in.slot)[0] = value;
     }
     machine_.evaluate();
+    sizes_.clear();
   }
   const N& operator[](std::size_t i) const { return machine_.value(i); }
+  // The sum of the absolute values of its terms.
+  N terms(std::size_t i) const { return machine_.magnitude(tape_.roots[i]); }
+  // What it is made of (tape/tape.h), at the point evaluated last.
+  const N& made_of(std::size_t i) const {
+    if (sizes_.empty()) machine_.made_of(sizes_);
+    return sizes_[tape_.roots[i]];
+  }
   // Modes have changed.
   void set_parameters(const std::vector<N>& parameters) { machine_ = Machine<N>(tape_, 0, parameters); }
   // Multipliers of redundant constraints are zero.
@@ -117,6 +125,7 @@ class OutputTape {
   const System& system_;
   Tape tape_;
   Machine<N> machine_;
+  mutable std::vector<N> sizes_;
 };
 
 }  // namespace anholon

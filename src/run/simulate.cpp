@@ -65,7 +65,7 @@ class Run {
     const std::size_t monitors = s_.model->monitors.size();
     for (std::size_t i = 0; i < monitors; ++i) {
       const Monitor& m = s_.model->monitors[i];
-      (declared_conserved(m) ? report_.conserved : report_.monitors).push_back(watched(m.name, watch_.tracks()[i]));
+      (declared_conserved(*s_.model, m) ? report_.conserved : report_.monitors).push_back(watched(m.name, watch_.tracks()[i]));
     }
     for (std::size_t i = 0; i < o_.conserved.size(); ++i) report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
     for (const std::string& text : supports_.notes()) note(text);
@@ -85,13 +85,6 @@ class Run {
     std::vector<std::string> names = {"t"};
     for (const RowColumn& c : row_columns(s_, highest())) names.push_back(c.name);
     return names;
-  }
-
-  // [output] conserved = true: all its components.
-  bool declared_conserved(const Monitor& m) const {
-    return std::any_of(s_.model->outputs.begin(), s_.model->outputs.end(), [&](const OutputQuantity& o) {
-      return o.conserved && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0));
-    });
   }
 
   void begin() {
@@ -239,6 +232,7 @@ class Run {
     auto saved = std::chrono::steady_clock::now();
     double pause = std::min(kFirst, o_.save_seconds);
     while (report_.outcome.ok() && !(course_.time() == end_)) {
+      watch_.turn_over(course_.integrals()[0]);
       report_.outcome = course_.step(end_);
       if (!report_.outcome.ok()) break;
       angles_.see(course_.begun());
@@ -351,7 +345,7 @@ class Run {
     // Far above what integration and round-off leave.
     constexpr double kConserved = 1e-6;
     for (std::size_t i = 0; i < s_.model->monitors.size(); ++i)
-      if (const double change = watch_.tracks()[i].relative_change(); declared_conserved(s_.model->monitors[i]) && !(change <= kConserved))
+      if (const double change = watch_.tracks()[i].relative_change(); declared_conserved(*s_.model, s_.model->monitors[i]) && !(change <= kConserved))
         report_.warnings.push_back({"the output '" + s_.model->monitors[i].name + "' is not conserved: it changes by " + number_text(change, 3) + " of its size",
                                     "look for a force, an event or an observer that changes it, or leave out conserved = true"});
     for (std::size_t i = 0; i < angles_.triples.size(); ++i)

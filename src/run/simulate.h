@@ -80,11 +80,12 @@ struct SimulationReport {
   std::size_t steps = 0, rows = 0;
   int order = 0;
   double seconds = 0;
+  // In relation to the greatest of their terms so far (theory: certificate).
   double newton = 0;             // C1: Newton's law with ideal reactions
   double projected = 0;          // C2: the same without multipliers
   double constraints = 0;        // C3: worst hidden constraint, before it was projected
   double constraints_kept = 0;   // C3 at the rows, after projection
-  double power = 0;              // |h - h0 - work| in relation to the energies turned over
+  double power = 0;              // |h - h0 - work| in relation to the largest energy and work along the motion
   double smallest_sigma = 1;     // scaled, of the system Jacobian
   std::string smallest_sigma_t;  // when it was met
   std::vector<ConstraintReport> constraints_each;

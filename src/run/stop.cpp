@@ -7,6 +7,12 @@
 
 namespace anholon {
 
+static std::string joined(const std::vector<std::string>& list) {
+  std::string all;
+  for (const std::string& x : list) all += (all.empty() ? "" : ", ") + x;
+  return all;
+}
+
 // A root or logarithm in the equations whose argument has come to zero.
 template <Number N>
 static std::string vanishing_root(const Motion<N>& motion) {
@@ -69,10 +75,21 @@ static std::string lost_hold(const Scenario& s, const Motion<N>& motion) {
   return "the constraint '" + s.model->constraints[s.independent[which]].name + "' becomes dependent on the others";
 }
 
+// " (x = 1, y = 2)": where the motion is, if that is not too long to be read.
+template <Number N>
+static std::string where(const Scenario& s, const Motion<N>& motion) {
+  constexpr std::size_t kMost = 6;
+  std::vector<std::string> list;
+  for (std::size_t a = 0; a < s.system.coordinates && s.system.coordinates <= kMost; ++a)
+    list.push_back(s.system.variable_names[a] + " = " + number_text(to_double(motion.stepper().point().derivative(a, 0)), 6));
+  return list.empty() ? "" : " (" + joined(list) + ")";
+}
+
 template <Number N>
 void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
   using W = Wider<N>;
   constexpr double kVanished = 1e-9, kUnbounded = 1e9, kFallen = 1e-3, kFaint = 1e-3;
+  constexpr int kRecentSteps = 8;
   const Stepper<N>& stepper = motion.stepper();
   const Expansion<W>& point = stepper.point();
   std::string& message = outcome.message;
@@ -85,7 +102,10 @@ void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) 
   }
   const double first = to_double(stepper.first_sigma()), least = to_double(stepper.smallest_sigma());
   const std::string lost = lost_hold(s, motion);
-  const bool fallen = outcome.kind == OutcomeKind::singular || least < kFallen * first || !lost.empty();
+  // Not where the motion has passed a singular configuration long before.
+  const Wider<N> steps = abs(W(stepper.time() - stepper.before())) * W(kRecentSteps);
+  const bool here = abs(W(stepper.smallest_sigma_time() - stepper.time())) <= steps;
+  const bool fallen = outcome.kind == OutcomeKind::singular || (here && least < kFallen * first) || !lost.empty();
   for (std::size_t k = 0; k < s.system.constraints.size() && lost.empty(); ++k) {
     const std::size_t r = s.system.constraints[k];
     if (!may_branch(*s.mechanics, s.system, r)) continue;
@@ -102,7 +122,7 @@ void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) 
   if (fallen) {
     const std::size_t j = stepper.weakest_unknown();
     outcome.kind = OutcomeKind::singular;
-    message = "singular configuration" + when + ": " +
+    message = "singular configuration" + when + where(s, motion) + ": " +
               (!lost.empty() ? lost
                              : (j < s.system.coordinates ? "the equations no longer determine the acceleration of " : "the equations no longer determine the multiplier ") +
                                    s.system.variable_names[j]);
@@ -112,10 +132,11 @@ void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) 
   for (std::size_t i = 0; i < s.model->masses.size(); ++i)
     if (std::abs(to_double(stepper.quadrature(1 + i, W(0)))) < kVanished)
       message += "; the mass of '" + s.model->masses[i].name + "' vanishes there";
+  std::vector<std::string> unbounded;
   for (std::size_t k = 0; k < s.system.constraints.size(); ++k)
-    if (std::abs(to_double(point.derivative(s.system.coordinates + k, 0))) > kUnbounded)
-      message += "; the multiplier of '" + s.system.equation_names[s.system.coordinates + k] +
-                 "' grows without bound: the constraint loses its hold there";
+    if (std::abs(to_double(point.derivative(s.system.coordinates + k, 0))) > kUnbounded) unbounded.push_back("'" + s.system.equation_names[s.system.coordinates + k] + "'");
+  if (unbounded.size() == 1) message += "; the multiplier of " + unbounded[0] + " grows without bound: the constraint loses its hold there";
+  if (unbounded.size() > 1) message += "; the multipliers of " + joined(unbounded) + " grow without bound: the constraints lose their hold there";
 }
 
 template void explain_stop(const Scenario&, const Motion<double>&, Outcome&);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "run/evaluate.h"
-
 namespace anholon {
 
 // The power of all forces for the energy balance. Constraints that do no work on the motion (first
@@ -37,6 +35,12 @@ std::vector<ConstraintReport> constraint_reports(const Scenario& s) {
   return list;
 }
 
+bool declared_conserved(const Model& model, const Monitor& m) {
+  return std::any_of(model.outputs.begin(), model.outputs.end(), [&](const OutputQuantity& o) {
+    return o.conserved && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0));
+  });
+}
+
 int orders_needed(const Scenario& s, std::span<const Expr> es) {
   int beyond = 0;
   for (NodeId id : symbols(es))
@@ -46,14 +50,22 @@ int orders_needed(const Scenario& s, std::span<const Expr> es) {
 }
 
 template <Number W>
-void Track<W>::see(const W& value, const W& terms) {
+void Track<W>::see(const W& value) {
   if (!any) first = least = greatest = value;
   any = true;
   last = value;
   if (value < least) least = value;
   if (value > greatest) greatest = value;
-  if (terms > size) size = terms;
+  size = std::max(size, W(abs(value)));
   if (W v = abs(W(value - first)); v > change || !is_finite(v)) change = v;
+}
+
+template <Number W>
+template <class MadeOf>
+void Track<W>::see(const W& value, const W& terms, MadeOf made_of) {
+  see(value);
+  size = std::max(size, terms);
+  if (W v = relative_miss(W(value - first), size, made_of); v > missed || !is_finite(v)) missed = v;
 }
 
 template <Number W>
@@ -83,10 +95,12 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
   for (const Monitor& monitor : model.monitors) {
     es.push_back(monitor.value);
     terms_.push_back(1);
+    constant_.push_back(declared_conserved(model, monitor));
   }
   for (const Conserved& c : conserved) {
     es.insert(es.end(), c.terms.begin(), c.terms.end());
     terms_.push_back(c.terms.size());
+    constant_.push_back(true);
   }
   tracks_.resize(terms_.size());
   return es;
@@ -104,13 +118,25 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
     force[a] = outputs_[2 * n + 1 + a];
   }
   for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = outputs_[3 * n + 1 + i];
-  const NewtonResidual<W> c = certify(inertia, force, reaction, phi);
-  report.newton = std::max(report.newton, to_double(c.newton));
-  report.projected = std::max(report.projected, to_double(c.projected));
+  newton(certify(inertia, force, reaction, phi), report);
+  turn_over(energy());
   constraints(point, phi, report);
   track();
   multipliers_ = redundant_.multipliers(point);
   return still_redundant(point, report);
+}
+
+template <Number W>
+void Watch<W>::newton(const NewtonResidual<W>& c, SimulationReport& report) {
+  forces_ = std::max(forces_, c.largest);
+  const auto made_of = [&] {
+    W most(0);
+    for (std::size_t i = 0; i < 3 * s_.system.coordinates + 1; ++i)
+      if (const W& v = outputs_.made_of(i); i != s_.system.coordinates && v > most) most = v;  // N, E, G
+    return most;
+  };
+  report.newton = std::max(report.newton, to_double(relative_miss(c.newton, forces_, made_of)));
+  report.projected = std::max(report.projected, to_double(relative_miss(c.projected, forces_, made_of)));
 }
 
 template <Number W>
@@ -134,10 +160,12 @@ void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, Simu
     for (int k = 0; k < s_.structure.c[n + i]; ++k) worse(i, k, to_double(point.hidden_residual(n + i, k)));
   for (std::size_t o = 0; o < open_.size(); ++o) {
     const std::size_t i = open_[o];
-    W scale(1);
+    W terms(0);
     for (std::size_t a = 0; a < n; ++a)
-      scale += abs(W(phi(i, a) * point.derivative(a, s_.mechanics->order[s_.system.constraints[i]])));
-    const double residual = to_double(W(abs(outputs_[first_open_ + o]) / scale));
+      terms += abs(W(phi(i, a) * point.derivative(a, s_.mechanics->order[s_.system.constraints[i]])));
+    const double residual = to_double(relative_miss(outputs_[first_open_ + o], terms, [&] {
+      return std::max(outputs_.made_of(first_open_ + o), point.size_of_level(0, n + i));
+    }));
     worse(i, 0, residual);
     report.constraints_kept = std::max(report.constraints_kept, residual);
   }
@@ -146,19 +174,23 @@ void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, Simu
 template <Number W>
 void Watch<W>::save(SavedRun& to) const {
   std::vector<W> tracks;
-  for (const Track<W>& t : tracks_) tracks.insert(tracks.end(), {W(t.any ? 1 : 0), t.first, t.last, t.least, t.greatest, t.change, t.size});
+  for (const Track<W>& t : tracks_) tracks.insert(tracks.end(), {W(t.any ? 1 : 0), t.first, t.last, t.least, t.greatest, t.change, t.size, t.missed});
   to.set_numbers("tracks", tracks);
-  to.set_numbers<W>("energy", {h0_});
+  to.set_numbers<W>("energy", {h0_, forces_, turned_over_});
+  to.set_numbers<W>("from", from_);
 }
 
 template <Number W>
 void Watch<W>::resume(const SavedRun& from) {
-  const std::vector<W> tracks = from.numbers<W>("tracks", 7 * tracks_.size());
+  const std::vector<W> tracks = from.numbers<W>("tracks", 8 * tracks_.size()), energy = from.numbers<W>("energy", 3);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    const W* t = &tracks[7 * i];
-    tracks_[i] = {!(t[0] == W(0)), t[1], t[2], t[3], t[4], t[5], t[6]};
+    const W* t = &tracks[8 * i];
+    tracks_[i] = {!(t[0] == W(0)), t[1], t[2], t[3], t[4], t[5], t[6], t[7]};
   }
-  h0_ = from.number<W>("energy");
+  h0_ = energy[0];
+  forces_ = energy[1];
+  turned_over_ = energy[2];
+  from_ = from.numbers<W>("from", s_.system.coordinates);
 }
 
 template <Number W>
@@ -168,24 +200,33 @@ void Watch<W>::track() {
     W value(0), terms(0);
     for (std::size_t k = 0; k < terms_[i]; ++k, ++at) {
       value += outputs_[at];
-      terms += abs(outputs_[at]);
+      terms += outputs_.terms(at);
     }
-    tracks_[i].see(value, terms);
+    if (!constant_[i]) {
+      tracks_[i].see(value);
+      continue;
+    }
+    tracks_[i].see(value, terms, [&] {
+      W made(0);
+      for (std::size_t k = at - terms_[i]; k < at; ++k) made += outputs_.made_of(k);
+      return made;
+    });
   }
 }
 
 template <Number W>
 void Watch<W>::start(const Expansion<W>& point) {
   outputs_.evaluate(point);
-  h0_ = outputs_[s_.system.coordinates];
+  h0_ = energy();
   start_ = point.time();
+  for (std::size_t a = 0; a < s_.system.coordinates; ++a) from_.push_back(point.derivative(a, 0));
   track();
 }
 
 template <Number W>
 void Watch<W>::leave(const Expansion<W>& point) {
   outputs_.evaluate(point);
-  before_ = outputs_[s_.system.coordinates];
+  before_ = energy();
   track();
 }
 
@@ -194,17 +235,24 @@ void Watch<W>::enter(const Expansion<W>& point, const std::vector<W>& parameters
   outputs_.set_parameters(parameters);
   redundant_.set_parameters(parameters);
   outputs_.evaluate(point);
-  h0_ += outputs_[s_.system.coordinates] - before_;
+  h0_ += energy() - before_;
 }
 
 template <Number W>
 void Watch<W>::end(const Expansion<W>& point, const W& work, SimulationReport& report) {
   outputs_.evaluate(point);
-  const W h = outputs_[s_.system.coordinates];
-  W scale(1);
-  for (const W& v : {h, h0_, work})
-    if (abs(v) > scale) scale = abs(v);
-  report.power = to_double(W(abs(W(h - h0_ - work)) / scale));
+  const W h = energy();
+  // Forces in balance turn energy over, though none is left: what each does on its way.
+  constexpr double kNone = 1e-8;  // half the digits of a double
+  const std::size_t n = s_.system.coordinates;
+  W ways(0), made_of = outputs_.made_of(n);
+  for (std::size_t a = 0; a < n; ++a) {
+    ways += outputs_.terms(2 * n + 1 + a) * abs(W(point.derivative(a, 0) - from_[a]));
+    made_of += outputs_.made_of(2 * n + 1 + a) * abs(point.derivative(a, 0));
+  }
+  for (const W& v : {h, h0_, work}) turn_over(v);
+  if (turned_over_ < ways * W(kNone)) turned_over_ = ways;
+  report.power = to_double(relative_miss(W(h - h0_ - work), turned_over_, [&] { return made_of; }));
   track();
 }
 

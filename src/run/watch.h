@@ -4,8 +4,11 @@
 //   C1, C2  Newton's law by the points themselves, with and without multipliers  (theory: certificate)
 //   C3      hidden constraints
 //   power   h - h(0) - W, W the integral of the right side of the power identity
+// each in relation to the greatest of its terms so far: a motion that comes to rest is measured by what it was
 // and the model's [monitor] formulas and the integrals of the motion  (theory: integrals).
 #pragma once
+#include "numeric/relative.h"
+#include "run/evaluate.h"
 #include "run/motion.h"
 #include "run/redundant.h"
 #include "run/simulate.h"
@@ -21,14 +24,20 @@ std::vector<ConstraintReport> constraint_reports(const Scenario& s);
 // How many orders beyond those solved for the expressions need.
 int orders_needed(const Scenario& s, std::span<const Expr> es);
 
+// Whether [output] conserved = true says of a monitor that it keeps its value: of a vector all components do.
+bool declared_conserved(const Model& model, const Monitor& m);
+
 // A number along the motion: its range, and how far it went from its first value.
 template <Number W>
 struct Track {
   bool any = false;
-  W first{0}, last{0}, least{0}, greatest{0}, change{0}, size{0};
-  // `terms`: the sum of the magnitudes of what it is made of.
-  void see(const W& value, const W& terms);
-  double relative_change() const { return change == W(0) ? 0 : to_double(W(change / size)); }
+  W first{0}, last{0}, least{0}, greatest{0}, change{0}, size{0}, missed{0};
+  void see(const W& value);
+  // What ought to be constant. `terms`: the sum of the magnitudes of its terms; `made_of`: of the numbers these are made of (numeric/relative.h).
+  template <class MadeOf>
+  void see(const W& value, const W& terms, MadeOf made_of);
+  // Of its size; or of its terms, if it ought to be constant.
+  double relative_change() const { return to_double(missed > W(0) || change == W(0) ? missed : W(change / size)); }
 };
 
 template <Number W>
@@ -55,16 +64,21 @@ class Watch {
   // What an event changes at a moment is no work: the energy before and after it, and the modes from there on.
   void leave(const Expansion<W>& point);
   void enter(const Expansion<W>& point, const std::vector<W>& parameters);
+  // The work so far, where a step begins.
+  void turn_over(const W& work) { turned_over_ = std::max(turned_over_, W(abs(work))); }
   void end(const Expansion<W>& point, const W& work, SimulationReport& report);
 
  private:
   Column expressions(const Power& power, const std::vector<Conserved>& conserved);
   void track();
   void constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const;
+  void newton(const NewtonResidual<W>& c, SimulationReport& report);
+  W energy() const { return outputs_[s_.system.coordinates]; }
 
   const Scenario& s_;
   std::vector<Track<W>> tracks_;
   std::vector<std::size_t> terms_;  // of which each is the sum
+  std::vector<bool> constant_;      // which ought to be
   // Constraints that no derivative hides: their accelerations, … are solved for with the equations.
   std::vector<std::size_t> open_;
   std::size_t first_open_ = 0, first_monitor_ = 0;  // among the outputs
@@ -72,6 +86,9 @@ class Watch {
   Redundant<W> redundant_;
   std::vector<W> multipliers_;
   W h0_{0}, start_{0}, before_{0};
+  // The greatest so far: of the terms of Newton's law, of energies and work.
+  W forces_{0}, turned_over_{0};
+  std::vector<W> from_;  // the coordinates at the start
 };
 
 extern template class Watch<long double>;

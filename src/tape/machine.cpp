@@ -276,6 +276,29 @@ N Machine<N>::magnitude(std::uint32_t slot) const {
 }
 
 template <Scalar N>
+void Machine<N>::made_of(std::vector<N>& sizes) const {
+  sizes.assign(tape_->code.size(), N(0));
+  for (std::uint32_t s = 0; s < sizes.size(); ++s) {
+    const Instruction& in = tape_->code[s];
+    switch (in.op) {
+      case Op::linear:
+        for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+          addmul(sizes[s], N(abs(rationals_[tape_->linear_terms[k].coefficient])), sizes[tape_->linear_terms[k].slot]);
+        break;
+      case Op::multiply: case Op::scale: sizes[s] = sizes[in.a] * sizes[in.b]; break;
+      case Op::square: sizes[s] = sizes[in.a] * sizes[in.a]; break;
+      case Op::divide: {
+        const N& b = series(in.b)[0];
+        sizes[s] = sizes[in.a] * sizes[in.b] / (b * b);
+        break;
+      }
+      case Op::constant: case Op::pi: case Op::input: case Op::parameter: case Op::power: case Op::function: case Op::arctan2: case Op::select:
+      case Op::lookup: case Op::rate: sizes[s] = abs(series(s)[0]); break;
+    }
+  }
+}
+
+template <Scalar N>
 N Machine<N>::terms(std::size_t root, std::size_t order) const {
   const Instruction& alias = tape_->code[tape_->roots[root]];
   const std::uint32_t slot = tape_->linear_terms[alias.first].slot;

@@ -117,6 +117,9 @@ class Machine {
   Partials partials(std::uint32_t slot) const;
   // The sum of the absolute values of what a slot is the sum of, at order 0.
   N magnitude(std::uint32_t slot) const;
+  // Of every slot, at order 0, what it is made of: the sum of the absolute values of the terms that it has with its products multiplied out. Round-off of
+  // that is what the slot may be where it ought to vanish.
+  void made_of(std::vector<N>& sizes) const;
   // The sum of the absolute values of the terms of a main root, in its Taylor coefficient of this order.
   N terms(std::size_t root, std::size_t order) const;
   const N& rational(std::uint32_t index) const { return rationals_[index]; }
