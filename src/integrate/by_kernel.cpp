@@ -184,6 +184,7 @@ bool Stepper<N>::take_from_kernel() {
       return false;
     }
     by_kernel_ = expanded_ = true;
+    one_sided_.reset();
     ++by_kernel_count_;
     point_loaded_ = point_valued_ = false;
     if (const W drift(kernel_->drift(lane_)); record_.worst_constraint < drift) record_.worst_constraint = drift;

@@ -131,6 +131,13 @@ const StepperState<N>& Stepper<N>::begun() const {
 
 template <Number N>
 Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
+  one_sided_.reset();
+  Outcome o = expand_regularly(guess);
+  return o.kind == OutcomeKind::not_a_number && expand_one_sided(o) ? Outcome{} : o;
+}
+
+template <Number N>
+Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
   begun_[now_].direction = expansion_.weakest_direction();
   begun_[now_].sides = events_.sides();
   own_.clear();
@@ -274,6 +281,7 @@ double Stepper<N>::shrink() const {
   template void Stepper<N>::note_begun(const std::vector<W>&);             \
   template const StepperState<N>& Stepper<N>::begun() const;               \
   template Outcome Stepper<N>::expand_by_reference(const std::vector<W>&); \
+  template Outcome Stepper<N>::expand_regularly(const std::vector<W>&);    \
   template N Stepper<N>::step_size() const;                                \
   template void Stepper<N>::heed_integrals();                              \
   template double Stepper<N>::shrink() const;

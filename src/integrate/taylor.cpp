@@ -202,6 +202,7 @@ template <Number N>
 bool Stepper<N>::aims_with_care(const W& end) {
   const W left = end - t_;
   const bool forward = left > W(0);
+  if (one_sided_) return aims_one_sided(left);
   W h = horizon();
   // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from there.
   if (program_->nonlinear) h = abs(on_the_branch(forward ? h : W(-h)));
@@ -329,9 +330,14 @@ Outcome Stepper<N>::at(const W& t, Expansion<W>& point, bool leading) const {
   std::vector<W> state, guess;
   on_polynomial(t - before_, state, guess);
   point.load(t, state, guess);
-  if (Outcome o = point.prepare(); !o.ok()) return o;
-  if (Outcome o = point.project(); !o.ok() || !leading) return o;
-  return point.solve();
+  Outcome o = point.prepare();
+  if (o.ok()) o = point.project();
+  if (o.ok() && leading) o = point.solve();
+  if (!one_sided_ || o.kind != OutcomeKind::not_a_number) return o;
+  // The equations have no value here: what the motion has right after the point stands for it.
+  point.load(t, state, guess);
+  point.evaluate();
+  return {};
 }
 
 template class Stepper<double>;

@@ -141,7 +141,8 @@ class Stepper {
   std::size_t kinks() const { return kinks_; }  // steps that one has cut short
   int order() const { return order_; }
 
-  // The solution where the last step began, or at the start: projected and solved. Its derivatives; with `values` those of all formulas, too.
+  // The solution where the last step began, or at the start: projected and solved. Its derivatives; with `values` those of all formulas, too. Where a
+  // formula has no value there, the leading derivatives are those right after it.
   const Expansion<W>& point(bool values = false) const;
   // … and anywhere in the last step, in an expansion of the caller; on request without what leads the state.
   Outcome at(const W& t, Expansion<W>& point, bool leading = true) const;
@@ -174,6 +175,7 @@ class Stepper {
   N defect_at(const W& h);
   bool aims_freely(const W& end);
   bool aims_with_care(const W& end);
+  bool aims_one_sided(const W& left);
   bool finishes();
   bool goes_on(const W& h);
   bool ends_expansion(const std::vector<W>& guess);
@@ -187,6 +189,14 @@ class Stepper {
   void begin_expansion(const std::vector<W>& guess);
   Outcome expand_here(const std::vector<W>& guess);
   Outcome expand_by_reference(const std::vector<W>& guess);
+  Outcome expand_regularly(const std::vector<W>& guess);
+  bool expand_one_sided(Outcome& fault);
+  Outcome open_direction(const W& h);
+  std::optional<std::vector<W>> leading_beyond(const W& h, std::vector<W> leading);
+  std::optional<std::vector<W>> settled_leading(const W& h, std::vector<W> leading);
+  std::optional<std::vector<W>> one_sided_leading(const W& h);
+  bool take_one_sided(const W& h);
+  W one_sided_step() const;
   void note_begun(const std::vector<W>& guess);
   bool kernel_serves() const;
   double trusted_health() const;
@@ -272,6 +282,12 @@ class Stepper {
   N sigma_{0};                           // where the present step began
   bool singular_ahead_ = false;          // right after the present state
   std::size_t kinks_ = 0, kinks_before_ = 0;
+  // The present expansion ends with the leading derivatives, for a very short step, as formulas have no derivatives there, or no value.
+  struct OneSided {
+    Outcome fault;             // of the expansion
+    std::vector<W> at_point;   // the leading derivatives at the point, empty if the equations have none
+  };
+  std::optional<OneSided> one_sided_;
   int short_kinks_ = 0;                  // steps in a row that were cut by a kink at their very start
   EventWatch<N> events_{{}};
   std::vector<Fired<N>> fired_;

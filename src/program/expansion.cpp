@@ -4,6 +4,7 @@
 
 #include "base/assert.h"
 #include "numeric/relative.h"
+#include "program/fault.h"
 
 namespace anholon {
 
@@ -171,9 +172,7 @@ Outcome Expansion<N>::prepare() {
   sweep_known(0);
   jacobian();
   for (const N& v : j_.data)
-    if (!is_finite(v))
-      return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
-              "the motion leaves the region where the model is defined: stop it before, or change the formula"};
+    if (!is_finite(v)) return fault_outcome(*program_, machine_, 0);
   if (!lu_.factor(j_) || smallest_singular_value() < unit_roundoff<N>() * N(kSingularRoundoffs)) return singular();
   return {};
 }
@@ -319,7 +318,7 @@ Outcome Expansion<N>::project(const Solver& solver) {
         if (const N d = displacement(level, r_); d > drift_) drift_ = d;
       if (!any || !(worst > quiet)) break;
       if (!is_finite(worst))
-        return {OutcomeKind::not_a_number, "a constraint has no value", "the motion leaves the region where the constraint is defined"};
+        return fault_outcome(*program_, machine_, -level);
       if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;
       before = worst;
       solver(r_, y_);
@@ -406,15 +405,34 @@ Outcome Expansion<N>::extend() {
         const std::size_t order = s + static_cast<std::size_t>(p.d[j]);
         delta_x_[j] = y_[j] / rising<N>(s, order);
         x_[j * stride_ + order] += delta_x_[j];
-        if (!is_finite(y_[j]))
-          return {OutcomeKind::not_a_number, "a derivative of the motion has no value here",
-                  "look for abs, sqrt or a norm that passes through zero"};
+        if (!is_finite(y_[j])) return fault_outcome(*program_, machine_, stage);
       }
       add_leading(stage);
     }
   }
   sweep_quadratures(stages_);
   return {};
+}
+
+template <Number N>
+void Expansion<N>::cut_to(const std::vector<N>& leading) {
+  const Program& p = *program_;
+  for (std::size_t j = 0; j < p.unknowns(); ++j) {
+    N* x = &x_[j * stride_];
+    const std::size_t d = static_cast<std::size_t>(p.d[j]);
+    x[d] = leading[j] / factorial_[d];
+    std::fill(x + d + 1, x + stride_, N(0));
+  }
+  sweep_known(0);
+  sweep_quadratures(0);
+  for (std::uint32_t slot = 0; slot < p.tape.code.size(); ++slot) {
+    const Instruction& in = p.tape.code[slot];
+    if (in.constant) continue;
+    N* series = machine_.series(slot);
+    std::fill(series + in.lead + 1, series + stages_ + in.lead + 1, N(0));
+    // What is integrated or watched and has no value at the point itself counts as nothing in so short a step.
+    if (slot >= p.tape.main_end && !is_finite(series[0])) series[0] = N(0);
+  }
 }
 
 template class Expansion<double>;

@@ -72,6 +72,9 @@ class Expansion {
   const Lu<N>& lu() const { return lu_; }
   // Coefficients of all stages 1..stages().
   Outcome extend();
+  // In place of extend(), where formulas have no derivatives: the polynomials end with these leading derivatives, and all other series with the
+  // coefficients of stage 0.
+  void cut_to(const std::vector<N>& leading);
 
   // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms (numeric/relative.h), at the state as
   // measured or projected last.

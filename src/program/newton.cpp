@@ -1,6 +1,7 @@
 // The part of an expansion that solves for the leading derivatives.
 #include "numeric/relative.h"
 #include "program/expansion.h"
+#include "program/fault.h"
 
 namespace anholon {
 
@@ -70,9 +71,7 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
   for (int k = 0; k < kMostNewton; ++k) {
     N worst(0);
     residual(0, r_, worst);
-    if (!is_finite(worst))
-      return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
-              "the motion leaves the region where the model is defined: stop it before, or change the formula"};
+    if (!is_finite(worst)) return fault_outcome(*program_, machine_, 0);
     equation_residual_ = worst;
     const bool holds = !(worst > eps * N(kQuietRoundoffs));
     // They no longer shrink.

@@ -36,6 +36,7 @@ Outcome Motion<N>::start(const StateChoice& choice) {
   if (other_digits_) change_last_digits(start_.state);
   accelerate(*leg_);
   Outcome o = leg_->stepper.start(start_.t, start_.state, start_.leading);
+  if (o.kind == OutcomeKind::not_a_number) o.message += " at t = " + number_text(to_double(start_.t), 12);
   note_pivots();
   return o;
 }

@@ -128,7 +128,7 @@ void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) 
                                    s.system.variable_names[j]);
     if (outcome.hint.empty() || !lost.empty()) outcome.hint = "end the motion before; coordinates or constraints written otherwise may be regular there";
   }
-  if (const std::string root = vanishing_root(motion); !root.empty()) message += "; " + root + " is at the edge of where it has a value";
+  if (const std::string root = vanishing_root(motion); !root.empty() && outcome.kind != OutcomeKind::not_a_number) message += "; " + root + " is at the edge of where it has a value";
   for (std::size_t i = 0; i < s.model->masses.size(); ++i)
     if (std::abs(to_double(stepper.quadrature(1 + i, W(0)))) < kVanished)
       message += "; the mass of '" + s.model->masses[i].name + "' vanishes there";

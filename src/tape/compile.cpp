@@ -49,6 +49,8 @@ class Compiler {
     part(es.subspan(leads.size()));
     for (Expr e : es.subspan(leads.size())) roots.push_back(slot_.at(e.id));
     tape_.roots = roots;
+    tape_.nodes.assign(tape_.code.size(), Tape::kNoNode);
+    for (const auto& [id, slot] : slot_) tape_.nodes[slot] = std::min(tape_.nodes[slot], id);
     for (const auto& [slot, id] : pending_derivatives_) {
       Instruction& in = tape_.code[slot];
       const auto& [first, second] = derivative_.at(id);

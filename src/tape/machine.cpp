@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "base/assert.h"
 #include "numeric/ball.h"
 #include "tape/tape.h"
@@ -63,6 +65,13 @@ std::pair<std::size_t, bool> below(const std::vector<N>& knots, const N& x) {
     else high = middle;
   }
   return {low, true};
+}
+
+// Whether the coefficients of orders 0..last are zero. A ball never says so.
+template <Scalar N>
+bool vanishes(const N* series, std::size_t last) {
+  if constexpr (std::same_as<N, Ball>) return false;
+  else return std::all_of(series, series + last + 1, [](const N& c) { return c == N(0); });
 }
 
 template <Scalar N>
@@ -152,6 +161,11 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
       const N& r = rationals_[in.index];
       if (p == 0) {
         w[0] = power_value(u[0], r, tape_->rationals[in.index]);
+        return;
+      }
+      if (sgn(tape_->rationals[in.index]) > 0 && vanishes(u, p)) {
+        // A positive power of a series that is zero as far as it is known is zero as far.
+        w[p] = N(0);
         return;
       }
       // u w' = r w u'. Multiples of r = 1/3, say, would be rounded in the same way at every step.
@@ -252,7 +266,11 @@ typename Machine<N>::Partials Machine<N>::partials(std::uint32_t slot) const {
       const N& b = series(in.b)[0];
       return {N(1) / b, -(w[0] / b)};
     }
-    case Op::power: return {rationals_[in.index] * w[0] / series(in.a)[0], N(0)};
+    case Op::power: {
+      const N &r = rationals_[in.index], &u = series(in.a)[0];
+      if (tape_->rationals[in.index] > 1 && vanishes(&u, 0)) return {N(0), N(0)};
+      return {r * w[0] / u, N(0)};
+    }
     case Op::function: return {series(in.b)[0], N(0)};
     case Op::arctan2: return {series(in.first)[0], series(in.count)[0]};
     case Op::select: {

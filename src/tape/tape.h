@@ -63,12 +63,14 @@ struct Input {
 };
 
 struct Tape {
+  static constexpr NodeId kNoNode = 0xffffffffU;
   std::vector<Instruction> code;
   std::vector<LinearTerm> linear_terms;
   std::vector<Rational> rationals;
   std::vector<StepFunction> step_functions;
   std::vector<Input> inputs;
   std::vector<std::uint32_t> roots;  // slots of the expressions, in the order given
+  std::vector<NodeId> nodes;         // the node whose value a slot has; kNoNode where a slot is a part of a product
   std::uint32_t main_end = 0;        // slots below this serve the first `main_roots` expressions
   int largest_lead = 0;
 };
@@ -82,12 +84,6 @@ struct Tape {
 // `rates`: the jets of coordinates from `rates_from` on stand for these expressions and their derivatives, which the tape takes from their series.
 Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared = false, std::span<const Expr> rates = {}, std::uint32_t rates_from = 0);
 Tape compile(std::span<const Expr> es);
-
-// What a formula met that has no value there; slot 0.. for the message.
-struct DomainFault {
-  Op op;
-  std::uint32_t index;
-};
 
 // What a tape is computed in: numbers; or balls, of which no comparison is asked. Whatever lies in the input series of a machine of
 // balls, the Taylor coefficients of every slot lie in the slot's, where the slot is smooth on all of the balls, else they are not

@@ -1,0 +1,87 @@
+#include "program/fault.h"
+
+#include "model/model.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr std::size_t kLongestFormula = 120;
+
+// Long formulas are cut, so that a message stays one sentence.
+std::string short_text(const Program& p, std::uint32_t slot) {
+  const NodeId node = p.tape.nodes[slot];
+  if (node == Tape::kNoNode) return {};
+  const Model& model = *p.system->model;
+  const std::string text = print(Expr{model.graph.get(), node}, model.names, Format::text);
+  return text.size() <= kLongestFormula ? text : text.substr(0, kLongestFormula) + "...";
+}
+
+std::string power_text(const std::string& base, const Rational& exponent) {
+  if (exponent == Rational(1, 2)) return "sqrt(" + base + ")";
+  if (exponent == Rational(-1, 2)) return "1/sqrt(" + base + ")";
+  return "(" + base + ")^(" + exponent.get_str() + ")";
+}
+
+struct Described {
+  std::string formula;
+  std::uint32_t argument;  // the slot whose value explains the fault
+};
+
+// The formula of a slot, and its argument.
+Described described(const Program& p, std::uint32_t slot) {
+  const Instruction& in = p.tape.code[slot];
+  const auto name = [&](std::uint32_t of) {
+    const std::string text = short_text(p, of);
+    return text.empty() ? std::string("...") : text;
+  };
+  switch (in.op) {
+    case Op::power: return {power_text(name(in.a), p.tape.rationals[in.index]), in.a};
+    case Op::divide: return {"a division by " + name(in.b), in.b};
+    case Op::arctan2: return {"atan2(" + name(in.a) + ", " + name(in.b) + ")", in.a};
+    case Op::function: return {short_text(p, slot).empty() ? "a function of " + name(in.a) : short_text(p, slot), in.a};
+    case Op::constant: case Op::pi: case Op::input: case Op::parameter: case Op::linear: case Op::multiply: case Op::scale: case Op::square: case Op::select:
+    case Op::lookup: case Op::rate: break;
+  }
+  return {short_text(p, slot).empty() ? "a formula" : short_text(p, slot), slot};
+}
+
+}  // namespace
+
+template <Number N>
+std::optional<std::uint32_t> first_fault(const Program& program, const Machine<N>& machine, int last_stage) {
+  const Tape& tape = program.tape;
+  for (int stage = -tape.largest_lead; stage <= last_stage; ++stage)
+    for (std::uint32_t slot = 0; slot < tape.main_end; ++slot) {
+      const Instruction& in = tape.code[slot];
+      const int order = in.constant ? 0 : stage + in.lead;
+      if (order >= 0 && !is_finite(machine.series(slot)[order])) return slot;
+    }
+  return std::nullopt;
+}
+
+template <Number N>
+Outcome fault_outcome(const Program& program, const Machine<N>& machine, int last_stage) {
+  const std::optional<std::uint32_t> slot = first_fault(program, machine, last_stage);
+  if (!slot)
+    return {OutcomeKind::not_a_number, "the equations have no finite solution", "start or stop the motion away from this point, or change the formulas"};
+  const Described d = described(program, *slot);
+  const bool value = is_finite(machine.series(*slot)[0]);
+  std::string message = d.formula + (value ? " has no derivatives" : " has no value");
+  if (d.argument != *slot) {
+    const std::string argument = short_text(program, d.argument);
+    if (!argument.empty()) message += ", where " + argument + " = " + number_text(to_double(machine.series(d.argument)[0]), 6);
+  }
+  return {OutcomeKind::not_a_number, std::move(message), "start or stop the motion away from this point, or change the formula so that it is smooth here"};
+}
+
+#define INSTANTIATE(N)                                                                                        \
+  template std::optional<std::uint32_t> first_fault<N>(const Program&, const Machine<N>&, int);              \
+  template Outcome fault_outcome<N>(const Program&, const Machine<N>&, int);
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
+
+}  // namespace anholon
