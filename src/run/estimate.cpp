@@ -86,7 +86,7 @@ class SharperRun {
     if (const auto t = r.label.empty() ? std::nullopt : parse_rational(r.label)) return from_rational<W>(*t);
     return convert<W>(r.t);
   }
-  std::size_t resets_before(std::size_t row) const { return run_.knows_resets ? rows_[row].resets : resets_; }
+  std::size_t resets_before(std::size_t row) const { return run_.knows_resets ? uncounted_ + rows_[row].resets : resets_; }
 
   // Of all columns of a row those of the run.
   template <class T>
@@ -124,13 +124,15 @@ class SharperRun {
       if (Outcome o = compare(next_); !o.ok()) return o;
     const Outcome o = motion_.settle(occurrences, goes_on);
     bool set = false;
+    const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since) : motion_.stepper().time() < convert<W>(*run_.since));
     for (const Occurrence<W>& each : occurrences) {
-      met_.push_back({each.event, each.t});
+      if (counted) met_.push_back({each.event, each.t});
       set = set || !each.changes.empty();
     }
     if (!o.ok()) return o;
     if (set) {
       ++resets_;
+      if (!counted) ++uncounted_;
       outputs_.set_parameters(motion_.parameters());
       at_kink_ = was_kink_ = false;
       for (; next_ < rows_.size() && resets_before(next_) < resets_; ++next_) lose(next_);
@@ -186,15 +188,15 @@ class SharperRun {
   }
 
   // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the equations at a row, by
-  // far more than the tolerance, the state misses their difference times the step. At its ends the step knows of it; kinks make jumps there.
+  // far more than the tolerance, the state misses their difference times the step. Kinks and events make jumps at its ends.
   std::vector<double> missed_at(const W& t) {
     constexpr double kFarMore = 1e4;
     const Stepper<M>& stepper = motion_.stepper();
     const Expansion<W>& here = motion_.point();
     const std::size_t n = s_.system.coordinates;
     std::vector<double> missed(row_columns(s_, highest_).size(), 0.0);
-    const bool inside = forward_ ? t > stepper.before() && t < stepper.time() : t < stepper.before() && t > stepper.time();
-    if (!inside || at_kink_ || was_kink_) return missed;
+    const bool inside = forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
+    if (!inside || at_kink_ || was_kink_ || motion_.fired()) return missed;
     const double h = to_double(last_step());
     for (std::size_t a = 0; a < n; ++a) {
       const int d = motion_.program().d[a];
@@ -242,7 +244,7 @@ class SharperRun {
   std::vector<EventMoment<W>> met_;
   W t0_{0}, end_{0};
   bool forward_ = true, extended_ = false, at_kink_ = false, was_kink_ = false;
-  std::size_t next_ = 0, resets_ = 0;
+  std::size_t next_ = 0, resets_ = 0, uncounted_ = 0;
   std::optional<V> lost_;
 };
 

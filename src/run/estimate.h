@@ -53,6 +53,7 @@ struct RunToJudge {
   SampledRows<W> rows;
   std::vector<EventMoment<W>> events;
   std::vector<std::size_t> columns;  // of a row, that its values are; none: all
+  std::optional<W> since;            // events up to there are not counted: it goes on with an earlier run
   bool knows_resets = true;          // else an event may have changed the state any number of times
 };
 

@@ -12,6 +12,9 @@ class Judge {
 
   Judge(const Scenario& scenario, const SimulationOptions& options) : s_(scenario), o_(options) {}
 
+  // The run goes on from here; what events did before is not known.
+  void goes_on_from(const W& t) { run_.since = t; }
+
   // The rows are those of another integrator, and compared with the motion beside it.
   void look_beside(const Course<N>& course);
   // A row, at the time that is written, after so many steps of the course.

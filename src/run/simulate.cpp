@@ -153,6 +153,7 @@ class Run {
       const std::vector<double> given = from.numbers<double>("given", 2);
       given_rows_ = static_cast<std::size_t>(given[0]), given_steps_ = static_cast<std::size_t>(given[1]);
     }
+    judge_.goes_on_from(*done_);
     watch_.resume(from);
     const std::vector<double*> residuals = carried();
     const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());

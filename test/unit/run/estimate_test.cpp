@@ -148,6 +148,28 @@ TEST(DigitsToTrust, RowsAtEventsAreComparedOnTheirSide) {
   EXPECT_LT(r.error(ColumnKind::event_time), 1e-14);
 }
 
+// A run that goes on does not know of the events before.
+TEST(DigitsToTrust, OfARunThatGoesOnAfterEvents) {
+  const std::string ball = kPoint + "[gravity]\nfield = \"-9.81*ex\"\n[initial]\nx = 1\n\"x'\" = 0.3\n[[event]]\nname = \"floor\"\nwhen = \"x\"\ndirection = \"down\"\nset = {\"x'\" = \"-0.8*x'\"}\n";
+  SavedRun saved;
+  SimulationOptions o;
+  o.save = [&](const SavedRun& run) { saved = run; };
+  until(ball, 1, o);
+  o.save = nullptr;
+  o.resume = &saved;
+  const Result r = until(ball, Rational(17, 10), o);
+  EXPECT_EQ(r.report.events.size(), 1U);
+  EXPECT_LT(r.error(ColumnKind::velocity), 1e-14);
+}
+
+// Saturated friction looks constant where a step is made, and is not where it ends.
+TEST(DigitsToTrust, OfAMotionThatSteppedOverItsRestAreNone) {
+  const Result r = until(kPoint + "[[force]]\non = \"P\"\nvector = \"-tanh(x'/0.01)*ex\"\n[initial]\nx = 0\n\"x'\" = 2\n", 5);
+  const std::size_t last = r.rows.rows().size() - 1;
+  const double error = std::abs(r.number(last, "x'")) / 2;  // it has come to rest
+  EXPECT_GE(r.error(ColumnKind::velocity), error / 10);
+}
+
 // At the kinks of a force accelerations have kinks or jumps, and steps end there.
 TEST(DigitsToTrust, RowsAtKinksAreComparedOnTheirSide) {
   const Result r = until(kPoint + "[[force]]\non = \"P\"\nvector = \"(3*sin(3*t) - 0.2*sign(x') - x)*ex\"\n[initial]\nx = 1\n\"x'\" = 0.5\n", 10);
