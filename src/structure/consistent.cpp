@@ -159,7 +159,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
     if (*state_.origin(stage.unknown(j)) != Origin::given) free.push_back(j);
   }
   std::size_t worst = 0;
-  if (!find_by_least_change(stage, state_, free)) return no_value(stage);
+  if (!find_by_least_change(stage, state_, free, p_.near)) return no_value(stage);
   for (std::size_t j : free)
     if (stage.moves(j)) *state_.origin(stage.unknown(j)) = Origin::derived;
   N miss = stage.worst(&worst);
