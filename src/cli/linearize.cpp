@@ -94,11 +94,26 @@ std::shared_ptr<const Model> at_rest(const Model& model) {
   return m;
 }
 
+// Positions of the command line are where the search for an equilibrium begins, as those of the file are: held, they would be no equilibrium.
+std::shared_ptr<const Model> searched_from(const Model& at_rest, StateChoice& choice) {
+  auto m = std::make_shared<Model>(at_rest);
+  Graph& g = *m->graph;
+  for (const StateOverride& given : choice.overrides) {
+    if (given.multiplier || given.order > 0)
+      throw UsageError{"error: an equilibrium is at rest: only positions can be given, by --q\nhint: leave out the others, or linearize about the state that is given: --about state\n"};
+    const Expr q = g.jet(static_cast<std::uint32_t>(given.coordinate), 0);
+    std::erase_if(m->initial.guess, [&](const GivenValue& v) { return v.symbol == q; });
+    m->initial.guess.push_back({q, g.number(given.value), {}});
+  }
+  choice.overrides.clear();
+  return m;
+}
+
 // Where no rest was found, the conditions that failed are not those of the file.
 void say_no_rest(Outcome& o) {
   if (o.kind != OutcomeKind::inconsistent) return;
   o.message = "no equilibrium was found near the initial positions";
-  o.hint = "there may be none; other positions may help, --q or [initial]";
+  o.hint = "there may be none; the search begins at other positions by --q or [initial]";
 }
 
 // ---- what is printed -------------------------------------------------------------------------------
@@ -350,7 +365,8 @@ int linearize(const Options& o) {
   const std::optional<ParameterRange> values = range(o, *in.model);
   Signals signals;
   in.model = with_signals(*in.model, signals);
-  const StateChoice choice = state_choice(o, *in.model);
+  StateChoice choice = state_choice(o, *in.model);
+  if (o.about == "equilibrium") in.model = searched_from(*in.model, choice);
   Scenario s;
   const Outcome start = ready(in, form(o, *in.model), choice, s);
   form(o, *in.model, s.mechanics.get());

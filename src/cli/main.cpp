@@ -222,7 +222,7 @@ int run(int argc, char** argv) {
                                               "Exit status: 0 ok, 1 no linear model at some value, 2 bad input.\n"
                                               "Example: anholon linearize whipple --vary v=0..10:1");
   parameters(linearize_command), state(linearize_command), form_option(linearize_command);
-  linearize_command->add_option("--about", o.about, "state (default), or equilibrium: the one nearest to the initial positions")->type_name("WHAT")->check(CLI::IsMember({"state", "equilibrium"}));
+  linearize_command->add_option("--about", o.about, "state (default), or equilibrium: the one nearest to the initial positions, those of --q included")->type_name("WHAT")->check(CLI::IsMember({"state", "equilibrium"}));
   linearize_command->add_option("--vary", o.vary, "a parameter over a range, v=0..10:1 or v=0,1,2; where eigenvalues cross the imaginary axis is found")->type_name("NAME=VALUES");
   linearize_command->add_option("--digits", o.digits, "of the numbers printed (default 16); the computation has at least 36")->type_name("N")->check(CLI::Range(1, 2000));
   linearize_command->add_flag("--csv", o.csv, "one line of eigenvalues per parameter value");

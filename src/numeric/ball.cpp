@@ -178,6 +178,20 @@ Ball max(const Ball& x, const Ball& y) {
   return r;
 }
 
+Ball hull(const Ball& x, const Ball& y) {
+  if (!x.is_finite() || !y.is_finite()) return Ball::unknown();
+  Ball r;
+  arb_union(r.raw(), x.raw(), y.raw(), Ball::working_bits());
+  return r;
+}
+
+Ball lower_end(const Ball& x) {
+  if (!x.is_finite()) return Ball::unknown();
+  Ball r;
+  arb_get_lbound_arf(arb_midref(r.raw()), x.raw(), Ball::working_bits());
+  return r;
+}
+
 Ball sign(const Ball& x) {
   if (!x.is_finite()) return Ball::unknown();
   Ball r;

@@ -113,6 +113,8 @@ ANHOLON_BALL_FUNCTION(sqrt, arb_sqrt)
 #undef ANHOLON_BALL_FUNCTION
 Ball abs(const Ball& x);
 Ball max(const Ball& x, const Ball& y);
+Ball hull(const Ball& x, const Ball& y);  // holds both
+Ball lower_end(const Ball& x);            // rounded downwards
 inline void addmul(Ball& acc, const Ball& a, const Ball& b) {
   arb_addmul(acc.raw(), a.raw(), b.raw(), Ball::working_bits());
   acc.settle();

@@ -10,6 +10,8 @@ namespace {
 
 // A step is halved this often before a remainder that is too large is accepted as it is.
 constexpr int kMostHalvings = 7;
+// Beside a kink there is no remainder: what is left is halved until its values say no more than the other pieces do, so often and for so many pieces at most.
+constexpr int kMostHalvingsAtKinks = 60, kMostPieces = 200;
 
 using Series = std::vector<std::vector<Ball>>;
 
@@ -85,11 +87,13 @@ void Defect::sweep(int orders) {
   for (int stage = -tape_.largest_lead; stage <= orders; ++stage) machine_->sweep(stage, 0, tape_.main_end);
 }
 
-// The largest of |E|, |G|, |N|, and at least 1.
+// The largest of |E|, |G|, |N|, and at least 1: a number below it. What balls do not bound may be small and is left out: in relation to less, a bound is
+// a bound as well.
 Ball Defect::newton_scale() const {
   machine_->sweep(0, tape_.main_end, static_cast<std::uint32_t>(tape_.code.size()));
   Ball scale(1);
-  for (std::size_t i = scale_; i < tape_.roots.size(); ++i) scale = max(scale, abs(machine_->value(i)));
+  for (std::size_t i = scale_; i < tape_.roots.size(); ++i)
+    if (machine_->value(i).is_finite()) scale = max(scale, lower_end(abs(machine_->value(i))));
   return scale;
 }
 
@@ -194,11 +198,13 @@ Defect::Bound Defect::over(const Series& centered, const Ball& center, const Bal
   Bound b;
   const Ball newton = newton_scale();
   for (const Part& p : parts) {
-    Ball scale = newton;
-    if (p.root >= n) scale = max(Ball(1), machine_->terms(p.root, p.derivative) * rising(0, p.derivative));
+    Ball scale = p.root >= n ? Ball(1) : newton;
+    if (p.root >= n)
+      if (const Ball terms = machine_->terms(p.root, p.derivative) * rising(0, p.derivative); terms.is_finite()) scale = max(scale, lower_end(terms));
     const Ball taylor = p.polynomial + p.remainder;
     const bool counts = reaches_beyond(p.remainder, p.polynomial) && reaches_beyond(p.remainder / scale, quiet_);
     if (!taylor.is_finite() || counts) b.sharp = false;
+    if (!taylor.is_finite()) b.smooth = false;
     // The values on the interval are a bound as well; beside a kink there is no other.
     Ball& worst = p.root >= n ? b.constraints : p.projected ? b.projected : b.newton;
     worst = max(worst, (taylor.is_finite() && !reaches_beyond(taylor, p.value) ? taylor : p.value) / scale);
@@ -209,9 +215,14 @@ Defect::Bound Defect::over(const Series& centered, const Ball& center, const Bal
 void Defect::piece(const DenseStep& step, const Ball& begin, const Ball& end, int halvings) {
   const Ball half(Rational(1, 2)), center = (begin + end) * half, radius = abs(end - begin) * half;
   const Bound b = over(shifted(step.coefficients, center - step.begin), center, radius);
-  if (b.sharp || halvings == 0) return keep(b);
-  piece(step, begin, center, halvings - 1);
-  piece(step, center, end, halvings - 1);
+  const bool finite = b.newton.is_finite() && b.projected.is_finite() && b.constraints.is_finite();
+  const auto says_more = [&] {
+    return reaches_beyond(b.newton, max(newton_, quiet_)) || reaches_beyond(b.projected, max(projected_, quiet_)) || reaches_beyond(b.constraints, max(constraints_, quiet_));
+  };
+  const bool beside_kink = !b.smooth && finite && halvings < kMostHalvingsAtKinks && pieces_of_step_ < kMostPieces && says_more();
+  if (b.sharp || (halvings >= kMostHalvings && !beside_kink)) return keep(b);
+  piece(step, begin, center, halvings + 1);
+  piece(step, center, end, halvings + 1);
 }
 
 void Defect::keep(const Bound& b) {
@@ -219,7 +230,7 @@ void Defect::keep(const Bound& b) {
   // The multipliers at hand are as good as any.
   projected_ = max(projected_, reaches_beyond(b.projected, b.newton) ? b.newton : b.projected);
   constraints_ = max(constraints_, b.constraints);
-  ++pieces_;
+  ++pieces_, ++pieces_of_step_;
 }
 
 void Defect::step(const DenseStep& step) {
@@ -233,7 +244,8 @@ void Defect::step(const DenseStep& step) {
       joints_ = max(joints_, abs(jump) / max(Ball(1), abs(now)));
     }
   last_ = ends;
-  if (times_ == 0) return piece(step, step.begin, step.end, kMostHalvings);
+  pieces_of_step_ = 0;
+  if (times_ == 0) return piece(step, step.begin, step.end, 0);
   for (; reached_ < times_; ++reached_) {
     Rational part(static_cast<long>(2 * reached_ + 1), static_cast<long>(2 * times_));
     part.canonicalize();

@@ -59,7 +59,8 @@ class Defect {
  private:
   struct Bound {
     Ball newton, projected, constraints;
-    bool sharp = true;  // the remainders are not what counts
+    bool sharp = true;   // the remainders are not what counts
+    bool smooth = true;  // there are remainders
   };
   void set_inputs(const std::vector<std::vector<Ball>>& x, const Ball& t, int orders);
   void sweep(int orders);
@@ -68,12 +69,12 @@ class Defect {
   const Ball* phi(std::size_t constraint, std::size_t coordinate) const;
   std::vector<std::vector<Ball>> correction(std::size_t orders) const;
   Ball corrected(std::size_t coordinate, std::size_t order, const std::vector<std::vector<Ball>>& delta) const;
-  void piece(const DenseStep& step, const Ball& begin, const Ball& end, int halvings);
+  void piece(const DenseStep& step, const Ball& begin, const Ball& end, int halvings);  // so many so far
   void keep(const Bound& b);
   Ball newton_scale() const;
 
   const Scenario& s_;
-  std::size_t times_, reached_ = 0, pieces_ = 0;
+  std::size_t times_, reached_ = 0, pieces_ = 0, pieces_of_step_ = 0;
   slong bits_;
   Ball begin_, end_, quiet_;
   Tape tape_;

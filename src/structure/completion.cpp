@@ -192,6 +192,12 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
         unknowns.push_back(s.symbol(j, static_cast<unsigned>(k)));
         if (j < s.coordinates && k < t.d[j]) metric |= 1U << k;
       }
+    // Where every value of the state is held, the leading derivatives have been found already.
+    const bool may_move = std::any_of(unknowns.begin(), unknowns.end(), [&](Expr u) {
+      const auto j = s.variable(u.id);
+      return static_cast<int>(node(u).order) < t.d[*j] && *state_.origin(node(u)) != Origin::given;
+    });
+    if (!may_move && p_.overrides.empty()) continue;
     for (Expr u : unknowns)  // values that followed may follow anew
       if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j]) *state_.origin(node(u)) = Origin::derived;
     clash_is_told_ = false;

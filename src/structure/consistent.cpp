@@ -159,7 +159,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
     if (*state_.origin(stage.unknown(j)) != Origin::given) free.push_back(j);
   }
   std::size_t worst = 0;
-  if (!find_by_least_change(stage, state_, free)) return no_value(stage);
+  if (!find_by_least_change(stage, state_, free, p_.near)) return no_value(stage);
   mark_derived(stage, before, free);
   N miss = stage.worst(&worst);
   if (!(miss > stage_rounding<N>())) return {};

@@ -46,6 +46,7 @@ struct InitialProblem {
   const std::vector<Column>* mass = nullptr;  // the mass matrix, where the caller solves for many states
   const StartPlan* plan = nullptr;
   bool alone = false;  // nobody else has the plan: a message may make expressions
+  const InitialState<double>* near = nullptr;  // a solution of the same or of a similar problem: searches begin there, and measure changes as ever
 };
 
 // Positions and velocities, from the constraints of orders 0 and 1 and the conditions on them.

@@ -6,6 +6,8 @@ namespace anholon {
 
 namespace {
 constexpr int kMostIterations = 60;
+// So many searches along a step may find nothing better, one after the other: the iteration leads nowhere from there.
+constexpr int kMostInVain = 3;
 }  // namespace
 
 static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equations, const Column& unknowns,
@@ -131,6 +133,7 @@ class Iteration {
 
   // Towards the solution nearest to the guess, or, `nearest` being false, to any: every step is then the least one.
   bool run(bool nearest) {
+    in_vain_ = 0;
     const N rounding = stage_rounding<N>();
     if (!s_.evaluate(state_)) return false;
     N last_step(-1);
@@ -153,6 +156,7 @@ class Iteration {
       std::vector<N> step;
       if (!least_step(a, rows.independent, nearest, step)) return true;
       if (!search(step)) return false;
+      if (in_vain_ > kMostInVain) return true;
       N moved(0), size(0);
       for (std::size_t j = 0; j < free_.size(); ++j) {
         if (N v = abs(step[j]); v > moved) moved = v;
@@ -201,7 +205,9 @@ class Iteration {
       if (halvings > 0) fraction = fraction * N(0.5);
       for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = old[j] + fraction * step[j];
       if (!s_.evaluate(state_)) continue;
-      better = s_.worst(scale) <= now * N(0.9) + stage_rounding<N>() * N(4) || halvings == 11;
+      const bool less = s_.worst(scale) <= now * N(0.9) + stage_rounding<N>() * N(4);
+      in_vain_ = less ? 0 : in_vain_ + (halvings == 11);
+      better = less || halvings == 11;
     }
     for (std::size_t j = 0; j < x_.size(); ++j) step[j] = *x_[j] - old[j];
     return better || s_.evaluate(state_);
@@ -212,6 +218,7 @@ class Iteration {
   const std::vector<std::size_t>& free_;
   std::vector<N*> x_;
   std::vector<N> guess_;
+  int in_vain_ = 0;  // searches one after the other that have found nothing better along their step
 };
 
 // The k-th point around the guess, farther and farther away.
@@ -229,9 +236,16 @@ std::vector<N> around(const std::vector<N>& guess, int k) {
 }  // namespace
 
 template <Number N>
-bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free) {
+bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free, const InitialState<double>* near) {
   constexpr int kStarts = 12;
   Iteration<N> newton(s, state, free);
+  if (near && !free.empty()) {
+    std::vector<N> there = newton.guess();
+    for (std::size_t j = 0; j < free.size(); ++j)
+      if (const double* x = near->value(s.unknown(free[j]))) there[j] = N(*x);
+    if (newton.go_to(there) && newton.run(true) && newton.solved()) return true;
+    newton.go_to(newton.guess());
+  }
   const bool value = newton.run(true);
   if ((value && newton.solved()) || free.empty()) return value;
   const InitialState<N> first = state;
@@ -252,9 +266,9 @@ template class Stage<double>;
 template class Stage<long double>;
 template class Stage<Quad>;
 template class Stage<Multi>;
-template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&);
-template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&, const std::vector<std::size_t>&);
-template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&);
-template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&);
+template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&, const InitialState<double>*);
+template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&, const std::vector<std::size_t>&, const InitialState<double>*);
+template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&, const InitialState<double>*);
+template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&, const InitialState<double>*);
 
 }  // namespace anholon

@@ -91,7 +91,8 @@ N stage_rounding() {
 // min |x - x0| over the free unknowns subject to the equations, x0 being the values that the state has, by Newton's method with
 // a line search. Where that does not arrive, a solution is looked for from x0 and from points around it, and the nearest is
 // taken; where there is none, it ends at the least miss reachable, and the caller looks at what is left. False: no value there.
+// `near`: where the first search begins, if not at x0.
 template <Number N>
-bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free);
+bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free, const InitialState<double>* near = nullptr);
 
 }  // namespace anholon

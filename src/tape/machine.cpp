@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "base/assert.h"
 #include "numeric/ball.h"
@@ -78,6 +79,24 @@ template <Scalar N>
 N unknown() {
   if constexpr (std::same_as<N, Ball>) return Ball::unknown();
   else return N(0);
+}
+
+// What may be taken where a ball does not say which.
+template <Scalar N>
+N either(const N& a, const N& b) {
+  if constexpr (std::same_as<N, Ball>) return hull(a, b);
+  else return a;
+}
+
+// All values of a step function that a ball may meet.
+template <Scalar N>
+N any_value(const std::vector<N>& knots, const std::vector<N>& values, const N& x) {
+  std::optional<N> all;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const bool beyond = k > 0 && branch(N(x - knots[k - 1])) < 0, before = k < knots.size() && branch(N(x - knots[k])) > 0;
+    if (!beyond && !before) all = all ? either(*all, values[k]) : values[k];
+  }
+  return all ? *all : unknown<N>();
 }
 
 }  // namespace
@@ -223,7 +242,7 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
     case Op::select: {
       const int side = branch(series(in.first)[0]);
       const std::uint32_t from = side > 0 ? in.a : in.b;
-      if (side == 0) w[p] = unknown<N>();
+      if (side == 0) w[p] = p == 0 ? either(series(in.a)[0], series(in.b)[0]) : unknown<N>();
       else w[p] = p > 0 && tape_->code[from].constant ? N(0) : series(from)[p];
       return;
     }
@@ -233,7 +252,7 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
         return;
       }
       const auto [k, sure] = below(steps_[in.index].knots, series(in.a)[0]);
-      w[0] = sure ? steps_[in.index].values[k] : unknown<N>();
+      w[0] = sure ? steps_[in.index].values[k] : any_value(steps_[in.index].knots, steps_[in.index].values, series(in.a)[0]);
       return;
     }
     case Op::rate: {

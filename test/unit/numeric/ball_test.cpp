@@ -158,5 +158,15 @@ TEST(Ball, HasAMaximumOnlyOfWhatIsKnown) {
   EXPECT_FALSE(max(Ball(1), Ball::unknown()).is_finite() || max(Ball::unknown(), Ball(1)).is_finite());
 }
 
+TEST(Ball, HasAHullAndALowerEnd) {
+  const Ball h = hull(Ball(Rational(1), Rational(1, 2)), Ball(Rational(-3), Rational(1, 4)));
+  EXPECT_TRUE(h.contains(Rational(3, 2)) && h.contains(Rational(-13, 4)) && !h.contains(Rational(2)) && !h.contains(Rational(-4)));
+  EXPECT_FALSE(hull(Ball(1), Ball::unknown()).is_finite() || lower_end(Ball::unknown()).is_finite());
+  // The largest of 1 and a wide ball is written as one that reaches below 1: its lower end stays beside it.
+  const Ball end = lower_end(Ball(Rational(5), Rational(4)));
+  EXPECT_TRUE(end.is_positive() && Ball(Rational(1), Rational(1, 1000)).contains_inside(end));
+  EXPECT_EQ(end.radius(), Rational(0));
+}
+
 }  // namespace
 }  // namespace anholon
