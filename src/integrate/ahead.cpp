@@ -105,11 +105,6 @@ typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
 }
 
 template <Number N>
-std::optional<Mode<N>> Stepper<N>::mode_ahead(const W& h) {
-  return mode_of(ahead(h));
-}
-
-template <Number N>
 std::optional<Mode<N>> Stepper<N>::mode_at(const W& t, const std::vector<W>& state) {
   return mode_of(prepared(t, state, {}));
 }
@@ -182,7 +177,6 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   template std::optional<N> Stepper<N>::quadrature_there(std::size_t);                                 \
   template bool Stepper<N>::near_in_branch(const W&);                                                  \
   template Wider<N> Stepper<N>::on_the_branch(W);                                                      \
-  template std::optional<Mode<N>> Stepper<N>::mode_ahead(const W&);                                    \
   template std::optional<Mode<N>> Stepper<N>::mode_at(const W&, const std::vector<W>&);                \
   template std::optional<Mode<N>> Stepper<N>::mode_of(Expansion<N>*);                                  \
   template std::optional<Wider<N>> Stepper<N>::singular_within(const W&);

@@ -229,7 +229,6 @@ class Stepper {
   Expansion<N>* prepared(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
   Expansion<N>& loaded_ahead(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
   std::optional<N> quadrature_ahead(std::size_t i, const N& h);
-  std::optional<Mode<N>> mode_ahead(const W& h);
   std::optional<Mode<N>> mode_at(const W& t, const std::vector<W>& state);
   static std::optional<Mode<N>> mode_of(Expansion<N>* there);
   std::optional<W> singular_within(const W& h);
