@@ -297,6 +297,7 @@ void Kernel::set_parameters(int lane, const std::vector<long double>& parameters
 
 bool Kernel::expand(const Code* code, bool projected) {
   started_ = false;
+  shows_last_ = true;
   const bool moved = solve(code, projected);
   extend(code);
   return moved;

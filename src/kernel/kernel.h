@@ -133,7 +133,7 @@ class Kernel {
   double defect(int lane) const { return number(found().defect, lane); }
   // Whoever reads series of the last expansion after `start_next` says so first.
   void show_last() const {
-    if (started_ && !shows_last_) swap_low_orders();
+    if (!shows_last_) swap_low_orders();
   }
   void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
   void advance();
@@ -198,7 +198,7 @@ class Kernel {
   std::vector<LowOrders> low_orders_;
   mutable std::vector<double> aside_;  // those of the last expansion, or of the next one
   bool started_ = false, moved_ = false;  // the next expansion; and moved a state by that
-  mutable bool shows_last_ = false;
+  mutable bool shows_last_ = true;
 };
 
 }  // namespace anholon

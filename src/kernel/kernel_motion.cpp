@@ -34,6 +34,7 @@ void Kernel::begin() {
   } else {
     start(code);
   }
+  shows_last_ = true;
   started_ = gone_on_ = false;
   next_ = std::exchange(before_, std::exchange(begun_, next_));
   base_ = begun_;
