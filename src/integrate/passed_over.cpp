@@ -17,6 +17,8 @@ constexpr double kMoves = 0.5;
 constexpr double kDiffers = 1e-3;
 // A divisor this small, in relation to what it is at the start, makes a wall or a pole.
 constexpr double kNearZero = 1e-3;
+// Values below so many round-offs of what they are made of are zero; the stretch where they are is looked at in so many points.
+constexpr int kNoise = 64, kAcross = 16;
 
 template <Number N>
 N value_of(const Hiding& f, const N& u) {
@@ -78,6 +80,15 @@ void add_hidden(const Hiding& function, const N* argument, const N* value, int d
         ((u(middle) < N(0)) == (last < N(0)) ? low : high) = middle;
       }
       ask_around(high, end_of(i - 1), end_of(i));
+      if (quotient) {
+        // A high power is round-off far around its zero: somewhere there the divisor vanishes.
+        const N noise = unit_roundoff<N>() * N(kNoise) * (moves + abs(argument[0]));
+        N from = high, to = high;
+        for (int k = 1; k <= kAcross && abs(u(from)) <= noise; ++k) from = high - h * N(k) / N(2 * kAcross);
+        for (int k = 1; k <= kAcross && abs(u(to)) <= noise; ++k) to = high + h * N(k) / N(2 * kAcross);
+        for (int k = 1; k < kAcross; ++k)
+          if (const N x = from + (to - from) * N(k) / N(kAcross); abs(x) < length && (x > N(0)) == (h > N(0))) points.push_back(x);
+      }
     }
     if (const bool up = rise > N(0); (now > N(0)) != up) {
       // It turns within this part or the one before.

@@ -87,6 +87,8 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
       if (abs(y_[j]) > step) step = abs(y_[j]);
       if (N v = abs(x) * factorial_[static_cast<std::size_t>(p.d[j])]; v > size) size = v;
     }
+    // What is left is below the range of the numbers that solve for it: a function that all but vanishes, the only force.
+    if (!(step > N(0))) return {};
     sweep(0);
     // The terms of a guess may be larger than those of the solution.
     if (stalls || (holds && (k > 0 || !(step > eps * N(kQuietRoundoffs) * size)))) return {};
