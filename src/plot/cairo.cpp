@@ -94,15 +94,19 @@ void word(cairo_t* c, const Word& w) {
 }  // namespace
 
 std::string draw_cairo(const Figure& figure, CairoFormat format, const std::string& path) {
-  // cairo does not tell why.
+  // cairo tells neither why a file cannot be written nor that its last bytes were not: it draws into memory.
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return std::strerror(errno);
-  std::fclose(file);
+  std::string bytes;
+  const auto keep = [](void* to, const unsigned char* data, unsigned length) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), length);
+    return CAIRO_STATUS_SUCCESS;
+  };
   const Drawing d = lay_out(figure);
   constexpr double kPixelsPerPoint = 200.0 / 72;
   cairo_surface_t* surface = nullptr;
   if (format == CairoFormat::pdf) {
-    surface = cairo_pdf_surface_create(path.c_str(), d.width, d.height);
+    surface = cairo_pdf_surface_create_for_stream(keep, &bytes, d.width, d.height);
     if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
       if (!figure.title.empty()) cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, figure.title.c_str());
       // The same figure makes the same bytes.
@@ -123,11 +127,14 @@ std::string draw_cairo(const Figure& figure, CairoFormat format, const std::stri
   for (const Word& w : d.words) word(c, w);
   cairo_status_t status = cairo_status(c);
   cairo_destroy(c);
-  if (status == CAIRO_STATUS_SUCCESS && format == CairoFormat::png) status = cairo_surface_write_to_png(surface, path.c_str());
+  if (status == CAIRO_STATUS_SUCCESS && format == CairoFormat::png) status = cairo_surface_write_to_png_stream(surface, keep, &bytes);
   cairo_surface_finish(surface);
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
   cairo_surface_destroy(surface);
-  return status == CAIRO_STATUS_SUCCESS ? std::string() : std::string(cairo_status_to_string(status));
+  std::string why = status == CAIRO_STATUS_SUCCESS ? "" : cairo_status_to_string(status);
+  if (why.empty() && (std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() || std::fflush(file) != 0)) why = std::strerror(errno);
+  if (std::fclose(file) != 0 && why.empty()) why = std::strerror(errno);
+  return why;
 }
 
 #endif

@@ -107,6 +107,12 @@ T checked(T result) {
   return result;
 }
 
+// Why an object could not be closed, since `done` began: the last of what was written to it goes to the disk then.
+std::string& lost() {
+  static thread_local std::string why;
+  return why;
+}
+
 // An object of HDF5, closed with whoever holds it.
 class Handle {
  public:
@@ -114,7 +120,7 @@ class Handle {
   Handle(Handle&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
   Handle& operator=(Handle&&) = delete;
   ~Handle() {
-    if (id_ >= 0) close_(id_);
+    if (id_ >= 0 && close_(id_) < 0 && lost().empty()) lost() = cause();
   }
   operator hid_t() const { return id_; }
   // Closing a file is where its last bytes are written.
@@ -267,9 +273,10 @@ void extend_steps(hid_t file, const std::vector<double>& steps) {
 template <class F>
 std::string done(F f) {
   quietly();
+  lost().clear();
   try {
     f();
-    return {};
+    return lost();
   } catch (const Trouble& t) {
     return t.message;
   }
