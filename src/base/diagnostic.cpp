@@ -107,14 +107,14 @@ void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) 
   std::vector<bool> left_out(list_.size(), false);
   for (auto& [message, places] : alike) {
     std::stable_sort(places.begin(), places.end(), [&](std::size_t a, std::size_t b) { return before(list_[a].span, list_[b].span); });
-    std::size_t others = 0;
+    std::size_t elsewhere = 0;
     for (std::size_t k = 1; k < places.size(); ++k) {
       left_out[places[k]] = true;
-      others += before(list_[places[k - 1]].span, list_[places[k]].span) ? 1 : 0;
+      elsewhere += before(list_[places[k - 1]].span, list_[places[k]].span) ? 1 : 0;
     }
-    if (others == 0) continue;
+    if (elsewhere == 0) continue;
     std::string& hint = list_[places[0]].hint;
-    hint += (hint.empty() ? "" : "; ") + std::string("it stands in ") + std::to_string(others) + (others == 1 ? " other place, too" : " other places, too");
+    hint += (hint.empty() ? "" : "; ") + std::string("it stands in ") + std::to_string(elsewhere) + (elsewhere == 1 ? " other place, too" : " other places, too");
   }
   std::vector<Diagnostic> kept;
   for (std::size_t k = 0; k < list_.size(); ++k)

@@ -13,7 +13,7 @@ namespace {
 
 const std::string kTexts[] = {
     "", "plain", "θ̇ = 3 mm² 中 😀", "a\x1b[31mred\x1b[0m", "bell\a back\b tab\t nul" + std::string(1, '\0') + "end", "two\nlines\r\n", "\x7f\xc2\x85\xc2\x9b",
-    "\u202eleft\u2066\u200b\ufeff\u2028\u061c", "\xff\xfe\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80\xe2\x80", "</script><b a='1' b=\"2\">&amp;]]>", "*/ /* // \\ \"\"\" ''' ??/", "\\input{x} $_^~%#&{}",
+    "\u202eleft\u2066\u200b\ufeff\u2028\u061c", "\xff\xfe\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80\xe2\x80", "</script><b a='1' b=\"2\">&amp;]]>", "*/ /* // \\ \"\"\" ''' ?\?/", "\\input{x} $_^~%#&{}",
     "a,b\"c", "\U000E0041\U0001FFFE", "Persian \u0645\u06cc\u200c\u062e\u0648\u0627\u0647\u0645"};
 
 bool steers(const std::string& text, const std::string& but = "") {
@@ -51,7 +51,9 @@ TEST(Escape, LetsNothingThroughThatSteers) {
 TEST(Escape, JsonLosesNothing) {
   for (const std::string& t : kTexts) {
     const std::string back = nlohmann::json::parse('"' + json_escape(t) + '"').get<std::string>();
-    if (t.find('\xff') == std::string::npos) EXPECT_EQ(back, t);
+    if (t.find('\xff') == std::string::npos) {
+      EXPECT_EQ(back, t);
+    }
   }
   EXPECT_EQ(json_escape("\u202e\U000E0041\x1b"), "\\u202e\\udb40\\udc41\\u001b");
   EXPECT_EQ(toml_escape("\U000E0041\x1b"), "\\U000e0041\\u001b");
@@ -63,11 +65,17 @@ TEST(Escape, FormatsKeepTheirOwnSigns) {
     EXPECT_EQ(comment_line(t).find("*/"), std::string::npos);
     EXPECT_EQ(comment_line(t).find('\n'), std::string::npos);
     const std::string code = code_string(t);
-    for (std::size_t i = 0; i < code.size(); ++i)
-      if (code[i] == '\\') ++i;
-      else EXPECT_NE(code[i], '"') << t;
+    for (std::size_t i = 0; i < code.size(); ++i) {
+      if (code[i] == '\\') {
+        ++i;
+      } else {
+        EXPECT_NE(code[i], '"') << t;
+      }
+    }
     const std::string cell = csv_cell(t);
-    if (cell.find(',') != std::string::npos) EXPECT_EQ(cell[0], '"');
+    if (cell.find(',') != std::string::npos) {
+      EXPECT_EQ(cell[0], '"');
+    }
     EXPECT_EQ(hdf5_text(t).find('\0'), std::string::npos);
   }
   EXPECT_EQ(latex_escape("\\input{a_b} 5%"), "\\textbackslash{}input\\{a\\_b\\} 5\\%");

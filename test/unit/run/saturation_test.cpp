@@ -161,7 +161,7 @@ TEST_P(Saturation, IsNotSteppedOverBySweeps) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Saturation, testing::ValuesIn(kCases), [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Of, Saturation, testing::ValuesIn(kCases), [](const auto& of) { return std::string(of.param.name); });
 
 TEST(Saturation, InClosedForm) {
   // v/tanh(v/w) integrated over v: v^2/2 + w^2 pi^2/12.
