@@ -8,6 +8,9 @@
 
 namespace anholon {
 
+// So many round-offs of what it was at the start a singular value of J may fall to: below, fewer than six digits are left of a solution.
+static constexpr double kNoDigits = 1e6;
+
 template <Number N>
 Outcome Stepper<N>::expand(const std::vector<W>& guess) {
   if (!alone_) record_.careful = true;  // those beside it in the kernel are left in peace
@@ -149,6 +152,12 @@ Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
   if (Outcome o = expansion_.prepare(); !o.ok()) return o;
   sigma_ = expansion_.smallest_singular_value();
   note_sigma(sigma_);
+  // Steps shrink towards where constraints lose their hold, and would come out on the other side, with one motion of several. Where coordinates are
+  // singular (Euler's angles) there is one.
+  const std::vector<N>& v = expansion_.weakest_direction();
+  const auto larger = [](const N& a, const N& b) { return abs(a) < abs(b); };
+  const bool of_constraints = std::max_element(v.begin(), v.end(), larger) - v.begin() >= static_cast<std::ptrdiff_t>(program_->system->coordinates);
+  if (of_constraints && sigma_ < record_.first_sigma * unit_roundoff<N>() * N(kNoDigits)) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
   point_.load(t_, state_, guess);
   if constexpr (std::same_as<N, W>) {
     if (Outcome o = expansion_.project(); !o.ok()) return o;

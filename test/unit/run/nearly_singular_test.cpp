@@ -141,7 +141,7 @@ constraint = [{name = "window[k]", equation = "B[k-1] + cos(c[k])*ex + sin(c[k])
 "c[k]" = 0
 "a[0]'" = 1
 )toml";
-  for (const Precision numbers : {Precision::real, Precision::long_real}) {
+  for (const Precision numbers : {Precision::real, Precision::long_real, Precision::quad}) {
     const Result r = run(windows, 10, numbers);
     EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular);
     const std::string& said = r.report.outcome.message;
