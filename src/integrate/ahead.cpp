@@ -139,7 +139,7 @@ static bool reversed(const Mode<N>& from, const Expansion<N>& there) {
 template <Number N>
 std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
-  constexpr int kBisections = 60;
+  constexpr int kBisections = 60, kRoundoffs = 4096;
   // A singular value that vanishes within the step has fallen by more than half in one as long; what it was is not known after steps by the kernel.
   const bool suspected = by_kernel_ || suspected_ || record_.last_step == W(0) || sigma_ < record_.sigma_before * N(kFaster) || abs(h) > record_.last_step * W(kLonger);
   if (!suspected) return std::nullopt;
@@ -164,7 +164,9 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
     if (crossed(low, *m, n) || reversed(low, *there)) to = middle;
     else from = middle, low = std::move(*m);
   }
-  return low.sigma < start * N(kVanished) ? std::optional<W>(from) : std::nullopt;
+  // A step that begins beside the singular point finds a value there that is round-off, however small it was.
+  const N roundoff = unit_roundoff<N>() * N(kRoundoffs);
+  return low.sigma < start * N(kVanished) || low.sigma < roundoff ? std::optional<W>(from) : std::nullopt;
 }
 
 #define INSTANTIATE(N)                                                                                 \

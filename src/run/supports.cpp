@@ -58,7 +58,7 @@ class Rates {
     first_ = es.size();
     for (std::size_t r : constraints_) es.push_back(s_.mechanics->phi[r]);
     add(s_.model->bodies[0].gravity);
-    return es;
+    return put_masses(*s_.model, es);
   }
   double rate(std::size_t root) const { return machine_.series(tape_.roots[root])[1]; }
   Direction direction(std::size_t root) const { return {rate(root), rate(root + 1), rate(root + 2)}; }

@@ -18,7 +18,7 @@ std::vector<LanguageSection> language_of_bodies() {
         {"axes", any, "expert form instead of inertia: a list of `{weight, vector}`"},
         {"expelled_velocity", vector, "of the matter that leaves or joins, relative to the material point at `exit_point`"},
         {"exit_point", vector, "where it does; an array is along the body axes from the centre; the centre without it"},
-        {"shape", text, "a homogeneous solid: `disc(R)`, `ring(R)`, `cylinder(R, h)`, `torus(R, r)` (a full tube of radius r around the circle of radius R) about z, `rod(l)` along x, `ball(R)`, `shell(R)`, `box(a, b, c)`, `ellipsoid(a, b, c)` of these half axes; beside `inertia` it is only the picture"}},
+        {"shape", text, "a homogeneous solid: `disc(R)`, `ring(R)`, `cylinder(R, h)`, `torus(R, r)` about z, the full tube of radius r around the circle of radius R, `rod(l)` along x, `ball(R)`, `shell(R)`, `box(a, b, c)`, `ellipsoid(a, b, c)` of these half axes; beside `inertia` it is only the picture"}},
        R"md(```toml
 [[body]]
 name = "wheel"

@@ -191,7 +191,7 @@ TEST(DigitsToTrust, AMotionThatEndsWithoutAValueHasNone) {
   SimulationOptions o;
   o.to = 5;
   Result r;
-  run(kPoint + "[[force]]\non = \"P\"\nvector = \"-sqrt(x)*ex\"\n[initial]\nx = 1\n\"x'\" = 0\n", o, r);
+  run(kPoint + "[[force]]\non = \"P\"\nvector = \"-ex\"\n[[event]]\nname = \"half\"\nwhen = \"x - 1/2\"\nset = {\"x'\" = \"sqrt(-x)\"}\n[initial]\nx = 1\n\"x'\" = 0\n", o, r);
   ASSERT_EQ(r.report.outcome.kind, OutcomeKind::not_a_number);
   EXPECT_FALSE(r.report.error);
   EXPECT_NE(r.report.no_error, "");

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "run/simulate.h"
 #include "support/models.h"
@@ -136,6 +137,15 @@ TEST(Events, EnergyIsBalancedOverThem) {
   EXPECT_LT(r.report.power, 1e-12);
 }
 
+// A saved run without the count of rows that were given so far, which the end of the first part adds to.
+std::string of_the_motion(const std::string& saved) {
+  std::istringstream lines(saved);
+  std::string kept;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with("given =") && !line.starts_with("hash =")) kept += line + '\n';
+  return kept;
+}
+
 TEST(Events, RunsGoOnAcrossThemWithTheSameBits) {
   const std::string text = mass_on_a_line("-10 - x'/5", "initial = {x = 2}\nmode.n = 0\nstate.z = {rate = \"x - n*z\", initial = 0}\n"
                                           "event = [{name = \"b\", when = \"x\", direction = \"down\", set = {\"x'\" = \"-0.9*x'\", n = \"n + 1\"}}, {name = \"top\", when = \"x'\", direction = \"down\"}]\n");
@@ -152,7 +162,7 @@ TEST(Events, RunsGoOnAcrossThemWithTheSameBits) {
       o.resume = &from;
     });
     EXPECT_EQ(second.rows.rows().back(), whole.rows.rows().back()) << half;
-    EXPECT_EQ(saved, end) << half;
+    EXPECT_EQ(of_the_motion(saved), of_the_motion(end)) << half;
   }
 }
 

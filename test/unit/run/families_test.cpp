@@ -47,7 +47,7 @@ TEST(Families, TrailersAreTheCarWithThreeTrailers) {
   const std::map<std::string, Rational> start = {{"ph", {1, 10}}, {"th1", {1, 10}}, {"th2", {-1, 10}}, {"th3", {1, 5}}};
   std::map<std::string, double> by_hand;
   for (const auto& [name, value] : motion_of(test::shipped("zoo/car-three-trailers")))
-    by_hand[name == "front_axle" ? "front_wheel" : name == "rear_axle" ? "axle0" : name] = value;
+    by_hand[name == "lambda.front_axle" ? "lambda.front_wheel" : name == "lambda.rear_axle" ? "lambda.axle0" : name] = value;
   EXPECT_LE(difference(by_hand, motion_of(test::model_of(test::shipped_text("zoo/trailers"), parameters), start)), kRounded);
   Overrides wrong = parameters;
   wrong["M[2]"] = "3.01";
