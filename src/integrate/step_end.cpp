@@ -17,11 +17,14 @@ constexpr int kPastKink = 32;
 // Kinks met so soon after another one are other kinks, until they are too many.
 constexpr int kMostShortKinks = 20;
 
+// A step of so many round-offs of the time is none.
+constexpr int kLeastRoundoffs = 64;
+
 // Of the lengths that a step is shortened to, the largest surely below h: halves of what it would be without an end, so that steps do not depend on where
 // a run is to stop.
 template <Number W>
 W shorter(W whole, const W& h) {
-  constexpr double kSurely = 0.75;  // h has been rounded with the time
+  constexpr double kSurely = 1 - 0x1p-20;  // h has been rounded with the time
   while (!(whole < abs(h) * W(kSurely))) whole = whole * W(0.5);
   return h > W(0) ? whole : W(-whole);
 }
@@ -110,14 +113,19 @@ bool Stepper<N>::ends_as_foretold(W& h, const W& whole) {
     h = shorter(whole, W(h * W(kShort)));
   Kink<N> kink;
   W where, past;
-  for (;; h = shorter(whole, h)) {
+  // Where no length serves that the time can show, as a formula loses its value ahead, the step is made: that is what ends the motion, and has a name.
+  const W first = h, least = convert<W>(unit_roundoff<N>()) * W(kLeastRoundoffs) * abs(t_);
+  for (bool refused = false;; h = shorter(whole, h)) {
+    if (refused && !(abs(h) > least)) h = first;
+    else refused = false;
     if (!by_kernel_ || may_touch_zero_) kink = first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
     past = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t_) > abs(h) ? W(abs(t_)) : W(abs(h))) + W(std::exp(settings_.log_tolerance)) * abs(h);
     // Beyond a kink other functions hold.
     looked_ = kink.ahead ? W(where - (forward ? past : W(-past))) : where;
     if (!(abs(where) > past)) looked_ = W(0);
-    if (by_kernel_ || looked_ == W(0) || may_end_at(looked_)) break;
+    if (refused || by_kernel_ || looked_ == W(0) || may_end_at(looked_)) break;
+    refused = true;
   }
   at_kink_ = kink.at_start || kink.ahead;
   if (!at_kink_) {
@@ -158,10 +166,20 @@ EndOfStep Stepper<N>::looks_at_end(const W& end) {
     case EndCheck<N>::Next::look: send_kernel(check_.where() == length ? looked_ : convert<W>(check_.where())); return EndOfStep::elsewhere;
     case EndCheck<N>::Next::shorten: break;
   }
-  limit_ = abs(shorter(convert<W>(horizon_), looked_));
+  const W limit = abs(shorter(convert<W>(horizon_), looked_));
+  if (!(limit > convert<W>(unit_roundoff<N>()) * W(kLeastRoundoffs) * abs(t_))) {
+    looked_ = W(0);
+    send_kernel(h);
+    return EndOfStep::elsewhere;
+  }
+  limit_ = limit;
   singular_ahead_ = false;
   kinks_ = kinks_before_;
-  return aims(end) ? EndOfStep::elsewhere : EndOfStep::failed;
+  kernel_->show_advanced(false);
+  const bool good = aims(end);
+  if (!good) settle();
+  kernel_->show_advanced(true);
+  return good ? EndOfStep::elsewhere : EndOfStep::failed;
 }
 
 #define INSTANTIATE(N)                                            \

@@ -122,7 +122,7 @@ class Kernel {
   void place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading);
   void set_time(int lane, double t) {
     double& now = number(plan_->plan().time, lane);
-    if (now != t) started_ = false;
+    if (now != t) drop_next();
     now = t;
     number(plan_->plan().time + 1, lane) = 1;
   }
@@ -131,6 +131,11 @@ class Kernel {
   // (`defect`). Until `begin` goes on from there, or another `advance` takes it back, series are those of the last expansion; on request, see below.
   void start_next();
   double defect(int lane) const { return number(found().defect, lane); }
+  // Whether motions are seen as they are after `advance`, or where the last expansion was made, as before: by who is to choose another end.
+  void show_advanced(bool advanced) {
+    show_last();
+    gone_on_ = advanced;
+  }
   // Whoever reads series of the last expansion after `start_next` says so first.
   void show_last() const {
     if (!shows_last_) swap_low_orders();
@@ -171,6 +176,10 @@ class Kernel {
   void set_all(std::uint32_t slot, double x);
   bool expand(const Code* code, bool projected);
   bool solve(const Code* code, bool projected);
+  void drop_next() {
+    show_last();
+    started_ = false;
+  }
   void extend(const Code* code);
   void start(const Code* code);
   void swap_low_orders() const;

@@ -23,7 +23,7 @@ void Kernel::place(int lane, const std::vector<long double>& state, const std::v
   }
   for (std::uint32_t j = 0; j < m; ++j) put(next_ + 2 * n + j, leading.empty() ? 0 : static_cast<double>(leading[j]));
   // What was read and is put back has not moved.
-  if (!same) started_ = false;
+  if (!same) drop_next();
   gone_on_ = true;
 }
 
@@ -76,8 +76,7 @@ void Kernel::swap_low_orders() const {
 }
 
 void Kernel::advance() {
-  show_last();
-  started_ = false;
+  drop_next();
   if (const Code* code = this->code()) {
     code->go_on(arena_, slot(base_), slot(next_));
   } else {

@@ -31,7 +31,8 @@ class EventModel {
     make_bodies();
     make_events();
     end_ = decimal(300, 600);
-    for (Event& e : events_) e.writing = draw(8);
+    // How nearly an arc is missed is below the round-off of a steep formula.
+    for (Event& e : events_) e.writing = e.level_text[0] == '(' ? kPlain : draw(kPlain + 1);
   }
 
   std::size_t bodies() const { return bodies_.size(); }
@@ -46,6 +47,7 @@ class EventModel {
   enum class Law : std::uint8_t { falling, spring, filling };  // x'' = a; x'' = -w^2 (x - c); z' = r, by the mode
   enum class When : std::uint8_t { level, gap, velocity, time, square };
   enum class Set : std::uint8_t { nothing, bounce, collide, mode, kick, move, stop };
+  static constexpr std::size_t kPlain = 7;  // this and those from 3 on are written as they are
   struct Body {
     Law law;
     int w, constant[2], x, v;  // in hundredths
