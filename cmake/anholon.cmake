@@ -98,7 +98,8 @@ endfunction()
 # to a second checkout.
 function(anholon_cli_definitions target)
   target_compile_definitions(${target} PRIVATE
-    ANHOLON_MODELS_DIR="${PROJECT_SOURCE_DIR}/models" ANHOLON_VERSION="${PROJECT_VERSION}")
+    ANHOLON_MODELS_DIR="${PROJECT_SOURCE_DIR}/models" ANHOLON_PAPERS_DIR="${PROJECT_SOURCE_DIR}/papers"
+    ANHOLON_VERSION="${PROJECT_VERSION}")
 endfunction()
 
 # Links every layer below cli that exists.

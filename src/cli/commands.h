@@ -42,7 +42,7 @@ struct Options {
   std::string fps, seconds, picture_at, frame;  // of render
   bool dark = false;
   bool log_axis = false, each = false, together = false, equal = false;
-  bool check_only = false, to_stdout = false, schema = false;
+  bool check_only = false, to_stdout = false, schema = false, markdown = false;
   bool json = false, quiet = false, steps = false, csv = false;
 };
 
@@ -60,6 +60,7 @@ int prove(const Options& o);
 int render(const Options& o);
 int report(const Options& o);
 int compare(const Options& o);
+int papers(const Options& o);
 int verify(const Options& o);
 int reference(const Options& o);
 int format(const Options& o);

@@ -27,7 +27,7 @@ void rescue_model(Options& o) {
     }
 }
 
-constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "sweep", "linearize", "forms", "models", "prove", "compare", "verify", "new", "fmt", "reference", "convert", "plot", "report", "render"};
+constexpr const char* kCommands[] = {"check", "derive", "evaluate", "simulate", "sweep", "linearize", "forms", "models", "prove", "compare", "papers", "verify", "new", "fmt", "reference", "convert", "plot", "report", "render"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {
@@ -80,6 +80,7 @@ int run(int argc, char** argv) {
              "  anholon sweep disc --vary m=1:3:200 -o cases.csv    many motions, on all cores\n"
              "  anholon linearize whipple --vary v=0..10:1          eigenvalues over a range, weave and capsize speeds\n"
              "  anholon prove disc -o proof.json                    a proof that all forms of the equations agree\n"
+             "  anholon papers L3.13                                an equation of the papers, decided\n"
              "Exit status: 0 ok, 1 the motion stopped early (what was computed is kept), 2 bad input, 3 internal fault.");
   Options o;
   o.command_line = command_line(argc, argv);
@@ -179,7 +180,8 @@ int run(int argc, char** argv) {
                                            "MODEL is a model, whose motion is computed, or a run in HDF5. -o FILE.mp4 or FILE.gif is a film, FILE.png one picture,\n"
                                            "FOLDER/ a picture for each moment: frame-0001.png, … Chromium is looked for as chromium, chromium-browser, google-chrome;\n"
                                            "ANHOLON_CHROMIUM names another.\n"
-                                           "Exit status: 0 ok, 1 the motion stopped early (what there is was recorded) or Ctrl-C, 2 bad input, or nothing to record with.\n"
+                                           "  anholon papers L3.13                                an equation of the papers, decided\n"
+             "Exit status: 0 ok, 1 the motion stopped early (what there is was recorded) or Ctrl-C, 2 bad input, or nothing to record with.\n"
                                            "Examples: anholon render disc -o disc.mp4\n"
                                            "          anholon simulate disc --to 10 -o disc.h5 && anholon render disc.h5 -o disc.gif --seconds 4\n"
                                            "          anholon render disc -o disc.png --at 3 --size 1920x1080 --dark\n"
@@ -245,6 +247,18 @@ int run(int argc, char** argv) {
   compare_command->add_option("EQUATIONS", o.equations, "a file of equations, or the name of a shipped one");
   parameters(compare_command);
   compare_command->add_option("--eliminate", o.eliminate, "coordinates for which the constraints are solved (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
+  CLI::App* papers_command = app.add_subcommand("papers", "the papers behind the program: every numbered equation, decided");
+  papers_command->footer("Without a tag: all papers with their equations and verdicts. A tag in any spelling: L3.13, \"[L 3.13]\", 3.18', Q13, N3.16.\n"
+                         "What is true is proved and a mutant of it refuted; what is false is refuted, and its corrected version proved.\n"
+                         "Exit status: 0 all is as the tables say, 1 something is not, 2 bad input.\n"
+                         "Examples: anholon papers L3.13\n"
+                         "          anholon papers --check");
+  papers_command->add_option("TAG", o.model, "one equation");
+  papers_command->add_flag("--check", o.check_only, "decide all, and count");
+  papers_command->add_flag("--json", o.json, "JSON on the standard output");
+  papers_command->add_flag("--markdown", o.markdown, "the tables in Markdown");
+  papers_command->add_flag("--quiet", o.quiet, "no progress");
+  papers_command->callback([&command] { command = cli::papers; });
   CLI::App* verify_command = app.add_subcommand("verify", "check a certificate, independently of what wrote it");
   verify_command->footer("Exit status: 0 all claims confirmed, 1 one is contradicted or could not be checked, 2 not a certificate.\n"
                          "Example: anholon verify disc.json");
@@ -311,7 +325,7 @@ int run(int argc, char** argv) {
     return kBadInput;
   }
   rescue_model(o);
-  const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models") || verify_command->parsed() || new_command->parsed() ||
+  const bool needs_model = !(forms_command->parsed() || app.got_subcommand("models") || papers_command->parsed() || verify_command->parsed() || new_command->parsed() ||
                              format_command->parsed() || reference_command->parsed());
   if (needs_model && o.model.empty()) {
     say_lines(stderr, "error: no model is named\nhint: a path to a .toml file, or a name that `anholon models` lists\n");

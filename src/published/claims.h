@@ -1,0 +1,70 @@
+// The claims of a paper, one for each numbered equation and each displayed formula, and how the machine decides each. They stand in papers/*.toml.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+
+namespace anholon {
+
+// Where what is read in a paper differs from what holds, and why.
+enum class DifferenceBy : std::uint8_t { none, reading, text, undecidable };
+
+// One decision about a claim, on one model.
+struct ClaimCheck {
+  enum class Kind : std::uint8_t {
+    equation,  // an equation is true of the model's motions
+    forms,     // forms of the equations of motion agree with Routh's
+    points,    // the equations have several solutions for the highest derivatives in one state
+  };
+  Kind kind = Kind::equation;
+  Span span;
+  std::string model;               // the name of a shipped model, or a file beside the table
+  bool expected = true;            // `is`
+  std::string says;                // "as read", "restored", "corrected", or empty
+  std::vector<std::string> lets;   // NAME = formula
+  std::string equation, mutant;    // in the language of published equations
+  std::vector<std::string> forms;
+  std::vector<std::vector<std::pair<std::string, std::string>>> points;  // symbol, rational value
+};
+
+struct Claim {
+  std::string tag;       // "3.13"; of an unnumbered formula a short name
+  bool numbered = true;
+  std::string title, kind, formula, hypotheses;
+  std::string difference, corrected;
+  DifferenceBy by = DifferenceBy::none;
+  std::string form, quantity, theory;
+  Span span;
+  std::vector<ClaimCheck> checks;
+
+  // What the table says of the statement itself: its checks are true, or it is false and a corrected one is true.
+  bool holds() const;
+};
+
+struct Paper {
+  std::string key;       // "L": tags are written L3.13
+  std::string title, english, reference;
+  std::vector<std::string> authors;
+  std::vector<Claim> claims;
+  SourceText source;
+};
+
+// "a loss of the machine reading", "an error of the text", "undecidable without the scan".
+const char* in_words(DifferenceBy d);
+
+// All errors are collected in `diagnostics`, which then speak of `source`.
+std::optional<Paper> read_paper(const SourceText& source, Diagnostics& diagnostics);
+
+// A claim that somebody names.
+struct FoundClaim {
+  const Paper* paper;
+  const Claim* claim;
+};
+// All claims that a spelling may mean: L3.13, "[L 3.13]", "Luo-Zhao (3.13)", 3.13, Gamma.
+std::vector<FoundClaim> find_claims(const std::vector<Paper>& papers, const std::string& spelling);
+// The tag that is spelt most like it; empty if none is near.
+std::string nearest_tag(const std::vector<Paper>& papers, const std::string& spelling);
+
+}  // namespace anholon
