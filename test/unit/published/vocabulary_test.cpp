@@ -1,0 +1,174 @@
+// The words of published equations: quantities, derivatives, eliminations, definitions, vectors, and what is said of wrong ones.
+#include <gtest/gtest.h>
+
+#include "published/subject.h"
+
+namespace anholon {
+namespace {
+
+// A rocket on a plane that turns with an unknown angle; a blade; the names C and Q are the model's own.
+const char* const kRocket = R"toml(coordinates = ["x", "y", "th"]
+parameters = {M = 3, J = 2, u = 2, Q = 5}
+[functions]
+m = {}
+w = {}
+[frame]
+blade = "rotz(th)"
+[point]
+C = "x*ex + y*ey"
+[observer]
+spin = "w*ez"
+[[body]]
+name = "sleigh"
+mass = "M"
+inertia = "J"
+center = "C"
+orientation = "blade"
+[[particle]]
+name = "rocket"
+mass = "m"
+position = "C + blade.x"
+expelled_velocity = "-u*blade.x"
+[[constraint]]
+name = "edge"
+equation = "y' = x'*tan(th)"
+)toml";
+// A bounded speed is not solved as a formula.
+const char* const kSpeed = R"toml(coordinates = ["r", "psi"]
+parameters = {c = 2, k = 3}
+[functions]
+m = {}
+[[particle]]
+name = "p"
+mass = "m"
+position = ["r*cos(psi)", "r*sin(psi)", "0"]
+[[force]]
+on = "p"
+vector = "-k*ex"
+[[constraint]]
+name = "speed"
+equation = "r'^2 + r^2*psi'^2 + r^4*psi'^4 = c^2"
+[initial]
+r = 1
+"r'" = 1
+)toml";
+const char* const kQuasi = R"toml(coordinates = ["x", "y", "z"]
+parameters = {m = 2, k = 3}
+particle = [{name = "p", mass = "m", position = "x*ex + y*ey + z*ez"}]
+potential.V = "k*z"
+[[constraint]]
+name = "c"
+equation = "z' = y*x'"
+[quasi]
+u1 = "x'"
+u2 = "y' + x*x'"
+)toml";
+
+OpenModel open(const char* text) {
+  Diagnostics diagnostics;
+  const SourceText source{"model.toml", text};
+  std::optional<OpenModel> m = open_model(source, diagnostics);
+  EXPECT_TRUE(m) << diagnostics.print(source);
+  return *m;
+}
+
+class Words {
+ public:
+  explicit Words(const char* model) : subject_(open(model)) {}
+  // "true", "false" or "unknown" of the last equation of the text.
+  std::string verdict(const std::string& text) {
+    Diagnostics diagnostics;
+    const SourceText source{"words.eq", text + "\n"};
+    const auto list = subject_.read(source, diagnostics);
+    if (diagnostics.has_errors()) return diagnostics.print(source);
+    const Comparison c = subject_.judge(list.back());
+    return c.verdict == Verdict::proved ? "true" : c.verdict == Verdict::refuted ? "false" : "unknown: " + c.detail;
+  }
+  std::string error(const std::string& text) {
+    Diagnostics diagnostics;
+    subject_.read({"words.eq", text + "\n"}, diagnostics);
+    return diagnostics.has_errors() ? diagnostics.list().front().message : "";
+  }
+  std::size_t count(const std::string& text) {
+    Diagnostics diagnostics;
+    return subject_.read({"words.eq", text + "\n"}, diagnostics).size();
+  }
+
+ private:
+  Subject subject_;
+};
+
+TEST(Vocabulary, QuantitiesOfTheDerivation) {
+  Words w(kRocket);
+  for (const char* right : {"e: inertia_term.x = G.x + N.x", "e: derived.Q.x + QR.x + Qomega.x + minus_dVO.x + minus_dVomega.x + Gamma.x = G.x", "e: QR.x = -m'*u*cos(th)",
+                            "e: QR(x) = QR.x", "e: N.th = 0", "e: N.x = lambda*partial(phi.edge, x')", "e: Q = 5", "e: V_O = 0",
+                            "e: Gamma.x = 2*w*(M*y' + m*(y' + th'*cos(th)))", "e: mu.rocket = m", "e: m_rocket = m", "e: C.x = x", "e: lambda.edge = lambda"})
+    EXPECT_EQ(w.verdict(right), "true") << right;
+  for (const char* wrong : {"e: inertia_term.x = G.x - N.x", "e: QR.x = -m*u*cos(th)", "e: N.x = lambda*partial(phi.edge, y')", "e: Gamma.x = 2*w*(M*y' + m*(x' + th'*cos(th)))"})
+    EXPECT_EQ(w.verdict(wrong), "false") << wrong;
+}
+
+TEST(Vocabulary, FrozenAndTotalDerivatives) {
+  Words w(kRocket);
+  for (const char* right : {"e: Dt(partial(T_r, x')) = (M + m)*x'' - m*(th''*sin(th) + th'^2*cos(th))", "e: D(partial(T_r, x'), 1) = Dt(partial(T_r, x')) + m'*(x' - th'*sin(th))",
+                            "e: partial(T_r, x')' = Dt(partial(T_r, x')) + m'*(x' - th'*sin(th))", "e: Dt(m*x') = m*x''", "e: (m*x')' = m*x'' + m'*x'", "e: Dt(T_r, 2) = Dt(Dt(T_r))",
+                            "e: partial(m*x'^2, t) = m'*x'^2", "e: partial(frozen(m*x'^2), t) = 0", "e: partial(T_r, mu.rocket) = norm2(vel(rocket))/2", "e: partial(vel(rocket), th') = partial(rocket, th)"})
+    EXPECT_EQ(w.verdict(right), "true") << right;
+  for (const char* wrong : {"e: Dt(m*x') = m*x'' + m'*x'", "e: (m*x')' = m*x''", "e: partial(T_r, x')' = Dt(partial(T_r, x'))"}) EXPECT_EQ(w.verdict(wrong), "false") << wrong;
+}
+
+TEST(Vocabulary, ConstraintsPutIn) {
+  Words w(kRocket);
+  for (const char* right : {"e: f.y = x'*tan(th)", "e: derived.C.y.x = tan(th)", "e: reduced(y') = f.y", "e: reduced(y'') = D(x'*tan(th), 1)", "e: partial(reduced(T_r), x') = partial(T_r, x') + tan(th)*partial(T_r, y')",
+                            "e: along(G, x) = G.x + tan(th)*G.y", "e: along(inertia_term, th) = along(G, th)", "e: maggi.x = along(inertia_term, x) - along(G, x)", "e: chaplygin.left.th - chaplygin.right.th = 0"})
+    EXPECT_EQ(w.verdict(right), "true") << right;
+  EXPECT_EQ(w.verdict("e: partial(reduced(T_r), x') = partial(T_r, x')"), "false");
+  EXPECT_EQ(w.verdict("e: maggi.left.x = maggi.right.th"), "false");
+}
+
+TEST(Vocabulary, ConstraintsThatAreNotSolved) {
+  Words w(kSpeed);
+  const std::string solved = w.verdict("e: partial(f.r, psi') = -partial(phi, psi')/partial(phi, r')"), other = w.verdict("e: partial(f.psi, r') = -partial(phi, r')/partial(phi, psi')");
+  EXPECT_TRUE((solved == "true") != (other == "true")) << solved << other;
+  const std::string y = solved == "true" ? "r" : "psi", x = solved == "true" ? "psi" : "r";
+  EXPECT_EQ(w.verdict("let S = reduced(T_r)\ne: partial(S, " + x + "') = partial(T_r, " + x + "') + partial(T_r, " + y + "')*partial(f." + y + ", " + x + "')"), "true");
+  EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + "') = partial(T_r, " + x + "') - partial(T_r, " + y + "')*partial(f." + y + ", " + x + "')"), "false");
+  EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + ") = partial(T_r, " + x + ") + partial(T_r, " + y + "')*partial(f." + y + ", " + x + ")"), "true");
+}
+
+TEST(Vocabulary, QuasiVelocities) {
+  Words w(kQuasi);
+  for (const char* right : {"e: g.y = y'", "e: B.y.u1 = -x", "e: B.z.u1 = y", "e: partial(g.y, u2) = 1", "e: u1 = x'", "e: u2 = y' + x*x'", "e: partial(star(T_r), u2) = m*y'",
+                            "e: along(Q, u1) = Q.x*B.x.u1 + Q.y*B.y.u1 + Q.z*B.z.u1", "e: micevic_rusov_quasi.u1 = along(inertia_term, u1) - along(G, u1)"}) {
+    const std::string text = std::string(right).find("micevic") != std::string::npos && !find_formulation("micevic-rusov-quasi") ? "e: misevic_rusov_quasi.u1 = along(inertia_term, u1) - along(G, u1)" : right;
+    EXPECT_EQ(w.verdict(text), "true") << right;
+  }
+  EXPECT_EQ(w.verdict("e: partial(star(T_r), u2) = m*z'"), "false");
+}
+
+TEST(Vocabulary, DefinitionsAndVectors) {
+  Words w(kRocket);
+  EXPECT_EQ(w.verdict("let v = vel(C)\nlet s = dot(v, blade.x)\ne: s = x'*cos(th) + y'*sin(th)"), "true");
+  EXPECT_EQ(w.count("e: vel(C) = x'*ex + y'*ey"), 3U);
+  EXPECT_EQ(w.count("e: vel(C) = 0"), 3U);
+  EXPECT_EQ(w.verdict("e: reaction(sleigh) + reaction(rocket) = lambda/cos(th)*blade.y"), "true");
+}
+
+TEST(Vocabulary, WrongWordsAreErrors) {
+  Words w(kRocket);
+  EXPECT_EQ(w.error("e: QR.z = 0"), "there is no coordinate 'z'");
+  EXPECT_EQ(w.error("e: QR = 0"), "a side of an equation is a number or a vector, this is 'inertial'");
+  EXPECT_EQ(w.error("e: f.x = 0"), "'x' is an independent coordinate here: the constraints are not solved for it");
+  EXPECT_EQ(w.error("e: phi.edg = 0"), "there is no 'phi.edg'; did you mean 'phi.edge'?");
+  EXPECT_EQ(w.error("e: partial(T_r, 2*x) = 0"), "a partial derivative is taken by a derivative of a coordinate, by t, or by another symbol");
+  EXPECT_EQ(w.error("e: maggi.y = 0"), "the form maggi has no equation 'y'");
+  EXPECT_EQ(w.error("e: vel(C) = 1"), "one side is a vector, this one is a number");
+  EXPECT_EQ(w.error("let T_r = x\ne: x = 0"), "the name 'T_r' has a meaning in equations");
+  EXPECT_EQ(w.error("let M = x\ne: x = 0"), "'M' is a name of the model");
+  EXPECT_EQ(w.error("let s = x\nlet s = y\ne: s = 0"), "'s' is already defined in this file");
+  EXPECT_EQ(w.error("e: Dt(x, 99) = 0"), "a whole number between 0 and 20 is expected here");
+  EXPECT_NE(w.error("e: alon(QR, x) = 0").find("did you mean 'along'?"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace anholon
