@@ -55,13 +55,17 @@ std::string print(const Diagnostic& d, const SourceText& main) {
   out += std::string(": ") + word(d.severity) + ": " + shown(d.message) + "\n";
   if (d.span.line > 0) {
     const std::string number = std::to_string(d.span.line);
-    std::string line = shown(source.line(d.span.line));
     std::size_t column = d.span.column > 0 ? d.span.column - 1 : 0;
+    std::string line = source.line(d.span.line);
+    // Of a line without end only what is shown is looked at; a character has four bytes at most.
+    const std::size_t needed = 4 * (column + kShownWidth + 1);
+    if (line.size() > needed) line.resize(needed);
     if (utf8_length(line) > kShownWidth) {
       const std::size_t from = column > kShownWidth / 2 ? column - kShownWidth / 2 : 0;
       line = (from > 0 ? "…" : "") + utf8_substr(line, from, kShownWidth) + "…";
       column = column - from + (from > 0 ? 1 : 0);
     }
+    line = shown(line);
     const std::size_t width = utf8_length(line);
     std::size_t length = std::max<std::size_t>(1, d.span.length);
     if (column < width) length = std::min(length, width - column);

@@ -63,7 +63,7 @@ OpenModel load(const std::string& name) {
 
 const char* word(Verdict v) { return v == Verdict::proved ? "true" : v == Verdict::refuted ? "false" : "unknown"; }
 
-std::string verdict(const Claim& c) { return c.holds() ? "true" : c.corrected.empty() ? "false" : "false, corrected"; }
+std::string verdict(const Claim& c) { return c.holds() ? "true" : "false, corrected"; }
 
 std::string tag_of(const Paper& p, const Claim& c) { return p.key + (c.numbered ? "" : " ") + c.tag; }
 

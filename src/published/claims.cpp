@@ -173,10 +173,6 @@ std::string letters_only(std::string s) {
 
 }  // namespace
 
-bool Claim::holds() const {
-  return std::all_of(checks.begin(), checks.end(), [](const ClaimCheck& c) { return c.says == "as read" || c.says == "corrected" || c.expected; });
-}
-
 const char* in_words(DifferenceBy d) {
   switch (d) {
     case DifferenceBy::reading: return "a loss of the machine reading";

@@ -16,7 +16,7 @@ struct ClaimCheck {
   enum class Kind : std::uint8_t {
     equation,  // an equation is true of the model's motions
     forms,     // forms of the equations of motion agree with Routh's
-    points,    // the equations have several solutions for the highest derivatives in one state
+    points,    // the equations have several solutions at the same positions and velocities
   };
   Kind kind = Kind::equation;
   Span span;
@@ -39,8 +39,8 @@ struct Claim {
   Span span;
   std::vector<ClaimCheck> checks;
 
-  // What the table says of the statement itself: its checks are true, or it is false and a corrected one is true.
-  bool holds() const;
+  // Whether the statement as restored is true; one that is false has a corrected version.
+  bool holds() const { return corrected.empty(); }
 };
 
 struct Paper {

@@ -150,7 +150,7 @@ void Decider::points(const ClaimCheck& check, Decision& out) {
   }
   const auto is_of_state = [&](NodeId id) {
     const Node& n = g.node(id);
-    return n.kind != Kind::multiplier && !(n.kind == Kind::jet && n.order >= highest);
+    return n.kind != Kind::multiplier && !(n.kind == Kind::jet && n.order >= 2);
   };
   const auto lower = [&](const Values& v) {
     Values kept;
@@ -165,12 +165,12 @@ void Decider::points(const ClaimCheck& check, Decision& out) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     holds = holds && solve_all(all[i]);
     for (std::size_t j = 0; j < i; ++j) {
-      if (!equal(lower(all[i]), lower(all[j]))) throw Failure({}, "the points are not of one state");
+      if (!equal(lower(all[i]), lower(all[j]))) throw Failure({}, "the points have different positions and velocities");
       differ = differ && !equal(all[i], all[j]);
     }
   }
   out.verdict = holds && differ ? Verdict::proved : Verdict::refuted;
-  out.detail = holds && differ ? std::to_string(all.size()) + " solutions for the derivatives of order " + std::to_string(highest) + " in one state, exactly"
+  out.detail = holds && differ ? std::to_string(all.size()) + " solutions at the same positions and velocities, exactly"
                                : "not all points solve the equations";
   Values moved = all[0];
   for (auto& [id, x] : moved)
