@@ -10,6 +10,7 @@ const char* const kTable = R"toml(key = "L"
 title = "t"
 english = "Routh's equations"
 authors = ["A", "B"]
+reference = "L"
 [[claim]]
 tag = "2.6"
 title = "generalized reactions"

@@ -101,8 +101,8 @@ class Words {
 TEST(Vocabulary, QuantitiesOfTheDerivation) {
   Words w(kRocket);
   for (const char* right : {"e: inertia_term.x = G.x + N.x", "e: derived.Q.x + QR.x + Qomega.x + minus_dVO.x + minus_dVomega.x + Gamma.x = G.x", "e: QR.x = -m'*u*cos(th)",
-                            "e: QR(x) = QR.x", "e: N.th = 0", "e: N.x = lambda*partial(phi.edge, x')", "e: Q = 5", "e: V_O = 0",
-                            "e: Gamma.x = 2*w*(M*y' + m*(y' + th'*cos(th)))", "e: mu.rocket = m", "e: m_rocket = m", "e: C.x = x", "e: lambda.edge = lambda"})
+                            "e: QR(x) = QR.x", "e: N.th = 0", "e: N.x = lambda*partial(phi.edge, x')", "e: V_O = 0",
+                            "e: Gamma.x = 2*w*(M*y' + m*(y' + th'*cos(th)))", "e: mu.rocket = m", "e: m_rocket = m", "e: C.x = x", "e: lambda.edge = lambda", "e: 2*Q = Q + derived.Q.x + Q"})
     EXPECT_EQ(w.verdict(right), "true") << right;
   for (const char* wrong : {"e: inertia_term.x = G.x - N.x", "e: QR.x = -m*u*cos(th)", "e: N.x = lambda*partial(phi.edge, y')", "e: Gamma.x = 2*w*(M*y' + m*(x' + th'*cos(th)))"})
     EXPECT_EQ(w.verdict(wrong), "false") << wrong;
