@@ -142,6 +142,8 @@ std::vector<std::string> Vocabulary::functions() const {
 
 Value Vocabulary::name(const std::string& name, Span span) {
   if (const auto it = lets_.find(name); it != lets_.end()) return it->second.value;
+  if (by_symbols_)
+    if (const std::optional<Expr> u = quasi_velocity(name)) return *u;
   if (declares(name)) return model_->name(name, span);
   std::vector<std::string> path = split(name);
   if (path[0] == "derived" && path.size() > 1) path.erase(path.begin());
@@ -234,19 +236,19 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
     return E.C()[d][u];
   }
   if (const Formulation* form = form_named(first)) return of_form(*form, rest, span);
-  if (rest.empty()) {
-    // A quasi-velocity, as a symbol.
-    const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
-    if (std::any_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == first; })) {
-      const Elimination& E = elimination_(true);
-      for (std::size_t k = 0; k < E.names.size(); ++k)
-        if (E.names[k] == first) {
-          used_quasi_ = true;
-          return E.u[k];
-        }
-    }
-  }
+  if (rest.empty())
+    if (const std::optional<Expr> u = quasi_velocity(first)) return *u;
   return std::nullopt;
+}
+
+std::optional<Expr> Vocabulary::quasi_velocity(const std::string& name) {
+  const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
+  if (std::none_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == name; })) return std::nullopt;
+  const Elimination& E = elimination_(true);
+  const auto k = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), name) - E.names.begin());
+  if (k == E.names.size()) return std::nullopt;
+  used_quasi_ = true;
+  return E.u[k];
 }
 
 Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>& rest, Span span) {
@@ -296,7 +298,7 @@ bool Vocabulary::call(const std::string& f, const std::vector<Value>& a, const S
   if (!among(kFunctions, f)) return false;
   if (f == "partial") {
     expect(s, 2, 2);
-    result = partial_of(s, a[0], a[1]);
+    result = partial_of(s, a[0]);
   } else if (f == "Dt") {
     expect(s, 1, 2);
     const auto times = static_cast<unsigned>(a.size() > 1 ? whole_number(a[1], s.args[1]) : 1);
@@ -343,7 +345,17 @@ const Syntax* Vocabulary::reduced_argument(const Syntax& s, bool& quasi) const {
   return &s.args[0];
 }
 
-Value Vocabulary::partial_of(const Syntax& s, const Value& what, const Value& by) {
+// In the second argument quasi-velocities are symbols, where the constraints are solved.
+Value Vocabulary::partial_of(const Syntax& s, const Value& what) {
+  by_symbols_ = true;
+  Value by;
+  try {
+    by = evaluate(s.args[1], *this);
+  } catch (const Failure&) {
+    by_symbols_ = false;
+    throw;
+  }
+  by_symbols_ = false;
   const Expr* v = std::get_if<Expr>(&by);
   const Span at = s.args[1].span;
   if (!v) throw Failure(at, std::string("the derivative is taken by a number, this is ") + type_name(by));
@@ -356,6 +368,8 @@ Value Vocabulary::partial_of(const Syntax& s, const Value& what, const Value& by
   const std::string path = s.args[0].op == Syntax::Op::name ? s.args[0].text : "";
   if ((path.rfind("f.", 0) == 0 || path.rfind("derived.f.", 0) == 0) && !elimination_(false).solved)
     return each(of, s.args[0].span, [&](Expr e) { return partial_along(e, *v, false, at); });
+  if ((path.rfind("g.", 0) == 0 || path.rfind("derived.g.", 0) == 0) && !elimination_(true).solved)
+    return each(of, s.args[0].span, [&](Expr e) { return partial_along(e, *v, true, at); });
   return each(of, s.args[0].span, [&](Expr e) { return partial_by(e, *v, at); });
 }
 
@@ -383,8 +397,10 @@ Expr Vocabulary::partial_along(Expr e, Expr by, bool quasi, Span span) {
   const Node& n = graph().node(by.id);
   const auto position = [](const auto& list, std::size_t a) { return static_cast<std::size_t>(std::find(list.begin(), list.end(), a) - list.begin()); };
   if (quasi)
-    for (std::size_t k = 0; k < E.u.size(); ++k)
+    for (std::size_t k = 0; k < E.u.size(); ++k) {
       if (E.u[k] == by) return E.by_u(e)[k];
+      if (total_derivative(E.u[k]) == by) return E.by_u_rate(e)[k];
+    }
   if (n.kind == Kind::jet) {
     if (n.order < E.m) return E.by(n.order, e)[n.index];
     const std::size_t k = position(E.independent, n.index);

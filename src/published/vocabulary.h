@@ -63,7 +63,8 @@ class Vocabulary final : public Names {
   Expr along(const Column& column, const std::string& direction, Span span);
   Expr of_form(const Formulation& form, const std::vector<std::string>& rest, Span span);
   Expr solved(const std::string& y, Span span);
-  Value partial_of(const Syntax& s, const Value& what, const Value& by);
+  std::optional<Expr> quasi_velocity(const std::string& name);
+  Value partial_of(const Syntax& s, const Value& what);
   Expr partial_by(Expr e, Expr by, Span span);
   Expr partial_along(Expr e, Expr by, bool quasi, Span span);
   const Syntax* reduced_argument(const Syntax& s, bool& quasi) const;
@@ -75,6 +76,7 @@ class Vocabulary final : public Names {
   std::shared_ptr<Names> model_;
   EliminationOf elimination_;
   bool used_quasi_ = false;
+  bool by_symbols_ = false;  // while what is differentiated by is read
   std::map<std::string, Let> lets_;
   std::map<std::string, Column> columns_;
   std::map<std::string, Equations> forms_;
