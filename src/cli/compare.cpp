@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <algorithm>
 #include <cstdio>
 
 #include "base/json.h"
@@ -40,7 +41,26 @@ std::string ordinal(std::size_t k) {
   return k < std::size(words) ? words[k] : std::to_string(k + 1) + "th";
 }
 
-std::string place(const Change& c) { return ordinal(c.term) + " term of the " + (c.side == 0 ? "left" : "right") + " side"; }
+std::string place(const ChangedPlace& c) { return ordinal(c.term) + " term of the " + (c.side == 0 ? "left" : "right") + " side"; }
+
+std::string position(const ChangedPlace& c) { return std::to_string(c.span.line) + ":" + std::to_string(c.span.column); }
+
+// One place: with the term it stands in; one symbol at several places: with the places; else one after the other.
+std::string text(const Change& c) {
+  const ChangedPlace& first = c.places[0];
+  if (c.places.size() == 1) return position(first) + ": " + place(first) + ": " + first.from + " should be " + first.to;
+  std::string out = position(first) + ": ";
+  if (std::all_of(c.places.begin(), c.places.end(), [&](const ChangedPlace& p) { return p.from == first.from && p.to == first.to; })) {
+    out += first.from + " should be " + first.to + " at " + std::to_string(c.places.size()) + " places";
+    for (std::size_t i = 1; i < c.places.size(); ++i) out += (i == 1 ? ": here, " : ", ") + position(c.places[i]);
+    return out;
+  }
+  for (const ChangedPlace& p : c.places) {
+    if (&p != &first) out += ", and " + position(p) + ": ";
+    out += p.from + " should be " + p.to;
+  }
+  return out;
+}
 
 std::string point_text(const WitnessPoint& w, const SymbolNames& names) {
   std::string out;
@@ -60,19 +80,17 @@ void print_text(const PublishedEquation& e, const Comparison& c, std::size_t wid
   say(stdout, "%-*s  %-7s %s\n", static_cast<int>(width), e.label.c_str(), word(c.verdict),
               c.verdict == Verdict::proved ? c.what.c_str() : c.verdict == Verdict::unknown ? c.detail.c_str() : ("nearest: " + c.what).c_str());
   if (c.verdict != Verdict::refuted) return;
-  if (c.difference) say(stdout, "%sleft - right differs from it by %s\n", indent.c_str(), shortened(print(*c.difference, names, Format::text)).c_str());
+  if (c.difference)
+    say(stdout, "%sleft - right %s %s\n", indent.c_str(), c.identity ? "is" : "differs from it by", shortened(print(*c.difference, names, Format::text)).c_str());
   say(stdout, "%sleft - right = %s at a point of the motion\n", indent.c_str(), c.detail.c_str());
-  const auto show = [&](const Change& k) {
-    say(stdout, "%s%s:%u:%u: %s: %s should be %s%s\n", indent.c_str(), source.name.c_str(), k.span.line, k.span.column, place(k).c_str(), k.from.c_str(), k.to.c_str(),
-                k.proved ? "" : " (not proved)");
-  };
+  const auto show = [&](const Change& k) { say(stdout, "%s%s:%s%s\n", indent.c_str(), source.name.c_str(), text(k).c_str(), k.proved ? "" : " (not proved)"); };
   if (c.changes.size() == 1) show(c.changes[0]);
   if (c.changes.size() > 1) {
     say(stdout, "%s%zu changes would each make it true:\n", indent.c_str(), c.changes.size());
     for (std::size_t i = 0; i < c.changes.size() && i < kListed; ++i) show(c.changes[i]);
     if (c.changes.size() > kListed) say(stdout, "%s…\n", indent.c_str());
   }
-  if (c.changes.empty()) say(stdout, "%sno change of one term makes it true\n", indent.c_str());
+  if (c.changes.empty()) say(stdout, "%sno change of one term makes it true, and no dots lost at up to four places\n", indent.c_str());
 }
 
 void write_json(JsonWriter& j, const PublishedEquation& e, const Comparison& c, const SymbolNames& names) {
@@ -80,9 +98,18 @@ void write_json(JsonWriter& j, const PublishedEquation& e, const Comparison& c, 
   j.key("difference");
   if (c.difference) j.string(print(*c.difference, names, Format::text));
   else j.null();
+  const auto place_keys = [&](const ChangedPlace& p) {
+    j.open_object().key("from").string(p.from).key("to").string(p.to).key("line").integer(p.span.line).key("column").integer(p.span.column);
+    j.key("place").string(place(p));
+  };
   const auto change = [&](const Change& k) {
-    j.open_object().key("from").string(k.from).key("to").string(k.to).key("line").integer(k.span.line).key("column").integer(k.span.column);
-    j.key("place").string(place(k)).key("proved").boolean(k.proved).close();
+    place_keys(k);
+    j.key("proved").boolean(k.proved).key("reads").string(k.equation).key("places").open_array();
+    for (const ChangedPlace& p : k.places) {
+      place_keys(p);
+      j.close();
+    }
+    j.close().close();
   };
   j.key("change");
   if (c.changes.size() == 1) change(c.changes[0]);

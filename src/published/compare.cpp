@@ -7,6 +7,7 @@
 #include "expr/normal.h"
 #include "numeric/linear.h"
 #include "proof/witness.h"
+#include "published/identity.h"
 
 namespace anholon {
 
@@ -17,6 +18,7 @@ constexpr long kWorkOfCount = 200'000;
 constexpr std::size_t kLongestCounted = 800;  // nodes
 constexpr std::size_t kLongestFactor = 40;    // nodes
 constexpr std::size_t kPrinted = 5;          // differences that are arranged for a choice
+constexpr const char* kIdentity = "an identity, no equation of motion";
 constexpr std::size_t kMostCombined = 6;  // equations in a combination that is written out
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
@@ -291,8 +293,15 @@ bool Comparer::combined(Expr P, EquationsOfMotion& motion, Comparison& out) {
   return true;
 }
 
+// Neither accelerations nor multipliers are in it, or they cancel.
+bool Comparer::without_motion(Expr P, EquationsOfMotion& motion) const {
+  const Column p = gradient(P, motion.top);
+  return std::all_of(p.begin(), p.end(), [&](Expr x) { return is_zero(x) || vanishes(x, motion.anywhere()); });
+}
+
 // What is left of P, less the derived equation that leaves the least.
-void Comparer::nearest(Expr P, EquationsOfMotion& motion, Comparison& out) {
+void Comparer::nearest(Expr P, Comparison& out) {
+  EquationsOfMotion& motion = this->motion(order_of_motion(P));
   std::vector<PointValues>& points = motion.anywhere();
   if (points.empty()) return;
   struct Offer {
@@ -333,7 +342,7 @@ void Comparer::nearest(Expr P, EquationsOfMotion& motion, Comparison& out) {
       // In its own leading derivatives.
       const Column symbols = leading(e, motion), q = gradient(P, symbols), f = gradient(e.residual, symbols);
       for (std::size_t j = 0; j < symbols.size(); ++j)
-        if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0])) offer(P - tidy(q[j] / f[j]) * e.residual, name(e) + times(tidy(q[j] / f[j])), 6);
+        if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0]) && is_not_zero(q[j], points[0])) offer(P - tidy(q[j] / f[j]) * e.residual, name(e) + times(tidy(q[j] / f[j])), 6);
     }
     for (Expr factor : e.constraint ? Column{one, -one} : factors_of(e.residual)) offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : is_number(factor) ? 2 : 3);
   }
@@ -359,12 +368,16 @@ void Comparer::nearest(Expr P, EquationsOfMotion& motion, Comparison& out) {
   }
   ++of;
   std::vector<std::pair<std::size_t, Expr>> terms;
-  if (const auto rest = combination(P, motion, terms); rest && !terms.empty()) {
+  const auto rest = combination(P, motion, terms);
+  std::erase_if(terms, [](const auto& term) { return is_zero(term.second); });
+  if (rest && !terms.empty()) {
     std::string what;
     for (const auto& [i, c] : terms) what += (what.empty() ? "" : " and ") + name(motion.rows[i]) + times(c);
     offer(*rest, what, 4);
     if (const auto on = motion.reduced(*rest)) offer(*on, what + ", on the constraints", 5);
   }
+  const std::size_t identity = ++of;
+  if (without_motion(P, motion)) offer(P, kIdentity, 8);
   // Of the best few the shortest in print.
   std::stable_sort(offers.begin(), offers.end(), [](const Offer& x, const Offer& y) { return x.length < y.length; });
   std::size_t shortest = SIZE_MAX;
@@ -374,12 +387,18 @@ void Comparer::nearest(Expr P, EquationsOfMotion& motion, Comparison& out) {
     seen.push_back(offers[k].of);
     const Expr difference = arranged(offers[k].difference, names_);
     const std::size_t length = offers[k].weight * print(difference, names_, Format::text).size();
-    if (length < shortest) shortest = length, out.difference = difference, out.what = offers[k].what;
+    if (length < shortest) shortest = length, out.difference = difference, out.what = offers[k].what, out.identity = offers[k].of == identity;
     if (nodes(offers[k].difference) > kLongestCounted) break;
   }
 }
 
 Comparison Comparer::judge(Expr P) {
+  Comparison out = decide(P);
+  if (out.verdict == Verdict::refuted) nearest(P, out);
+  return out;
+}
+
+Comparison Comparer::decide(Expr P) {
   Comparison out;
   if (proved_zero(P)) {
     out.verdict = Verdict::proved;
@@ -402,7 +421,6 @@ Comparison Comparer::judge(Expr P) {
     out.detail = search.detail;
     out.witness = std::move(search.witness);
     if (out.witness) out.verdict = Verdict::refuted;
-    nearest(P, motion, out);
     return out;
   }
   if (combined(P, motion, out)) return out;
@@ -416,8 +434,17 @@ Comparison Comparer::judge(Expr P) {
 
 Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet) {
   const Expr P = words.number(equation.left) - words.number(equation.right);
-  Comparison c = judge(P);
-  if (c.verdict == Verdict::refuted) c.changes = repairs(equation, words, alphabet, *this);
+  Comparison c = decide(P);
+  if (c.verdict != Verdict::refuted) return c;
+  c.changes = repairs(equation, words, alphabet, *this);
+  const auto quantities = [&] { return speaks_of_quantities(equation.left, words) || speaks_of_quantities(equation.right, words); };
+  c.identity = c.changes.empty() ? quantities() && without_motion(P, motion(order_of_motion(P))) : c.changes[0].identity;
+  if (c.identity) {
+    c.what = kIdentity;
+    c.difference = arranged(P, names_);
+  } else {
+    nearest(P, c);
+  }
   return c;
 }
 

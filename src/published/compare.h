@@ -10,7 +10,7 @@
 #pragma once
 #include <map>
 
-#include "published/equation.h"
+#include "published/edits.h"
 #include "proof/equations_of_motion.h"
 #include "proof/prove.h"
 #include "published/vocabulary.h"
@@ -18,13 +18,20 @@
 namespace anholon {
 
 // One place of an equation that reads otherwise.
-struct Change {
+struct ChangedPlace {
   int side = 0;           // 0 left, 1 right
   std::size_t term = 0;   // of the side, from 0
-  std::string from, to;   // the smallest term around the place
+  std::string from, to;   // the smallest term around the place; where several places change, a symbol
   Span span;
-  std::string what;       // what the equation then is
+};
+
+// What a misprint has changed: one place, or several that change together, of which it is the first.
+struct Change : ChangedPlace {
+  std::vector<ChangedPlace> places;
+  std::string equation;   // as it then reads
+  std::string what;       // what it then is
   bool proved = false;
+  bool identity = false;  // it then holds whatever the motion
 };
 
 struct Comparison {
@@ -34,13 +41,9 @@ struct Comparison {
   std::optional<WitnessPoint> witness;  // false
   std::string detail;
   std::vector<Change> changes;          // each of them makes it true
+  bool identity = false;                // false: it is meant as an identity, no equation of motion
   bool trivial = false;                 // true of every motion of every system
   bool of_constraints = false;          // true by the constraints alone
-};
-
-// Names that may stand for each other in a misprint.
-struct Alphabet {
-  std::vector<std::string> coordinates, others;
 };
 
 class Comparer {
@@ -49,6 +52,8 @@ class Comparer {
 
   // Of left - right.
   Comparison judge(Expr published);
+  // The same without a word on what a false equation comes nearest to.
+  Comparison decide(Expr published);
   // With the changes that would make it true, if it is false.
   Comparison compare(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet);
 
@@ -58,7 +63,8 @@ class Comparer {
  private:
   bool directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out);
   bool combined(Expr P, EquationsOfMotion& motion, Comparison& out);
-  void nearest(Expr P, EquationsOfMotion& motion, Comparison& out);
+  void nearest(Expr P, Comparison& out);
+  bool without_motion(Expr P, EquationsOfMotion& motion) const;
   std::optional<Expr> combination(Expr P, EquationsOfMotion& motion, std::vector<std::pair<std::size_t, Expr>>& terms);
   std::string name(const DerivedEquation& e) const;
   std::string times(Expr factor) const;
@@ -77,7 +83,7 @@ unsigned order_of_motion(Expr e);
 // Size at a point: of a sum, the sum of the sizes of its terms.
 double size_at(Expr e, PointValues& at);
 
-// Every single change of a term, and every two changes within one term, that make a false equation true.
+// The changes that make a false equation true: of one place, else the fewest of up to four places.
 std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet, Comparer& comparer);
 
 }  // namespace anholon

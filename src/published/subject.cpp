@@ -16,13 +16,15 @@ SymbolNames names_of(const Model& model) {
 }
 
 Alphabet alphabet_of(const Model& model) {
-  Alphabet a{model.names.coordinates, {}};
+  Alphabet a{model.names.coordinates, {}, model.names.multipliers, {}, {}};
   for (const Parameter& p : model.parameters) a.others.push_back(p.name);
   std::vector<std::string> defined;
   for (const auto& [id, name] : model.names.defined) defined.push_back(name);
   std::sort(defined.begin(), defined.end());
   a.others.insert(a.others.end(), defined.begin(), defined.end());
   a.others.insert(a.others.end(), model.unknown_functions.begin(), model.unknown_functions.end());
+  for (const VaryingMass& m : model.masses) a.masses.push_back(m.name);
+  for (const QuasiVelocity& u : model.quasi) a.free.push_back(u.name);
   return a;
 }
 

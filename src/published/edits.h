@@ -1,0 +1,45 @@
+// The changes of single places by which a misprint may have come about.
+//
+// An equation is taken as one formula, left - right: the first step of a path is the side.
+#pragma once
+#include "expr/formula.h"
+#include "published/equation.h"
+
+namespace anholon {
+
+class Vocabulary;
+
+// Names that may stand for each other in a misprint.
+struct Alphabet {
+  std::vector<std::string> coordinates, others, constraints, masses, free;  // free: quasi-velocities
+};
+
+using Path = std::vector<std::uint32_t>;  // of a node: its place among the arguments, from the whole down
+
+struct Edit {
+  enum class Kind : std::uint8_t { dots, sign, coefficient, exponent, function, spare_dots, name, factor };  // the likely ones first
+  enum class Effect : std::uint8_t { replaces, multiplies, squares };
+  Path path;
+  Kind kind;
+  Effect effect;
+  Syntax with;               // instead of the node; the factor that multiplies it
+  bool in_function = false;  // the place is in the argument of an elementary function, or in an exponent
+};
+
+// left - right
+Syntax difference_of(const PublishedEquation& equation);
+
+const Syntax& node_at(const Syntax& s, const Path& path, std::size_t length);
+inline const Syntax& node_at(const Syntax& s, const Path& path) { return node_at(s, path, path.size()); }
+// How much of the path leads to the innermost term that holds its end: an operand of a sum, or a side.
+std::size_t innermost_term(const Syntax& difference, const Path& path);
+
+// All changes of one place. What they make of the formula need not mean anything.
+std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet);
+
+// `s`, the node at `depth` on the paths of the edits, with all of them made.
+Syntax edited(const Syntax& s, std::size_t depth, const std::vector<const Edit*>& edits);
+// -x for x and the other way round.
+Syntax opposite(const Syntax& s);
+
+}  // namespace anholon

@@ -1,0 +1,54 @@
+#include "published/identity.h"
+
+#include <algorithm>
+
+#include "expr/functions.h"
+
+namespace anholon {
+
+namespace {
+
+const char* const kArithmetic[] = {"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "atan2", "D"};
+
+bool holds(Expr e, bool (*which)(const Node&)) {
+  const std::vector<NodeId> ids = symbols({&e, 1});
+  return std::any_of(ids.begin(), ids.end(), [&](NodeId id) { return which(e.graph->node(id)); });
+}
+
+bool is_multiplier(const Node& n) { return n.kind == Kind::multiplier; }
+bool is_of_motion(const Node& n) { return is_multiplier(n) || (n.kind == Kind::jet && n.order >= 2); }
+bool is_jet(const Node& n) { return n.kind == Kind::jet; }
+
+bool plain_name(const Syntax& s, Vocabulary& words) {
+  const Value v = words.name(s.text, s.span);
+  const Expr* e = std::get_if<Expr>(&v);
+  if (!e) return false;
+  const Kind kind = e->graph->node(e->id).kind;
+  if (s.text.find('.') != std::string::npos) return kind == Kind::multiplier || words.declares(s.text);
+  if (is_number(*e)) return words.declares(s.text) || s.text == "pi";
+  return kind == Kind::jet || !holds(*e, is_jet);
+}
+
+}  // namespace
+
+bool speaks_of_quantities(const Syntax& s, Vocabulary& words) {
+  switch (s.op) {
+    case Syntax::Op::name: return !plain_name(s, words);
+    case Syntax::Op::member: case Syntax::Op::array: case Syntax::Op::apply: return true;
+    case Syntax::Op::call:
+      if (std::none_of(std::begin(kArithmetic), std::end(kArithmetic), [&](const char* f) { return s.text == f; })) return true;
+      break;
+    case Syntax::Op::number: case Syntax::Op::quantity: case Syntax::Op::negate: case Syntax::Op::power: case Syntax::Op::prime: case Syntax::Op::index:
+    case Syntax::Op::add: case Syntax::Op::subtract: case Syntax::Op::multiply: case Syntax::Op::divide: case Syntax::Op::compare: case Syntax::Op::dot:
+    case Syntax::Op::cross: break;
+  }
+  return std::any_of(s.args.begin(), s.args.end(), [&](const Syntax& a) { return speaks_of_quantities(a, words); });
+}
+
+bool meant_as_identity(const Syntax& left, const Syntax& right, Vocabulary& words) {
+  if (print(left) == print(right)) return false;
+  if (speaks_of_quantities(left, words) || speaks_of_quantities(right, words)) return true;
+  return !holds(words.number(left), is_of_motion) && !holds(words.number(right), is_of_motion);
+}
+
+}  // namespace anholon
