@@ -57,6 +57,15 @@ footer { margin-top: 3rem; color: var(--quiet); font-size: .85rem; }
 @media (prefers-reduced-motion: reduce) { .card, .card:hover { transition: none; transform: none; } }
 """
 
+PAPERS_STYLE = """
+table { border-collapse: collapse; width: 100%; font-size: .92rem; }
+th, td { text-align: left; vertical-align: top; padding: .5rem .6rem; border-bottom: 1px solid var(--line); overflow-wrap: anywhere; }
+td p { margin: .35rem 0; color: var(--quiet); }
+td:first-child { white-space: nowrap; font-variant-numeric: tabular-nums; }
+code { font-size: .88em; }
+details { color: var(--quiet); }
+"""
+
 speaking = threading.Lock()
 
 
@@ -173,11 +182,41 @@ class Page:
                 + (f"<p>{html.escape(sentence)}</p>" if sentence else "") + f'<p class="counts">{html.escape(" · ".join(counts))}</p></div></a></li>')
 
 
-def index(sets, version):
+def papers_page(claims, titles, version):
+    """The tables of papers/ as a page: every statement, its formula, and how it was decided when the page was made."""
+    parts = ["<!doctype html>", '<html lang="en">', '<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">',
+             '<meta name="color-scheme" content="light dark"><title>Anholon: the papers</title>', f"<style>{STYLE}{PAPERS_STYLE}</style></head>", "<body>",
+             '<header><h1>The papers, equation by equation</h1><p class="lead">What is true is proved, and a changed version of it refuted; what is false is refuted, and its '
+             'corrected version proved. <code>anholon papers --check</code> does it again.</p><p><a href="index.html">Gallery</a></p></header>', "<main>"]
+    for key, title in titles.items():
+        rows = []
+        for c in (c for c in claims if c["paper"] == key):
+            right = all(k.get("as_expected", True) for k in c["checks"])
+            checks = "".join(f"<li><code>{html.escape(k['asks'])}</code> on {html.escape(k['model'])}: {html.escape(k.get('decided', 'not decided here'))}</li>" for k in c["checks"])
+            words = "".join(f"<p>{html.escape(what)}: {html.escape(c[field])}</p>" for what, field in (("Holds if", "hypotheses"), ("As read", "difference"), ("Corrected", "corrected")) if c[field])
+            rows.append(f"<tr><td>{html.escape(c['tag'])}</td><td>{html.escape(c['title'])}<p><code>{html.escape(c['formula'])}</code></p>{words}"
+                        f"<details><summary>{len(c['checks'])} checks</summary><ul>{checks}</ul></details></td><td>{html.escape(c['verdict'] if right else 'not as the table says')}</td></tr>")
+        parts += [f"<section><h2>[{html.escape(key)}] {html.escape(title)}</h2>", "<table><thead><tr><th>tag</th><th>statement</th><th>verdict</th></tr></thead><tbody>", *rows, "</tbody></table></section>"]
+    return "\n".join(parts + ["</main>", f"<footer><p>Made by {html.escape(version)}.</p></footer>", "</body></html>", ""])
+
+
+def make_papers(program, out, version):
+    """Writes papers.html. Returns what failed."""
+    words = [str(program), "papers", "--check", "--json", "--quiet"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=TIME_LIMIT, stdin=subprocess.DEVNULL)
+    if done.returncode not in (0, 1):
+        return [("papers", (done.stderr.strip() or "nothing said").splitlines()[0])]
+    told = json.loads(done.stdout)
+    titles = {key: title for key, title in ((p["key"], p["english"]) for p in told["papers"])}
+    (out / "papers.html").write_text(papers_page(told["claims"], titles, version), encoding="utf-8")
+    return [] if done.returncode == 0 else [("papers", "a claim is not decided as its table says")]
+
+
+def index(sets, version, papers=False):
     parts = ["<!doctype html>", '<html lang="en">', '<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">',
              '<meta name="color-scheme" content="light dark"><title>Anholon: gallery</title>', f"<style>{STYLE}</style></head>", "<body>", "<header><h1>Anholon: gallery</h1>",
              '<p class="lead">Every shipped model as a page of its own: its motion to play, its equations, the proof that all forms of them agree, '
-             "and how far the numbers can be trusted.</p></header>", "<main>"]
+             "and how far the numbers can be trusted.</p>" + ('<p><a href="papers.html">The papers, equation by equation</a></p>' if papers else "") + "</header>", "<main>"]
     for heading, pages in sets:
         cards = [p.card() for p in pages if p.page.exists() and p.facts.exists()]
         if cards:
@@ -185,7 +224,7 @@ def index(sets, version):
     return "\n".join(parts + ["</main>", f"<footer><p>Made by {html.escape(version)}.</p></footer>", "</body></html>", ""])
 
 
-def gallery(program, out, jobs, force, models, pictures):
+def gallery(program, out, jobs, force, models, pictures, papers=False):
     """`models`: (heading, files) of each set. Returns what failed."""
     out.mkdir(parents=True, exist_ok=True)
     sets = [(heading, [Page(m, out) for m in files]) for heading, files in models]
@@ -201,8 +240,9 @@ def gallery(program, out, jobs, force, models, pictures):
                 page.problems.append(f"{type(e).__name__}: {e}")
             say(f"[{done}/{len(pages)}] {page.name}: " + ("; ".join(page.problems) if page.problems else how))
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    (out / "index.html").write_text(index(sets, version), encoding="utf-8")
-    return [(p.name, why) for p in pages for why in p.problems]
+    failed = make_papers(program, out, version) if papers else []
+    (out / "index.html").write_text(index(sets, version, papers), encoding="utf-8")
+    return failed + [(p.name, why) for p in pages for why in p.problems]
 
 
 def self_test(program):
@@ -222,6 +262,10 @@ def self_test(program):
         text = (out / "g/index.html").read_text(encoding="utf-8")
         assert 'href="disc.html"' in text and "5 coordinates" in text and "2 constraints" in text and "Both &amp; more" in text, text
         assert "bad.html" not in text and "://" not in text and "A thin disc rolls" in text, text
+        claim = {"paper": "L", "tag": "2.7", "title": "a < b", "formula": "x", "hypotheses": "", "difference": "a dot", "corrected": "", "verdict": "true",
+                 "checks": [{"asks": "x = y", "model": "m", "decided": "true", "as_expected": True}]}
+        page = papers_page([claim, claim | {"tag": "2.8", "checks": [claim["checks"][0] | {"as_expected": False}]}], {"L": "Routh & others"}, "v")
+        assert "a &lt; b" in page and "Routh &amp; others" in page and page.count("not as the table says") == 1 and "://" not in page, page
         before = (out / "g/disc.html").stat().st_mtime_ns
         gallery(program, out / "g", 2, False, [("Both", [good])], False)
         assert (out / "g/disc.html").stat().st_mtime_ns == before, "made again for nothing"
@@ -253,7 +297,7 @@ def main():
     pictures = has_browser()
     if not pictures:
         say("no Chromium: the pages get no pictures (apt-get install chromium)")
-    failed = gallery(program, args.out, args.jobs, args.force, models, pictures)
+    failed = gallery(program, args.out, args.jobs, args.force, models, pictures, papers=not args.names)
     say(f"gallery: {args.out / 'index.html'}")
     for name, why in failed:
         print(f"failed: {name}: {why}", file=sys.stderr)

@@ -196,7 +196,11 @@ int papers(const Options& o) {
   Decider decider(load);
   Counts n;
   JsonWriter j;
-  if (o.json) j.open_object().key("claims").open_array();
+  if (o.json) {
+    j.open_object().key("papers").open_array();
+    for (const Paper& p : papers) j.open_object().key("key").string(p.key).key("title").string(p.title).key("english").string(p.english).key("reference").string(p.reference).close();
+    j.close().key("claims").open_array();
+  }
   for (const FoundClaim& f : wanted) {
     if (terminal && wanted.size() > 1) say(stderr, "\r\033[K%zu of %zu: %s", static_cast<std::size_t>(&f - wanted.data()) + 1, wanted.size(), tag_of(*f.paper, *f.claim).c_str());
     std::vector<Decision> decisions;
