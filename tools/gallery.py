@@ -287,7 +287,7 @@ def main():
     if args.self_test:
         self_test(program)
         return 0
-    models = [(heading, sorted((ROOT / "models" / folder).glob("*.toml"))) for folder, heading in SETS]
+    models = [(heading, [m for m in sorted((ROOT / "models" / folder).glob("*.toml")) if not m.stem.endswith("-symbolic")]) for folder, heading in SETS]
     unknown = set(args.names) - {m.stem for _, files in models for m in files}
     if unknown:
         print(f"error: no shipped model is called {', '.join(sorted(unknown))}", file=sys.stderr)

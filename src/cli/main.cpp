@@ -243,7 +243,7 @@ int run(int argc, char** argv) {
                                             "EQUATIONS holds one equation per line, LABEL: left = right, in the names of the model, lambda and lambda.NAME.\n"
                                             "Where one change makes a false equation true, it is named.\n"
                                             "Exit status: 0 all are true, 1 one is false or stays unknown, 2 bad input.\n"
-                                            "Example: anholon compare luo-zhao-example-1 luo-zhao-example-1.as-printed");
+                                            "Example: anholon compare luo-zhao-example-1-symbolic luo-zhao-example-1.as-read");
   compare_command->add_option("EQUATIONS", o.equations, "a file of equations, or the name of a shipped one");
   parameters(compare_command);
   compare_command->add_option("--eliminate", o.eliminate, "coordinates for which the constraints are solved (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);

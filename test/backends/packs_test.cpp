@@ -46,7 +46,7 @@ std::shared_ptr<const Model> chain(int links) { return test::model_of(test::repl
 // Of every shipped model: what lies side by side is what the lanes need.
 TEST(Packs, HoldEachSumOnceInTheLanesOfItsSeries) {
   std::size_t packed = 0;
-  for (const std::string& name : test::shipped_models()) {
+  for (const std::string& name : test::moving_models()) {
     const auto model = test::shipped(name);
     if (not_integrated(*model)) continue;
     const Motion m(model);

@@ -31,7 +31,7 @@ TEST_P(Determinism, TheSameModelSimulatedTwice) {
   EXPECT_EQ(first, rows(test::shipped(GetParam()), Rational(1, 2))) << "read anew";
 }
 
-INSTANTIATE_TEST_SUITE_P(Model, Determinism, testing::ValuesIn(test::shipped_models()),
+INSTANTIATE_TEST_SUITE_P(Model, Determinism, testing::ValuesIn(test::moving_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
 TEST(DeterminismOf, MultiprecisionAndAfterAnotherPrecision) {

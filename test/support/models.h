@@ -32,6 +32,13 @@ inline std::vector<std::string> shipped_models() {
   return names;
 }
 
+// Those with a formula for every function. The others, models/papers/*-symbolic.toml, derive, prove and compare; nothing moves.
+inline std::vector<std::string> moving_models() {
+  std::vector<std::string> names = shipped_models();
+  std::erase_if(names, [](const std::string& name) { return name.ends_with("-symbolic"); });
+  return names;
+}
+
 inline std::string shipped_text(const std::string& name) { return file_text(source_dir() / "models" / (name + ".toml")); }
 
 // The model, or a test failure that shows what the reader had to say.

@@ -83,7 +83,7 @@ TEST(QuasiVelocities, GrowWithTheTrailers) {
 
 std::vector<std::string> with_quasi_velocities() {
   std::vector<std::string> names;
-  for (const std::string& name : test::shipped_models())
+  for (const std::string& name : test::moving_models())
     if (Found f(test::shipped(name)); f.q) names.push_back(name);
   return names;
 }

@@ -108,7 +108,7 @@ double apart(const Written& w, const std::shared_ptr<const KernelPlan>& a, const
 // On every shipped model that has it, beside its start.
 std::size_t compare_with_derived(Writing writing) {
   std::size_t models = 0;
-  for (const std::string& name : test::shipped_models()) {
+  for (const std::string& name : test::moving_models()) {
     Scenario probe;
     if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, probe).ok() || !no_plan(program(probe.system, probe.structure)).empty()) continue;
     const Written w(name);
