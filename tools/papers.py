@@ -84,7 +84,8 @@ def main():
     if options.self_test:
         wrong = [dict(c) for c in claims]
         wrong[0]["theory"], wrong[1]["theory"], wrong[2]["form"] = "none.md", "routh.md#none", "none"
-        missed = 5 - len(set(problems(wrong[:-1], forms, page, tables + "more\n")) - set(problems(claims, forms, page, tables)))
+        del wrong[max(i for i, c in enumerate(wrong) if c["numbered"])]
+        missed = 5 - len(set(problems(wrong, forms, page, tables + "more\n")) - set(problems(claims, forms, page, tables)))
         missed += not references(ROOT / "papers", "@article{other,\n")
         print(f"{missed} mistakes were not found")
         return 1 if missed > 0 else 0
