@@ -114,6 +114,14 @@ EquationsOfMotion& Comparer::motion(unsigned highest) {
   return it != motions_.end() ? it->second : motions_.try_emplace(highest, M_, highest, elimination_.dependent).first->second;
 }
 
+EquationsOfMotion& Comparer::motion_for_changes(Expr published) {
+  unsigned highest = order_of_motion(published);
+  const unsigned read = highest;
+  for (int order : M_.order) highest = std::max(highest, static_cast<unsigned>(order));
+  EquationsOfMotion& whole = motion(highest);
+  return whole.on_motion().empty() ? motion(read) : whole;
+}
+
 std::string Comparer::name(const DerivedEquation& e) const {
   std::string text = e.constraint ? "the constraint " + M_.model->constraints[e.index].name : "the equation of " + M_.model->coordinates[e.index].name;
   if (e.times > 0) text += times_in_words(e.times);
@@ -293,6 +301,16 @@ bool Comparer::combined(Expr P, EquationsOfMotion& motion, Comparison& out) {
   return true;
 }
 
+// A misprint that is found says what was meant: of several the one that differs in the least.
+void Comparer::nearest_of(const std::vector<Change>& changes, Expr P, Comparison& out) const {
+  std::size_t shortest = SIZE_MAX;
+  for (std::size_t k = 0; k < changes.size() && k < kPrinted; ++k) {
+    const Expr difference = arranged(P - changes[k].difference, names_);
+    const std::size_t length = print(difference, names_, Format::text).size();
+    if (length < shortest) shortest = length, out.difference = difference, out.what = changes[k].what;
+  }
+}
+
 // Neither accelerations nor multipliers are in it, or they cancel.
 bool Comparer::without_motion(Expr P, EquationsOfMotion& motion) const {
   const Column p = gradient(P, motion.top);
@@ -442,6 +460,8 @@ Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& word
   if (c.identity) {
     c.what = kIdentity;
     c.difference = arranged(P, names_);
+  } else if (!c.changes.empty() && c.changes[0].proved) {
+    nearest_of(c.changes, P, c);
   } else {
     nearest(P, c);
   }

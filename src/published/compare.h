@@ -29,6 +29,7 @@ struct ChangedPlace {
 struct Change : ChangedPlace {
   std::vector<ChangedPlace> places;
   std::string equation;   // as it then reads
+  Expr difference;        // left - right, as it then reads
   std::string what;       // what it then is
   bool proved = false;
   bool identity = false;  // it then holds whatever the motion
@@ -58,12 +59,15 @@ class Comparer {
   Comparison compare(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet);
 
   EquationsOfMotion& motion(unsigned highest);
+  // Of an equation that may have lost its highest derivatives.
+  EquationsOfMotion& motion_for_changes(Expr published);
   const SymbolNames& names() const { return names_; }
 
  private:
   bool directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out);
   bool combined(Expr P, EquationsOfMotion& motion, Comparison& out);
   void nearest(Expr P, Comparison& out);
+  void nearest_of(const std::vector<Change>& changes, Expr P, Comparison& out) const;
   bool without_motion(Expr P, EquationsOfMotion& motion) const;
   std::optional<Expr> combination(Expr P, EquationsOfMotion& motion, std::vector<std::pair<std::size_t, Expr>>& terms);
   std::string name(const DerivedEquation& e) const;

@@ -118,7 +118,7 @@ const std::pair<const char*, const char*> kFunctions[] = {{"sin", "cos"}, {"sinh
 
 class Search {
  public:
-  Search(Vocabulary& words, const Alphabet& alphabet) : words_(words), alphabet_(alphabet) {}
+  Search(Vocabulary& words, const Alphabet& alphabet, unsigned most_dots) : words_(words), alphabet_(alphabet), most_dots_(most_dots) {}
 
   std::vector<Edit> of(const Syntax& difference) {
     for (std::uint32_t side : {0U, 1U}) {
@@ -239,14 +239,16 @@ class Search {
     add(kind, Effect::replaces, std::move(other));
   }
 
-  // One or two dots more, and fewer.
+  // More dots, and one or two fewer.
   void derivatives(const Syntax& s) {
     try {
-      const Expr e = words_.number(s), rate = total_derivative(e);
-      if (!is_zero(rate)) {
-        const Syntax one = with(Syntax::Op::prime, {s});
-        add(Edit::Kind::dots, Effect::replaces, one);
-        if (!is_zero(total_derivative(rate))) add(Edit::Kind::dots, Effect::replaces, with(Syntax::Op::prime, {one}));
+      Expr rate = words_.number(s);
+      Syntax dotted = s;
+      for (unsigned k = 0; k < most_dots_; ++k) {
+        rate = total_derivative(rate);
+        if (is_zero(rate)) break;
+        dotted = with(Syntax::Op::prime, {dotted});
+        add(Edit::Kind::dots, Effect::replaces, dotted);
       }
     } catch (const Failure&) {  // no number
     }
@@ -316,6 +318,7 @@ class Search {
 
   Vocabulary& words_;
   const Alphabet& alphabet_;
+  unsigned most_dots_;
   Path path_;
   int in_function_ = 0;
   std::vector<Edit> list_;
@@ -341,7 +344,7 @@ std::size_t innermost_term(const Syntax& difference, const Path& path) {
   return length;
 }
 
-std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet) { return Search(words, alphabet).of(difference); }
+std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet, unsigned most_dots) { return Search(words, alphabet, most_dots).of(difference); }
 
 // A minus is taken from the first factor of a product.
 Syntax opposite(const Syntax& s) {

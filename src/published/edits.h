@@ -34,8 +34,8 @@ inline const Syntax& node_at(const Syntax& s, const Path& path) { return node_at
 // How much of the path leads to the innermost term that holds its end: an operand of a sum, or a side.
 std::size_t innermost_term(const Syntax& difference, const Path& path);
 
-// All changes of one place. What they make of the formula need not mean anything.
-std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet);
+// All changes of one place; a symbol may have lost so many dots. What they make of the formula need not mean anything.
+std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet, unsigned most_dots);
 
 // `s`, the node at `depth` on the paths of the edits, with all of them made.
 Syntax edited(const Syntax& s, std::size_t depth, const std::vector<const Edit*>& edits);

@@ -13,14 +13,15 @@ namespace anholon {
 
 namespace {
 
+constexpr double kNothing = 1e-9;        // in relation to the size of the terms
 constexpr std::size_t kMostJudged = 24;  // survivors that are proved or refuted, of each number of changes
 
 class Repair {
  public:
   Repair(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet, Comparer& comparer)
       : equation_(equation), words_(words), comparer_(comparer), syntax_(difference_of(equation)),
-        motion_(comparer.motion(order_of_motion(words.number(syntax_)))), trial_(syntax_, words, motion_.on_motion()) {
-    for (Edit& e : edits_of(syntax_, words, alphabet)) trial_.add(std::move(e));
+        motion_(comparer.motion_for_changes(words.number(syntax_))), trial_(syntax_, words, motion_.on_motion()) {
+    for (Edit& e : edits_of(syntax_, words, alphabet, motion_.highest)) trial_.add(std::move(e));
   }
 
   std::vector<Change> run() {
@@ -31,7 +32,7 @@ class Repair {
 
  private:
   struct Survivor {
-    Expr whole;
+    Expr whole, left;
     Syntax syntax;
     Change change;
   };
@@ -60,45 +61,67 @@ class Repair {
     std::vector<const Edit*> edits;
     for (std::uint32_t i : m.edits) edits.push_back(&trial_.edit(i));
     Syntax syntax = edited(syntax_, 0, edits);
-    Expr whole;
+    Expr whole, left;
     try {
       whole = words_.number(syntax);
+      left = words_.number(syntax.args[0]);
     } catch (const Failure&) {
       return;
     }
     Change change = worded(edits);
     change.equation = print(syntax.args[0]) + " = " + print(syntax.args[1]);
     for (Survivor& s : survivors)
-      if (same(s.whole, whole)) {
-        // Of an equation with two terms either may be changed: the shorter way, else the right side.
-        const auto added = [](const Change& c) { return static_cast<long>(c.to.size()) - static_cast<long>(c.from.size()); };
-        if (added(change) < added(s.change) || (added(change) == added(s.change) && change.side > s.change.side)) s = {whole, std::move(syntax), std::move(change)};
+      if (same(s.whole, whole, s.left, left)) {
+        if (better(change, s.change)) s = {whole, left, std::move(syntax), std::move(change)};
         return;
       }
-    survivors.push_back({whole, std::move(syntax), std::move(change)});
+    survivors.push_back({whole, left, std::move(syntax), std::move(change)});
   }
 
   void accept(Survivor& s) {
     const Comparison c = comparer_.decide(s.whole);
     if (c.verdict == Verdict::refuted) return;
     if (c.trivial && !meant_as_identity(s.syntax.args[0], s.syntax.args[1], words_)) return;
+    s.change.difference = s.whole;
     s.change.what = c.what;
     s.change.proved = c.verdict == Verdict::proved;
     s.change.identity = c.trivial;
     changes_.push_back(std::move(s.change));
   }
 
-  // Equal up to a number.
-  bool same(Expr a, Expr b) {
+  // Whether `a` says the same as `b` in a better way. Of an equation with two terms either may be changed: the shorter way, else the
+  // right side. Of several terms it is the first one; of several factors the last ones have the dots, as in m*x'' and r*r'.
+  static bool better(const Change& a, const Change& b) {
+    const auto added = [](const Change& c) { return static_cast<long>(c.to.size()) - static_cast<long>(c.from.size()); };
+    if (added(a) != added(b)) return added(a) < added(b);
+    if (a.side != b.side) return a.side > b.side;
+    const auto terms = [](const Change& c) {
+      std::vector<std::pair<int, std::size_t>> list;
+      for (const ChangedPlace& p : c.places) list.push_back({p.side, p.term});
+      return list;
+    };
+    if (terms(a) != terms(b)) return terms(a) < terms(b);
+    const auto lateness = [](const Change& c) {
+      std::size_t total = 0;
+      for (std::size_t i = 0; i < c.equation.size(); ++i) total += c.equation[i] == '\'' ? i : 0;
+      return total;
+    };
+    return lateness(a) > lateness(b);
+  }
+
+  // Equal up to a number; identities, if their left sides are.
+  bool same(Expr a, Expr b, Expr left_a, Expr left_b) {
     std::vector<PointValues>& points = motion_.anywhere();
-    double ratio = 0;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const double x = points[k](a), y = points[k](b);
-      if (std::abs(x) + std::abs(y) < 1e-12) continue;  // both are identities
-      if (ratio == 0) ratio = x / y;
-      else if (!(std::abs(x - ratio * y) <= 1e-9 * std::abs(x))) return false;
-    }
-    return true;
+    const auto nothing = [&](Expr e) { return std::all_of(points.begin(), points.end(), [&](PointValues& at) { return std::abs(at(e)) <= kNothing * (1e-6 + size_at(e, at)); }); };
+    if (nothing(a) != nothing(b)) return false;
+    return nothing(a) ? proportional(left_a, left_b) : proportional(a, b);
+  }
+
+  bool proportional(Expr a, Expr b) {
+    std::vector<PointValues>& points = motion_.anywhere();
+    if (points.empty()) return false;
+    const double ratio = points[0](a) / points[0](b);
+    return std::all_of(points.begin(), points.end(), [&](PointValues& at) { return std::abs(at(a) - ratio * at(b)) <= kNothing * std::abs(at(a)); });
   }
 
   // ---- words ---------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ namespace anholon {
 
 namespace {
 
-constexpr std::size_t kMostDots = 400;        // places that may have lost dots
+constexpr std::size_t kMostDots = 700;        // places that may have lost dots
 constexpr std::size_t kMostTried = 60'000;    // sets that are tried as one, of each number of changes
 constexpr std::size_t kMostLookedUp = 600'000;
 constexpr std::size_t kMostFound = 200;
@@ -62,6 +62,7 @@ Together::Together(Trial& trial, const Syntax& difference) : trial_(trial) {
     const bool dots = e.kind == Edit::Kind::dots && !e.in_function;
     put({i}, dots ? kDots : kOther, dots);
   }
+  single_dots_ = static_cast<std::uint32_t>(dot_items_.size());
   symbols_everywhere(difference);
   moved_exponents(difference);
 }
@@ -109,7 +110,7 @@ Together::Relation Together::relation(std::uint32_t a, std::uint32_t b) const {
   return r;
 }
 
-bool Together::independent(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) const {
+bool Together::independent(const Items& a, const Items& b) const {
   for (std::uint32_t i : a)
     for (std::uint32_t j : b)
       if (relation(i, j) != Relation::independent) return false;
@@ -117,7 +118,7 @@ bool Together::independent(const std::vector<std::uint32_t>& a, const std::vecto
 }
 
 // Items that do not add, tried as one.
-std::optional<Together::Sum> Together::joined(const std::vector<std::uint32_t>& items) {
+std::optional<Together::Sum> Together::joined(const Items& items) {
   if (++tried_ > kMostTried) return std::nullopt;
   std::vector<std::uint32_t> edits;
   for (std::uint32_t i : items) edits.insert(edits.end(), items_[i].edits.begin(), items_[i].edits.end());
@@ -129,7 +130,7 @@ std::optional<Together::Sum> Together::joined(const std::vector<std::uint32_t>& 
 void Together::prepare_singles() {
   if (std::exchange(singles_known_, true)) return;
   for (std::uint32_t i = 0; i < items_.size(); ++i) {
-    singles_.push_back({{i}, items_[i].change, sizes(items_[i].change)});
+    singles_.push_back({Items{i}, items_[i].change, sizes(items_[i].change)});
     if (items_[i].dots) dots_.push_back(singles_.back());
   }
   for (std::vector<Sum>* list : {&singles_, &dots_}) std::stable_sort(list->begin(), list->end(), [](const Sum& a, const Sum& b) { return before(a.change, b.change); });
@@ -153,13 +154,13 @@ void Together::prepare_pairs() {
   std::stable_sort(pairs_.begin(), pairs_.end(), [](const Sum& a, const Sum& b) { return before(a.change, b.change); });
 }
 
-// Sets of lost dots of which none adds with all the others, each once. `set` and `open` count the lost dots; those that are open
+// Sets of single lost dots of which none adds with all the others, each once. `set` and `open` count the lost dots; those that are open
 // come after the first of the set and may be joined.
 void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::uint32_t>& open, unsigned count, std::vector<Sum>& out) {
   const std::size_t n = dot_items_.size();
   if (set.size() == count) {
-    std::vector<std::uint32_t> items;
-    for (std::uint32_t k : set) items.push_back(dot_items_[k]);
+    Items items;
+    for (std::uint32_t k : set) items.list[items.size++] = dot_items_[k];
     if (auto s = joined(items)) out.push_back(std::move(*s));
     return;
   }
@@ -169,7 +170,7 @@ void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::u
     if (std::any_of(set.begin(), set.end(), [&](std::uint32_t i) { return of_dots_[i * n + next] == Relation::impossible; })) continue;
     std::vector<std::uint32_t> further(open.begin() + static_cast<std::ptrdiff_t>(k + 1), open.end());
     // Bound to the new one, and to none before it: those are open already, or have been.
-    for (std::uint32_t i = set[0] + 1; i < n; ++i)
+    for (std::uint32_t i = set[0] + 1; i < single_dots_; ++i)
       if (bound(next, i) && std::none_of(set.begin(), set.end(), [&](std::uint32_t j) { return j == i || bound(j, i); })) further.push_back(i);
     set.push_back(next);
     connect(set, further, count, out);
@@ -180,11 +181,10 @@ void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::u
 std::vector<Together::Sum> Together::connected(unsigned count) {
   prepare_pairs();
   std::vector<Sum> out;
-  const auto n = static_cast<std::uint32_t>(dot_items_.size());
-  for (std::uint32_t i = 0; i < n; ++i) {
+  for (std::uint32_t i = 0; i < single_dots_; ++i) {
     std::vector<std::uint32_t> set = {i}, open;
-    for (std::uint32_t j = i + 1; j < n; ++j)
-      if (of_dots_[i * n + j] == Relation::bound) open.push_back(j);
+    for (std::uint32_t j = i + 1; j < single_dots_; ++j)
+      if (of_dots_[i * dot_items_.size() + j] == Relation::bound) open.push_back(j);
     connect(set, open, count, out);
   }
   return out;
@@ -219,7 +219,7 @@ void Together::find(const std::vector<Sum>& sums, const std::vector<Sum>& sorted
       if (!trial_.vanishes(both.change, both.extent) || !independent(s.items, it->items)) continue;
       Sum whole = both;
       whole.items = s.items;
-      whole.items.insert(whole.items.end(), it->items.begin(), it->items.end());
+      for (std::uint32_t i : it->items) whole.items.list[whole.items.size++] = i;
       check(whole);
     }
   }
@@ -231,6 +231,9 @@ std::vector<Misprint> Together::sets_of(unsigned count) {
   prepare_singles();
   if (count == 1) {
     for (const Sum& s : singles_) check(s);
+    // A single change of any kind is as good as another one.
+    for (auto& [edits, cost] : found_)
+      if (edits.size() == 1) cost = 0;
   } else if (count == 2) {
     find(dots_, dots_);
     find(singles_, singles_);
@@ -239,8 +242,9 @@ std::vector<Misprint> Together::sets_of(unsigned count) {
     for (std::uint32_t a = 0; a < items_.size(); ++a)
       for (std::uint32_t b = a + 1; b < items_.size() && tried_ <= kMostTried; ++b) {
         const bool dots = items_[a].dots || items_[b].dots;
-        const auto plain = [&](std::uint32_t i) { return items_[i].edits.size() > 1 || trial_.edit(items_[i].edits[0]).kind < Edit::Kind::name; };
-        if ((items_[a].dots && items_[b].dots) || (!dots && !(plain(a) && plain(b))) || relation(a, b) != Relation::bound) continue;
+        const auto plain = [&](std::uint32_t i) { return trial_.edit(items_[i].edits[0]).kind < Edit::Kind::name; };
+        const auto everywhere = [&](std::uint32_t i) { return items_[i].edits.size() > 2; };
+        if ((items_[a].dots && items_[b].dots) || everywhere(a) || everywhere(b) || (!dots && !(plain(a) && plain(b))) || relation(a, b) != Relation::bound) continue;
         if (auto s = joined({a, b})) {
           check(*s);
           if (dots) bound_.push_back(std::move(*s));
@@ -259,11 +263,11 @@ std::vector<Misprint> Together::sets_of(unsigned count) {
     find(bound_, pairs_);
     // One more change beside three lost dots.
     for (const Sum& other : singles_) {
-      if (items_[other.items[0]].dots) continue;
+      if (items_[other.items.list[0]].dots) continue;
       std::vector<Sum> with_dot;
       for (const Sum& d : dots_)
-        if (relation(other.items[0], d.items[0]) == Relation::independent)
-          with_dot.push_back({{other.items[0], d.items[0]}, total(other.change, d.change), total(other.extent, d.extent)});
+        if (relation(other.items.list[0], d.items.list[0]) == Relation::independent)
+          with_dot.push_back({{other.items.list[0], d.items.list[0]}, total(other.change, d.change), total(other.extent, d.extent)});
       find(with_dot, pairs_);
     }
   }

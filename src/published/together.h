@@ -31,8 +31,15 @@ class Together {
     bool dots;
     Numbers change;
   };
+  struct Items {  // up to four, in the order in which they were put in
+    std::array<std::uint32_t, kMost> list{};
+    std::uint32_t size = 0;
+    Items(std::initializer_list<std::uint32_t> items = {}) { for (std::uint32_t i : items) list[size++] = i; }
+    const std::uint32_t* begin() const { return list.data(); }
+    const std::uint32_t* end() const { return list.data() + size; }
+  };
   struct Sum {
-    std::vector<std::uint32_t> items;
+    Items items;
     Numbers change, extent;
   };
   enum class Relation : std::uint8_t { impossible, independent, bound };
@@ -41,8 +48,8 @@ class Together {
   void symbols_everywhere(const Syntax& difference);
   void moved_exponents(const Syntax& difference);
   Relation relation(std::uint32_t a, std::uint32_t b) const;
-  bool independent(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) const;
-  std::optional<Sum> joined(const std::vector<std::uint32_t>& items);
+  bool independent(const Items& a, const Items& b) const;
+  std::optional<Sum> joined(const Items& items);
   void prepare_singles();
   void prepare_pairs();
   std::vector<Sum> connected(unsigned count);
@@ -56,7 +63,8 @@ class Together {
   std::vector<Sum> pairs_;                         // of lost dots; sorted
   std::vector<Sum> bound_;                         // a lost dot and another change that do not add
   std::vector<Sum> triples_;                       // of lost dots that do not add
-  std::vector<std::uint32_t> dot_items_;
+  std::vector<std::uint32_t> dot_items_;           // those of one place first
+  std::uint32_t single_dots_ = 0;
   std::vector<Relation> of_dots_;                  // of two of them
   bool singles_known_ = false, pairs_known_ = false;
   std::size_t tried_ = 0;

@@ -263,19 +263,29 @@ Trial::Amount Trial::with(const Node& n, std::size_t depth, std::span<const std:
     if (n.way == Node::Way::whole) {
       out = as_formula(n, depth, below);
     } else {
+      const bool sum = n.way == Node::Way::sum;
       std::vector<const Amount*> args;
-      for (const Node& a : n.args) args.push_back(&a.value);
       std::vector<Amount> changed;
-      changed.reserve(below.size());
+      if (!sum) {
+        for (const Node& a : n.args) args.push_back(&a.value);
+        changed.reserve(below.size());
+      }
       for (std::size_t from = 0; from < below.size();) {
         const std::uint32_t i = edits_[below[from]].edit.path[depth];
         std::size_t to = from + 1;
         while (to < below.size() && edits_[below[to]].edit.path[depth] == i) ++to;
-        changed.push_back(with(n.args[i], depth + 1, below.subspan(from, to - from)));
-        args[i] = &changed.back();
+        const Amount now = with(n.args[i], depth + 1, below.subspan(from, to - from));
         from = to;
+        if (sum) {
+          const bool minus = i > 0 && n.syntax->operators[i - 1].op == Syntax::Op::subtract;
+          for (std::size_t c = 0; c < (out.vector ? 3U : 1U); ++c)
+            out.c[c] = minus ? out.c[c] - (now.c[c] - n.args[i].value.c[c]) : out.c[c] + (now.c[c] - n.args[i].value.c[c]);
+        } else {
+          changed.push_back(now);
+          args[i] = &changed.back();
+        }
       }
-      out = combined(n, args);
+      if (!sum) out = combined(n, args);
     }
   }
   for (std::size_t k = 0; k < own; ++k) {

@@ -161,6 +161,100 @@ TEST_P(Derived, MisprintsAreNamed) {
   EXPECT_GE(10 * exactly, 7 * tried);
 }
 
+// Symbols that may lose dots: their places in a printed equation, without and with the dots.
+struct Symbol {
+  std::size_t at, length, dots;
+};
+
+std::vector<Symbol> symbols_of(const std::string& text) {
+  std::vector<Symbol> list;
+  const auto letter = [&](std::size_t i) { return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_' || text[i] == '.'); };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (!letter(i) || std::isdigit(static_cast<unsigned char>(text[i])) || (i > 0 && letter(i - 1))) continue;
+    Symbol s{i, 0, 0};
+    while (letter(i + s.length)) ++s.length;
+    while (i + s.length + s.dots < text.size() && text[i + s.length + s.dots] == '\'') ++s.dots;
+    list.push_back(s);
+  }
+  return list;
+}
+
+// Numbers that look random and are the same everywhere.
+struct Dice {
+  std::uint64_t state;
+  std::size_t roll(std::size_t sides) {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<std::size_t>(state >> 33) % sides;
+  }
+};
+
+// Of `count` symbols of the equation some dots are lost; nothing where there are fewer symbols with dots.
+std::string without_dots(const std::string& text, std::size_t count, Dice& dice) {
+  std::vector<Symbol> dotted;
+  for (const Symbol& s : symbols_of(text))
+    if (s.dots > 0) dotted.push_back(s);
+  if (dotted.size() < count) return {};
+  while (dotted.size() > count) dotted.erase(dotted.begin() + static_cast<std::ptrdiff_t>(dice.roll(dotted.size())));
+  std::string wrong = text;
+  for (std::size_t k = dotted.size(); k-- > 0;) wrong.erase(dotted[k].at + dotted[k].length, 1 + dice.roll(dotted[k].dots));
+  return wrong;
+}
+
+std::string with_other_sign(const std::string& text, Dice& dice) {
+  std::vector<std::size_t> signs;
+  for (std::size_t i = 1; i + 1 < text.size(); ++i)
+    if ((text[i] == '+' || text[i] == '-') && text[i - 1] == ' ' && text[i + 1] == ' ') signs.push_back(i);
+  if (signs.empty()) return {};
+  std::string wrong = text;
+  char& sign = wrong[signs[dice.roll(signs.size())]];
+  sign = sign == '+' ? '-' : '+';
+  return wrong;
+}
+
+std::string with_other_index(const std::string& text, const std::vector<std::string>& coordinates, Dice& dice) {
+  std::vector<Symbol> places;
+  for (const Symbol& s : symbols_of(text))
+    if (std::find(coordinates.begin(), coordinates.end(), text.substr(s.at, s.length)) != coordinates.end()) places.push_back(s);
+  if (places.empty() || coordinates.size() < 2) return {};
+  const Symbol s = places[dice.roll(places.size())];
+  std::string other = text.substr(s.at, s.length);
+  while (other == text.substr(s.at, s.length)) other = coordinates[dice.roll(coordinates.size())];
+  std::string wrong = text;
+  wrong.replace(s.at, s.length, other);
+  return wrong;
+}
+
+TEST_P(Derived, LostDotsWrongSignsAndOtherIndicesAreNamed) {
+  Shipped s(GetParam());
+  const std::vector<std::string>& coordinates = s.subject->model().names.coordinates;
+  std::size_t tried = 0, named = 0;
+  for (const std::string& right : s.derived()) {
+    if (right.size() > 400) continue;
+    const PublishedEquation original = s.read("e: " + right)[0];
+    const Expr meant = s.subject->difference(original);
+    Dice dice{right.size()};
+    const auto check = [&](const std::string& wrong, std::size_t places) {
+      if (wrong.empty()) return;
+      const PublishedEquation e = s.read("e: " + wrong)[0];
+      const Comparison c = s.compared(e);
+      if (c.verdict == Verdict::proved) return;  // a change that means nothing, or another true equation
+      ASSERT_EQ(c.verdict, Verdict::refuted) << wrong << "\n" << c.detail;
+      EXPECT_EQ(c.what.find("times 0"), std::string::npos) << c.what;
+      ++tried;
+      const bool found = std::any_of(c.changes.begin(), c.changes.end(), [&](const Change& change) {
+        return change.places.size() <= places && proved_zero(s.subject->difference(s.read("e: " + change.equation)[0]) - meant);
+      });
+      named += found;
+      if (!found) std::cout << right << "\n" << wrong << "\n" << (c.changes.empty() ? "nothing" : c.changes[0].equation) << "\n\n";
+    };
+    for (std::size_t count = 1; count <= 4; ++count)
+      for (int k = 0; k < 2; ++k) check(without_dots(original.text(), count, dice), count);
+    check(with_other_sign(original.text(), dice), 1);
+    check(with_other_index(original.text(), coordinates, dice), 1);
+  }
+  std::cout << "COUNT " << named << " of " << tried << "\n";
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, Derived,
                          testing::Values("papers/luo-zhao-example-1", "papers/luo-zhao-example-2", "zoo/appell-hamel", "zoo/chaplygin-sleigh",
                                          "zoo/double-pendulum-cartesian", "zoo/vertical-disc", "zoo/variable-mass-pendulum", "zoo/second-order-linear"),
