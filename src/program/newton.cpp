@@ -67,7 +67,6 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
   const Program& p = *program_;
   const N eps = unit_roundoff<N>();
   N last(-1), left(-1);
-  const Outcome failed = unsolved();
   for (int k = 0; k < kMostNewton; ++k) {
     N worst(0);
     residual(0, r_, worst);
@@ -82,7 +81,7 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     for (std::size_t j = 0; j < p.unknowns(); ++j) {
       N& x = x_[j * stride_ + static_cast<std::size_t>(p.d[j])];
       const N change = y_[j] / factorial_[static_cast<std::size_t>(p.d[j])];
-      if (!is_finite(change)) return failed;
+      if (!is_finite(change)) return unsolved();
       x += change;
       if (abs(y_[j]) > step) step = abs(y_[j]);
       if (N v = abs(x) * factorial_[static_cast<std::size_t>(p.d[j])]; v > size) size = v;
@@ -95,11 +94,11 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     if (own && k >= 2 && last >= N(0) && step > last * N(0.1)) {
       // Slow: the Jacobian has changed with the leading derivatives.
       jacobian();
-      if (!lu_.factor(j_)) return failed;
+      if (!lu_.factor(j_)) return unsolved();
     }
     last = step;
   }
-  return failed;
+  return unsolved();
 }
 
 template <Number N>

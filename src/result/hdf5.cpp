@@ -4,7 +4,7 @@
 #include "base/escape.h"
 
 #ifdef ANHOLON_HDF5
-#include <hdf5.h>
+#include "result/hdf5_objects.h"
 #endif
 
 #include <fcntl.h>
@@ -75,158 +75,13 @@ RunFile read_hdf5(const std::string&) { throw Failure(Span{}, kNoHdf5, "a run in
 
 bool has_hdf5() { return true; }
 
+using namespace hdf5;
+
 namespace {
 
 constexpr const char* kFormat = "anholon run";
 constexpr int kVersion = 1;
 constexpr hsize_t kChunkNumbers = 8192;  // 64 KB: what a small file is long, and a large one is read by
-
-struct Trouble {
-  std::string message;
-};
-
-// The first cause that HDF5 reports, with the words of the operating system where it quotes them.
-std::string cause() {
-  std::string text;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, [](unsigned, const H5E_error2_t* e, void* to) -> herr_t {
-    std::string& first = *static_cast<std::string*>(to);
-    if (first.empty() && e->desc) first = e->desc;
-    return 0;
-  }, &text);
-  const std::string quote = "error message = '";
-  if (const std::size_t at = text.find(quote); at != std::string::npos) {
-    const std::size_t from = at + quote.size();
-    return text.substr(from, text.find('\'', from) - from);
-  }
-  return text.empty() ? "HDF5 gives no reason" : text;
-}
-
-template <class T>
-T checked(T result) {
-  if (result < 0) throw Trouble{cause()};
-  return result;
-}
-
-// Why an object could not be closed, since `done` began: the last of what was written to it goes to the disk then.
-std::string& lost() {
-  static thread_local std::string why;
-  return why;
-}
-
-// An object of HDF5, closed with whoever holds it.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*closing)(hid_t)) : id_(checked(id)), close_(closing) {}
-  Handle(Handle&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
-  Handle& operator=(Handle&&) = delete;
-  ~Handle() {
-    if (id_ >= 0 && close_(id_) < 0 && lost().empty()) lost() = cause();
-  }
-  operator hid_t() const { return id_; }
-  // Closing a file is where its last bytes are written.
-  void close() {
-    const hid_t id = id_;
-    id_ = -1;
-    checked(close_(id));
-  }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-// Before anything else of HDF5. What it would do when the program ends crashes where a file could not be written; all our files are closed by then.
-void quietly() {
-  static const herr_t without_exit = H5dont_atexit();
-  static_cast<void>(without_exit);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
-Handle text_type() {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  checked(H5Tset_size(type, H5T_VARIABLE));
-  checked(H5Tset_cset(type, H5T_CSET_UTF8));
-  return type;
-}
-
-Handle space_of(std::size_t n) {
-  const hsize_t size = n;
-  return {H5Screate_simple(1, &size, nullptr), H5Sclose};
-}
-
-// In groups that are made on the way; in chunks, if it is to grow. Without times of its own: the same run makes the same bytes.
-Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space, const std::vector<hsize_t>& chunk = {}) {
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  checked(H5Pset_create_intermediate_group(links, 1));
-  checked(H5Pset_obj_track_times(creation, false));
-  if (!chunk.empty()) checked(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
-  return {H5Dcreate2(file, name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose};
-}
-
-void put_texts(hid_t file, const std::string& name, const std::vector<std::string>& texts) {
-  const Handle type = text_type(), space = space_of(texts.size());
-  const Handle set = new_dataset(file, name, type, space);
-  std::vector<std::string> held;
-  std::vector<const char*> pointers;
-  for (const std::string& t : texts) held.push_back(hdf5_text(t));
-  for (const std::string& t : held) pointers.push_back(t.c_str());
-  if (!texts.empty()) checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
-}
-
-void put_text(hid_t file, const std::string& name, const std::string& text) {
-  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle set = new_dataset(file, name, type, space);
-  const std::string held = hdf5_text(text);
-  const char* pointer = held.c_str();
-  checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &pointer));
-}
-
-void put_attribute(hid_t object, const char* name, const std::string& text) {
-  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  const std::string held = hdf5_text(text);
-  const char* pointer = held.c_str();
-  checked(H5Awrite(attribute, type, &pointer));
-}
-
-void put_attribute(hid_t object, const char* name, int number) {
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(object, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  checked(H5Awrite(attribute, H5T_NATIVE_INT, &number));
-}
-
-// Extendible in all directions, in chunks.
-Handle new_extendible(hid_t file, const char* name, hid_t type, std::vector<hsize_t> size, const std::vector<hsize_t>& chunk) {
-  const std::vector<hsize_t> most(size.size(), H5S_UNLIMITED);
-  const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), most.data()), H5Sclose);
-  return new_dataset(file, name, type, space, chunk);
-}
-
-std::vector<hsize_t> size_of(hid_t set) {
-  const Handle space(H5Dget_space(set), H5Sclose);
-  const int rank = checked(H5Sget_simple_extent_ndims(space));
-  std::vector<hsize_t> size(static_cast<std::size_t>(rank));
-  if (rank > 0) checked(H5Sget_simple_extent_dims(space, size.data(), nullptr));
-  return size;
-}
-
-// Writes or reads the box [from, from + size).
-enum class Way { write, read };
-void transfer(Way way, hid_t set, hid_t type, const std::vector<hsize_t>& from, const std::vector<hsize_t>& size, const void* data) {
-  if (std::find(size.begin(), size.end(), 0) != size.end()) return;
-  const Handle in_file(H5Dget_space(set), H5Sclose), in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
-  checked(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr));
-  if (way == Way::write) checked(H5Dwrite(set, type, in_memory, in_file, H5P_DEFAULT, data));
-  else checked(H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, const_cast<void*>(data)));
-}
-
-bool exists(hid_t file, const std::string& name) {
-  for (std::size_t slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1))
-    if (slash > 0 && H5Lexists(file, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
-  return H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0;
-}
-
-Handle open_dataset(hid_t file, const std::string& name) { return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose}; }
 
 // Texts of a column that has some: /text is as long as /rows from then on, and its attribute `columns` says which columns it holds.
 void extend_texts(hid_t file, hsize_t before, const RowBlock& block) {
@@ -268,33 +123,6 @@ void extend_steps(hid_t file, const std::vector<double>& steps) {
   const hsize_t before = size_of(set).at(0), after = before + steps.size();
   checked(H5Dset_extent(set, &after));
   transfer(Way::write, set, H5T_NATIVE_DOUBLE, {before}, {steps.size()}, steps.data());
-}
-
-template <class F>
-std::string done(F f) {
-  quietly();
-  lost().clear();
-  try {
-    f();
-    return lost();
-  } catch (const Trouble& t) {
-    return t.message;
-  }
-}
-
-std::vector<std::string> texts_of(hid_t set, hid_t memory, hid_t file_space, std::size_t count) {
-  const Handle own(H5Dget_type(set), H5Tclose);
-  if (H5Tis_variable_str(own) <= 0) throw Trouble{"texts of variable length are missing"};
-  const Handle type = text_type();
-  std::vector<char*> pointers(count, nullptr);
-  std::vector<std::string> texts;
-  if (count == 0) return texts;
-  checked(H5Dread(set, type, memory, file_space, H5P_DEFAULT, pointers.data()));
-  for (char* p : pointers) {
-    texts.emplace_back(p ? p : "");
-    H5free_memory(p);
-  }
-  return texts;
 }
 
 class Hdf5Reader {

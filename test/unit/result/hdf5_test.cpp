@@ -7,6 +7,8 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "base/diagnostic.h"
@@ -53,6 +55,18 @@ class Hdf5 : public ::testing::Test {
     i.units = {{"x", "m"}};
     return i;
   }
+  // The file of a run of so many rows.
+  std::string bytes_of_a_run(int rows) const {
+    Hdf5Sink sink(path_, info());
+    sink.columns({"t", "x"});
+    for (int i = 0; i < rows; ++i) sink.row({std::to_string(i), "0.50"});
+    sink.close();
+    std::ostringstream bytes;
+    bytes << std::ifstream(path_, std::ios::binary).rdbuf();
+    return bytes.str();
+  }
+  void write_bytes(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
+
   fs::path folder_;
   std::string path_;
 };
@@ -240,24 +254,7 @@ TEST_F(Hdf5, SaysWhereItCannotWrite) {
 
 // Damage is an error with a message, never a crash.
 TEST_F(Hdf5, DamagedFilesAreRefused) {
-  {
-    Hdf5Sink sink(path_, info());
-    sink.columns({"t", "x"});
-    for (int i = 0; i < 300; ++i) sink.row({std::to_string(i), "0.50"});
-    sink.close();
-  }
-  std::string bytes;
-  {
-    std::FILE* f = std::fopen(path_.c_str(), "rb");
-    char buffer[4096];
-    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, f)) > 0;) bytes.append(buffer, n);
-    std::fclose(f);
-  }
-  const auto write_bytes = [&](const std::string& b) {
-    std::FILE* f = std::fopen(path_.c_str(), "wb");
-    std::fwrite(b.data(), 1, b.size(), f);
-    std::fclose(f);
-  };
+  const std::string bytes = bytes_of_a_run(300);
   std::size_t refused = 0;
   for (std::size_t cut = 8; cut < bytes.size(); cut += bytes.size() / 40) {
     write_bytes(bytes.substr(0, cut));
@@ -269,19 +266,7 @@ TEST_F(Hdf5, DamagedFilesAreRefused) {
 
 // The library itself follows what stands in the file.
 TEST_F(Hdf5, FlippedBytesAreNoCrash) {
-  {
-    Hdf5Sink sink(path_, info());
-    sink.columns({"t", "x"});
-    for (int i = 0; i < 10; ++i) sink.row({std::to_string(i), "0.50"});
-    sink.close();
-  }
-  std::string bytes;
-  {
-    std::FILE* f = std::fopen(path_.c_str(), "rb");
-    char buffer[4096];
-    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, f)) > 0;) bytes.append(buffer, n);
-    std::fclose(f);
-  }
+  const std::string bytes = bytes_of_a_run(10);
   unsigned random = 1;
   std::size_t refused = 0;
   for (int k = 0; k < 400; ++k) {
@@ -290,9 +275,7 @@ TEST_F(Hdf5, FlippedBytesAreNoCrash) {
       random = random * 1664525u + 1013904223u;
       damaged[(random >> 4) % damaged.size()] = static_cast<char>(random >> 24);
     }
-    std::FILE* f = std::fopen(path_.c_str(), "wb");
-    std::fwrite(damaged.data(), 1, damaged.size(), f);
-    std::fclose(f);
+    write_bytes(damaged);
     try {
       read_run(path_);
     } catch (const Failure& e) {

@@ -5,20 +5,13 @@
 
 #include <numbers>
 
-#include "run/simulate.h"
 #include "support/models.h"
+#include "support/motion.h"
 
 namespace anholon {
 namespace {
 
-struct Result {
-  SimulationReport report;
-  MemorySink rows;
-  double number(std::size_t row, const std::string& name) const {
-    const auto& names = rows.names();
-    return std::stod(rows.rows().at(row).at(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())));
-  }
-};
+using Result = test::Motion;
 
 struct Asked {
   Method method = Method::automatic;

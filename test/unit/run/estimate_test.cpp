@@ -4,19 +4,13 @@
 #include <cmath>
 
 #include "run/estimate.h"
+#include "support/motion.h"
 #include "support/oracle.h"
 
 namespace anholon {
 namespace {
 
-struct Result {
-  SimulationReport report;
-  MemorySink rows;
-  double number(std::size_t row, const std::string& column) const {
-    const auto& names = rows.names();
-    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin());
-    return std::stod(rows.rows().at(row).at(at));
-  }
+struct Result : test::Motion {
   // Of a kind; not a number where there is none.
   double error(ColumnKind kind) const {
     if (report.error)

@@ -4,20 +4,13 @@
 #include <cmath>
 #include <sstream>
 
-#include "run/simulate.h"
 #include "support/models.h"
+#include "support/motion.h"
 
 namespace anholon {
 namespace {
 
-struct Result {
-  SimulationReport report;
-  MemorySink rows;
-  double last(const std::string& column) const {
-    const auto& names = rows.names();
-    return std::stod(rows.rows().back()[static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin())]);
-  }
-};
+using Result = test::Motion;
 
 Result run(const std::string& text, const Rational& to, const std::string& tolerance = "1/100000000000000", const std::function<void(SimulationOptions&)>& more = {}) {
   Result r;
@@ -137,15 +130,6 @@ TEST(Events, EnergyIsBalancedOverThem) {
   EXPECT_LT(r.report.power, 1e-12);
 }
 
-// A saved run without the count of rows that were given so far, which the end of the first part adds to.
-std::string of_the_motion(const std::string& saved) {
-  std::istringstream lines(saved);
-  std::string kept;
-  for (std::string line; std::getline(lines, line);)
-    if (!line.starts_with("given =") && !line.starts_with("hash =")) kept += line + '\n';
-  return kept;
-}
-
 TEST(Events, RunsGoOnAcrossThemWithTheSameBits) {
   const std::string text = mass_on_a_line("-10 - x'/5", "initial = {x = 2}\nmode.n = 0\nstate.z = {rate = \"x - n*z\", initial = 0}\n"
                                           "event = [{name = \"b\", when = \"x\", direction = \"down\", set = {\"x'\" = \"-0.9*x'\", n = \"n + 1\"}}, {name = \"top\", when = \"x'\", direction = \"down\"}]\n");
@@ -162,7 +146,7 @@ TEST(Events, RunsGoOnAcrossThemWithTheSameBits) {
       o.resume = &from;
     });
     EXPECT_EQ(second.rows.rows().back(), whole.rows.rows().back()) << half;
-    EXPECT_EQ(of_the_motion(saved), of_the_motion(end)) << half;
+    EXPECT_EQ(test::of_the_motion(saved), test::of_the_motion(end)) << half;
   }
 }
 

@@ -3,21 +3,13 @@
 
 #include <cmath>
 
-#include "run/simulate.h"
 #include "support/models.h"
+#include "support/motion.h"
 
 namespace anholon {
 namespace {
 
-struct Result {
-  SimulationReport report;
-  MemorySink rows;
-  double number(std::size_t row, const std::string& column) const {
-    const auto& names = rows.names();
-    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin());
-    return std::stod(rows.rows().at(row).at(at));
-  }
-};
+using Result = test::Motion;
 
 void run(const std::string& text, SimulationOptions o, Result& r, const char* form = "routh", bool with_integrals = true) {
   Scenario s;

@@ -5,20 +5,13 @@
 #include <cmath>
 #include <regex>
 
-#include "run/simulate.h"
+#include "support/motion.h"
 #include "support/oracle.h"
 
 namespace anholon {
 namespace {
 
-struct Result {
-  SimulationReport report;
-  MemorySink rows;
-  double last(const std::string& column) const {
-    const auto& names = rows.names();
-    return std::stod(rows.rows().back().at(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin())));
-  }
-};
+using Result = test::Motion;
 
 Result run(const std::string& text, const Rational& to, Precision numbers = Precision::real, const char* tolerance = "1000000000000", int digits = 16) {
   Result r;

@@ -4,20 +4,13 @@
 #include <cmath>
 #include <functional>
 
-#include "run/simulate.h"
 #include "support/models.h"
+#include "support/motion.h"
 
 namespace anholon {
 namespace {
 
-struct Result {
-  SimulationReport report;
-  MemorySink rows;
-  double last(const std::string& column) const {
-    const auto& names = rows.names();
-    return std::stod(rows.rows().back()[static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin())]);
-  }
-};
+using Result = test::Motion;
 
 Result run(const std::string& text, const Rational& to, const std::string& form = "routh", const std::function<void(SimulationOptions&)>& more = {}) {
   Result r;

@@ -3,20 +3,11 @@
 
 #include <sstream>
 
-#include "run/simulate.h"
 #include "support/models.h"
+#include "support/motion.h"
 
 namespace anholon {
 namespace {
-
-// A saved run without the count of rows that were given so far, which the end of the first part adds to.
-std::string of_the_motion(const std::string& saved) {
-  std::istringstream lines(saved);
-  std::string kept;
-  for (std::string line; std::getline(lines, line);)
-    if (!line.starts_with("given =") && !line.starts_with("hash =")) kept += line + '\n';
-  return kept;
-}
 
 struct Case {
   const char* name;
@@ -127,7 +118,7 @@ TEST(Restart, GoesOnFromEveryStep) {
     ASSERT_EQ(rows.size() + first, all.size()) << k;
     EXPECT_TRUE(std::equal(rows.begin(), rows.end(), all.begin() + static_cast<std::ptrdiff_t>(first))) << "after " << k << " steps";
     EXPECT_EQ(report.eliminations, whole.eliminations) << k;
-    EXPECT_EQ(of_the_motion(again), of_the_motion(end)) << k;
+    EXPECT_EQ(test::of_the_motion(again), test::of_the_motion(end)) << k;
   }
 }
 
