@@ -15,7 +15,7 @@ import tempfile
 LEVEL = {
     "base": 0, "numeric": 1, "expr": 2, "tape": 3, "model": 4, "spec": 5, "mechanics": 5,
     "formulation": 6, "system": 7, "structure": 8, "proof": 8, "program": 9, "kernel": 9.5, "jit": 10,
-    "integrate": 10, "result": 11, "run": 12, "plot": 13, "report": 13.5, "cli": 14, "python": 14,
+    "integrate": 10, "result": 11, "run": 12, "published": 12.5, "plot": 13, "report": 13.5, "cli": 14, "python": 14,
 }  # fmt: skip
 
 # Layers that may see less than everything below them.

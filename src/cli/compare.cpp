@@ -1,4 +1,4 @@
-#include "proof/compare.h"
+#include "published/subject.h"
 
 #include <unistd.h>
 
@@ -8,7 +8,6 @@
 #include "base/json.h"
 #include "cli/input.h"
 #include "cli/say.h"
-#include "spec/equations.h"
 
 namespace anholon::cli {
 
@@ -32,24 +31,6 @@ SourceText read_equation_text(const Options& o) {
   throw UsageError{"error: cannot read the equations '" + o.equations + "': " + why + "\n" +
                    (near.empty() ? "hint: a file with one equation per line, LABEL: left = right\n"
                                  : "hint: did you mean the shipped equations '" + near + "'?\n")};
-}
-
-SymbolNames names_of(const Model& model) {
-  SymbolNames names = model.names;
-  for (std::size_t i = 0; i < model.masses.size(); ++i) names.masses[i] = "m_" + model.masses[i].name;
-  return names;
-}
-
-// Names of numbers that a misprint may exchange.
-Alphabet alphabet_of(const Model& model) {
-  Alphabet a{model.names.coordinates, {}};
-  for (const Parameter& p : model.parameters) a.others.push_back(p.name);
-  std::vector<std::string> defined;
-  for (const auto& [id, name] : model.names.defined) defined.push_back(name);
-  std::sort(defined.begin(), defined.end());
-  a.others.insert(a.others.end(), defined.begin(), defined.end());
-  a.others.insert(a.others.end(), model.unknown_functions.begin(), model.unknown_functions.end());
-  return a;
 }
 
 const char* word(Verdict v) { return v == Verdict::proved ? "true" : v == Verdict::refuted ? "false" : "unknown"; }
@@ -123,19 +104,16 @@ int compare(const Options& o) {
   const Reader in = read(o);
   const Model& model = *in.model;
   const SourceText source = read_equation_text(o);
+  Subject subject({in.model, in.names}, state_choice(o, model));
   Diagnostics diagnostics;
-  const std::vector<PublishedEquation> equations = read_equations(source, {in.model, in.names}, diagnostics);
+  const std::vector<PublishedEquation> equations = subject.read(source, diagnostics);
   if (diagnostics.has_errors()) throw UsageError{diagnostics.print(source)};
-  const Mechanics m = mechanics(model);
-  const Elimination e = eliminations_of(in, m, state_choice(o, model)).front().coordinates;
-  const SymbolNames names = names_of(model);
-  const Alphabet alphabet = alphabet_of(model);
-  Comparer comparer(m, e, names);
+  const SymbolNames& names = subject.names();
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   std::vector<Comparison> found;
   for (const PublishedEquation& p : equations) {
     if (terminal) say(stderr, "\r\033[K%zu of %zu: %s", found.size() + 1, equations.size(), p.label.c_str());
-    found.push_back(comparer.compare(p, *in.names, alphabet));
+    found.push_back(subject.compare(p));
   }
   if (terminal) say(stderr, "\r\033[K");
   std::size_t width = 0, counts[3] = {0, 0, 0};

@@ -4,6 +4,7 @@
 #include "expr/formula.h"
 #include "expr/functions.h"
 #include "expr/habits.h"
+#include "expr/normal.h"
 #include "expr/rotations.h"
 #include "expr/table.h"
 #include "expr/units.h"
@@ -117,6 +118,8 @@ Value differentiate(Value v, int times, Span at, Names& names) {
   };
   if (const Expr* e = number(v)) rough(*e);
   else if (const Vector* a = vector(v)) rough(a->x), rough(a->y), rough(a->z);
+  if (Expr* e = number(v)) v = names.in_time(*e);
+  else if (Vector* a = vector(v)) v = Vector{names.in_time(a->x), names.in_time(a->y), names.in_time(a->z)};
   for (; times > 0; --times) {
     if (Expr* e = number(v)) v = total_derivative(*e);
     else if (Vector* a = vector(v)) v = total_derivative(*a);

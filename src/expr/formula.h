@@ -140,6 +140,10 @@ struct Names {
   virtual std::optional<Vector> point(const BodyName& /*body*/, Span /*use*/) { return std::nullopt; }
   virtual std::optional<Rotation> frame(const BodyName& /*body*/, Span /*use*/) { return std::nullopt; }
   virtual std::string body_name(const BodyName& /*body*/) const { return "B"; }
+  // Whether a name has a meaning of its own in the model.
+  virtual bool declares(const std::string& /*name*/) const { return false; }
+  // What varies with time when a formula is differentiated by it.
+  virtual Expr in_time(Expr e) { return e; }
   // Told of each quat(…): it is a rotation only where its norm is 1.
   virtual void quaternion(const std::array<Expr, 4>& /*components*/, const Syntax& /*call*/) {}
 };

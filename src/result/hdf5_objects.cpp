@@ -16,13 +16,6 @@ std::string& lost() {
   return why;
 }
 
-// Before anything else of HDF5. What it would do when the program ends crashes where a file could not be written; all our files are closed by then.
-void quietly() {
-  static const herr_t without_exit = H5dont_atexit();
-  static_cast<void>(without_exit);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 // In groups that are made on the way; in chunks, if it is to grow. Without times of its own: the same run makes the same bytes.
 Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space, const std::vector<hsize_t>& chunk = {}) {
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -36,6 +29,13 @@ Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
 
 Handle::~Handle() {
   if (id_ >= 0 && close_(id_) < 0 && lost().empty()) lost() = cause();
+}
+
+// What it would do when the program ends crashes where a file could not be written; all our files are closed by then.
+void quietly() {
+  static const herr_t without_exit = H5dont_atexit();
+  static_cast<void>(without_exit);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
 std::string done_by(void (*f)(void*), void* with) {

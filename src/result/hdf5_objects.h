@@ -42,6 +42,9 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+// Called before anything else of HDF5, and by `done`: errors are for `cause`, not for the terminal.
+void quietly();
+
 // Calls f, which may throw Trouble. Returns why it failed, or why an object could not be closed (the last of what was written to it goes to the disk
 // then); an empty text if all went well.
 std::string done_by(void (*f)(void*), void* with);

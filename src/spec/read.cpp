@@ -319,6 +319,7 @@ class DerivedNames final : public Names {
   std::optional<Vector> point(const BodyName& body, Span use) override { return scope_.point(body, use); }
   std::optional<Rotation> frame(const BodyName& body, Span use) override { return scope_.frame(body, use); }
   std::string body_name(const BodyName& body) const override { return scope_.body_name(body); }
+  bool declares(const std::string& name) const override { return scope_.declarations().count(name) > 0 || scope_.find_body(name) != nullptr; }
 
  private:
   Value multiplier(const std::string& name, Span span) {
@@ -337,6 +338,7 @@ class DerivedNames final : public Names {
 
   std::shared_ptr<Reader> reader_;
   Scope& scope_;
+  Scope::Multipliers multipliers_{scope_};
 };
 
 }  // namespace

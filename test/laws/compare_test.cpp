@@ -4,49 +4,37 @@
 
 #include "expr/arrange.h"
 #include "formulation/formulation.h"
-#include "proof/compare.h"
-#include "run/eliminate.h"
-#include "spec/equations.h"
+#include "published/subject.h"
 #include "support/models.h"
 
 namespace anholon::test {
 namespace {
 
-// A model with its names, ready to be compared with.
-struct Subject {
-  OpenModel open;
-  Mechanics m;
-  Elimination elimination;
-  SymbolNames names;
-  Alphabet alphabet;
-  std::optional<Comparer> comparer;
+// A shipped model, ready to be compared with.
+struct Shipped {
+  std::optional<Subject> subject;
 
-  explicit Subject(const std::string& name) {
+  explicit Shipped(const std::string& name) {
     Diagnostics diagnostics;
     const SourceText source{name + ".toml", shipped_text(name)};
-    open = open_model(source, diagnostics).value();
-    m = mechanics(*open.model);
-    elimination = elimination_for(m, Unknowns::coordinates, {}, {});
-    names = open.model->names;
-    for (std::size_t i = 0; i < open.model->masses.size(); ++i) names.masses[i] = "m_" + open.model->masses[i].name;
-    alphabet.coordinates = open.model->names.coordinates;
-    for (const Parameter& p : open.model->parameters) alphabet.others.push_back(p.name);
-    comparer.emplace(m, elimination, names);
+    subject.emplace(open_model(source, diagnostics).value());
   }
 
   std::vector<PublishedEquation> read(const std::string& text) {
     Diagnostics diagnostics;
     const SourceText source{"test.eq", text};
-    std::vector<PublishedEquation> list = read_equations(source, open, diagnostics);
+    std::vector<PublishedEquation> list = subject->read(source, diagnostics);
     EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.print(source);
     return list;
   }
-  Comparison judged(const PublishedEquation& e) { return comparer->judge(evaluate_number(e.left, *open.names) - evaluate_number(e.right, *open.names)); }
-  Comparison compared(const PublishedEquation& e) { return comparer->compare(e, *open.names, alphabet); }
+  Comparison judged(const PublishedEquation& e) { return subject->judge(e); }
+  Comparison compared(const PublishedEquation& e) { return subject->compare(e); }
 
   // Routh's equations as `derive` prints them.
   std::vector<std::string> derived() {
-    const Column left = put_masses(*open.model, lagrange_operator(m)), right = put_masses(*open.model, right_side(m));
+    const Mechanics& m = subject->mechanics();
+    const Column left = put_masses(subject->model(), lagrange_operator(m)), right = put_masses(subject->model(), right_side(m));
+    const SymbolNames& names = subject->names();
     std::vector<std::string> list;
     for (std::size_t a = 0; a < left.size(); ++a)
       list.push_back(print(arranged(left[a], names), names, Format::text) + " = " + print(arranged(right[a], names), names, Format::text));
@@ -80,7 +68,7 @@ class Gallery : public testing::TestWithParam<const char*> {};
 
 TEST_P(Gallery, CorrectedEquationsAreTrue) {
   const std::string name = GetParam();
-  Subject s("papers/" + name);
+  Shipped s("papers/" + name);
   for (const PublishedEquation& e : s.read(file_text(source_dir() / "models" / "papers" / (name + ".corrected.eq"))))
     EXPECT_EQ(s.judged(e).verdict, Verdict::proved) << e.label << ": " << s.judged(e).detail;
 }
@@ -88,7 +76,7 @@ TEST_P(Gallery, CorrectedEquationsAreTrue) {
 INSTANTIATE_TEST_SUITE_P(Papers, Gallery, testing::Values("luo-zhao-example-1", "luo-zhao-example-2"), [](const auto& p) { return test_name(p.param); });
 
 TEST(GalleryMisprints, AreNamed) {
-  Subject one("papers/luo-zhao-example-1");
+  Shipped one("papers/luo-zhao-example-1");
   std::map<std::string, std::string> right;
   for (const PublishedEquation& e : one.read(file_text(source_dir() / "models/papers/luo-zhao-example-1.as-printed.eq"))) {
     const Comparison c = one.compared(e);
@@ -103,7 +91,7 @@ TEST(GalleryMisprints, AreNamed) {
 class Derived : public testing::TestWithParam<std::string> {};
 
 TEST_P(Derived, TrueAsPrintedScaledAndCombined) {
-  Subject s(GetParam());
+  Shipped s(GetParam());
   const std::vector<std::string> derived = s.derived();
   std::string text;
   for (std::size_t a = 0; a < derived.size(); ++a) {
@@ -122,7 +110,7 @@ TEST_P(Derived, TrueAsPrintedScaledAndCombined) {
 }
 
 TEST_P(Derived, MisprintsAreNamed) {
-  Subject s(GetParam());
+  Shipped s(GetParam());
   std::size_t tried = 0, exactly = 0;
   for (const std::string& right : s.derived()) {
     if (right.size() > 400) continue;

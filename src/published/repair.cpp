@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "proof/compare.h"
+#include "published/compare.h"
 
 namespace anholon {
 
@@ -120,7 +120,7 @@ Syntax scaled(const Syntax& s, bool twice) {
 // All edits of one term, the likely kinds first.
 class Edits {
  public:
-  Edits(const Syntax& term, Names& names, const Alphabet& alphabet, bool with_names) : names_(names), alphabet_(alphabet) {
+  Edits(const Syntax& term, Vocabulary& words, const Alphabet& alphabet, bool with_names) : words_(words), alphabet_(alphabet) {
     visit(term, {}, true);
     for (auto* kind : {&signs_, &primes_, &coefficients_, &exponents_, &functions_})
       for (Edit& e : *kind) list.push_back(std::move(e));
@@ -234,7 +234,7 @@ class Edits {
   void derivatives(const Syntax& s, const Path& path) {
     if (s.op == Syntax::Op::prime) primes_.push_back({path, s.args[0]});
     try {
-      const Expr e = evaluate_number(s, names_);
+      const Expr e = words_.number(s);
       if (!is_zero(total_derivative(e))) primes_.push_back({path, with(Syntax::Op::prime, {s})});
     } catch (const Failure&) {
     }
@@ -263,7 +263,7 @@ class Edits {
       }
   }
 
-  Names& names_;
+  Vocabulary& words_;
   const Alphabet& alphabet_;
   bool in_power_ = false;
   std::vector<Edit> signs_, primes_, coefficients_, exponents_, functions_, replaced_;
@@ -278,25 +278,25 @@ struct TopTerm {
   Expr value;
 };
 
-std::vector<TopTerm> terms_of(const PublishedEquation& equation, Names& names) {
+std::vector<TopTerm> terms_of(const PublishedEquation& equation, Vocabulary& words) {
   std::vector<TopTerm> list;
   for (const int side : {0, 1}) {
     const Syntax& s = side == 0 ? equation.left : equation.right;
     if (s.op != Syntax::Op::add) {
-      list.push_back({side, 0, false, s, evaluate_number(s, names)});
+      list.push_back({side, 0, false, s, words.number(s)});
       continue;
     }
     for (std::size_t i = 0; i < s.args.size(); ++i)
-      list.push_back({side, i, i > 0 && s.operators[i - 1].op == Syntax::Op::subtract, s.args[i], evaluate_number(s.args[i], names)});
+      list.push_back({side, i, i > 0 && s.operators[i - 1].op == Syntax::Op::subtract, s.args[i], words.number(s.args[i])});
   }
   return list;
 }
 
 class Repair {
  public:
-  Repair(const PublishedEquation& equation, Names& names, const Alphabet& alphabet, Comparer& comparer)
-      : equation_(equation), names_(names), alphabet_(alphabet), comparer_(comparer), terms_(terms_of(equation, names)),
-        whole_(evaluate_number(equation.left, names) - evaluate_number(equation.right, names)),
+  Repair(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet, Comparer& comparer)
+      : equation_(equation), words_(words), alphabet_(alphabet), comparer_(comparer), terms_(terms_of(equation, words)),
+        whole_(words.number(equation.left) - words.number(equation.right)),
         motion_(comparer.motion(order_of_motion(whole_))) {
     for (PointValues& p : motion_.on_motion()) {
       value_.push_back(p(whole_));
@@ -313,16 +313,16 @@ class Repair {
                front ? print(opposite(t.syntax)) : (t.minus ? "+ " : "- ") + print(t.syntax), t.syntax);
     }
     for (const TopTerm& t : terms_)
-      for (const Edit& e : Edits(t.syntax, names_, alphabet_, true).list) try_edit(t, e);
+      for (const Edit& e : Edits(t.syntax, words_, alphabet_, true).list) try_edit(t, e);
     judge();
     if (!changes_.empty()) return changes_;
     // Short terms first: the number of pairs is bounded.
     std::stable_sort(terms_.begin(), terms_.end(), [](const TopTerm& a, const TopTerm& b) { return print(a.syntax).size() < print(b.syntax).size(); });
     std::size_t tried = 0;
     for (const TopTerm& t : terms_)
-      for (const Edit& first : Edits(t.syntax, names_, alphabet_, false).list) {
+      for (const Edit& first : Edits(t.syntax, words_, alphabet_, false).list) {
         const Syntax once = applied(t.syntax, first);
-        for (const Edit& second : Edits(once, names_, alphabet_, false).list) {
+        for (const Edit& second : Edits(once, words_, alphabet_, false).list) {
           if (++tried > kMostPairs) break;
           if (second.path < first.path) continue;  // tried in the other order
           const Syntax twice = applied(once, second);
@@ -363,7 +363,7 @@ class Repair {
     if (survivors_.size() >= kMostJudged) return;
     Expr value;
     try {
-      value = evaluate_number(edited.syntax, names_);
+      value = words_.number(edited.syntax);
     } catch (const Failure&) {
       return;
     }
@@ -414,7 +414,7 @@ class Repair {
   }
 
   const PublishedEquation& equation_;
-  Names& names_;
+  Vocabulary& words_;
   const Alphabet& alphabet_;
   Comparer& comparer_;
   std::vector<TopTerm> terms_;
@@ -427,8 +427,8 @@ class Repair {
 
 }  // namespace
 
-std::vector<Change> repairs(const PublishedEquation& equation, Names& names, const Alphabet& alphabet, Comparer& comparer) {
-  return Repair(equation, names, alphabet, comparer).run();
+std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet, Comparer& comparer) {
+  return Repair(equation, words, alphabet, comparer).run();
 }
 
 }  // namespace anholon

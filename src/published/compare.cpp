@@ -1,4 +1,4 @@
-#include "proof/compare.h"
+#include "published/compare.h"
 
 #include <algorithm>
 #include <cmath>
@@ -414,10 +414,10 @@ Comparison Comparer::judge(Expr P) {
   return out;
 }
 
-Comparison Comparer::compare(const PublishedEquation& equation, Names& names, const Alphabet& alphabet) {
-  const Expr P = evaluate_number(equation.left, names) - evaluate_number(equation.right, names);
+Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet) {
+  const Expr P = words.number(equation.left) - words.number(equation.right);
   Comparison c = judge(P);
-  if (c.verdict == Verdict::refuted) c.changes = repairs(equation, names, alphabet, *this);
+  if (c.verdict == Verdict::refuted) c.changes = repairs(equation, words, alphabet, *this);
   return c;
 }
 

@@ -1,8 +1,7 @@
-#include "proof/compare.h"
+#include "published/subject.h"
 
 #include <gtest/gtest.h>
 
-#include "spec/equations.h"
 
 namespace anholon {
 namespace {
@@ -32,22 +31,21 @@ name = "rod"
 equation = "x^2 + y^2 = l^2"
 )toml";
 
-class Subject {
+class Published {
  public:
-  explicit Subject(const char* text) {
+  explicit Published(const std::string& text) {
     Diagnostics diagnostics;
-    open_ = open_model({"model.toml", text}, diagnostics).value();
-    m_ = mechanics(*open_.model);
-    comparer_.emplace(m_, Elimination(), open_.model->names);
-    alphabet_.coordinates = open_.model->names.coordinates;
-    for (const Parameter& p : open_.model->parameters) alphabet_.others.push_back(p.name);
+    const SourceText source{"model.toml", text};
+    std::optional<OpenModel> open = open_model(source, diagnostics);
+    EXPECT_TRUE(open) << diagnostics.print(source);
+    subject_.emplace(std::move(open).value());
   }
   Comparison compare(const std::string& equation) {
     Diagnostics diagnostics;
     const SourceText source{"test.eq", "e: " + equation + "\n"};
-    const auto list = read_equations(source, open_, diagnostics);
+    const auto list = subject_->read(source, diagnostics);
     EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.print(source);
-    return comparer_->compare(list.at(0), *open_.names, alphabet_);
+    return list.empty() ? Comparison{} : subject_->compare(list[0]);
   }
   std::string what(const std::string& equation) {
     const Comparison c = compare(equation);
@@ -61,18 +59,15 @@ class Subject {
   }
   std::string difference(const std::string& equation) {
     const Comparison c = compare(equation);
-    return c.difference ? print(*c.difference, open_.model->names, Format::text) : "";
+    return c.difference ? print(*c.difference, subject_->names(), Format::text) : "";
   }
 
  private:
-  OpenModel open_;
-  Mechanics m_;
-  std::optional<Comparer> comparer_;
-  Alphabet alphabet_;
+  std::optional<Subject> subject_;
 };
 
 TEST(Compare, SaysWhatATrueEquationIs) {
-  Subject s(kSleigh);
+  Published s(kSleigh);
   EXPECT_EQ(s.what("m*x'' = -lambda*sin(th)"), "the equation of x");
   EXPECT_EQ(s.what("lambda*sin(th)/m = -x''"), "the equation of x, times 1/m");
   EXPECT_EQ(s.what("J*th'' = 0"), "the equation of th");
@@ -88,7 +83,7 @@ TEST(Compare, SaysWhatATrueEquationIs) {
 }
 
 TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
-  Subject s(kPendulum);
+  Published s(kPendulum);
   EXPECT_EQ(s.what("m*x'' = 2*lambda*x"), "the equation of x");
   EXPECT_EQ(s.what("x*x' = -y*y'"), "the constraint rod, differentiated once, times 1/2");
   EXPECT_EQ(s.what("x^4 = (l^2 - y^2)^2"), "a consequence of the constraint rod alone");
@@ -97,10 +92,10 @@ TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
 }
 
 TEST(Compare, NamesTheMisprint) {
-  Subject s(kSleigh);
+  Published s(kSleigh);
   EXPECT_EQ(s.change("m*x'' = lambda*sin(th)"), "lambda*sin(th) -> -lambda*sin(th)");  // and not the left side, which is the same
   EXPECT_EQ(s.change("m*x'' = -lambda*cos(th)"), "-lambda*cos(th) -> -lambda*sin(th)");
-  Subject p(kPendulum);
+  Published p(kPendulum);
   EXPECT_EQ(p.change("m*y'' = 2*lambda*y + m*g"), "+ m*g -> - m*g");
   EXPECT_EQ(p.change("m*y' = 2*lambda*y - m*g"), "m*y' -> m*y''");
   EXPECT_EQ(p.change("m*y'' = 2*lambda*x - m*g"), "2*lambda*x -> 2*lambda*y");
@@ -112,7 +107,7 @@ TEST(Compare, NamesTheMisprint) {
 }
 
 TEST(Compare, TheSamePlaceInTheFile) {
-  Subject p(kPendulum);
+  Published p(kPendulum);
   const Comparison c = p.compare("m*y'' = 2*lambda*y + m*g");
   ASSERT_EQ(c.changes.size(), 1U);
   EXPECT_EQ(c.changes[0].span.line, 1U);

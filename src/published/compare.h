@@ -10,9 +10,10 @@
 #pragma once
 #include <map>
 
-#include "model/published.h"
+#include "published/equation.h"
 #include "proof/equations_of_motion.h"
 #include "proof/prove.h"
+#include "published/vocabulary.h"
 
 namespace anholon {
 
@@ -49,7 +50,7 @@ class Comparer {
   // Of left - right.
   Comparison judge(Expr published);
   // With the changes that would make it true, if it is false.
-  Comparison compare(const PublishedEquation& equation, Names& names, const Alphabet& alphabet);
+  Comparison compare(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet);
 
   EquationsOfMotion& motion(unsigned highest);
   const SymbolNames& names() const { return names_; }
@@ -77,6 +78,6 @@ unsigned order_of_motion(Expr e);
 double size_at(Expr e, PointValues& at);
 
 // Every single change of a term, and every two changes within one term, that make a false equation true.
-std::vector<Change> repairs(const PublishedEquation& equation, Names& names, const Alphabet& alphabet, Comparer& comparer);
+std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet, Comparer& comparer);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-#include "spec/equations.h"
+#include "published/subject.h"
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,8 @@ OpenModel open(const std::string& text) {
 std::vector<PublishedEquation> read(const std::string& text, const OpenModel& model) {
   Diagnostics diagnostics;
   const SourceText source{"paper.eq", text};
-  std::vector<PublishedEquation> list = read_equations(source, model, diagnostics);
+  Subject subject(model);
+  std::vector<PublishedEquation> list = subject.read(source, diagnostics);
   EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.print(source);
   return list;
 }
@@ -40,7 +41,7 @@ std::vector<PublishedEquation> read(const std::string& text, const OpenModel& mo
 std::string errors(const std::string& text, const OpenModel& model) {
   Diagnostics diagnostics;
   const SourceText source{"paper.eq", text};
-  read_equations(source, model, diagnostics);
+  Subject(model).read(source, diagnostics);
   return diagnostics.print(source);
 }
 

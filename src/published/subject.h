@@ -1,0 +1,42 @@
+// A model as published equations speak about it: its derived equations, its words, and the names that a misprint may exchange.
+#pragma once
+#include <memory>
+
+#include "published/compare.h"
+#include "published/read.h"
+#include "run/scenario.h"
+
+namespace anholon {
+
+class Subject {
+ public:
+  // `choice`: which coordinates are eliminated, near which state. What depends on it throws Failure if that is impossible.
+  explicit Subject(OpenModel open, StateChoice choice = {});
+  Subject(const Subject&) = delete;
+  Subject& operator=(const Subject&) = delete;
+
+  const Model& model() const { return *open_.model; }
+  const Mechanics& mechanics() const { return mechanics_; }
+  Vocabulary& words() { return words_; }
+  const SymbolNames& names() const { return comparer_.names(); }
+
+  std::vector<PublishedEquation> read(const SourceText& equations, Diagnostics& diagnostics) { return read_equations(equations, words_, diagnostics); }
+  // Whether the equation is true; with the changes that would make it true, if it is false.
+  Comparison compare(const PublishedEquation& equation) { return comparer_.compare(equation, words_, alphabet_); }
+  // The same without a search for changes.
+  Comparison judge(const PublishedEquation& equation) { return comparer_.judge(difference(equation)); }
+  Expr difference(const PublishedEquation& equation) { return words_.number(equation.left) - words_.number(equation.right); }
+
+ private:
+  const Elimination& elimination(bool quasi);
+
+  OpenModel open_;
+  StateChoice choice_;
+  Mechanics mechanics_;
+  std::unique_ptr<const Elimination> eliminations_[2];  // of coordinates, in quasi-velocities
+  Vocabulary words_;
+  Comparer comparer_;
+  Alphabet alphabet_;
+};
+
+}  // namespace anholon

@@ -1,0 +1,398 @@
+#include "published/vocabulary.h"
+
+#include <algorithm>
+
+#include "expr/functions.h"
+#include "mechanics/mechanics.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr long kHighestDerivative = 20;
+
+const char* const kNumbers[] = {"T_r", "S_r", "V_O", "V_omega", "h", "power_noncons", "power_constraint"};
+const char* const kColumns[] = {"Q", "QR", "QD", "Qomega", "minus_dVO", "minus_dVomega", "Gamma", "G", "inertia_term", "N"};
+const char* const kOfConstraints[] = {"phi", "f", "C", "g", "B", "mu", "lambda"};
+const char* const kFunctions[] = {"partial", "Dt", "frozen", "reduced", "star", "along"};
+
+template <std::size_t n>
+bool among(const char* const (&list)[n], const std::string& name) {
+  return std::any_of(std::begin(list), std::end(list), [&](const char* x) { return name == x; });
+}
+
+// lambda.blade.x -> {"lambda", "blade", "x"}
+std::vector<std::string> split(const std::string& path) {
+  std::vector<std::string> parts;
+  for (std::size_t from = 0; from <= path.size();) {
+    const std::size_t dot = std::min(path.find('.', from), path.size());
+    parts.push_back(path.substr(from, dot - from));
+    from = dot + 1;
+  }
+  return parts;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string path;
+  for (const std::string& p : parts) path += (path.empty() ? "" : ".") + p;
+  return path;
+}
+
+// The path of a chain of members of a name; empty if it is none.
+std::string path_of(const Syntax& s) {
+  if (s.op == Syntax::Op::name) return s.text;
+  if (s.op != Syntax::Op::member) return {};
+  const std::string inner = path_of(s.args[0]);
+  return inner.empty() ? inner : inner + "." + s.text;
+}
+
+const Formulation* form_named(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return find_formulation(name);
+}
+
+long whole_number(const Value& v, const Syntax& s) {
+  const Expr* e = std::get_if<Expr>(&v);
+  if (!e || !is_number(*e) || number_value(*e).get_den() != 1 || number_value(*e) < 0 || number_value(*e) > kHighestDerivative)
+    throw Failure(s.span, "a whole number between 0 and " + std::to_string(kHighestDerivative) + " is expected here");
+  return number_value(*e).get_num().get_si();
+}
+
+void expect(const Syntax& call, std::size_t least, std::size_t most) {
+  const std::size_t n = call.args.size();
+  if (n >= least && n <= most) return;
+  throw Failure(call.span, call.text + " takes " + std::to_string(least) + (most > least ? " or " + std::to_string(most) : std::string()) + (most == 1 ? " argument, " : " arguments, ") +
+                               std::to_string(n) + (n == 1 ? " is given" : " are given"));
+}
+
+}  // namespace
+
+Vocabulary::Vocabulary(const Mechanics& mechanics, std::shared_ptr<Names> model, EliminationOf elimination)
+    : mechanics_(mechanics), model_(std::move(model)), elimination_(std::move(elimination)) {}
+
+bool Vocabulary::is_word(const std::string& first) const {
+  if (first == "derived") return true;
+  if (first != "lambda" && declares(first)) return false;
+  return among(kColumns, first) || among(kOfConstraints, first) || form_named(first);
+}
+
+void Vocabulary::join(Syntax& s) const {
+  if (s.op == Syntax::Op::member) {
+    const Syntax* first = &s;
+    while (first->op == Syntax::Op::member) first = &first->args[0];
+    if (first->op == Syntax::Op::name && !lets_.count(first->text) && is_word(first->text)) {
+      Span span = first->span;
+      span.length = static_cast<std::uint32_t>(s.end - s.offset);
+      s = Syntax{Syntax::Op::name, path_of(s), {}, span, s.offset, s.end, {}};
+      return;
+    }
+  }
+  for (Syntax& a : s.args) join(a);
+}
+
+void Vocabulary::let(const std::string& name, Syntax value, Span span) {
+  if (!is_identifier(name)) throw Failure(span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+  if (lets_.count(name)) throw Failure(span, "'" + name + "' is already defined in this file");
+  if (declares(name)) throw Failure(span, "'" + name + "' is a name of the model");
+  static const char* const reserved[] = {"t", "pi", "ex", "ey", "ez", "inertial", "here", "let", "derived"};
+  if (among(reserved, name) || among(kNumbers, name) || is_word(name) || among(kFunctions, name))
+    throw Failure(span, "the name '" + name + "' has a meaning in equations", "choose another name for the definition");
+  Value v = evaluate(value, *this);
+  lets_.emplace(name, Let{std::move(value), std::move(v)});
+}
+
+Expr Vocabulary::finished(Expr e) {
+  if (used_quasi_) e = elimination_(true).in_coordinates({e})[0];
+  return put_masses(*mechanics_.model, e);
+}
+
+Expr Vocabulary::number(const Syntax& s) { return finished(evaluate_number(s, *this)); }
+
+Value Vocabulary::value(const Syntax& s) {
+  const Value v = as_point(evaluate(s, *this), *this, s.span);
+  if (v.index() > 1) throw Failure(s.span, std::string("a side of an equation is a number or a vector, this is ") + type_name(v), body_hint(v, *this));
+  return each(v, s.span, [this](Expr e) { return finished(e); });
+}
+
+Value Vocabulary::each(const Value& v, Span span, const std::function<Expr(Expr)>& f) const {
+  if (const Expr* e = std::get_if<Expr>(&v)) return f(*e);
+  const Vector* a = std::get_if<Vector>(&v);
+  if (!a) throw Failure(span, std::string("a number or a vector is expected here, this is ") + type_name(v));
+  const Expr x = f(a->x), y = f(a->y), z = f(a->z);
+  return Vector{x, y, z};
+}
+
+Expr Vocabulary::in_time(Expr e) { return put_masses(*mechanics_.model, e); }
+
+Expr Vocabulary::with_frozen_masses(Expr e) const {
+  std::unordered_map<NodeId, Expr> frozen;
+  const std::vector<VaryingMass>& masses = mechanics_.model->masses;
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    if (!is_number(masses[i].value)) frozen.emplace(masses[i].value.id, mechanics_.graph().mass(static_cast<std::uint32_t>(i)));
+  return frozen.empty() ? e : replace_nodes({&e, 1}, frozen)[0];
+}
+
+// ---- names -------------------------------------------------------------------------------------
+
+std::vector<std::string> Vocabulary::functions() const {
+  std::vector<std::string> list = model_->functions();
+  list.insert(list.end(), std::begin(kFunctions), std::end(kFunctions));
+  return list;
+}
+
+Value Vocabulary::name(const std::string& name, Span span) {
+  if (const auto it = lets_.find(name); it != lets_.end()) return it->second.value;
+  if (declares(name)) return model_->name(name, span);
+  std::vector<std::string> path = split(name);
+  if (path[0] == "derived" && path.size() > 1) path.erase(path.begin());
+  const std::string first = path[0];
+  path.erase(path.begin());
+  if (const std::optional<Value> v = word(first, path, span)) return *v;
+  return model_->name(name, span);
+}
+
+std::size_t Vocabulary::coordinate(const std::string& name, Span span) const {
+  const std::vector<Coordinate>& list = mechanics_.model->coordinates;
+  std::vector<std::string> known;
+  for (std::size_t a = 0; a < list.size(); ++a) {
+    if (list[a].name == name) return a;
+    known.push_back(list[a].name);
+  }
+  const std::string near = did_you_mean(name, known);
+  throw Failure(span, "there is no coordinate '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+std::size_t Vocabulary::coordinate(const Value& v, Span span) const {
+  if (const Expr* e = std::get_if<Expr>(&v)) {
+    const Node& n = mechanics_.graph().node(e->id);
+    if (n.kind == Kind::jet && n.order == 0) return n.index;
+  }
+  throw Failure(span, "a coordinate is expected here");
+}
+
+const Column* Vocabulary::column(const std::string& name) {
+  if (!among(kColumns, name)) return nullptr;
+  if (const auto it = columns_.find(name); it != columns_.end()) return &it->second;
+  const Mechanics& m = mechanics_;
+  const Column c = name == "Q" ? m.Q : name == "QR" ? m.QR : name == "QD" ? m.QD : name == "Qomega" ? m.Qomega : name == "minus_dVO" ? m.minus_dVO :
+                   name == "minus_dVomega" ? m.minus_dVomega : name == "Gamma" ? m.Gamma : name == "G" ? forces(m) : name == "N" ? m.N : lagrange_operator(m);
+  return &columns_.emplace(name, c.empty() ? Column(m.q.size(), m.graph().zero()) : c).first->second;
+}
+
+std::optional<Value> Vocabulary::word(const std::string& first, const std::vector<std::string>& rest, Span span) {
+  Graph& g = graph();
+  const std::string whole = rest.empty() ? first : first + "." + joined(rest);
+  const auto one_member = [&](const char* of) {
+    if (rest.empty()) throw Failure(span, "'" + first + "' is " + of, first + "." + mechanics_.model->coordinates[0].name);
+    return joined(rest);
+  };
+  if (among(kNumbers, first) && rest.empty()) {
+    if (first == "T_r") return mechanics_.T;
+    if (first == "S_r") return mechanics_.S;
+    if (first == "V_O") return mechanics_.V_O;
+    if (first == "V_omega") return mechanics_.V_omega;
+    const Power p = power(mechanics_);
+    return first == "h" ? p.h : first == "power_noncons" ? p.noncons : p.constraint;
+  }
+  if (const Column* c = column(first)) {
+    if (rest.empty()) return InertialName{};  // means something in along(Q, x) and Q(x) only
+    return (*c)[coordinate(joined(rest), span)];
+  }
+  if (first == "phi" || first == "mu") {
+    std::vector<std::string> known;
+    if (first == "phi") known = mechanics_.model->names.multipliers;
+    else for (const VaryingMass& m : mechanics_.model->masses) known.push_back(m.name);
+    if (known.empty()) throw Failure(span, first == "phi" ? "the model has no constraints" : "no mass of the model varies");
+    std::size_t k = 0;
+    if (rest.empty() && known.size() > 1) throw Failure(span, "there are " + std::to_string(known.size()) + " of '" + first + "'", first + "." + known[0]);
+    if (!rest.empty()) {
+      const std::string wanted = joined(rest);
+      k = static_cast<std::size_t>(std::find(known.begin(), known.end(), wanted) - known.begin());
+      const std::string near = did_you_mean(wanted, known);
+      if (k == known.size()) throw Failure(span, "there is no '" + whole + "'" + (near.empty() ? "" : "; did you mean '" + first + "." + near + "'?"), first + "." + known[0]);
+    }
+    return first == "phi" ? mechanics_.phi[k] : g.mass(static_cast<std::uint32_t>(k));
+  }
+  if (first == "f") return solved(one_member("the right side of a constraint solved for a coordinate's derivative"), span);
+  if (first == "g") {
+    const std::size_t s = coordinate(one_member("a coordinate's derivative as a function of quasi-velocities"), span);
+    used_quasi_ = true;
+    return elimination_(true).g[s];
+  }
+  if (first == "C" || first == "B") {
+    if (rest.size() != 2) throw Failure(span, "'" + first + "' has two members", first == "C" ? "C.y.x, of the dependent y by the independent x" : "B.x.u, of the coordinate x by the quasi-velocity u");
+    const Elimination& E = elimination_(first == "B");
+    const std::size_t s = coordinate(rest[0], span);
+    const auto u = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), rest[1]) - E.names.begin());
+    if (u == E.names.size()) throw Failure(span, "'" + rest[1] + "' is not among the free quantities");
+    if (first == "B") {
+      used_quasi_ = true;
+      return E.g_by_u()[s][u];
+    }
+    const auto d = static_cast<std::size_t>(std::find(E.dependent.begin(), E.dependent.end(), s) - E.dependent.begin());
+    if (d == E.dependent.size()) throw Failure(span, "'" + rest[0] + "' is an independent coordinate here", "--eliminate names the dependent coordinates");
+    return E.C()[d][u];
+  }
+  if (const Formulation* form = form_named(first)) return of_form(*form, rest, span);
+  if (rest.empty()) {
+    // A quasi-velocity, as a symbol.
+    const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
+    if (std::any_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == first; })) {
+      const Elimination& E = elimination_(true);
+      for (std::size_t k = 0; k < E.names.size(); ++k)
+        if (E.names[k] == first) {
+          used_quasi_ = true;
+          return E.u[k];
+        }
+    }
+  }
+  return std::nullopt;
+}
+
+Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>& rest, Span span) {
+  if (const std::string why = obstacle(form, mechanics_); !why.empty()) throw Failure(span, std::string("the form ") + form.name + " does not apply: " + why);
+  const bool quasi = form.unknowns == Unknowns::quasi_velocities;
+  static const Elimination nothing;
+  const Elimination& E = form.eliminates() ? elimination_(quasi) : nothing;
+  auto it = forms_.find(form.name);
+  if (it == forms_.end()) it = forms_.emplace(form.name, form.equations(mechanics_, E)).first;
+  const Equations& e = it->second;
+  std::vector<std::string> known;
+  if (e.left.size() == mechanics_.q.size())
+    for (const Coordinate& c : mechanics_.model->coordinates) known.push_back(c.name);
+  else known = E.names;
+  std::vector<std::string> path = rest;
+  const bool left = !path.empty() && path[0] == "left" && path.size() > 1, right = !path.empty() && path[0] == "right" && path.size() > 1;
+  if (left || right) path.erase(path.begin());
+  const std::string wanted = joined(path);
+  const auto k = static_cast<std::size_t>(std::find(known.begin(), known.end(), wanted) - known.begin());
+  if (k == known.size()) {
+    std::string list;
+    for (const std::string& n : known) list += (list.empty() ? "" : ", ") + n;
+    throw Failure(span, "the form " + std::string(form.name) + " has no equation '" + wanted + "'", "its equations are " + list);
+  }
+  if (quasi) used_quasi_ = true;
+  return left ? e.left[k] : right ? e.right[k] : e.left[k] - e.right[k];
+}
+
+// Where the constraints are not solved, the derivative itself stands for its value on the manifold.
+Expr Vocabulary::solved(const std::string& y, Span span) {
+  const Elimination& E = elimination_(false);
+  const std::size_t s = coordinate(y, span);
+  if (std::find(E.dependent.begin(), E.dependent.end(), s) == E.dependent.end())
+    throw Failure(span, "'" + y + "' is an independent coordinate here: the constraints are not solved for it", "--eliminate names the dependent coordinates");
+  return E.g[s];
+}
+
+// ---- functions ---------------------------------------------------------------------------------
+
+bool Vocabulary::call(const std::string& f, const std::vector<Value>& a, const Syntax& s, Value& result) {
+  if (model_->call(f, a, s, result)) return true;
+  if (const Column* c = declares(f) ? nullptr : column(f)) {
+    expect(s, 1, 1);
+    result = (*c)[coordinate(a[0], s.args[0].span)];
+    return true;
+  }
+  if (!among(kFunctions, f)) return false;
+  if (f == "partial") {
+    expect(s, 2, 2);
+    result = partial_of(s, a[0], a[1]);
+  } else if (f == "Dt") {
+    expect(s, 1, 2);
+    const auto times = static_cast<unsigned>(a.size() > 1 ? whole_number(a[1], s.args[1]) : 1);
+    result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return total_derivative(with_frozen_masses(e), times); });
+  } else if (f == "frozen") {
+    expect(s, 1, 1);
+    result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return with_frozen_masses(e); });
+  } else if (f == "reduced" || f == "star") {
+    expect(s, 1, 1);
+    const bool quasi = f == "star";
+    const Elimination& E = elimination_(quasi);
+    if (quasi) used_quasi_ = true;
+    result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return E.on(e); });
+  } else {
+    expect(s, 2, 2);
+    const Column* c = s.args[0].op == Syntax::Op::name ? column(s.args[0].text.substr(s.args[0].text.rfind('.') + 1)) : nullptr;
+    if (!c) throw Failure(s.args[0].span, "the name of a force is expected here", "along(Q, x), along(QR, x), …");
+    if (s.args[1].op != Syntax::Op::name) throw Failure(s.args[1].span, "an independent coordinate or a quasi-velocity is expected here");
+    result = along(*c, s.args[1].text, s.args[1].span);
+  }
+  return true;
+}
+
+Expr Vocabulary::along(const Column& c, const std::string& direction, Span span) {
+  const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
+  const bool quasi = std::any_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == direction; });
+  const Elimination& E = elimination_(quasi);
+  const auto k = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), direction) - E.names.begin());
+  if (k == E.names.size()) throw Failure(span, "'" + direction + "' is not among the free quantities", "--eliminate names the dependent coordinates");
+  if (quasi) used_quasi_ = true;
+  return E.contract(c)[k];
+}
+
+// ---- partial derivatives -----------------------------------------------------------------------
+
+// What reduced(…) or star(…) is taken of, where s is that, or a definition that is that.
+const Syntax* Vocabulary::reduced_argument(const Syntax& s, bool& quasi) const {
+  if (s.op == Syntax::Op::name) {
+    const auto it = lets_.find(s.text);
+    return it == lets_.end() ? nullptr : reduced_argument(it->second.syntax, quasi);
+  }
+  if (s.op != Syntax::Op::call || (s.text != "reduced" && s.text != "star") || s.args.size() != 1) return nullptr;
+  quasi = s.text == "star";
+  return &s.args[0];
+}
+
+Value Vocabulary::partial_of(const Syntax& s, const Value& what, const Value& by) {
+  const Expr* v = std::get_if<Expr>(&by);
+  const Span at = s.args[1].span;
+  if (!v) throw Failure(at, std::string("the derivative is taken by a number, this is ") + type_name(by));
+  const Value of = as_point(what, *this, s.args[0].span);
+  bool quasi = false;
+  if (const Syntax* inner = reduced_argument(s.args[0], quasi); inner && !elimination_(quasi).solved) {
+    const Value x = as_point(evaluate(*inner, *this), *this, inner->span);
+    return each(x, s.args[0].span, [&](Expr e) { return partial_along(e, *v, quasi, at); });
+  }
+  const std::string path = s.args[0].op == Syntax::Op::name ? s.args[0].text : "";
+  if ((path.rfind("f.", 0) == 0 || path.rfind("derived.f.", 0) == 0) && !elimination_(false).solved)
+    return each(of, s.args[0].span, [&](Expr e) { return partial_along(e, *v, false, at); });
+  return each(of, s.args[0].span, [&](Expr e) { return partial_by(e, *v, at); });
+}
+
+Expr Vocabulary::partial_by(Expr e, Expr by, Span span) {
+  const Graph& g = graph();
+  switch (g.node(by.id).kind) {
+    case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
+      return partial(e, by);
+    case Kind::time: {
+      // Functions of time alone vary with it.
+      Expr rate = partial(e, by);
+      for (NodeId id : symbols({&e, 1}))
+        if (g.node(id).kind == Kind::given) rate = rate + partial(e, {e.graph, id}) * total_derivative(Expr{e.graph, id});
+      return rate;
+    }
+    default:
+      throw Failure(span, "a partial derivative is taken by a derivative of a coordinate, by t, or by another symbol", "partial(T_r, x'), partial(f.y, D(x, 2))");
+  }
+}
+
+// Where the constraints are not solved: by the implicit function theorem.
+Expr Vocabulary::partial_along(Expr e, Expr by, bool quasi, Span span) {
+  const Elimination& E = elimination_(quasi);
+  if (quasi) used_quasi_ = true;
+  const Node& n = graph().node(by.id);
+  const auto position = [](const auto& list, std::size_t a) { return static_cast<std::size_t>(std::find(list.begin(), list.end(), a) - list.begin()); };
+  if (quasi)
+    for (std::size_t k = 0; k < E.u.size(); ++k)
+      if (E.u[k] == by) return E.by_u(e)[k];
+  if (n.kind == Kind::jet) {
+    if (n.order < E.m) return E.by(n.order, e)[n.index];
+    const std::size_t k = position(E.independent, n.index);
+    if (!quasi && k == E.independent.size() && n.order <= E.m + 1) return graph().zero();
+    if (!quasi && n.order == E.m) return E.by_u(e)[k];
+    if (!quasi && n.order == E.m + 1) return E.by_u_rate(e)[k];
+  }
+  throw Failure(span, "this derivative of what is reduced is not known where the constraints are not solved as formulas");
+}
+
+}  // namespace anholon
