@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that `derive --format mathml` writes well-formed presentation MathML for every shipped model.
+"""Checks that `derive --format mathml` writes well-formed presentation MathML for every shipped model, and for some of them all
+forms with their steps and reactions.
 
 usage: check_mathml.py --program PROGRAM
 """
@@ -12,6 +13,7 @@ import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SPACE = "{http://www.w3.org/1998/Math/MathML}"
+WITH_EVERYTHING = ["zoo/chaplygin-sleigh", "zoo/second-order-linear", "zoo/variable-mass-pendulum", "papers/luo-zhao-example-2"]
 # Children of each element; None: any number.
 CHILDREN = {
     "math": 1, "mtable": None, "mtr": None, "mtd": None, "mrow": None, "msqrt": None, "mfrac": 2, "msup": 2, "msub": 2,
@@ -49,13 +51,17 @@ def main():
         return 1
     failed = 0
     models = sorted((ROOT / "models").glob("*/*.toml"))
-    for model in models:
-        done = subprocess.run([program, "derive", model, "--format", "mathml", "--quiet"], stdout=subprocess.PIPE, timeout=60, check=False)
-        found = problems(done.stdout) + ([f"exit code {done.returncode}"] if done.returncode else [])
-        for problem in found:
-            print(f"{model.relative_to(ROOT)}: {problem}")
+    cases = [(model, []) for model in models]
+    cases += [(ROOT / "models" / f"{name}.toml", ["--form", "all", "--steps", "--reactions"]) for name in WITH_EVERYTHING]
+    for model, options in cases:
+        done = subprocess.run([program, "derive", model, "--format", "mathml", "--quiet", *options], stdout=subprocess.PIPE, timeout=120, check=False)
+        formulas = [text + b"</math>" for text in done.stdout.split(b"</math>\n") if text]
+        found = [problem for formula in formulas for problem in problems(formula)]
+        found += [f"exit code {done.returncode}"] if done.returncode else [] if formulas else ["no formulas"]
+        for problem in dict.fromkeys(found):
+            print(f"{' '.join([str(model.relative_to(ROOT)), *options])}: {problem}")
         failed += bool(found)
-    print(f"{len(models)} models, {failed} failed")
+    print(f"{len(cases)} cases, {failed} failed")
     return 1 if failed or not models else 0
 
 

@@ -34,6 +34,7 @@ struct Options {
   int digits = 16;
   int proof_digits = 308;
   int order = 0;
+  int m = 0;  // of the forms of order m; 0: not asked for
   int points = 6;
   unsigned long long seed = 0;
   std::vector<std::string> files;
@@ -43,7 +44,7 @@ struct Options {
   bool dark = false;
   bool log_axis = false, each = false, together = false, equal = false;
   bool check_only = false, to_stdout = false, schema = false, markdown = false;
-  bool json = false, quiet = false, steps = false, csv = false;
+  bool json = false, quiet = false, steps = false, reactions = false, csv = false;
 };
 
 int check(const Options& o);

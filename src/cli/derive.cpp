@@ -8,6 +8,7 @@
 #include "program/emit.h"
 #include "report/equations.h"
 #include "result/file.h"
+#include "run/eliminate.h"
 #include "run/inputs.h"
 
 namespace anholon::cli {
@@ -41,6 +42,14 @@ std::optional<Diagnostic> not_written(const Model& model, const Mechanics& m) {
                         "anholon simulate integrates it; programs are written for orders 0 and 1, and 2 where it is linear in the accelerations"};
   }
   return std::nullopt;
+}
+
+Elimination pivots_of(const Reader& in, const Mechanics& m, const StateChoice& choice) {
+  try {
+    return elimination_of_reactions(m, choice.overrides, choice.eliminate);
+  } catch (const Failure& e) {
+    throw UsageError{print(e.diagnostic, in.source)};
+  }
 }
 
 // The motion as a program in C or Python.
@@ -97,10 +106,16 @@ int derive(const Options& asked) {
   const bool program = o.format == "c" || o.format == "python";
   if (all && (program || !o.show.empty()))
     throw UsageError{"error: --form all goes with text, latex, mathml and json\nhint: name one form\n"};
+  if ((o.m || o.reactions) && (program || !o.show.empty()))
+    throw UsageError{std::string("error: ") + (o.m ? "--m" : "--reactions") + " goes with text, latex, mathml and json\nhint: a program and the stages of the way are those of a motion\n"};
+  const auto order = static_cast<unsigned>(o.m);
   std::vector<const Formulation*> wanted;
   for (const Formulation* f : formulations())
-    if (all && obstacle(*f, m).empty()) wanted.push_back(f);
+    if (all && obstacle(*f, m).empty() && (!order || order_obstacle(*f, m, order).empty())) wanted.push_back(f);
   if (!all) wanted.push_back(&form(o, model, &m));
+  if (!all && order) must_have_order(*wanted[0], m, order);
+  if (!all && o.reactions && wanted[0]->unknowns == Unknowns::variational)
+    throw UsageError{"error: --reactions: the multipliers of the form '" + std::string(wanted[0]->name) + "' are not those of ideal reactions\nhint: name another form, or none for Routh's equations\n"};
   if (!o.show.empty()) {
     Scenario s;
     ready(in, *wanted[0], state_choice(o, model), s);
@@ -113,9 +128,18 @@ int derive(const Options& asked) {
   std::vector<Derivation> list;
   Arranger arranger(o.expand);
   std::map<Unknowns, Elimination> eliminations;
+  std::optional<Elimination> pivots;  // of the reactions in forms with multipliers
+  const StateChoice choice = state_choice(o, model);
   for (const Formulation* f : wanted) {
-    if (!eliminations.count(f->unknowns)) eliminations.emplace(f->unknowns, elimination(in, m, *f, state_choice(o, model)));
-    list.push_back(derivation(m, *f, eliminations.at(f->unknowns), arranger, o.steps));
+    if (!eliminations.count(f->unknowns)) eliminations.emplace(f->unknowns, elimination(in, m, *f, choice, order));
+    const Elimination& e = eliminations.at(f->unknowns);
+    const Elimination* of_reactions = nullptr;
+    if (o.reactions && f->eliminates()) of_reactions = &e;
+    if (o.reactions && f->unknowns == Unknowns::multipliers) {
+      if (!pivots) pivots = pivots_of(in, m, choice);
+      of_reactions = &*pivots;
+    }
+    list.push_back(derivation(m, *f, e, arranger, o.steps, of_reactions));
   }
   const std::string text = o.json || o.format == "json" ? as_json(list, all) : o.format == "latex" ? as_latex(list) : o.format == "mathml" ? as_mathml(list) : as_text(list);
   deliver(o, text);

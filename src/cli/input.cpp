@@ -231,20 +231,30 @@ Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice,
   }
 }
 
-Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& f, const StateChoice& choice) {
+void must_have_order(const Formulation& f, const Mechanics& m, unsigned order) {
+  const std::string why = order_obstacle(f, m, order);
+  if (why.empty()) return;
+  std::string list;
+  for (const Formulation* k : formulations())
+    if (obstacle(*k, m).empty() && order_obstacle(*k, m, order).empty()) list += (list.empty() ? "" : ", ") + std::string(k->name);
+  throw UsageError{"error: --m " + std::to_string(order) + ": the form '" + std::string(f.name) + "' does not have this order: " + why + "\nhint: " +
+                   (list.empty() ? "no form has it" : "these have it: " + list) + "\n"};
+}
+
+Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& f, const StateChoice& choice, unsigned order) {
   try {
-    return elimination_for(m, f.unknowns, choice.overrides, choice.eliminate);
+    return elimination_for(m, f.unknowns, choice.overrides, choice.eliminate, true, order);
   } catch (const Failure& e) {
     throw UsageError{print(e.diagnostic, in.source)};
   }
 }
 
-std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice) {
+std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice, unsigned order) {
   try {
     std::vector<Eliminations> list;
     for (const bool solve : {true, false})
-      list.push_back({elimination_for(m, Unknowns::coordinates, choice.overrides, choice.eliminate, solve),
-                      elimination_for(m, Unknowns::quasi_velocities, choice.overrides, choice.eliminate, solve)});
+      list.push_back({elimination_for(m, Unknowns::coordinates, choice.overrides, choice.eliminate, solve, order),
+                      elimination_for(m, Unknowns::quasi_velocities, choice.overrides, choice.eliminate, solve, order)});
     return list;
   } catch (const Failure& e) {
     throw UsageError{print(e.diagnostic, in.source)};

@@ -114,18 +114,28 @@ int run(int argc, char** argv) {
     c->add_option("--show", o.show, "print one stage instead: mechanics, system, structure, program; check: also cost")->type_name("STAGE");
   };
 
+  const auto order_m = [&](CLI::App* c) {
+    c->add_option("--m", o.m, "the order m of the forms that have one, 1 to " + std::to_string(kHighestM) +
+                                  ": constraints of lower order are\nlifted to it (default: the highest order of the constraints, 1 at least)")
+        ->type_name("M")->check(CLI::Range(1, static_cast<int>(kHighestM)));
+  };
+
   CLI::App* check_command = model_command("check", "classify the constraints, show structure and initial data", cli::check,
                                           "Example: anholon check models/zoo/disc.toml");
   parameters(check_command), state(check_command), form_option(check_command);
 
   CLI::App* derive_command = model_command("derive", "print the equations of motion", cli::derive,
-                                           "Example: anholon derive disc --format latex");
+                                           "Examples: anholon derive disc --format latex\n"
+                                           "          anholon derive luo-zhao-example-2 --reactions\n"
+                                           "          anholon derive chaplygin-sleigh --form nielsen-reduced --m 3 --steps");
   parameters(derive_command), form_option(derive_command);
   derive_command->add_option("--format", o.format, "text, latex, mathml or json; c (C99) or python (NumPy): a program that computes the motion's right side\n(default: by the end of FILE, else text)")->type_name("FORMAT")->each([&o](const std::string&) { o.format_given = true; });
   derive_command->add_option("-o,--output", o.output, "FILE.txt, FILE.tex, FILE.html, FILE.json, FILE.c or FILE.py (default: the standard output)")->type_name("FILE");
   derive_command->add_option("--expand", o.expand, "auto or paper (grouped), none, full (written out), parts (named, for many coordinates)")->type_name("HOW");
 
-  derive_command->add_flag("--steps", o.steps, "show T, S, forces, constraints and the elimination on the way");
+  derive_command->add_flag("--steps", o.steps, "show the forces, constraints, the elimination and the quantities of the form on the way");
+  derive_command->add_flag("--reactions", o.reactions, "show multipliers, generalized reactions and the reactions on each body as formulas, too");
+  order_m(derive_command);
 
   CLI::App* evaluate_command = model_command("evaluate", "all forces, accelerations, multipliers, reactions at one state", cli::evaluate,
                                              "Example: anholon evaluate disc --q theta=1 --qdot theta=0.1 --json");
@@ -237,6 +247,7 @@ int run(int argc, char** argv) {
                                           "Example: anholon prove luo-zhao-example-2 -o proof.json && anholon verify proof.json");
   prove_command->add_option("--forms", o.forms, "only these forms: routh,chaplygin (default: all that apply)")->type_name("NAME,…")->allow_extra_args(false);
   prove_command->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers (default: chosen)")->type_name("NAME,…")->allow_extra_args(false);
+  order_m(prove_command);
   prove_command->add_option("--digits", o.proof_digits, "of the enclosures that tell a difference from zero, at most (default 308)")->type_name("N")->check(CLI::Range(20, 20000));
   prove_command->add_option("-o,--output", o.output, "write a certificate")->type_name("FILE");
   CLI::App* compare_command = model_command("compare", "published equations against the derived ones: proved, refuted, or unknown", cli::compare,

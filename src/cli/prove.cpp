@@ -17,9 +17,10 @@ namespace {
 
 std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& m) {
   std::vector<const Formulation*> forms;
+  const auto order = static_cast<unsigned>(o.m);  // forms that do not depend on it are compared as they are
   if (o.forms.empty()) {
     for (const Formulation* f : formulations())
-      if (obstacle(*f, m).empty()) forms.push_back(f);
+      if (obstacle(*f, m).empty() && (!order || f->highest_m == 0 || order_obstacle(*f, m, order).empty())) forms.push_back(f);
     return forms;
   }
   for (const std::string& name : split(o.forms)) {
@@ -27,8 +28,15 @@ std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& 
     one.form = name;
     one.form_given = true;
     forms.push_back(&form(one, *m.model, &m));
+    if (order && forms.back()->highest_m) must_have_order(*forms.back(), m, order);
   }
   return forms;
+}
+
+// The points at which forms are told apart lie where all constraints hold, lifted to order m; so they must be, whatever the forms.
+void must_lift(const Mechanics& m, unsigned order) {
+  for (const Formulation* f : formulations())
+    if (f->eliminates() && f->highest_m == kHighestM && obstacle(*f, m).empty()) must_have_order(*f, m, order);
 }
 
 // One line of cells: = proved, X refuted, ? unknown.
@@ -107,8 +115,9 @@ int prove(const Options& o) {
   const Model& model = *in.model;
   if (!o.output.empty()) must_be_written(obstacle_to_writing(o.output));
   const Mechanics m = mechanics(model);
+  if (o.m) must_lift(m, static_cast<unsigned>(o.m));
   const std::vector<const Formulation*> forms = wanted_forms(o, m);
-  const std::vector<Eliminations> eliminations = eliminations_of(in, m, state_choice(o, model));
+  const std::vector<Eliminations> eliminations = eliminations_of(in, m, state_choice(o, model), static_cast<unsigned>(o.m));
   ProofOptions options;
   options.digits = o.proof_digits;
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;

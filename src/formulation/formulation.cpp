@@ -12,6 +12,8 @@ unsigned highest_order(const Mechanics& M) {
   return static_cast<unsigned>(m);
 }
 
+unsigned order_of(const Mechanics& M, const Elimination& E) { return E.asked ? E.asked : highest_order(M); }
+
 Expr T(const Mechanics& M, unsigned k) { return total_derivative(M.T, k); }
 
 // Operands are made one after the other: nodes then have the same order with every compiler.
@@ -51,6 +53,19 @@ std::string obstacle(const Formulation& form, const Mechanics& M) {
         return "the constraint '" + c.name + "' is kept by the input '" + M.model->controls[*c.by].name +
                "', not by an ideal reaction; this form eliminates ideal reactions";
   return form.obstacle(M);
+}
+
+std::string order_obstacle(const Formulation& form, const Mechanics& M, unsigned m) {
+  const auto is_of_order = [](int order) { return "is of order " + std::to_string(order) + ": it is lifted to a higher order, never to a lower one"; };
+  if (form.highest_m == 0) return "its equations do not depend on an order";
+  if (m > form.highest_m) return "its equations are of order " + std::to_string(form.highest_m) + (form.highest_m > 1 ? " at most" : "");
+  if (!form.eliminates()) return {};
+  for (std::size_t r = 0; r < M.order.size(); ++r)
+    if (M.order[r] > static_cast<int>(m)) return "the constraint '" + M.model->constraints[r].name + "' " + is_of_order(M.order[r]);
+  if (form.unknowns == Unknowns::quasi_velocities)
+    for (const QuasiVelocity& u : M.model->quasi)
+      if (u.order > static_cast<int>(m)) return "the quasi-velocity '" + u.name + "' " + is_of_order(u.order);
+  return {};
 }
 
 const Formulation* find_formulation(const std::string& name) {

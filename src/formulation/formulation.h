@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mechanics/elimination.h"
+#include "formulation/quantities.h"
 
 namespace anholon {
 
@@ -22,6 +22,9 @@ enum class Unknowns : std::uint8_t {
   variational,        // n equations in q and multipliers of another mechanics
 };
 
+// No order m of a form is higher: equations of order m hold T^(m), which grows with every derivative.
+inline constexpr unsigned kHighestM = 12;
+
 struct Formulation {
   const char* name;      // as --form accepts it
   const char* title;
@@ -31,6 +34,10 @@ struct Formulation {
   // Empty if the form applies to the model, else the reason why it does not.
   std::string (*obstacle)(const Mechanics&);
   Equations (*equations)(const Mechanics&, const Elimination&);
+  // What they are made of, for who reads the way to them; none: nothing is listed.
+  Quantities (*quantities)(const Mechanics&, const Elimination&) = nullptr;
+  // The highest order m in which the equations can be asked for; 0: they do not depend on an order.
+  unsigned highest_m = 0;
 
   bool eliminates() const { return unknowns == Unknowns::coordinates || unknowns == Unknowns::quasi_velocities; }
 };
@@ -44,9 +51,10 @@ inline constexpr const char* kMisevicRusov = "third paper on Mišević–Rusov e
 //
 // The given and the inertial forces and the reactions sum lambda dphi/dq^(m)  [L 2.7], right side
 Column right_side(const Mechanics& M);
-// The highest order of the constraints, at least 1: the m of the forms of order m. A constraint of
-// lower order may be lifted to it without a change of N.
+// The highest order of the constraints, at least 1. A constraint of lower order may be lifted to it without a change of N.
 unsigned highest_order(const Mechanics& M);
+// The m of the forms of order m with multipliers: the one asked for, else the highest order of the constraints.
+unsigned order_of(const Mechanics& M, const Elimination& E);
 // T^(k) = D^k T/Dt^k
 Expr T(const Mechanics& M, unsigned k);
 // D/Dt dT/dq' - dT/dq, of Lagrange
@@ -66,6 +74,10 @@ std::string first_order_only(const Mechanics& M);
 // Why a form does not apply to a model: its own reason, or that a constraint is kept by an input, which no elimination of ideal
 // reactions knows. Empty if it applies.
 std::string obstacle(const Formulation& form, const Mechanics& M);
+
+// Why a form that applies does not do so with this order m. Empty if it does. Constraints and quasi-velocities of lower order are
+// lifted to m; the equations of forms with multipliers hold for every m, those of the others from the highest order on.
+std::string order_obstacle(const Formulation& form, const Mechanics& M, unsigned m);
 
 // All forms, sorted by name; made by the build from the files in forms/.
 const std::vector<const Formulation*>& formulations();

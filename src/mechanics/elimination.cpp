@@ -148,6 +148,8 @@ Elimination::Elimination(const Mechanics& M, const EliminationChoice& choice, st
   const Model& model = *M.model;
   for (std::size_t r : constraints) m = std::max(m, static_cast<unsigned>(M.order[r]));
   for (const QuasiVelocity& q : choice.quasi) m = std::max(m, static_cast<unsigned>(q.order));
+  ANHOLON_ASSERT(choice.m == 0 || choice.m >= m);  // constraints are lifted, never lowered
+  if (choice.m) m = asked = choice.m;
   top_ = jets(model, m);
   next_ = jets(model, m + 1);
   std::sort(dependent.begin(), dependent.end());
@@ -163,6 +165,12 @@ Elimination::Elimination(const Mechanics& M, const EliminationChoice& choice, st
   finish();
 }
 
+Elimination Elimination::of_order(unsigned asked) {
+  Elimination e;
+  if (asked) e.m = e.asked = asked;
+  return e;
+}
+
 void Elimination::by_coordinates(bool solve) {
   Graph& gr = mechanics_->graph();
   const std::size_t n = top_.size(), s = dependent.size();
@@ -170,6 +178,7 @@ void Elimination::by_coordinates(bool solve) {
   u_rate_ = u_rate_value_ = I(next_);
   for (std::size_t a : independent)
     names.push_back(mechanics_->model->coordinates[a].name);
+  orders.assign(names.size(), m);
   g = top_;
   // Linear in q_D^(m): the coefficients do not hold it.
   solved = solve;
@@ -209,6 +218,7 @@ void Elimination::by_quasi_velocities(const std::vector<QuasiVelocity>& list, bo
     symbol_rates.push_back(gr.quasi(index, lift + 1));
     u_value_.push_back(total_derivative(list[a].value, lift));
     names.push_back(list[a].name);
+    orders.push_back(lift);
   }
   u_rate_value_ = total_derivative(u_value_);
   w = u_value_;

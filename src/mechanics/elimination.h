@@ -1,6 +1,6 @@
 // The constraints solved for highest derivatives (theory: elimination).
 //
-// All constraints are lifted to one order m (N does not change). On their manifold the highest derivatives are functions of
+// All constraints are lifted to one order m, the highest among them or a higher one that was asked for (N does not change). On their manifold the highest derivatives are functions of
 // the lower ones and of n - s free quantities u:
 //
 //   q^(m) = g(q, …, q^(m-1), u, t)
@@ -39,19 +39,24 @@ struct EliminationChoice {
   bool by_quasi = false;                 // u are quasi-velocities, n - s of them; else u = q_I^(m)
   std::vector<QuasiVelocity> quasi;
   bool solve = true;                     // where the constraints can be solved
+  unsigned m = 0;                        // the common order asked for; 0: the highest of the constraints and quasi-velocities
 };
 
 class Elimination {
  public:
   Elimination() = default;  // of nothing
+  // Of nothing, for a form with multipliers of the order that was asked for.
+  static Elimination of_order(unsigned asked);
   // `at`: values near the state, by which pivots are chosen.
   Elimination(const Mechanics& mechanics, const EliminationChoice& choice, std::shared_ptr<PointValues> at);
 
   unsigned m = 1;                         // common order of the lifted constraints, at least 1
+  unsigned asked = 0;                     // m, if it was asked for
   std::vector<std::size_t> constraints, dependent, independent;
   Column phi;                             // lifted constraints, masses put in
   Rows Phi_D, Phi_D_inverse;              // dphi/dq_D^(m), s x s
-  std::vector<std::string> names;         // of u
+  std::vector<std::string> names;         // of u: coordinates or quasi-velocities
+  std::vector<unsigned> orders;           // u is the derivative of this order of what has the name
   bool solved = false;                    // g is known as a formula
   bool quasi = false;
 

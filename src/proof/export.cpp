@@ -101,6 +101,7 @@ void hypotheses(const Mechanics& M, const Proof& proof, const Eliminations& elim
   const Model& model = *M.model;
   const Elimination& e = eliminations.coordinates;
   c.hypotheses.push_back("T, the forces and the constraints are those of the model; masses are frozen symbols in every derivative of T and S");
+  if (e.asked) c.hypotheses.push_back("the forms of order m are taken with m = " + std::to_string(e.asked));
   if (e.constraints.empty()) {
     c.hypotheses.push_back("there are no constraints");
     return;

@@ -1,4 +1,4 @@
-// The equations of a form as they are printed: arranged, named, with the steps that lead to them.
+// The equations of a form as they are printed: arranged, named, with the steps that lead to them and the reactions that follow.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,16 +9,19 @@
 namespace anholon {
 
 struct Line {
-  std::string name;             // "x", "blade_edge", "T"
+  std::string name;             // "x", "blade_edge", "d T/d x'"
   std::optional<Expr> left;     // none: the name itself is the left side
   Expr right;
+  std::string latex = {}, mathml = {};  // the name in these formats; empty: as text
 };
+using Section = std::pair<std::string, std::vector<Line>>;  // heading, lines
 
 struct Derivation {
   const Formulation* form = nullptr;
   const Model* model = nullptr;
+  unsigned m = 0;               // the order that was asked for; 0: none was
   SymbolNames names;            // masses, quasi-velocities under their own names
-  std::vector<std::pair<std::string, std::vector<Line>>> steps;  // heading, lines
+  std::vector<Section> steps, reactions;
   std::vector<Line> equations, constraints;
   std::vector<Expr> parts;      // named in `names`, where the equations stand in parts
 };
@@ -37,7 +40,13 @@ class Arranger {
   std::unordered_map<NodeId, Expr> known_, of_written_out_;
 };
 
-Derivation derivation(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger, bool steps);
+// `of_reactions`: an elimination of the ideal constraints by coordinates, if the reactions are wanted; for a form without
+// multipliers its own.
+Derivation derivation(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger, bool steps,
+                      const Elimination* of_reactions = nullptr);
+
+// Lines of steps for who reads them: of one family those that vanish stand together, "Q.x = Q.y" = 0.
+std::vector<Line> joined(const std::vector<Line>& lines);
 
 // One derivation after the other. JSON: an object, or with `list` {"forms": [objects]}.
 std::string as_text(const std::vector<Derivation>& list);

@@ -220,7 +220,7 @@ class Writer {
     for (std::size_t k = 0; k < list.size(); ++k)
       out += zero ? equation(user(list[k].name), wrapping_math(a.mathml[k]), math("<mn>0</mn>"), a.latex[k] + " = 0", a.text[k] + " = 0")
              : list[k].left ? equation(user(list[k].name), wrapping_math(a.mathml[k]), wrapping_math(b.mathml[k]), a.latex[k] + " = " + b.latex[k], a.text[k] + " = " + b.text[k])
-                            : equation(user(list[k].name), math("<mtext>" + markup_escape(list[k].name) + "</mtext>"), wrapping_math(b.mathml[k]), b.latex[k], list[k].name + " = " + b.text[k]);
+                            : equation(user(list[k].name), math(list[k].mathml.empty() ? "<mtext>" + markup_escape(list[k].name) + "</mtext>" : list[k].mathml), wrapping_math(b.mathml[k]), b.latex[k], list[k].name + " = " + b.text[k]);
     return out;
   }
 
@@ -261,7 +261,7 @@ class Writer {
       if (!d.constraints.empty()) out += "<h4>with the constraints</h4>\n" + lines(d, d.constraints, true);
       out += parts(d);
       for (const auto& [heading, list] : d.steps)
-        if (!list.empty()) out += "<details><summary>" + user(sentence(heading)) + "</summary>\n" + lines(d, list, false) + "</details>\n";
+        if (!list.empty()) out += "<details><summary>" + user(sentence(heading)) + "</summary>\n" + lines(d, joined(list), false) + "</details>\n";
       out += "</article>\n";
     }
     if (!p_.equations.empty() && !model_.masses.empty()) out += "<article class=\"form\"><h4>Masses</h4>\n" + masses(p_.equations[0]) + "</article>\n";

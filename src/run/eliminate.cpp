@@ -151,9 +151,9 @@ EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::
   return choice;
 }
 
-Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::vector<StateOverride>& overrides,
-                            const std::vector<std::size_t>& wanted, bool solve) {
-  if (unknowns != Unknowns::coordinates && unknowns != Unknowns::quasi_velocities) return {};
+// Of those constraints `all` that are independent.
+static Elimination elimination_of(const Mechanics& m, const std::vector<std::size_t>& all, Unknowns unknowns, const std::vector<StateOverride>& overrides,
+                                  const std::vector<std::size_t>& wanted, bool solve, unsigned order) {
   const Model& model = *m.model;
   Column es;
   for (const Parameter& p : model.parameters) es.push_back(p.value);
@@ -162,17 +162,33 @@ Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::ve
   if (model.unknown_functions.empty())
     if (!consistent_state(InitialProblem<double>{&m, parameters, overrides, {}}, state).ok()) state = {};
   const auto at = std::make_shared<PointValues>(values_near(model, parameters, state));
-  std::vector<std::size_t> all;
-  for (std::size_t r = 0; r < m.phi.size(); ++r) all.push_back(r);
   std::vector<std::size_t> rows = choose_rows(constraint_matrix(m, all, *at), kSingular).independent;
   if (rows.size() < all.size()) {
     // Fewer at a singular state only?
     PointValues elsewhere(arbitrary);
     rows = choose_rows(constraint_matrix(m, all, elsewhere), kSingular).independent;
   }
-  EliminationChoice choice = choose_elimination(m, rows, unknowns, wanted, *at);
+  std::vector<std::size_t> chosen;
+  for (std::size_t i : rows) chosen.push_back(all[i]);
+  EliminationChoice choice = choose_elimination(m, chosen, unknowns, wanted, *at);
   choice.solve = solve;
+  choice.m = order;
   return Elimination(m, choice, at);
+}
+
+Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::vector<StateOverride>& overrides,
+                            const std::vector<std::size_t>& wanted, bool solve, unsigned order) {
+  if (unknowns != Unknowns::coordinates && unknowns != Unknowns::quasi_velocities) return Elimination::of_order(order);
+  std::vector<std::size_t> all;
+  for (std::size_t r = 0; r < m.phi.size(); ++r) all.push_back(r);
+  return elimination_of(m, all, unknowns, overrides, wanted, solve, order);
+}
+
+Elimination elimination_of_reactions(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted) {
+  std::vector<std::size_t> ideal;
+  for (std::size_t r = 0; r < m.phi.size(); ++r)
+    if (!m.model->constraints[r].by) ideal.push_back(r);
+  return elimination_of(m, ideal, Unknowns::coordinates, overrides, wanted, true, 0);
 }
 
 }  // namespace anholon

@@ -16,7 +16,11 @@ EliminationChoice choose_elimination(const Mechanics& mechanics, const std::vect
                                      const std::vector<std::size_t>& wanted, PointValues& at);
 
 // The elimination that a form wants, for its equations alone: it does not need a consistent state, and nothing is computed.
+// `m`: the order asked for, no less than that of any constraint or quasi-velocity; 0: the highest of these.
 Elimination elimination_for(const Mechanics& mechanics, Unknowns unknowns, const std::vector<StateOverride>& overrides,
-                            const std::vector<std::size_t>& wanted, bool solve = true);
+                            const std::vector<std::size_t>& wanted, bool solve = true, unsigned m = 0);
+// One by coordinates, of the constraints that ideal reactions keep: their multipliers follow from the equations of its dependent
+// coordinates.
+Elimination elimination_of_reactions(const Mechanics& mechanics, const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted);
 
 }  // namespace anholon

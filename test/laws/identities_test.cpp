@@ -7,94 +7,23 @@
 
 #include "expr/normal.h"
 #include "run/eliminate.h"
-#include "support/generic_system.h"
-#include "support/manifold.h"
-#include "support/models.h"
+#include "support/identity.h"
 
 namespace anholon {
 namespace {
 
 constexpr double kExact = 1e-28;    // 40 digits, terms up to 1e4 in units of their largest
 constexpr double kRefuted = 1e-6;   // a mutant misses by much more
-constexpr int kPoints = 2;
 
 using test::Shape;
 using test::Speeds;
 
-struct System {
-  std::shared_ptr<const Model> model;
-  Mechanics m;
-  explicit System(std::shared_ptr<const Model> from) : model(std::move(from)), m(mechanics(*model)) {}
-  Graph& g() const { return *model->graph; }
-  Column by(unsigned order, Expr e) const { return gradient(e, jets(*model, order)); }
-};
-
-std::vector<std::shared_ptr<const System>> rheonomic() {
-  static std::vector<std::shared_ptr<const System>> systems;
-  if (systems.empty())
-    for (const char* order : {"1", "2", "3"}) systems.push_back(std::make_shared<System>(test::shipped(std::string("zoo/rheonomic-order-") + order)));
-  return systems;
-}
-
-std::shared_ptr<const System> generic(unsigned m, Shape shape, Speeds speeds = Speeds::none) {
-  static std::map<std::tuple<unsigned, Shape, Speeds>, std::shared_ptr<const System>> known;
-  std::shared_ptr<const System>& s = known[{m, shape, speeds}];
-  if (!s) s = std::make_shared<System>(test::model_of(test::generic_system(static_cast<int>(m), shape, speeds)));
-  return s;
-}
-
-// An identity says that the sum of its terms is zero.
-using Terms = std::vector<Column>;
-
-Column sum_of(const Terms& terms) {
-  Column all;
-  for (const Column& c : terms) all = all + c;
-  return all;
-}
-
-// |sum of the terms| in units of the largest of them and 1.
-double miss_at(const System& s, const Terms& terms, const test::Point& at) {
-  double largest = 1, worst = 0;
-  std::vector<Multi> total;
-  for (const Column& c : terms) {
-    const std::vector<Multi> v = test::values(put_masses(*s.model, c), at);
-    total.resize(v.size(), Multi(0));
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      total[i] += v[i];
-      largest = std::max(largest, std::abs(to_double(v[i])));
-    }
-  }
-  for (const Multi& x : total) {
-    const double miss = std::abs(to_double(x)) / largest;
-    if (!(miss <= worst)) worst = miss == miss ? miss : 1e300;
-  }
-  return worst;
-}
-
-double miss(const System& s, const Terms& terms) {
-  const PrecisionScope precision(40);
-  double worst = 0;
-  for (std::uint64_t seed = 1; seed <= kPoints; ++seed) worst = std::max(worst, miss_at(s, terms, test::random_point(*s.model, seed)));
-  return worst;
-}
-
-double miss(const System& s, const Elimination& e, Terms terms) {
-  const PrecisionScope precision(40);
-  for (Column& c : terms) c = e.in_coordinates(c);
-  double worst = 0;
-  for (std::uint64_t seed = 1; seed <= kPoints; ++seed) {
-    const std::optional<test::Point> at = test::manifold_point(*s.model, e, seed);
-    if (!at) return 1e300;
-    worst = std::max(worst, miss_at(s, terms, *at));
-  }
-  return worst;
-}
-
-bool proved(const Terms& terms) {
-  for (Expr e : sum_of(terms))
-    if (!proved_zero(e)) return false;
-  return true;
-}
+using test::generic;
+using test::miss;
+using test::proved;
+using test::rheonomic;
+using test::System;
+using test::Terms;
 
 Rational binomial(unsigned n, int k) {
   if (k < 0 || k > static_cast<int>(n)) return 0;
@@ -154,6 +83,27 @@ std::pair<Terms, Terms> places(const System& s, unsigned k, const Rational& fact
       append(all.second[1], -s.by(k, r));
     }
   return all;
+}
+
+// -2 sum m (omega x v) . dr/dq_a = -2 omega . {sum_k (sum m dr/dq_k x dr/dq_a) q_k' + sum m dr/dt x dr/dq_a}  [L 2.1], the
+// generalized Coriolis force; `with_time` keeps the last sum, `sign` turns the cross products.
+Terms coriolis(const System& s, bool with_time = true, int sign = 1) {
+  const Vector& omega = s.model->observer.spin;
+  Column bilinear(s.m.q.size(), s.g().zero());
+  for (const WeightedPoint& p : s.m.points) {
+    std::vector<Vector> by_q(s.m.q.size());
+    Vector by_t;
+    for (int i = 0; i < 3; ++i) {
+      const Column row = gradient(p.place[i], s.m.q);
+      for (std::size_t a = 0; a < row.size(); ++a) by_q[a][i] = row[a];
+      by_t[i] = partial(p.place[i], s.g().time());
+    }
+    for (std::size_t a = 0; a < bilinear.size(); ++a) {
+      for (std::size_t k = 0; k < bilinear.size(); ++k) bilinear[a] += p.weight * dot(omega, cross(by_q[k], by_q[a])) * s.m.qd[k];
+      if (with_time) bilinear[a] += p.weight * dot(omega, cross(by_t, by_q[a]));
+    }
+  }
+  return {s.m.Gamma, Rational(2 * sign) * bilinear};
 }
 
 class Jets : public testing::TestWithParam<unsigned> {  // m
@@ -217,6 +167,19 @@ TEST_P(Jets, DerivativesOfPlaces) {
     EXPECT_TRUE(proved(right.second));
     EXPECT_GT(miss(*s, places(*s, k, Rational(1, k + 2)).first), kRefuted);
   }
+}
+
+TEST(CoriolisForce, IsBilinearInVelocities) {
+  int turning = 0, moving = 0;
+  for (const std::string& name : test::shipped_models()) {
+    const System s(test::shipped(name));
+    if (is_zero(s.model->observer.spin.x) && is_zero(s.model->observer.spin.y) && is_zero(s.model->observer.spin.z)) continue;
+    EXPECT_LE(miss(s, coriolis(s)), kExact) << name;
+    turning += miss(s, coriolis(s, true, -1)) > kRefuted;
+    moving += miss(s, coriolis(s, false)) > kRefuted;
+  }
+  EXPECT_GE(turning, 2);
+  EXPECT_GE(moving, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Order, Jets, testing::Values(1U, 2U, 3U), [](const auto& p) { return "m" + std::to_string(p.param); });
@@ -328,6 +291,16 @@ TEST_P(Reduced, RateOfTheSolvedConstraints) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Case, Reduced, testing::ValuesIn(cases(false)), case_name);
+
+// Appell's equations in the reduced energy of accelerations, and their print, which has S~ itself for every m  [L 3.20, 3.21]
+TEST_P(Reduced, EnergyOfAccelerations) {
+  const Column E = lagrange_operator(s.m), contracted = e.contract(E);
+  expect(s, e, {find_formulation("appell-reduced")->equations(s.m, e).left, -contracted}, "[L 3.21]");
+  // S with q_D^(m) = f alone: q'' holds no f for m = 1, S no q^(m) for m = 3.
+  const Column literal = e.m == 1 ? e.on(e.I(gradient(s.m.S, s.m.qdd))) : e.by_u(s.m.S);
+  if (e.m == 2) expect(s, e, {literal, -contracted}, "as printed, m = 2");
+  else refute(s, e, {literal, -contracted}, "as printed, m = 1 and 3");
+}
 
 class Quasi : public Manifold {
  protected:

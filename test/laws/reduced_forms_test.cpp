@@ -6,7 +6,7 @@
 #include <set>
 
 #include "run/eliminate.h"
-#include "support/manifold.h"
+#include "support/contraction.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -19,41 +19,7 @@ struct System {
   std::shared_ptr<const Model> model;
   Mechanics m;
   explicit System(std::shared_ptr<const Model> from) : model(std::move(from)), m(mechanics(*model)) {}
-  Column put(const Column& c) const { return put_masses(*model, c); }
 };
-
-// |residual - B^T (E - G)| in units of the terms, the largest of some points; for n equations without multipliers
-// |B^T residual - …|.
-double miss(const System& s, const Elimination& e, const Column& residual) {
-  const PrecisionScope precision(40);
-  const Column a = newton_left_side(s.m) - s.put(forces(s.m)), r = s.put(e.in_coordinates(residual));
-  double worst = 0;
-  int points = 0;
-  for (std::uint64_t seed = 1; seed <= kPoints; ++seed) {
-    const std::optional<test::Point> at = test::manifold_point(*s.model, e, seed);
-    if (!at) continue;
-    ++points;
-    const Matrix<Multi> B = test::tangents(*s.model, e, *at);
-    const std::vector<Multi> av = test::values(a, *at), rv = test::values(r, *at);
-    const auto contracted = [&](const std::vector<Multi>& x, std::size_t k, double& scale) {
-      Multi sum(0);
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        sum += B(i, k) * x[i];
-        scale = std::max(scale, std::abs(to_double(B(i, k) * x[i])));
-      }
-      return sum;
-    };
-    for (std::size_t k = 0; k < B.cols; ++k) {
-      double scale = 1;
-      const Multi want = contracted(av, k, scale);
-      const Multi have = rv.size() == B.cols ? rv[k] : contracted(rv, k, scale);
-      const double off = std::abs(to_double(Multi(have - want))) / scale;
-      if (!(off <= worst)) worst = off == off ? off : 1e300;
-    }
-  }
-  EXPECT_GT(points, 0) << "no point of the manifold was found";
-  return worst;
-}
 
 class ReducedForms : public testing::TestWithParam<std::string> {};
 
@@ -66,7 +32,7 @@ TEST_P(ReducedForms, AreTheContractionOfNewtonsLaw) {
     if (!form->eliminates() || !obstacle(*form, s.m).empty() || (quick_only && !quick.count(form->name))) continue;
     const Elimination e = elimination_for(s.m, form->unknowns, {}, {});
     const Equations q = form->equations(s.m, e);
-    EXPECT_LE(miss(s, e, q.left - q.right), kExact) << form->name;
+    EXPECT_LE(test::miss_along_constraints(s.m, e, q.left - q.right, kPoints), kExact) << form->name;
   }
 }
 

@@ -12,8 +12,12 @@ static Equations equations(const Mechanics& M, const Elimination&) {
   return {gradient(M.S, M.qdd), right_side(M)};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination&) {
+  return of_appell(M);
+}
+
 extern const Formulation appell;
 const Formulation appell{"appell", "Appell's equations with multipliers", "(3.18')",
-                         kLuoZhao, Unknowns::multipliers, no_obstacle, equations};
+                         kLuoZhao, Unknowns::multipliers, no_obstacle, equations, quantities};
 
 }  // namespace anholon::forms

@@ -11,8 +11,12 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {E.contract(gradient(M.S, M.qdd)), E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  return listed({of_appell(M), forces_along(M, E)});
+}
+
 extern const Formulation appell_type;
 const Formulation appell_type{"appell-type", "Appell's equations without multipliers", "(3.19)",
-                              kLuoZhao, Unknowns::coordinates, no_obstacle, equations};
+                              kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

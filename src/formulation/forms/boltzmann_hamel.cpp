@@ -22,8 +22,31 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {first - second + third, E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  const Label star = energy("T", 0, Over::star);
+  const Labels q = jet_labels(M, 0), qd = jet_labels(M, 1);
+  Labels u = free_labels(M, E);  // all n of them
+  for (std::size_t r : E.constraints) {
+    const std::string& name = M.model->constraints[r].name;
+    u.push_back(indexed(letter("phi"), name, {name_of(*M.model, name)}));
+  }
+  const Column p_u = gradient(M.T, M.qd) * E.chi_by_u;
+  const Column momentum(p_u.begin(), p_u.begin() + static_cast<std::ptrdiff_t>(E.u.size()));
+  const Quantities momenta = named(partial(star, u), E.on(p_u));
+  Quantities list = listed({named(energy("T"), M.T), reduced(E, star, M.T), momenta, frozen_rates(momenta, E.rate(momentum))});
+  Rows u_by_q;
+  for (Expr e : E.w) u_by_q.push_back(gradient(e, M.q));
+  list = listed({list, named(partial(star, q), E.on(gradient(M.T, M.q) - p_u * u_by_q))});
+  for (std::size_t k = 0; k < E.w.size(); ++k) {
+    const Column turned = E.on(total_derivative(gradient(E.w[k], M.qd)) - u_by_q[k]);
+    for (std::size_t s = 0; s < turned.size(); ++s)
+      if (!is_zero(turned[s])) list.push_back({rate(partial(u[k], qd[s])) - partial(u[k], q[s]), turned[s]});
+  }
+  return listed({list, forces_along(M, E)});
+}
+
 extern const Formulation boltzmann_hamel;
 const Formulation boltzmann_hamel{"boltzmann-hamel", "Boltzmann–Hamel equations", "",
-                                  "Boltzmann 1902, Hamel 1904", Unknowns::quasi_velocities, first_order_only, equations};
+                                  "Boltzmann 1902, Hamel 1904", Unknowns::quasi_velocities, first_order_only, equations, quantities, 1};
 
 }  // namespace anholon::forms

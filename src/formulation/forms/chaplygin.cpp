@@ -21,8 +21,26 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {first - second - third - fourth, E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  const Expr T_before = T(M, E.m - 1), T_tilde = E.on(T_before);
+  const Label before = energy("T", E.m - 1), tilde = energy("T", E.m - 1, Over::tilde);
+  const Column p = E.by_u(T_tilde);
+  const Quantities momenta = named(partial(tilde, free_labels(M, E)), p);
+  return listed({
+      named(before, T_before),
+      named(tilde, T_tilde),
+      momenta,
+      frozen_rates(momenta, E.rate(p)),
+      named(partial(tilde, pick(jet_labels(M, E.m - 1), E.independent)), E.I(E.by(E.m - 1, T_tilde))),
+      dependent_partials(M, E, before, T_before, E.m),
+      dependent_partials(M, E, before, T_before, E.m - 1),
+      rates_of_f_by_u(M, E),
+      f_by_lower(M, E),
+      forces_along(M, E)});
+}
+
 extern const Formulation chaplygin;
 const Formulation chaplygin{"chaplygin", "Chaplygin's equations, generalized to order m", "(3.13)",
-                            kLuoZhao, Unknowns::coordinates, no_obstacle, equations};
+                            kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

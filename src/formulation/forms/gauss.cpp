@@ -22,8 +22,16 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {dS, E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  const Label tilde = energy("S", 0, Over::tilde);
+  return listed({
+      reduced(E, tilde, M.S),
+      named(partial(tilde, free_labels(M, E, E.m == 1 ? 1 : 0)), E.m == 1 ? E.by_u_rate(M.S) : E.by_u(M.S)),
+      forces_along(M, E)});
+}
+
 extern const Formulation gauss;
 const Formulation gauss{"gauss", "Gauss' principle of least compulsion", "",
-                        "Gauss 1829", Unknowns::coordinates, up_to_accelerations, equations};
+                        "Gauss 1829", Unknowns::coordinates, up_to_accelerations, equations, quantities, 2};
 
 }  // namespace anholon::forms

@@ -19,8 +19,22 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {E.contract(pullback(outputs, inertia_forces, M.qd)), E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  Column v;
+  for (const WeightedPoint& point : M.points)
+    for (int i = 0; i < 3; ++i) v.push_back(total_derivative(point.place[i]));
+  const Labels of_v = point_labels(M, letter("v"));
+  Rows by_u;  // partial velocities
+  for (Expr e : v) by_u.push_back(E.contract(gradient(e, M.qd)));
+  return listed({
+      named(of_v, v),
+      partials(of_v, free_labels(M, E), by_u),
+      named(point_labels(M, letter("a")), total_derivative(v)),
+      forces_along(M, E)});
+}
+
 extern const Formulation kane;
 const Formulation kane{"kane", "Kane's equations", "",
-                       "Kane & Levinson 1985", Unknowns::quasi_velocities, no_obstacle, equations};
+                       "Kane & Levinson 1985", Unknowns::quasi_velocities, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

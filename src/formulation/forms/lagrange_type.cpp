@@ -14,8 +14,12 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {E.on(E.I(inertia)) + E.on(E.D(inertia)) * C, E.on(E.I(G)) + E.on(E.D(G)) * C};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  return listed({of_lagrange(M), forces_along(M, E)});
+}
+
 extern const Formulation lagrange_type;
 const Formulation lagrange_type{"lagrange-type", "Lagrange's equations, multipliers eliminated", "(3.7)",
-                                kLuoZhao, Unknowns::coordinates, no_obstacle, equations};
+                                kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

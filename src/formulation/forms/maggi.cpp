@@ -11,8 +11,12 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {E.contract(lagrange_operator(M)), E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  return listed({of_lagrange(M), forces_along(M, E)});
+}
+
 extern const Formulation maggi;
 const Formulation maggi{"maggi", "Maggi's equations", "(3.9)",
-                        kLuoZhao, Unknowns::coordinates, no_obstacle, equations};
+                        kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

@@ -2,18 +2,22 @@
 //
 //   dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq = Q + QR + … + Gamma + sum lambda dphi/dq^(m)
 //
-// m is the highest order of the constraints (1 at least); T^(k) = D^k T/Dt^k with frozen masses. All
-// jets are independent; q^(m+1) drops out of the left side.
+// m is the highest order of the constraints (1 at least), or what is asked for; T^(k) = D^k T/Dt^k with
+// frozen masses. All jets are independent; q^(m+1) drops out of the left side.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M, const Elimination&) {
-  return {misevic_rusov_operator(M, highest_order(M)), right_side(M)};
+static Equations equations(const Mechanics& M, const Elimination& E) {
+  return {misevic_rusov_operator(M, order_of(M, E)), right_side(M)};
+}
+
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  return of_misevic_rusov(M, order_of(M, E));
 }
 
 extern const Formulation misevic_rusov;
 const Formulation misevic_rusov{"misevic-rusov", "Mišević–Rusov equations with multipliers", "(3.1), (3.4)",
-                                kMisevicRusov, Unknowns::multipliers, no_obstacle, equations};
+                                kMisevicRusov, Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

@@ -10,8 +10,12 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {E.contract(misevic_rusov_operator(M, E.m)), E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  return listed({of_misevic_rusov(M, E.m), forces_along(M, E)});
+}
+
 extern const Formulation misevic_rusov_maggi;
 const Formulation misevic_rusov_maggi{"misevic-rusov-maggi", "Mišević–Rusov equations of Maggi's type", "(3.7)",
-                                      kMisevicRusov, Unknowns::coordinates, no_obstacle, equations};
+                                      kMisevicRusov, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

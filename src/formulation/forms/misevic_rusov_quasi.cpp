@@ -11,8 +11,12 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {E.contract(misevic_rusov_operator(M, E.m)), E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  return listed({of_misevic_rusov(M, E.m), forces_along(M, E)});
+}
+
 extern const Formulation misevic_rusov_quasi;
 const Formulation misevic_rusov_quasi{"misevic-rusov-quasi", "Mišević–Rusov equations in quasi-coordinates", "(4.5)",
-                                      kMisevicRusov, Unknowns::quasi_velocities, no_obstacle, equations};
+                                      kMisevicRusov, Unknowns::quasi_velocities, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

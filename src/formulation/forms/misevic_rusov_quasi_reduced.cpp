@@ -18,8 +18,32 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {first - second - third - fourth, E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  const Expr T_before = T(M, E.m - 1), T_m = T(M, E.m);
+  const Label before = energy("T", E.m - 1), star = energy("T", E.m - 1, Over::star), star_m = energy("T", E.m, Over::star);
+  const Labels q_m = jet_labels(M, E.m);
+  Labels pi, pi_below;  // of the operators d/dpi and d/dpi^(m-1)
+  for (const std::string& u : E.names) {
+    pi.push_back(indexed(energy("pi"), u, {name_of(*M.model, u)}));
+    pi_below.push_back(indexed(energy("pi", E.m - 1), u, {name_of(*M.model, u)}));
+  }
+  Rows g_by_pi;
+  for (const Column& row : E.g_by(E.m - 1)) g_by_pi.push_back(E.contract(row));
+  return listed({
+      named(before, T_before),
+      reduced(E, star, T_before),
+      reduced(E, star_m, T_m),
+      named(partial(star_m, free_labels(M, E)), E.by_u(T_m)),
+      named(partial(star, pi_below), E.contract(E.by(E.m - 1, T_before))),
+      named(partial(energy("T"), pi), E.contract(gradient(M.T, M.q))),
+      named(partial(before, q_m), E.on(gradient(T_before, jets(*M.model, E.m)))),
+      partials(jet_labels(M, E.m + 1), free_labels(M, E), E.g_rate_by_u()),
+      partials(q_m, pi_below, g_by_pi),
+      forces_along(M, E)});
+}
+
 extern const Formulation misevic_rusov_quasi_reduced;
 const Formulation misevic_rusov_quasi_reduced{"misevic-rusov-quasi-reduced", "Mišević–Rusov equations in quasi-coordinates, reduced", "(4.11)",
-                                              kMisevicRusov, Unknowns::quasi_velocities, no_obstacle, equations};
+                                              kMisevicRusov, Unknowns::quasi_velocities, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

@@ -17,8 +17,26 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {first - second - third - fourth - fifth, E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  const Expr T_before = T(M, E.m - 1), T_m = T(M, E.m);
+  const Label before = energy("T", E.m - 1), tilde = energy("T", E.m - 1, Over::tilde), tilde_m = energy("T", E.m, Over::tilde);
+  const Quantities below = dependent_partials(M, E, before, T_before, E.m - 1);
+  return listed({
+      named(before, T_before),
+      reduced(E, tilde, T_before),
+      reduced(E, tilde_m, T_m),
+      named(partial(tilde_m, free_labels(M, E)), E.by_u(T_m)),
+      named(partial(tilde, pick(jet_labels(M, E.m - 1), E.independent)), E.I(E.by(E.m - 1, T_before))),
+      named(partial(energy("T"), jet_labels(M, 0)), E.on(gradient(M.T, M.q))),
+      dependent_partials(M, E, before, T_before, E.m),
+      E.m == 1 ? Quantities{} : below,
+      f_rate_by_u(M, E),
+      f_by_lower(M, E),
+      forces_along(M, E)});
+}
+
 extern const Formulation misevic_rusov_reduced;
 const Formulation misevic_rusov_reduced{"misevic-rusov-reduced", "Mišević–Rusov equations in reduced energies", "(3.16)",
-                                        kMisevicRusov, Unknowns::coordinates, no_obstacle, equations};
+                                        kMisevicRusov, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

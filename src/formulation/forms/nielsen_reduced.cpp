@@ -20,8 +20,24 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {first - second - third - fourth, E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  const Expr T_before = T(M, E.m - 1), T_m = T(M, E.m);
+  const Label before = energy("T", E.m - 1), tilde = energy("T", E.m - 1, Over::tilde), tilde_m = energy("T", E.m, Over::tilde);
+  return listed({
+      named(before, T_before),
+      reduced(E, tilde, T_before),
+      reduced(E, tilde_m, T_m),
+      named(partial(tilde_m, free_labels(M, E)), E.by_u(T_m)),
+      named(partial(tilde, pick(jet_labels(M, E.m - 1), E.independent)), E.I(E.by(E.m - 1, T_before))),
+      dependent_partials(M, E, before, T_before, E.m),
+      dependent_partials(M, E, before, T_before, E.m - 1),
+      f_rate_by_u(M, E),
+      f_by_lower(M, E),
+      forces_along(M, E)});
+}
+
 extern const Formulation nielsen_reduced;
 const Formulation nielsen_reduced{"nielsen-reduced", "Nielsen's equations in reduced energies, generalized to order m", "(3.15)",
-                                  kLuoZhao, Unknowns::coordinates, no_obstacle, equations};
+                                  kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

@@ -12,8 +12,12 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {E.contract(nielsen_operator(M, E.m)), E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  return listed({of_nielsen(M, E.m), forces_along(M, E)});
+}
+
 extern const Formulation nielsen_type;
 const Formulation nielsen_type{"nielsen-type", "Nielsen's equations of order m without multipliers", "(3.11)",
-                               kLuoZhao, Unknowns::coordinates, no_obstacle, equations};
+                               kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

@@ -33,6 +33,14 @@ static std::string linear_accelerations(const Mechanics& M) {
   return {};
 }
 
+// A q'' - b
+static Column acceleration_level(const Mechanics& M, const Elimination& E) {
+  Column level;
+  for (std::size_t r : E.constraints)
+    level.push_back(total_derivative(put_masses(*M.model, M.phi[r]), 2 - static_cast<unsigned>(M.order[r])));
+  return level;
+}
+
 static Equations equations(const Mechanics& M, const Elimination& E) {
   Graph& g = M.graph();
   const Column miss = lagrange_operator(M) - forces(M), none(M.q.size(), g.zero());
@@ -40,12 +48,9 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   for (Expr e : miss) inertia.push_back(gradient(e, M.qdd));
   const Column h = at_zero(miss, M.qdd);
   const Rows inverse_inertia = E.inverted(inertia);
-  Column acceleration_level;  // A q'' - b
-  for (std::size_t r : E.constraints)
-    acceleration_level.push_back(total_derivative(put_masses(*M.model, M.phi[r]), 2 - static_cast<unsigned>(M.order[r])));
-  const Column minus_b = at_zero(acceleration_level, M.qdd);
+  const Column level = acceleration_level(M, E), minus_b = at_zero(level, M.qdd);
   Rows A, A_inverse_inertia, normal;
-  for (Expr e : acceleration_level) A.push_back(gradient(e, M.qdd));
+  for (Expr e : level) A.push_back(gradient(e, M.qdd));
   for (const Column& row : A) A_inverse_inertia.push_back(row * inverse_inertia);
   for (const Column& left : A_inverse_inertia) {
     normal.emplace_back();
@@ -58,8 +63,20 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {lagrange_operator(M), forces(M) + (A.empty() ? none : mu * A)};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  const Column level = acceleration_level(M, E);
+  Labels names;
+  Rows A;
+  for (std::size_t k = 0; k < level.size(); ++k) {
+    const std::size_t r = E.constraints[k];
+    names.push_back(derivative_of(*M.model, "phi." + M.model->constraints[r].name, 2 - static_cast<unsigned>(M.order[r])));
+    A.push_back(gradient(level[k], M.qdd));
+  }
+  return listed({of_lagrange(M), named(names, level), partials(names, jet_labels(M, 2), A)});
+}
+
 extern const Formulation udwadia_kalaba;
 const Formulation udwadia_kalaba{"udwadia-kalaba", "Udwadia–Kalaba equations", "",
-                                 "Udwadia & Kalaba 1992", Unknowns::coordinates, linear_accelerations, equations};
+                                 "Udwadia & Kalaba 1992", Unknowns::coordinates, linear_accelerations, equations, quantities};
 
 }  // namespace anholon::forms

@@ -23,8 +23,12 @@ static Equations equations(const Mechanics& M, const Elimination&) {
   return {lagrange_operator(M), forces(M) + reaction};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination&) {
+  return of_lagrange(M);
+}
+
 extern const Formulation vakonomic;
 const Formulation vakonomic{"vakonomic", "vakonomic equations (another mechanics)", "",
-                            "Kozlov 1983", Unknowns::variational, no_obstacle, equations};
+                            "Kozlov 1983", Unknowns::variational, no_obstacle, equations, quantities};
 
 }  // namespace anholon::forms

@@ -20,8 +20,27 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {first - second - third, E.contract(forces(M))};
 }
 
+static Quantities quantities(const Mechanics& M, const Elimination& E) {
+  const Label name = letter("Theta");
+  const Expr Theta = E.on(M.T);
+  const Column p = E.by_u(Theta);
+  const Quantities momenta = named(partial(name, free_labels(M, E)), p);
+  Rows f_by_q;
+  for (std::size_t b : E.dependent) f_by_q.push_back(E.g_by(0)[b]);
+  return listed({
+      named(energy("T"), M.T),
+      named(name, Theta),
+      momenta,
+      frozen_rates(momenta, E.rate(p)),
+      named(partial(name, jet_labels(M, 0)), E.by(0, Theta)),
+      dependent_partials(M, E, energy("T"), M.T, 1),
+      rates_of_f_by_u(M, E),
+      partials(pick(jet_labels(M, 1), E.dependent), jet_labels(M, 0), f_by_q),
+      forces_along(M, E)});
+}
+
 extern const Formulation voronets;
 const Formulation voronets{"voronets", "Voronets' equations", "",
-                           "Voronets 1901", Unknowns::coordinates, first_order_only, equations};
+                           "Voronets 1901", Unknowns::coordinates, first_order_only, equations, quantities, 1};
 
 }  // namespace anholon::forms

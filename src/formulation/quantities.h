@@ -1,0 +1,64 @@
+// What the equations of a form are made of, each quantity with its name: the lines that `derive --steps` prints before them.
+//
+// A form lists what its own equation names, in the order in which it would be computed by hand. What all forms have in common is
+// listed elsewhere: the generalized forces, the constraints, and what the elimination puts in.
+#pragma once
+#include <initializer_list>
+
+#include "formulation/label.h"
+
+namespace anholon {
+
+struct Quantity {
+  Label name;
+  Expr value;
+};
+using Quantities = std::vector<Quantity>;
+
+// One after the other; they are made in this order, too.
+Quantities listed(std::initializer_list<Quantities> lists);
+
+Quantities named(const Label& name, Expr value);
+// Entry by entry, zero or not.
+Quantities named(const Labels& names, const Column& values);
+// d of/d by, those that are not zero.
+Quantities partials(const Labels& of, const Labels& by, const Rows& values);
+// The same of d/dt d of/d by.
+Quantities rates_of_partials(const Labels& of, const Labels& by, const Rows& values);
+
+// D/Dt of each, with these values.
+Quantities frozen_rates(const Quantities& of, const Column& values);
+
+// F, and its derivatives by q^(k).
+Quantities with_partials(const Mechanics& M, const Label& name, Expr F, unsigned k);
+Quantities partials_of(const Mechanics& M, const Label& name, Expr F, unsigned k);
+
+// The operators of formulation.h: T, the frozen momenta dT/dq' and their rates D/Dt, dT/dq  [L 2.7]
+Quantities of_lagrange(const Mechanics& M);
+// T^(m-1), its derivatives by q^(m) with their rates, and by q^(m-1)  [L 3.10]
+Quantities of_nielsen(const Mechanics& M, unsigned m);
+// T^(m) and T^(m-1) with their derivatives by q^(m) and q^(m-1), dT/dq  [N 3.1]
+Quantities of_misevic_rusov(const Mechanics& M, unsigned m);
+// T^(m) with its derivatives by q^(m), dT/dq  [N 5.1]
+Quantities of_mangeron_deleanu(const Mechanics& M, unsigned m);
+// S with its derivatives by q''
+Quantities of_appell(const Mechanics& M);
+
+// What the forms without multipliers share.
+//
+// F on the manifold of the constraints, under the name that it has there: T~, S*.
+Quantities reduced(const Elimination& E, const Label& name, Expr F);
+// dF/dq_b^(k) of the dependent coordinates, F not reduced.
+Quantities dependent_partials(const Mechanics& M, const Elimination& E, const Label& name, Expr F, unsigned k);
+// df_b/dq_nu^(m-1), d/dt df_b/dq_nu^(m) and df'_b/dq_nu^(m), where q_b^(m) = f and q_b^(m+1) = f'.
+Quantities f_by_lower(const Mechanics& M, const Elimination& E);
+Quantities rates_of_f_by_u(const Mechanics& M, const Elimination& E);
+Quantities f_rate_by_u(const Mechanics& M, const Elimination& E);
+// The velocities (or what f says) of all weighted points, component by component: v.NAME.x, of the axes of a body v.NAME.1.x.
+Labels point_labels(const Mechanics& M, const Label& of);
+// sum_s G_s B_sa, the forces along the constraints: G.x, G.u1
+Quantities forces_along(const Mechanics& M, const Elimination& E);
+// The same of any column of forces.
+Quantities along(const Mechanics& M, const Elimination& E, const Label& of, const Column& X);
+
+}  // namespace anholon
