@@ -28,7 +28,7 @@ Column nielsen_operator(const Mechanics& M, unsigned m) {
   return Rational(m) * total_derivative(gradient(T_before, jets(*M.model, m))) - below;
 }
 
-Column misevic_rusov_operator(const Mechanics& M, unsigned m) {
+Column micevic_rusov_operator(const Mechanics& M, unsigned m) {
   return gradient(T(M, m), jets(*M.model, m)) - gradient(T(M, m - 1), jets(*M.model, m - 1)) - gradient(M.T, M.q);
 }
 
@@ -68,7 +68,16 @@ std::string order_obstacle(const Formulation& form, const Mechanics& M, unsigned
   return {};
 }
 
+// Mićević was read as Mišević.
+constexpr std::pair<const char*, const char*> kAliases[] = {{"misevic-rusov", "micevic-rusov"},
+                                                            {"misevic-rusov-maggi", "micevic-rusov-maggi"},
+                                                            {"misevic-rusov-reduced", "micevic-rusov-reduced"},
+                                                            {"misevic-rusov-quasi", "micevic-rusov-quasi"},
+                                                            {"misevic-rusov-quasi-reduced", "micevic-rusov-quasi-reduced"}};
+
 const Formulation* find_formulation(const std::string& name) {
+  for (const auto& [alias, now] : kAliases)
+    if (name == alias) return find_formulation(now);
   for (const Formulation* f : formulations())
     if (name == f->name) return f;
   return nullptr;

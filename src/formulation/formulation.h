@@ -43,9 +43,9 @@ struct Formulation {
 };
 
 // Names of the seed papers, as every form gives its source.
-inline constexpr const char* kLuoZhao = "Luo & Zhao, variable-mass systems with constraints of arbitrary order";
-inline constexpr const char* kQiu = "Qiu, Mac-Millan equations in a noninertial frame";
-inline constexpr const char* kMisevicRusov = "third paper on Mišević–Rusov equations of higher-order systems";
+inline constexpr const char* kLuoZhao = "Luo & Zhao, Routh's Equations for General Nonholonomic Mechanical Systems of Variable Mass";
+inline constexpr const char* kQiu = "Qiu, Extended Mac-Millan's Equation";
+inline constexpr const char* kMicevicRusov = "a paper on equations of Mićević–Rusov type for nonholonomic systems of higher order";
 
 // What the forms have in common.
 //
@@ -61,8 +61,8 @@ Expr T(const Mechanics& M, unsigned k);
 Column lagrange_operator(const Mechanics& M);
 // m D/Dt dT^(m-1)/dq^(m) - dT^(m-1)/dq^(m-1), of Nielsen  [L 3.10]
 Column nielsen_operator(const Mechanics& M, unsigned m);
-// dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq, of Misevic and Rusov  [N 3.1]
-Column misevic_rusov_operator(const Mechanics& M, unsigned m);
+// dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq, of Micevic and Rusov  [N 3.1]
+Column micevic_rusov_operator(const Mechanics& M, unsigned m);
 // 1/m [dT^(m)/dq^(m) - (m+1) dT/dq]  [N 5.1], left side
 Column mangeron_deleanu_operator(const Mechanics& M, unsigned m);
 

@@ -56,7 +56,7 @@ Quantities of_nielsen(const Mechanics& M, unsigned m) {
 
 Quantities of_lagrange(const Mechanics& M) { return of_nielsen(M, 1); }
 
-Quantities of_misevic_rusov(const Mechanics& M, unsigned m) {
+Quantities of_micevic_rusov(const Mechanics& M, unsigned m) {
   const Quantities list = listed({
       with_partials(M, energy("T", m), T(M, m), m),
       with_partials(M, energy("T", m - 1), T(M, m - 1), m - 1)});

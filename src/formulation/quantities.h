@@ -38,7 +38,7 @@ Quantities of_lagrange(const Mechanics& M);
 // T^(m-1), its derivatives by q^(m) with their rates, and by q^(m-1)  [L 3.10]
 Quantities of_nielsen(const Mechanics& M, unsigned m);
 // T^(m) and T^(m-1) with their derivatives by q^(m) and q^(m-1), dT/dq  [N 3.1]
-Quantities of_misevic_rusov(const Mechanics& M, unsigned m);
+Quantities of_micevic_rusov(const Mechanics& M, unsigned m);
 // T^(m) with its derivatives by q^(m), dT/dq  [N 5.1]
 Quantities of_mangeron_deleanu(const Mechanics& M, unsigned m);
 // S with its derivatives by q''

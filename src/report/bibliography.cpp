@@ -81,7 +81,7 @@ void Bibliography::add(const std::string& entry) {
 void Bibliography::key(const std::string& key) { add(reference(key)); }
 
 void Bibliography::source(const std::string& text) {
-  for (const auto& [paper, key] : {std::pair{kLuoZhao, "L"}, {kQiu, "Q"}, {kMisevicRusov, "N"}})
+  for (const auto& [paper, key] : {std::pair{kLuoZhao, "L"}, {kQiu, "Q"}, {kMicevicRusov, "N"}})
     if (text.find(paper) != std::string::npos) return this->key(key);
   // "Laumond 1993; Bloch: Nonholonomic Mechanics and Control"
   for (std::size_t begin = 0; begin < text.size();) {

@@ -132,7 +132,7 @@ TEST(DaeExamples, Eight_AMassThatDependsOnTheAccelerationAsksForOneMoreNumber) {
 }
 
 TEST(DaeExamples, Nine_DerivativesThatCancelDoNotCount) {
-  for (const char* form : {"chaplygin", "appell-reduced", "misevic-rusov-reduced"})
+  for (const char* form : {"chaplygin", "appell-reduced", "micevic-rusov-reduced"})
     EXPECT_EQ(scenario(test::shipped("zoo/constant-acceleration"), form).structure.state_dimension, 6) << form;
 }
 

@@ -198,7 +198,7 @@ class Certificates : public testing::TestWithParam<const char*> {};
 TEST_P(Certificates, VerifyAndTamperedOnesDoNot) {
   const System& s = system_of(GetParam());
   std::vector<const Formulation*> forms;
-  for (const char* name : {"routh", "nielsen", "maggi", "chaplygin", "mac-millan", "misevic-rusov-reduced", "kane"})
+  for (const char* name : {"routh", "nielsen", "maggi", "chaplygin", "mac-millan", "micevic-rusov-reduced", "kane"})
     if (find_formulation(name)->obstacle(s.m).empty()) forms.push_back(find_formulation(name));
   Proof proof = prove(s.m, forms, s.eliminations);
   // A form with a mistake, so that there is something that differs.

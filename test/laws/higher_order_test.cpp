@@ -87,7 +87,7 @@ std::string on_the_other_branch(const std::string& name) {
 TEST(BranchThatEnds, StopsTheRunInEveryForm) {
   const auto model = test::model_of(on_the_other_branch("constant-jerk"));
   const double end = 2 * std::sqrt(1 + 0.25 + 1.81 * 1.81) / 6;
-  for (const char* form : {"routh", "chaplygin", "nielsen-reduced", "misevic-rusov-quasi-reduced", "kane"}) {
+  for (const char* form : {"routh", "chaplygin", "nielsen-reduced", "micevic-rusov-quasi-reduced", "kane"}) {
     const Motion m = run(model, *find_formulation(form), Rational(2));
     EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular) << form << ": " << m.report.outcome.message;
     EXPECT_NE(m.report.outcome.message.find("'jerk' goes to 0"), std::string::npos) << m.report.outcome.message;

@@ -53,7 +53,7 @@ Terms nielsen(const System& s, unsigned m, const Rational& factor) {
 }
 
 // dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq = D/Dt dT/dq' - dT/dq  [N 2.10]; `factor` before dT/dq on the left.
-Terms misevic_rusov(const System& s, unsigned m, const Rational& factor) {
+Terms micevic_rusov(const System& s, unsigned m, const Rational& factor) {
   return {s.by(m, total_derivative(s.m.T, m)), -s.by(m - 1, total_derivative(s.m.T, m - 1)), -(factor * s.by(0, s.m.T)),
           -total_derivative(s.by(1, s.m.T)), s.by(0, s.m.T)};
 }
@@ -137,14 +137,14 @@ TEST_P(Jets, NielsensOperator) {
   EXPECT_FALSE(proved(nielsen(*generic(1, Shape::linear), m, Rational(m + 1))));
 }
 
-TEST_P(Jets, OperatorOfMisevicAndRusov) {
+TEST_P(Jets, OperatorOfMicevicAndRusov) {
   for (const auto& s : systems()) {
-    EXPECT_LE(miss(*s, misevic_rusov(*s, m, 1)), kExact);
-    EXPECT_GT(miss(*s, misevic_rusov(*s, m, 2)), kRefuted);
+    EXPECT_LE(miss(*s, micevic_rusov(*s, m, 1)), kExact);
+    EXPECT_GT(miss(*s, micevic_rusov(*s, m, 2)), kRefuted);
   }
-  EXPECT_TRUE(proved(misevic_rusov(*generic(1, Shape::linear), m, 1)));
-  EXPECT_TRUE(proved(misevic_rusov(*rheonomic()[0], m, 1)));
-  EXPECT_FALSE(proved(misevic_rusov(*generic(1, Shape::linear), m, 2)));
+  EXPECT_TRUE(proved(micevic_rusov(*generic(1, Shape::linear), m, 1)));
+  EXPECT_TRUE(proved(micevic_rusov(*rheonomic()[0], m, 1)));
+  EXPECT_FALSE(proved(micevic_rusov(*generic(1, Shape::linear), m, 2)));
 }
 
 TEST_P(Jets, OperatorOfMangeronAndDeleanu) {

@@ -161,7 +161,7 @@ TEST_P(PutIntoTheReducedEquations, SaysTheSameWithTheForcesContracted) {  // [N 
   for (const auto shape : {test::Shape::linear, test::Shape::nonlinear}) {
     const test::System& s = *test::generic(m, shape);
     const Elimination e = elimination_for(s.m, Unknowns::coordinates, {}, {}, shape == test::Shape::linear);
-    const Column reduced = find_formulation("misevic-rusov-reduced")->equations(s.m, e).left, G = forces(s.m);
+    const Column reduced = find_formulation("micevic-rusov-reduced")->equations(s.m, e).left, G = forces(s.m);
     // With E it is the left side of [N 3.16] itself.
     test::Terms with_E = left(s, e, lagrange_operator(s.m));
     with_E.push_back(-reduced);
@@ -170,7 +170,7 @@ TEST_P(PutIntoTheReducedEquations, SaysTheSameWithTheForcesContracted) {  // [N 
     test::Terms with_G = left(s, e, G);
     with_G.push_back(-e.contract(G));
     test::Terms part = with_G, nielsen = with_G;
-    part.push_back(-(Rational(1, m) * residual("misevic-rusov-reduced", s, e)));
+    part.push_back(-(Rational(1, m) * residual("micevic-rusov-reduced", s, e)));
     EXPECT_LE(test::miss(s, e, part), kExact);
     for (Column& c : nielsen) c = Rational(m) * c;
     nielsen.push_back(-residual("nielsen-reduced", s, e));
@@ -182,7 +182,7 @@ TEST_P(PutIntoTheReducedEquations, SaysTheSameWithTheForcesContracted) {  // [N 
       EXPECT_GT(test::miss(s, e, not_equal), kRefuted);
     }
     test::Terms other = with_G;
-    other.push_back(-(Rational(1, m + 1) * residual("misevic-rusov-reduced", s, e)));
+    other.push_back(-(Rational(1, m + 1) * residual("micevic-rusov-reduced", s, e)));
     EXPECT_GT(test::miss(s, e, other), kRefuted);
   }
 }

@@ -17,6 +17,6 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
 
 extern const Formulation mangeron_deleanu;
 const Formulation mangeron_deleanu{"mangeron-deleanu", "Mangeron–Deleanu equations with multipliers", "(5.1)",
-                                   kMisevicRusov, Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
+                                   kMicevicRusov, Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

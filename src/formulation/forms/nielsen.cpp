@@ -1,4 +1,4 @@
-// Nielsen's equations, classical, with multipliers (Mangeron-Deleanu and Misevic-Rusov for m = 1):
+// Nielsen's equations, classical, with multipliers (Mangeron-Deleanu and Micevic-Rusov for m = 1):
 //
 //   dT'/dq' - 2 dT/dq = Q + QR + Qomega - d(V_O + V_omega)/dq + Gamma + sum lambda dphi/dq^(m)
 //
@@ -17,6 +17,6 @@ static Quantities quantities(const Mechanics& M, const Elimination&) {
 
 extern const Formulation nielsen;
 const Formulation nielsen{"nielsen", "Nielsen's equations with multipliers", "(5.1), m = 1",
-                          "Nielsen; third paper on Mišević–Rusov equations", Unknowns::multipliers, no_obstacle, equations, quantities};
+                          "Nielsen; a paper on equations of Mićević–Rusov type for nonholonomic systems of higher order", Unknowns::multipliers, no_obstacle, equations, quantities};
 
 }  // namespace anholon::forms

@@ -19,6 +19,6 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
 
 extern const Formulation tzenoff;
 const Formulation tzenoff{"tzenoff", "Tzénoff's equations with multipliers", "(5.1), m = 2",
-                          "Tzénoff; third paper on Mišević–Rusov equations", Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
+                          "Tzénoff; a paper on equations of Mićević–Rusov type for nonholonomic systems of higher order", Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

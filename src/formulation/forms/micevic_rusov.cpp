@@ -1,4 +1,4 @@
-// The Misevic-Rusov equations with multipliers [N 3.4]; without constraints [N 3.1]:
+// The Micevic-Rusov equations with multipliers [N 3.4]; without constraints [N 3.1]:
 //
 //   dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq = Q + QR + … + Gamma + sum lambda dphi/dq^(m)
 //
@@ -9,15 +9,15 @@
 namespace anholon::forms {
 
 static Equations equations(const Mechanics& M, const Elimination& E) {
-  return {misevic_rusov_operator(M, order_of(M, E)), right_side(M)};
+  return {micevic_rusov_operator(M, order_of(M, E)), right_side(M)};
 }
 
 static Quantities quantities(const Mechanics& M, const Elimination& E) {
-  return of_misevic_rusov(M, order_of(M, E));
+  return of_micevic_rusov(M, order_of(M, E));
 }
 
-extern const Formulation misevic_rusov;
-const Formulation misevic_rusov{"misevic-rusov", "Mišević–Rusov equations with multipliers", "(3.1), (3.4)",
-                                kMisevicRusov, Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
+extern const Formulation micevic_rusov;
+const Formulation micevic_rusov{"micevic-rusov", "Mićević–Rusov equations with multipliers", "(3.1), (3.4)",
+                                kMicevicRusov, Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

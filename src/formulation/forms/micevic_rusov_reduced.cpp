@@ -1,4 +1,4 @@
-// The Misevic-Rusov equations in reduced kinetic energies [N 3.16]; T~ as in [L 3.15], f' = df/dt:
+// The Micevic-Rusov equations in reduced kinetic energies [N 3.16]; T~ as in [L 3.15], f' = df/dt:
 //
 //   dT~^(m)/dq_nu^(m) - dT~^(m-1)/dq_nu^(m-1) - dT/dq_nu - sum_b dT^(m-1)/dq_b^(m) (df'_b/dq_nu^(m) - df_b/dq_nu^(m-1))
 //     - sum_b (dT^(m-1)/dq_b^(m-1) + dT/dq_b) df_b/dq_nu^(m)  =  G_nu + sum_b G_b df_b/dq_nu^(m)
@@ -35,8 +35,8 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
       forces_along(M, E)});
 }
 
-extern const Formulation misevic_rusov_reduced;
-const Formulation misevic_rusov_reduced{"misevic-rusov-reduced", "Mišević–Rusov equations in reduced energies", "(3.16)",
-                                        kMisevicRusov, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
+extern const Formulation micevic_rusov_reduced;
+const Formulation micevic_rusov_reduced{"micevic-rusov-reduced", "Mićević–Rusov equations in reduced energies", "(3.16)",
+                                        kMicevicRusov, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms

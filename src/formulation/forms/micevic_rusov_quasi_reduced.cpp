@@ -1,4 +1,4 @@
-// The Misevic-Rusov equations in quasi-coordinates, reduced [N 4.11]. T*^(k) is T^(k) with q^(m) = g, q^(m+1) = g' = dg/dt put
+// The Micevic-Rusov equations in quasi-coordinates, reduced [N 4.11]. T*^(k) is T^(k) with q^(m) = g, q^(m+1) = g' = dg/dt put
 // in [N 4.9, 4.10]:
 //
 //   dT*^(m)/du_a - dT*^(m-1)/dpi_a^(m-1) - dT/dpi_a - sum_s dT^(m-1)/dq_s^(m) (dg'_s/du_a - dg_s/dpi_a^(m-1)) = sum_s G_s B_sa
@@ -42,8 +42,8 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
       forces_along(M, E)});
 }
 
-extern const Formulation misevic_rusov_quasi_reduced;
-const Formulation misevic_rusov_quasi_reduced{"misevic-rusov-quasi-reduced", "Mišević–Rusov equations in quasi-coordinates, reduced", "(4.11)",
-                                              kMisevicRusov, Unknowns::quasi_velocities, no_obstacle, equations, quantities, kHighestM};
+extern const Formulation micevic_rusov_quasi_reduced;
+const Formulation micevic_rusov_quasi_reduced{"micevic-rusov-quasi-reduced", "Mićević–Rusov equations in quasi-coordinates, reduced", "(4.11)",
+                                              kMicevicRusov, Unknowns::quasi_velocities, no_obstacle, equations, quantities, kHighestM};
 
 }  // namespace anholon::forms
