@@ -63,13 +63,18 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {lagrange_operator(M), forces(M) + (A.empty() ? none : mu * A)};
 }
 
+static Label differentiated(const Label& of, unsigned k) {
+  return {derivative_name(of.text, k, Format::text), derivative_name(of.latex, k, Format::latex), derivative_name(of.mathml, k, Format::mathml)};
+}
+
 static Quantities quantities(const Mechanics& M, const Elimination& E) {
   const Column level = acceleration_level(M, E);
   Labels names;
   Rows A;
   for (std::size_t k = 0; k < level.size(); ++k) {
     const std::size_t r = E.constraints[k];
-    names.push_back(derivative_of(*M.model, "phi." + M.model->constraints[r].name, 2 - static_cast<unsigned>(M.order[r])));
+    const std::string& name = M.model->constraints[r].name;
+    names.push_back(differentiated(indexed(letter("phi"), name, {name_of(*M.model, name)}), 2 - static_cast<unsigned>(M.order[r])));
     A.push_back(gradient(level[k], M.qdd));
   }
   return listed({of_lagrange(M), named(names, level), partials(names, jet_labels(M, 2), A)});
