@@ -90,7 +90,7 @@ void print_text(const PublishedEquation& e, const Comparison& c, std::size_t wid
     for (std::size_t i = 0; i < c.changes.size() && i < kListed; ++i) show(c.changes[i]);
     if (c.changes.size() > kListed) say(stdout, "%s…\n", indent.c_str());
   }
-  if (c.changes.empty()) say(stdout, "%sno change of one term makes it true, and no dots lost at up to four places\n", indent.c_str());
+  if (c.changes.empty()) say(stdout, "%sno change of one term and no lost dots of up to four symbols make it true\n", indent.c_str());
 }
 
 void write_json(JsonWriter& j, const PublishedEquation& e, const Comparison& c, const SymbolNames& names) {

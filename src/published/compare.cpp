@@ -311,7 +311,6 @@ void Comparer::nearest_of(const std::vector<Change>& changes, Expr P, Comparison
   }
 }
 
-// Neither accelerations nor multipliers are in it, or they cancel.
 bool Comparer::without_motion(Expr P, EquationsOfMotion& motion) const {
   const Column p = gradient(P, motion.top);
   return std::all_of(p.begin(), p.end(), [&](Expr x) { return is_zero(x) || vanishes(x, motion.anywhere()); });

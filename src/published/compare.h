@@ -61,6 +61,8 @@ class Comparer {
   EquationsOfMotion& motion(unsigned highest);
   // Of an equation that may have lost its highest derivatives.
   EquationsOfMotion& motion_for_changes(Expr published);
+  // Neither accelerations nor multipliers are in left - right, or they cancel.
+  bool without_motion(Expr published, EquationsOfMotion& motion) const;
   const SymbolNames& names() const { return names_; }
 
  private:
@@ -68,7 +70,6 @@ class Comparer {
   bool combined(Expr P, EquationsOfMotion& motion, Comparison& out);
   void nearest(Expr P, Comparison& out);
   void nearest_of(const std::vector<Change>& changes, Expr P, Comparison& out) const;
-  bool without_motion(Expr P, EquationsOfMotion& motion) const;
   std::optional<Expr> combination(Expr P, EquationsOfMotion& motion, std::vector<std::pair<std::size_t, Expr>>& terms);
   std::string name(const DerivedEquation& e) const;
   std::string times(Expr factor) const;

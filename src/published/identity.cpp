@@ -46,9 +46,11 @@ bool speaks_of_quantities(const Syntax& s, Vocabulary& words) {
 }
 
 bool meant_as_identity(const Syntax& left, const Syntax& right, Vocabulary& words) {
-  if (print(left) == print(right)) return false;
+  const Expr a = words.number(left), b = words.number(right);
+  const auto is_0 = [](const Syntax& s) { return s.op == Syntax::Op::number && s.text == "0"; };
+  if (print(left) == print(right) || (is_zero(a) && is_zero(b) && !is_0(left) && !is_0(right))) return false;
   if (speaks_of_quantities(left, words) || speaks_of_quantities(right, words)) return true;
-  return !holds(words.number(left), is_of_motion) && !holds(words.number(right), is_of_motion);
+  return !holds(a, is_of_motion) && !holds(b, is_of_motion);
 }
 
 }  // namespace anholon

@@ -54,7 +54,8 @@ class Repair {
     // What is not proved counts only where nothing is.
     keep([](const Change& c) { return c.proved; });
     const bool quantities = speaks_of_quantities(equation_.left, words_) || speaks_of_quantities(equation_.right, words_);
-    keep([&](const Change& c) { return c.identity == quantities; });
+    if (!quantities) keep([](const Change& c) { return !c.identity; });
+    else if (comparer_.without_motion(words_.number(syntax_), motion_)) keep([](const Change& c) { return c.identity; });
   }
 
   void consider(const Misprint& m, std::vector<Survivor>& survivors) {
