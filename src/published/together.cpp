@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kMostDots = 700;        // places that may have lost dots
 constexpr std::size_t kMostTried = 60'000;    // sets that are tried as one, of each number of changes
-constexpr std::size_t kMostLookedUp = 600'000;
+constexpr std::size_t kMostLookedUp = 2'000'000;
+constexpr std::size_t kMostCompared = 4'000'000;  // pairs of which it is asked whether they add
 constexpr std::size_t kMostFound = 200;
 // A lost dot, another change; a symbol everywhere.
 constexpr int kDots = 10, kOther = 12, kEverywhere = 4;
@@ -207,9 +208,8 @@ void Together::check(const Sum& s) {
 
 // Each of `sums` with one of `sorted` that adds with it.
 void Together::find(const std::vector<Sum>& sums, const std::vector<Sum>& sorted) {
-  std::size_t looked_up = 0;
   for (const Sum& s : sums) {
-    if (++looked_up > kMostLookedUp || found_.size() > kMostFound) return;
+    if (++looked_up_ > kMostLookedUp || found_.size() > kMostFound) return;
     const double wanted = -trial_.value()[0] - s.change[0];
     // The sizes of the terms of the other are not known yet: they are not much larger than itself.
     const double window = 4 * trial_.tolerance(0, s.extent[0] + std::abs(wanted));
@@ -225,9 +225,27 @@ void Together::find(const std::vector<Sum>& sums, const std::vector<Sum>& sorted
   }
 }
 
+// Two changes that do not add, of which one at most is a lost dot. Other names come beside a lost dot only.
+void Together::try_bound_pairs() {
+  std::vector<bool> plain;
+  for (const Item& item : items_) plain.push_back(trial_.edit(item.edits[0]).kind < Edit::Kind::name);
+  std::size_t compared = 0;
+  for (std::uint32_t a = 0; a < items_.size(); ++a)
+    for (std::uint32_t b = a + 1; b < items_.size(); ++b) {
+      const bool dots = items_[a].dots || items_[b].dots;
+      if ((items_[a].dots && items_[b].dots) || (!dots && !(plain[a] && plain[b])) || items_[a].edits.size() > 2 || items_[b].edits.size() > 2) continue;
+      if (tried_ > kMostTried || ++compared > kMostCompared) return;
+      if (relation(a, b) != Relation::bound) continue;
+      if (auto s = joined({a, b})) {
+        check(*s);
+        if (dots) bound_.push_back(std::move(*s));
+      }
+    }
+}
+
 std::vector<Misprint> Together::sets_of(unsigned count) {
   found_.clear();
-  tried_ = 0;
+  tried_ = looked_up_ = 0;
   prepare_singles();
   if (count == 1) {
     for (const Sum& s : singles_) check(s);
@@ -239,17 +257,7 @@ std::vector<Misprint> Together::sets_of(unsigned count) {
     find(singles_, singles_);
     prepare_pairs();
     for (const Sum& s : pairs_) check(s);
-    for (std::uint32_t a = 0; a < items_.size(); ++a)
-      for (std::uint32_t b = a + 1; b < items_.size() && tried_ <= kMostTried; ++b) {
-        const bool dots = items_[a].dots || items_[b].dots;
-        const auto plain = [&](std::uint32_t i) { return trial_.edit(items_[i].edits[0]).kind < Edit::Kind::name; };
-        const auto everywhere = [&](std::uint32_t i) { return items_[i].edits.size() > 2; };
-        if ((items_[a].dots && items_[b].dots) || everywhere(a) || everywhere(b) || (!dots && !(plain(a) && plain(b))) || relation(a, b) != Relation::bound) continue;
-        if (auto s = joined({a, b})) {
-          check(*s);
-          if (dots) bound_.push_back(std::move(*s));
-        }
-      }
+    try_bound_pairs();
   } else if (count == 3) {
     triples_ = connected(count);
     for (const Sum& s : triples_) check(s);

@@ -54,6 +54,7 @@ class Together {
   void prepare_pairs();
   std::vector<Sum> connected(unsigned count);
   void connect(std::vector<std::uint32_t>& set, const std::vector<std::uint32_t>& open, unsigned count, std::vector<Sum>& out);
+  void try_bound_pairs();
   void find(const std::vector<Sum>& sums, const std::vector<Sum>& sorted);
   void check(const Sum& s);
 
@@ -67,7 +68,7 @@ class Together {
   std::uint32_t single_dots_ = 0;
   std::vector<Relation> of_dots_;                  // of two of them
   bool singles_known_ = false, pairs_known_ = false;
-  std::size_t tried_ = 0;
+  std::size_t tried_ = 0, looked_up_ = 0;
   std::map<std::vector<std::uint32_t>, int> found_;  // cost by edits
 };
 
