@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "published/decide.h"
+#include "support/published.h"
 
 namespace anholon {
 namespace {
@@ -86,8 +87,7 @@ std::string error(std::string text, const std::string& from, const std::string& 
 
 OpenModel load(const std::string& name) {
   if (name != "m" && name != "two ways") throw Failure({}, "there is no model '" + name + "'");
-  Diagnostics diagnostics;
-  return open_model({name, name == "m" ? kSleigh : kTwoWays}, diagnostics).value();
+  return test::open_text(name == "m" ? kSleigh : kTwoWays);
 }
 
 TEST(Claims, ATagInAnySpelling) {

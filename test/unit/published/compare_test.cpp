@@ -1,7 +1,4 @@
-#include "published/subject.h"
-
-#include <gtest/gtest.h>
-
+#include "support/published.h"
 
 namespace anholon {
 namespace {
@@ -31,43 +28,21 @@ name = "rod"
 equation = "x^2 + y^2 = l^2"
 )toml";
 
-class Published {
+class Compared : public test::Published {
  public:
-  explicit Published(const std::string& text) {
-    Diagnostics diagnostics;
-    const SourceText source{"model.toml", text};
-    std::optional<OpenModel> open = open_model(source, diagnostics);
-    EXPECT_TRUE(open) << diagnostics.print(source);
-    subject_.emplace(std::move(open).value());
-  }
-  Comparison compare(const std::string& equation) {
-    Diagnostics diagnostics;
-    const SourceText source{"test.eq", "e: " + equation + "\n"};
-    const auto list = subject_->read(source, diagnostics);
-    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.print(source);
-    return list.empty() ? Comparison{} : subject_->compare(list[0]);
-  }
+  using Published::Published;
   std::string what(const std::string& equation) {
     const Comparison c = compare(equation);
     return c.verdict == Verdict::proved ? c.what : std::string(name(c.verdict)) + " " + c.detail;
   }
-  // "from -> to" of the only change; else how many there are.
-  std::string change(const std::string& equation) {
-    const Comparison c = compare(equation);
-    if (c.verdict != Verdict::refuted) return name(c.verdict);
-    return c.changes.size() == 1 ? c.changes[0].from + " -> " + c.changes[0].to : std::to_string(c.changes.size());
-  }
   std::string difference(const std::string& equation) {
     const Comparison c = compare(equation);
-    return c.difference ? print(*c.difference, subject_->names(), Format::text) : "";
+    return c.difference ? print(*c.difference, names(), Format::text) : "";
   }
-
- private:
-  std::optional<Subject> subject_;
 };
 
 TEST(Compare, SaysWhatATrueEquationIs) {
-  Published s(kSleigh);
+  Compared s(kSleigh);
   EXPECT_EQ(s.what("m*x'' = -lambda*sin(th)"), "the equation of x");
   EXPECT_EQ(s.what("lambda*sin(th)/m = -x''"), "the equation of x, times 1/m");
   EXPECT_EQ(s.what("J*th'' = 0"), "the equation of th");
@@ -83,7 +58,7 @@ TEST(Compare, SaysWhatATrueEquationIs) {
 }
 
 TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
-  Published s(kPendulum);
+  Compared s(kPendulum);
   EXPECT_EQ(s.what("m*x'' = 2*lambda*x"), "the equation of x");
   EXPECT_EQ(s.what("x*x' = -y*y'"), "the constraint rod, differentiated once, times 1/2");
   EXPECT_EQ(s.what("x^4 = (l^2 - y^2)^2"), "a consequence of the constraint rod alone");
@@ -92,10 +67,10 @@ TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
 }
 
 TEST(Compare, NamesTheMisprint) {
-  Published s(kSleigh);
+  Compared s(kSleigh);
   EXPECT_EQ(s.change("m*x'' = lambda*sin(th)"), "lambda*sin(th) -> -lambda*sin(th)");  // and not the left side, which is the same
   EXPECT_EQ(s.change("m*x'' = -lambda*cos(th)"), "-lambda*cos(th) -> -lambda*sin(th)");
-  Published p(kPendulum);
+  Compared p(kPendulum);
   EXPECT_EQ(p.change("m*y'' = 2*lambda*y + m*g"), "+ m*g -> - m*g");
   EXPECT_EQ(p.change("m*y' = 2*lambda*y - m*g"), "m*y' -> m*y''");
   EXPECT_EQ(p.change("m*y'' = 2*lambda*x - m*g"), "2*lambda*x -> 2*lambda*y");
@@ -107,7 +82,7 @@ TEST(Compare, NamesTheMisprint) {
 }
 
 TEST(Compare, TheSamePlaceInTheFile) {
-  Published p(kPendulum);
+  Compared p(kPendulum);
   const Comparison c = p.compare("m*y'' = 2*lambda*y + m*g");
   ASSERT_EQ(c.changes.size(), 1U);
   EXPECT_EQ(c.changes[0].span.line, 1U);

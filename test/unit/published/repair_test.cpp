@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "proof/equations_of_motion.h"
-#include "published/subject.h"
 #include "published/trial.h"
+#include "support/published.h"
 
 namespace anholon {
 namespace {
@@ -56,24 +56,9 @@ name = "b"
 equation = "z' = x*y'"
 )toml";
 
-class Published {
+class Repaired : public test::Published {
  public:
-  explicit Published(const std::string& text) {
-    Diagnostics diagnostics;
-    const SourceText source{"model.toml", text};
-    std::optional<OpenModel> open = open_model(source, diagnostics);
-    EXPECT_TRUE(open) << diagnostics.print(source);
-    subject_.emplace(std::move(open).value());
-  }
-  Subject& subject() { return *subject_; }
-  std::vector<PublishedEquation> read(const std::string& text) {
-    Diagnostics diagnostics;
-    const SourceText source{"test.eq", text};
-    std::vector<PublishedEquation> list = subject_->read(source, diagnostics);
-    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.print(source);
-    return list;
-  }
-  Comparison compare(const std::string& equation) { return subject_->compare(read("e: " + equation + "\n").at(0)); }
+  using Published::Published;
   // "from -> to" of the places of the only change; of several changes the number.
   std::string change(const std::string& equation) {
     const Comparison c = compare(equation);
@@ -88,15 +73,12 @@ class Published {
     for (const Change& c : compare(equation).changes) list.push_back(c.equation);
     return list;
   }
-
- private:
-  std::optional<Subject> subject_;
 };
 
 using Texts = std::vector<std::string>;
 
 TEST(Repair, LostDotsOfSeveralSymbols) {
-  Published r(kRocket);
+  Repaired r(kRocket);
   ASSERT_EQ(r.compare(kOfX).verdict, Verdict::proved);
   EXPECT_EQ(r.change("m*x = p' - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x)"), "m*x -> m*x''");
   EXPECT_EQ(r.change("m*x = p - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x)"), "x -> x'', p -> p'");
@@ -106,7 +88,7 @@ TEST(Repair, LostDotsOfSeveralSymbols) {
 }
 
 TEST(Repair, EachPlaceOfAChange) {
-  Published r(kRocket);
+  Repaired r(kRocket);
   const Comparison c = r.compare("m*x = p - k*x - m'*u\n + m*(2*w*y + w'*y + w^2*x)");
   ASSERT_EQ(c.changes.size(), 1U);
   const std::vector<ChangedPlace>& places = c.changes[0].places;
@@ -125,18 +107,18 @@ TEST(Repair, EachPlaceOfAChange) {
 
 // Where the changes do not add.
 TEST(Repair, LostDotsInFactorsOfOneProduct) {
-  Published p(kPolar);
+  Repaired p(kPolar);
   ASSERT_EQ(p.compare("m*(r^2*psi'' + 2*r*r'*psi') = 2*lambda*r^2*psi'").verdict, Verdict::proved);
   EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r*psi) = 2*lambda*r^2*psi'"), "2*r*r*psi -> 2*r*r'*psi'");
   EXPECT_EQ(p.change("m*(r^2*psi + 2*r*r*psi) = 2*lambda*r^2*psi"), "psi -> psi'', 2*r*r*psi -> 2*r*r'*psi', psi -> psi'");
-  Published r(kRocket);
+  Repaired r(kRocket);
   const std::string derived = "m*(m*x'')*(w + w') = m*(p' - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x))*(w + w')";
   ASSERT_EQ(r.compare(derived).verdict, Verdict::proved);
   EXPECT_EQ(r.readings("m*(m*x)*(w + w') = m*(p - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x))*(w + w)"), Texts{derived});
 }
 
 TEST(Repair, ASymbolThatLostItsDotsEverywhere) {
-  Published r(kRocket);
+  Repaired r(kRocket);
   const std::string wrong = "m*x'' = p*cos(x)^2 + p*sin(x)^2*cos(y)^2 + p*sin(x)^2*sin(y)^2*cos(w)^2 + p*sin(x)^2*sin(y)^2*sin(w)^2*sin(k)^2"
                             " + p*sin(x)^2*sin(y)^2*sin(w)^2*cos(k)^2 - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x)";
   const Comparison c = r.compare(wrong);
@@ -151,18 +133,18 @@ TEST(Repair, ASymbolThatLostItsDotsEverywhere) {
 }
 
 TEST(Repair, LostDotsBesideAnotherMisprint) {
-  Published r(kRocket);
+  Repaired r(kRocket);
   EXPECT_EQ(r.change("m*x'' = p - k*x - m*u - m*(2*w*y' + w'*y + w^2*x)"), "p -> p', m -> m', - m*(2*w*y' + w'*y + w^2*x) -> + m*(2*w*y' + w'*y + w^2*x)");
   EXPECT_EQ(r.change("m*x = p' - k*x - m*u + m*(w*y' + w'*y + w^2*x)"), "x -> x'', m -> m', w*y' -> 2*w*y'");
   EXPECT_EQ(r.change("m*x'' = p - k*y - m'*u + m*(2*w*y' + w'*y + w^2*x)"), "p -> p', y -> x");
   // An exponent that stands on the neighbour.
-  Published p(kPolar);
+  Repaired p(kPolar);
   EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r'*psi') = 2*lambda*r*psi'^2"), "2*lambda*r*psi'^2 -> 2*lambda*r^2*psi'");
   EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r*psi') = 2*lambda*r*psi'^2"), "r -> r', 2*lambda*r*psi'^2 -> 2*lambda*r^2*psi'");
 }
 
 TEST(Repair, OneIndexOneSignOneDot) {
-  Published t(kTwo);
+  Repaired t(kTwo);
   const std::string right = "m*x'' = -lambda.a*z + 0*lambda.b";
   ASSERT_EQ(t.compare(right).verdict, Verdict::proved);
   EXPECT_EQ(t.change("m*x'' = -lambda.b*z + 0*lambda.b"), "-lambda.b*z -> -lambda.a*z");
@@ -173,7 +155,7 @@ TEST(Repair, OneIndexOneSignOneDot) {
 }
 
 TEST(Repair, IndicesInDerivedWords) {
-  Published r(kRocket);
+  Repaired r(kRocket);
   EXPECT_EQ(r.change("inertia_term.y = G.x"), "2");  // either
   EXPECT_EQ(r.change("inertia_term.x = Q.x + QR.x + Qomega.x + minus_dVomega.y + Gamma.x"), "minus_dVomega.y -> minus_dVomega.x");
   EXPECT_EQ(r.change("inertia_term.x = Q.x + QR.x + QR.x + minus_dVomega.x + Gamma.x"), "QR.x -> Qomega.x");
@@ -181,7 +163,7 @@ TEST(Repair, IndicesInDerivedWords) {
   EXPECT_EQ(r.readings("Dt(partial(T_r, y')) = G.x"), (Texts{"Dt(partial(T_r, x')) = G.x", "Dt(partial(T_r, y')) = G.y"}));
   EXPECT_EQ(r.change("Dt(partial(T_r, x)) = G.x"), "Dt(partial(T_r, x)) -> Dt(partial(T_r, x'))");
   EXPECT_EQ(r.change("Dt(partial(T_r, x')) + partial(V_O, x) = -G.x"), "-G.x -> G.x");
-  Published p(kPolar);
+  Repaired p(kPolar);
   EXPECT_EQ(p.change("partial(reduced(T_r), psi') = 0*r"), "proved");  // T_r is m c^2/2 on the constraint
   EXPECT_EQ(p.change("inertia_term.psi = Q.psi + N.r"), "N.r -> N.psi");
   EXPECT_EQ(p.change("N.psi = 2*lambda*r^2*psi"), "2*lambda*r^2*psi -> 2*lambda*r^2*psi'");
@@ -189,7 +171,7 @@ TEST(Repair, IndicesInDerivedWords) {
 
 // What a quantity is: no equation of motion.
 TEST(Repair, Identities) {
-  Published r(kRocket);
+  Repaired r(kRocket);
   const Comparison c = r.compare("QR.x = -m*u");
   EXPECT_EQ(c.verdict, Verdict::refuted);
   EXPECT_TRUE(c.identity);
@@ -216,16 +198,16 @@ TEST(Repair, Identities) {
 
 // An equation of motion is not repaired by making it say nothing.
 TEST(Repair, NothingIsMadeTrivial) {
-  Published t(kTwo);
+  Repaired t(kTwo);
   for (const char* wrong : {"m*x'' = m*y''", "x' = y'", "lambda.a = lambda.b", "x'' = z''", "m*x'' = m*z''*x"})
     for (const Change& c : t.compare(wrong).changes) EXPECT_FALSE(c.identity) << wrong << " -> " << c.equation;
-  Published r(kRocket);
+  Repaired r(kRocket);
   EXPECT_EQ(r.change("m*x'' = m*y''"), "0");
   EXPECT_EQ(r.change("QR.x = QR.y"), "0");  // and not 0 = 0
 }
 
 TEST(Repair, NoFactorIsZero) {
-  Published p(kPolar);
+  Repaired p(kPolar);
   for (const char* wrong : {"m/2*norm2(vel(bob.center)) = m/2*(r'^2 + r^2*psi^2)*k*psi", "r = k*psi", "T_r = k*psi*r", "r' = psi*sin(k)", "lambda = k*psi"}) {
     const Comparison c = p.compare(wrong);
     ASSERT_EQ(c.verdict, Verdict::refuted) << wrong;
@@ -234,7 +216,7 @@ TEST(Repair, NoFactorIsZero) {
 }
 
 TEST(Repair, AVectorEquationByComponents) {
-  Published r(kRocket);
+  Repaired r(kRocket);
   const std::vector<PublishedEquation> list = r.read("e: m*acc(P, inertial) = p*ex - k*P - m*u*ex\n");
   ASSERT_EQ(list.size(), 3U);
   const Comparison x = r.subject().compare(list[0]);
@@ -249,7 +231,7 @@ TEST(Repair, AVectorEquationByComponents) {
 
 // What is computed from numbers is what the changed formula is, for all changes of one place and of two.
 TEST(Trial, AgreesWithTheChangedFormula) {
-  Published r(kRocket);
+  Repaired r(kRocket);
   EquationsOfMotion motion(r.subject().mechanics(), 2, {});
   const Alphabet alphabet{{"x", "y"}, {"k", "u", "m", "w", "p"}, {}, {}, {}};
   std::size_t pairs = 0, adding = 0, multiplied = 0;

@@ -1,7 +1,5 @@
 // The words of published equations: quantities, derivatives, eliminations, definitions, vectors, and what is said of wrong ones.
-#include <gtest/gtest.h>
-
-#include "published/subject.h"
+#include "support/published.h"
 
 namespace anholon {
 namespace {
@@ -64,38 +62,20 @@ u1 = "x'"
 u2 = "y' + x*x'"
 )toml";
 
-OpenModel open(const char* text) {
-  Diagnostics diagnostics;
-  const SourceText source{"model.toml", text};
-  std::optional<OpenModel> m = open_model(source, diagnostics);
-  EXPECT_TRUE(m) << diagnostics.print(source);
-  return *m;
-}
-
-class Words {
+class Words : public test::Published {
  public:
-  explicit Words(const char* model) : subject_(open(model)) {}
+  using Published::Published;
   // "true", "false" or "unknown" of the last equation of the text.
   std::string verdict(const std::string& text) {
-    Diagnostics diagnostics;
-    const SourceText source{"words.eq", text + "\n"};
-    const auto list = subject_.read(source, diagnostics);
-    if (diagnostics.has_errors()) return diagnostics.print(source);
-    const Comparison c = subject_.judge(list.back());
+    const auto list = read(text + "\n");
+    if (list.empty()) return "not read";
+    const Comparison c = subject().judge(list.back());
     return c.verdict == Verdict::proved ? "true" : c.verdict == Verdict::refuted ? "false" : "unknown: " + c.detail;
   }
   std::string error(const std::string& text) {
-    Diagnostics diagnostics;
-    subject_.read({"words.eq", text + "\n"}, diagnostics);
-    return diagnostics.has_errors() ? diagnostics.list().front().message : "";
+    const Diagnostics said = errors(text + "\n");
+    return said.has_errors() ? said.list().front().message : "";
   }
-  std::size_t count(const std::string& text) {
-    Diagnostics diagnostics;
-    return subject_.read({"words.eq", text + "\n"}, diagnostics).size();
-  }
-
- private:
-  Subject subject_;
 };
 
 TEST(Vocabulary, QuantitiesOfTheDerivation) {
@@ -148,8 +128,8 @@ TEST(Vocabulary, QuasiVelocities) {
 TEST(Vocabulary, DefinitionsAndVectors) {
   Words w(kRocket);
   EXPECT_EQ(w.verdict("let v = vel(C)\nlet s = dot(v, blade.x)\ne: s = x'*cos(th) + y'*sin(th)"), "true");
-  EXPECT_EQ(w.count("e: vel(C) = x'*ex + y'*ey"), 3U);
-  EXPECT_EQ(w.count("e: vel(C) = 0"), 3U);
+  EXPECT_EQ(w.read("e: vel(C) = x'*ex + y'*ey\n").size(), 3U);
+  EXPECT_EQ(w.read("e: vel(C) = 0\n").size(), 3U);
   EXPECT_EQ(w.verdict("e: reaction(sleigh) + reaction(rocket) = lambda/cos(th)*blade.y"), "true");
 }
 

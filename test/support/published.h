@@ -1,0 +1,52 @@
+// A model as published equations speak about it, for tests that say a few of them.
+#pragma once
+#include <gtest/gtest.h>
+
+#include "published/subject.h"
+
+namespace anholon::test {
+
+inline OpenModel open_text(const std::string& text) {
+  Diagnostics diagnostics;
+  const SourceText source{"model.toml", text};
+  std::optional<OpenModel> open = open_model(source, diagnostics);
+  EXPECT_TRUE(open) << diagnostics.print(source);
+  return std::move(open).value();
+}
+
+class Published {
+ public:
+  explicit Published(const std::string& text) : subject_(open_text(text)) {}
+  Subject& subject() { return subject_; }
+  const SymbolNames& names() const { return subject_.names(); }
+
+  std::vector<PublishedEquation> read(const std::string& text) {
+    Diagnostics diagnostics;
+    const SourceText source{"test.eq", text};
+    std::vector<PublishedEquation> list = subject_.read(source, diagnostics);
+    EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.print(source);
+    return list;
+  }
+  // What is said of a text that cannot be read.
+  Diagnostics errors(const std::string& text) {
+    Diagnostics diagnostics;
+    subject_.read({"test.eq", text}, diagnostics);
+    return diagnostics;
+  }
+  // Of one equation, without its label.
+  Comparison compare(const std::string& equation) {
+    const auto list = read("e: " + equation + "\n");
+    return list.empty() ? Comparison{} : subject_.compare(list[0]);
+  }
+  // "from -> to" of the only change; else how many there are.
+  std::string change(const std::string& equation) {
+    const Comparison c = compare(equation);
+    if (c.verdict != Verdict::refuted) return name(c.verdict);
+    return c.changes.size() == 1 ? c.changes[0].from + " -> " + c.changes[0].to : std::to_string(c.changes.size());
+  }
+
+ private:
+  Subject subject_;
+};
+
+}  // namespace anholon::test
