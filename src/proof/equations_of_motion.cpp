@@ -76,6 +76,8 @@ std::optional<Expr> solved_for(Expr psi, Expr s) {
 
 }  // namespace
 
+PointValues arbitrary_values(int attempt) { return values_of({}, attempt, attempt); }
+
 bool EquationsOfMotion::choose(Stage& s, const std::vector<std::size_t>& preferred, PointValues& at) const {
   const std::vector<std::size_t> all_rows = up_to(s.rows.size()), all = up_to(s.symbols.size());
   const Matrix<double> a = values(s.jacobian, all_rows, all, at);

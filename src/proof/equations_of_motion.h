@@ -19,6 +19,9 @@ struct DerivedEquation {
   Expr residual;
 };
 
+// Values of all symbols, none of them near 0: another point for each attempt.
+PointValues arbitrary_values(int attempt);
+
 class EquationsOfMotion {
  public:
   // `preferred`: coordinates for which constraints are solved where they can be.

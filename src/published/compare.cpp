@@ -429,6 +429,7 @@ Comparison Comparer::decide(Expr P) {
   for (const DerivedEquation& e : motion.rows)
     if (directly(P, e, motion, out)) return out;
   if (!motion.regular) {
+    if (on_manifold(P, false, out)) return out;
     out.detail = "the equations do not determine the accelerations and multipliers at this order";
     return out;
   }
@@ -440,7 +441,7 @@ Comparison Comparer::decide(Expr P) {
     if (out.witness) out.verdict = Verdict::refuted;
     return out;
   }
-  if (combined(P, motion, out)) return out;
+  if (combined(P, motion, out) || on_manifold(P, true, out)) return out;
   double largest = 0;
   for (PointValues& at : motion.on_motion()) largest = std::max(largest, std::abs(at(P)) / (1e-6 + size_at(P, at)));
   char bound[32];

@@ -68,6 +68,8 @@ class Comparer {
  private:
   bool directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out);
   bool combined(Expr P, EquationsOfMotion& motion, Comparison& out);
+  bool on_manifold(Expr P, bool regular, Comparison& out);
+  const Column& contractions();
   void nearest(Expr P, Comparison& out);
   void nearest_of(const std::vector<Change>& changes, Expr P, Comparison& out) const;
   std::optional<Expr> combination(Expr P, EquationsOfMotion& motion, std::vector<std::pair<std::size_t, Expr>>& terms);
@@ -80,6 +82,7 @@ class Comparer {
   const Elimination& elimination_;
   SymbolNames names_;
   std::map<unsigned, EquationsOfMotion> motions_;
+  std::optional<Column> contractions_;
 };
 
 // The highest derivative of which the equations of the motion must speak.

@@ -23,8 +23,8 @@ class Subject {
   std::vector<PublishedEquation> read(const SourceText& equations, Diagnostics& diagnostics) { return read_equations(equations, words_, diagnostics); }
   // Whether the equation is true; with the changes that would make it true, if it is false.
   Comparison compare(const PublishedEquation& equation) { return comparer_.compare(equation, words_, alphabet_); }
-  // The same without a search for changes.
-  Comparison judge(const PublishedEquation& equation) { return comparer_.judge(difference(equation)); }
+  // The same without a search for changes, and for what a false equation comes nearest to.
+  Comparison judge(const PublishedEquation& equation) { return comparer_.decide(difference(equation)); }
   Expr difference(const PublishedEquation& equation) { return words_.number(equation.left) - words_.number(equation.right); }
 
  private:

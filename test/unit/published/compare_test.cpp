@@ -91,5 +91,27 @@ TEST(Compare, TheSamePlaceInTheFile) {
   ASSERT_TRUE(c.witness);
 }
 
+// Constraints that are nonlinear in their highest derivatives: Routh's equations are no linear equations then.
+TEST(Compare, NonlinearConstraintsOfHigherOrder) {
+  for (const int m : {2, 3}) {
+    const std::string order = std::to_string(m);
+    Compared s(R"toml(coordinates = ["x", "y", "z"]
+parameters = {m = 2, k = 3}
+particle = [{name = "p", mass = "m", position = ["x", "y", "z"]}]
+potential.V = "k*y + x*z"
+[[constraint]]
+name = "c"
+equation = "D(z,)toml" + order + ") = D(x," + order + ")^2 + y*D(y," + order + ")^2\"\n");
+    const std::string slope = "2*D(x," + order + ")";
+    EXPECT_EQ(s.compare("m*x'' + m*z''*" + slope + " = -z - x*" + slope).verdict, Verdict::proved) << m;
+    EXPECT_EQ(s.compare("maggi.y = 0").verdict, Verdict::proved) << m;
+    EXPECT_EQ(s.compare("along(inertia_term, x) = along(G, x)").verdict, Verdict::proved) << m;
+    EXPECT_EQ(s.compare("m*x'' + m*z''*" + slope + " = z - x*" + slope).verdict, Verdict::refuted) << m;
+    EXPECT_EQ(s.compare("m*x'' + m*z'' = -z - x").verdict, Verdict::refuted) << m;
+    EXPECT_EQ(s.compare("f.z = 0").verdict, Verdict::refuted) << m;
+    EXPECT_EQ(s.compare("f.z = D(z," + order + ")").verdict, Verdict::proved) << m;
+  }
+}
+
 }  // namespace
 }  // namespace anholon

@@ -1,0 +1,88 @@
+// Equations without multipliers on the manifold of the constraints, where these are solved: the dependent derivatives are put in, and what is left is compared
+// with the contractions B^T (E - G) = 0. That serves constraints of order 2 and more that are nonlinear in their highest derivatives: of those Routh's
+// equations are no linear equations for the accelerations and multipliers.
+#include <cmath>
+
+#include "numeric/linear.h"
+#include "proof/witness.h"
+#include "published/compare.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr int kPoints = 3;
+constexpr double kVanishes = 1e-8;  // in relation to the size of the terms
+
+bool vanishes(Expr e, std::vector<PointValues>& points) {
+  for (PointValues& at : points)
+    if (!(std::abs(at(e)) <= kVanishes * (1e-6 + size_at(e, at)))) return false;
+  return true;
+}
+
+}  // namespace
+
+// The contractions on the manifold, one for each independent coordinate, masses put in.
+const Column& Comparer::contractions() {
+  if (!contractions_) {
+    const Column a = put_masses(*M_.model, lagrange_operator(M_) - forces(M_));
+    contractions_ = elimination_.on(elimination_.contract(a));
+  }
+  return *contractions_;
+}
+
+// Returns true if it has decided.
+bool Comparer::on_manifold(Expr P, bool regular, Comparison& out) {
+  const Elimination& E = elimination_;
+  const Graph& g = M_.graph();
+  if (!E.solved || E.quasi || E.dependent.empty()) return false;
+  for (NodeId id : symbols({&P, 1}))
+    if (g.node(id).kind == Kind::multiplier) return false;
+  const Expr on = E.on(P);
+  const int highest = jet_order(on);
+  if (highest > static_cast<int>(std::max(2U, E.m))) return false;
+  if (shown_zero(on, Effort::full)) {
+    out.verdict = Verdict::proved;
+    out.of_constraints = true;
+    out.what = "a consequence of the constraints alone";
+    return true;
+  }
+  std::vector<PointValues> points;
+  for (int k = 0; k < kPoints; ++k) points.push_back(arbitrary_values(k));
+  const Column& a = contractions();
+  Column by, leading;
+  for (unsigned k = 2; k <= std::max(2U, E.m); ++k)
+    for (Expr jet : E.I(jets(*M_.model, k))) by.push_back(jet);
+  leading = E.I(jets(*M_.model, std::max(2U, E.m)));
+  const Column p = gradient(on, by);
+  for (std::size_t nu = 0; nu < a.size(); ++nu) {
+    const Column f = gradient(a[nu], by);
+    for (std::size_t j = 0; j < by.size(); ++j) {
+      const double slope = points[0](f[j]);
+      if (is_zero(f[j]) || is_zero(p[j]) || !(std::abs(slope) > 1e-9)) continue;
+      const Expr factor = tidy(p[j] / f[j]), rest = on - factor * a[nu];
+      if (!vanishes(rest, points)) break;
+      if (!shown_zero(rest, Effort::full)) return false;
+      out.verdict = Verdict::proved;
+      out.what = "the equation of " + M_.model->coordinates[E.independent[nu]].name + " without multipliers" + times(factor) + ", with the constraints put in";
+      return true;
+    }
+  }
+  if (regular) return false;
+  // A point at which all contractions hold is one of a motion, if they determine the highest independent derivatives.
+  Matrix<double> jacobian(a.size(), leading.size());
+  for (std::size_t nu = 0; nu < a.size(); ++nu) {
+    const Column f = gradient(a[nu], leading);
+    for (std::size_t j = 0; j < leading.size(); ++j) jacobian(nu, j) = points[0](f[j]);
+  }
+  Lu<double> lu;
+  if (!lu.factor(jacobian)) return false;
+  WitnessSearch search = find_witness(Difference{{}, on, {}, {}, {}, {}}, a, leading, *M_.model);
+  out.detail = search.detail;
+  out.witness = std::move(search.witness);
+  if (!out.witness) return false;
+  out.verdict = Verdict::refuted;
+  return true;
+}
+
+}  // namespace anholon
