@@ -251,8 +251,9 @@ int run(int argc, char** argv) {
   prove_command->add_option("--digits", o.proof_digits, "of the enclosures that tell a difference from zero, at most (default 308)")->type_name("N")->check(CLI::Range(20, 20000));
   prove_command->add_option("-o,--output", o.output, "write a certificate")->type_name("FILE");
   CLI::App* compare_command = model_command("compare", "published equations against the derived ones: proved, refuted, or unknown", cli::compare,
-                                            "EQUATIONS holds one equation per line, LABEL: left = right, in the names of the model, lambda and lambda.NAME.\n"
-                                            "Where one change makes a false equation true, it is named.\n"
+                                            "EQUATIONS holds one equation per line, LABEL: left = right, in the names of the model, multipliers (lambda.NAME), energies and forces\n"
+                                            "(T_r, Q.x, Gamma.x, N.x), partial and frozen derivatives, equations of forms (maggi.x): doc/equations.md.\n"
+                                            "Where changes of up to four places make a false equation true, they are named.\n"
                                             "Exit status: 0 all are true, 1 one is false or stays unknown, 2 bad input.\n"
                                             "Example: anholon compare luo-zhao-example-1-symbolic luo-zhao-example-1.as-read");
   compare_command->add_option("EQUATIONS", o.equations, "a file of equations, or the name of a shipped one");

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "expr/functions.h"
+#include "expr/normal.h"
 
 namespace anholon {
 
@@ -48,7 +48,7 @@ bool speaks_of_quantities(const Syntax& s, Vocabulary& words) {
 bool meant_as_identity(const Syntax& left, const Syntax& right, Vocabulary& words) {
   const Expr a = words.number(left), b = words.number(right);
   const auto is_0 = [](const Syntax& s) { return s.op == Syntax::Op::number && s.text == "0"; };
-  if (print(left) == print(right) || (is_zero(a) && is_zero(b) && !is_0(left) && !is_0(right))) return false;
+  if (print(left) == print(right) || (!is_0(left) && !is_0(right) && proved_zero(a) && proved_zero(b))) return false;
   if (speaks_of_quantities(left, words) || speaks_of_quantities(right, words)) return true;
   return !holds(a, is_of_motion) && !holds(b, is_of_motion);
 }

@@ -110,6 +110,8 @@ Expr Vocabulary::number(const Syntax& s) { return finished(evaluate_number(s, *t
 
 Value Vocabulary::value(const Syntax& s) {
   const Value v = as_point(evaluate(s, *this), *this, s.span);
+  if (s.op == Syntax::Op::name && !declares(s.text) && column(s.text))
+    throw Failure(s.span, "'" + s.text + "' has an entry for each coordinate", s.text + "." + mechanics_.model->coordinates[0].name);
   if (v.index() > 1) throw Failure(s.span, std::string("a side of an equation is a number or a vector, this is ") + type_name(v), body_hint(v, *this));
   return each(v, s.span, [this](Expr e) { return finished(e); });
 }

@@ -206,6 +206,13 @@ TEST(Repair, NothingIsMadeTrivial) {
   EXPECT_EQ(r.change("QR.x = QR.y"), "0");  // and not 0 = 0
 }
 
+// The derivative by psi vanishes by sin^2 + cos^2 = 1, and so does that by psi'': nothing is said if both stand there.
+TEST(Repair, SidesThatVanishAreNoIdentity) {
+  Repaired r("coordinates = [\"r\", \"psi\"]\nparticle = [{name = \"p\", mass = 2, position = [\"r*cos(psi)\", \"r*sin(psi)\", \"0\"]}]\n");
+  ASSERT_EQ(r.compare("partial(T_r, psi) = 0").verdict, Verdict::proved);
+  for (const std::string& reading : r.readings("partial(T_r, psi') = partial(T_r, psi)")) EXPECT_EQ(reading.find("psi''"), std::string::npos) << reading;
+}
+
 TEST(Repair, NoFactorIsZero) {
   Repaired p(kPolar);
   for (const char* wrong : {"m/2*norm2(vel(bob.center)) = m/2*(r'^2 + r^2*psi^2)*k*psi", "r = k*psi", "T_r = k*psi*r", "r' = psi*sin(k)", "lambda = k*psi"}) {

@@ -139,7 +139,7 @@ TEST(Vocabulary, DefinitionsAndVectors) {
 TEST(Vocabulary, WrongWordsAreErrors) {
   Words w(kRocket);
   EXPECT_EQ(w.error("e: QR.z = 0"), "there is no coordinate 'z'");
-  EXPECT_EQ(w.error("e: QR = 0"), "a side of an equation is a number or a vector, this is 'inertial'");
+  EXPECT_EQ(w.error("e: QR = 0"), "'QR' has an entry for each coordinate");
   EXPECT_EQ(w.error("e: f.x = 0"), "'x' is an independent coordinate here: the constraints are not solved for it");
   EXPECT_EQ(w.error("e: phi.edg = 0"), "there is no 'phi.edg'; did you mean 'phi.edge'?");
   EXPECT_EQ(w.error("e: partial(T_r, 2*x) = 0"), "a partial derivative is taken by a derivative of a coordinate, by t, or by another symbol");
