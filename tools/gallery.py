@@ -61,7 +61,7 @@ PAPERS_STYLE = """
 table { border-collapse: collapse; width: 100%; font-size: .92rem; }
 th, td { text-align: left; vertical-align: top; padding: .5rem .6rem; border-bottom: 1px solid var(--line); overflow-wrap: anywhere; }
 td p { margin: .35rem 0; color: var(--quiet); }
-td:first-child { white-space: nowrap; font-variant-numeric: tabular-nums; }
+th, td:first-child { white-space: nowrap; font-variant-numeric: tabular-nums; }
 code { font-size: .88em; }
 details { color: var(--quiet); }
 """
@@ -193,7 +193,8 @@ def papers_page(claims, titles, version):
         for c in (c for c in claims if c["paper"] == key):
             right = all(k.get("as_expected", True) for k in c["checks"])
             checks = "".join(f"<li><code>{html.escape(k['asks'])}</code> on {html.escape(k['model'])}: {html.escape(k.get('decided', 'not decided here'))}</li>" for k in c["checks"])
-            words = "".join(f"<p>{html.escape(what)}: {html.escape(c[field])}</p>" for what, field in (("Holds if", "hypotheses"), ("As read", "difference"), ("Corrected", "corrected")) if c[field])
+            said = {"Holds if": c["hypotheses"], "As read": c["difference"] and f"{c['difference']} ({c['class']})", "Corrected": c["corrected"]}
+            words = "".join(f"<p>{what}: {html.escape(text)}</p>" for what, text in said.items() if text)
             rows.append(f"<tr><td>{html.escape(c['tag'])}</td><td>{html.escape(c['title'])}<p><code>{html.escape(c['formula'])}</code></p>{words}"
                         f"<details><summary>{len(c['checks'])} checks</summary><ul>{checks}</ul></details></td><td>{html.escape(c['verdict'] if right else 'not as the table says')}</td></tr>")
         parts += [f"<section><h2>[{html.escape(key)}] {html.escape(title)}</h2>", "<table><thead><tr><th>tag</th><th>statement</th><th>verdict</th></tr></thead><tbody>", *rows, "</tbody></table></section>"]
@@ -262,10 +263,10 @@ def self_test(program):
         text = (out / "g/index.html").read_text(encoding="utf-8")
         assert 'href="disc.html"' in text and "5 coordinates" in text and "2 constraints" in text and "Both &amp; more" in text, text
         assert "bad.html" not in text and "://" not in text and "A thin disc rolls" in text, text
-        claim = {"paper": "L", "tag": "2.7", "title": "a < b", "formula": "x", "hypotheses": "", "difference": "a dot", "corrected": "", "verdict": "true",
+        claim = {"paper": "L", "tag": "2.7", "title": "a < b", "formula": "x", "hypotheses": "", "difference": "a dot", "class": "an error of the text", "corrected": "", "verdict": "true",
                  "checks": [{"asks": "x = y", "model": "m", "decided": "true", "as_expected": True}]}
         page = papers_page([claim, claim | {"tag": "2.8", "checks": [claim["checks"][0] | {"as_expected": False}]}], {"L": "Routh & others"}, "v")
-        assert "a &lt; b" in page and "Routh &amp; others" in page and page.count("not as the table says") == 1 and "://" not in page, page
+        assert "a &lt; b" in page and "a dot (an error of the text)" in page and "Routh &amp; others" in page and page.count("not as the table says") == 1 and "://" not in page, page
         before = (out / "g/disc.html").stat().st_mtime_ns
         gallery(program, out / "g", 2, False, [("Both", [good])], False)
         assert (out / "g/disc.html").stat().st_mtime_ns == before, "made again for nothing"

@@ -17,12 +17,12 @@ namespace anholon::cli {
 
 namespace fs = std::filesystem;
 
-static std::vector<fs::path> model_folders() {
+std::vector<fs::path> data_folders(const char* name, const char* in_source) {
   std::vector<fs::path> folders;
   std::error_code ignored;
   const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
-  if (!self.empty()) folders.push_back(self.parent_path().parent_path() / "share" / "anholon" / "models");
-  folders.emplace_back(ANHOLON_MODELS_DIR);
+  if (!self.empty()) folders.push_back(self.parent_path().parent_path() / "share" / "anholon" / name);
+  folders.emplace_back(in_source);
   return folders;
 }
 
@@ -40,7 +40,7 @@ constexpr const char* kTemplates = "templates";
 
 static std::vector<ShippedModel> shipped(const char* extension, bool of_templates = false) {
   std::vector<ShippedModel> list;
-  for (const fs::path& folder : model_folders()) {
+  for (const fs::path& folder : data_folders("models", ANHOLON_MODELS_DIR)) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) continue;
     for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {

@@ -19,10 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path papers_folder() {
+  const std::vector<fs::path> folders = data_folders("papers", ANHOLON_PAPERS_DIR);
   std::error_code ignored;
-  const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path installed = self.parent_path().parent_path() / "share" / "anholon" / "papers";
-  return !self.empty() && fs::is_directory(installed, ignored) ? installed : fs::path(ANHOLON_PAPERS_DIR);
+  const auto there = std::find_if(folders.begin(), folders.end(), [&](const fs::path& f) { return fs::is_directory(f, ignored); });
+  return there == folders.end() ? folders.back() : *there;
 }
 
 std::vector<Paper> read_papers() {

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
+
+#include "jit/trust.h"
 
 namespace anholon::jit {
 
@@ -61,9 +62,7 @@ std::unique_ptr<llvm::MemoryBuffer> Store::read(const Key& key) const {
   // Whatever lies there: a pipe must not make us wait, and a link may lead to what others put there.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
   struct stat about;
-  if (file.number < 0 || fstat(file.number, &about) != 0 || !S_ISREG(about.st_mode)) return nullptr;
-  // Code that somebody else could have written is not run.
-  if ((about.st_uid != geteuid() && about.st_uid != 0) || (about.st_mode & (S_IWGRP | S_IWOTH))) return nullptr;
+  if (file.number < 0 || fstat(file.number, &about) != 0 || !trusted(about, geteuid())) return nullptr;
   const auto size = static_cast<std::uint64_t>(about.st_size);
   if (size <= sizeof(Key) || size > kMost) return nullptr;
   // Volatile and with a zero at its end: otherwise it is mapped if it is large, and a file that is cut short while mapped kills the reader.

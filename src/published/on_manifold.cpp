@@ -69,7 +69,13 @@ bool Comparer::on_manifold(Expr P, bool regular, Comparison& out) {
     }
   }
   if (regular) return false;
-  // A point at which all contractions hold is one of a motion, if they determine the highest independent derivatives.
+  // A point at which all contractions hold is one of a motion, if they determine the highest independent derivatives, and if every constraint is
+  // put in as it is: a lifted one holds where the constraint itself does not.
+  for (int order : M_.order)
+    if (order != static_cast<int>(E.m)) return false;
+  if (E.constraints.size() != M_.phi.size()) return false;
+  for (Expr e : a)
+    if (jet_order(e) > static_cast<int>(std::max(2U, E.m))) return false;
   Matrix<double> jacobian(a.size(), leading.size());
   for (std::size_t nu = 0; nu < a.size(); ++nu) {
     const Column f = gradient(a[nu], leading);

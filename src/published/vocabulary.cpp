@@ -347,6 +347,19 @@ const Syntax* Vocabulary::reduced_argument(const Syntax& s, bool& quasi) const {
   return &s.args[0];
 }
 
+// Whether something in s stands on the manifold of the constraints: reduced(…), f.y, C.y.x, or star(…), g.x, B.x.u.
+bool Vocabulary::holds_reduced(const Syntax& s, bool quasi) const {
+  if (s.op == Syntax::Op::name) {
+    if (const auto it = lets_.find(s.text); it != lets_.end()) return holds_reduced(it->second.syntax, quasi);
+    const std::vector<std::string> path = split(s.text);
+    if (path.size() < 2) return false;
+    const std::string& first = path[path[0] == "derived"];
+    return quasi ? first == "g" || first == "B" : first == "f" || first == "C";
+  }
+  if (s.op == Syntax::Op::call && s.text == (quasi ? "star" : "reduced")) return true;
+  return std::any_of(s.args.begin(), s.args.end(), [&](const Syntax& a) { return holds_reduced(a, quasi); });
+}
+
 // In the second argument quasi-velocities are symbols, where the constraints are solved.
 Value Vocabulary::partial_of(const Syntax& s, const Value& what) {
   by_symbols_ = true;
@@ -367,19 +380,27 @@ Value Vocabulary::partial_of(const Syntax& s, const Value& what) {
     const Value x = as_point(evaluate(*inner, *this), *this, inner->span);
     return each(x, s.args[0].span, [&](Expr e) { return partial_along(e, *v, quasi, at); });
   }
-  const std::string path = s.args[0].op == Syntax::Op::name ? s.args[0].text : "";
-  if ((path.rfind("f.", 0) == 0 || path.rfind("derived.f.", 0) == 0) && !elimination_(false).solved)
-    return each(of, s.args[0].span, [&](Expr e) { return partial_along(e, *v, false, at); });
-  if ((path.rfind("g.", 0) == 0 || path.rfind("derived.g.", 0) == 0) && !elimination_(true).solved)
-    return each(of, s.args[0].span, [&](Expr e) { return partial_along(e, *v, true, at); });
+  for (const bool in_quasi : {false, true}) {
+    if (!holds_reduced(s.args[0], in_quasi) || elimination_(in_quasi).solved) continue;
+    const std::vector<std::string> path = split(s.args[0].op == Syntax::Op::name ? s.args[0].text : "");
+    const bool one_word = path.size() > 1 && path[path[0] == "derived"] == (in_quasi ? "g" : "f");
+    if (!one_word)
+      throw Failure(s.args[0].span, "the constraints are not solved as formulas here: a partial derivative is taken of what is reduced as a whole",
+                    in_quasi ? "partial(star(…), u)" : "partial(reduced(…), x'), partial(f.y, x')");
+    return each(of, s.args[0].span, [&](Expr e) { return partial_along(e, *v, in_quasi, at); });
+  }
   return each(of, s.args[0].span, [&](Expr e) { return partial_by(e, *v, at); });
 }
 
 Expr Vocabulary::partial_by(Expr e, Expr by, Span span) {
   const Graph& g = graph();
   switch (g.node(by.id).kind) {
-    case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
+    case Kind::quasi:
+      // What is not in quasi-velocities does not hold them, and depends on them all the same.
+      if (jet_order(e) >= static_cast<int>(elimination_(true).m))
+        throw Failure(span, "what is differentiated by a quasi-velocity is not expressed in quasi-velocities", "partial(star(T_r), u), partial(g.x, u)");
       return partial(e, by);
+    case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::state: case Kind::control: return partial(e, by);
     case Kind::time: {
       // Functions of time alone vary with it.
       Expr rate = partial(e, by);

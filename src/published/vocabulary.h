@@ -57,7 +57,6 @@ class Vocabulary final : public Names {
   bool is_word(const std::string& first) const;
   std::optional<Value> word(const std::string& first, const std::vector<std::string>& rest, Span span);
   const Column* column(const std::string& name);
-  Column forces_of(const std::string& name, Span span);
   std::size_t coordinate(const std::string& name, Span span) const;
   std::size_t coordinate(const Value& v, Span span) const;
   Expr along(const Column& column, const std::string& direction, Span span);
@@ -68,6 +67,7 @@ class Vocabulary final : public Names {
   Expr partial_by(Expr e, Expr by, Span span);
   Expr partial_along(Expr e, Expr by, bool quasi, Span span);
   const Syntax* reduced_argument(const Syntax& s, bool& quasi) const;
+  bool holds_reduced(const Syntax& s, bool quasi) const;
   Value each(const Value& v, Span span, const std::function<Expr(Expr)>& f) const;
   Expr with_frozen_masses(Expr e) const;
   Expr finished(Expr e);

@@ -1,6 +1,7 @@
 // Compiled code on disk: whatever happens to the folder, the code is right, and nobody is told of trouble.
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "jit/trust.h"
 #include "kernel/kernel.h"
 #include "run/simulate.h"
 #include "support/compiler.h"
@@ -148,14 +150,35 @@ TEST_P(Cache, FollowsNoLink) {
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(file))) << "not made anew";
 }
 
+TEST(Trust, IsInFilesOfTheUserAndOfRoot) {
+  const auto trusted = [](uid_t owner, mode_t mode, uid_t user) {
+    struct stat about {};
+    about.st_uid = owner;
+    about.st_mode = mode;
+    return jit::trusted(about, user);
+  };
+  constexpr uid_t kUser = 1000, kOther = 1001;
+  for (const uid_t owner : {uid_t{0}, kUser}) {
+    EXPECT_TRUE(trusted(owner, S_IFREG | 0644, kUser));
+    EXPECT_FALSE(trusted(owner, S_IFREG | 0664, kUser)) << "its group may write";
+    EXPECT_FALSE(trusted(owner, S_IFREG | 0646, kUser)) << "all may write";
+    for (const mode_t kind : {S_IFLNK, S_IFIFO, S_IFDIR, S_IFSOCK, S_IFCHR}) EXPECT_FALSE(trusted(owner, kind | 0600, kUser));
+  }
+  EXPECT_FALSE(trusted(kOther, S_IFREG | 0600, kUser));
+  EXPECT_FALSE(trusted(kOther, S_IFREG | 0600, 0)) << "root runs its own code only";
+}
+
+// Root can give the file away; others cannot, and for them it stays the file that was written.
 TEST_P(Cache, TakesNoCodeOfAnotherOwner) {
-  if (geteuid() != 0) GTEST_SKIP() << "only root may give files away";
   const fs::path file = entry();
-  ASSERT_EQ(chown(file.c_str(), 65534, 65534), 0);
+  const std::string good = test::file_text(file);
+  const bool given = chown(file.c_str(), 65534, 65534) == 0;
+  EXPECT_EQ(given, geteuid() == 0) << "errno " << errno;
   EXPECT_EQ(sleigh().check(folder_), "");
   struct stat about {};
   ASSERT_EQ(stat(file.c_str(), &about), 0);
-  EXPECT_EQ(about.st_uid, 0U) << "not made anew";
+  EXPECT_EQ(about.st_uid, geteuid()) << "not made anew";
+  EXPECT_EQ(test::file_text(file), good);
 }
 
 TEST_P(Cache, DoesWithoutAFolder) {

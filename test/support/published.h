@@ -6,6 +6,20 @@
 
 namespace anholon::test {
 
+// A sleigh without forces, with a blade below its mass centre.
+inline constexpr const char* kSleigh = R"toml(coordinates = ["x", "y", "th"]
+parameters = {m = 2, J = 3}
+[[body]]
+name = "sleigh"
+mass = "m"
+inertia = "J"
+center = ["x", "y", "0"]
+angle = "th"
+[[constraint]]
+name = "blade"
+equation = "y'*cos(th) = x'*sin(th)"
+)toml";
+
 inline OpenModel open_text(const std::string& text) {
   Diagnostics diagnostics;
   const SourceText source{"model.toml", text};

@@ -50,18 +50,6 @@ formula = "Gamma"
   is = "true"
   mutant = "Gamma.x = x'"
 )toml";
-const char* const kSleigh = R"toml(coordinates = ["x", "y", "th"]
-parameters = {m = 2, J = 3}
-[[body]]
-name = "sleigh"
-mass = "m"
-inertia = "J"
-center = ["x", "y", "0"]
-angle = "th"
-[[constraint]]
-name = "blade"
-equation = "y' = x'*tan(th)"
-)toml";
 // The acceleration is 1 or -1, and the equations leave open which.
 const char* const kTwoWays = R"toml(coordinates = ["x", "y"]
 particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
@@ -87,7 +75,7 @@ std::string error(std::string text, const std::string& from, const std::string& 
 
 OpenModel load(const std::string& name) {
   if (name != "m" && name != "two ways") throw Failure({}, "there is no model '" + name + "'");
-  return test::open_text(name == "m" ? kSleigh : kTwoWays);
+  return test::open_text(name == "m" ? test::kSleigh : kTwoWays);
 }
 
 TEST(Claims, ATagInAnySpelling) {

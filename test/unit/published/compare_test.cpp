@@ -3,19 +3,6 @@
 namespace anholon {
 namespace {
 
-// A sleigh without forces, with a blade below its mass centre.
-const char* const kSleigh = R"toml(coordinates = ["x", "y", "th"]
-parameters = {m = 2, J = 3}
-[[body]]
-name = "sleigh"
-mass = "m"
-inertia = "J"
-center = ["x", "y", "0"]
-angle = "th"
-[[constraint]]
-name = "blade"
-equation = "y'*cos(th) = x'*sin(th)"
-)toml";
 const char* const kPendulum = R"toml(coordinates = ["x", "y"]
 parameters = {m = 2, l = 3, g = 9.81}
 gravity.field = "-g*ey"
@@ -42,7 +29,7 @@ class Compared : public test::Published {
 };
 
 TEST(Compare, SaysWhatATrueEquationIs) {
-  Compared s(kSleigh);
+  Compared s(test::kSleigh);
   EXPECT_EQ(s.what("m*x'' = -lambda*sin(th)"), "the equation of x");
   EXPECT_EQ(s.what("lambda*sin(th)/m = -x''"), "the equation of x, times 1/m");
   EXPECT_EQ(s.what("J*th'' = 0"), "the equation of th");
@@ -67,7 +54,7 @@ TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
 }
 
 TEST(Compare, NamesTheMisprint) {
-  Compared s(kSleigh);
+  Compared s(test::kSleigh);
   EXPECT_EQ(s.change("m*x'' = lambda*sin(th)"), "lambda*sin(th) -> -lambda*sin(th)");  // and not the left side, which is the same
   EXPECT_EQ(s.change("m*x'' = -lambda*cos(th)"), "-lambda*cos(th) -> -lambda*sin(th)");
   Compared p(kPendulum);
@@ -111,6 +98,22 @@ equation = "D(z,)toml" + order + ") = D(x," + order + ")^2 + y*D(y," + order + "
     EXPECT_EQ(s.compare("f.z = 0").verdict, Verdict::refuted) << m;
     EXPECT_EQ(s.compare("f.z = D(z," + order + ")").verdict, Verdict::proved) << m;
   }
+}
+
+// A constraint of lower order is lifted for the elimination, and holds itself on the motion: what is true by it is not refuted.
+TEST(Compare, ALowerConstraintBesideANonlinearOneHolds) {
+  Compared s(R"toml(coordinates = ["x", "y", "z", "w"]
+parameters = {m = 2, k = 3}
+particle = [{name = "p", mass = "m", position = ["x", "y", "z"]}, {name = "q", mass = "m", position = "w*ex"}]
+[[constraint]]
+name = "low"
+equation = "y' = x"
+[[constraint]]
+name = "high"
+equation = "D(z,3) = D(x,3)^2 + D(w,3)^2"
+)toml");
+  EXPECT_EQ(s.compare("along(inertia_term, x) = along(G, x)").verdict, Verdict::proved);
+  EXPECT_NE(s.compare("along(inertia_term, x) + k*(y' - x) = along(G, x)").verdict, Verdict::refuted);
 }
 
 }  // namespace

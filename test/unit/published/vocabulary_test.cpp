@@ -115,6 +115,10 @@ TEST(Vocabulary, ConstraintsThatAreNotSolved) {
   EXPECT_EQ(w.verdict("let S = reduced(T_r)\ne: partial(S, " + x + "') = partial(T_r, " + x + "') + partial(T_r, " + y + "')*partial(f." + y + ", " + x + "')"), "true");
   EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + "') = partial(T_r, " + x + "') - partial(T_r, " + y + "')*partial(f." + y + ", " + x + "')"), "false");
   EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + ") = partial(T_r, " + x + ") + partial(T_r, " + y + "')*partial(f." + y + ", " + x + ")"), "true");
+  // A sum with something else in it has no derivative along the manifold that could be told from an ordinary one.
+  EXPECT_EQ(w.error("e: partial(reduced(T_r) + " + x + "', " + x + "') = 0").find("the constraints are not solved as formulas here"), 0U);
+  EXPECT_EQ(w.error("let twice = 2*reduced(T_r)\ne: partial(twice, " + x + "') = 0").find("the constraints are not solved as formulas here"), 0U);
+  EXPECT_EQ(w.error("e: partial(D(f." + y + ", 1), " + x + "') = 0").find("the constraints are not solved as formulas here"), 0U);
 }
 
 TEST(Vocabulary, QuasiVelocities) {
@@ -124,6 +128,7 @@ TEST(Vocabulary, QuasiVelocities) {
     EXPECT_EQ(w.verdict(right), "true") << right;
   }
   EXPECT_EQ(w.verdict("e: partial(star(T_r), u2) = m*z'"), "false");
+  EXPECT_EQ(w.error("e: partial(T_r, u2) = 0"), "what is differentiated by a quasi-velocity is not expressed in quasi-velocities");
 }
 
 TEST(Vocabulary, OldNamesOfForms) { EXPECT_EQ(find_formulation("misevic-rusov-quasi"), find_formulation("micevic-rusov-quasi")); }
