@@ -118,7 +118,7 @@ if(TARGET anholon)
   anholon_script_test(reference_selftest tools/reference.py --program $<TARGET_FILE:anholon> --self-test)
   anholon_script_test(papers_tables tools/papers.py --program $<TARGET_FILE:anholon>)
   anholon_script_test(papers_selftest tools/papers.py --program $<TARGET_FILE:anholon> --self-test)
-  # Every claim of the papers, decided: about a minute.
+  # Every claim of the papers, decided.
   add_test(NAME papers.check COMMAND anholon papers --check --quiet)
   set_tests_properties(papers.check PROPERTIES LABELS laws)
   anholon_script_test(h5py test/house/read_with_h5py.py $<TARGET_FILE:anholon>)
