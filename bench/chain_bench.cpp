@@ -1,5 +1,5 @@
-// Routh's equations of the planar chain, stage by stage: reading, kinetic energy and forces, equations, expanding, printing.
-// bench/peers/chain.py compares the whole with SymPy.
+// Routh's equations of the planar chain, stage by stage: reading, kinetic energy and forces, equations, expanding,
+// printing. bench/peers/chain.py compares the whole with SymPy.
 #include <benchmark/benchmark.h>
 
 #include "expr/normal.h"
@@ -56,10 +56,18 @@ void stage(benchmark::State& state, Stage timed) {
 }
 
 const bool registered = [] {
-  for (const auto& [name, which] : {std::pair{"1_read", reading}, {"2_energy_and_forces", energy_and_forces}, {"3_equations", equations},
-                                    {"4_expand", expanding}, {"5_print", printing}, {"6_expand_and_print", expanding_and_printing}})
+  for (const auto& [name, which] : {std::pair{"1_read", reading},
+                                    {"2_energy_and_forces", energy_and_forces},
+                                    {"3_equations", equations},
+                                    {"4_expand", expanding},
+                                    {"5_print", printing},
+                                    {"6_expand_and_print", expanding_and_printing}})
     benchmark::RegisterBenchmark((std::string("chain/") + name).c_str(), stage, which)
-        ->Arg(5)->Arg(10)->Arg(20)->Arg(64)->Unit(benchmark::kMillisecond);
+        ->Arg(5)
+        ->Arg(10)
+        ->Arg(20)
+        ->Arg(64)
+        ->Unit(benchmark::kMillisecond);
   return true;
 }();
 

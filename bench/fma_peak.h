@@ -17,8 +17,7 @@ namespace fma_peak_detail {
 
 // The chains are named by constants, or they would not stay in registers.
 template <class V, std::size_t... chain>
-[[gnu::always_inline]] inline void sweep(long times, double& result,
-                                         std::index_sequence<chain...>) {
+[[gnu::always_inline]] inline void sweep(long times, double& result, std::index_sequence<chain...>) {
   V sum[sizeof...(chain)] = {};
   V factor{}, addend{};
   factor += 0.999999999;
@@ -33,20 +32,17 @@ typedef double Four __attribute__((vector_size(32)));
 typedef double Eight __attribute__((vector_size(64)));
 
 #ifdef __x86_64__
-[[gnu::target("fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double
-one(long times) {
+[[gnu::target("fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double one(long times) {
   double result;
   sweep<double>(times, result, std::make_index_sequence<12>());
   return result;
 }
-[[gnu::target("avx2,fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double
-four(long times) {
+[[gnu::target("avx2,fma"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double four(long times) {
   double result;
   sweep<Four>(times, result, std::make_index_sequence<12>());
   return result;
 }
-[[gnu::target("avx512f,prefer-vector-width=512"), gnu::optimize("fp-contract=fast"),
-  gnu::noinline]] inline double
+[[gnu::target("avx512f,prefer-vector-width=512"), gnu::optimize("fp-contract=fast"), gnu::noinline]] inline double
 eight(long times) {
   double result;
   sweep<Eight>(times, result, std::make_index_sequence<12>());
@@ -74,8 +70,7 @@ inline std::vector<Peak> fma_peaks() {
   std::vector<Peak> peaks;
 #ifdef __x86_64__
   if (__builtin_cpu_supports("fma")) peaks.push_back({"scalar", gigaflops(one, 1)});
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    peaks.push_back({"avx2", gigaflops(four, 4)});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) peaks.push_back({"avx2", gigaflops(four, 4)});
   if (__builtin_cpu_supports("avx512f")) peaks.push_back({"avx512", gigaflops(eight, 8)});
 #endif
   return peaks;

@@ -1,9 +1,9 @@
 // Inside the process: derivation up to the stepping program, and the cost of a step, per model and
 // number type.
-#include <benchmark/benchmark.h>
-
 #include <fstream>
 #include <sstream>
+
+#include <benchmark/benchmark.h>
 
 #include "run/simulate.h"
 
@@ -53,11 +53,16 @@ void step(benchmark::State& state, const std::string& path, Precision precision)
 }
 
 const bool registered = [] {
-  for (const char* model : {"zoo/chaplygin-sleigh.toml", "zoo/disc.toml", "zoo/rolling-coin.toml", "zoo/snakeboard.toml",
-                            "zoo/car-three-trailers.toml", "papers/luo-zhao-example-2.toml"}) {
-    benchmark::RegisterBenchmark((std::string("derive/") + model).c_str(), derive, model)->Unit(benchmark::kMillisecond);
-    for (const auto& [name, precision] : {std::pair{"double", Precision::real}, {"long_double", Precision::long_real}, {"quad", Precision::quad}, {"30_digits", Precision::multi}})
-      benchmark::RegisterBenchmark((std::string("step/") + name + "/" + model).c_str(), step, model, precision)->Unit(benchmark::kMillisecond);
+  for (const char* model : {"zoo/chaplygin-sleigh.toml", "zoo/disc.toml", "zoo/rolling-coin.toml",
+                            "zoo/snakeboard.toml", "zoo/car-three-trailers.toml", "papers/luo-zhao-example-2.toml"}) {
+    benchmark::RegisterBenchmark((std::string("derive/") + model).c_str(), derive, model)
+        ->Unit(benchmark::kMillisecond);
+    for (const auto& [name, precision] : {std::pair{"double", Precision::real},
+                                          {"long_double", Precision::long_real},
+                                          {"quad", Precision::quad},
+                                          {"30_digits", Precision::multi}})
+      benchmark::RegisterBenchmark((std::string("step/") + name + "/" + model).c_str(), step, model, precision)
+          ->Unit(benchmark::kMillisecond);
   }
   return true;
 }();

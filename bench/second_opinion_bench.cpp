@@ -1,9 +1,10 @@
-// One motion by Taylor's series and by SUNDIALS, inside one process: the same program of the same model, from the same start to
-// the same end, without rows. The error is that of the coordinates and velocities at the end against 30 digits.
-#include <benchmark/benchmark.h>
-
+// One motion by Taylor's series and by SUNDIALS, inside one process: the same program of the same model, from the same
+// start to the same end, without rows. The error is that of the coordinates and velocities at the end against 30
+// digits.
 #include <cmath>
 #include <map>
+
+#include <benchmark/benchmark.h>
 
 #include "run/simulate.h"
 #include "support/models.h"
@@ -39,7 +40,8 @@ struct Task {
     for (std::size_t j = 0; j < scenario.system.coordinates; ++j)
       for (int k = 0, at = offset(j); k < stepping->d[j]; ++k, ++at) {
         const double x = exact[static_cast<std::size_t>(at)];
-        worst = std::max(worst, std::abs(static_cast<double>(state[static_cast<std::size_t>(at)]) - x) / (1 + std::abs(x)));
+        worst =
+            std::max(worst, std::abs(static_cast<double>(state[static_cast<std::size_t>(at)]) - x) / (1 + std::abs(x)));
       }
     return worst;
   }
@@ -93,21 +95,26 @@ void by_sundials(benchmark::State& state, const std::string& model, double toler
   initial_state(t.scenario, {}, start);
   const std::vector<double> parameters = parameter_values<double>(*t.scenario.model);
   for (auto _ : state) {
-    Sundials other(*t.stepping, parameters, {integrator, tolerance, 50'000'000, {}}, start.t, t.end.get_d(), start.state, start.leading, {});
+    Sundials other(*t.stepping, parameters, {integrator, tolerance, 50'000'000, {}}, start.t, t.end.get_d(),
+                   start.state, start.leading, {});
     if (const Outcome o = other.advance(t.end.get_d()); !o.ok()) return state.SkipWithError(o.message.c_str());
     count(state, t.error(other.state()), other.steps());
   }
 }
 
 const bool registered = [] {
-  for (const std::string model : {"zoo/chaplygin-sleigh", "zoo/disc", "zoo/snakeboard", "zoo/car-three-trailers", "zoo/double-pendulum-cartesian",
-                                  "zoo/fourbar", "zoo/constant-acceleration", "papers/luo-zhao-example-2"})
+  for (const std::string model :
+       {"zoo/chaplygin-sleigh", "zoo/disc", "zoo/snakeboard", "zoo/car-three-trailers", "zoo/double-pendulum-cartesian",
+        "zoo/fourbar", "zoo/constant-acceleration", "papers/luo-zhao-example-2"})
     for (int digits = 3; digits <= 14; ++digits) {
       const double tolerance = std::pow(10.0, -digits);
-      const auto title = [&](const std::string& how) { return "opinion/" + how + "/1e-" + std::to_string(digits) + "/" + model; };
+      const auto title = [&](const std::string& how) {
+        return "opinion/" + how + "/1e-" + std::to_string(digits) + "/" + model;
+      };
       benchmark::RegisterBenchmark(title("taylor").c_str(), by_taylor, model, tolerance)->Unit(benchmark::kMicrosecond);
       for (const Integrator k : {Integrator::cvode, Integrator::ida})
-        benchmark::RegisterBenchmark(title(name(k)).c_str(), by_sundials, model, tolerance, k)->Unit(benchmark::kMicrosecond);
+        benchmark::RegisterBenchmark(title(name(k)).c_str(), by_sundials, model, tolerance, k)
+            ->Unit(benchmark::kMicrosecond);
     }
   return true;
 }();

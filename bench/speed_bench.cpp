@@ -6,7 +6,8 @@
 //   start                          positions and velocities at the start, coordinate by coordinate, in 36 digits
 //   exact DIGITS                   those at the end, so many digits to be trusted
 //   run TOLERANCE SECONDS [STEPS]  as many motions as fit the time, at least one; STEPS: no more of each
-//   lanes NAME                     the neighbours in the lanes of a kernel, which begin with a shifted coordinate NAME: where
+//   lanes NAME                     the neighbours in the lanes of a kernel, which begin with a shifted coordinate NAME:
+//   where
 //                                  they start, and where they end by motions in long double
 //   batch TOLERANCE SECONDS NAME   all of them side by side in one kernel, as often as fits the time
 //
@@ -49,8 +50,8 @@ struct Ready {
   Scenario scenario;
   std::unique_ptr<Program> stepping;
   std::map<std::pair<double, Company>, std::shared_ptr<const KernelPlan>> plans;  // by tolerance, alone or in lanes
-  double read = 0, scenario_made = 0, program_made = 0;       // seconds
-  double plan_made = 0, compiled = 0;                         // of the last of the plans
+  double read = 0, scenario_made = 0, program_made = 0;                           // seconds
+  double plan_made = 0, compiled = 0;                                             // of the last of the plans
 };
 
 std::unique_ptr<Ready> make_ready(const Request& request) {
@@ -62,8 +63,7 @@ std::unique_ptr<Ready> make_ready(const Request& request) {
     return s;
   };
   SourceText source{request.model, {}};
-  if (std::string why; !read_file(request.model, source.text, &why))
-    throw Failed{request.model + ": " + why};
+  if (std::string why; !read_file(request.model, source.text, &why)) throw Failed{request.model + ": " + why};
   Diagnostics diagnostics;
   std::optional<Model> m = read_model(source, diagnostics, request.set);
   if (!m) throw Failed{diagnostics.print(source)};
@@ -89,16 +89,20 @@ std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& 
 }
 
 // The kernel of a motion that is long enough for the dearest writing and for machine code.
-const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, const Start<long double>& start, Company company = Company::alone) {
+const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, const Start<long double>& start,
+                                                 Company company = Company::alone) {
   auto& plan = r.plans[{tolerance, company}];
   if (plan) return plan;
   Stopwatch watch;
   const std::vector<long double> parameters = parameter_values<long double>(*r.scenario.model);
   const std::vector<double> state(start.state.begin(), start.state.end());
   const double t = static_cast<double>(start.t);
-  const auto derived = KernelPlan::make(std::make_shared<const Program>(*r.stepping), taylor_order(std::log(tolerance)) - 1, parameters, t, state, company);
+  const auto derived = KernelPlan::make(std::make_shared<const Program>(*r.stepping),
+                                        taylor_order(std::log(tolerance)) - 1, parameters, t, state, company);
   if (!derived) return plan;
-  plan = cheapest(representations({derived, r.scenario.structure, {}, parameters, t, state, r.scenario.mechanics.get()}, WritingEffort::very_long_motion)).plan;
+  plan = cheapest(representations({derived, r.scenario.structure, {}, parameters, t, state, r.scenario.mechanics.get()},
+                                  WritingEffort::very_long_motion))
+             .plan;
   r.plan_made = watch.seconds();
   watch = {};
   plan->compile({});
@@ -194,7 +198,8 @@ void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_ste
   const W end = from_rational<W>(*r.scenario.model->simulate.to);
   const auto plan = plan_of(r, tolerance, start);
   std::vector<double> times;
-  const auto motion = std::make_unique<Trajectory<double>>(r, StepSettings{std::log(tolerance), 0, kMostSteps, {}, true, false});
+  const auto motion =
+      std::make_unique<Trajectory<double>>(r, StepSettings{std::log(tolerance), 0, kMostSteps, {}, true, false});
   motion->stepper.accelerate(plan);
   for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
     const Stopwatch watch;
@@ -213,7 +218,8 @@ void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_ste
   write_state(json, motion->last());
 }
 
-// Motions that differ in where a coordinate begins: by 1/64 from lane to lane. What else the file gives stays, constraints are kept.
+// Motions that differ in where a coordinate begins: by 1/64 from lane to lane. What else the file gives stays,
+// constraints are kept.
 template <class W>
 std::vector<Start<W>> neighbours(const Ready& r, const std::string& name) {
   const Scenario& s = r.scenario;
@@ -248,10 +254,13 @@ void answer_lanes(const Ready& r, const std::string& name, JsonWriter& json) {
   write_state(json, last);
 }
 
-// The lanes of one kernel, each to the end; those that are there wait for the others. Where they have arrived, if asked for.
-void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions, const std::vector<Start<Wider<double>>>& starts,
-                     const Wider<double>& end, std::vector<std::vector<Wider<double>>>* last = nullptr) {
-  for (std::size_t i = 0; i < motions.size(); ++i) motions[i].stepper.place(starts[i].t, starts[i].state, starts[i].leading);
+// The lanes of one kernel, each to the end; those that are there wait for the others. Where they have arrived, if asked
+// for.
+void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions,
+                     const std::vector<Start<Wider<double>>>& starts, const Wider<double>& end,
+                     std::vector<std::vector<Wider<double>>>* last = nullptr) {
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    motions[i].stepper.place(starts[i].t, starts[i].state, starts[i].leading);
   const auto all = [&](const auto& part) {
     bool any = false;
     for (Trajectory<double>& m : motions)
@@ -308,7 +317,8 @@ void answer_batch(Ready& r, double tolerance, double seconds, const std::string&
     alone.go(starts[lane], end, kMostSteps);
     const std::vector<W>& here = arrived[lane];
     const std::vector<W> there = alone.last();
-    for (std::size_t i = 0; i < here.size(); ++i) apart = std::max(apart, to_double(abs(here[i] - there[i]) / (W(1) + abs(there[i]))));
+    for (std::size_t i = 0; i < here.size(); ++i)
+      apart = std::max(apart, to_double(abs(here[i] - there[i]) / (W(1) + abs(there[i]))));
     last.insert(last.end(), here.begin(), here.end());
     steps += motions[lane].stepper.steps();
     by_kernel += motions[lane].stepper.expansions_by_kernel();

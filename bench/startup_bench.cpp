@@ -1,15 +1,15 @@
 // From process start to written CSV: `anholon simulate` on the models of the papers, 10 s of motion
 // at tolerance 1e-12. Goal: under 50 ms of wall time each.
-#include <benchmark/benchmark.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include <benchmark/benchmark.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 extern char** environ;
 
@@ -29,8 +29,7 @@ void run(const std::vector<std::string>& words) {
 
 void simulate_process(benchmark::State& state, const std::string& model) {
   const std::string csv = (std::filesystem::temp_directory_path() / "anholon-bench.csv").string();
-  for (auto _ : state)
-    run({kProgram, "simulate", model, "--to", "10", "--tolerance", "1e-12", "--quiet", "-o", csv});
+  for (auto _ : state) run({kProgram, "simulate", model, "--to", "10", "--tolerance", "1e-12", "--quiet", "-o", csv});
   std::remove(csv.c_str());
 }
 
@@ -41,7 +40,8 @@ const bool registered = [] {
   std::sort(models.begin(), models.end());
   for (const std::string& m : models)
     benchmark::RegisterBenchmark(("process/" + std::filesystem::path(m).stem().string()).c_str(), simulate_process, m)
-        ->Unit(benchmark::kMillisecond)->UseRealTime();
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
   return true;
 }();
 

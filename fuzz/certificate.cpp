@@ -1,4 +1,6 @@
 // Certificates: any bytes are read or refused; what is read is written and read back the same.
+#include "proof/certificate.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -6,7 +8,6 @@
 #include <string_view>
 
 #include "base/diagnostic.h"
-#include "proof/certificate.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

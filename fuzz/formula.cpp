@@ -1,7 +1,8 @@
 // The parser on any bytes; where they are a formula, its value under the names of a small model.
+#include "expr/formula.h"
+
 #include <string>
 
-#include "expr/formula.h"
 #include "spec/read.h"
 
 namespace {
@@ -42,9 +43,12 @@ std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     const auto u = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') out += '\\', out += c;
-    else if (u < 0x20 || u == 0x7f) out += "\\u00", out += digits[u >> 4], out += digits[u & 15];
-    else out += c;
+    if (c == '"' || c == '\\')
+      out += '\\', out += c;
+    else if (u < 0x20 || u == 0x7f)
+      out += "\\u00", out += digits[u >> 4], out += digits[u & 15];
+    else
+      out += c;
   }
   return out + "\"";
 }

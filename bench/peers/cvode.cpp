@@ -1,5 +1,5 @@
-// SUNDIALS' CVODE (serve.h: how it is asked): Adams with fixed-point iteration, or BDF with Newton's and dense difference quotients, as ADAMS says. The
-// solver is made once; a motion begins with CVodeReInit.
+// SUNDIALS' CVODE (serve.h: how it is asked): Adams with fixed-point iteration, or BDF with Newton's and dense
+// difference quotients, as ADAMS says. The solver is made once; a motion begins with CVodeReInit.
 #include <algorithm>
 #include <stdexcept>
 

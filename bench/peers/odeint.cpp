@@ -11,9 +11,8 @@ struct Fehlberg {
   std::size_t operator()(State& x) {
     namespace ode = boost::numeric::odeint;
     std::size_t steps = 0;
-    ode::integrate_adaptive(
-        ode::make_controlled<ode::runge_kutta_fehlberg78<State>>(tolerance, tolerance),
-        std::cref(system), x, 0.0, end, end / 1000, [&steps](const State&, double) { ++steps; });
+    ode::integrate_adaptive(ode::make_controlled<ode::runge_kutta_fehlberg78<State>>(tolerance, tolerance),
+                            std::cref(system), x, 0.0, end, end / 1000, [&steps](const State&, double) { ++steps; });
     return steps - 1;
   }
   const System& system;

@@ -1,8 +1,10 @@
-// The systems of the speed table with right-hand sides reduced and written by hand, O(n) in the links of a chain and in the trailers:
+// The systems of the speed table with right-hand sides reduced and written by hand, O(n) in the links of a chain and in
+// the trailers:
 //   sleigh    x, y, th, v (along the blade), w
 //   disc      x, y, psi, theta, phi and the angular velocities w1 (lean), w2, w3 (axle) along lean.x, lean.y, lean.z
-//   trailers  x, y, ph, th[0..n], p = v sqrt(I) with 2T = I v^2 + Jp s^2, s = th[0]' + ph': then p' = (drive - tan(ph) steer/L)/sqrt(I)
-//   chain     th, w; the tensions of the rods from their tridiagonal equations (acceleration along a rod = -l w^2), then w'
+//   trailers  x, y, ph, th[0..n], p = v sqrt(I) with 2T = I v^2 + Jp s^2, s = th[0]' + ph': then p' = (drive - tan(ph)
+//   steer/L)/sqrt(I) chain     th, w; the tensions of the rods from their tridiagonal equations (acceleration along a
+//   rod = -l w^2), then w'
 #pragma once
 #include <array>
 #include <cmath>
@@ -29,12 +31,8 @@ struct Sleigh {
   using State = Vec<N, 5>;
   using Given = Vec<N, 6>;
   static constexpr N m = 2, a = N(1) / 2, J = N(1) / 2;
-  State reduce(const Given& g) const {
-    return {g[0], g[2], g[4], g[1] * cos(g[4]) + g[3] * sin(g[4]), g[5]};
-  }
-  Given expand(const State& x) const {
-    return {x[0], x[3] * cos(x[2]), x[1], x[3] * sin(x[2]), x[2], x[4]};
-  }
+  State reduce(const Given& g) const { return {g[0], g[2], g[4], g[1] * cos(g[4]) + g[3] * sin(g[4]), g[5]}; }
+  Given expand(const State& x) const { return {x[0], x[3] * cos(x[2]), x[1], x[3] * sin(x[2]), x[2], x[4]}; }
   void operator()(const State& x, State& d, const N&) const {
     constexpr N k = m * a / (J + m * a * a);
     d[0] = x[3] * cos(x[2]);
@@ -56,8 +54,7 @@ struct Disc {
   }
   Given expand(const State& x) const {
     const N c = cos(x[3]), s = sin(x[3]), turn = x[6] / s, spin = x[7] - turn * c;
-    return {x[0], -R * spin * cos(x[2]), x[1], -R * spin * sin(x[2]), x[2], turn, x[3], x[5], x[4],
-            spin};
+    return {x[0], -R * spin * cos(x[2]), x[1], -R * spin * sin(x[2]), x[2], turn, x[3], x[5], x[4], spin};
   }
   void operator()(const State& x, State& d, const N&) const {
     const N c = cos(x[3]), s = sin(x[3]), w1 = x[5], w2 = x[6], w3 = x[7];
@@ -77,8 +74,7 @@ template <class N, std::size_t n>
 struct Trailers {
   using State = Vec<N, n + 6>;
   using Given = Vec<N, 2 * (n + 4)>;
-  static constexpr N M0 = 10, J0 = 2, Jp = N(1) / 8, L = 1, M = 3, J = N(3) / 4, d = N(7) / 8,
-                     drive = 5;
+  static constexpr N M0 = 10, J0 = 2, Jp = N(1) / 8, L = 1, M = 3, J = N(3) / 4, d = N(7) / 8, drive = 5;
   using Bends = Vec<N, n + 1>;
   // 1/sqrt of the inertia of the whole train by the speed of the car; cosines and sines of the
   // angles at the hitches.
@@ -89,8 +85,7 @@ struct Trailers {
       s[i] = sin(bend);
     }
     N behind(0);
-    for (std::size_t i = n; i >= 1; --i)
-      behind = J / (d * d) + c[i] * c[i] * (M - J / (d * d) + behind);
+    for (std::size_t i = n; i >= 1; --i) behind = J / (d * d) + c[i] * c[i] * (M - J / (d * d) + behind);
     return 1 / sqrt(M0 + J0 * t * t + behind);
   }
   State reduce(const Given& g) const {
@@ -114,8 +109,7 @@ struct Trailers {
   void operator()(const State& x, State& rate, const N& time) const {
     constexpr std::size_t at = n + 4;
     Bends c, s;
-    const N t = sin(x[2]) / cos(x[2]) / L, r = root(x, t, c, s), v = x[at] * r, turn = v * t,
-            w = x[at + 1] - turn;
+    const N t = sin(x[2]) / cos(x[2]) / L, r = root(x, t, c, s), v = x[at] * r, turn = v * t, w = x[at + 1] - turn;
     const N steer = -2 * x[2] + sin(time) - w / 2;
     rate[0] = v * cos(x[3]);
     rate[1] = v * sin(x[3]);
@@ -183,8 +177,7 @@ struct Chain {
     for (std::size_t i = 0; i < n; ++i) d[i] = w[i];
     s[n] = 0;
     d[n] = s[1] * tension[1] - (g / l) * s0;
-    for (std::size_t i = 1; i < n; ++i)
-      d[n + i] = s[i + 1] * tension[i + 1] - s[i] * tension[i - 1];
+    for (std::size_t i = 1; i < n; ++i) d[n + i] = s[i + 1] * tension[i + 1] - s[i] * tension[i - 1];
   }
 };
 

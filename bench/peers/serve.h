@@ -1,6 +1,7 @@
 // An integrator on the systems of the speed table; in __float128 also the check of the reference.
 //
-//   PROGRAM SYSTEM N END     (N = 1 where there is none) then one position or velocity per line of standard input, 36 digits each, coordinate by
+//   PROGRAM SYSTEM N END     (N = 1 where there is none) then one position or velocity per line of standard input, 36
+//   digits each, coordinate by
 //                            coordinate (of the chain: th[1], th[1]', …; as anholon's models in bench/models have them)
 //   run TOLERANCE SECONDS    as many motions as fit the time; answers with a line of JSON
 //   exact STEPS              the end in __float128 by extrapolation of order 24, in so many equal steps
@@ -80,8 +81,7 @@ int serve(double end) {
   const Exact exact;
   const auto begin = exact.reduce(given);
   typename Narrow::State start;
-  std::transform(begin.begin(), begin.end(), start.begin(),
-                 [](const Quad& x) { return static_cast<double>(x); });
+  std::transform(begin.begin(), begin.end(), start.begin(), [](const Quad& x) { return static_cast<double>(x); });
   while (std::getline(std::cin, line)) {
     double tolerance = 0, seconds = 0;
     int quad_steps = 0;
@@ -109,8 +109,7 @@ int serve(double end) {
       }
       typename Exact::State last;
       std::copy(x.begin(), x.end(), last.begin());
-      std::printf("{\"us\": %.6g, \"runs\": %zu, \"steps\": %zu, ", 1e6 * median(times),
-                  times.size(), steps);
+      std::printf("{\"us\": %.6g, \"runs\": %zu, \"steps\": %zu, ", 1e6 * median(times), times.size(), steps);
       print(exact.expand(last));
     }
   }

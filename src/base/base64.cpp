@@ -12,7 +12,8 @@ std::string to_base64(std::string_view bytes) {
   out.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t k = 0; k < bytes.size(); k += 3) {
     std::uint32_t three = 0;
-    for (std::size_t b = 0; b < 3; ++b) three = three << 8 | (k + b < bytes.size() ? static_cast<unsigned char>(bytes[k + b]) : 0U);
+    for (std::size_t b = 0; b < 3; ++b)
+      three = three << 8 | (k + b < bytes.size() ? static_cast<unsigned char>(bytes[k + b]) : 0U);
     for (std::size_t d = 0; d < 4; ++d) out += k + d > bytes.size() ? '=' : kDigits[three >> (18 - 6 * d) & 63];
   }
   return out;

@@ -31,15 +31,17 @@ void Diagnostics::warning(Span span, std::string message, std::string hint) {
 }
 
 bool Diagnostics::has_errors() const {
-  return std::any_of(list_.begin(), list_.end(),
-                     [](const Diagnostic& d) { return d.severity == Severity::error; });
+  return std::any_of(list_.begin(), list_.end(), [](const Diagnostic& d) { return d.severity == Severity::error; });
 }
 
 static const char* word(Severity s) {
   switch (s) {
-    case Severity::error: return "error";
-    case Severity::warning: return "warning";
-    case Severity::note: return "note";
+  case Severity::error:
+    return "error";
+  case Severity::warning:
+    return "warning";
+  case Severity::note:
+    return "note";
   }
   return "";
 }
@@ -50,8 +52,7 @@ static constexpr std::size_t kShownWidth = 160;
 std::string print(const Diagnostic& d, const SourceText& main) {
   const SourceText& source = main.of(d.span);
   std::string out = shown(source.name);
-  if (d.span.line > 0)
-    out += ":" + std::to_string(d.span.line) + ":" + std::to_string(d.span.column);
+  if (d.span.line > 0) out += ":" + std::to_string(d.span.line) + ":" + std::to_string(d.span.column);
   out += std::string(": ") + word(d.severity) + ": " + shown(d.message) + "\n";
   if (d.span.line > 0) {
     const std::string number = std::to_string(d.span.line);
@@ -68,8 +69,10 @@ std::string print(const Diagnostic& d, const SourceText& main) {
     line = shown(line);
     const std::size_t width = utf8_length(line);
     std::size_t length = std::max<std::size_t>(1, d.span.length);
-    if (column < width) length = std::min(length, width - column);
-    else length = 1;
+    if (column < width)
+      length = std::min(length, width - column);
+    else
+      length = 1;
     out += "  " + number + " | " + line + "\n";
     out += "  " + std::string(number.size(), ' ') + " | " + std::string(column, ' ') + "^" +
            std::string(length - 1, '~') + "\n";
@@ -87,8 +90,7 @@ std::string Diagnostics::print(const SourceText& source) const {
   for (const Diagnostic& d : list_) sorted.push_back(&d);
   std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic* a, const Diagnostic* b) {
     if (a->span.file != b->span.file) return a->span.file < b->span.file;
-    return a->span.line != b->span.line ? a->span.line < b->span.line
-                                        : a->span.column < b->span.column;
+    return a->span.line != b->span.line ? a->span.line < b->span.line : a->span.column < b->span.column;
   });
   SourceText all = source;
   if (all.others.empty()) all.others = others;
@@ -110,7 +112,8 @@ void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) 
     if (is_one(list_[k].message)) alike[list_[k].message + "\n" + list_[k].hint].push_back(k);
   std::vector<bool> left_out(list_.size(), false);
   for (auto& [message, places] : alike) {
-    std::stable_sort(places.begin(), places.end(), [&](std::size_t a, std::size_t b) { return before(list_[a].span, list_[b].span); });
+    std::stable_sort(places.begin(), places.end(),
+                     [&](std::size_t a, std::size_t b) { return before(list_[a].span, list_[b].span); });
     std::size_t elsewhere = 0;
     for (std::size_t k = 1; k < places.size(); ++k) {
       left_out[places[k]] = true;
@@ -118,7 +121,8 @@ void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) 
     }
     if (elsewhere == 0) continue;
     std::string& hint = list_[places[0]].hint;
-    hint += (hint.empty() ? "" : "; ") + std::string("it stands in ") + std::to_string(elsewhere) + (elsewhere == 1 ? " other place, too" : " other places, too");
+    hint += (hint.empty() ? "" : "; ") + std::string("it stands in ") + std::to_string(elsewhere) +
+            (elsewhere == 1 ? " other place, too" : " other places, too");
   }
   std::vector<Diagnostic> kept;
   for (std::size_t k = 0; k < list_.size(); ++k)
@@ -134,7 +138,8 @@ static std::size_t edit_distance(const std::string& a, const std::string& b) {
   for (std::size_t i = 1; i <= a.size(); ++i)
     for (std::size_t j = 1; j <= b.size(); ++j) {
       d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
     }
   return d[a.size()][b.size()];
 }
@@ -144,7 +149,9 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
   std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
   if (name.size() > 64 || name.size() < 2) return best;
   for (const std::string& c : candidates) {
-    if (c == name || c.size() > 64 || std::max(c.size(), name.size()) - std::min(c.size(), name.size()) >= best_distance) continue;
+    if (c == name || c.size() > 64 ||
+        std::max(c.size(), name.size()) - std::min(c.size(), name.size()) >= best_distance)
+      continue;
     const std::size_t distance = edit_distance(name, c);
     if (distance < best_distance && distance < std::max(c.size(), name.size())) {
       best = c;

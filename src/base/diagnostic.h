@@ -13,8 +13,8 @@
 namespace anholon {
 
 // A place in a source text: 1-based line and column (in characters), length in characters.
-// line 0 means "the text as a whole". A model may be read from several files: file 0 is the one that was named, file k > 0
-// the (k-1)th of SourceText::others.
+// line 0 means "the text as a whole". A model may be read from several files: file 0 is the one that was named, file k
+// > 0 the (k-1)th of SourceText::others.
 struct Span {
   std::uint32_t line = 0, column = 0, length = 1, file = 0;
 };
@@ -40,10 +40,12 @@ struct Failure : std::exception {
 struct SourceText {
   std::string name;
   std::string text;
-  std::string path = {};                  // where it lies, if that is not its name
-  std::vector<SourceText> others = {};    // the files it builds on
+  std::string path = {};                // where it lies, if that is not its name
+  std::vector<SourceText> others = {};  // the files it builds on
   std::string line(std::uint32_t number) const;
-  const SourceText& of(Span span) const { return span.file == 0 || span.file > others.size() ? *this : others[span.file - 1]; }
+  const SourceText& of(Span span) const {
+    return span.file == 0 || span.file > others.size() ? *this : others[span.file - 1];
+  }
 };
 
 class Diagnostics {
@@ -53,7 +55,8 @@ class Diagnostics {
   void warning(Span span, std::string message, std::string hint = {});
   bool has_errors() const;
   const std::vector<Diagnostic>& list() const { return list_; }
-  // One report stands for all that differ in their place only, where `is_one` says so of the message: the first, which says how many there are.
+  // One report stands for all that differ in their place only, where `is_one` says so of the message: the first, which
+  // says how many there are.
   void gather(const std::function<bool(const std::string&)>& is_one);
   // `file:line:col: error: …`, the source line, a caret range, `hint: …`; in order of position.
   std::string print(const SourceText& source) const;

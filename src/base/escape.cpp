@@ -20,19 +20,23 @@ std::optional<std::uint32_t> code_point(std::string_view c) {
   constexpr std::array<std::uint32_t, 5> kLeast = {0, 0, 0x80, 0x800, 0x10000};
   std::uint32_t code = byte(0) & (0x7Fu >> c.size());
   for (std::size_t k = 1; k < c.size(); ++k) code = code << 6 | (byte(k) & 0x3F);
-  const bool valid = byte(0) < 0xF8 && code >= kLeast[c.size()] && code <= 0x10FFFF && !(code >= 0xD800 && code <= 0xDFFF);
+  const bool valid =
+      byte(0) < 0xF8 && code >= kLeast[c.size()] && code <= 0x10FFFF && !(code >= 0xD800 && code <= 0xDFFF);
   return valid ? std::optional(code) : std::nullopt;
 }
 
 bool is_control(std::uint32_t c) { return c < 0x20 || (c >= 0x7F && c < 0xA0); }
 
-// Characters that show nothing of themselves: marks of direction, no width, separators of lines, tags, what is no character.
+// Characters that show nothing of themselves: marks of direction, no width, separators of lines, tags, what is no
+// character.
 bool is_hidden(std::uint32_t c) {
   struct Range {
     std::uint32_t first, last;
   };
-  constexpr std::array kHidden = {Range{0xAD, 0xAD},     Range{0x61C, 0x61C},   Range{0x180E, 0x180E}, Range{0x200B, 0x200B}, Range{0x200E, 0x200F}, Range{0x2028, 0x202E},
-                                  Range{0x2060, 0x206F}, Range{0xFDD0, 0xFDEF}, Range{0xFEFF, 0xFEFF}, Range{0xFFF9, 0xFFFB}, Range{0xFFFE, 0xFFFF}, Range{0xE0000, 0xE007F}};
+  constexpr std::array kHidden = {Range{0xAD, 0xAD},     Range{0x61C, 0x61C},   Range{0x180E, 0x180E},
+                                  Range{0x200B, 0x200B}, Range{0x200E, 0x200F}, Range{0x2028, 0x202E},
+                                  Range{0x2060, 0x206F}, Range{0xFDD0, 0xFDEF}, Range{0xFEFF, 0xFEFF},
+                                  Range{0xFFF9, 0xFFFB}, Range{0xFFFE, 0xFFFF}, Range{0xE0000, 0xE007F}};
   for (const Range& r : kHidden)
     if (c >= r.first && c <= r.last) return true;
   return (c & 0xFFFE) == 0xFFFE;
@@ -42,7 +46,8 @@ bool is_hidden(std::uint32_t c) {
 std::string picture(std::uint32_t c) {
   if (c >= 0x80) return kUnknown;
   const std::uint32_t code = c == 0x7F ? 0x2421 : 0x2400 + c;
-  return {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 63)), static_cast<char>(0x80 | (code & 63))};
+  return {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 63)),
+          static_cast<char>(0x80 | (code & 63))};
 }
 
 // f(bytes of the character, its code if it is one) gives what stands for it.
@@ -65,7 +70,9 @@ std::string visible(std::string_view c, std::optional<std::uint32_t> code) {
   return !code || is_hidden(*code) ? kUnknown : is_control(*code) ? picture(*code) : std::string(c);
 }
 
-std::string visible_lines(std::string_view c, std::optional<std::uint32_t> code) { return c == "\n" ? "\n" : c == "\t" ? " " : visible(c, code); }
+std::string visible_lines(std::string_view c, std::optional<std::uint32_t> code) {
+  return c == "\n" ? "\n" : c == "\t" ? " " : visible(c, code);
+}
 
 // Lines that end with CR and LF end with LF.
 std::string without_cr(std::string_view text) {
@@ -92,7 +99,9 @@ std::string hexadecimal(const char* format, std::uint32_t code) {
 
 // JSON has four digits, and pairs for what needs more.
 std::string json_code(std::uint32_t c) {
-  return c < 0x10000 ? hexadecimal("\\u%04x", c) : hexadecimal("\\u%04x", 0xD800 + ((c - 0x10000) >> 10)) + hexadecimal("\\u%04x", 0xDC00 + ((c - 0x10000) & 0x3FF));
+  return c < 0x10000 ? hexadecimal("\\u%04x", c)
+                     : hexadecimal("\\u%04x", 0xD800 + ((c - 0x10000) >> 10)) +
+                           hexadecimal("\\u%04x", 0xDC00 + ((c - 0x10000) & 0x3FF));
 }
 
 std::string toml_code(std::uint32_t c) { return hexadecimal(c < 0x10000 ? "\\u%04x" : "\\U%08x", c); }
@@ -101,12 +110,18 @@ std::string quoted(std::string_view text, std::string (*number)(std::uint32_t)) 
   return each(text, [&](std::string_view c, std::optional<std::uint32_t> code) -> std::string {
     if (!code) return kUnknown;
     switch (*code) {
-      case '"': return "\\\"";
-      case '\\': return "\\\\";
-      case '\n': return "\\n";
-      case '\t': return "\\t";
-      case '\r': return "\\r";
-      default: return is_control(*code) || is_hidden(*code) ? number(*code) : std::string(c);
+    case '"':
+      return "\\\"";
+    case '\\':
+      return "\\\\";
+    case '\n':
+      return "\\n";
+    case '\t':
+      return "\\t";
+    case '\r':
+      return "\\r";
+    default:
+      return is_control(*code) || is_hidden(*code) ? number(*code) : std::string(c);
     }
   });
 }
@@ -126,17 +141,30 @@ std::string markup_escape(std::string_view text) {
 }
 
 std::string markup_lines(std::string_view text) {
-  return each(without_cr(text), [](std::string_view c, std::optional<std::uint32_t> code) { return markup(c, c == "\t" ? "\t" : visible_lines(c, code)); });
+  return each(without_cr(text), [](std::string_view c, std::optional<std::uint32_t> code) {
+    return markup(c, c == "\t" ? "\t" : visible_lines(c, code));
+  });
 }
 
 std::string latex_escape(std::string_view text) {
   return each(text, [](std::string_view c, std::optional<std::uint32_t> code) -> std::string {
     switch (c[0]) {
-      case '\\': return "\\textbackslash{}";
-      case '~': return "\\textasciitilde{}";
-      case '^': return "\\textasciicircum{}";
-      case '_': case '%': case '&': case '#': case '$': case '{': case '}': return "\\" + std::string(c);
-      default: return visible(c, code);
+    case '\\':
+      return "\\textbackslash{}";
+    case '~':
+      return "\\textasciitilde{}";
+    case '^':
+      return "\\textasciicircum{}";
+    case '_':
+    case '%':
+    case '&':
+    case '#':
+    case '$':
+    case '{':
+    case '}':
+      return "\\" + std::string(c);
+    default:
+      return visible(c, code);
     }
   });
 }
@@ -165,7 +193,9 @@ std::string csv_cell(std::string_view text) {
 }
 
 std::string hdf5_text(std::string_view text) {
-  return each(text, [](std::string_view c, std::optional<std::uint32_t> code) { return !code || *code == 0 ? std::string(kUnknown) : std::string(c); });
+  return each(text, [](std::string_view c, std::optional<std::uint32_t> code) {
+    return !code || *code == 0 ? std::string(kUnknown) : std::string(c);
+  });
 }
 
 }  // namespace anholon

@@ -11,8 +11,10 @@ void JsonWriter::separate() {
   if (!first_) out_ += ',';
   first_ = false;
   // Arrays of numbers stay on one line; objects get a line per entry.
-  if (open_.back() == '{' || new_line_) out_ += "\n" + std::string(2 * open_.size(), ' ');
-  else if (out_.back() == ',') out_ += ' ';
+  if (open_.back() == '{' || new_line_)
+    out_ += "\n" + std::string(2 * open_.size(), ' ');
+  else if (out_.back() == ',')
+    out_ += ' ';
   new_line_ = false;
 }
 

@@ -19,7 +19,10 @@ class JsonWriter {
   JsonWriter& integer(long long value) { return raw(std::to_string(value)); }
   JsonWriter& boolean(bool value) { return raw(value ? "true" : "false"); }
   JsonWriter& null() { return raw("null"); }
-  JsonWriter& new_line() { new_line_ = true; return *this; }  // before the next element of an array
+  JsonWriter& new_line() {
+    new_line_ = true;
+    return *this;
+  }  // before the next element of an array
   const std::string& text() const { return out_; }
 
  private:

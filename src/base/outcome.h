@@ -8,15 +8,15 @@ namespace anholon {
 
 enum class OutcomeKind : std::uint8_t {
   finished,
-  singular,          // the system Jacobian lost rank: a singular configuration
-  step_collapse,     // the step size fell below what the time can resolve
-  blow_up,           // a state grew without bound
-  negative_mass,     // a given mass fell below zero
-  not_a_number,      // a formula left its domain (root or logarithm of a negative number, 0/0)
-  no_convergence,    // Newton's iteration for the leading derivatives failed
-  inconsistent,      // no initial data satisfy the constraints with the values given
-  interrupted,       // Ctrl-C, or the step limit of the caller
-  too_large,         // the work or the memory it would take is beyond all proportion
+  singular,        // the system Jacobian lost rank: a singular configuration
+  step_collapse,   // the step size fell below what the time can resolve
+  blow_up,         // a state grew without bound
+  negative_mass,   // a given mass fell below zero
+  not_a_number,    // a formula left its domain (root or logarithm of a negative number, 0/0)
+  no_convergence,  // Newton's iteration for the leading derivatives failed
+  inconsistent,    // no initial data satisfy the constraints with the values given
+  interrupted,     // Ctrl-C, or the step limit of the caller
+  too_large,       // the work or the memory it would take is beyond all proportion
 };
 
 struct Outcome {

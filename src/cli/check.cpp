@@ -13,8 +13,10 @@ int check(const Options& asked) {
   if (outcome.ok() && !not_integrated(*in.model)) outcome = regular_at_start(s);
   if (!o.show.empty()) return show(o, s);
   const Explanation x = explain(s);
-  if (o.json) check_json(s, x, outcome);
-  else check_text(s, x, outcome);
+  if (o.json)
+    check_json(s, x, outcome);
+  else
+    check_text(s, x, outcome);
   if (outcome.ok()) return kOk;
   print_outcome(outcome);
   return kStopped;

@@ -16,7 +16,13 @@ void constraint(JsonWriter& j, const Scenario& s, const Explanation& x, std::siz
     return;
   }
   j.key("reactions").string(name(facts.hypothesis));
-  j.key("work").open_object().key("none").boolean(is_zero(facts.power_factor)).key("power").string(power_text(s, x, r)).close();
+  j.key("work")
+      .open_object()
+      .key("none")
+      .boolean(is_zero(facts.power_factor))
+      .key("power")
+      .string(power_text(s, x, r))
+      .close();
   if (!s.classes[r].redundant) return;
   j.key("follows_from").open_array();
   for (std::size_t k : facts.follows_from) j.string(s.model->constraints[k].name);
@@ -105,7 +111,8 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
   };
   if (!model.coordinate_units.empty()) {
     j.key("units").open_object();
-    for (const auto& [names, units] : {std::pair{&model.names.coordinates, &model.coordinate_units}, {&model.names.parameters, &model.parameter_units}})
+    for (const auto& [names, units] : {std::pair{&model.names.coordinates, &model.coordinate_units},
+                                       {&model.names.parameters, &model.parameter_units}})
       for (std::size_t k = 0; k < units->size(); ++k) {
         j.key((*names)[k]);
         (*units)[k].empty() ? j.null() : j.string((*units)[k]);
@@ -140,7 +147,14 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
         j.key("value").number(number_text(k ? s.state.qd[a] : s.state.q[a]));
         j.key("origin").string(name(k ? s.state.qd_origin[a] : s.state.q_origin[a])).close();
       }
-    for (const StateEntry& e : higher_state(s)) j.key(e.name).open_object().key("value").number(number_text(e.value)).key("origin").string(name(e.origin)).close();
+    for (const StateEntry& e : higher_state(s))
+      j.key(e.name)
+          .open_object()
+          .key("value")
+          .number(number_text(e.value))
+          .key("origin")
+          .string(name(e.origin))
+          .close();
     j.close();
   }
   if (outcome.ok()) write_conserved(j, *s.mechanics);

@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::size_t kLongestPower = 120;  // what is longer is not read here; --json has it
 
-std::string counted(std::size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); }
+std::string counted(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
 
 // The hypotheses on the reactions that occur, each with its constraints where there are several.
 void reactions(const Scenario& s, const Explanation& x) {
@@ -31,7 +33,8 @@ void reactions(const Scenario& s, const Explanation& x) {
   };
   for (std::size_t r = 0; r < x.constraints.size(); ++r)
     if (const auto by = s.model->constraints[r].by)
-      say(stdout, "  %s is kept by the input %s (servo): no ideal reaction\n", s.model->constraints[r].name.c_str(), s.model->controls[*by].name.c_str());
+      say(stdout, "  %s is kept by the input %s (servo): no ideal reaction\n", s.model->constraints[r].name.c_str(),
+          s.model->controls[*by].name.c_str());
   line(Hypothesis::dalembert);
   line(Hypothesis::chetaev);
   line(Hypothesis::niu);
@@ -60,35 +63,50 @@ void integrability(const Scenario& s, const Explanation& x) {
   std::string flag;
   for (int d : i.flag) flag += (flag.empty() ? "" : ", ") + std::to_string(d);
   if (!i.undecided.empty()) {
-    const std::string most = i.flag.empty() ? "" : "; no more than " + std::to_string(i.integrable()) + " of " + std::to_string(i.constraints.size()) + " are integrable (derived flag " + flag + ", …)";
+    const std::string most = i.flag.empty() ? ""
+                                            : "; no more than " + std::to_string(i.integrable()) + " of " +
+                                                  std::to_string(i.constraints.size()) +
+                                                  " are integrable (derived flag " + flag + ", …)";
     say(stdout, "  integrability: not decided: %s%s\n", i.undecided.c_str(), most.c_str());
     return;
   }
   if (i.constraints.empty()) return;
   const std::size_t count = i.constraints.size(), p = static_cast<std::size_t>(i.integrable());
   std::string text = count == 1 ? listed(model, i.constraints) + (p ? " is integrable" : " is not integrable")
-                     : p == 0   ? "none of the " + std::to_string(count) + " linear constraints on velocities is integrable, alone or with others"
+                     : p == 0   ? "none of the " + std::to_string(count) +
+                                    " linear constraints on velocities is integrable, alone or with others"
                      : p == count ? "all " + std::to_string(count) + " linear constraints on velocities are integrable"
-                                  : "of the " + std::to_string(count) + " linear constraints on velocities " + counted(p, "combination is", "combinations are") + " integrable";
+                                  : "of the " + std::to_string(count) + " linear constraints on velocities " +
+                                        counted(p, "combination is", "combinations are") + " integrable";
   if (p > 0 && !i.proved) text += ", as it seems by numbers; it was not proved";
   if (i.these_values) text += ", for these values of the parameters";
-  say(stdout, "  integrability: %s (derived flag %s%s)\n", text.c_str(), flag.c_str(), i.time ? ", t as a coordinate" : "");
+  say(stdout, "  integrability: %s (derived flag %s%s)\n", text.c_str(), flag.c_str(),
+      i.time ? ", t as a coordinate" : "");
   for (const IntegrableCombination& c : i.combinations) {
     std::vector<std::size_t> members;
     for (std::size_t r = 0; r < c.coefficients.size(); ++r)
       if (!is_zero(c.coefficients[r])) members.push_back(r);
     const std::string whose = listed(model, members);
-    if (!c.integral) say(stdout, "    %s: in the integrable part; no elementary integral was found\n", whose.c_str());
-    else say(stdout, "    %s %s: %s = const\n", whose.c_str(), members.size() > 1 ? "together" : "alone", print(*c.integral, model.names, Format::text).c_str());
+    if (!c.integral)
+      say(stdout, "    %s: in the integrable part; no elementary integral was found\n", whose.c_str());
+    else
+      say(stdout, "    %s %s: %s = const\n", whose.c_str(), members.size() > 1 ? "together" : "alone",
+          print(*c.integral, model.names, Format::text).c_str());
   }
   if (!x.accessible) return;
   const int all = s.structure.configuration_dimension;
-  if (*x.accessible == all) say(stdout, "    all %d dimensions of the configuration can be reached\n", all);
-  else say(stdout, "    %d of the %d dimensions of the configuration can be reached\n", *x.accessible, all);
+  if (*x.accessible == all)
+    say(stdout, "    all %d dimensions of the configuration can be reached\n", all);
+  else
+    say(stdout, "    %d of the %d dimensions of the configuration can be reached\n", *x.accessible, all);
 }
 
 std::string derivative_of(int order) {
-  return order == kAbsent ? "multipliers" : order == 0 ? "positions" : order == 1 ? "velocities" : order == 2 ? "accelerations" : "derivatives of order " + std::to_string(order);
+  return order == kAbsent ? "multipliers"
+         : order == 0     ? "positions"
+         : order == 1     ? "velocities"
+         : order == 2     ? "accelerations"
+                          : "derivatives of order " + std::to_string(order);
 }
 
 // Equations of motion have the names of coordinates.
@@ -120,18 +138,28 @@ std::string data_needed(const Scenario& s, const std::vector<StateEntry>& higher
   std::size_t given = 0, derived = 0;
   const auto count = [&](const std::string& name, Origin origin) {
     switch (origin) {
-      case Origin::given: case Origin::corrected: ++given; break;
-      case Origin::derived: ++derived; break;
-      case Origin::chosen: case Origin::guessed: chosen.push_back(name); break;
+    case Origin::given:
+    case Origin::corrected:
+      ++given;
+      break;
+    case Origin::derived:
+      ++derived;
+      break;
+    case Origin::chosen:
+    case Origin::guessed:
+      chosen.push_back(name);
+      break;
     }
   };
   for (std::size_t a = 0; a < x.q.size(); ++a) count(s.model->coordinates[a].name, x.q_origin[a]);
   for (std::size_t a = 0; a < x.q.size(); ++a) count(s.model->coordinates[a].name + "'", x.qd_origin[a]);
   std::string among;
   for (const StateEntry& e : higher) count(e.name, e.origin), among += ", " + e.name;
-  std::string out = "initial data: " + counted(static_cast<std::size_t>(s.structure.state_dimension), "number", "numbers") + " may be prescribed, among " +
-                    (among.empty() ? "positions and velocities" : "positions, velocities" + among) + "; " + std::to_string(given) + " given, " +
-                    std::to_string(derived) + " derived, " + std::to_string(chosen.size()) + " chosen";
+  std::string out =
+      "initial data: " + counted(static_cast<std::size_t>(s.structure.state_dimension), "number", "numbers") +
+      " may be prescribed, among " + (among.empty() ? "positions and velocities" : "positions, velocities" + among) +
+      "; " + std::to_string(given) + " given, " + std::to_string(derived) + " derived, " +
+      std::to_string(chosen.size()) + " chosen";
   if (chosen.empty() || chosen.size() > kNamed) return out;
   std::string names;
   for (const std::string& name : chosen) names += (names.empty() ? "" : ", ") + name;
@@ -154,10 +182,13 @@ void state_table(const Scenario& s) {
   if (!x.q.empty()) say(stdout, "%s\n", data_needed(s, higher).c_str());
   say(stdout, "initial state at t = %s\n", number_text(x.t).c_str());
   for (std::size_t a = 0; a < x.q.size(); ++a)
-    say(stdout, "  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(), value_text(x.q[a], x.q_origin[a], x).c_str(),
-                name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(), value_text(x.qd[a], x.qd_origin[a], x).c_str(), name(x.qd_origin[a]));
-  for (const StateEntry& e : higher) say(stdout, "  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
-  say(stdout, "  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: a rounded number made consistent)\n");
+    say(stdout, "  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(),
+        value_text(x.q[a], x.q_origin[a], x).c_str(), name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(),
+        value_text(x.qd[a], x.qd_origin[a], x).c_str(), name(x.qd_origin[a]));
+  for (const StateEntry& e : higher)
+    say(stdout, "  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
+  say(stdout, "  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: "
+              "a rounded number made consistent)\n");
 }
 
 }  // namespace
@@ -170,9 +201,9 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
   for (const std::string& c : model.cases) cases += (cases.empty() ? "" : ", ") + c;
   if (!cases.empty()) say(stdout, "cases (--case NAME): %s\n", cases.c_str());
   say(stdout, "\n%s, %s, %s, %s\n", counted(model.coordinates.size(), "coordinate", "coordinates").c_str(),
-              counted(model.bodies.size(), "body or particle", "bodies and particles").c_str(),
-              counted(model.constraints.size(), "constraint", "constraints").c_str(),
-              counted(model.parameters.size(), "parameter", "parameters").c_str());
+      counted(model.bodies.size(), "body or particle", "bodies and particles").c_str(),
+      counted(model.constraints.size(), "constraint", "constraints").c_str(),
+      counted(model.parameters.size(), "parameter", "parameters").c_str());
   for (const std::string& e : effects(model)) say(stdout, "  %s\n", e.c_str());
   const std::vector<std::string> external = external_forces(model);
   for (const std::string& f : external) say(stdout, "  external force %s (it has no 'from')\n", f.c_str());
@@ -183,16 +214,20 @@ void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome)
     say(stdout, "  %-14s %s\n", c.name.c_str(), c.equation.c_str());
     std::string redundant;
     if (s.classes[r].redundant)
-      redundant = x.constraints[r].follows_from.empty() ? "; redundant here" : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
+      redundant = x.constraints[r].follows_from.empty()
+                      ? "; redundant here"
+                      : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
     // One component of a vector equation too many.
-    if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x') redundant += "; 'along' names the directions that count";
-    say(stdout, "  %-14s %s; %s%s\n", "", description(s.classes[r], c.order).c_str(), work(s, x, r, kLongestPower).c_str(), redundant.c_str());
+    if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x')
+      redundant += "; 'along' names the directions that count";
+    say(stdout, "  %-14s %s; %s%s\n", "", description(s.classes[r], c.order).c_str(),
+        work(s, x, r, kLongestPower).c_str(), redundant.c_str());
   }
   reactions(s, x);
   integrability(s, x);
   if (outcome.ok()) {
-    say(stdout, "\ndegrees of freedom %d, configuration dimension %d, state dimension %d\n", s.structure.degrees_of_freedom,
-                s.structure.configuration_dimension, s.structure.state_dimension);
+    say(stdout, "\ndegrees of freedom %d, configuration dimension %d, state dimension %d\n",
+        s.structure.degrees_of_freedom, s.structure.configuration_dimension, s.structure.state_dimension);
     structure(s, x);
     state_table(s);
     print_conserved(*s.mechanics);

@@ -7,8 +7,6 @@
 #ifdef __linux__
 #include <sys/prctl.h>
 #endif
-#include <unistd.h>
-
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -16,6 +14,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <thread>
+
+#include <unistd.h>
 
 #include "cli/input.h"
 
@@ -97,7 +97,8 @@ class Foster {
 
 }  // namespace
 
-Child run_child(const std::vector<std::string>& arguments, double seconds, const std::function<bool()>& stop, std::size_t most_output) {
+Child run_child(const std::vector<std::string>& arguments, double seconds, const std::function<bool()>& stop,
+                std::size_t most_output) {
   using Clock = std::chrono::steady_clock;
   Child child;
   Pipe out, err;
@@ -112,11 +113,13 @@ Child run_child(const std::vector<std::string>& arguments, double seconds, const
   if (const int why = spawn(arguments, out, err, pid); why != 0) return not_started(why);
   out.close_write(), err.close_write();
 
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  const auto deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   int status = 0;
   bool ended = false;
   while (!ended) {
-    std::array<pollfd, 2> streams{pollfd{out.read, POLLIN, 0}, pollfd{err.read, POLLIN, 0}};  // a closed one is -1, which poll skips
+    std::array<pollfd, 2> streams{pollfd{out.read, POLLIN, 0},
+                                  pollfd{err.read, POLLIN, 0}};  // a closed one is -1, which poll skips
     poll(streams.data(), streams.size(), 100);
     if (streams[0].revents != 0 && !take(out.read, child.out)) out.close_read();
     if (streams[1].revents != 0 && !take(err.read, child.err)) err.close_read();
@@ -125,9 +128,12 @@ Child run_child(const std::vector<std::string>& arguments, double seconds, const
     ended = waitpid(pid, &status, WNOHANG) == pid;
     if (ended) break;
     if (out.read < 0 && err.read < 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    if (stop && stop()) child.end = Child::End::stopped;
-    else if (Clock::now() > deadline) child.end = Child::End::out_of_time;
-    else if (child.out.size() > most_output) child.end = Child::End::too_much;
+    if (stop && stop())
+      child.end = Child::End::stopped;
+    else if (Clock::now() > deadline)
+      child.end = Child::End::out_of_time;
+    else if (child.out.size() > most_output)
+      child.end = Child::End::too_much;
     if (child.end != Child::End::exited) break;
   }
   kill(-pid, SIGKILL);
@@ -175,7 +181,9 @@ TemporaryFolder::TemporaryFolder() {
   std::error_code error;
   const std::filesystem::path below = std::filesystem::temp_directory_path(error);
   std::string name = ((error ? std::filesystem::path("/tmp") : below) / "anholon-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw UsageError{"error: no temporary folder can be made: " + std::string(std::strerror(errno)) + "\nhint: TMPDIR names the place for it\n"};
+  if (!mkdtemp(name.data()))
+    throw UsageError{"error: no temporary folder can be made: " + std::string(std::strerror(errno)) +
+                     "\nhint: TMPDIR names the place for it\n"};
   path_ = name;
 }
 

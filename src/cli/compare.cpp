@@ -1,21 +1,19 @@
-#include "published/subject.h"
-
-#include <unistd.h>
-
-#include <algorithm>
 #include <algorithm>
 #include <cstdio>
+
+#include <unistd.h>
 
 #include "base/json.h"
 #include "cli/input.h"
 #include "cli/say.h"
+#include "published/subject.h"
 
 namespace anholon::cli {
 
 namespace {
 
-constexpr std::size_t kListed = 5;     // changes that are shown of many
-constexpr std::size_t kShown = 400;    // characters of a difference
+constexpr std::size_t kListed = 5;   // changes that are shown of many
+constexpr std::size_t kShown = 400;  // characters of a difference
 
 SourceText read_equation_text(const Options& o) {
   SourceText source{o.equations, {}};
@@ -37,20 +35,26 @@ SourceText read_equation_text(const Options& o) {
 const char* word(Verdict v) { return v == Verdict::proved ? "true" : v == Verdict::refuted ? "false" : "unknown"; }
 
 std::string ordinal(std::size_t k) {
-  static const char* const words[] = {"first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth"};
+  static const char* const words[] = {"first", "second",  "third",  "fourth", "fifth",
+                                      "sixth", "seventh", "eighth", "ninth"};
   return k < std::size(words) ? words[k] : std::to_string(k + 1) + "th";
 }
 
-std::string place(const ChangedPlace& c) { return ordinal(c.term) + " term of the " + (c.side == 0 ? "left" : "right") + " side"; }
+std::string place(const ChangedPlace& c) {
+  return ordinal(c.term) + " term of the " + (c.side == 0 ? "left" : "right") + " side";
+}
 
-std::string position(const ChangedPlace& c) { return std::to_string(c.span.line) + ":" + std::to_string(c.span.column); }
+std::string position(const ChangedPlace& c) {
+  return std::to_string(c.span.line) + ":" + std::to_string(c.span.column);
+}
 
 // One place: with the term it stands in; one symbol at several places: with the places; else one after the other.
 std::string text(const Change& c) {
   const ChangedPlace& first = c.places[0];
   if (c.places.size() == 1) return position(first) + ": " + place(first) + ": " + first.from + " should be " + first.to;
   std::string out = position(first) + ": ";
-  if (std::all_of(c.places.begin(), c.places.end(), [&](const ChangedPlace& p) { return p.from == first.from && p.to == first.to; })) {
+  if (std::all_of(c.places.begin(), c.places.end(),
+                  [&](const ChangedPlace& p) { return p.from == first.from && p.to == first.to; })) {
     out += first.from + " should be " + first.to + " at " + std::to_string(c.places.size()) + " places";
     for (std::size_t i = 1; i < c.places.size(); ++i) out += (i == 1 ? ": here, " : ", ") + position(c.places[i]);
     return out;
@@ -64,9 +68,11 @@ std::string text(const Change& c) {
 
 std::string point_text(const WitnessPoint& w, const SymbolNames& names) {
   std::string out;
-  for (const auto& [symbol, value] : w.values) out += (out.empty() ? "" : ", ") + print(symbol, names, Format::text) + " = " + value.get_str();
+  for (const auto& [symbol, value] : w.values)
+    out += (out.empty() ? "" : ", ") + print(symbol, names, Format::text) + " = " + value.get_str();
   for (const WitnessPoint::Enclosed& e : w.enclosed)
-    out += (out.empty() ? "" : ", ") + print(e.symbol, names, Format::text) + " = " + number_text(e.midpoint.get_d(), 6) + "…";
+    out += (out.empty() ? "" : ", ") + print(e.symbol, names, Format::text) + " = " +
+           number_text(e.midpoint.get_d(), 6) + "…";
   return out;
 }
 
@@ -75,31 +81,56 @@ std::string shortened(std::string text) {
   return text;
 }
 
-void print_text(const PublishedEquation& e, const Comparison& c, std::size_t width, const SourceText& source, const SymbolNames& names) {
+void print_text(const PublishedEquation& e, const Comparison& c, std::size_t width, const SourceText& source,
+                const SymbolNames& names) {
   const std::string indent(width + 10, ' ');
   say(stdout, "%-*s  %-7s %s\n", static_cast<int>(width), e.label.c_str(), word(c.verdict),
-              c.verdict == Verdict::proved ? c.what.c_str() : c.verdict == Verdict::unknown ? c.detail.c_str() : ("nearest: " + c.what).c_str());
+      c.verdict == Verdict::proved    ? c.what.c_str()
+      : c.verdict == Verdict::unknown ? c.detail.c_str()
+                                      : ("nearest: " + c.what).c_str());
   if (c.verdict != Verdict::refuted) return;
   if (c.difference)
-    say(stdout, "%sleft - right %s %s\n", indent.c_str(), c.identity ? "is" : "differs from it by", shortened(print(*c.difference, names, Format::text)).c_str());
+    say(stdout, "%sleft - right %s %s\n", indent.c_str(), c.identity ? "is" : "differs from it by",
+        shortened(print(*c.difference, names, Format::text)).c_str());
   say(stdout, "%sleft - right = %s at a point of the motion\n", indent.c_str(), c.detail.c_str());
-  const auto show = [&](const Change& k) { say(stdout, "%s%s:%s%s\n", indent.c_str(), source.name.c_str(), text(k).c_str(), k.proved ? "" : " (not proved)"); };
+  const auto show = [&](const Change& k) {
+    say(stdout, "%s%s:%s%s\n", indent.c_str(), source.name.c_str(), text(k).c_str(), k.proved ? "" : " (not proved)");
+  };
   if (c.changes.size() == 1) show(c.changes[0]);
   if (c.changes.size() > 1) {
     say(stdout, "%s%zu changes would each make it true:\n", indent.c_str(), c.changes.size());
     for (std::size_t i = 0; i < c.changes.size() && i < kListed; ++i) show(c.changes[i]);
     if (c.changes.size() > kListed) say(stdout, "%s…\n", indent.c_str());
   }
-  if (c.changes.empty()) say(stdout, "%sno change of one term and no lost dots of up to four symbols make it true\n", indent.c_str());
+  if (c.changes.empty())
+    say(stdout, "%sno change of one term and no lost dots of up to four symbols make it true\n", indent.c_str());
 }
 
 void write_json(JsonWriter& j, const PublishedEquation& e, const Comparison& c, const SymbolNames& names) {
-  j.open_object().key("label").string(e.label).key("text").string(e.text()).key("verdict").string(word(c.verdict)).key("what").string(c.what);
+  j.open_object()
+      .key("label")
+      .string(e.label)
+      .key("text")
+      .string(e.text())
+      .key("verdict")
+      .string(word(c.verdict))
+      .key("what")
+      .string(c.what);
   j.key("difference");
-  if (c.difference) j.string(print(*c.difference, names, Format::text));
-  else j.null();
+  if (c.difference)
+    j.string(print(*c.difference, names, Format::text));
+  else
+    j.null();
   const auto place_keys = [&](const ChangedPlace& p) {
-    j.open_object().key("from").string(p.from).key("to").string(p.to).key("line").integer(p.span.line).key("column").integer(p.span.column);
+    j.open_object()
+        .key("from")
+        .string(p.from)
+        .key("to")
+        .string(p.to)
+        .key("line")
+        .integer(p.span.line)
+        .key("column")
+        .integer(p.span.column);
     j.key("place").string(place(p));
   };
   const auto change = [&](const Change& k) {
@@ -112,22 +143,28 @@ void write_json(JsonWriter& j, const PublishedEquation& e, const Comparison& c, 
     j.close().close();
   };
   j.key("change");
-  if (c.changes.size() == 1) change(c.changes[0]);
-  else j.null();
+  if (c.changes.size() == 1)
+    change(c.changes[0]);
+  else
+    j.null();
   j.key("changes").open_array();
   for (const Change& k : c.changes) change(k);
   j.close();
   j.key("detail").string(c.detail);
   j.key("point");
-  if (c.witness) j.string(point_text(*c.witness, names));
-  else j.null();
+  if (c.witness)
+    j.string(point_text(*c.witness, names));
+  else
+    j.null();
   j.close();
 }
 
 }  // namespace
 
 int compare(const Options& o) {
-  if (o.equations.empty()) throw UsageError{"error: no equations are named\nhint: anholon compare MODEL EQUATIONS, a file with one equation per line\n"};
+  if (o.equations.empty())
+    throw UsageError{
+        "error: no equations are named\nhint: anholon compare MODEL EQUATIONS, a file with one equation per line\n"};
   const Reader in = read(o);
   const Model& model = *in.model;
   const SourceText source = read_equation_text(o);
@@ -161,7 +198,7 @@ int compare(const Options& o) {
     say(stdout, "%s\n\n", model.title.c_str());
     for (std::size_t i = 0; i < found.size(); ++i) print_text(equations[i], found[i], width, source, names);
     say(stdout, "\n%zu true, %zu false, %zu unknown\n", counts[static_cast<std::size_t>(Verdict::proved)],
-                counts[static_cast<std::size_t>(Verdict::refuted)], counts[static_cast<std::size_t>(Verdict::unknown)]);
+        counts[static_cast<std::size_t>(Verdict::refuted)], counts[static_cast<std::size_t>(Verdict::unknown)]);
   }
   return counts[static_cast<std::size_t>(Verdict::proved)] == found.size() ? kOk : kStopped;
 }

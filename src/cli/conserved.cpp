@@ -15,10 +15,12 @@ void print_conserved(const Mechanics& m) {
   const std::vector<Conserved> list = conserved(m);
   if (list.empty()) return;
   std::string names;
-  const bool resets = std::any_of(m.model->events.begin(), m.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  const bool resets =
+      std::any_of(m.model->events.begin(), m.model->events.end(), [](const Event& e) { return !e.set.empty(); });
   for (const Conserved& c : list)
     if (cyclic(c)) names += (names.empty() ? "" : ", ") + c.name.substr(12);
-  say(stdout, "\nconserved along every motion%s (proved)%s\n", resets ? " between events" : "", names.empty() ? "" : (", cyclic: " + names).c_str());
+  say(stdout, "\nconserved along every motion%s (proved)%s\n", resets ? " between events" : "",
+      names.empty() ? "" : (", cyclic: " + names).c_str());
   for (const Conserved& c : list) {
     const std::string formula = print(c.value, m.model->names, Format::text);
     say(stdout, "  %s%s\n", c.name.c_str(), formula.size() > kLongest ? "" : (" = " + formula).c_str());

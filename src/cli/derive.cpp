@@ -19,7 +19,8 @@ namespace {
 std::string format_of_equations(const Options& o) {
   const std::string end = std::filesystem::path(o.output).extension().string();
   if (!o.format_given && !o.output.empty())
-    for (const auto& [ending, format] : {std::pair{".tex", "latex"}, {".html", "mathml"}, {".json", "json"}, {".c", "c"}, {".py", "python"}})
+    for (const auto& [ending, format] :
+         {std::pair{".tex", "latex"}, {".html", "mathml"}, {".json", "json"}, {".c", "c"}, {".py", "python"}})
       if (end == ending) return format;
   return o.format;
 }
@@ -38,8 +39,10 @@ std::optional<Diagnostic> not_written(const Model& model, const Mechanics& m) {
     const Constraint& c = model.constraints[r];
     if (c.order > 2 || (c.order == 2 && classes[r].kind == "nonlinear"))
       return Diagnostic{Severity::error, c.span,
-                        "a program is not written yet for the constraint '" + c.name + "' of order " + std::to_string(c.order) + " (" + classes[r].kind + ")",
-                        "anholon simulate integrates it; programs are written for orders 0 and 1, and 2 where it is linear in the accelerations"};
+                        "a program is not written yet for the constraint '" + c.name + "' of order " +
+                            std::to_string(c.order) + " (" + classes[r].kind + ")",
+                        "anholon simulate integrates it; programs are written for orders 0 and 1, and 2 where it is "
+                        "linear in the accelerations"};
   }
   return std::nullopt;
 }
@@ -54,7 +57,8 @@ Elimination pivots_of(const Reader& in, const Mechanics& m, const StateChoice& c
 
 // The motion as a program in C or Python.
 int write_program(const Options& o, const Reader& in, const Mechanics& m, const Formulation& f) {
-  if (o.json) throw UsageError{"error: --format " + o.format + " is not JSON\nhint: leave one of --json and --format out\n"};
+  if (o.json)
+    throw UsageError{"error: --format " + o.format + " is not JSON\nhint: leave one of --json and --format out\n"};
   if (const auto d = not_written(*in.model, m)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
@@ -97,8 +101,10 @@ int derive(const Options& asked) {
   o.format = format_of_equations(asked);
   const Reader in = read(o);
   const Model& model = *in.model;
-  if (o.format != "text" && o.format != "latex" && o.format != "mathml" && o.format != "c" && o.format != "python" && o.format != "json")
-    throw UsageError{"error: --format: '" + o.format + "' is not written yet\nhint: text, latex, mathml or json; c or python for a program\n"};
+  if (o.format != "text" && o.format != "latex" && o.format != "mathml" && o.format != "c" && o.format != "python" &&
+      o.format != "json")
+    throw UsageError{"error: --format: '" + o.format +
+                     "' is not written yet\nhint: text, latex, mathml or json; c or python for a program\n"};
   if (o.expand != "auto" && o.expand != "none" && o.expand != "paper" && o.expand != "full" && o.expand != "parts")
     throw UsageError{"error: --expand: '" + o.expand + "'\nhint: auto, none, paper, full or parts\n"};
   const Mechanics m = mechanics(model);
@@ -107,7 +113,9 @@ int derive(const Options& asked) {
   if (all && (program || !o.show.empty()))
     throw UsageError{"error: --form all goes with text, latex, mathml and json\nhint: name one form\n"};
   if ((o.m || o.reactions) && (program || !o.show.empty()))
-    throw UsageError{std::string("error: ") + (o.m ? "--m" : "--reactions") + " goes with text, latex, mathml and json\nhint: a program and the stages of the way are those of a motion\n"};
+    throw UsageError{
+        std::string("error: ") + (o.m ? "--m" : "--reactions") +
+        " goes with text, latex, mathml and json\nhint: a program and the stages of the way are those of a motion\n"};
   const auto order = static_cast<unsigned>(o.m);
   std::vector<const Formulation*> wanted;
   for (const Formulation* f : formulations())
@@ -115,7 +123,8 @@ int derive(const Options& asked) {
   if (!all) wanted.push_back(&form(o, model, &m));
   if (!all && order) must_have_order(*wanted[0], m, order);
   if (!all && o.reactions && wanted[0]->unknowns == Unknowns::variational)
-    throw UsageError{"error: --reactions: the multipliers of the form '" + std::string(wanted[0]->name) + "' are not those of ideal reactions\nhint: name another form, or none for Routh's equations\n"};
+    throw UsageError{"error: --reactions: the multipliers of the form '" + std::string(wanted[0]->name) +
+                     "' are not those of ideal reactions\nhint: name another form, or none for Routh's equations\n"};
   if (!o.show.empty()) {
     Scenario s;
     ready(in, *wanted[0], state_choice(o, model), s);
@@ -141,7 +150,10 @@ int derive(const Options& asked) {
     }
     list.push_back(derivation(m, *f, e, arranger, o.steps, of_reactions));
   }
-  const std::string text = o.json || o.format == "json" ? as_json(list, all) : o.format == "latex" ? as_latex(list) : o.format == "mathml" ? as_mathml(list) : as_text(list);
+  const std::string text = o.json || o.format == "json" ? as_json(list, all)
+                           : o.format == "latex"        ? as_latex(list)
+                           : o.format == "mathml"       ? as_mathml(list)
+                                                        : as_text(list);
   deliver(o, text);
   return kOk;
 }

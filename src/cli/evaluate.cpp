@@ -1,10 +1,11 @@
+#include "run/evaluate.h"
+
 #include <cstdio>
 
 #include "base/json.h"
 #include "cli/input.h"
 #include "cli/say.h"
 #include "cli/show.h"
-#include "run/evaluate.h"
 
 namespace anholon::cli {
 
@@ -67,7 +68,8 @@ void print_text(const Scenario& s, const StateReport& r, int digits) {
   const auto line = [&](const std::string& name, const std::string& value) {
     say(stdout, "  %-18s %*s\n", name.c_str(), width, value.c_str());
   };
-  say(stdout, "%s\n%s, %s\n\nstate at t = %s\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation, r.t.c_str());
+  say(stdout, "%s\n%s, %s\n\nstate at t = %s\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation,
+      r.t.c_str());
   for (const auto& [name, value] : r.q) line(name, value);
   for (const auto& [name, value] : r.qdot) line(name + "'", value);
   say(stdout, "\naccelerations\n");
@@ -121,8 +123,10 @@ int evaluate(const Options& o) {
     print_outcome(outcome);
     return kStopped;
   }
-  if (o.json) hand_out(json(s, report));
-  else print_text(s, report, o.digits);
+  if (o.json)
+    hand_out(json(s, report));
+  else
+    print_text(s, report, o.digits);
   return kOk;
 }
 

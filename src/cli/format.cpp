@@ -1,7 +1,8 @@
+#include "spec/format.h"
+
 #include "cli/input.h"
 #include "cli/say.h"
 #include "result/file.h"
-#include "spec/format.h"
 
 namespace anholon::cli {
 
@@ -22,7 +23,8 @@ int format(const Options& o) {
       } else if (text != source.text) {
         say(stdout, "%s\n", path.c_str());
         if (!o.check_only) {
-          if (const std::string trouble = write_whole(path, text); !trouble.empty()) throw UsageError{"error: " + trouble + "\n"};
+          if (const std::string trouble = write_whole(path, text); !trouble.empty())
+            throw UsageError{"error: " + trouble + "\n"};
         } else if (code == kOk) {
           code = kStopped;
         }

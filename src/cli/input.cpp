@@ -1,13 +1,13 @@
 #include "cli/input.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <sstream>
+
+#include <unistd.h>
 
 #include "cli/say.h"
 #include "run/form_choice.h"
@@ -44,7 +44,8 @@ static std::vector<ShippedModel> shipped(const char* extension, bool of_template
     std::error_code error;
     if (!fs::is_directory(folder, error)) continue;
     for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
-      if (e.path().extension() != extension || (e.path().parent_path().filename() == kTemplates) != of_templates) continue;
+      if (e.path().extension() != extension || (e.path().parent_path().filename() == kTemplates) != of_templates)
+        continue;
       std::string text;
       read_file(e.path(), text);
       list.push_back({e.path().stem().string(), e.path().string(), first_line_value(text, "title")});
@@ -92,8 +93,8 @@ std::vector<std::string> split(const std::vector<std::string>& words) {
 
 Precision precision(const Options& o, Precision usual) {
   if (o.numbers == "quad" && o.digits > kQuadDigits)
-    throw UsageError{"error: --numbers quad holds " + std::to_string(kQuadDigits) + " digits\nhint: --digits " + std::to_string(o.digits) +
-                     " without --numbers computes in multiprecision\n"};
+    throw UsageError{"error: --numbers quad holds " + std::to_string(kQuadDigits) + " digits\nhint: --digits " +
+                     std::to_string(o.digits) + " without --numbers computes in multiprecision\n"};
   if (o.numbers == "quad") return Precision::quad;
   if (o.digits > 16) return Precision::multi;
   return o.numbers == "long-double" ? Precision::long_real : usual;
@@ -104,7 +105,8 @@ Rational exact(const std::string& text, const std::string& option) {
     return read_constant(text).value;
   } catch (const Failure& f) {
     const std::string why = f.diagnostic.message.rfind("'" + text, 0) == 0 ? "" : ": " + f.diagnostic.message;
-    throw UsageError{"error: " + option + ": '" + text + "' is not a number" + why + "\nhint: a decimal such as 0.25, 1e-12, a fraction 1/3, pi/2 or a number with a unit, '30 deg'\n"};
+    throw UsageError{"error: " + option + ": '" + text + "' is not a number" + why +
+                     "\nhint: a decimal such as 0.25, 1e-12, a fraction 1/3, pi/2 or a number with a unit, '30 deg'\n"};
   }
 }
 
@@ -158,15 +160,18 @@ Reader read(const Options& o, SourceText source) {
   auto model = open_model(r.source, diagnostics, overrides, o.cases);
   std::fflush(stdout);
   if (!model) {
-    const std::size_t n = static_cast<std::size_t>(std::count_if(
-        diagnostics.list().begin(), diagnostics.list().end(), [](const Diagnostic& d) { return d.severity == Severity::error; }));
+    const std::size_t n =
+        static_cast<std::size_t>(std::count_if(diagnostics.list().begin(), diagnostics.list().end(),
+                                               [](const Diagnostic& d) { return d.severity == Severity::error; }));
     throw UsageError{diagnostics.print(r.source) + std::to_string(n) + (n == 1 ? " error\n" : " errors\n")};
   }
   say_lines(stderr, diagnostics.print(r.source));
-  r.again = [source = r.source, overrides, cases = o.cases, was = all_text(model->model->source_text)]() -> std::shared_ptr<const Model> {
+  r.again = [source = r.source, overrides, cases = o.cases,
+             was = all_text(model->model->source_text)]() -> std::shared_ptr<const Model> {
     Diagnostics ignored;
     const auto copy = open_model(source, ignored, overrides, cases);
-    if (!copy || all_text(copy->model->source_text) != was) throw Failure({}, "the model's files have changed on the way", "leave them until the end");
+    if (!copy || all_text(copy->model->source_text) != was)
+      throw Failure({}, "the model's files have changed on the way", "leave them until the end");
     return copy->model;
   };
   r.model = model->model;
@@ -179,14 +184,16 @@ Reader read(const Options& o, SourceText source) {
 static std::string list_of_forms(const Mechanics& m, bool with_motions) {
   std::string list;
   for (const Formulation* f : formulations())
-    if (obstacle(*f, m).empty() && !(with_motions && f->unknowns == Unknowns::variational)) list += (list.empty() ? "" : ", ") + std::string(f->name);
+    if (obstacle(*f, m).empty() && !(with_motions && f->unknowns == Unknowns::variational))
+      list += (list.empty() ? "" : ", ") + std::string(f->name);
   return list;
 }
 
 // Throws if the form does not apply to the model.
 static void must_apply(const Formulation& f, const Mechanics& m) {
   if (const std::string why = obstacle(f, m); !why.empty())
-    throw UsageError{"error: the form '" + std::string(f.name) + "' does not apply: " + why + "\nhint: these do: " + list_of_forms(m, false) + "\n"};
+    throw UsageError{"error: the form '" + std::string(f.name) + "' does not apply: " + why +
+                     "\nhint: these do: " + list_of_forms(m, false) + "\n"};
 }
 
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics) {
@@ -201,7 +208,11 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
       list += (list.empty() ? "" : ", ") + std::string(k->name);
     }
     const std::string near = did_you_mean(wanted, names);
-    const std::string message = wanted == "auto" ? std::string("'auto' is a form for motions, to simulate, sweep and check") : "there is no form '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), hint = "the forms are " + list;
+    const std::string message = wanted == "auto"
+                                    ? std::string("'auto' is a form for motions, to simulate, sweep and check")
+                                    : "there is no form '" + wanted + "'" +
+                                          (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                      hint = "the forms are " + list;
     if (!o.form_given && model.simulate.form)
       throw UsageError{print({Severity::error, model.simulate.form_span, message, hint}, model.source_text)};
     throw UsageError{"error: " + message + "\nhint: " + hint + "\n"};
@@ -221,7 +232,9 @@ Options with_form(Options o, const Reader& in) {
 
 Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice, Scenario& s) {
   if (f.unknowns == Unknowns::variational)
-    throw UsageError{"error: the form '" + std::string(f.name) + "' is another mechanics: it is derived and compared, but no motion is computed with it\nhint: these give motions: " +
+    throw UsageError{"error: the form '" + std::string(f.name) +
+                     "' is another mechanics: it is derived and compared, but no motion is computed with it\nhint: "
+                     "these give motions: " +
                      list_of_forms(mechanics(*in.model), true) + "\n"};
   if (f.obstacle != no_obstacle) must_apply(f, mechanics(*in.model));
   try {
@@ -236,12 +249,15 @@ void must_have_order(const Formulation& f, const Mechanics& m, unsigned order) {
   if (why.empty()) return;
   std::string list;
   for (const Formulation* k : formulations())
-    if (obstacle(*k, m).empty() && order_obstacle(*k, m, order).empty()) list += (list.empty() ? "" : ", ") + std::string(k->name);
-  throw UsageError{"error: --m " + std::to_string(order) + ": the form '" + std::string(f.name) + "' does not have this order: " + why + "\nhint: " +
-                   (list.empty() ? "no form has it" : "these have it: " + list) + "\n"};
+    if (obstacle(*k, m).empty() && order_obstacle(*k, m, order).empty())
+      list += (list.empty() ? "" : ", ") + std::string(k->name);
+  throw UsageError{"error: --m " + std::to_string(order) + ": the form '" + std::string(f.name) +
+                   "' does not have this order: " + why +
+                   "\nhint: " + (list.empty() ? "no form has it" : "these have it: " + list) + "\n"};
 }
 
-Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& f, const StateChoice& choice, unsigned order) {
+Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& f, const StateChoice& choice,
+                        unsigned order) {
   try {
     return elimination_for(m, f.unknowns, choice.overrides, choice.eliminate, true, order);
   } catch (const Failure& e) {
@@ -249,12 +265,14 @@ Elimination elimination(const Reader& in, const Mechanics& m, const Formulation&
   }
 }
 
-std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice, unsigned order) {
+std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice,
+                                          unsigned order) {
   try {
     std::vector<Eliminations> list;
     for (const bool solve : {true, false})
-      list.push_back({elimination_for(m, Unknowns::coordinates, choice.overrides, choice.eliminate, solve, order),
-                      elimination_for(m, Unknowns::quasi_velocities, choice.overrides, choice.eliminate, solve, order)});
+      list.push_back(
+          {elimination_for(m, Unknowns::coordinates, choice.overrides, choice.eliminate, solve, order),
+           elimination_for(m, Unknowns::quasi_velocities, choice.overrides, choice.eliminate, solve, order)});
     return list;
   } catch (const Failure& e) {
     throw UsageError{print(e.diagnostic, in.source)};
@@ -269,15 +287,16 @@ StateChoice state_choice(const Options& o, const Model& model) {
     const auto it = std::find(names.begin(), names.end(), name);
     if (it == names.end()) {
       const std::string near = did_you_mean(name, names);
-      throw UsageError{"error: --eliminate: there is no coordinate '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
+      throw UsageError{"error: --eliminate: there is no coordinate '" + name + "'" +
+                       (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
     }
     c.eliminate.push_back(static_cast<std::size_t>(it - names.begin()));
   }
   if (!o.t.empty()) c.t = exact(o.t, "--t");
   unsigned highest = 2;  // derivatives of this order follow from the state
   for (const Constraint& m : model.constraints) highest = std::max(highest, static_cast<unsigned>(m.order));
-  for (const auto& [list, order, option] : {std::tuple{&o.q, 0U, "--q"}, std::tuple{&o.qdot, 1U, "--qdot"}, std::tuple{&o.qddot, 2U, "--qddot"},
-                                            std::tuple{&o.qdddot, 3U, "--qdddot"}})
+  for (const auto& [list, order, option] : {std::tuple{&o.q, 0U, "--q"}, std::tuple{&o.qdot, 1U, "--qdot"},
+                                            std::tuple{&o.qddot, 2U, "--qddot"}, std::tuple{&o.qdddot, 3U, "--qdddot"}})
     for (const std::string& s : split(*list)) {
       auto [name, value] = assignment(s, option);
       unsigned primes = 0;
@@ -290,26 +309,34 @@ StateChoice state_choice(const Options& o, const Model& model) {
                          (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
       }
       if (k >= highest)
-        throw UsageError{"error: " + std::string(option) + ": " + (highest == 2 ? "accelerations follow" : "derivatives of order " + std::to_string(k) + " follow") +
-                         " from the state\n"};
+        throw UsageError{
+            "error: " + std::string(option) + ": " +
+            (highest == 2 ? "accelerations follow" : "derivatives of order " + std::to_string(k) + " follow") +
+            " from the state\n"};
       for (const StateOverride& before : c.overrides)
         if (before.order == k && before.coordinate == static_cast<std::size_t>(it - model.names.coordinates.begin()))
           throw UsageError{"error: " + std::string(option) + " gives '" + name + "' twice\n"};
       c.overrides.push_back({k, static_cast<std::size_t>(it - model.names.coordinates.begin()), exact(value, option)});
     }
-  for (const auto& [list, order, option] : {std::tuple{&o.lambda, 0U, "--lambda"}, std::tuple{&o.lambdadot, 1U, "--lambdadot"}})
+  for (const auto& [list, order, option] :
+       {std::tuple{&o.lambda, 0U, "--lambda"}, std::tuple{&o.lambdadot, 1U, "--lambdadot"}})
     for (const std::string& s : split(*list)) {
       const auto [name, value] = assignment(s, option);
       const auto& names = model.names.multipliers;
       const auto it = std::find(names.begin(), names.end(), name);
       if (it == names.end()) {
         const std::string near = did_you_mean(name, names);
-        throw UsageError{"error: " + std::string(option) + ": there is no constraint '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
+        throw UsageError{"error: " + std::string(option) + ": there is no constraint '" + name + "'" +
+                         (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
       }
-      if (order + 2 >= highest) throw UsageError{"error: " + std::string(option) + ": multipliers follow from the state\nhint: they are initial data for constraints of order 3 and more\n"};
+      if (order + 2 >= highest)
+        throw UsageError{
+            "error: " + std::string(option) +
+            ": multipliers follow from the state\nhint: they are initial data for constraints of order 3 and more\n"};
       const auto k = static_cast<std::size_t>(it - names.begin());
       for (const StateOverride& before : c.overrides)
-        if (before.multiplier && before.order == order && before.coordinate == k) throw UsageError{"error: " + std::string(option) + " gives '" + name + "' twice\n"};
+        if (before.multiplier && before.order == order && before.coordinate == k)
+          throw UsageError{"error: " + std::string(option) + " gives '" + name + "' twice\n"};
       c.overrides.push_back({order, k, exact(value, option), true});
     }
   return c;

@@ -45,12 +45,14 @@ std::vector<std::string> split(const std::vector<std::string>& words);
 Outcome ready(const Reader& in, const Formulation& form, const StateChoice& choice, Scenario& scenario);
 
 // Its elimination alone, for printing equations; lifted to --m where that is given.
-Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& form, const StateChoice& choice, unsigned order = 0);
+Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& form, const StateChoice& choice,
+                        unsigned order = 0);
 // Throws if the form does not have the order m.
 void must_have_order(const Formulation& form, const Mechanics& mechanics, unsigned m);
 
 // Those on which forms are compared: constraints solved where they can be, and not solved.
-std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice, unsigned order = 0);
+std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice,
+                                          unsigned order = 0);
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source);
 void print_outcome(const Outcome& o);

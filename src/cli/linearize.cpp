@@ -16,27 +16,33 @@ constexpr std::size_t kMostValues = 10000;
 constexpr int kWorkingDigits = 36, kGuardDigits = 24;  // 36: two words of 64 bits, with which MPFR is fastest
 
 // Shortest text of the double nearest to x, or more digits where they were asked for.
-std::string text(const Multi& x, int digits) { return digits > 16 ? number_text(x, digits) : number_text(to_double(x)); }
+std::string text(const Multi& x, int digits) {
+  return digits > 16 ? number_text(x, digits) : number_text(to_double(x));
+}
 
 // ---- what is asked for -----------------------------------------------------------------------------
 
 [[noreturn]] void wrong_range(const Options& o, const std::string& why) {
-  throw UsageError{"error: --vary: " + why + "\nhint: a range NAME=FROM..TO:STEP such as " + o.vary.substr(0, o.vary.find('=')) + "=0..10:1, or values NAME=0,1,2\n"};
+  throw UsageError{"error: --vary: " + why + "\nhint: a range NAME=FROM..TO:STEP such as " +
+                   o.vary.substr(0, o.vary.find('=')) + "=0..10:1, or values NAME=0,1,2\n"};
 }
 
 std::optional<ParameterRange> range(const Options& o, const Model& model) {
   if (o.vary.empty()) return std::nullopt;
   const std::size_t equals = o.vary.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == o.vary.size())
-    throw UsageError{"error: --vary: '" + o.vary + "' is not of the form NAME=VALUES\nhint: a range such as v=0..10:1, or values v=0,1,2\n"};
+    throw UsageError{"error: --vary: '" + o.vary +
+                     "' is not of the form NAME=VALUES\nhint: a range such as v=0..10:1, or values v=0,1,2\n"};
   ParameterRange r;
   const std::string name = o.vary.substr(0, equals), values = o.vary.substr(equals + 1);
-  const auto it = std::find_if(model.parameters.begin(), model.parameters.end(), [&](const Parameter& p) { return p.name == name; });
+  const auto it = std::find_if(model.parameters.begin(), model.parameters.end(),
+                               [&](const Parameter& p) { return p.name == name; });
   if (it == model.parameters.end()) {
     std::vector<std::string> names;
     for (const Parameter& p : model.parameters) names.push_back(p.name);
     const std::string near = did_you_mean(name, names);
-    throw UsageError{"error: --vary: there is no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
+    throw UsageError{"error: --vary: there is no parameter '" + name + "'" +
+                     (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
   }
   r.parameter = static_cast<std::size_t>(it - model.parameters.begin());
   const std::size_t dots = values.find("..");
@@ -45,18 +51,22 @@ std::optional<ParameterRange> range(const Options& o, const Model& model) {
   } else {
     const std::size_t colon = values.find(':', dots);
     if (colon == std::string::npos) wrong_range(o, "'" + values + "' has no step");
-    const Rational from = exact(values.substr(0, dots), "--vary"), to = exact(values.substr(dots + 2, colon - dots - 2), "--vary");
+    const Rational from = exact(values.substr(0, dots), "--vary"),
+                   to = exact(values.substr(dots + 2, colon - dots - 2), "--vary");
     const Rational step = exact(values.substr(colon + 1), "--vary");
-    if (step == 0 || (to - from) / step < 0) wrong_range(o, "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to));
-    if ((to - from) / step > static_cast<long>(kMostValues)) wrong_range(o, "these are more than " + std::to_string(kMostValues) + " values");
+    if (step == 0 || (to - from) / step < 0)
+      wrong_range(o, "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to));
+    if ((to - from) / step > static_cast<long>(kMostValues))
+      wrong_range(o, "these are more than " + std::to_string(kMostValues) + " values");
     for (Rational v = from; step > 0 ? v <= to : v >= to; v += step) r.values.push_back(v);
   }
   if (r.values.empty()) wrong_range(o, "no value is given");
   return r;
 }
 
-// The inputs of the file with a constant added to each, 0 here: the symbol u by which B and D are derivatives. A formula of an input
-// goes on to hold, so A is that of the motion that `simulate` computes. A servo constraint has its input as an unknown, not as a signal.
+// The inputs of the file with a constant added to each, 0 here: the symbol u by which B and D are derivatives. A
+// formula of an input goes on to hold, so A is that of the motion that `simulate` computes. A servo constraint has its
+// input as an unknown, not as a signal.
 std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) {
   auto m = std::make_shared<Model>(model);
   Graph& g = *m->graph;
@@ -94,13 +104,15 @@ std::shared_ptr<const Model> at_rest(const Model& model) {
   return m;
 }
 
-// Positions of the command line are where the search for an equilibrium begins, as those of the file are: held, they would be no equilibrium.
+// Positions of the command line are where the search for an equilibrium begins, as those of the file are: held, they
+// would be no equilibrium.
 std::shared_ptr<const Model> searched_from(const Model& at_rest, StateChoice& choice) {
   auto m = std::make_shared<Model>(at_rest);
   Graph& g = *m->graph;
   for (const StateOverride& given : choice.overrides) {
     if (given.multiplier || given.order > 0)
-      throw UsageError{"error: an equilibrium is at rest: only positions can be given, by --q\nhint: leave out the others, or linearize about the state that is given: --about state\n"};
+      throw UsageError{"error: an equilibrium is at rest: only positions can be given, by --q\nhint: leave out the "
+                       "others, or linearize about the state that is given: --about state\n"};
     const Expr q = g.jet(static_cast<std::uint32_t>(given.coordinate), 0);
     std::erase_if(m->initial.guess, [&](const GivenValue& v) { return v.symbol == q; });
     m->initial.guess.push_back({q, g.number(given.value), {}});
@@ -122,10 +134,15 @@ std::string motion_text(const LinearModel& m) {
   std::string cyclic;
   for (std::size_t i : m.cyclic) cyclic += (cyclic.empty() ? "" : ", ") + m.states[i];
   switch (m.motion) {
-    case LinearModel::Motion::equilibrium: return "an equilibrium" + (cyclic.empty() ? "" : "; without influence: " + cyclic);
-    case LinearModel::Motion::steady: return "a steady motion; without influence: " + cyclic;
-    case LinearModel::Motion::unsteady: return "a state that is not steady: " + m.why + "; A holds for this instant, and its eigenvalues say nothing about stability";
-    case LinearModel::Motion::unchecked: return "a motion that could not be checked to be steady: " + m.why;
+  case LinearModel::Motion::equilibrium:
+    return "an equilibrium" + (cyclic.empty() ? "" : "; without influence: " + cyclic);
+  case LinearModel::Motion::steady:
+    return "a steady motion; without influence: " + cyclic;
+  case LinearModel::Motion::unsteady:
+    return "a state that is not steady: " + m.why +
+           "; A holds for this instant, and its eigenvalues say nothing about stability";
+  case LinearModel::Motion::unchecked:
+    return "a motion that could not be checked to be steady: " + m.why;
   }
   return "";
 }
@@ -221,8 +238,17 @@ std::string json(const Scenario& s, const Linearization& l, const std::optional<
   j.close();
   j.key("crossings").open_array();
   for (const Crossing& c : l.crossings)
-    j.new_line().open_object().key(parameter).number(text(c.value, digits)).key("frequency").number(text(c.frequency, digits)).key("eigenvalues").integer(c.eigenvalues)
-        .key("destabilizes").boolean(c.destabilizes).close();
+    j.new_line()
+        .open_object()
+        .key(parameter)
+        .number(text(c.value, digits))
+        .key("frequency")
+        .number(text(c.frequency, digits))
+        .key("eigenvalues")
+        .integer(c.eigenvalues)
+        .key("destabilizes")
+        .boolean(c.destabilizes)
+        .close();
   j.close();
   return j.close().text() + "\n";
 }
@@ -249,14 +275,17 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
     }
   for (const auto& row : rows) {
     std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) line += "  " + std::string(c ? width[c] - row[c].size() : 0, ' ') + row[c] + std::string(c ? 0 : width[c] - row[c].size(), ' ');
+    for (std::size_t c = 0; c < row.size(); ++c)
+      line += "  " + std::string(c ? width[c] - row[c].size() : 0, ' ') + row[c] +
+              std::string(c ? 0 : width[c] - row[c].size(), ' ');
     say(stdout, "%s\n", line.c_str());
   }
 }
 
 std::string short_text(const Multi& x) { return number_text(to_double(x), 6); }
 
-void print_matrix(const char* name, const std::vector<std::string>& rows, const std::vector<std::string>& columns, const Matrix<Multi>& a) {
+void print_matrix(const char* name, const std::vector<std::string>& rows, const std::vector<std::string>& columns,
+                  const Matrix<Multi>& a) {
   std::vector<std::vector<std::string>> table{{""}};
   table[0].insert(table[0].end(), columns.begin(), columns.end());
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -275,7 +304,8 @@ void print_model(const LinearModel& m, int digits) {
     say(stdout, "; %s follow from them", list.c_str());
   }
   say(stdout, "\n");
-  for (std::size_t i = 0; i < m.states.size(); ++i) say(stdout, "  %-14s %24s\n", m.states[i].c_str(), text(m.values[i], digits).c_str());
+  for (std::size_t i = 0; i < m.states.size(); ++i)
+    say(stdout, "  %-14s %24s\n", m.states[i].c_str(), text(m.values[i], digits).c_str());
   print_matrix("A", m.states, m.states, m.A);
   if (!m.inputs.empty()) print_matrix("B", m.states, m.inputs, m.B);
   if (!m.outputs.empty()) print_matrix("C", m.outputs, m.states, m.C);
@@ -284,14 +314,17 @@ void print_model(const LinearModel& m, int digits) {
   say(stdout, "\neigenvalues");
   if (!m.cyclic.empty()) say(stdout, " of the states with influence; the %zu without add as many 0", m.cyclic.size());
   say(stdout, "\n");
-  const auto width = [&](const Eigenvalue& e) { return pair_text(e, digits).size() - (e.value.im == Multi(0) ? 0 : 1); };  // "±" has two bytes
+  const auto width = [&](const Eigenvalue& e) {
+    return pair_text(e, digits).size() - (e.value.im == Multi(0) ? 0 : 1);
+  };  // "±" has two bytes
   std::size_t widest = 0;
   for (const Eigenvalue& e : m.spectrum) widest = std::max(widest, width(e));
   for (std::size_t i = 0; i < m.spectrum.size(); ++i) {
     const Eigenvalue& e = m.spectrum[i];
     if (told(m.spectrum, i)) continue;
     std::string note;
-    if (e.multiplicity > 1) note += "  " + std::to_string(e.multiplicity) + "-fold (spread " + number_text(to_double(e.radius), 1) + ")";
+    if (e.multiplicity > 1)
+      note += "  " + std::to_string(e.multiplicity) + "-fold (spread " + number_text(to_double(e.radius), 1) + ")";
     if (e.value.im > Multi(0)) {
       note += "  period " + short_text(Multi(2) * pi<Multi>() / e.value.im);
       if (!(e.value.re == Multi(0))) note += ", damping ratio " + short_text(-e.value.re / modulus(e.value));
@@ -309,7 +342,8 @@ void print_model(const LinearModel& m, int digits) {
     rows.push_back({short_text(e.value.re) + (e.value.im > Multi(0) ? " + " + short_text(e.value.im) + "i" : "")});
     for (const Complex& z : e.vector) {
       const double im = to_double(z.im);
-      rows.back().push_back(number_text(to_double(z.re), 4) + (im == 0 ? "" : (im < 0 ? " - " : " + ") + number_text(std::abs(im), 4) + "i"));
+      rows.back().push_back(number_text(to_double(z.re), 4) +
+                            (im == 0 ? "" : (im < 0 ? " - " : " + ") + number_text(std::abs(im), 4) + "i"));
     }
   }
   print_table(rows);
@@ -321,7 +355,9 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
   std::string before;
   for (std::size_t k = 0; k < l.results.size(); ++k) {
     const LinearResult& r = l.results[k];
-    const std::string about = r.outcome.ok() ? "about " + motion_text(r.model) : "no linear model (" + std::string(name(r.outcome.kind)) + "): " + r.outcome.message;
+    const std::string about = r.outcome.ok()
+                                  ? "about " + motion_text(r.model)
+                                  : "no linear model (" + std::string(name(r.outcome.kind)) + "): " + r.outcome.message;
     if (about != before) say(stdout, "%s\n", about.c_str());
     before = about;
     std::string line = text(Multi(range.values[k]), digits);
@@ -329,7 +365,9 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
       if (line.size() < 8) line.resize(8, ' ');
       for (std::size_t i = 0; i < r.model.spectrum.size(); ++i) {
         const Eigenvalue& e = r.model.spectrum[i];
-        if (!told(r.model.spectrum, i)) line += "   " + pair_text(e, digits) + (e.multiplicity > 1 ? " (" + std::to_string(e.multiplicity) + "-fold)" : "");
+        if (!told(r.model.spectrum, i))
+          line += "   " + pair_text(e, digits) +
+                  (e.multiplicity > 1 ? " (" + std::to_string(e.multiplicity) + "-fold)" : "");
       }
     }
     say(stdout, "  %s\n", line.c_str());
@@ -337,8 +375,8 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
   say(stdout, "\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
   for (const Crossing& c : l.crossings)
     say(stdout, "  %s = %s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(),
-                c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0",
-                c.destabilizes ? "unstable above" : "stable above");
+        c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0",
+        c.destabilizes ? "unstable above" : "stable above");
   for (const std::string& n : l.notes) say(stdout, "note: %s\n", n.c_str());
 }
 
@@ -351,7 +389,10 @@ void print_csv(const Scenario& s, const Linearization& l, const std::optional<Pa
   for (std::size_t k = 0; k < l.results.size(); ++k) {
     const LinearModel& m = l.results[k].model;
     line = text(range ? Multi(range->values[k]) : m.t, digits);
-    for (std::size_t i = 0; i < most; ++i) line += i < m.spectrum.size() ? "," + text(m.spectrum[i].value.re, digits) + "," + text(m.spectrum[i].value.im, digits) : ",,";
+    for (std::size_t i = 0; i < most; ++i)
+      line += i < m.spectrum.size()
+                  ? "," + text(m.spectrum[i].value.re, digits) + "," + text(m.spectrum[i].value.im, digits)
+                  : ",,";
     say(stdout, "%s\n", line.c_str());
   }
 }
@@ -377,19 +418,25 @@ int linearize(const Options& o) {
   if (!o.show.empty()) return show(o, s);
   const PrecisionScope scope(std::max(kWorkingDigits, o.digits + kGuardDigits));
   Linearization l;
-  if (start.ok()) l = linearize(s, choice, values, signals);
-  else l.results.push_back({"", start, {}});
+  if (start.ok())
+    l = linearize(s, choice, values, signals);
+  else
+    l.results.push_back({"", start, {}});
   Outcome failed;  // the first that did
   for (LinearResult& r : l.results) {
     if (o.about == "equilibrium") say_no_rest(r.outcome);
     if (failed.ok()) failed = r.outcome;
   }
-  if (o.json) hand_out(json(s, l, start.ok() ? values : std::nullopt, o.digits));
-  else if (o.csv) print_csv(s, l, start.ok() ? values : std::nullopt, o.digits);
+  if (o.json)
+    hand_out(json(s, l, start.ok() ? values : std::nullopt, o.digits));
+  else if (o.csv)
+    print_csv(s, l, start.ok() ? values : std::nullopt, o.digits);
   else if (failed.ok() || l.results.size() > 1) {
     say(stdout, "%s\n%s, %s\n\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation);
-    if (values) print_range(s, l, *values, o.digits);
-    else print_model(l.results[0].model, o.digits);
+    if (values)
+      print_range(s, l, *values, o.digits);
+    else
+      print_model(l.results[0].model, o.digits);
   }
   if (failed.ok()) return kOk;
   print_outcome(failed);

@@ -31,7 +31,8 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
     const auto wanted = find_method(o.method);
     if (!wanted) {
       const std::string near = did_you_mean(o.method, method_names());
-      throw UsageError{"error: there is no method '" + o.method + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+      throw UsageError{"error: there is no method '" + o.method + "'" +
+                       (near.empty() ? "" : "; did you mean '" + near + "'?") +
                        "\nhint: --method auto, taylor, rk or bdf\n"};
     }
     options.method = *wanted;
@@ -39,9 +40,11 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
   if (options.method == Method::automatic || options.method == Method::taylor) return;
   const std::string which = name(options.method);
   const auto refuse = [&](const std::string& what, const std::string& remedy) {
-    throw UsageError{"error: the method '" + which + "' " + what + "\nhint: " + (remedy.empty() ? "" : remedy + ", or ") + "use --method taylor\n"};
+    throw UsageError{"error: the method '" + which + "' " + what +
+                     "\nhint: " + (remedy.empty() ? "" : remedy + ", or ") + "use --method taylor\n"};
   };
-  if (options.precision != Precision::real) refuse("computes in double", std::string("leave out ") + (o.digits > 16 ? "--digits" : "--numbers"));
+  if (options.precision != Precision::real)
+    refuse("computes in double", std::string("leave out ") + (o.digits > 16 ? "--digits" : "--numbers"));
   if (!o.save.empty() || options.resume)
     refuse("cannot go on with the same bits", std::string("leave out ") + (o.save.empty() ? "--continue" : "--save"));
   if (options.rigorous) refuse("has no dense output that is enclosed", "leave out --rigorous");
@@ -52,7 +55,7 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
     refuse("is of order 5 at most, for tolerances of " + small(kLeastBdfTolerance) + " and more", "--tolerance 1e-8");
   if (tolerance < kLeastRungeKuttaTolerance)
     say(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastRungeKuttaTolerance).c_str(),
-                 small(kLeastRungeKuttaTolerance).c_str(), which.c_str());
+        small(kLeastRungeKuttaTolerance).c_str(), which.c_str());
 }
 
 static bool worth_saying(const MethodReport& r) { return r.steps > 0 || r.trials > 0 || !r.turns.empty(); }
@@ -63,29 +66,50 @@ void print_method(const MethodReport& r) {
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   if (r.asked == Method::automatic) {
     if (r.turns.empty()) add("Taylor, others were tried and not cheaper");
-    for (const MethodReport::Turn& turn : r.turns) add(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
+    for (const MethodReport::Turn& turn : r.turns)
+      add(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
   } else {
     add(title(r.asked) + ", as asked");
-    for (const MethodReport::Turn& turn : r.turns) add(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
+    for (const MethodReport::Turn& turn : r.turns)
+      add(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
   }
   if (r.steps > 0) {
-    add(std::to_string(r.steps) + " steps (" + std::to_string(r.refused) + " refused), " + std::to_string(r.evaluations) + " evaluations");
+    add(std::to_string(r.steps) + " steps (" + std::to_string(r.refused) + " refused), " +
+        std::to_string(r.evaluations) + " evaluations");
     if (r.taylor_steps > 0) add(std::to_string(r.taylor_steps) + " steps by Taylor");
   }
-  if (r.trials > 0) add(std::to_string(r.trials) + (r.trials == 1 ? " trial, " : " trials, ") + std::to_string(r.trial_evaluations) + " evaluations");
+  if (r.trials > 0)
+    add(std::to_string(r.trials) + (r.trials == 1 ? " trial, " : " trials, ") + std::to_string(r.trial_evaluations) +
+        " evaluations");
   say(stderr, "method: %s\n", text.c_str());
 }
 
 void write_method(JsonWriter& j, const MethodReport& r) {
   if (!worth_saying(r)) return;
   j.key("method").open_object().key("asked").string(name(r.asked)).key("last").string(name(r.last));
-  j.key("taylor_steps").integer(static_cast<long long>(r.taylor_steps)).key("steps").integer(static_cast<long long>(r.steps));
-  j.key("refused").integer(static_cast<long long>(r.refused)).key("evaluations").integer(static_cast<long long>(r.evaluations));
-  j.key("trials").integer(static_cast<long long>(r.trials)).key("trial_evaluations").integer(static_cast<long long>(r.trial_evaluations));
+  j.key("taylor_steps")
+      .integer(static_cast<long long>(r.taylor_steps))
+      .key("steps")
+      .integer(static_cast<long long>(r.steps));
+  j.key("refused")
+      .integer(static_cast<long long>(r.refused))
+      .key("evaluations")
+      .integer(static_cast<long long>(r.evaluations));
+  j.key("trials")
+      .integer(static_cast<long long>(r.trials))
+      .key("trial_evaluations")
+      .integer(static_cast<long long>(r.trial_evaluations));
   if (!r.turns.empty()) {
     j.key("turns").open_array();
     for (const MethodReport::Turn& turn : r.turns)
-      j.open_object().key("t").number(number_text(turn.t)).key("to").string(name(turn.to)).key("why").string(turn.why).close();
+      j.open_object()
+          .key("t")
+          .number(number_text(turn.t))
+          .key("to")
+          .string(name(turn.to))
+          .key("why")
+          .string(turn.why)
+          .close();
     j.close();
   }
   j.close();

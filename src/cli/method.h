@@ -6,7 +6,8 @@
 
 namespace anholon::cli {
 
-// After tolerance, precision and integrator are known; throws UsageError where the method asked for cannot do what else is asked for.
+// After tolerance, precision and integrator are known; throws UsageError where the method asked for cannot do what else
+// is asked for.
 void choose_method(const Options& o, const Scenario& scenario, SimulationOptions& options);
 
 // Nothing where all is Taylor's and nothing else was tried.

@@ -9,7 +9,9 @@ namespace anholon::cli {
 int new_model(const Options& o) {
   const std::vector<ShippedModel> list = templates();
   if (o.model.empty()) {
-    if (!o.output.empty()) throw UsageError{"error: which template is to be written to '" + o.output + "'?\nhint: `anholon new` lists them\n"};
+    if (!o.output.empty())
+      throw UsageError{"error: which template is to be written to '" + o.output +
+                       "'?\nhint: `anholon new` lists them\n"};
     for (const ShippedModel& t : list) say(stdout, "%-12s %s\n", t.name.c_str(), t.title.c_str());
     return kOk;
   }
@@ -21,7 +23,8 @@ int new_model(const Options& o) {
   }
   if (text.empty()) {
     const std::string near = did_you_mean(o.model, known);
-    throw UsageError{"error: there is no template '" + o.model + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: `anholon new` lists them\n"};
+    throw UsageError{"error: there is no template '" + o.model + "'" +
+                     (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: `anholon new` lists them\n"};
   }
   if (o.output.empty()) {
     hand_out(text);
@@ -30,8 +33,10 @@ int new_model(const Options& o) {
   // A file that is there stays as it is.
   std::error_code none;
   const auto kind = std::filesystem::symlink_status(o.output, none).type();
-  if (kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::symlink || kind == std::filesystem::file_type::directory)
-    throw UsageError{"error: there is a file '" + o.output + "' already\nhint: give another name after -o, or remove it\n"};
+  if (kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::symlink ||
+      kind == std::filesystem::file_type::directory)
+    throw UsageError{"error: there is a file '" + o.output +
+                     "' already\nhint: give another name after -o, or remove it\n"};
   if (const std::string why = write_whole(o.output, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
   say(stderr, "wrote %s\nnext: anholon check %s\n", o.output.c_str(), o.output.c_str());
   return kOk;

@@ -1,9 +1,9 @@
 // The papers behind the program: their claims, listed, shown and decided.
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+
+#include <unistd.h>
 
 #include "base/json.h"
 #include "base/read_file.h"
@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 fs::path papers_folder() {
   const std::vector<fs::path> folders = data_folders("papers", ANHOLON_PAPERS_DIR);
   std::error_code ignored;
-  const auto there = std::find_if(folders.begin(), folders.end(), [&](const fs::path& f) { return fs::is_directory(f, ignored); });
+  const auto there =
+      std::find_if(folders.begin(), folders.end(), [&](const fs::path& f) { return fs::is_directory(f, ignored); });
   return there == folders.end() ? folders.back() : *there;
 }
 
@@ -31,12 +32,15 @@ std::vector<Paper> read_papers() {
   std::error_code error;
   for (const fs::directory_entry& e : fs::directory_iterator(papers_folder(), error))
     if (e.path().extension() == ".toml") files.push_back(e.path());
-  if (files.empty()) throw UsageError{"error: there are no tables of papers in " + papers_folder().string() + "\nhint: they are installed beside the models\n"};
+  if (files.empty())
+    throw UsageError{"error: there are no tables of papers in " + papers_folder().string() +
+                     "\nhint: they are installed beside the models\n"};
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     SourceText source{file.filename().string(), {}};
     std::string why;
-    if (!read_file(file.string(), source.text, &why)) throw UsageError{"error: cannot read " + file.string() + ": " + why + "\n"};
+    if (!read_file(file.string(), source.text, &why))
+      throw UsageError{"error: cannot read " + file.string() + ": " + why + "\n"};
     Diagnostics diagnostics;
     std::optional<Paper> paper = read_paper(source, diagnostics);
     if (!paper) throw UsageError{diagnostics.print(source)};
@@ -48,13 +52,15 @@ std::vector<Paper> read_papers() {
 // "papers/systems/order-3.toml" lies beside the tables; "papers/luo-zhao-example-1" is a shipped model.
 OpenModel load(const std::string& name) {
   std::string path;
-  if (name.ends_with(".toml")) path = (papers_folder().parent_path() / name).string();
+  if (name.ends_with(".toml"))
+    path = (papers_folder().parent_path() / name).string();
   else
     for (const ShippedModel& m : shipped_models())
       if (m.path.ends_with("/" + name + ".toml")) path = m.path;
   SourceText source{name, {}, path};
   std::string why = "there is no shipped model of this name";
-  if (path.empty() || !read_file(path, source.text, &why)) throw Failure({}, "cannot read the model '" + name + "': " + why);
+  if (path.empty() || !read_file(path, source.text, &why))
+    throw Failure({}, "cannot read the model '" + name + "': " + why);
   Diagnostics diagnostics;
   std::optional<OpenModel> model = open_model(source, diagnostics);
   if (!model) throw Failure({}, "the model '" + name + "' has errors: " + diagnostics.print(source));
@@ -75,13 +81,15 @@ std::string padded(const std::string& text, std::size_t width) {
 // What a check asks, in one line.
 std::string question(const ClaimCheck& c) {
   switch (c.kind) {
-    case ClaimCheck::Kind::equation: return c.equation;
-    case ClaimCheck::Kind::forms: {
-      std::string list;
-      for (const std::string& f : c.forms) list += (list.empty() ? "" : ", ") + f;
-      return "forms: " + list;
-    }
-    case ClaimCheck::Kind::points: break;
+  case ClaimCheck::Kind::equation:
+    return c.equation;
+  case ClaimCheck::Kind::forms: {
+    std::string list;
+    for (const std::string& f : c.forms) list += (list.empty() ? "" : ", ") + f;
+    return "forms: " + list;
+  }
+  case ClaimCheck::Kind::points:
+    break;
   }
   return std::to_string(c.points.size()) + " points of one state";
 }
@@ -94,14 +102,16 @@ void list(const std::vector<Paper>& papers) {
     if (!authors.empty()) say(stdout, "   %s\n", authors.c_str());
     say(stdout, "   %s\n\n", p.title.c_str());
     for (const Claim& c : p.claims)
-      say(stdout, "  %s  %s  %s  %s\n", padded(tag_of(p, c), 14).c_str(), padded(c.kind, 18).c_str(), padded(verdict(c), 16).c_str(), c.title.c_str());
+      say(stdout, "  %s  %s  %s  %s\n", padded(tag_of(p, c), 14).c_str(), padded(c.kind, 18).c_str(),
+          padded(verdict(c), 16).c_str(), c.title.c_str());
     say(stdout, "\n");
   }
   say(stdout, "anholon papers L3.13 shows a claim and decides it; anholon papers --check decides all.\n");
 }
 
 void show(const Paper& p, const Claim& c) {
-  say(stdout, "%s  %s (%s)\n  of %s\n\n  %s\n", tag_of(p, c).c_str(), c.title.c_str(), c.kind.c_str(), p.english.c_str(), c.formula.c_str());
+  say(stdout, "%s  %s (%s)\n  of %s\n\n  %s\n", tag_of(p, c).c_str(), c.title.c_str(), c.kind.c_str(),
+      p.english.c_str(), c.formula.c_str());
   const auto line = [](const char* what, const std::string& text) {
     if (!text.empty()) say(stdout, "  %s %s\n", padded(std::string(what) + ":", 13).c_str(), text.c_str());
   };
@@ -117,28 +127,74 @@ void show(const Paper& p, const Claim& c) {
 
 void print_decision(const Decision& d) {
   const ClaimCheck& c = *d.check;
-  say(stdout, "  %s %s%s\n", padded(word(d.verdict), 8).c_str(), c.says.empty() ? "" : (c.says + ": ").c_str(), question(c).c_str());
+  say(stdout, "  %s %s%s\n", padded(word(d.verdict), 8).c_str(), c.says.empty() ? "" : (c.says + ": ").c_str(),
+      question(c).c_str());
   for (const std::string& l : c.lets) say(stdout, "           where %s\n", l.c_str());
   say(stdout, "           on %s, %.2f s: %s\n", c.model.c_str(), d.seconds, d.detail.c_str());
-  if (d.has_mutant && c.kind == ClaimCheck::Kind::equation) say(stdout, "           its mutant is %s: %s\n", word(d.mutant), c.mutant.c_str());
-  else if (d.has_mutant) say(stdout, "           its mutant is %s\n", word(d.mutant));
-  if (!d.as_expected()) say(stdout, "           NOT as the table says: %s%s\n", c.expected ? "true" : "false", d.has_mutant ? ", its mutant false" : "");
+  if (d.has_mutant && c.kind == ClaimCheck::Kind::equation)
+    say(stdout, "           its mutant is %s: %s\n", word(d.mutant), c.mutant.c_str());
+  else if (d.has_mutant)
+    say(stdout, "           its mutant is %s\n", word(d.mutant));
+  if (!d.as_expected())
+    say(stdout, "           NOT as the table says: %s%s\n", c.expected ? "true" : "false",
+        d.has_mutant ? ", its mutant false" : "");
 }
 
 void write_json(JsonWriter& j, const Paper& p, const Claim& c, const std::vector<Decision>& decisions) {
-  j.open_object().key("paper").string(p.key).key("tag").string(c.tag).key("numbered").boolean(c.numbered).key("title").string(c.title).key("kind").string(c.kind);
-  j.key("formula").string(c.formula).key("hypotheses").string(c.hypotheses).key("difference").string(c.difference).key("class").string(in_words(c.by));
-  j.key("corrected").string(c.corrected).key("form").string(c.form).key("quantity").string(c.quantity).key("theory").string(c.theory).key("verdict").string(verdict(c));
+  j.open_object()
+      .key("paper")
+      .string(p.key)
+      .key("tag")
+      .string(c.tag)
+      .key("numbered")
+      .boolean(c.numbered)
+      .key("title")
+      .string(c.title)
+      .key("kind")
+      .string(c.kind);
+  j.key("formula")
+      .string(c.formula)
+      .key("hypotheses")
+      .string(c.hypotheses)
+      .key("difference")
+      .string(c.difference)
+      .key("class")
+      .string(in_words(c.by));
+  j.key("corrected")
+      .string(c.corrected)
+      .key("form")
+      .string(c.form)
+      .key("quantity")
+      .string(c.quantity)
+      .key("theory")
+      .string(c.theory)
+      .key("verdict")
+      .string(verdict(c));
   j.key("checks").open_array();
   for (std::size_t i = 0; i < c.checks.size(); ++i) {
     const ClaimCheck& k = c.checks[i];
-    j.open_object().key("model").string(k.model).key("says").string(k.says).key("asks").string(question(k)).key("mutant").string(k.mutant).key("is").boolean(k.expected);
+    j.open_object()
+        .key("model")
+        .string(k.model)
+        .key("says")
+        .string(k.says)
+        .key("asks")
+        .string(question(k))
+        .key("mutant")
+        .string(k.mutant)
+        .key("is")
+        .boolean(k.expected);
     j.key("let").open_array();
     for (const std::string& l : k.lets) j.string(l);
     j.close();
     if (!decisions.empty()) {
       const Decision& d = decisions[i];
-      j.key("decided").string(word(d.verdict)).key("mutant_decided").string(d.has_mutant ? word(d.mutant) : "").key("detail").string(d.detail);
+      j.key("decided")
+          .string(word(d.verdict))
+          .key("mutant_decided")
+          .string(d.has_mutant ? word(d.mutant) : "")
+          .key("detail")
+          .string(d.detail);
       j.key("as_expected").boolean(d.as_expected());
     }
     j.close();
@@ -157,11 +213,13 @@ std::string cell(const std::string& text) {
 void print_markdown(const std::vector<Paper>& papers) {
   std::string out;
   for (const Paper& p : papers) {
-    out += "### [" + p.key + "] " + p.english + "\n\n| tag | statement | formula | verdict | difference of the print as read |\n|---|---|---|---|---|\n";
+    out += "### [" + p.key + "] " + p.english +
+           "\n\n| tag | statement | formula | verdict | difference of the print as read |\n|---|---|---|---|---|\n";
     for (const Claim& c : p.claims) {
       const std::string by = c.by == DifferenceBy::none ? "" : cell(c.difference) + " (" + in_words(c.by) + ")";
-      out += "| " + c.tag + " | " + cell(c.title) + (c.form.empty() ? "" : ", form `" + c.form + "`") + " | `" + cell(c.formula) + "` | " + verdict(c) +
-             (c.corrected.empty() ? "" : ": " + cell(c.corrected)) + " | " + by + " |\n";
+      out += "| " + c.tag + " | " + cell(c.title) + (c.form.empty() ? "" : ", form `" + c.form + "`") + " | `" +
+             cell(c.formula) + "` | " + verdict(c) + (c.corrected.empty() ? "" : ": " + cell(c.corrected)) + " | " +
+             by + " |\n";
     }
     out += "\n";
   }
@@ -182,7 +240,9 @@ int papers(const Options& o) {
     wanted = find_claims(papers, o.model);
     if (wanted.empty()) {
       const std::string near = nearest_tag(papers, o.model);
-      throw UsageError{"error: no paper has '" + o.model + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: anholon papers lists the tags; L3.13, Q13, N3.16\n"};
+      throw UsageError{"error: no paper has '" + o.model + "'" +
+                       (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                       "\nhint: anholon papers lists the tags; L3.13, Q13, N3.16\n"};
     }
   } else if (o.check_only || o.json) {
     for (const Paper& p : papers)
@@ -198,19 +258,34 @@ int papers(const Options& o) {
   JsonWriter j;
   if (o.json) {
     j.open_object().key("papers").open_array();
-    for (const Paper& p : papers) j.open_object().key("key").string(p.key).key("title").string(p.title).key("english").string(p.english).key("reference").string(p.reference).close();
+    for (const Paper& p : papers)
+      j.open_object()
+          .key("key")
+          .string(p.key)
+          .key("title")
+          .string(p.title)
+          .key("english")
+          .string(p.english)
+          .key("reference")
+          .string(p.reference)
+          .close();
     j.close().key("claims").open_array();
   }
   for (const FoundClaim& f : wanted) {
-    if (terminal && wanted.size() > 1) say(stderr, "\r\033[K%zu of %zu: %s", static_cast<std::size_t>(&f - wanted.data()) + 1, wanted.size(), tag_of(*f.paper, *f.claim).c_str());
+    if (terminal && wanted.size() > 1)
+      say(stderr, "\r\033[K%zu of %zu: %s", static_cast<std::size_t>(&f - wanted.data()) + 1, wanted.size(),
+          tag_of(*f.paper, *f.claim).c_str());
     std::vector<Decision> decisions;
     if (decides)
       for (const ClaimCheck& c : f.claim->checks) decisions.push_back(decider.decide(c));
-    const bool right = std::all_of(decisions.begin(), decisions.end(), [](const Decision& d) { return d.as_expected(); });
+    const bool right =
+        std::all_of(decisions.begin(), decisions.end(), [](const Decision& d) { return d.as_expected(); });
     ++(f.claim->numbered ? n.numbered : n.others);
     (f.claim->numbered ? n.numbered_right : n.others_right) += right;
     n.checks += decisions.size();
-    n.mutants += static_cast<std::size_t>(std::count_if(decisions.begin(), decisions.end(), [](const Decision& d) { return d.has_mutant && d.mutant == Verdict::refuted; }));
+    n.mutants += static_cast<std::size_t>(std::count_if(decisions.begin(), decisions.end(), [](const Decision& d) {
+      return d.has_mutant && d.mutant == Verdict::refuted;
+    }));
     if (o.json) {
       j.new_line();
       write_json(j, *f.paper, *f.claim, decisions);
@@ -218,20 +293,34 @@ int papers(const Options& o) {
     }
     if (o.check_only && right) continue;
     if (terminal) say(stderr, "\r\033[K");
-    if (o.check_only) say(stdout, "%s\n", tag_of(*f.paper, *f.claim).c_str());
-    else show(*f.paper, *f.claim);
+    if (o.check_only)
+      say(stdout, "%s\n", tag_of(*f.paper, *f.claim).c_str());
+    else
+      show(*f.paper, *f.claim);
     for (const Decision& d : decisions)
       if (!o.check_only || !d.as_expected()) print_decision(d);
   }
   if (terminal) say(stderr, "\r\033[K");
   const bool all = n.numbered == n.numbered_right && n.others == n.others_right;
   if (o.json) {
-    j.close().key("decided").boolean(decides).key("numbered").integer(static_cast<long>(n.numbered)).key("unnumbered").integer(static_cast<long>(n.others));
-    if (decides) j.key("numbered_as_expected").integer(static_cast<long>(n.numbered_right)).key("unnumbered_as_expected").integer(static_cast<long>(n.others_right));
+    j.close()
+        .key("decided")
+        .boolean(decides)
+        .key("numbered")
+        .integer(static_cast<long>(n.numbered))
+        .key("unnumbered")
+        .integer(static_cast<long>(n.others));
+    if (decides)
+      j.key("numbered_as_expected")
+          .integer(static_cast<long>(n.numbered_right))
+          .key("unnumbered_as_expected")
+          .integer(static_cast<long>(n.others_right));
     hand_out(j.close().text() + "\n");
   } else if (o.check_only) {
-    say(stdout, "%zu of %zu numbered equations and %zu of %zu other formulas are decided as the tables say; %zu checks, %zu mutants refuted\n", n.numbered_right, n.numbered,
-        n.others_right, n.others, n.checks, n.mutants);
+    say(stdout,
+        "%zu of %zu numbered equations and %zu of %zu other formulas are decided as the tables say; %zu checks, %zu "
+        "mutants refuted\n",
+        n.numbered_right, n.numbered, n.others_right, n.others, n.checks, n.mutants);
   }
   return !decides || all ? kOk : kStopped;
 }

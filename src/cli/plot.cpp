@@ -1,6 +1,3 @@
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -8,6 +5,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include "base/json.h"
 #include "cli/result_file.h"
@@ -29,9 +29,11 @@ Target target(const std::string& path) {
   if (path.empty()) return Target::terminal;
   const std::size_t dot = path.rfind('.');
   const std::string end = dot == std::string::npos ? "" : path.substr(dot + 1);
-  for (const auto& [name, t] : {std::pair{"svg", Target::svg}, {"pdf", Target::pdf}, {"png", Target::png}, {"tex", Target::tex}})
+  for (const auto& [name, t] :
+       {std::pair{"svg", Target::svg}, {"pdf", Target::pdf}, {"png", Target::png}, {"tex", Target::tex}})
     if (end == name) return t;
-  throw UsageError{"error: a figure '" + path + "' cannot be drawn\nhint: a name that ends in .svg, .pdf, .png or .tex\n"};
+  throw UsageError{"error: a figure '" + path +
+                   "' cannot be drawn\nhint: a name that ends in .svg, .pdf, .png or .tex\n"};
 }
 
 struct Length {
@@ -60,7 +62,8 @@ void take_size(const std::string& text, Target t, FigureOptions& figure, Termina
   if (text.empty()) return;
   const std::size_t x = text.find('x');
   const auto wrong = [&](const std::string& what) {
-    throw UsageError{"error: --size " + text + ": " + what + "\nhint: --size 8cmx5cm for a figure, --size 100x30 (columns, rows) in the terminal\n"};
+    throw UsageError{"error: --size " + text + ": " + what +
+                     "\nhint: --size 8cmx5cm for a figure, --size 100x30 (columns, rows) in the terminal\n"};
   };
   if (x == std::string::npos) wrong("not of the form WIDTHxHEIGHT");
   const auto w = length(text.substr(0, x)), h = length(text.substr(x + 1));
@@ -100,14 +103,17 @@ TerminalSize terminal_size(std::size_t panels) {
   size.columns = std::clamp(size.columns, 30, 500);
   // Legend, axis, its labels, its name, the prompt.
   constexpr int kBeside = 6, kLeast = 6, kMost = 30;
-  size.rows = panels > 1 ? std::clamp((lines - kBeside) / static_cast<int>(panels) - 2, kLeast, kMost) : std::clamp(lines - kBeside, 2 * kLeast, kMost);
+  size.rows = panels > 1 ? std::clamp((lines - kBeside) / static_cast<int>(panels) - 2, kLeast, kMost)
+                         : std::clamp(lines - kBeside, 2 * kLeast, kMost);
   size.colours = colours();
   return size;
 }
 
 std::string ranges(const Figure& f) {
   JsonWriter j;
-  const auto range = [&](double from, double to) { j.open_array().number(number_text(from)).number(number_text(to)).close(); };
+  const auto range = [&](double from, double to) {
+    j.open_array().number(number_text(from)).number(number_text(to)).close();
+  };
   const auto least_and_greatest = [&](const std::vector<double>& v) {
     double least = INFINITY, greatest = -INFINITY;
     for (const double x : v)
@@ -136,15 +142,18 @@ std::string ranges(const Figure& f) {
 
 std::string write_figure(const Figure& f, Target t, const std::string& path) {
   switch (t) {
-    case Target::svg: return write_whole(path, draw_svg(f));
-    case Target::tex: return write_whole(path, draw_tex(f));
-    case Target::pdf:
-    case Target::png:
-      return write_whole_by_name(path, [&](const std::string& beside) {
-        const std::string why = draw_cairo(f, t == Target::pdf ? CairoFormat::pdf : CairoFormat::png, beside);
-        return why.empty() ? why : "cannot write " + path + ": " + why;
-      });
-    case Target::terminal: break;
+  case Target::svg:
+    return write_whole(path, draw_svg(f));
+  case Target::tex:
+    return write_whole(path, draw_tex(f));
+  case Target::pdf:
+  case Target::png:
+    return write_whole_by_name(path, [&](const std::string& beside) {
+      const std::string why = draw_cairo(f, t == Target::pdf ? CairoFormat::pdf : CairoFormat::png, beside);
+      return why.empty() ? why : "cannot write " + path + ": " + why;
+    });
+  case Target::terminal:
+    break;
   }
   return {};
 }
@@ -154,7 +163,8 @@ std::string write_figure(const Figure& f, Target t, const std::string& path) {
 int plot(const Options& o) {
   const Target t = target(o.output);
   if ((t == Target::pdf || t == Target::png) && !has_cairo())
-    throw UsageError{"error: " + std::string(kNoCairo) + "\nhint: -o figure.svg or -o figure.tex, or build it where libcairo2-dev is installed\n"};
+    throw UsageError{"error: " + std::string(kNoCairo) +
+                     "\nhint: -o figure.svg or -o figure.tex, or build it where libcairo2-dev is installed\n"};
   if (o.each && o.together) throw UsageError{"error: --together and --each exclude each other\n"};
   FigureOptions options;
   for (const std::string& name : split(o.columns)) options.names.push_back(name);
@@ -167,7 +177,9 @@ int plot(const Options& o) {
   if (o.equal && o.log_axis) throw UsageError{"error: --equal and --log exclude each other\n"};
   options.smooth = true;
   options.title = o.title;
-  options.labels = o.labels == "latex" ? LabelStyle::latex : o.labels == "plain" ? LabelStyle::plain : LabelStyle::unicode;
+  options.labels = o.labels == "latex"   ? LabelStyle::latex
+                   : o.labels == "plain" ? LabelStyle::plain
+                                         : LabelStyle::unicode;
   TerminalSize given;
   given.rows = 0;
   take_size(o.size, t, options, given);
@@ -178,11 +190,14 @@ int plot(const Options& o) {
   try {
     figure = make_figure(run, options);
   } catch (const Failure& e) {
-    throw UsageError{"error: " + e.diagnostic.message + (e.diagnostic.hint.empty() ? "" : "\nhint: " + e.diagnostic.hint) + "\n"};
+    throw UsageError{"error: " + e.diagnostic.message +
+                     (e.diagnostic.hint.empty() ? "" : "\nhint: " + e.diagnostic.hint) + "\n"};
   }
   if (t != Target::terminal) {
-    if (o.size.empty() && figure.panels.size() > 1) figure.height = std::min(26.0, std::max(9.0, 3.5 * static_cast<double>(figure.panels.size())));
-    if (const std::string why = write_figure(figure, t, o.output); !why.empty()) throw UsageError{"error: " + why + "\n"};
+    if (o.size.empty() && figure.panels.size() > 1)
+      figure.height = std::min(26.0, std::max(9.0, 3.5 * static_cast<double>(figure.panels.size())));
+    if (const std::string why = write_figure(figure, t, o.output); !why.empty())
+      throw UsageError{"error: " + why + "\n"};
   } else if (!o.json) {
     TerminalSize size = terminal_size(figure.panels.size());
     if (given.rows > 0) size.columns = given.columns, size.rows = given.rows;

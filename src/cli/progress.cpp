@@ -1,10 +1,10 @@
 #include "cli/progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <csignal>
 #include <string>
+
+#include <unistd.h>
 
 #include "cli/say.h"
 
@@ -42,7 +42,8 @@ void Progress::operator()(double fraction, double place, std::size_t count) {
   const int bar = static_cast<int>(done * 30);
   const std::string filled(static_cast<std::size_t>(bar), '#'), empty(static_cast<std::size_t>(30 - bar), '.');
   if (terminal_) say(stderr, "\r");
-  say(stderr, "[%s%s] %3.0f %%  %s = %.6g  %.3g %s/s  %.0f s left", filled.c_str(), empty.c_str(), 100 * done, where_, place, static_cast<double>(count) / elapsed, unit_, left);
+  say(stderr, "[%s%s] %3.0f %%  %s = %.6g  %.3g %s/s  %.0f s left", filled.c_str(), empty.c_str(), 100 * done, where_,
+      place, static_cast<double>(count) / elapsed, unit_, left);
   say(stderr, terminal_ ? "\033[K" : "\n");
 }
 

@@ -6,8 +6,8 @@
 
 namespace anholon::cli {
 
-// From here on Ctrl-C, a request of the system to end and a terminal that goes away are requests, which any thread may ask about.
-// Where the rows go to a file, nobody who leaves the other outputs ends the run.
+// From here on Ctrl-C, a request of the system to end and a terminal that goes away are requests, which any thread may
+// ask about. Where the rows go to a file, nobody who leaves the other outputs ends the run.
 void catch_stop(const std::string& output);
 bool stop_requested();
 

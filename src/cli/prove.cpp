@@ -1,9 +1,9 @@
 #include "proof/prove.h"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdio>
+
+#include <unistd.h>
 
 #include "base/hash.h"
 #include "base/json.h"
@@ -20,7 +20,8 @@ std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& 
   const auto order = static_cast<unsigned>(o.m);  // forms that do not depend on it are compared as they are
   if (o.forms.empty()) {
     for (const Formulation* f : formulations())
-      if (obstacle(*f, m).empty() && (!order || f->highest_m == 0 || order_obstacle(*f, m, order).empty())) forms.push_back(f);
+      if (obstacle(*f, m).empty() && (!order || f->highest_m == 0 || order_obstacle(*f, m, order).empty()))
+        forms.push_back(f);
     return forms;
   }
   for (const std::string& name : split(o.forms)) {
@@ -33,7 +34,8 @@ std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& 
   return forms;
 }
 
-// The points at which forms are told apart lie where all constraints hold, lifted to order m; so they must be, whatever the forms.
+// The points at which forms are told apart lie where all constraints hold, lifted to order m; so they must be, whatever
+// the forms.
 void must_lift(const Mechanics& m, unsigned order) {
   for (const Formulation* f : formulations())
     if (f->eliminates() && f->highest_m == kHighestM && obstacle(*f, m).empty()) must_have_order(*f, m, order);
@@ -56,7 +58,8 @@ void print_matrix(const Proof& p) {
 
 std::string point_text(const WitnessPoint& w, const SymbolNames& names) {
   std::string out;
-  for (const auto& [symbol, value] : w.values) out += (out.empty() ? "" : ", ") + print(symbol, names, Format::text) + " = " + value.get_str();
+  for (const auto& [symbol, value] : w.values)
+    out += (out.empty() ? "" : ", ") + print(symbol, names, Format::text) + " = " + value.get_str();
   for (const WitnessPoint::Enclosed& e : w.enclosed)
     out += ", " + print(e.symbol, names, Format::text) + " = " + number_text(e.midpoint.get_d(), 6) + "…";
   return out;
@@ -67,12 +70,13 @@ void print_differences(const Proof& p, const SymbolNames& names) {
     for (const Difference& d : f.differences) {
       if (d.verdict == Verdict::proved) continue;
       say(stdout, "%s differs from routh in the equation of %s%s: %s\n", f.form->name, d.component.c_str(),
-                  d.verdict == Verdict::unknown ? " (perhaps)" : "", d.detail.c_str());
+          d.verdict == Verdict::unknown ? " (perhaps)" : "", d.detail.c_str());
       if (d.witness) say(stdout, "  at %s\n", point_text(*d.witness, names).c_str());
       if (d.verdict == Verdict::refuted) break;  // one point is enough
     }
   for (const Difference& d : p.kernel)
-    if (d.verdict != Verdict::proved) say(stdout, "not shown: the tangents of the constraints, %s: %s\n", d.component.c_str(), d.detail.c_str());
+    if (d.verdict != Verdict::proved)
+      say(stdout, "not shown: the tangents of the constraints, %s: %s\n", d.component.c_str(), d.detail.c_str());
 }
 
 std::string json(const Model& model, const Proof& p, const Certificate& c, const SymbolNames& names, double seconds) {
@@ -84,7 +88,13 @@ std::string json(const Model& model, const Proof& p, const Certificate& c, const
   j.close();
   j.key("forms").open_array();
   for (const FormProof& f : p.forms) {
-    j.open_object().key("name").string(f.form->name).key("against").string("routh").key("verdict").string(name(f.verdict));
+    j.open_object()
+        .key("name")
+        .string(f.form->name)
+        .key("against")
+        .string("routh")
+        .key("verdict")
+        .string(name(f.verdict));
     for (const Difference& d : f.differences) {
       if (d.verdict == Verdict::proved) continue;
       j.key("component").string(d.component).key("detail").string(d.detail);
@@ -97,7 +107,14 @@ std::string json(const Model& model, const Proof& p, const Certificate& c, const
   j.key("pairs").open_array();
   for (std::size_t a = 0; a < p.forms.size(); ++a)
     for (std::size_t b = a + 1; b < p.forms.size(); ++b)
-      j.open_object().key("a").string(p.forms[a].form->name).key("b").string(p.forms[b].form->name).key("verdict").string(name(p.between(a, b))).close();
+      j.open_object()
+          .key("a")
+          .string(p.forms[a].form->name)
+          .key("b")
+          .string(p.forms[b].form->name)
+          .key("verdict")
+          .string(name(p.between(a, b)))
+          .close();
   j.close();
   j.key("seconds").number(number_text(seconds, 3)).close();
   return j.text();
@@ -117,16 +134,20 @@ int prove(const Options& o) {
   const Mechanics m = mechanics(model);
   if (o.m) must_lift(m, static_cast<unsigned>(o.m));
   const std::vector<const Formulation*> forms = wanted_forms(o, m);
-  const std::vector<Eliminations> eliminations = eliminations_of(in, m, state_choice(o, model), static_cast<unsigned>(o.m));
+  const std::vector<Eliminations> eliminations =
+      eliminations_of(in, m, state_choice(o, model), static_cast<unsigned>(o.m));
   ProofOptions options;
   options.digits = o.proof_digits;
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   std::size_t done = 0;
   if (terminal)
-    options.progress = [&](const Formulation& f) { say(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name); };
+    options.progress = [&](const Formulation& f) {
+      say(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name);
+    };
   const Proof p = anholon::prove(m, forms, eliminations, options);
   if (terminal) say(stderr, "\r\033[K");
-  const Certificate c = certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, sha256_text(all_text(in.source)));
+  const Certificate c =
+      certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, sha256_text(all_text(in.source)));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SymbolNames names = model.names;
   if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.names;

@@ -27,50 +27,63 @@ Record kind_of(const std::string& path) {
   const std::string end = p.extension().string();
   for (const auto& [name, kind] : {std::pair{".mp4", Record::mp4}, {".gif", Record::gif}, {".png", Record::picture}})
     if (end == name) return kind;
-  throw UsageError{"error: a recording '" + path + "' cannot be made\nhint: FILE.mp4 or FILE.gif for a film, FILE.png for one picture, FOLDER/ for a picture of each moment\n"};
+  throw UsageError{"error: a recording '" + path +
+                   "' cannot be made\nhint: FILE.mp4 or FILE.gif for a film, FILE.png for one picture, FOLDER/ for a "
+                   "picture of each moment\n"};
 }
 
 void take_size(const std::string& text, Recording& r) {
-  const auto wrong = [&](const std::string& what) { throw UsageError{"error: --size " + text + ": " + what + "\nhint: --size 1280x720, in pixels\n"}; };
+  const auto wrong = [&](const std::string& what) {
+    throw UsageError{"error: --size " + text + ": " + what + "\nhint: --size 1280x720, in pixels\n"};
+  };
   const std::size_t x = text.find('x');
   if (x == std::string::npos) wrong("not of the form WIDTHxHEIGHT");
   const auto whole = [&](const std::string& part) {
     int n = 0;
     const auto end = part.data() + part.size();
     const auto got = std::from_chars(part.data(), end, n);
-    if (part.empty() || got.ptr != end || (got.ec != std::errc() && got.ec != std::errc::result_out_of_range)) wrong("not two whole numbers");
+    if (part.empty() || got.ptr != end || (got.ec != std::errc() && got.ec != std::errc::result_out_of_range))
+      wrong("not two whole numbers");
     return got.ec == std::errc() ? n : kMostSize + 1;
   };
   r.width = whole(text.substr(0, x)), r.height = whole(text.substr(x + 1));
   if (r.width < kLeastSize || r.width > kMostSize || r.height < kLeastSize || r.height > kMostSize)
-    wrong("from " + std::to_string(kLeastSize) + "x" + std::to_string(kLeastSize) + " to " + std::to_string(kMostSize) + "x" + std::to_string(kMostSize));
+    wrong("from " + std::to_string(kLeastSize) + "x" + std::to_string(kLeastSize) + " to " + std::to_string(kMostSize) +
+          "x" + std::to_string(kMostSize));
 }
 
 }  // namespace
 
 Recording recording(const Options& o) {
   Recording r;
-  r.output = o.output.empty() ? std::filesystem::path(o.model).stem().string() + (o.picture_at.empty() ? ".mp4" : ".png") : o.output;
+  r.output = o.output.empty()
+                 ? std::filesystem::path(o.model).stem().string() + (o.picture_at.empty() ? ".mp4" : ".png")
+                 : o.output;
   r.kind = kind_of(r.output);
   if (r.kind == Record::gif) r.width = 640, r.height = 360, r.fps = 25;
   if (!o.size.empty()) take_size(o.size, r);
   // Of a film with half the colours, two by two pixels share one.
   if (r.kind == Record::mp4) r.width += r.width % 2, r.height += r.height % 2;
   if (!o.fps.empty()) r.fps = number(o.fps, "--fps");
-  if (!(r.fps >= kLeastFps && r.fps <= kMostFps)) throw UsageError{"error: --fps " + o.fps + ": from " + number_text(kLeastFps) + " to " + number_text(kMostFps) + " pictures per second\n"};
+  if (!(r.fps >= kLeastFps && r.fps <= kMostFps))
+    throw UsageError{"error: --fps " + o.fps + ": from " + number_text(kLeastFps) + " to " + number_text(kMostFps) +
+                     " pictures per second\n"};
   if (!o.seconds.empty()) r.seconds = number(o.seconds, "--seconds");
   if (r.seconds && !(*r.seconds > 0)) throw UsageError{"error: --seconds " + o.seconds + ": a film lasts a while\n"};
   if (o.picture_at.ends_with('%')) {
     r.part = number(o.picture_at.substr(0, o.picture_at.size() - 1), "--at") / 100;
-    if (!(*r.part >= 0 && *r.part <= 1)) throw UsageError{"error: --at " + o.picture_at + ": from 0% to 100% of the motion\n"};
+    if (!(*r.part >= 0 && *r.part <= 1))
+      throw UsageError{"error: --at " + o.picture_at + ": from 0% to 100% of the motion\n"};
   } else if (!o.picture_at.empty()) {
     r.at = number(o.picture_at, "--at");
   }
   if (!o.from.empty()) r.from = number(o.from, "--from");
   if (!o.to.empty()) r.to = number(o.to, "--to");
-  if ((r.at || r.part) && r.kind != Record::picture) throw UsageError{"error: --at is the time of one picture\nhint: -o FILE.png, or --from and --to for a film\n"};
+  if ((r.at || r.part) && r.kind != Record::picture)
+    throw UsageError{"error: --at is the time of one picture\nhint: -o FILE.png, or --from and --to for a film\n"};
   if (r.kind == Record::picture && (!o.seconds.empty() || !o.fps.empty()))
-    throw UsageError{"error: one picture has no " + std::string(o.fps.empty() ? "--seconds" : "--fps") + "\nhint: --at for its time, or -o FOLDER/ for many\n"};
+    throw UsageError{"error: one picture has no " + std::string(o.fps.empty() ? "--seconds" : "--fps") +
+                     "\nhint: --at for its time, or -o FOLDER/ for many\n"};
   if (!o.frame.empty()) r.frame = o.frame;
   r.dark = o.dark;
   return r;
@@ -82,29 +95,39 @@ Moments moments(const Recording& r, double start, double end) {
   const auto inside = [&](double t, const char* option) {
     // A time written in decimals may miss the end's double by its rounding.
     const double slack = 1e-9 * std::max({std::abs(least), std::abs(most), most - least});
-    if (t < least - slack || t > most + slack) throw UsageError{"error: " + std::string(option) + " " + number_text(t, 10) + " lies outside the motion, " + range + "\n"};
+    if (t < least - slack || t > most + slack)
+      throw UsageError{"error: " + std::string(option) + " " + number_text(t, 10) + " lies outside the motion, " +
+                       range + "\n"};
     return std::clamp(t, least, most);
   };
   Moments m;
   m.fps = r.fps;
   if (r.kind == Record::picture) {
-    m.first = m.last = r.at ? inside(*r.at, "--at") : r.part ? start + *r.part * (end - start) : r.from ? inside(*r.from, "--from") : start;
+    m.first = m.last = r.at     ? inside(*r.at, "--at")
+                       : r.part ? start + *r.part * (end - start)
+                       : r.from ? inside(*r.from, "--from")
+                                : start;
     return m;
   }
   m.first = r.from ? inside(*r.from, "--from") : start;
   m.last = r.to ? std::clamp(*r.to, least, most) : end;  // a motion that stopped early is recorded as far as it went
-  if (m.first == m.last) throw UsageError{"error: there is nothing to record between t = " + number_text(m.first, 10) + " and " + number_text(m.last, 10) + "; the motion goes " + range + "\n"};
+  if (m.first == m.last)
+    throw UsageError{"error: there is nothing to record between t = " + number_text(m.first, 10) + " and " +
+                     number_text(m.last, 10) + "; the motion goes " + range + "\n"};
   const double lasts = std::abs(m.last - m.first);
   const double seconds = r.seconds.value_or(lasts >= kShortest && lasts <= kLongest ? lasts : kUsual);
   const double count = std::round(seconds * r.fps);
   if (count > static_cast<double>(kMostPictures))
-    throw UsageError{"error: " + number_text(seconds) + " s at " + number_text(r.fps) + " pictures per second are more than " + std::to_string(kMostPictures) + " pictures\nhint: fewer with --seconds or --fps\n"};
+    throw UsageError{"error: " + number_text(seconds) + " s at " + number_text(r.fps) +
+                     " pictures per second are more than " + std::to_string(kMostPictures) +
+                     " pictures\nhint: fewer with --seconds or --fps\n"};
   m.count = std::max<std::size_t>(2, static_cast<std::size_t>(count));
   return m;
 }
 
 std::string record_script(const Recording& r, const Moments& m) {
-  std::string out = "const asked = {first: " + number_text(m.first) + ", last: " + number_text(m.last) + ", count: " + std::to_string(m.count) + ", width: " + std::to_string(r.width) +
+  std::string out = "const asked = {first: " + number_text(m.first) + ", last: " + number_text(m.last) +
+                    ", count: " + std::to_string(m.count) + ", width: " + std::to_string(r.width) +
                     ", height: " + std::to_string(r.height) + ", frame: \"" + r.frame + "\"};\n";
   // All of it before the page counts as loaded: a browser that prints its text then has the pictures in it.
   out += R"(
@@ -181,7 +204,8 @@ Pictures pictures(const std::string& dom, std::size_t first, std::size_t last, i
 std::optional<std::pair<int, int>> png_size(const std::string& bytes) {
   constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
   constexpr std::size_t kSize = 16;  // signature, length and name of the first chunk
-  if (bytes.size() < kSize + 8 || std::string_view(bytes).substr(0, 8) != kSignature || bytes.substr(12, 4) != "IHDR") return std::nullopt;
+  if (bytes.size() < kSize + 8 || std::string_view(bytes).substr(0, 8) != kSignature || bytes.substr(12, 4) != "IHDR")
+    return std::nullopt;
   // Cut off in the middle is no picture: the last chunk says so.
   if (bytes.find("IEND", bytes.size() - 12) == std::string::npos) return std::nullopt;
   const auto at = [&](std::size_t from) {

@@ -1,4 +1,5 @@
-// A film of a motion: how many pictures at which times, the script that draws them in a browser, and the pictures out of what it prints.
+// A film of a motion: how many pictures at which times, the script that draws them in a browser, and the pictures out
+// of what it prints.
 #pragma once
 #include <optional>
 #include <string>
@@ -34,7 +35,8 @@ struct Moments {
 // Of a motion from `start` to `end`. Throws UsageError where there is nothing to record.
 Moments moments(const Recording& r, double start, double end);
 
-// Runs in the page after the viewer: draws the pictures A … B−1 of the address …#A-B, and leaves them as the page's only text.
+// Runs in the page after the viewer: draws the pictures A … B−1 of the address …#A-B, and leaves them as the page's
+// only text.
 std::string record_script(const Recording& r, const Moments& m);
 
 struct Pictures {

@@ -8,7 +8,9 @@
 namespace anholon::cli {
 
 int reference(const Options& o) {
-  const std::string text = o.schema ? reference_schema() : o.model.empty() ? reference_page() : reference_section(o.model);
+  const std::string text = o.schema          ? reference_schema()
+                           : o.model.empty() ? reference_page()
+                                             : reference_section(o.model);
   hand_out(text);
   return kOk;
 }

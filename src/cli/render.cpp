@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -9,6 +7,8 @@
 #include <cstring>
 #include <deque>
 #include <filesystem>
+
+#include <unistd.h>
 
 #include "base/json.h"
 #include "cli/child.h"
@@ -27,7 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const std::string& what, const std::string& hint) { throw UsageError{"error: " + what + (hint.empty() ? "" : "\nhint: " + hint) + "\n"}; }
+[[noreturn]] void refuse(const std::string& what, const std::string& hint) {
+  throw UsageError{"error: " + what + (hint.empty() ? "" : "\nhint: " + hint) + "\n"};
+}
 
 struct Stopped {};
 
@@ -46,18 +48,24 @@ std::string browser() {
   const char* own = std::getenv("ANHOLON_CHROMIUM");
   if (own && *own) {
     const std::string found = find_program({own});
-    if (found.empty()) refuse("ANHOLON_CHROMIUM names no program: '" + std::string(own) + "'", "the path of Chromium or Chrome");
+    if (found.empty())
+      refuse("ANHOLON_CHROMIUM names no program: '" + std::string(own) + "'", "the path of Chromium or Chrome");
     return found;
   }
   const std::string found = find_program({"chromium", "chromium-browser", "google-chrome", "google-chrome-stable"});
-  if (found.empty()) refuse("pictures are drawn by Chromium, which is not installed", "apt-get install chromium, or ANHOLON_CHROMIUM=/path/of/chrome; the page that `anholon report` makes needs no more than any browser");
+  if (found.empty())
+    refuse("pictures are drawn by Chromium, which is not installed",
+           "apt-get install chromium, or ANHOLON_CHROMIUM=/path/of/chrome; the page that `anholon report` makes needs "
+           "no more than any browser");
   return found;
 }
 
 std::string film_maker(const Recording& r) {
   if (r.kind != Record::mp4 && r.kind != Record::gif) return "";
   const std::string found = find_program({"ffmpeg"});
-  if (found.empty()) refuse("films are made by ffmpeg, which is not installed", "apt-get install ffmpeg, or -o frames/ for a picture of each moment");
+  if (found.empty())
+    refuse("films are made by ffmpeg, which is not installed",
+           "apt-get install ffmpeg, or -o frames/ for a picture of each moment");
   return found;
 }
 
@@ -96,17 +104,26 @@ class Browser {
     const double pixels = static_cast<double>(r_.width) * r_.height * static_cast<double>(last - first);
     // Nothing of a working machine takes so long: start, and a software renderer at its slowest.
     const double limit = 120 + 60 * static_cast<double>(last - first) + pixels / 1e5;
-    const Child c = run_child(arguments(first, last), limit, stop_requested, static_cast<std::size_t>(8 * pixels) + 10'000'000);
+    const Child c =
+        run_child(arguments(first, last), limit, stop_requested, static_cast<std::size_t>(8 * pixels) + 10'000'000);
     switch (c.end) {
-      case Child::End::stopped: throw Stopped();
-      case Child::End::not_started: refuse(program_ + " cannot be started: " + std::strerror(c.status), "");
-      case Child::End::out_of_time: refuse("Chromium did not finish " + std::to_string(last - first) + " pictures within " + number_of(limit) + " s", "a smaller --size");
-      case Child::End::too_much: refuse("Chromium printed more than pictures", "");
-      case Child::End::exited: break;
+    case Child::End::stopped:
+      throw Stopped();
+    case Child::End::not_started:
+      refuse(program_ + " cannot be started: " + std::strerror(c.status), "");
+    case Child::End::out_of_time:
+      refuse("Chromium did not finish " + std::to_string(last - first) + " pictures within " + number_of(limit) + " s",
+             "a smaller --size");
+    case Child::End::too_much:
+      refuse("Chromium printed more than pictures", "");
+    case Child::End::exited:
+      break;
     }
     Pictures p = cli::pictures(c.out, first, last, r_.width, r_.height);
     if (p.error.empty()) return std::move(p.png);
-    if (p.error == "no WebGL") refuse("this Chromium has no WebGL, which the picture needs", "Chromium 100 or later with SwiftShader (Debian: chromium-common)");
+    if (p.error == "no WebGL")
+      refuse("this Chromium has no WebGL, which the picture needs",
+             "Chromium 100 or later with SwiftShader (Debian: chromium-common)");
     if (p.error == "no scene") refuse("this model has nothing to draw", "bodies or particles with positions");
     if (!c.out.empty() && c.status == 0) refuse("the recording failed: " + p.error, "");
     refuse("Chromium (" + program_ + ") made no picture, exit status " + std::to_string(c.status) + "; " + said(c.err),
@@ -117,11 +134,28 @@ class Browser {
   static std::string number_of(double x) { return std::to_string(static_cast<long>(x)); }
 
   std::vector<std::string> arguments(std::size_t first, std::size_t last) const {
-    std::vector<std::string> a = {program_, "--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing", "--disable-accelerated-2d-canvas", "--disable-background-networking", "--disable-component-update",
-                                  "--disable-breakpad", "--disable-dev-shm-usage", "--disable-extensions", "--disable-sync", "--hide-scrollbars", "--mute-audio", "--no-first-run", "--no-default-browser-check",
-                                  "--force-device-scale-factor=1", "--force-color-profile=srgb", "--user-data-dir=" + profile_.string()};
+    std::vector<std::string> a = {program_,
+                                  "--headless=new",
+                                  "--use-angle=swiftshader",
+                                  "--enable-unsafe-swiftshader",
+                                  "--disable-gpu-compositing",
+                                  "--disable-accelerated-2d-canvas",
+                                  "--disable-background-networking",
+                                  "--disable-component-update",
+                                  "--disable-breakpad",
+                                  "--disable-dev-shm-usage",
+                                  "--disable-extensions",
+                                  "--disable-sync",
+                                  "--hide-scrollbars",
+                                  "--mute-audio",
+                                  "--no-first-run",
+                                  "--no-default-browser-check",
+                                  "--force-device-scale-factor=1",
+                                  "--force-color-profile=srgb",
+                                  "--user-data-dir=" + profile_.string()};
     if (geteuid() == 0) a.emplace_back("--no-sandbox");  // root has no sandbox to start
-    a.push_back("--window-size=" + std::to_string(std::min(r_.width, 1920)) + "," + std::to_string(std::min(r_.height, 1080)));
+    a.push_back("--window-size=" + std::to_string(std::min(r_.width, 1920)) + "," +
+                std::to_string(std::min(r_.height, 1080)));
     a.emplace_back("--dump-dom");
     std::string address = "file://";
     for (const char c : fs::absolute(page_).string()) {
@@ -176,7 +210,9 @@ std::string text_of(double fps) {
 void make_film(const std::string& ffmpeg, const Recording& r, const Moments& m, const fs::path& frames) {
   const std::string digits = std::to_string(frame_name(0, m.count).size() - std::strlen("frame-.png"));
   const std::string beside = r.output + ".part";
-  const std::vector<std::string> begin = {ffmpeg, "-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-framerate", text_of(r.fps), "-i", (frames / ("frame-%0" + digits + "d.png")).string()};
+  const std::vector<std::string> begin = {
+      ffmpeg, "-hide_banner", "-loglevel",    "error", "-nostdin",
+      "-y",   "-framerate",   text_of(r.fps), "-i",    (frames / ("frame-%0" + digits + "d.png")).string()};
   const auto run = [&](const std::vector<std::string>& rest) {
     std::vector<std::string> a = begin;
     a.insert(a.end(), rest.begin(), rest.end());
@@ -188,7 +224,10 @@ void make_film(const std::string& ffmpeg, const Recording& r, const Moments& m, 
   std::vector<std::vector<std::string>> ways;
   if (r.kind == Record::gif) {
     // Colours of the whole film, and only what changes is drawn anew.
-    ways = {{"-filter_complex", "split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=bayer:bayer_scale=5:diff_mode=rectangle", "-loop", "0", "-f", "gif"}};
+    ways = {
+        {"-filter_complex",
+         "split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=bayer:bayer_scale=5:diff_mode=rectangle",
+         "-loop", "0", "-f", "gif"}};
   } else {
     const std::vector<std::string> end = {"-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4"};
     ways = {{"-c:v", "libx264", "-preset", "medium", "-crf", "18"}, {"-c:v", "mpeg4", "-q:v", "3"}};
@@ -204,7 +243,10 @@ void make_film(const std::string& ffmpeg, const Recording& r, const Moments& m, 
   std::remove(beside.c_str());
   if (c.end == Child::End::stopped) throw Stopped();
   if (!why.empty()) refuse("cannot write " + r.output + ": " + why, "");
-  refuse("ffmpeg failed, " + (c.end == Child::End::out_of_time ? std::string("it did not finish") : "exit status " + std::to_string(c.status) + "; " + said(c.err)), "-o frames/ for a picture of each moment");
+  refuse("ffmpeg failed, " + (c.end == Child::End::out_of_time
+                                  ? std::string("it did not finish")
+                                  : "exit status " + std::to_string(c.status) + "; " + said(c.err)),
+         "-o frames/ for a picture of each moment");
 }
 
 // Pictures of a longer recording in the same folder.
@@ -213,7 +255,9 @@ void note_others(const Recording& r, const Moments& m) {
   std::error_code error;
   for (const auto& f : fs::directory_iterator(r.output, error)) {
     const std::string name = f.path().filename().string();
-    if (name.rfind("frame-", 0) == 0 && (name.size() != frame_name(0, m.count).size() || name > frame_name(m.count - 1, m.count))) ++others;
+    if (name.rfind("frame-", 0) == 0 &&
+        (name.size() != frame_name(0, m.count).size() || name > frame_name(m.count - 1, m.count)))
+      ++others;
   }
   if (others) say(stderr, "note: %s holds %zu more pictures, of a recording before\n", r.output.c_str(), others);
 }
@@ -222,7 +266,9 @@ void note_others(const Recording& r, const Moments& m) {
 
 int render(const Options& o) {
   const Recording r = recording(o);
-  if (viewer_script().empty()) refuse("this program was built without the viewer, which draws the pictures", "./dev build, which makes the viewer where there is npm");
+  if (viewer_script().empty())
+    refuse("this program was built without the viewer, which draws the pictures",
+           "./dev build, which makes the viewer where there is npm");
   const std::string chromium = browser(), ffmpeg = film_maker(r);
   check_place(r);
   catch_stop(o.output.empty() ? o.model : o.output);
@@ -234,7 +280,8 @@ int render(const Options& o) {
   const std::size_t time = table.find("t");
   if (table.rows() == 0 || stop_requested()) return code == kOk ? kStopped : code;
   if (time == table.columns.size()) refuse("the run has no column t", "");
-  if (!o.frame.empty() && x.in.model->observer.inertial) say(stderr, "note: the observer of this model is an inertial one; --frame makes no difference\n");
+  if (!o.frame.empty() && x.in.model->observer.inertial)
+    say(stderr, "note: the observer of this model is an inertial one; --frame makes no difference\n");
   const Moments m = moments(r, table.values[time].front(), table.values[time].back());
 
   Page page;
@@ -243,30 +290,50 @@ int render(const Options& o) {
   page.source = x.in.source;
   try {
     const TemporaryFolder folder;
-    if (const std::string why = write_whole((folder.path() / "page.html").string(), stage_html(page, r.dark, record_script(r, m))); !why.empty()) refuse(why, "TMPDIR names the place for temporary files");
+    if (const std::string why =
+            write_whole((folder.path() / "page.html").string(), stage_html(page, r.dark, record_script(r, m)));
+        !why.empty())
+      refuse(why, "TMPDIR names the place for temporary files");
     const Browser b(r, folder.path(), chromium);
     const auto start = std::chrono::steady_clock::now();
     switch (r.kind) {
-      case Record::picture: write_picture(r.output, b.pictures(0, 1)[0]); break;
-      case Record::folder:
-        record(b, r, m, r.output, o.quiet);
-        note_others(r, m);
-        break;
-      case Record::mp4:
-      case Record::gif:
-        record(b, r, m, folder.path(), o.quiet);
-        make_film(ffmpeg, r, m, folder.path());
-        break;
+    case Record::picture:
+      write_picture(r.output, b.pictures(0, 1)[0]);
+      break;
+    case Record::folder:
+      record(b, r, m, r.output, o.quiet);
+      note_others(r, m);
+      break;
+    case Record::mp4:
+    case Record::gif:
+      record(b, r, m, folder.path(), o.quiet);
+      make_film(ffmpeg, r, m, folder.path());
+      break;
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (o.json) {
       JsonWriter j;
-      j.open_object().key("output").string(r.output).key("width").integer(r.width).key("height").integer(r.height).key("pictures").integer(static_cast<long long>(m.count));
-      j.key("first").number(number_text(m.first)).key("last").number(number_text(m.last)).key("seconds").number(text_of(seconds)).close();
+      j.open_object()
+          .key("output")
+          .string(r.output)
+          .key("width")
+          .integer(r.width)
+          .key("height")
+          .integer(r.height)
+          .key("pictures")
+          .integer(static_cast<long long>(m.count));
+      j.key("first")
+          .number(number_text(m.first))
+          .key("last")
+          .number(number_text(m.last))
+          .key("seconds")
+          .number(text_of(seconds))
+          .close();
       hand_out(j.text() + "\n");
     }
     if (!o.quiet) {
-      say(stderr, "recorded: %s, %dx%d, %zu picture%s in %.1f s\n", r.output.c_str(), r.width, r.height, m.count, m.count == 1 ? "" : "s", seconds);
+      say(stderr, "recorded: %s, %dx%d, %zu picture%s in %.1f s\n", r.output.c_str(), r.width, r.height, m.count,
+          m.count == 1 ? "" : "s", seconds);
     }
   } catch (const Stopped&) {
     say_lines(stderr, "stopped: nothing more is recorded\n");

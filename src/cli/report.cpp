@@ -1,11 +1,11 @@
 #include "cli/report.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
+
+#include <unistd.h>
 
 #include "base/hash.h"
 #include "cli/result_file.h"
@@ -29,7 +29,8 @@ void make_ready(const Options& o, Told& x) {
     print_outcome(outcome);
     throw UsageError{"error: the start of the run cannot be found again\n"};
   }
-  const bool reset = std::any_of(x.in.model->events.begin(), x.in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  const bool reset =
+      std::any_of(x.in.model->events.begin(), x.in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
   if (!reset) x.conserved = conserved(*x.scenario.mechanics);
 }
 
@@ -103,7 +104,8 @@ void take_up(const Options& o, Told& x) {
     return;
   }
   if (x.run.model.empty())
-    throw UsageError{"error: '" + o.model + "' holds rows, but not their model\nhint: anholon report MODEL --rows " + o.model + ", or a run in HDF5: anholon simulate MODEL -o run.h5\n"};
+    throw UsageError{"error: '" + o.model + "' holds rows, but not their model\nhint: anholon report MODEL --rows " +
+                     o.model + ", or a run in HDF5: anholon simulate MODEL -o run.h5\n"};
   const Options was = options_of(x.run, o);
   x.in = model_of(x.run, was);
   make_ready(was, x);
@@ -138,8 +140,10 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     if (!eliminations.count(f->unknowns)) eliminations.emplace(f->unknowns, elimination(first.in, m, *f, choice));
     const Elimination& e = eliminations.at(f->unknowns);
     const std::size_t size = nodes(m, *f, e);
-    if (page.equations.empty()) first_size = size;
-    else if (size > kMostArranged && o.forms.empty()) continue;  // nobody asked for it, and nobody could read it
+    if (page.equations.empty())
+      first_size = size;
+    else if (size > kMostArranged && o.forms.empty())
+      continue;  // nobody asked for it, and nobody could read it
     page.equations.push_back(derived(m, *f, e, arranger));
     page.eliminations.push_back(f->eliminates() ? eliminated(e, model) : "");
   }
@@ -150,7 +154,9 @@ void write_page(const Options& o, std::deque<Told>& cases) {
   Proof proof;
   std::shared_ptr<const Model> fresh;  // the proof's model
   if (o.no_proof || m.q.size() > kMostProved || first_size > kMostNodesProved) {
-    page.no_proof = o.no_proof ? "The proof was left out (--no-proof)." : "For equations of this length a proof takes its time: anholon prove " + first.in.source.name;
+    page.no_proof = o.no_proof
+                        ? "The proof was left out (--no-proof)."
+                        : "For equations of this length a proof takes its time: anholon prove " + first.in.source.name;
   } else {
     std::vector<const Formulation*> forms;
     for (const Formulation* f : formulations())
@@ -162,7 +168,10 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     ProofOptions options;
     const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
     std::size_t done = 0;
-    if (terminal) options.progress = [&](const Formulation& f) { say(stderr, "\r\033[Kproof: %zu of %zu, %s", ++done, forms.size(), f.name); };
+    if (terminal)
+      options.progress = [&](const Formulation& f) {
+        say(stderr, "\r\033[Kproof: %zu of %zu, %s", ++done, forms.size(), f.name);
+      };
     proof = anholon::prove(own, forms, offered, options);
     if (terminal) say(stderr, "\r\033[K");
     const Certificate c = certificate(own, proof, offered.front(), page.version, page.model_hash);
@@ -173,7 +182,9 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     page.certificate = to_json(c);
     const Verification checked = verify(read_certificate(page.certificate));
     page.claims = checked.claims.size();
-    page.confirmed = static_cast<std::size_t>(std::count_if(checked.claims.begin(), checked.claims.end(), [](const ClaimFinding& f) { return f.finding == Finding::confirmed; }));
+    page.confirmed =
+        static_cast<std::size_t>(std::count_if(checked.claims.begin(), checked.claims.end(),
+                                               [](const ClaimFinding& f) { return f.finding == Finding::confirmed; }));
   }
   const std::string text = html(page);
   if (const std::string why = write_whole(o.report, text); !why.empty()) throw UsageError{"error: " + why + "\n"};

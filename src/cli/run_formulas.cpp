@@ -13,7 +13,9 @@ namespace anholon::cli {
 namespace {
 
 bool holds(const RunTable& table, const std::string& name) {
-  return table.find(name) < table.columns.size() || std::any_of(table.columns.begin(), table.columns.end(), [&](const std::string& c) { return plot::matches(name, c); });
+  return table.find(name) < table.columns.size() ||
+         std::any_of(
+             table.columns.begin(), table.columns.end(), [&](const std::string& c) { return plot::matches(name, c); });
 }
 
 void add(RunFile& run, const Reader& in, const std::string& name) {
@@ -25,9 +27,16 @@ void add(RunFile& run, const Reader& in, const std::string& name) {
   }
   const Expr* e = std::get_if<Expr>(&value);
   if (!e)
-    throw UsageError{"error: '" + name + "' is " + type_name(value) + ", no number\nhint: " + (std::holds_alternative<Vector>(value) ? "a component, as " + name + ".x, or its length, norm(" + name + ")" : "a formula that is a number") + "\n"};
+    throw UsageError{"error: '" + name + "' is " + type_name(value) + ", no number\nhint: " +
+                     (std::holds_alternative<Vector>(value)
+                          ? "a component, as " + name + ".x, or its length, norm(" + name + ")"
+                          : "a formula that is a number") +
+                     "\n"};
   std::vector<double> values;
-  if (!at_rows(*in.model, run, put_masses(*in.model, *e), values)) throw UsageError{"error: '" + name + "' needs numbers that the run does not hold\nhint: write it into the model as an [output], and simulate anew\n"};
+  if (!at_rows(*in.model, run, put_masses(*in.model, *e), values))
+    throw UsageError{"error: '" + name +
+                     "' needs numbers that the run does not hold\nhint: write it into the model as an [output], and "
+                     "simulate anew\n"};
   run.table.columns.push_back(name);
   run.table.values.push_back(std::move(values));
   run.table.texts.emplace_back();

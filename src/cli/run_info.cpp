@@ -25,12 +25,14 @@ std::map<std::string, std::string> column_units(const Model& model) {
     const std::string& unit = model.coordinate_units[i];
     if (unit.empty()) continue;
     any = true;
-    for (unsigned k = 0; k <= kHighest; ++k) units[derivative_name(model.coordinates[i].name, k, Format::text)] = rate(unit, k);
+    for (unsigned k = 0; k <= kHighest; ++k)
+      units[derivative_name(model.coordinates[i].name, k, Format::text)] = rate(unit, k);
   }
   if (any) units["t"] = "s";
   for (const OutputQuantity& o : model.outputs)
     for (const Monitor& m : model.monitors)
-      if (!o.unit.empty() && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0))) units[m.name] = o.unit;
+      if (!o.unit.empty() && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0)))
+        units[m.name] = o.unit;
   return units;
 }
 
@@ -44,8 +46,11 @@ RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, c
   info.units = column_units(*in.model);
 
   const auto set = [&](const char* name, const std::vector<std::string>& words) { info.settings[name] = words; };
-  const auto one = [&](const char* name, const std::string& word) { info.settings[name] = word.empty() ? std::vector<std::string>{} : std::vector<std::string>{word}; };
-  set("set", o.set), set("case", o.cases), set("q", o.q), set("qdot", o.qdot), set("qddot", o.qddot), set("qdddot", o.qdddot);
+  const auto one = [&](const char* name, const std::string& word) {
+    info.settings[name] = word.empty() ? std::vector<std::string>{} : std::vector<std::string>{word};
+  };
+  set("set", o.set), set("case", o.cases), set("q", o.q), set("qdot", o.qdot), set("qddot", o.qddot),
+      set("qdddot", o.qdddot);
   set("lambda", o.lambda), set("lambdadot", o.lambdadot), set("eliminate", o.eliminate);
   one("t", o.t), one("start", number_text(scenario.state.t));
   one("form", scenario.system.form->name);
@@ -53,8 +58,10 @@ RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, c
   std::vector<std::string> at;
   for (const Rational& t : options.at) at.push_back(t.get_str());
   set("at", at);
-  one("tolerance", options.tolerance.get_str()), one("numbers", o.numbers), one("digits", std::to_string(o.digits)), one("order", std::to_string(o.order));
-  one("method", o.method), one("integrator", name(options.integrator)), one("rigorous", o.rigorous), one("error-estimate", o.error_estimate);
+  one("tolerance", options.tolerance.get_str()), one("numbers", o.numbers), one("digits", std::to_string(o.digits)),
+      one("order", std::to_string(o.order));
+  one("method", o.method), one("integrator", name(options.integrator)), one("rigorous", o.rigorous),
+      one("error-estimate", o.error_estimate);
   one("continued", o.resume);
   one("model_sha256", sha256_text(all_text(in.source)));
   return info;
@@ -69,7 +76,8 @@ Options options_of(const RunInfo& run, Options o) {
     const std::vector<std::string> list = words(name);
     return list.empty() ? std::string() : list[0];
   };
-  o.set = words("set"), o.cases = words("case"), o.q = words("q"), o.qdot = words("qdot"), o.qddot = words("qddot"), o.qdddot = words("qdddot");
+  o.set = words("set"), o.cases = words("case"), o.q = words("q"), o.qdot = words("qdot"), o.qddot = words("qddot"),
+  o.qdddot = words("qdddot");
   o.lambda = words("lambda"), o.lambdadot = words("lambdadot"), o.eliminate = words("eliminate");
   o.t = word("t");
   if (!word("form").empty()) o.form = word("form"), o.form_given = true;

@@ -10,7 +10,8 @@ namespace anholon::cli {
 std::map<std::string, std::string> column_units(const Model& model);
 
 RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const SimulationOptions& options);
-// The way back: the options with what was asked for when the run was made, so far as its start and its equations depend on it.
+// The way back: the options with what was asked for when the run was made, so far as its start and its equations depend
+// on it.
 Options options_of(const RunInfo& run, Options o);
 
 }  // namespace anholon::cli

@@ -12,15 +12,22 @@ namespace {
 struct WordsOption {
   const char* option;
   const char* entry;
-  std::vector<std::string> Options::*words;
+  std::vector<std::string> Options::* words;
 };
-constexpr WordsOption kWords[] = {{"--set", "set", &Options::set}, {"--case", "case", &Options::cases}, {"--q", "q", &Options::q}, {"--qdot", "qdot", &Options::qdot},
-                                  {"--qddot", "qddot", &Options::qddot}, {"--qdddot", "qdddot", &Options::qdddot},
-                                  {"--lambda", "lambda0", &Options::lambda}, {"--lambdadot", "lambda1", &Options::lambdadot},
+constexpr WordsOption kWords[] = {{"--set", "set", &Options::set},
+                                  {"--case", "case", &Options::cases},
+                                  {"--q", "q", &Options::q},
+                                  {"--qdot", "qdot", &Options::qdot},
+                                  {"--qddot", "qddot", &Options::qddot},
+                                  {"--qdddot", "qdddot", &Options::qdddot},
+                                  {"--lambda", "lambda0", &Options::lambda},
+                                  {"--lambdadot", "lambda1", &Options::lambdadot},
                                   {"--eliminate", "eliminate", &Options::eliminate}};
 
 void must_be_absent(bool given, const std::string& option) {
-  if (given) throw UsageError{"error: " + option + " belongs to the saved run and stays as it is\nhint: leave " + option + " out, or start a run of its own\n"};
+  if (given)
+    throw UsageError{"error: " + option + " belongs to the saved run and stays as it is\nhint: leave " + option +
+                     " out, or start a run of its own\n"};
 }
 
 // Calls f and turns what it finds wrong with the saved run into a message that names the file.
@@ -64,11 +71,13 @@ void same_model(const SavedRun& run, const Reader& in) {
   with_file("the saved run", [&] {
     if (run.one("model") != sha256_text(all_text(in.source)))
       throw UsageError{"error: the saved run is of another model ('" + run.one("title") + "'), or " + in.source.name +
-                       " has changed since\nhint: only the same model goes on with the same bits; to start from a state, give it in [initial]\n"};
+                       " has changed since\nhint: only the same model goes on with the same bits; to start from a "
+                       "state, give it in [initial]\n"};
   });
 }
 
-void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formulation& form, const SimulationOptions& options) {
+void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formulation& form,
+                  const SimulationOptions& options) {
   for (const WordsOption& w : kWords) run.set(w.entry, o.*w.words);
   run.set("t0", o.t.empty() ? SavedRun::Texts{} : SavedRun::Texts{o.t});
   run.set("tolerance", {options.tolerance.get_str()});
@@ -87,10 +96,12 @@ void beyond(const SavedRun& run, const Options& o, const Rational& end) {
     const Multi start = run.number<Multi>("start"), done = run.number<Multi>("rows"), to(end);
     const bool forward = start < done || (start == done && start < to);
     if (forward ? !(done < to) : !(to < done))
-      throw UsageError{"error: the saved run has come to t = " + number_text(done.to_double()) + " already\nhint: --to beyond that\n"};
+      throw UsageError{"error: the saved run has come to t = " + number_text(done.to_double()) +
+                       " already\nhint: --to beyond that\n"};
     for (const std::string& t : split(o.at))
       if (const Multi time(exact(t, "--at")); forward ? !(done < time) : !(time < done))
-        throw UsageError{"error: --at " + t + ": the saved run has come to t = " + number_text(done.to_double()) + " already\nhint: times beyond that\n"};
+        throw UsageError{"error: --at " + t + ": the saved run has come to t = " + number_text(done.to_double()) +
+                         " already\nhint: times beyond that\n"};
   });
 }
 

@@ -10,7 +10,8 @@ SavedRun continued(Options& o);
 // Throws if the saved run is of another model.
 void same_model(const SavedRun& run, const Reader& in);
 // Adds what `continued` needs.
-void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formulation& form, const SimulationOptions& options);
+void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formulation& form,
+                  const SimulationOptions& options);
 // Throws if the rows asked for are not all beyond those of the saved run.
 void beyond(const SavedRun& run, const Options& o, const Rational& end);
 

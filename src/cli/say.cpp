@@ -1,11 +1,11 @@
 #include "cli/say.h"
 
-#include <unistd.h>
-
 #include <cctype>
 #include <cstdarg>
 #include <cstddef>
 #include <cstdint>
+
+#include <unistd.h>
 
 #include "base/assert.h"
 #include "base/escape.h"
@@ -55,9 +55,12 @@ class Printer {
   std::string run() {
     std::string out;
     while (*at_) {
-      if (*at_ != '%') out += *at_++;
-      else if (*++at_ == '%') out += *at_++;
-      else out += value(conversion());
+      if (*at_ != '%')
+        out += *at_++;
+      else if (*++at_ == '%')
+        out += *at_++;
+      else
+        out += value(conversion());
     }
     return out;
   }
@@ -83,25 +86,31 @@ class Printer {
 
   std::string value(const Conversion& c) {
     switch (c.kind) {
-      case 's': {
-        const std::string text = shown(va_arg(arguments_, const char*));
-        return padded(c.precision < 0 ? text : utf8_substr(text, 0, static_cast<std::size_t>(c.precision)), c);
-      }
-      case 'd': case 'i':
-        if (c.length == "z" || c.length == "t") return printed(c.format("td"), va_arg(arguments_, std::ptrdiff_t));
-        if (c.length == "ll") return printed(c.format("lld"), va_arg(arguments_, long long));
-        if (c.length == "l") return printed(c.format("ld"), va_arg(arguments_, long));
-        return printed(c.format("d"), va_arg(arguments_, int));
-      case 'u': case 'x':
-        if (c.length == "z") return printed(c.format(c.kind == 'u' ? "zu" : "zx"), va_arg(arguments_, std::size_t));
-        if (c.length == "ll") return printed(c.format(c.kind == 'u' ? "llu" : "llx"), va_arg(arguments_, unsigned long long));
-        if (c.length == "l") return printed(c.format(c.kind == 'u' ? "lu" : "lx"), va_arg(arguments_, unsigned long));
-        return printed(c.format(c.kind == 'u' ? "u" : "x"), va_arg(arguments_, unsigned));
-      case 'e': case 'f': case 'g': {
-        const char kind[] = {c.kind, '\0'};
-        return printed(c.format(kind), va_arg(arguments_, double));
-      }
-      default: ANHOLON_ASSERT(false && "a conversion that is not known here");
+    case 's': {
+      const std::string text = shown(va_arg(arguments_, const char*));
+      return padded(c.precision < 0 ? text : utf8_substr(text, 0, static_cast<std::size_t>(c.precision)), c);
+    }
+    case 'd':
+    case 'i':
+      if (c.length == "z" || c.length == "t") return printed(c.format("td"), va_arg(arguments_, std::ptrdiff_t));
+      if (c.length == "ll") return printed(c.format("lld"), va_arg(arguments_, long long));
+      if (c.length == "l") return printed(c.format("ld"), va_arg(arguments_, long));
+      return printed(c.format("d"), va_arg(arguments_, int));
+    case 'u':
+    case 'x':
+      if (c.length == "z") return printed(c.format(c.kind == 'u' ? "zu" : "zx"), va_arg(arguments_, std::size_t));
+      if (c.length == "ll")
+        return printed(c.format(c.kind == 'u' ? "llu" : "llx"), va_arg(arguments_, unsigned long long));
+      if (c.length == "l") return printed(c.format(c.kind == 'u' ? "lu" : "lx"), va_arg(arguments_, unsigned long));
+      return printed(c.format(c.kind == 'u' ? "u" : "x"), va_arg(arguments_, unsigned));
+    case 'e':
+    case 'f':
+    case 'g': {
+      const char kind[] = {c.kind, '\0'};
+      return printed(c.format(kind), va_arg(arguments_, double));
+    }
+    default:
+      ANHOLON_ASSERT(false && "a conversion that is not known here");
     }
     return {};
   }

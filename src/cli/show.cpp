@@ -19,9 +19,12 @@ static void column(const char* name, const Column& c, const Scenario& s) {
 static void show_mechanics(const Scenario& s) {
   const Mechanics& m = *s.mechanics;
   const SymbolNames& names = s.model->names;
-  const auto one = [&](const char* name, Expr e) { say(stdout, "%s = %s\n", name, print(e, names, Format::text).c_str()); };
+  const auto one = [&](const char* name, Expr e) {
+    say(stdout, "%s = %s\n", name, print(e, names, Format::text).c_str());
+  };
   for (std::size_t i = 0; i < s.model->masses.size(); ++i)
-    say(stdout, "%s = %s    (frozen in what follows)\n", names.masses[i].c_str(), print(s.model->masses[i].value, names, Format::text).c_str());
+    say(stdout, "%s = %s    (frozen in what follows)\n", names.masses[i].c_str(),
+        print(s.model->masses[i].value, names, Format::text).c_str());
   one("T", m.T);
   one("S", m.S);
   one("V_O", m.V_O);
@@ -50,11 +53,13 @@ int show(const Options& o, const Scenario& s) {
       say(stdout, "%s: %s = 0\n", s.system.equation_names[i].c_str(), texts[i].c_str());
   } else if (o.show == "structure") {
     hand_out(print(s.system, s.structure));
-    if (const std::vector<Block> list = blocks(s.structure); list.size() > 1) hand_out("\n" + print(s.system, s.structure, list));
+    if (const std::vector<Block> list = blocks(s.structure); list.size() > 1)
+      hand_out("\n" + print(s.system, s.structure, list));
   } else if (o.show == "program") {
     hand_out(print(program(s.system, s.structure)));
   } else {
-    throw UsageError{"error: --show: there is no stage '" + o.show + "'\nhint: mechanics, system, structure, program; of check also cost\n"};
+    throw UsageError{"error: --show: there is no stage '" + o.show +
+                     "'\nhint: mechanics, system, structure, program; of check also cost\n"};
   }
   return kOk;
 }
@@ -67,8 +72,15 @@ static void cost_json(const FormChoice& c) {
     if (f.writings.empty()) j.key("reason").string(f.why);
     j.key("writings").open_array();
     for (const WritingCost& w : f.writings) {
-      j.open_object().key("writing").string(name(w.writing)).key("products").integer(static_cast<long long>(w.work.products));
-      j.key("sums").integer(static_cast<long long>(w.work.sums)).key("solve").integer(static_cast<long long>(w.work.solve));
+      j.open_object()
+          .key("writing")
+          .string(name(w.writing))
+          .key("products")
+          .integer(static_cast<long long>(w.work.products));
+      j.key("sums")
+          .integer(static_cast<long long>(w.work.sums))
+          .key("solve")
+          .integer(static_cast<long long>(w.work.solve));
       j.key("operations").number(number_text(std::round(w.work.operations))).key("waits").integer(w.work.waits);
       j.key("cost").number(number_text(std::round(w.work.total))).key("after_steps");
       w.after ? j.integer(static_cast<long long>(*w.after)) : j.null();
@@ -89,22 +101,27 @@ int show_cost(const Options& o, const Reader& in) {
   const FormChoice c = choose_form(in.again, state_choice(o, *in.model), Costs::all);
   if (o.json) return cost_json(c), kOk;
   say(stdout, "one expansion at tolerance 1e-12\n\n");
-  say(stdout, "%-8s  %-9s  %8s  %6s  %6s  %10s  %5s  %8s  taken\n", "form", "writing", "products", "sums", "solve", "operations", "waits", "cost");
+  say(stdout, "%-8s  %-9s  %8s  %6s  %6s  %10s  %5s  %8s  taken\n", "form", "writing", "products", "sums", "solve",
+      "operations", "waits", "cost");
   for (const FormCost& f : c.costs) {
     if (f.writings.empty()) say(stdout, "%-8s  no kernel: %s\n", f.form->name, f.why.c_str());
     for (const WritingCost& w : f.writings) {
-      const std::string taken = !w.after ? "" : *w.after == 0 ? "at once" : "after " + std::to_string(*w.after) + " steps";
-      say(stdout, "%-8s  %-9s  %8zu  %6zu  %6zu  %10.0f  %5d  %8.0f%s%s\n", f.form->name, name(w.writing), w.work.products, w.work.sums, w.work.solve, w.work.operations, w.work.waits,
-                  w.work.total,
-                  taken.empty() ? "" : "  ", taken.c_str());
+      const std::string taken = !w.after        ? ""
+                                : *w.after == 0 ? "at once"
+                                                : "after " + std::to_string(*w.after) + " steps";
+      say(stdout, "%-8s  %-9s  %8zu  %6zu  %6zu  %10.0f  %5d  %8.0f%s%s\n", f.form->name, name(w.writing),
+          w.work.products, w.work.sums, w.work.solve, w.work.operations, w.work.waits, w.work.total,
+          taken.empty() ? "" : "  ", taken.c_str());
     }
   }
-  say(stdout, "\nwaits: of a stage, one operation after the other; cost: operations, and for each stage five for each wait\n");
+  say(stdout,
+      "\nwaits: of a stage, one operation after the other; cost: operations, and for each stage five for each wait\n");
   for (const FormCost& f : c.costs)
     for (const WritingCost& w : f.writings) {
       if (w.velocities.empty()) continue;
       say(stdout, "quasi: in velocities that make the kinetic energy a sum of squares,\n");
-      for (std::size_t i = 0; i < w.velocities.size(); ++i) say(stdout, "  p%zu = %s\n", i + 1, w.velocities[i].c_str());
+      for (std::size_t i = 0; i < w.velocities.size(); ++i)
+        say(stdout, "  p%zu = %s\n", i + 1, w.velocities[i].c_str());
     }
   say(stdout, "--form auto takes %s: %s\n", c.form->name, c.why.c_str());
   return kOk;

@@ -1,3 +1,5 @@
+#include "run/simulate.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -17,7 +19,6 @@
 #include "cli/simulation_json.h"
 #include "result/file.h"
 #include "result/hdf5_sink.h"
-#include "run/simulate.h"
 
 namespace anholon::cli {
 
@@ -43,32 +44,45 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s,
   std::stable_sort(s.at_text.begin(), s.at_text.end(),
                    [](const std::string& a, const std::string& b) { return exact(a, "--at") < exact(b, "--at"); });
   for (const std::string& t : s.at_text) s.at.push_back(exact(t, "--at"));
-  if (!s.at.empty()) s.every.reset();
-  else if (o.every.empty()) s.at = file.at;
+  if (!s.at.empty())
+    s.every.reset();
+  else if (o.every.empty())
+    s.at = file.at;
   std::sort(s.at.begin(), s.at.end());
   // With --at these rows and no more; the end in the file is for runs without.
   if (!o.at.empty() && o.to.empty()) s.to.reset();
   Rational start(scenario.state.t);
-  if (s.state.t) start = *s.state.t;
-  else if (is_number(model.initial.t)) start = number_value(model.initial.t);
+  if (s.state.t)
+    start = *s.state.t;
+  else if (is_number(model.initial.t))
+    start = number_value(model.initial.t);
   if (s.at.empty() && !s.to) {
     if (!drawn) throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
     constexpr int kShown = 10;
     s.to = start + kShown;
-    if (!o.quiet) say(stderr, "note: nobody says where the motion ends: it is shown up to t = %s; --to T, or [simulate] to = T in the model file, shows more or less\n", number_text(s.to->get_d()).c_str());
+    if (!o.quiet)
+      say(stderr,
+          "note: nobody says where the motion ends: it is shown up to t = %s; --to T, or [simulate] to = T in the "
+          "model file, shows more or less\n",
+          number_text(s.to->get_d()).c_str());
   }
-  if (s.to && abs(*s.to) > Rational(mpz_class("1000000000000000000"))) throw UsageError{"error: an end time beyond 1e18\n"};
+  if (s.to && abs(*s.to) > Rational(mpz_class("1000000000000000000")))
+    throw UsageError{"error: an end time beyond 1e18\n"};
 
   if (!s.at.empty() && s.at.front() < start && s.at.back() > start)
-    throw UsageError{"error: the time " + s.at.front().get_str() + " lies before the start, t = " + start.get_str() + "\n"};
+    throw UsageError{"error: the time " + s.at.front().get_str() + " lies before the start, t = " + start.get_str() +
+                     "\n"};
   const Rational end = s.at.empty() ? *s.to : s.at.front() < start ? s.at.front() : s.at.back();
-  if (end < start) say(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n", number_text(start.get_d()).c_str());
+  if (end < start)
+    say(stderr, "note: the end lies before the start, t = %s: the motion is computed backwards\n",
+        number_text(start.get_d()).c_str());
   if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
   const bool json = o.output.ends_with(".json") || (o.json && !is_hdf5(o.output));
   const auto columns = static_cast<long>(1 + 4 * scenario.system.coordinates + scenario.system.constraints.size());
   if (s.every && json && columns * abs(Rational(end - start)) > kMostJsonNumbers * *s.every)
-    throw UsageError{"error: --every asks for more than " + std::to_string(kMostJsonNumbers) + " numbers of JSON\nhint: write HDF5 or CSV: -o run.h5\n"};
+    throw UsageError{"error: --every asks for more than " + std::to_string(kMostJsonNumbers) +
+                     " numbers of JSON\nhint: write HDF5 or CSV: -o run.h5\n"};
   return end;
 }
 
@@ -79,11 +93,14 @@ void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
   s.precision = precision(o, Precision::real);
   if (o.digits > 16 || s.precision == Precision::quad)
     s.tolerance = exact("1e-" + std::to_string(o.digits > 16 ? o.digits + 2 : kQuadTolerance), "--digits");
-  else if (model.simulate.tolerance) s.tolerance = *model.simulate.tolerance;
+  else if (model.simulate.tolerance)
+    s.tolerance = *model.simulate.tolerance;
   if (!o.tolerance.empty()) s.tolerance = exact(o.tolerance, "--tolerance");
   if (s.tolerance <= 0 || s.tolerance >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
   if (s.precision == Precision::multi) return;
-  const std::string floor = s.precision == Precision::real ? "2e-16" : s.precision == Precision::long_real ? "1e-19" : "2e-34";
+  const std::string floor = s.precision == Precision::real        ? "2e-16"
+                            : s.precision == Precision::long_real ? "1e-19"
+                                                                  : "2e-34";
   if (s.tolerance < exact(floor, "")) {
     say(stderr, "note: a tolerance below %s means %s in these numbers\n", floor.c_str(), floor.c_str());
     s.tolerance = exact(floor, "");
@@ -97,8 +114,8 @@ std::optional<std::size_t> rigorous(const std::string& text) {
   if (text == "all") return 0;
   const std::optional<Rational> n = parse_rational(text);
   if (!n || n->get_den() != 1 || *n < 1 || *n > kMostTimes)
-    throw UsageError{"error: --rigorous takes a number of times up to " + std::to_string(kMostTimes) + ", or the word all, not '" + text +
-                     "'\nhint: --rigorous 64\n"};
+    throw UsageError{"error: --rigorous takes a number of times up to " + std::to_string(kMostTimes) +
+                     ", or the word all, not '" + text + "'\nhint: --rigorous 64\n"};
   return n->get_num().get_ui();
 }
 
@@ -109,7 +126,8 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
     const auto wanted = find_integrator(o.integrator);
     if (!wanted) {
       const std::string near = did_you_mean(o.integrator, integrator_names());
-      throw UsageError{"error: there is no integrator '" + o.integrator + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+      throw UsageError{"error: there is no integrator '" + o.integrator + "'" +
+                       (near.empty() ? "" : "; did you mean '" + near + "'?") +
                        "\nhint: --integrator taylor, cvode or ida\n"};
     }
     s.integrator = *wanted;
@@ -117,16 +135,20 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   if (s.integrator == Integrator::taylor) return;
   const std::string which = name(s.integrator);
   const auto refuse = [&](const std::string& what, const std::string& option) {
-    throw UsageError{"error: the integrator '" + which + "' " + what + "\nhint: leave out " + option + ", or use --integrator taylor\n"};
+    throw UsageError{"error: the integrator '" + which + "' " + what + "\nhint: leave out " + option +
+                     ", or use --integrator taylor\n"};
   };
   if (s.precision != Precision::real) refuse("computes in double", o.digits > 16 ? "--digits" : "--numbers");
   if (!o.save.empty() || s.resume) refuse("cannot go on with the same bits", o.save.empty() ? "--continue" : "--save");
   if (s.rigorous) refuse("has no dense output that is enclosed", "--rigorous");
-  if (std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return e.ends_step(); })) refuse("does not stop at events", "the events");
+  if (std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return e.ends_step(); }))
+    refuse("does not stop at events", "the events");
   // How many digits of its rows may be trusted, the difference tells, which costs nothing more.
-  if (s.estimate == ErrorEstimate::always) refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
+  if (s.estimate == ErrorEstimate::always)
+    refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
   const std::string least = small(kLeastSundialsTolerance);
-  if (s.tolerance.get_d() < kLeastSundialsTolerance) say(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
+  if (s.tolerance.get_d() < kLeastSundialsTolerance)
+    say(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
 }
 
 // "blade'" for the first derivative of the constraint that holds worst.
@@ -135,18 +157,24 @@ std::string worst_constraint(const SimulationReport& r) {
   double worst = 0;
   for (const ConstraintReport& c : r.constraints_each)
     for (std::size_t k = 0; k < c.residuals.size(); ++k)
-      if (c.residuals[k] > worst) worst = c.residuals[k], name = derivative_name(c.name, static_cast<unsigned>(k), Format::text);
+      if (c.residuals[k] > worst)
+        worst = c.residuals[k], name = derivative_name(c.name, static_cast<unsigned>(k), Format::text);
   return name.empty() ? "" : ", worst '" + name + "'";
 }
 
 // What a second opinion is compared with.
-std::string beside(const SimulationReport& r) { return r.method.steps > 0 ? "the motion by method " + std::string(name(r.method.last)) : "Taylor's motion"; }
+std::string beside(const SimulationReport& r) {
+  return r.method.steps > 0 ? "the motion by method " + std::string(name(r.method.last)) : "Taylor's motion";
+}
 
 void second_opinion(const Scenario& s, const SimulationReport& r) {
   const SecondOpinion& o = *r.second;
-  say(stderr, "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from %s by at most %s (%s at t = %s, relative to 1 + |%s|)\n",
-               name(o.integrator), o.form == s.system.form->name ? "" : " on Routh's equations", o.steps, o.evaluations, o.seconds, beside(r).c_str(),
-               small(o.difference).c_str(), o.of.c_str(), number_text(o.t, 6).c_str(), o.of.c_str());
+  say(stderr,
+      "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from %s by at most "
+      "%s (%s at t = %s, relative to 1 + |%s|)\n",
+      name(o.integrator), o.form == s.system.form->name ? "" : " on Routh's equations", o.steps, o.evaluations,
+      o.seconds, beside(r).c_str(), small(o.difference).c_str(), o.of.c_str(), number_text(o.t, 6).c_str(),
+      o.of.c_str());
 }
 
 // "event burn_out at t = 160: stage 1 -> 2, fuel 0 -> 90000"
@@ -157,9 +185,11 @@ void events(const SimulationReport& r) {
     std::string list;
     for (const auto& c : e.changes) list += (list.empty() ? ": " : ", ") + c.name + " " + c.before + " -> " + c.after;
     if (e.correction > 0) list += "; made consistent by " + small(e.correction);
-    say(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.c_str(), list.c_str(), e.stop ? ": the motion ends here" : "");
+    say(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.c_str(), list.c_str(),
+        e.stop ? ": the motion ends here" : "");
   }
-  if (r.events.size() > kMostLines) say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
+  if (r.events.size() > kMostLines)
+    say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
 }
 
 void report(const Scenario& s, const SimulationReport& r) {
@@ -167,24 +197,32 @@ void report(const Scenario& s, const SimulationReport& r) {
   // What is known of the model, whatever the run, `check` says.
   for (const std::string& n : s.state.notes) say(stderr, "note: %s\n", n.c_str());
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
-  say(stderr, "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
-               small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
-               worst_constraint(r).c_str(), small(r.power).c_str());
-  if (r.error) say(stderr, "digits to trust%s\n", digits_to_trust(*r.error).c_str());
-  else if (!r.no_error.empty()) say(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
+  say(stderr,
+      "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
+      small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
+      worst_constraint(r).c_str(), small(r.power).c_str());
+  if (r.error)
+    say(stderr, "digits to trust%s\n", digits_to_trust(*r.error).c_str());
+  else if (!r.no_error.empty())
+    say(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
   events(r);
   for (const WatchedReport& w : r.conserved)
-    say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(), small(w.largest_change).c_str());
+    say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(),
+        small(w.largest_change).c_str());
   for (const WatchedReport& w : r.monitors)
-    say(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(), w.first.c_str(),
-                 w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
+    say(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(),
+        w.first.c_str(), w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;
-    say(stderr, "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, constraints %s, steps join within %s\n",
-                 (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(), g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
+    say(stderr,
+        "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, "
+        "constraints %s, steps join within %s\n",
+        (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(),
+        g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
   }
-  say(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n", (r.second ? beside(r) + ": " : "").c_str(),
-               r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(), r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
+  say(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n",
+      (r.second ? beside(r) + ": " : "").c_str(), r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(),
+      r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
   print_method(r.method);
   if (r.second) second_opinion(s, r);
   for (const Warning& w : r.warnings) say(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
@@ -193,7 +231,8 @@ void report(const Scenario& s, const SimulationReport& r) {
 // Writes the runs that --save asks for; the first failure ends it and is kept.
 class Saver {
  public:
-  Saver(const Options& o, const Reader& in, const Formulation& form, const SimulationOptions& options) : o_(o), in_(in), form_(form), options_(options) {}
+  Saver(const Options& o, const Reader& in, const Formulation& form, const SimulationOptions& options)
+      : o_(o), in_(in), form_(form), options_(options) {}
   void operator()(SavedRun run) {
     if (!error.empty()) return;
     describe_run(run, o_, in_, form_, options_);
@@ -228,7 +267,9 @@ void go_on(Hdf5Sink& rows, const Options& o, const SavedRun& resume, const Reade
     const auto model = before.settings.find("model_sha256");
     const std::vector<double> given = resume.numbers<double>("given", 2);
     const auto count = static_cast<std::size_t>(given[0]);
-    if (model == before.settings.end() || model->second != std::vector<std::string>{sha256_text(all_text(in.source))} || before.table.rows() < count) return;
+    if (model == before.settings.end() || model->second != std::vector<std::string>{sha256_text(all_text(in.source))} ||
+        before.table.rows() < count)
+      return;
     rows.go_on(before, count, static_cast<std::size_t>(given[1]));
     if (!o.quiet) say(stderr, "note: rows are added to the first %zu of %s\n", count, o.output.c_str());
   } catch (const Failure&) {
@@ -268,12 +309,19 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   if (!o.show.empty()) return show(o, s);
   const Rational last = times(o, s, options, told && o.output.empty());
   if (resume) beyond(*resume, o, last);
-  if (told && o.output.empty() && !options.every && options.at.empty() && last != Rational(s.state.t)) options.every = abs(Rational(last - Rational(s.state.t))) / rows_to_look_at(*s.mechanics);
+  if (told && o.output.empty() && !options.every && options.at.empty() && last != Rational(s.state.t))
+    options.every = abs(Rational(last - Rational(s.state.t))) / rows_to_look_at(*s.mechanics);
   // What an event sets is not conserved.
-  const bool reset = std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
-  if (reset && last < Rational(s.state.t)) throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after the start, t = " + number_text(s.state.t) + "\n"};
+  const bool reset =
+      std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  if (reset && last < Rational(s.state.t))
+    throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after "
+                     "the start, t = " +
+                     number_text(s.state.t) + "\n"};
   options.rigorous = rigorous(o.rigorous);
-  if (options.rigorous && reset) throw UsageError{"error: --rigorous encloses motions without events that set something\nhint: leave out --rigorous\n"};
+  if (options.rigorous && reset)
+    throw UsageError{
+        "error: --rigorous encloses motions without events that set something\nhint: leave out --rigorous\n"};
   accuracy(o, *in.model, options);
   integrator(o, *in.model, options);
   choose_method(o, s, options);
@@ -291,7 +339,9 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   SimulationReport r;
   std::string write_error, part;
   {
-    const double end = options.at.empty() ? options.to->get_d() : std::max(options.at.back().get_d(), options.to ? options.to->get_d() : options.at.back().get_d());
+    const double end = options.at.empty() ? options.to->get_d()
+                                          : std::max(options.at.back().get_d(),
+                                                     options.to ? options.to->get_d() : options.at.back().get_d());
     Progress progress(o.quiet || end == s.state.t, "t", "steps");
     options.progress = [&](double t, std::size_t steps) { progress((t - s.state.t) / (end - s.state.t), t, steps); };
     if (told && o.output.empty()) {
@@ -307,8 +357,10 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
       GrowingFile file(o.output);
       if (!file.error().empty()) throw UsageError{"error: " + file.error() + "\n"};
       if (!o.save.empty()) options.save = std::ref(saver);
-      if (start.ok()) r = run(s, options, rows, told);
-      else r.outcome = start, r.t = number_text(s.state.t);
+      if (start.ok())
+        r = run(s, options, rows, told);
+      else
+        r.outcome = start, r.t = number_text(s.state.t);
       file.write(simulation_json(s, rows, r));
       write_error = file.close();
     } else {
@@ -347,7 +399,8 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   // A run that is ended because its rows have no place was not interrupted by anybody.
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);
-    if (r.rows > 0 && !o.output.empty() && write_error.empty()) say(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
+    if (r.rows > 0 && !o.output.empty() && write_error.empty())
+      say(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
   }
   if (write_error.empty()) write_error = saver.error;
   if (!write_error.empty()) {

@@ -63,7 +63,8 @@ class Output : public CaseSink {
 std::vector<std::string> header(const Variation& v, const std::vector<std::string>& columns) {
   std::vector<std::string> names = {"case"};
   // An initial value that is varied is not the final one.
-  for (const Varied& each : v.varied()) names.push_back(each.kind == Varied::Kind::initial ? each.name + "(0)" : each.name);
+  for (const Varied& each : v.varied())
+    names.push_back(each.kind == Varied::Kind::initial ? each.name + "(0)" : each.name);
   names.insert(names.end(), {"outcome", "t"});
   names.insert(names.end(), columns.begin(), columns.end());
   return names;
@@ -71,7 +72,8 @@ std::vector<std::string> header(const Variation& v, const std::vector<std::strin
 
 class Csv final : public Output {
  public:
-  Csv(const std::string& path, const Variation& v, const std::vector<std::string>& columns) : Output(columns), sink_(path) {
+  Csv(const std::string& path, const Variation& v, const std::vector<std::string>& columns)
+      : Output(columns), sink_(path) {
     if (!sink_.error().empty()) throw UsageError{"error: " + sink_.error() + "\n"};
     sink_.columns(header(v, columns));
   }
@@ -94,7 +96,8 @@ class Csv final : public Output {
 std::string error_json(const CasesError& e) {
   JsonWriter j;
   j.open_object();
-  if (!e.error) return j.key("digits").null().key("reason").string(e.none.empty() ? "not asked for" : e.none).close().text();
+  if (!e.error)
+    return j.key("digits").null().key("reason").string(e.none.empty() ? "not asked for" : e.none).close().text();
   write_error(j, *e.error);
   j.key("worst_case").integer(static_cast<long long>(e.worst)).key("compared").open_array();
   for (std::size_t k : e.cases) j.integer(static_cast<long long>(k));
@@ -111,18 +114,22 @@ class Json final : public Output {
     if (!file_.error().empty()) throw UsageError{"error: " + file_.error() + "\n"};
     std::string names;
     for (const std::string& n : header(v, columns)) names += (names.empty() ? "\"" : ", \"") + json_escape(n) + "\"";
-    file_.write("{\n  \"model\": \"" + json_escape(s.model->title) + "\",\n  \"form\": \"" + s.system.form->name + "\",\n  \"columns\": [" + names + "],\n  \"rows\": [");
+    file_.write("{\n  \"model\": \"" + json_escape(s.model->title) + "\",\n  \"form\": \"" + s.system.form->name +
+                "\",\n  \"columns\": [" + names + "],\n  \"rows\": [");
   }
 
   std::string close(const EnsembleReport& report) override {
     std::string end = std::string(any_ ? "\n  " : "") + "],\n  \"stopped\": [";
     bool first = true;
     for (const auto& [kind, s] : stopped()) {
-      end += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) + "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) + ", \"message\": \"" +
-             json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) + "\"}";
+      end += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) +
+             "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) +
+             ", \"message\": \"" + json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) +
+             "\"}";
       first = false;
     }
-    end += std::string(first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) + ",\n  \"cases\": " + std::to_string(report.done) + ",\n  \"finished\": " + std::to_string(report.finished) +
+    end += std::string(first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) +
+           ",\n  \"cases\": " + std::to_string(report.done) + ",\n  \"finished\": " + std::to_string(report.finished) +
            ",\n  \"outcome\": \"" + name(report.outcome.kind) + "\"\n}\n";
     file_.write(end);
     return file_.close();
@@ -158,10 +165,14 @@ Rational tolerance_of(const Options& o, const Model& model) {
 
 Rational end_of(const Options& o, const Model& model) {
   Rational to;
-  if (!o.to.empty()) to = exact(o.to, "--to");
-  else if (model.simulate.to) to = *model.simulate.to;
-  else if (!model.simulate.at.empty()) to = *std::max_element(model.simulate.at.begin(), model.simulate.at.end());
-  else throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
+  if (!o.to.empty())
+    to = exact(o.to, "--to");
+  else if (model.simulate.to)
+    to = *model.simulate.to;
+  else if (!model.simulate.at.empty())
+    to = *std::max_element(model.simulate.at.begin(), model.simulate.at.end());
+  else
+    throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
   if (abs(to) > Rational(mpz_class("1000000000000000000"))) throw UsageError{"error: an end time beyond 1e18\n"};
   return to;
 }
@@ -177,13 +188,15 @@ Method method_of_cases(const Options& o, const Scenario& s, const EnsembleOption
 void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
-  say(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(), r.seconds,
-               r.threads, r.threads == 1 ? "thread" : "threads");
+  say(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(),
+      r.seconds, r.threads, r.threads == 1 ? "thread" : "threads");
   std::string cases;
   for (std::size_t k : r.error.cases) cases += (cases.empty() ? "" : ", ") + std::to_string(k);
   if (r.error.error)
     say(stderr, "digits to trust%s; %s\n", digits_to_trust(*r.error.error).c_str(),
-                 r.error.cases.size() == 1 ? ("of case " + cases).c_str() : ("of the cases " + cases + " the worst is " + std::to_string(r.error.worst)).c_str());
+        r.error.cases.size() == 1
+            ? ("of case " + cases).c_str()
+            : ("of the cases " + cases + " the worst is " + std::to_string(r.error.worst)).c_str());
   else if (!r.error.none.empty())
     say(stderr, "digits to trust: not estimated, %s\n", r.error.none.c_str());
 }
@@ -192,7 +205,8 @@ void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out
 
 int sweep(const Options& asked) {
   for (const std::string end : {".h5", ".db"})
-    if (asked.output.ends_with(end)) throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
+    if (asked.output.ends_with(end))
+      throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
   const Reader in = read(asked);
   const Options o = with_form(asked, in);
   const Variation variation(o, *in.model);
@@ -225,16 +239,20 @@ int sweep(const Options& asked) {
     print_outcome(start);
     return kStopped;
   }
-  const bool reset = std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  const bool reset =
+      std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
   if (reset && options.to < Rational(s.state.t))
-    throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after the start, t = " +
+    throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after "
+                     "the start, t = " +
                      number_text(s.state.t) + "\n"};
   catch_stop(o.output);
   const bool json = o.json || o.output.ends_with(".json");
   const std::vector<std::string> columns = ensemble_columns(*in.model);
   std::unique_ptr<Output> out;
-  if (json) out = std::make_unique<Json>(o.output, s, variation, columns);
-  else out = std::make_unique<Csv>(o.output, variation, columns);
+  if (json)
+    out = std::make_unique<Json>(o.output, s, variation, columns);
+  else
+    out = std::make_unique<Csv>(o.output, variation, columns);
   // Nobody waits for rows that have no place.
   options.cancelled = [&] { return stop_requested() || out->failed(); };
   EnsembleReport r;
@@ -249,10 +267,12 @@ int sweep(const Options& asked) {
   if (!o.quiet) report(r, options, *out);
   for (const auto& [kind, stopped] : out->stopped())
     say(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
-                 stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(), stopped.outcome.hint.c_str());
+        stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(),
+        stopped.outcome.hint.c_str());
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);
-    if (!o.output.empty() && write_error.empty()) say(stderr, "the %zu cases before that are in %s\n", r.done, o.output.c_str());
+    if (!o.output.empty() && write_error.empty())
+      say(stderr, "the %zu cases before that are in %s\n", r.done, o.output.c_str());
   }
   if (!write_error.empty()) {
     say(stderr, "error: %s\n", write_error.c_str());

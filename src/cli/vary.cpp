@@ -9,11 +9,12 @@ namespace anholon::cli {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 1'000'000;            // of one grid
+constexpr std::size_t kMostPoints = 1'000'000;  // of one grid
 constexpr std::size_t kMostCases = 1'000'000'000'000;
 
 // The word after --vary with a part of it marked, as positioned errors of files are shown.
-[[noreturn]] void wrong(const std::string& word, std::size_t at, std::size_t length, const std::string& message, const std::string& hint) {
+[[noreturn]] void wrong(const std::string& word, std::size_t at, std::size_t length, const std::string& message,
+                        const std::string& hint) {
   const SourceText source{"--vary", word};
   Span span;
   span.line = 1;
@@ -52,17 +53,21 @@ Rational number(const std::string& word, const Part& p, const std::string& unit)
     c = read_constant(text);
   } catch (const Failure& f) {
     const std::string& why = f.diagnostic.message;
-    wrong(word, p.at + skip, text.size(), "'" + text + "' is not a number" + (why.rfind("'" + text, 0) == 0 ? "" : ": " + why), kHint);
+    wrong(word, p.at + skip, text.size(),
+          "'" + text + "' is not a number" + (why.rfind("'" + text, 0) == 0 ? "" : ": " + why), kHint);
   }
   const std::optional<Unit> own = unit == "1" ? Unit{} : read_unit(unit);
   if (c.dimension && own && own->dimension != *c.dimension)
-    wrong(word, p.at + skip, text.size(), describe(own->dimension) + " is expected here, this is " + describe(*c.dimension), unit == "1" ? "a bare number, or an angle: 30 deg" : "in " + unit + ", or a bare number in SI units");
+    wrong(word, p.at + skip, text.size(),
+          describe(own->dimension) + " is expected here, this is " + describe(*c.dimension),
+          unit == "1" ? "a bare number, or an angle: 30 deg" : "in " + unit + ", or a bare number in SI units");
   return c.value;
 }
 
 // The unit in SI of what is varied; empty where nothing tells.
 std::string unit_of(const Varied& v, const Model& model) {
-  const std::vector<std::string>& units = v.kind == Varied::Kind::parameter ? model.parameter_units : model.coordinate_units;
+  const std::vector<std::string>& units =
+      v.kind == Varied::Kind::parameter ? model.parameter_units : model.coordinate_units;
   const std::string base = v.index < units.size() ? units[v.index] : std::string();
   if (base.empty() || v.order == 0) return base;
   const std::string power = std::to_string(v.order);
@@ -83,7 +88,8 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
             highest == 2 ? "accelerations follow from the state"
                          : "derivatives of order " + std::to_string(primes) + " follow from the state",
             "vary " + name + ", " + name + "' or a parameter");
-    return {Varied::Kind::initial, static_cast<std::size_t>(q - coordinates.begin()), primes, derivative_name(name, primes, Format::text)};
+    return {Varied::Kind::initial, static_cast<std::size_t>(q - coordinates.begin()), primes,
+            derivative_name(name, primes, Format::text)};
   }
   std::vector<std::string> known;
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
@@ -93,9 +99,10 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
   known.insert(known.end(), coordinates.begin(), coordinates.end());
   const std::string near = did_you_mean(name, known);
   wrong(word, 0, text.size(),
-        "there is no parameter and no coordinate '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-        "the names in [parameters], coordinates, and velocities such as " + (coordinates.empty() ? std::string("x") : coordinates[0]) +
-            "'");
+        "there is no parameter and no coordinate '" + name + "'" +
+            (near.empty() ? "" : "; did you mean '" + near + "'?"),
+        "the names in [parameters], coordinates, and velocities such as " +
+            (coordinates.empty() ? std::string("x") : coordinates[0]) + "'");
 }
 
 }  // namespace
@@ -105,7 +112,8 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
   std::uint32_t streams = 0;
   for (const std::string& word : o.varied) {
     const std::size_t sign = word.find_first_of("=~");
-    if (sign == std::string::npos || sign == 0) wrong(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
+    if (sign == std::string::npos || sign == 0)
+      wrong(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
     const Varied v = named(word, word.substr(0, sign), model);
     for (const Varied& before : varied_)
       if (before.name == v.name) wrong(word, 0, sign, "'" + v.name + "' is varied twice", "one --vary for each name");
@@ -117,18 +125,21 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
       const std::string law = word.substr(sign + 1, (open == std::string::npos ? word.size() : open) - sign - 1);
       if (law != "normal" && law != "uniform") {
         const std::string near = did_you_mean(law, {"normal", "uniform"});
-        wrong(word, sign + 1, law.size(), "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+        wrong(word, sign + 1, law.size(),
+              "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
               "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
       }
       if (open == std::string::npos || word.back() != ')')
         wrong(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
       const auto list = parts(word, open + 1, word.size() - 1, ',');
       if (list.size() != 2)
-        wrong(word, open, word.size() - open, "two numbers are expected here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+        wrong(word, open, word.size() - open, "two numbers are expected here",
+              "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
       const Rational a = number(word, list[0], unit), b = number(word, list[1], unit);
       values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
       if (values.law == Values::Law::normal ? b < 0 : b < a)
-        wrong(word, list[1].at, list[1].text.size(), law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
+        wrong(word, list[1].at, list[1].text.size(),
+              law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
               "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
       values.a = from_rational<double>(a);
       values.b = from_rational<double>(b);
@@ -138,9 +149,12 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
       if (list.size() != 3)
         wrong(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
               "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
-      const Rational from = number(word, list[0], unit), to = number(word, list[1], unit), count = number(word, list[2], "");
-      if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) || (count == 1 && from != to))
-        wrong(word, list[2].at, list[2].text.size(), "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
+      const Rational from = number(word, list[0], unit), to = number(word, list[1], unit),
+                     count = number(word, list[2], "");
+      if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) ||
+          (count == 1 && from != to))
+        wrong(word, list[2].at, list[2].text.size(),
+              "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
               "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
       const unsigned long n = count.get_num().get_ui();
       for (unsigned long k = 0; k < n; ++k) {
@@ -153,7 +167,8 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
     }
     if (!values.list.empty()) {
       if (values.list.size() > kMostCases / grid_)
-        throw UsageError{"error: the grids have more than " + std::to_string(kMostCases) + " points\nhint: fewer values\n"};
+        throw UsageError{"error: the grids have more than " + std::to_string(kMostCases) +
+                         " points\nhint: fewer values\n"};
       grid_ *= values.list.size();
     }
     values_.push_back(std::move(values));
@@ -165,15 +180,15 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
   }
   const auto n = parse_rational(o.case_count);
   if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(kMostCases))
-    throw UsageError{"error: -n takes a number of cases up to " + std::to_string(kMostCases) + ", not '" + o.case_count +
-                     "'\nhint: -n 1000\n"};
+    throw UsageError{"error: -n takes a number of cases up to " + std::to_string(kMostCases) + ", not '" +
+                     o.case_count + "'\nhint: -n 1000\n"};
   cases_ = n->get_num().get_ui();
   if (streams == 0 && cases_ != grid_)
-    throw UsageError{"error: nothing is random, and the grid has " + std::to_string(grid_) + (grid_ == 1 ? " point" : " points") +
-                     "\nhint: leave out -n\n"};
+    throw UsageError{"error: nothing is random, and the grid has " + std::to_string(grid_) +
+                     (grid_ == 1 ? " point" : " points") + "\nhint: leave out -n\n"};
   if (cases_ < grid_)
-    throw UsageError{"error: -n " + std::to_string(cases_) + " leaves out points of the grid, which has " + std::to_string(grid_) +
-                     "\nhint: -n " + std::to_string(grid_) + " or more\n"};
+    throw UsageError{"error: -n " + std::to_string(cases_) + " leaves out points of the grid, which has " +
+                     std::to_string(grid_) + "\nhint: -n " + std::to_string(grid_) + " or more\n"};
 }
 
 std::vector<Rational> Variation::operator()(std::size_t number) const {

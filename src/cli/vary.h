@@ -17,9 +17,9 @@ class Variation {
 
  private:
   struct Values {
-    std::vector<Rational> list;                 // of a grid; else
+    std::vector<Rational> list;  // of a grid; else
     enum class Law : std::uint8_t { normal, uniform } law = Law::normal;
-    double a = 0, b = 0;                        // its parameters
+    double a = 0, b = 0;  // its parameters
     std::uint32_t stream = 0;
   };
   std::vector<Varied> varied_;

@@ -34,10 +34,14 @@ std::string chance_text(double log2_chance) {
 
 std::string describe(const Claim& c) {
   switch (c.kind) {
-    case Certificate::ClaimKind::agree: return c.a + " and " + c.b + " agree";
-    case Certificate::ClaimKind::differ: return c.a + " and " + c.b + " differ";
-    case Certificate::ClaimKind::kernel: return "kernel of the constraints";
-    case Certificate::ClaimKind::pivot: return "pivots";
+  case Certificate::ClaimKind::agree:
+    return c.a + " and " + c.b + " agree";
+  case Certificate::ClaimKind::differ:
+    return c.a + " and " + c.b + " differ";
+  case Certificate::ClaimKind::kernel:
+    return "kernel of the constraints";
+  case Certificate::ClaimKind::pivot:
+    return "pivots";
   }
   return "";
 }
@@ -72,19 +76,33 @@ void text(const Certificate& c, const Verification& v) {
   for (std::size_t k = 0; k < c.claims.size(); ++k) {
     const ClaimFinding& f = v.claims[k];
     if (f.finding == Finding::confirmed) continue;
-    say(stdout, "%s\n", (std::string(name(f.finding)) + ": " + describe(c.claims[k]) + ", component " + c.claims[k].component + ": " + f.detail).c_str());
+    say(stdout, "%s\n",
+        (std::string(name(f.finding)) + ": " + describe(c.claims[k]) + ", component " + c.claims[k].component + ": " +
+         f.detail)
+            .c_str());
   }
   say(stdout, "\n");
-  if (c.claims.empty()) say(stdout, "nothing is claimed\n");
-  else if (!v.all_confirmed()) say(stdout, "NOT verified\n");
-  else if (!std::isfinite(weakest)) say(stdout, "verified\n");
-  else say(stdout, "verified; the chance that a false claim passed is below %s for each\n", chance_text(weakest).c_str());
-  if (v.all_confirmed()) say(stdout, "The forms agree given the same energy, forces and constraints; the model itself is not proved.\n");
+  if (c.claims.empty())
+    say(stdout, "nothing is claimed\n");
+  else if (!v.all_confirmed())
+    say(stdout, "NOT verified\n");
+  else if (!std::isfinite(weakest))
+    say(stdout, "verified\n");
+  else
+    say(stdout, "verified; the chance that a false claim passed is below %s for each\n", chance_text(weakest).c_str());
+  if (v.all_confirmed())
+    say(stdout, "The forms agree given the same energy, forces and constraints; the model itself is not proved.\n");
 }
 
 void json(const Certificate& c, const Verification& v) {
   JsonWriter j;
-  j.open_object().key("model").string(c.model).key("program").string(c.program).key("source_hash").string(c.source_hash);
+  j.open_object()
+      .key("model")
+      .string(c.model)
+      .key("program")
+      .string(c.program)
+      .key("source_hash")
+      .string(c.source_hash);
   j.key("hypotheses").open_array();
   for (const std::string& h : c.hypotheses) j.string(h);
   j.close().key("meaning").string(c.meaning).key("verified").boolean(v.all_confirmed());
@@ -108,7 +126,8 @@ int verify(const Options& o) {
   SourceText source{o.model, {}};
   std::string why;
   if (!read_file(o.model, source.text, &why))
-    throw UsageError{"error: cannot read the certificate '" + o.model + "': " + why + "\nhint: `anholon prove MODEL -o FILE` writes one\n"};
+    throw UsageError{"error: cannot read the certificate '" + o.model + "': " + why +
+                     "\nhint: `anholon prove MODEL -o FILE` writes one\n"};
   Certificate certificate;
   try {
     certificate = read_certificate(source.text);
@@ -120,8 +139,10 @@ int verify(const Options& o) {
   options.seed = o.seed;
   options.digits = o.proof_digits;
   const Verification v = anholon::verify(certificate, options);
-  if (o.json) json(certificate, v);
-  else if (!o.quiet) text(certificate, v);
+  if (o.json)
+    json(certificate, v);
+  else if (!o.quiet)
+    text(certificate, v);
   return v.all_confirmed() ? kOk : kStopped;
 }
 

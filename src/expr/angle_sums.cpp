@@ -98,7 +98,8 @@ class SumsOfAngles {
     Expr f = cosine ? cos(angle) : sin(angle);
     int sign = 1;
     const Graph& g = *f.graph;
-    if (g.node(f.id).kind == Kind::sum && g.terms(f.id).size() == 1 && g.rational(g.terms(f.id)[0].weight) == -1) f = -f, sign = -1;
+    if (g.node(f.id).kind == Kind::sum && g.terms(f.id).size() == 1 && g.rational(g.terms(f.id)[0].weight) == -1)
+      f = -f, sign = -1;
     const auto it = std::find(w_.generators.begin(), w_.generators.end(), f);
     if (it != w_.generators.end()) return {static_cast<std::size_t>(it - w_.generators.begin()), sign};
     w_.generators.push_back(f);
@@ -124,7 +125,9 @@ class SumsOfAngles {
 // that make one square of the other are joined.
 void choose_squares(Sum& s, const std::vector<Angle>& angles) {
   for (const Angle& a : angles) {
-    if (std::none_of(s.begin(), s.end(), [&](const auto& term) { return term.first[a.sine] > 1 || term.first[a.cosine] > 1; })) continue;
+    if (std::none_of(s.begin(), s.end(),
+                     [&](const auto& term) { return term.first[a.sine] > 1 || term.first[a.cosine] > 1; }))
+      continue;
     Sum sine_gone = without_square(s, a.sine, a.cosine), cosine_gone = without_square(s, a.cosine, a.sine);
     shorten_squares(sine_gone, a.cosine, a.sine);
     shorten_squares(cosine_gone, a.sine, a.cosine);

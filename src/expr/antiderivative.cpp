@@ -36,16 +36,30 @@ Expr divided(Expr a, Expr b) {
 std::optional<Expr> of_function(Function f, Expr u, const Rational& k) {
   if (k == 1) {
     switch (f) {
-      case Function::sin: return -cos(u);
-      case Function::cos: return sin(u);
-      case Function::tan: return -log(cos(u));
-      case Function::sinh: return cosh(u);
-      case Function::cosh: return sinh(u);
-      case Function::exp: return exp(u);
-      case Function::log: return u * log(u) - u;
-      case Function::tanh: case Function::asin: case Function::acos: case Function::atan: case Function::asinh: case Function::acosh:
-      case Function::atanh: case Function::abs: case Function::sign:
-        return std::nullopt;
+    case Function::sin:
+      return -cos(u);
+    case Function::cos:
+      return sin(u);
+    case Function::tan:
+      return -log(cos(u));
+    case Function::sinh:
+      return cosh(u);
+    case Function::cosh:
+      return sinh(u);
+    case Function::exp:
+      return exp(u);
+    case Function::log:
+      return u * log(u) - u;
+    case Function::tanh:
+    case Function::asin:
+    case Function::acos:
+    case Function::atan:
+    case Function::asinh:
+    case Function::acosh:
+    case Function::atanh:
+    case Function::abs:
+    case Function::sign:
+      return std::nullopt;
     }
   }
   if (f == Function::exp) return (1 / k) * pow(exp(u), k);
@@ -61,7 +75,8 @@ std::optional<Expr> square_root(Expr e) {
   Graph& g = *e.graph;
   std::vector<std::pair<Expr, Rational>> half;
   const auto rational_root = [](const Rational& r) -> std::optional<Rational> {
-    if (r <= 0 || !mpz_perfect_square_p(r.get_num().get_mpz_t()) || !mpz_perfect_square_p(r.get_den().get_mpz_t())) return std::nullopt;
+    if (r <= 0 || !mpz_perfect_square_p(r.get_num().get_mpz_t()) || !mpz_perfect_square_p(r.get_den().get_mpz_t()))
+      return std::nullopt;
     return Rational(sqrt(r.get_num()), sqrt(r.get_den()));
   };
   if (is_number(e)) {
@@ -112,8 +127,10 @@ Split split(Expr term, Expr z) {
   Graph& g = *term.graph;
   Split s{g.one(), {}};
   const auto add = [&](Expr base, const Rational& exponent) {
-    if (holds(base, z)) s.factors.push_back({base, exponent});
-    else s.constant = s.constant * pow(base, exponent);
+    if (holds(base, z))
+      s.factors.push_back({base, exponent});
+    else
+      s.constant = s.constant * pow(base, exponent);
   };
   if (const Node& n = g.node(term.id); n.kind == Kind::sum && n.count == 1) {
     s.constant = g.number(g.rational(g.terms(term.id)[0].weight));
@@ -141,7 +158,8 @@ std::vector<Expr> terms_of(Expr e, Expr z) {
   if (n.kind == Kind::sum) return of_sum(e.id, g.one());
   if (n.kind == Kind::product)
     for (const Term& t : g.terms(e.id))
-      if (g.rational(t.weight) == 1 && g.node(t.node).kind == Kind::sum && holds({&g, t.node}, z)) return of_sum(t.node, e / Expr{&g, t.node});
+      if (g.rational(t.weight) == 1 && g.node(t.node).kind == Kind::sum && holds({&g, t.node}, z))
+        return of_sum(t.node, e / Expr{&g, t.node});
   return {e};
 }
 
@@ -232,14 +250,18 @@ std::optional<Expr> potential(const Column& form, const Column& z) {
 
 Expr exponential(Expr e) {
   Graph& g = *e.graph;
-  const auto logarithm = [&](NodeId id) { return g.node(id).kind == Kind::function && static_cast<Function>(g.node(id).index) == Function::log; };
+  const auto logarithm = [&](NodeId id) {
+    return g.node(id).kind == Kind::function && static_cast<Function>(g.node(id).index) == Function::log;
+  };
   if (logarithm(e.id)) return {&g, g.terms(e.id)[0].node};
   if (g.node(e.id).kind != Kind::sum) return exp(e);
   Expr powers = g.one(), rest = g.zero();
   for (const Term& t : g.terms(e.id)) {
     const Rational weight = g.rational(t.weight);
-    if (logarithm(t.node)) powers = powers * pow(Expr{&g, g.terms(t.node)[0].node}, weight);
-    else rest += weight * Expr{&g, t.node};
+    if (logarithm(t.node))
+      powers = powers * pow(Expr{&g, g.terms(t.node)[0].node}, weight);
+    else
+      rest += weight * Expr{&g, t.node};
   }
   return is_zero(rest) ? powers : powers * exp(rest);
 }

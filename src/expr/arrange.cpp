@@ -14,8 +14,8 @@ namespace {
 using namespace arrangement;
 
 // Bounds on the effort for one expression. All are far above what a person reads.
-constexpr long kMostProducts = 300'000;        // products of terms in one normal form
-constexpr std::size_t kArrangedTerms = 800;    // monomials that are grouped at all
+constexpr long kMostProducts = 300'000;      // products of terms in one normal form
+constexpr std::size_t kArrangedTerms = 800;  // monomials that are grouped at all
 
 // What of an expression can be left whole or not.
 struct Features {
@@ -32,8 +32,8 @@ Features features(Expr e, const SymbolNames& names) {
       for (const Term& t : g.terms(id)) f.fractions |= g.rational(t.weight) < 0;
     if (n.kind == Kind::function) {
       const Function function = static_cast<Function>(n.index);
-      f.sums_of_angles |= function == Function::tan ||
-                          ((function == Function::sin || function == Function::cos) && g.node(g.terms(id)[0].node).kind == Kind::sum);
+      f.sums_of_angles |= function == Function::tan || ((function == Function::sin || function == Function::cos) &&
+                                                        g.node(g.terms(id)[0].node).kind == Kind::sum);
     }
   }
   return f;
@@ -71,10 +71,13 @@ Expr arranged(Expr e, const SymbolNames& names, const std::optional<NormalForm>&
       for (bool keep_names : {false, true}) {
         if ((angles && !has.sums_of_angles) || (fractions && !has.fractions) || (keep_names && !has.names)) continue;
         const Whole whole{angles, fractions, keep_names ? &names.defined : nullptr};
-        const std::optional<NormalForm> form = angles || fractions || keep_names ? normal_form(e, whole, kMostProducts) : plain;
+        const std::optional<NormalForm> form =
+            angles || fractions || keep_names ? normal_form(e, whole, kMostProducts) : plain;
         if (!form || form->numerator.size() + form->denominator.size() > kArrangedTerms) continue;
         Written w{form->generators, {}, as_sum(form->numerator), as_sum(form->denominator)};
-        const auto same = [&](const Written& o) { return o.generators == w.generators && o.numerator == w.numerator && o.denominator == w.denominator; };
+        const auto same = [&](const Written& o) {
+          return o.generators == w.generators && o.numerator == w.numerator && o.denominator == w.denominator;
+        };
         if (std::any_of(seen.begin(), seen.end(), same)) continue;
         seen.push_back(w);
         for (const auto& [s, c] : form->angles) {

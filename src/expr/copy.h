@@ -1,4 +1,5 @@
-// Expressions in a graph of their own: whoever rewrites there leaves the first graph, whose order of nodes is the order of sums, as it was.
+// Expressions in a graph of their own: whoever rewrites there leaves the first graph, whose order of nodes is the order
+// of sums, as it was.
 #pragma once
 #include "expr/diff.h"
 

@@ -9,20 +9,34 @@ namespace anholon {
 
 static bool is_symbol(Kind k) {
   switch (k) {
-    case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass:
-    case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
-      return true;
-    case Kind::number: case Kind::pi: case Kind::sum: case Kind::product: case Kind::function:
-    case Kind::atan2: case Kind::select: case Kind::lookup:
-      return false;
+  case Kind::time:
+  case Kind::jet:
+  case Kind::parameter:
+  case Kind::mass:
+  case Kind::multiplier:
+  case Kind::given:
+  case Kind::quasi:
+  case Kind::state:
+  case Kind::control:
+    return true;
+  case Kind::number:
+  case Kind::pi:
+  case Kind::sum:
+  case Kind::product:
+  case Kind::function:
+  case Kind::atan2:
+  case Kind::select:
+  case Kind::lookup:
+    return false;
   }
   return false;
 }
 
 Expr derivative(Function f, [[maybe_unused]] Expr u, [[maybe_unused]] Expr v) {
   switch (f) {
-#define ROW(name, formula, parity, latex, domain) \
-  case Function::name: return formula;
+#define ROW(name, formula, parity, latex, domain)                                                                      \
+  case Function::name:                                                                                                 \
+    return formula;
 #include "expr/elementary.def"
 #undef ROW
   }
@@ -35,57 +49,81 @@ static void local_partials(Graph& g, NodeId id, Column& out) {
   const Node n = g.node(id);
   const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
   switch (n.kind) {
-    case Kind::sum:
-      for (const Term& t : terms) out.push_back(g.number(g.rational(t.weight)));
-      return;
-    case Kind::product:
-      for (std::size_t i = 0; i < terms.size(); ++i) {
-        std::vector<std::pair<Expr, Rational>> factors;
-        const Rational exponent = g.rational(terms[i].weight);
-        for (std::size_t j = 0; j < terms.size(); ++j) {
-          const Rational& r = g.rational(terms[j].weight);
-          factors.push_back({Expr{&g, terms[j].node}, j == i ? Rational(r - 1) : r});
-        }
-        out.push_back(exponent * g.product(factors));
+  case Kind::sum:
+    for (const Term& t : terms) out.push_back(g.number(g.rational(t.weight)));
+    return;
+  case Kind::product:
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      std::vector<std::pair<Expr, Rational>> factors;
+      const Rational exponent = g.rational(terms[i].weight);
+      for (std::size_t j = 0; j < terms.size(); ++j) {
+        const Rational& r = g.rational(terms[j].weight);
+        factors.push_back({Expr{&g, terms[j].node}, j == i ? Rational(r - 1) : r});
       }
-      return;
-    case Kind::function:
-      out.push_back(derivative(static_cast<Function>(n.index), Expr{&g, terms[0].node}, Expr{&g, id}));
-      return;
-    case Kind::atan2: {
-      const Expr y{&g, terms[0].node}, x{&g, terms[1].node}, r2 = x * x + y * y;
-      out.push_back(x / r2);
-      out.push_back(-(y / r2));
-      return;
+      out.push_back(exponent * g.product(factors));
     }
-    case Kind::lookup:  // constant between its knots
-      out.push_back(g.zero());
-      return;
-    case Kind::select: {
-      const Expr s{&g, terms[0].node};
-      out.push_back(g.zero());
-      out.push_back(select(s, g.one(), g.zero()));
-      out.push_back(select(s, g.zero(), g.one()));
-      return;
-    }
-    case Kind::number: case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter:
-    case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
-      return;
+    return;
+  case Kind::function:
+    out.push_back(derivative(static_cast<Function>(n.index), Expr{&g, terms[0].node}, Expr{&g, id}));
+    return;
+  case Kind::atan2: {
+    const Expr y{&g, terms[0].node}, x{&g, terms[1].node}, r2 = x * x + y * y;
+    out.push_back(x / r2);
+    out.push_back(-(y / r2));
+    return;
+  }
+  case Kind::lookup:  // constant between its knots
+    out.push_back(g.zero());
+    return;
+  case Kind::select: {
+    const Expr s{&g, terms[0].node};
+    out.push_back(g.zero());
+    out.push_back(select(s, g.one(), g.zero()));
+    out.push_back(select(s, g.zero(), g.one()));
+    return;
+  }
+  case Kind::number:
+  case Kind::pi:
+  case Kind::time:
+  case Kind::jet:
+  case Kind::parameter:
+  case Kind::mass:
+  case Kind::multiplier:
+  case Kind::given:
+  case Kind::quasi:
+  case Kind::state:
+  case Kind::control:
+    return;
   }
 }
 
 static Expr rate_of_symbol(Graph& g, const Node& n) {
   switch (n.kind) {
-    case Kind::time: return g.one();
-    case Kind::jet: return g.jet(n.index, n.order + 1U);
-    case Kind::multiplier: return g.multiplier(n.index, n.order + 1U);
-    case Kind::given: return g.given(n.index, n.order + 1U);
-    case Kind::quasi: return g.quasi(n.index, n.order + 1U);
-    case Kind::state: return g.state(n.index, n.order + 1U);
-    case Kind::control: return g.control(n.index, n.order + 1U);
-    case Kind::number: case Kind::pi: case Kind::parameter: case Kind::mass: case Kind::sum:
-    case Kind::product: case Kind::function: case Kind::atan2: case Kind::select: case Kind::lookup:
-      return g.zero();
+  case Kind::time:
+    return g.one();
+  case Kind::jet:
+    return g.jet(n.index, n.order + 1U);
+  case Kind::multiplier:
+    return g.multiplier(n.index, n.order + 1U);
+  case Kind::given:
+    return g.given(n.index, n.order + 1U);
+  case Kind::quasi:
+    return g.quasi(n.index, n.order + 1U);
+  case Kind::state:
+    return g.state(n.index, n.order + 1U);
+  case Kind::control:
+    return g.control(n.index, n.order + 1U);
+  case Kind::number:
+  case Kind::pi:
+  case Kind::parameter:
+  case Kind::mass:
+  case Kind::sum:
+  case Kind::product:
+  case Kind::function:
+  case Kind::atan2:
+  case Kind::select:
+  case Kind::lookup:
+    return g.zero();
   }
   return g.zero();
 }
@@ -116,8 +154,8 @@ Column total_derivative(std::span<const Expr> es) {
     }
     const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
     std::vector<std::pair<Rational, Expr>> parts;
-    const bool constant = std::all_of(terms.begin(), terms.end(),
-                                      [&](const Term& t) { return is_zero(g.rate(t.node)); });
+    const bool constant =
+        std::all_of(terms.begin(), terms.end(), [&](const Term& t) { return is_zero(g.rate(t.node)); });
     if (constant) {
       g.set_rate(id, g.zero().id);
       continue;
@@ -148,8 +186,7 @@ Expr total_derivative(Expr e, unsigned times) {
   return e;
 }
 
-Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds,
-                std::span<const Expr> wanted) {
+Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds, std::span<const Expr> wanted) {
   ANHOLON_ASSERT(outputs.size() == seeds.size());
   if (wanted.empty()) return {};
   Graph& g = *wanted[0].graph;
@@ -225,40 +262,49 @@ static Column rebuild(std::span<const Expr> es, const std::function<Expr(NodeId)
       continue;
     }
     const std::vector<Term> terms(g.summands(id).begin(), g.summands(id).end());
-    const bool same = std::all_of(terms.begin(), terms.end(),
-                                  [&](const Term& t) { return image[t.node].id == t.node; });
+    const bool same =
+        std::all_of(terms.begin(), terms.end(), [&](const Term& t) { return image[t.node].id == t.node; });
     if (same) {
       image[id] = {&g, id};
       continue;
     }
     switch (n.kind) {
-      case Kind::sum: {
-        std::vector<std::pair<Rational, Expr>> parts;
-        for (const Term& t : terms) parts.push_back({g.rational(t.weight), image[t.node]});
-        image[id] = g.sum(parts);
-        break;
-      }
-      case Kind::product: {
-        std::vector<std::pair<Expr, Rational>> parts;
-        for (const Term& t : terms) parts.push_back({image[t.node], g.rational(t.weight)});
-        image[id] = g.product(parts);
-        break;
-      }
-      case Kind::function:
-        image[id] = g.apply(static_cast<Function>(n.index), image[terms[0].node]);
-        break;
-      case Kind::atan2:
-        image[id] = g.arctangent2(image[terms[0].node], image[terms[1].node]);
-        break;
-      case Kind::select:
-        image[id] = g.select(image[terms[0].node], image[terms[1].node], image[terms[2].node]);
-        break;
-      case Kind::lookup:
-        image[id] = g.lookup(n.index, image[terms[0].node]);
-        break;
-      case Kind::number: case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter:
-      case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::state: case Kind::control:
-        break;
+    case Kind::sum: {
+      std::vector<std::pair<Rational, Expr>> parts;
+      for (const Term& t : terms) parts.push_back({g.rational(t.weight), image[t.node]});
+      image[id] = g.sum(parts);
+      break;
+    }
+    case Kind::product: {
+      std::vector<std::pair<Expr, Rational>> parts;
+      for (const Term& t : terms) parts.push_back({image[t.node], g.rational(t.weight)});
+      image[id] = g.product(parts);
+      break;
+    }
+    case Kind::function:
+      image[id] = g.apply(static_cast<Function>(n.index), image[terms[0].node]);
+      break;
+    case Kind::atan2:
+      image[id] = g.arctangent2(image[terms[0].node], image[terms[1].node]);
+      break;
+    case Kind::select:
+      image[id] = g.select(image[terms[0].node], image[terms[1].node], image[terms[2].node]);
+      break;
+    case Kind::lookup:
+      image[id] = g.lookup(n.index, image[terms[0].node]);
+      break;
+    case Kind::number:
+    case Kind::pi:
+    case Kind::time:
+    case Kind::jet:
+    case Kind::parameter:
+    case Kind::mass:
+    case Kind::multiplier:
+    case Kind::given:
+    case Kind::quasi:
+    case Kind::state:
+    case Kind::control:
+      break;
     }
   }
   Column result;

@@ -28,8 +28,7 @@ Expr partial(Expr e, Expr symbol);
 
 // sum_c seeds[c] * d outputs[c] / d symbols[a] for every a, by one reverse sweep: the gradient of
 // sum_c seeds[c] * outputs[c] with the seeds held.
-Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds,
-                std::span<const Expr> symbols);
+Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds, std::span<const Expr> symbols);
 
 // Replaces symbols: `replacement(symbol id)` gives the new expression, or a handle with graph ==
 // nullptr to keep the symbol.

@@ -13,11 +13,16 @@ namespace anholon {
 
 const char* type_name(const Value& v) {
   switch (v.index()) {
-    case 0: return "a number";
-    case 1: return "a vector";
-    case 2: return "a rotation";
-    case 3: return "a body";
-    default: return "'inertial'";
+  case 0:
+    return "a number";
+  case 1:
+    return "a vector";
+  case 2:
+    return "a rotation";
+  case 3:
+    return "a body";
+  default:
+    return "'inertial'";
   }
 }
 
@@ -30,8 +35,7 @@ Expr* number(Value& v) { return std::get_if<Expr>(&v); }
 Vector* vector(Value& v) { return std::get_if<Vector>(&v); }
 Rotation* rotation(Value& v) { return std::get_if<Rotation>(&v); }
 
-[[noreturn]] void mismatch(const char* what, const Value& a, const Value& b, Span at,
-                           std::string hint = {}) {
+[[noreturn]] void mismatch(const char* what, const Value& a, const Value& b, Span at, std::string hint = {}) {
   throw Failure(at, std::string(what) + " of " + type_name(a) + " and " + type_name(b), std::move(hint));
 }
 
@@ -110,20 +114,31 @@ Value differentiate(Value v, int times, Span at, Names& names) {
     throw Failure(at, "a derivative of order " + std::to_string(times) + "; at most " +
                           std::to_string(kHighestDerivative) + " are read");
   if (v.index() == 3)
-    throw Failure(at, "derivative of a body", body_hint(v, names) + "; its angular velocity is angvel(" + names.body_name(std::get<BodyName>(v)) + ")");
+    throw Failure(at, "derivative of a body",
+                  body_hint(v, names) + "; its angular velocity is angvel(" + names.body_name(std::get<BodyName>(v)) +
+                      ")");
   const auto rough = [&](Expr e) {
     if (const auto name = too_rough(e, times))
-      throw Failure(at, "a derivative of order " + std::to_string(times) + " of the table '" + *name + "', which its fit does not have",
+      throw Failure(at,
+                    "a derivative of order " + std::to_string(times) + " of the table '" + *name +
+                        "', which its fit does not have",
                     "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
   };
-  if (const Expr* e = number(v)) rough(*e);
-  else if (const Vector* a = vector(v)) rough(a->x), rough(a->y), rough(a->z);
-  if (Expr* e = number(v)) v = names.in_time(*e);
-  else if (Vector* a = vector(v)) v = Vector{names.in_time(a->x), names.in_time(a->y), names.in_time(a->z)};
+  if (const Expr* e = number(v))
+    rough(*e);
+  else if (const Vector* a = vector(v))
+    rough(a->x), rough(a->y), rough(a->z);
+  if (Expr* e = number(v))
+    v = names.in_time(*e);
+  else if (Vector* a = vector(v))
+    v = Vector{names.in_time(a->x), names.in_time(a->y), names.in_time(a->z)};
   for (; times > 0; --times) {
-    if (Expr* e = number(v)) v = total_derivative(*e);
-    else if (Vector* a = vector(v)) v = total_derivative(*a);
-    else throw Failure(at, std::string("derivative of ") + type_name(v), "take the derivative of its axes: R.x'");
+    if (Expr* e = number(v))
+      v = total_derivative(*e);
+    else if (Vector* a = vector(v))
+      v = total_derivative(*a);
+    else
+      throw Failure(at, std::string("derivative of ") + type_name(v), "take the derivative of its axes: R.x'");
   }
   if (Expr* e = number(v))
     if (jet_order(*e) > kHighestDerivative)
@@ -138,8 +153,9 @@ struct Arguments {
 
   void expect(std::size_t n) const {
     if (values.size() != n)
-      throw Failure(call.span, call.text + " takes " + std::to_string(n) + (n == 1 ? " argument, " : " arguments, ") +
-                                   std::to_string(values.size()) + (values.size() == 1 ? " is" : " are") + " given",
+      throw Failure(call.span,
+                    call.text + " takes " + std::to_string(n) + (n == 1 ? " argument, " : " arguments, ") +
+                        std::to_string(values.size()) + (values.size() == 1 ? " is" : " are") + " given",
                     habit_of_call(call));
   }
   Expr number(std::size_t i) const {
@@ -151,8 +167,9 @@ struct Arguments {
     values[i] = as_point(values[i], names, call.args[i].span);
     if (Vector* v = std::get_if<Vector>(&values[i])) return *v;
     if (Expr* e = std::get_if<Expr>(&values[i]); e && is_zero(*e)) return zero_vector(*e->graph);
-    throw Failure(call.args[i].span, "argument " + std::to_string(i + 1) + " of " + call.text + " is " +
-                                         type_name(values[i]) + ", not a vector",
+    throw Failure(call.args[i].span,
+                  "argument " + std::to_string(i + 1) + " of " + call.text + " is " + type_name(values[i]) +
+                      ", not a vector",
                   body_hint(values[i], names));
   }
   long integer(std::size_t i, long most) const {
@@ -182,7 +199,8 @@ Value branch(Expr s, Value a, Value b, Span at, Names& names) {
 Value piecewise(const Syntax& call, Names& names) {
   const std::size_t n = call.args.size();
   if (n < 3 || n % 2 == 0)
-    throw Failure(call.span, "piecewise takes conditions with their values, and a value for all else", "piecewise(x > 1, 1, x > 0, x, 0)");
+    throw Failure(call.span, "piecewise takes conditions with their values, and a value for all else",
+                  "piecewise(x > 1, 1, x > 0, x, 0)");
   Value value = evaluate(call.args[n - 1], names);
   for (std::size_t k = n - 1; k >= 2; k -= 2) {
     const Syntax& c = call.args[k - 2];
@@ -200,17 +218,20 @@ Value piecewise(const Syntax& call, Names& names) {
 // choose(k, v1, v2, …): v_k, k a mode or another whole number; the first below 1, the last above their number.
 Value choose(const Arguments& in) {
   const std::size_t n = in.values.size();
-  if (n < 2) throw Failure(in.call.span, "choose takes a number and the values to choose from", "choose(stage, 2500, 270, 0)");
+  if (n < 2)
+    throw Failure(in.call.span, "choose takes a number and the values to choose from", "choose(stage, 2500, 270, 0)");
   const Expr k = in.number(0);
   Value value = in.values[n - 1];
   for (std::size_t i = n - 1; i-- > 1;)
-    value = branch(Expr(in.number(0).graph->number(Rational(2 * static_cast<int>(i) + 1, 2))) - k, in.values[i], value, in.call.args[i].span, in.names);
+    value = branch(Expr(in.number(0).graph->number(Rational(2 * static_cast<int>(i) + 1, 2))) - k, in.values[i], value,
+                   in.call.args[i].span, in.names);
   return value;
 }
 
 // A call of what does not exist, as other systems write it: diff(x, t), if(x > 0, a, b), x(t).
 void answer_habits(const Syntax& s, Names& names) {
-  if (const std::string habit = habit_of_call(s); !habit.empty()) throw Failure(s.span, "unknown function '" + s.text + "'", habit);
+  if (const std::string habit = habit_of_call(s); !habit.empty())
+    throw Failure(s.span, "unknown function '" + s.text + "'", habit);
   if (s.args.size() != 1) return;
   std::optional<Value> value;
   try {
@@ -221,7 +242,11 @@ void answer_habits(const Syntax& s, Names& names) {
   if (!number(*value)) return;
   const bool of_time = s.args[0].op == Syntax::Op::name && s.args[0].text == "t";
   throw Failure(s.span, "'" + s.text + "' is not a function" + (of_time ? ": it is the value at t" : ""),
-                "write " + s.text + (of_time ? "" : "*" + (s.args[0].op == Syntax::Op::add ? "(" + print(s.args[0]) + ")" : print(s.args[0])) + " for a product"));
+                "write " + s.text +
+                    (of_time
+                         ? ""
+                         : "*" + (s.args[0].op == Syntax::Op::add ? "(" + print(s.args[0]) + ")" : print(s.args[0])) +
+                               " for a product"));
 }
 
 bool is_built_in(const std::string& f) {
@@ -244,7 +269,9 @@ Value call(const Syntax& s, Names& names) {
     return euler(s, values, g);
   }
   // Conditions stand among the arguments of an "if" from elsewhere.
-  if (std::any_of(s.args.begin(), s.args.end(), [](const Syntax& a) { return a.op == Syntax::Op::compare; }) && !is_built_in(f)) answer_habits(s, names);
+  if (std::any_of(s.args.begin(), s.args.end(), [](const Syntax& a) { return a.op == Syntax::Op::compare; }) &&
+      !is_built_in(f))
+    answer_habits(s, names);
   for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
   const Arguments in{s, values, names};
 
@@ -314,85 +341,93 @@ Value call(const Syntax& s, Names& names) {
 static Value value_of(const Syntax& s, Names& names) {
   Graph& g = names.graph();
   switch (s.op) {
-    case Syntax::Op::number: {
-      const auto r = parse_rational(s.text);
-      if (!r) throw Failure(s.span, "the number " + s.text.substr(0, 40) + " is out of all proportion");
-      return g.number(*r);
+  case Syntax::Op::number: {
+    const auto r = parse_rational(s.text);
+    if (!r) throw Failure(s.span, "the number " + s.text.substr(0, 40) + " is out of all proportion");
+    return g.number(*r);
+  }
+  case Syntax::Op::quantity: {
+    const std::optional<Unit> unit = read_unit(s.text);
+    ANHOLON_ASSERT(unit.has_value());
+    const Expr number = evaluate_number(s.args[0], names), pi = pow(g.pi(), unit->pi);
+    return unit->factor * (number * pi);
+  }
+  case Syntax::Op::name:
+    return names.name(s.text, s.span);
+  case Syntax::Op::call:
+    return call(s, names);
+  case Syntax::Op::member:
+    return names.member(evaluate(s.args[0], names), s);
+  case Syntax::Op::array: {
+    if (s.args.size() != 3) throw Failure(s.span, "a vector has three components");
+    return Vector{evaluate_number(s.args[0], names), evaluate_number(s.args[1], names),
+                  evaluate_number(s.args[2], names)};
+  }
+  case Syntax::Op::compare:
+    throw Failure(s.span, "a condition is not a number: it stands in piecewise only",
+                  "write piecewise(" + print(s) + ", 1, 0) in place of (" + print(s) + ")");
+  case Syntax::Op::negate: {
+    Value v = as_point(evaluate(s.args[0], names), names, s.span);
+    if (Expr* e = number(v)) return -*e;
+    if (Vector* a = vector(v)) return g.number(-1) * *a;
+    throw Failure(s.span, std::string("minus ") + type_name(v), body_hint(v, names));
+  }
+  case Syntax::Op::prime: {
+    // x''' is three nested primes: count them here, so that each order is one step.
+    int times = 1;
+    const Syntax* inner = &s.args[0];
+    for (; inner->op == Syntax::Op::prime; inner = &inner->args[0]) ++times;
+    return differentiate(evaluate(*inner, names), times, s.span, names);
+  }
+  case Syntax::Op::power:
+    return power(evaluate(s.args[0], names), evaluate(s.args[1], names), s.span);
+  case Syntax::Op::add: {
+    // Numbers are summed at once, so that a long sum is linear work.
+    std::vector<Value> values;
+    for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
+    if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 0; })) {
+      std::vector<std::pair<Rational, Expr>> parts;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool minus = i > 0 && s.operators[i - 1].op == Syntax::Op::subtract;
+        parts.push_back({minus ? -1 : 1, std::get<Expr>(values[i])});
+      }
+      return g.sum(parts);
     }
-    case Syntax::Op::quantity: {
-      const std::optional<Unit> unit = read_unit(s.text);
-      ANHOLON_ASSERT(unit.has_value());
-      const Expr number = evaluate_number(s.args[0], names), pi = pow(g.pi(), unit->pi);
-      return unit->factor * (number * pi);
-    }
-    case Syntax::Op::name: return names.name(s.text, s.span);
-    case Syntax::Op::call: return call(s, names);
-    case Syntax::Op::member: return names.member(evaluate(s.args[0], names), s);
-    case Syntax::Op::array: {
-      if (s.args.size() != 3) throw Failure(s.span, "a vector has three components");
-      return Vector{evaluate_number(s.args[0], names), evaluate_number(s.args[1], names),
-                    evaluate_number(s.args[2], names)};
-    }
-    case Syntax::Op::compare:
-      throw Failure(s.span, "a condition is not a number: it stands in piecewise only", "write piecewise(" + print(s) + ", 1, 0) in place of (" + print(s) + ")");
-    case Syntax::Op::negate: {
-      Value v = as_point(evaluate(s.args[0], names), names, s.span);
-      if (Expr* e = number(v)) return -*e;
-      if (Vector* a = vector(v)) return g.number(-1) * *a;
-      throw Failure(s.span, std::string("minus ") + type_name(v), body_hint(v, names));
-    }
-    case Syntax::Op::prime: {
-      // x''' is three nested primes: count them here, so that each order is one step.
-      int times = 1;
-      const Syntax* inner = &s.args[0];
-      for (; inner->op == Syntax::Op::prime; inner = &inner->args[0]) ++times;
-      return differentiate(evaluate(*inner, names), times, s.span, names);
-    }
-    case Syntax::Op::power:
-      return power(evaluate(s.args[0], names), evaluate(s.args[1], names), s.span);
-    case Syntax::Op::add: {
-      // Numbers are summed at once, so that a long sum is linear work.
-      std::vector<Value> values;
-      for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
-      if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 0; })) {
+    if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 1; })) {
+      Vector total;
+      for (int axis = 0; axis < 3; ++axis) {
         std::vector<std::pair<Rational, Expr>> parts;
         for (std::size_t i = 0; i < values.size(); ++i) {
           const bool minus = i > 0 && s.operators[i - 1].op == Syntax::Op::subtract;
-          parts.push_back({minus ? -1 : 1, std::get<Expr>(values[i])});
+          parts.push_back({minus ? -1 : 1, std::get<Vector>(values[i])[axis]});
         }
-        return g.sum(parts);
+        total[axis] = g.sum(parts);
       }
-      if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 1; })) {
-        Vector total;
-        for (int axis = 0; axis < 3; ++axis) {
-          std::vector<std::pair<Rational, Expr>> parts;
-          for (std::size_t i = 0; i < values.size(); ++i) {
-            const bool minus = i > 0 && s.operators[i - 1].op == Syntax::Op::subtract;
-            parts.push_back({minus ? -1 : 1, std::get<Vector>(values[i])[axis]});
-          }
-          total[axis] = g.sum(parts);
-        }
-        return total;
-      }
-      Value total = values[0];
-      for (std::size_t i = 1; i < values.size(); ++i)
-        total = add(total, values[i], s.operators[i - 1].op == Syntax::Op::subtract, s.operators[i - 1].span, names);
       return total;
     }
-    case Syntax::Op::multiply: {
-      Value product = evaluate(s.args[0], names);
-      for (std::size_t i = 1; i < s.args.size(); ++i) {
-        const Syntax::Operator& o = s.operators[i - 1];
-        Value factor = evaluate(s.args[i], names);
-        product = o.op == Syntax::Op::divide ? divide(product, factor, o.span, names)
-                                             : multiply(product, factor, o.op, o.span, names);
-      }
-      return product;
+    Value total = values[0];
+    for (std::size_t i = 1; i < values.size(); ++i)
+      total = add(total, values[i], s.operators[i - 1].op == Syntax::Op::subtract, s.operators[i - 1].span, names);
+    return total;
+  }
+  case Syntax::Op::multiply: {
+    Value product = evaluate(s.args[0], names);
+    for (std::size_t i = 1; i < s.args.size(); ++i) {
+      const Syntax::Operator& o = s.operators[i - 1];
+      Value factor = evaluate(s.args[i], names);
+      product = o.op == Syntax::Op::divide ? divide(product, factor, o.span, names)
+                                           : multiply(product, factor, o.op, o.span, names);
     }
-    case Syntax::Op::index: case Syntax::Op::apply:
-      break;  // replaced by the parser
-    case Syntax::Op::subtract: case Syntax::Op::divide: case Syntax::Op::dot: case Syntax::Op::cross:
-      break;  // only inside `operators`
+    return product;
+  }
+  case Syntax::Op::index:
+  case Syntax::Op::apply:
+    break;  // replaced by the parser
+  case Syntax::Op::subtract:
+  case Syntax::Op::divide:
+  case Syntax::Op::dot:
+  case Syntax::Op::cross:
+    break;  // only inside `operators`
   }
   ANHOLON_ASSERT(false);
   return g.zero();
@@ -437,8 +472,9 @@ Vector evaluate_vector(const Syntax& s, Names& names) {
   if (Vector* a = vector(v)) return *a;
   if (Expr* e = number(v); e && is_zero(*e)) return zero_vector(names.graph());
   throw Failure(s.span, std::string("a vector is expected, this is ") + type_name(v),
-                v.index() == 3 ? body_hint(v, names)
-                : v.index() == 0 ? "along the first axis: x*ex, or [\"x\", \"0\", \"0\"]" : "");
+                v.index() == 3   ? body_hint(v, names)
+                : v.index() == 0 ? "along the first axis: x*ex, or [\"x\", \"0\", \"0\"]"
+                                 : "");
 }
 
 Rotation evaluate_rotation(const Syntax& s, Names& names) {

@@ -31,7 +31,8 @@ constexpr std::uint32_t kOpenedFactors = 64;
 // Likewise a sum of more terms is one term of a larger sum: the position of link i of a long chain.
 constexpr std::uint32_t kOpenedTerms = 32;
 
-// Numbers of more machine words than the first cost more than one unit of work; numbers of more than the second are refused.
+// Numbers of more machine words than the first cost more than one unit of work; numbers of more than the second are
+// refused.
 constexpr std::size_t kShortNumber = 16, kLongestNumber = 8'000;
 
 // A sum of more terms than this is computed through the partial sum it grew from.
@@ -65,14 +66,18 @@ void Graph::set_rate(NodeId id, NodeId rate) {
 
 void Graph::spend(std::uint64_t work) {
   work_ += work;
-  if (work_ > most_work_) throw Failure(Span{}, "the expressions grow out of all proportion", "fewer derivatives or powers, or fewer definitions within definitions");
+  if (work_ > most_work_)
+    throw Failure(Span{}, "the expressions grow out of all proportion",
+                  "fewer derivatives or powers, or fewer definitions within definitions");
 }
 
 // Short numbers, most of them, without what GMP takes to write a number.
 static std::string key(const Rational& r) {
   if (!r.get_num().fits_slong_p() || !r.get_den().fits_slong_p()) return r.get_str(62);
   std::array<char, 24> digits;
-  const auto text = [&digits](long n) { return std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), n).ptr); };
+  const auto text = [&digits](long n) {
+    return std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), n).ptr);
+  };
   std::string key("#");  // no digit
   key += text(r.get_num().get_si());
   if (r.get_den() != 1) key += '/', key += text(r.get_den().get_si());
@@ -83,7 +88,8 @@ std::uint32_t Graph::rational_index(const Rational& r) {
   if (one_ != 0 && r == 1) return nodes_[one_].index;  // most of them
   // Arithmetic with long numbers and their text take time that grows with their square.
   if (const std::size_t limbs = mpz_size(r.get_num_mpz_t()) + mpz_size(r.get_den_mpz_t()); limbs > kShortNumber) {
-    if (limbs > kLongestNumber) throw Failure(Span{}, "a number of more than " + std::to_string(kLongestNumber * 19) + " digits");
+    if (limbs > kLongestNumber)
+      throw Failure(Span{}, "a number of more than " + std::to_string(kLongestNumber * 19) + " digits");
     spend(limbs * limbs / kShortNumber);
   }
   const auto [it, fresh] = rational_index_.try_emplace(key(r), static_cast<std::uint32_t>(rationals_.size()));
@@ -102,9 +108,8 @@ NodeId Graph::intern(Node node, std::span<const Term> operands, std::span<const 
         other.count != operands.size())
       continue;
     const std::span<const Term> theirs = terms(it->second);
-    if (std::equal(operands.begin(), operands.end(), theirs.begin(), [](const Term& a, const Term& b) {
-          return a.weight == b.weight && a.node == b.node;
-        }))
+    if (std::equal(operands.begin(), operands.end(), theirs.begin(),
+                   [](const Term& a, const Term& b) { return a.weight == b.weight && a.node == b.node; }))
       return it->second;
   }
   node.first = node.view_first = static_cast<std::uint32_t>(terms_.size());
@@ -141,7 +146,8 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
   spend(operands.size());
   std::vector<Part> parts;
   std::size_t most = 0;
-  for (const auto& [factor, e] : operands) most += nodes_[e.id].kind == Kind::sum && nodes_[e.id].count <= kOpenedTerms ? nodes_[e.id].count : 1;
+  for (const auto& [factor, e] : operands)
+    most += nodes_[e.id].kind == Kind::sum && nodes_[e.id].count <= kOpenedTerms ? nodes_[e.id].count : 1;
   parts.reserve(most);
   NodeId longest = zero_;  // the operand sum with most terms, candidate for the short way
   Rational longest_factor;
@@ -155,19 +161,19 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
     } else if (n.kind == Kind::sum) {
       spend(n.count);
       for (const Term& t : terms(e.id)) parts.push_back({t.node, factor * rational(t.weight)});
-      if (n.count > 1 && (longest == zero_ || n.count > nodes_[longest].count))
-        longest = e.id, longest_factor = factor;
+      if (n.count > 1 && (longest == zero_ || n.count > nodes_[longest].count)) longest = e.id, longest_factor = factor;
     } else {
       parts.push_back({e.id, factor});
     }
   }
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const Part& a, const Part& b) { return a.node < b.node; });
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.node < b.node; });
   std::vector<Part> merged;
   merged.reserve(parts.size());
   for (Part& p : parts) {
-    if (!merged.empty() && merged.back().node == p.node) merged.back().coefficient += p.coefficient;
-    else merged.push_back(std::move(p));
+    if (!merged.empty() && merged.back().node == p.node)
+      merged.back().coefficient += p.coefficient;
+    else
+      merged.push_back(std::move(p));
   }
   std::erase_if(merged, [](const Part& p) { return p.coefficient == 0; });
   if (merged.empty()) return zero();
@@ -239,8 +245,7 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
   std::vector<Part> parts;
   // Operands are opened one level at a time: c*x inside a product gives up c, a product its factors.
   std::vector<Part> pending;
-  for (auto it = operands.rbegin(); it != operands.rend(); ++it)
-    pending.push_back({it->first.id, it->second});
+  for (auto it = operands.rbegin(); it != operands.rend(); ++it) pending.push_back({it->first.id, it->second});
   while (!pending.empty()) {
     Part p = std::move(pending.back());
     pending.pop_back();
@@ -271,9 +276,11 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
         parts.push_back(std::move(p));
       }
     } else if (n.kind == Kind::sum) {
-      // A positive content comes out of any power, a sign out of a whole one. A long sum stays as it is: what is scaled by its
-      // content would be one term, which gives the factor back.
-      const Rational c = n.count == 1 ? rational(terms_[n.first].weight) : n.count > kOpenedTerms ? Rational(1) : content(*this, p.node);
+      // A positive content comes out of any power, a sign out of a whole one. A long sum stays as it is: what is scaled
+      // by its content would be one term, which gives the factor back.
+      const Rational c = n.count == 1             ? rational(terms_[n.first].weight)
+                         : n.count > kOpenedTerms ? Rational(1)
+                                                  : content(*this, p.node);
       const Rational out = integer ? c : Rational(abs(c));
       const bool whole_out = integer && exact_power(c, p.exponent.get_num().get_si());
       if (out != 1 && (whole_out || !integer)) {
@@ -299,8 +306,7 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
       parts.push_back(std::move(p));
     }
   }
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const Part& a, const Part& b) { return a.node < b.node; });
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.node < b.node; });
   std::vector<Part> merged;
   bool joined = false;
   for (Part& p : parts) {
@@ -347,18 +353,30 @@ static bool negative(const Graph& g, NodeId id) {
 // The value at a rational argument, where it is rational.
 static std::optional<Rational> exact_value(Function f, const Rational& x) {
   switch (f) {
-    case Function::sin: case Function::tan: case Function::asin: case Function::atan:
-    case Function::sinh: case Function::tanh: case Function::asinh: case Function::atanh:
-      if (x == 0) return Rational(0);
-      return std::nullopt;
-    case Function::cos: case Function::cosh: case Function::exp:
-      if (x == 0) return Rational(1);
-      return std::nullopt;
-    case Function::log: case Function::acos: case Function::acosh:
-      if (x == 1) return Rational(0);
-      return std::nullopt;
-    case Function::abs: return Rational(::abs(x));
-    case Function::sign: return Rational(sgn(x));
+  case Function::sin:
+  case Function::tan:
+  case Function::asin:
+  case Function::atan:
+  case Function::sinh:
+  case Function::tanh:
+  case Function::asinh:
+  case Function::atanh:
+    if (x == 0) return Rational(0);
+    return std::nullopt;
+  case Function::cos:
+  case Function::cosh:
+  case Function::exp:
+    if (x == 0) return Rational(1);
+    return std::nullopt;
+  case Function::log:
+  case Function::acos:
+  case Function::acosh:
+    if (x == 1) return Rational(0);
+    return std::nullopt;
+  case Function::abs:
+    return Rational(::abs(x));
+  case Function::sign:
+    return Rational(sgn(x));
   }
   return std::nullopt;
 }
@@ -367,22 +385,33 @@ static std::optional<Rational> exact_value(Function f, const Rational& x) {
 static std::optional<Rational> value_at_pi(const Graph& g, Function f, NodeId x) {
   const Node& n = g.node(x);
   Rational turns;  // x = turns * pi
-  if (n.kind == Kind::pi) turns = 1;
+  if (n.kind == Kind::pi)
+    turns = 1;
   else if (n.kind == Kind::sum && n.count == 1 && g.node(g.terms(x)[0].node).kind == Kind::pi)
     turns = g.rational(g.terms(x)[0].weight);
-  else return std::nullopt;
+  else
+    return std::nullopt;
   if (f != Function::sin && f != Function::cos) return std::nullopt;
   Rational sixths = turns * 6;
   if (sixths.get_den() != 1) return std::nullopt;
   mpz_class k = f == Function::cos ? mpz_class(sixths.get_num() + 3) : sixths.get_num();
   const unsigned long step = mpz_fdiv_ui(k.get_mpz_t(), 12);  // sin(step * pi/6)
   switch (step) {
-    case 0: case 6: return Rational(0);
-    case 1: case 5: return Rational(1, 2);
-    case 3: return Rational(1);
-    case 7: case 11: return Rational(-1, 2);
-    case 9: return Rational(-1);
-    default: return std::nullopt;
+  case 0:
+  case 6:
+    return Rational(0);
+  case 1:
+  case 5:
+    return Rational(1, 2);
+  case 3:
+    return Rational(1);
+  case 7:
+  case 11:
+    return Rational(-1, 2);
+  case 9:
+    return Rational(-1);
+  default:
+    return std::nullopt;
   }
 }
 
@@ -392,9 +421,12 @@ Expr Graph::apply(Function f, Expr x) {
   if (auto v = value_at_pi(*this, f, x.id)) return number(*v);
   if (negative(*this, x.id)) {
     switch (kParity[static_cast<std::size_t>(f)]) {
-      case Parity::even: return apply(f, -x);
-      case Parity::odd: return -apply(f, -x);
-      case Parity::none: break;
+    case Parity::even:
+      return apply(f, -x);
+    case Parity::odd:
+      return -apply(f, -x);
+    case Parity::none:
+      break;
     }
   }
   const Term operand[] = {{0, x.id}};
@@ -473,7 +505,7 @@ Expr sum(std::span<const Expr> terms) {
   return terms[0].graph->sum(parts);
 }
 
-#define ROW(name, derivative, parity, latex, domain) \
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
   Expr name(Expr u) { return u.graph->apply(Function::name, u); }
 #include "expr/elementary.def"
 #undef ROW

@@ -32,7 +32,7 @@
 namespace anholon {
 
 enum class Kind : std::uint8_t {
-  number,      // rational
+  number,  // rational
   pi,
   time,        // t
   jet,         // q_index^(order)
@@ -43,21 +43,21 @@ enum class Kind : std::uint8_t {
   quasi,       // a quasi-velocity u_index^(order)
   sum,
   product,
-  function,    // elementary function `index` of one operand
-  atan2,       // two operands (y, x)
-  state,       // a state z_index^(order) that the user declared, with a rate of its own
-  control,     // an input u_index^(order): known only when the system is made
-  select,      // three operands (s, a, b): a where s >= 0, else b
-  lookup,      // step function `index` of one operand
+  function,  // elementary function `index` of one operand
+  atan2,     // two operands (y, x)
+  state,     // a state z_index^(order) that the user declared, with a rate of its own
+  control,   // an input u_index^(order): known only when the system is made
+  select,    // three operands (s, a, b): a where s >= 0, else b
+  lookup,    // step function `index` of one operand
 };
 
-// Constant between its knots: values[k] where k knots are at or below the argument. Tables are polynomials between knots,
-// whose coefficients are such functions.
+// Constant between its knots: values[k] where k knots are at or below the argument. Tables are polynomials between
+// knots, whose coefficients are such functions.
 struct StepFunction {
   std::string name;
   std::vector<Rational> knots, values;  // ascending; values.size() = knots.size() + 1
-  // Of a table: the power of the argument whose coefficient this is (-1: where the polynomial is measured from), and how many
-  // derivatives of the table are continuous (-1: the table itself jumps).
+  // Of a table: the power of the argument whose coefficient this is (-1: where the polynomial is measured from), and
+  // how many derivatives of the table are continuous (-1: the table itself jumps).
   int power = 0, smooth = 100;
 };
 
@@ -93,9 +93,9 @@ struct Term {
 
 struct Node {
   Kind kind;
-  std::uint8_t order = 0;     // derivative order of a symbol
-  std::uint32_t index = 0;    // symbol, function or rational index
-  std::uint32_t first = 0, count = 0;          // flat terms
+  std::uint8_t order = 0;                        // derivative order of a symbol
+  std::uint32_t index = 0;                       // symbol, function or rational index
+  std::uint32_t first = 0, count = 0;            // flat terms
   std::uint32_t view_first = 0, view_count = 0;  // terms of the short way (sums)
 };
 
@@ -151,9 +151,7 @@ class Graph {
   // Reading.
   std::size_t size() const { return nodes_.size(); }
   const Node& node(NodeId id) const { return nodes_[id]; }
-  std::span<const Term> terms(NodeId id) const {
-    return {terms_.data() + nodes_[id].first, nodes_[id].count};
-  }
+  std::span<const Term> terms(NodeId id) const { return {terms_.data() + nodes_[id].first, nodes_[id].count}; }
   // Terms of a sum by the short way, operands of anything else: use this for every sweep.
   std::span<const Term> summands(NodeId id) const {
     return {terms_.data() + nodes_[id].view_first, nodes_[id].view_count};

@@ -2,8 +2,9 @@
 //
 // The grammar (format.md): + - * / ^ with the usual strength (^ binds to the right and before a
 // leading minus), postfix ' for the total derivative, calls f(a, b), members P.x, arrays [a, b, c],
-// one or more `=` in an equation. A number may carry a unit, `30 deg`, `9.81 m/s^2`, after a blank and without blanks in it. Names are letters, digits and _; a Greek letter is the same name
-// as its spelling; superscript 2 3, ·, ×, − and other dashes are accepted. `#` starts a comment.
+// one or more `=` in an equation. A number may carry a unit, `30 deg`, `9.81 m/s^2`, after a blank and without blanks
+// in it. Names are letters, digits and _; a Greek letter is the same name as its spelling; superscript 2 3, ·, ×, − and
+// other dashes are accepted. `#` starts a comment.
 #pragma once
 #include <array>
 #include <memory>
@@ -48,23 +49,31 @@ struct Syntax {
   enum class Op : std::uint8_t {
     number,
     quantity,  // a number with a unit: args[0] the number, text the unit as written
-    name, call, member, array, negate, power, prime,
-    index, apply,  // P[i-1], and T[i](a, b) (args[0] is T[i]): in a parsed formula names and calls have taken their place
-    add,       // args joined by operators add, subtract
+    name,
+    call,
+    member,
+    array,
+    negate,
+    power,
+    prime,
+    index,
+    apply,  // P[i-1], and T[i](a, b) (args[0] is T[i]): in a parsed formula names and calls have taken their place
+    add,    // args joined by operators add, subtract
     subtract,
     multiply,  // args joined by operators multiply, divide, dot, cross
     divide,
-    compare,   // one of > < >= <= (in text) between two: a condition of piecewise
-    dot, cross,  // the signs · and ×: of two vectors these products, of numbers the ordinary one
+    compare,  // one of > < >= <= (in text) between two: a condition of piecewise
+    dot,
+    cross,  // the signs · and ×: of two vectors these products, of numbers the ordinary one
   };
   struct Operator {
     Op op;
     Span span;
   };
   Op op;
-  std::string text;             // name, number or member
-  std::vector<Syntax> args;     // operands; of a call or index the arguments (callee in text)
-  Span span;                    // of the operator or name itself
+  std::string text;                 // name, number or member
+  std::vector<Syntax> args;         // operands; of a call or index the arguments (callee in text)
+  Span span;                        // of the operator or name itself
   std::size_t offset = 0, end = 0;  // the whole subformula, in characters
   std::vector<Operator> operators;  // of add and multiply: before args[1], args[2], …
 };
@@ -92,9 +101,9 @@ struct Vector {
 // A rotation with its angular velocity relative to the observer, in the observer's axes and in its
 // own; both are built up turn by turn, which keeps them as short as a person would write them.
 struct Rotation {
-  Vector columns[3];  // the new axes in the observer's axes
-  Vector rate;        // angular velocity, components along the observer's axes
-  Vector own_rate;    // the same vector, components along the new axes
+  Vector columns[3];     // the new axes in the observer's axes
+  Vector rate;           // angular velocity, components along the observer's axes
+  Vector own_rate;       // the same vector, components along the new axes
   bool by_turns = true;  // orthonormal identically (a quaternion is so only on its unit sphere)
   const Vector& operator[](int k) const { return columns[k]; }
 };
@@ -111,13 +120,13 @@ Vector operator*(const Rotation& r, const Vector& a);
 Vector transpose_times(const Rotation& r, const Vector& a);
 Rotation operator*(const Rotation& a, const Rotation& b);
 Rotation identity_rotation(Graph& g);
-Rotation turn(int axis, Expr angle);                   // rotx, roty, rotz: axis 0, 1, 2
+Rotation turn(int axis, Expr angle);  // rotx, roty, rotz: axis 0, 1, 2
 Rotation turn(const Vector& unit_axis, Expr angle);
 // The rotation with the given axes; its rate is 1/2 sum_k u_k x u_k' (theory: weighted-points).
 Rotation rotation_from_axes(const Vector& x, const Vector& y, const Vector& z);
 
-// A body named in a formula. Where a point is wanted a particle is one, and where a frame is wanted a body with an orientation
-// is one (Names::point, Names::frame); of all bodies there are `B.center`, `B.x`, vel(B, P), ….
+// A body named in a formula. Where a point is wanted a particle is one, and where a frame is wanted a body with an
+// orientation is one (Names::point, Names::frame); of all bodies there are `B.center`, `B.x`, vel(B, P), ….
 struct BodyName {
   std::size_t index;
 };
@@ -132,8 +141,8 @@ struct Names {
   virtual Graph& graph() = 0;
   virtual Value name(const std::string& name, Span span) = 0;
   // Functions beyond the built-in ones (velocity of a point, given functions); false if unknown.
-  virtual bool call(const std::string& function, const std::vector<Value>& arguments,
-                    const Syntax& syntax, Value& result) = 0;
+  virtual bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax,
+                    Value& result) = 0;
   virtual Value member(const Value& object, const Syntax& syntax) = 0;
   virtual std::vector<std::string> functions() const = 0;  // for "did you mean"
   // What a body is where a point or a frame is wanted; nothing where it is none.

@@ -1,5 +1,5 @@
-// The functions of formulas as a table: what they are called with, what they mean, an example. Those of one argument with a
-// derivative of their own come from elementary.def.
+// The functions of formulas as a table: what they are called with, what they mean, an example. Those of one argument
+// with a derivative of their own come from elementary.def.
 #pragma once
 #include <string>
 #include <vector>

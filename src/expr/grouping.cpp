@@ -11,15 +11,16 @@ namespace anholon::arrangement {
 namespace {
 
 // Bounds on the effort for one expression. All are far above what a person reads.
-constexpr std::size_t kFactoredTerms = 64;     // monomials of a polynomial that FLINT factors,
+constexpr std::size_t kFactoredTerms = 64;      // monomials of a polynomial that FLINT factors,
 constexpr std::size_t kFactoredVariables = 12;  // its variables
 constexpr unsigned long kFactoredDegree = 10;   // and its total degree
-constexpr std::size_t kComparedTerms = 100;    // monomials that are compared in pairs
-constexpr long kMostSteps = 2'000;             // sums that are put into groups
-constexpr long kMostComparisons = 1'000'000;   // of a monomial with a factor of others
-constexpr std::size_t kNestedBrackets = 3;      // what brackets around n levels of brackets cost: this times n^2 characters,
-constexpr std::size_t kRepeated = 12;           // and an acceleration in a second place
-constexpr int kDeepest = 12;                   // groups within groups
+constexpr std::size_t kComparedTerms = 100;     // monomials that are compared in pairs
+constexpr long kMostSteps = 2'000;              // sums that are put into groups
+constexpr long kMostComparisons = 1'000'000;    // of a monomial with a factor of others
+constexpr std::size_t kNestedBrackets =
+    3;                                 // what brackets around n levels of brackets cost: this times n^2 characters,
+constexpr std::size_t kRepeated = 12;  // and an acceleration in a second place
+constexpr int kDeepest = 12;           // groups within groups
 
 using Mask = std::vector<bool>;
 
@@ -74,7 +75,8 @@ class Grouping {
     std::uint64_t bits = 0;
     for (std::size_t k = 0; k < exponents.size(); ++k)
       if (exponents[k] > 0) bits |= bit_[k];
-    return {c * g_.product(factors), std::max<std::size_t>(1, number + symbols - (symbols > 0 ? 1 : 0)), false, 0, bits};
+    return {c * g_.product(factors), std::max<std::size_t>(1, number + symbols - (symbols > 0 ? 1 : 0)), false, 0,
+            bits};
   }
 
   Built flat(const Sum& s) const {
@@ -91,7 +93,9 @@ class Grouping {
   }
 
   Built bracketed(const Built& b) const {
-    return b.is_sum ? Built{b.e, b.length + 2 + kNestedBrackets * b.depth * b.depth, false, b.depth + 1, b.accelerations} : b;
+    return b.is_sum
+               ? Built{b.e, b.length + 2 + kNestedBrackets * b.depth * b.depth, false, b.depth + 1, b.accelerations}
+               : b;
   }
 
   Built total(const std::vector<Built>& parts) const {
@@ -99,7 +103,8 @@ class Grouping {
     Built t{g_.zero(), 0, parts.size() > 1 || parts[0].is_sum};
     for (const Built& b : parts) {
       es.push_back(b.e);
-      t.length += b.length + (es.size() > 1 ? 3 : 0) + kRepeated * static_cast<std::size_t>(std::popcount(t.accelerations & b.accelerations));
+      t.length += b.length + (es.size() > 1 ? 3 : 0) +
+                  kRepeated * static_cast<std::size_t>(std::popcount(t.accelerations & b.accelerations));
       t.depth = std::max(t.depth, b.depth);
       t.accelerations |= b.accelerations;
     }

@@ -27,7 +27,8 @@ std::size_t size(const Syntax& s) {
 bool is_repetition(const Syntax& s) { return s.op == Syntax::Op::call && (s.text == "sum" || s.text == "prod"); }
 
 std::string element(const Syntax& index, const Indices* indices) {
-  if (index.args.empty()) throw Failure(index.span, "the bracket after '" + index.text + "' is empty", index.text + "[1]");
+  if (index.args.empty())
+    throw Failure(index.span, "the bracket after '" + index.text + "' is empty", index.text + "[1]");
   std::vector<long> values;
   for (const Syntax& a : index.args) values.push_back(index_value(a, indices));
   return member_name(index.text, values);
@@ -52,13 +53,16 @@ Syntax repeated(const Syntax& s, const Indices* indices) {
       if (const auto it = i->ranges.find(letter.text); it != i->ranges.end()) range = &it->second;
   if (!range) {
     const std::string known = letters(indices);
-    throw Failure(letter.span, s.text + " runs over a range of [index], and '" + print(letter).substr(0, 40) + "' is none",
+    throw Failure(letter.span,
+                  s.text + " runs over a range of [index], and '" + print(letter).substr(0, 40) + "' is none",
                   known.empty() ? usage : "there is " + known);
   }
   if (range->size() == 0) return number(sum ? 0 : 1, s);
   if (std::size_t* room = indices->budget()) {
     const std::size_t cost = range->size() * size(s.args[1]);
-    if (*room < cost) throw Failure(s.span, "sums and products over ranges become too long", "a recursion such as P[i] = P[i-1] + … costs one term for each member");
+    if (*room < cost)
+      throw Failure(s.span, "sums and products over ranges become too long",
+                    "a recursion such as P[i] = P[i-1] + … costs one term for each member");
     *room -= cost;
   }
   Syntax list{sum ? Syntax::Op::add : Syntax::Op::multiply, sum ? "+" : "*", {}, s.span, s.offset, s.end, {}};
@@ -95,63 +99,77 @@ std::size_t* Indices::budget() const {
 
 long index_value(const Syntax& s, const Indices* indices) {
   const auto bounded = [&](long v) {
-    if (v > kLargestIndex || v < -kLargestIndex) throw Failure(s.span, "an index beyond " + std::to_string(kLargestIndex));
+    if (v > kLargestIndex || v < -kLargestIndex)
+      throw Failure(s.span, "an index beyond " + std::to_string(kLargestIndex));
     return v;
   };
   switch (s.op) {
-    case Syntax::Op::number: {
-      long v = 0;
-      const char* const end = s.text.data() + s.text.size();
-      const auto [read, error] = std::from_chars(s.text.data(), end, v);
-      if (error == std::errc() && read == end) return bounded(v);
-      throw Failure(s.span, "'" + s.text.substr(0, 40) + "' is no index: indices are whole numbers");
+  case Syntax::Op::number: {
+    long v = 0;
+    const char* const end = s.text.data() + s.text.size();
+    const auto [read, error] = std::from_chars(s.text.data(), end, v);
+    if (error == std::errc() && read == end) return bounded(v);
+    throw Failure(s.span, "'" + s.text.substr(0, 40) + "' is no index: indices are whole numbers");
+  }
+  case Syntax::Op::name: {
+    if (const long* v = indices ? indices->value(s.text) : nullptr) return *v;
+    if (indices && indices->range(s.text))
+      throw Failure(
+          s.span, "'" + s.text + "' has no value here",
+          "a letter of [index] has one in a family (the name of the element holds it in its bracket) and in sum(" +
+              s.text + ", …)");
+    throw Failure(s.span, "'" + s.text + "' is no index",
+                  "[index] declares index integers and ranges: n = 10, i = \"1..n\"");
+  }
+  case Syntax::Op::negate:
+    return -index_value(s.args[0], indices);
+  case Syntax::Op::add:
+  case Syntax::Op::multiply: {
+    long v = index_value(s.args[0], indices);
+    for (std::size_t k = 1; k < s.args.size(); ++k) {
+      const long w = index_value(s.args[k], indices);
+      const Syntax::Op op = s.operators[k - 1].op;
+      if (op == Syntax::Op::divide) throw Failure(s.operators[k - 1].span, "an index is a whole number: + - * only");
+      v = bounded(op == Syntax::Op::add ? v + w : op == Syntax::Op::subtract ? v - w : v * w);
     }
-    case Syntax::Op::name: {
-      if (const long* v = indices ? indices->value(s.text) : nullptr) return *v;
-      if (indices && indices->range(s.text))
-        throw Failure(s.span, "'" + s.text + "' has no value here", "a letter of [index] has one in a family (the name of the element holds it in its bracket) and in sum(" + s.text + ", …)");
-      throw Failure(s.span, "'" + s.text + "' is no index", "[index] declares index integers and ranges: n = 10, i = \"1..n\"");
-    }
-    case Syntax::Op::negate: return -index_value(s.args[0], indices);
-    case Syntax::Op::add: case Syntax::Op::multiply: {
-      long v = index_value(s.args[0], indices);
-      for (std::size_t k = 1; k < s.args.size(); ++k) {
-        const long w = index_value(s.args[k], indices);
-        const Syntax::Op op = s.operators[k - 1].op;
-        if (op == Syntax::Op::divide) throw Failure(s.operators[k - 1].span, "an index is a whole number: + - * only");
-        v = bounded(op == Syntax::Op::add ? v + w : op == Syntax::Op::subtract ? v - w : v * w);
-      }
-      return v;
-    }
-    default: throw Failure(s.span, "an index is a formula of whole numbers: + - * and brackets");
+    return v;
+  }
+  default:
+    throw Failure(s.span, "an index is a formula of whole numbers: + - * and brackets");
   }
 }
 
 Syntax with_indices(Syntax s, const Indices* indices) {
   switch (s.op) {
-    case Syntax::Op::name:
-      if (const long* v = indices ? indices->value(s.text) : nullptr) return number(*v, s);
-      if (indices && indices->range(s.text)) index_value(s, indices);  // says what is wrong
-      return s;
-    case Syntax::Op::index:
-      s.text = element(s, indices);
-      s.op = Syntax::Op::name;
-      s.args.clear();
-      return s;
-    case Syntax::Op::member:
-      if (s.args.size() > 1) {
-        Syntax name{Syntax::Op::index, s.text, {std::make_move_iterator(s.args.begin() + 1), std::make_move_iterator(s.args.end())}, s.span, s.offset, s.end, {}};
-        s.text = element(name, indices);
-        s.args.resize(1);
-      }
-      break;
-    case Syntax::Op::apply:
-      s.text = element(s.args[0], indices);
-      s.op = Syntax::Op::call;
-      s.args.erase(s.args.begin());
-      break;
-    default:
-      if (is_repetition(s)) return repeated(s, indices);
+  case Syntax::Op::name:
+    if (const long* v = indices ? indices->value(s.text) : nullptr) return number(*v, s);
+    if (indices && indices->range(s.text)) index_value(s, indices);  // says what is wrong
+    return s;
+  case Syntax::Op::index:
+    s.text = element(s, indices);
+    s.op = Syntax::Op::name;
+    s.args.clear();
+    return s;
+  case Syntax::Op::member:
+    if (s.args.size() > 1) {
+      Syntax name{Syntax::Op::index,
+                  s.text,
+                  {std::make_move_iterator(s.args.begin() + 1), std::make_move_iterator(s.args.end())},
+                  s.span,
+                  s.offset,
+                  s.end,
+                  {}};
+      s.text = element(name, indices);
+      s.args.resize(1);
+    }
+    break;
+  case Syntax::Op::apply:
+    s.text = element(s.args[0], indices);
+    s.op = Syntax::Op::call;
+    s.args.erase(s.args.begin());
+    break;
+  default:
+    if (is_repetition(s)) return repeated(s, indices);
   }
   for (Syntax& a : s.args) a = with_indices(std::move(a), indices);
   return s;
@@ -159,7 +177,8 @@ Syntax with_indices(Syntax s, const Indices* indices) {
 
 void free_letters(const Syntax& s, const Indices& indices, Letters& letters) {
   const auto add = [&](const std::string& name, const IndexRange& range) {
-    if (std::none_of(letters.begin(), letters.end(), [&](const auto& l) { return l.first == name; })) letters.push_back({name, range});
+    if (std::none_of(letters.begin(), letters.end(), [&](const auto& l) { return l.first == name; }))
+      letters.push_back({name, range});
   };
   if (s.op == Syntax::Op::name)
     if (const IndexRange* range = indices.range(s.text)) add(s.text, *range);
@@ -181,7 +200,8 @@ std::string equation_text(const FormulaText& text, const std::vector<Syntax>& si
   constexpr std::size_t kLongest = 400;  // sums are written out
   if (out.size() <= kLongest) return out;
   std::string values;
-  for (const auto& [letter, value] : indices->values) values += (values.empty() ? " (" : ", ") + letter + " = " + std::to_string(value);
+  for (const auto& [letter, value] : indices->values)
+    values += (values.empty() ? " (" : ", ") + letter + " = " + std::to_string(value);
   return text.text() + values + ")";
 }
 
@@ -220,7 +240,8 @@ std::string members_known(const std::string& name, const std::vector<std::string
   }
   if (first.empty()) return {};
   const std::string base = name.substr(0, open);
-  if (values.empty()) return last.empty() ? "; " + base + " has " + first : "; " + base + " has " + first + ", …, " + last;
+  if (values.empty())
+    return last.empty() ? "; " + base + " has " + first : "; " + base + " has " + first + ", …, " + last;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return "; " + base + " has " + std::to_string(*least) + (*least == *most ? "" : ".." + std::to_string(*most));
 }

@@ -1,7 +1,8 @@
 // Families of elements in formulas: what the letters of [index] mean, and formulas with these meanings put in.
 //
-// In a parsed formula an index integer or bound letter is a number, P[i-1] the name "P[2]", T[j](a, b) the call "T[2]"(a, b),
-// sum(k, e) and prod(k, e) are written out: one sum of all terms, one product. Of an empty range the sum is 0, the product 1.
+// In a parsed formula an index integer or bound letter is a number, P[i-1] the name "P[2]", T[j](a, b) the call
+// "T[2]"(a, b), sum(k, e) and prod(k, e) are written out: one sum of all terms, one product. Of an empty range the sum
+// is 0, the product 1.
 #pragma once
 #include <map>
 #include <memory>
@@ -18,10 +19,10 @@ struct IndexRange {
 };
 
 struct Indices {
-  std::map<std::string, IndexRange> ranges;       // i = "1..n"
-  std::map<std::string, long> values;             // n = 10; in a member of a family also its letters
-  std::shared_ptr<const Indices> outer;           // where a member's letters are not, those of the file
-  std::shared_ptr<std::size_t> room;              // terms that sums and products may still be written out to
+  std::map<std::string, IndexRange> ranges;  // i = "1..n"
+  std::map<std::string, long> values;        // n = 10; in a member of a family also its letters
+  std::shared_ptr<const Indices> outer;      // where a member's letters are not, those of the file
+  std::shared_ptr<std::size_t> room;         // terms that sums and products may still be written out to
 
   const long* value(const std::string& name) const;
   const IndexRange* range(const std::string& name) const;  // of a letter that has no value here
@@ -30,9 +31,11 @@ struct Indices {
 
 // Puts the meaning of the indices into a formula (indices may be null: P[0] is a name then, and there are no letters).
 Syntax with_indices(Syntax s, const Indices* indices);
-// The value of an integer formula: + - * and brackets of whole numbers, index integers and bound letters. Throws Failure.
+// The value of an integer formula: + - * and brackets of whole numbers, index integers and bound letters. Throws
+// Failure.
 long index_value(const Syntax& s, const Indices* indices);
-// The letters in a formula that have a range and no value, but for those which a sum or product binds; added to those found before.
+// The letters in a formula that have a range and no value, but for those which a sum or product binds; added to those
+// found before.
 using Letters = std::vector<std::pair<std::string, IndexRange>>;
 void free_letters(const Syntax& s, const Indices& indices, Letters& letters);
 // An equation as written; of a member of a family with the values of its letters.

@@ -14,13 +14,12 @@ struct Greek {
   const char* name;
 };
 constexpr Greek kGreek[] = {
-    {"α", "alpha"}, {"β", "beta"}, {"γ", "gamma"}, {"δ", "delta"}, {"ε", "epsilon"},
-    {"ζ", "zeta"}, {"η", "eta"}, {"θ", "theta"}, {"ι", "iota"}, {"κ", "kappa"}, {"λ", "lambda"},
-    {"μ", "mu"}, {"ν", "nu"}, {"ξ", "xi"}, {"ο", "omicron"}, {"π", "pi"}, {"ρ", "rho"},
-    {"σ", "sigma"}, {"τ", "tau"}, {"υ", "upsilon"}, {"φ", "phi"}, {"χ", "chi"}, {"ψ", "psi"},
-    {"ω", "omega"}, {"ϑ", "theta"}, {"ϕ", "phi"}, {"ϵ", "epsilon"}, {"ϱ", "rho"}, {"µ", "mu"},
-    {"Γ", "Gamma"}, {"Δ", "Delta"}, {"Θ", "Theta"}, {"Λ", "Lambda"}, {"Ξ", "Xi"}, {"Π", "Pi"},
-    {"Σ", "Sigma"}, {"Φ", "Phi"}, {"Ψ", "Psi"}, {"Ω", "Omega"}};
+    {"α", "alpha"},   {"β", "beta"},  {"γ", "gamma"}, {"δ", "delta"},  {"ε", "epsilon"}, {"ζ", "zeta"},    {"η", "eta"},
+    {"θ", "theta"},   {"ι", "iota"},  {"κ", "kappa"}, {"λ", "lambda"}, {"μ", "mu"},      {"ν", "nu"},      {"ξ", "xi"},
+    {"ο", "omicron"}, {"π", "pi"},    {"ρ", "rho"},   {"σ", "sigma"},  {"τ", "tau"},     {"υ", "upsilon"}, {"φ", "phi"},
+    {"χ", "chi"},     {"ψ", "psi"},   {"ω", "omega"}, {"ϑ", "theta"},  {"ϕ", "phi"},     {"ϵ", "epsilon"}, {"ϱ", "rho"},
+    {"µ", "mu"},      {"Γ", "Gamma"}, {"Δ", "Delta"}, {"Θ", "Theta"},  {"Λ", "Lambda"},  {"Ξ", "Xi"},      {"Π", "Pi"},
+    {"Σ", "Sigma"},   {"Φ", "Phi"},   {"Ψ", "Psi"},   {"Ω", "Omega"}};
 
 const char* greek_name(std::string_view letter) {
   for (const Greek& g : kGreek)
@@ -31,9 +30,7 @@ const char* greek_name(std::string_view letter) {
 bool is_name_start(std::string_view c) {
   return std::isalpha(static_cast<unsigned char>(c[0])) || c[0] == '_' || greek_name(c) != nullptr;
 }
-bool is_name_part(std::string_view c) {
-  return is_name_start(c) || std::isdigit(static_cast<unsigned char>(c[0]));
-}
+bool is_name_part(std::string_view c) { return is_name_start(c) || std::isdigit(static_cast<unsigned char>(c[0])); }
 
 class Lexer {
  public:
@@ -56,7 +53,8 @@ class Lexer {
       } else if (c == "#") {
         while (i < s.size() && s[i] != '\n') i += utf8_width(s, i), ++offset;
       } else if (std::isdigit(static_cast<unsigned char>(c[0])) ||
-                 (c == "." && !after_name(offset) && i + 1 < s.size() && std::isdigit(static_cast<unsigned char>(s[i + 1])))) {
+                 (c == "." && !after_name(offset) && i + 1 < s.size() &&
+                  std::isdigit(static_cast<unsigned char>(s[i + 1])))) {
         std::size_t j = i;
         while (j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]))) ++j;
         const bool member = !lexemes_.empty() && lexemes_.back().token == Token::point;  // lambda.blade.1
@@ -64,7 +62,8 @@ class Lexer {
           push(Token::number, j - i, j - i, s.substr(i, j - i));
           continue;
         }
-        if (j < s.size() && s[j] == '.') for (++j; j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]));) ++j;
+        if (j < s.size() && s[j] == '.')
+          for (++j; j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]));) ++j;
         if (j < s.size() && (s[j] == 'e' || s[j] == 'E')) {
           std::size_t k = j + 1;
           if (k < s.size() && (s[k] == '+' || s[k] == '-')) ++k;
@@ -93,28 +92,50 @@ class Lexer {
         push(Token::name, close + 1 - i, utf8_length(text) + 2, text);
       } else {
         const auto sign = [&](Token t) { push(t, width, 1, std::string(c)); };
-        if (c == "+") sign(Token::plus);
-        else if (c == "-" || c == "−" || c == "–") sign(Token::minus);
-        else if (c == "*" && i + 1 < s.size() && s[i + 1] == '*') push(Token::caret, 2, 2, "**");
-        else if (c == "*") sign(Token::times);
-        else if (c == "/") sign(Token::over);
-        else if (c == "^") sign(Token::caret);
-        else if (c == "'" || c == "′" || c == "’") sign(Token::prime);
-        else if (c == "²") push(Token::superscript, width, 1, "2");
-        else if (c == "³") push(Token::superscript, width, 1, "3");
-        else if (c == "·" || c == "⋅") sign(Token::middle_dot);
-        else if (c == "×") sign(Token::cross_sign);
-        else if (c == "(") sign(Token::open);
-        else if (c == ")") sign(Token::close);
-        else if (c == "[") sign(Token::left);
-        else if (c == "]") sign(Token::right);
-        else if (c == ",") sign(Token::comma);
-        else if (c == ".") sign(Token::point);
-        else if ((c == ">" || c == "<") && i + 1 < s.size() && s[i + 1] == '=') push(Token::compare, 2, 2, std::string(c) + "=");
-        else if (c == ">" || c == "<") sign(Token::compare);
-        else if (c == "≥" || c == "≤") push(Token::compare, width, 1, c == "≥" ? ">=" : "<=");
-        else if (c == "=" && i + 1 < s.size() && s[i + 1] == '=') push(Token::equals, 2, 2, "==");
-        else if (c == "=") sign(Token::equals);
+        if (c == "+")
+          sign(Token::plus);
+        else if (c == "-" || c == "−" || c == "–")
+          sign(Token::minus);
+        else if (c == "*" && i + 1 < s.size() && s[i + 1] == '*')
+          push(Token::caret, 2, 2, "**");
+        else if (c == "*")
+          sign(Token::times);
+        else if (c == "/")
+          sign(Token::over);
+        else if (c == "^")
+          sign(Token::caret);
+        else if (c == "'" || c == "′" || c == "’")
+          sign(Token::prime);
+        else if (c == "²")
+          push(Token::superscript, width, 1, "2");
+        else if (c == "³")
+          push(Token::superscript, width, 1, "3");
+        else if (c == "·" || c == "⋅")
+          sign(Token::middle_dot);
+        else if (c == "×")
+          sign(Token::cross_sign);
+        else if (c == "(")
+          sign(Token::open);
+        else if (c == ")")
+          sign(Token::close);
+        else if (c == "[")
+          sign(Token::left);
+        else if (c == "]")
+          sign(Token::right);
+        else if (c == ",")
+          sign(Token::comma);
+        else if (c == ".")
+          sign(Token::point);
+        else if ((c == ">" || c == "<") && i + 1 < s.size() && s[i + 1] == '=')
+          push(Token::compare, 2, 2, std::string(c) + "=");
+        else if (c == ">" || c == "<")
+          sign(Token::compare);
+        else if (c == "≥" || c == "≤")
+          push(Token::compare, width, 1, c == "≥" ? ">=" : "<=");
+        else if (c == "=" && i + 1 < s.size() && s[i + 1] == '=')
+          push(Token::equals, 2, 2, "==");
+        else if (c == "=")
+          sign(Token::equals);
         else {
           const bool printable = width > 1 || std::isprint(static_cast<unsigned char>(c[0]));
           throw Failure(source_.span(offset, 1),
@@ -131,7 +152,8 @@ class Lexer {
  private:
   // Does a name end here? Then a '.' is followed by a member.
   bool after_name(std::size_t offset) const {
-    return !lexemes_.empty() && lexemes_.back().token == Token::name && lexemes_.back().offset + lexemes_.back().length == offset;
+    return !lexemes_.empty() && lexemes_.back().token == Token::name &&
+           lexemes_.back().offset + lexemes_.back().length == offset;
   }
 
   const FormulaText& source_;
@@ -146,8 +168,10 @@ std::string normal_name(std::string_view name) {
   std::string out;
   for (std::size_t i = 0; i < name.size();) {
     const std::string_view c = name.substr(i, utf8_width(name, i));
-    if (const char* g = greek_name(c)) out += g;
-    else out += c;
+    if (const char* g = greek_name(c))
+      out += g;
+    else
+      out += c;
     i += c.size();
   }
   return out;

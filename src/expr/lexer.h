@@ -5,8 +5,26 @@
 namespace anholon {
 
 enum class Token : std::uint8_t {
-  number, name, plus, minus, times, over, caret, prime, superscript, open, close, left, right, comma,
-  point, equals, middle_dot, cross_sign, compare, end,
+  number,
+  name,
+  plus,
+  minus,
+  times,
+  over,
+  caret,
+  prime,
+  superscript,
+  open,
+  close,
+  left,
+  right,
+  comma,
+  point,
+  equals,
+  middle_dot,
+  cross_sign,
+  compare,
+  end,
 };
 
 struct Lexeme {

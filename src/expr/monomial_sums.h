@@ -74,7 +74,8 @@ struct Written {
   Sum numerator, denominator;
 };
 
-// Squares of sines and cosines in the shorter way, and products as sines and cosines of sums of angles, where that joins terms.
+// Squares of sines and cosines in the shorter way, and products as sines and cosines of sums of angles, where that
+// joins terms.
 void choose_squares(Sum& s, const std::vector<Angle>& angles);
 void join_angles(Written& w, Sum& s);
 

@@ -61,7 +61,8 @@ class Normalizer {
     const Fraction& f = fractions_.at(root_.id);
     NormalForm out;
     out.generators = meanings();
-    for (const auto& [node, k] : sine_) out.angles.push_back({static_cast<std::size_t>(k), static_cast<std::size_t>(cosine_.at(node))});
+    for (const auto& [node, k] : sine_)
+      out.angles.push_back({static_cast<std::size_t>(k), static_cast<std::size_t>(cosine_.at(node))});
     if (f.den.one() || f.num.length() > kDividedTerms || f.den.length() > kDividedTerms) {
       out.numerator = printed(f.num);
       out.denominator = printed(f.den);
@@ -98,7 +99,8 @@ class Normalizer {
     // The generator of x^(1/k) with x = n/d stands for d x^(1/k). Roots may hold earlier roots in d.
     std::sort(roots.begin(), roots.end());
     for (const auto& root : roots)
-      at(root_generator_.at(root)) = at(root_generator_.at(root)) * expression(printed(fractions_.at(root.first).den), meaning);
+      at(root_generator_.at(root)) =
+          at(root_generator_.at(root)) * expression(printed(fractions_.at(root.first).den), meaning);
     return meaning;
   }
 
@@ -111,7 +113,9 @@ class Normalizer {
     seen[root_.id] = true;
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const Node& n = g_.node(ids_[i]);
-      if (n.kind == Kind::function || n.kind == Kind::atan2 || n.kind == Kind::select || n.kind == Kind::lookup || whole(ids_[i])) continue;
+      if (n.kind == Kind::function || n.kind == Kind::atan2 || n.kind == Kind::select || n.kind == Kind::lookup ||
+          whole(ids_[i]))
+        continue;
       for (const Term& t : g_.summands(ids_[i]))
         if (!seen[t.node]) seen[t.node] = true, ids_.push_back(t.node);
     }
@@ -154,8 +158,10 @@ class Normalizer {
           const Rational& e = g_.rational(t.weight);
           const mpz_class& k = e.get_den();
           if (!k.fits_ulong_p()) throw TooLarge{};
-          if (e < 0 && whole_.fractions) reciprocals.push_back({t.node, k.get_ui()});
-          else if (k != 1) roots.push_back({t.node, k.get_ui()});
+          if (e < 0 && whole_.fractions)
+            reciprocals.push_back({t.node, k.get_ui()});
+          else if (k != 1)
+            roots.push_back({t.node, k.get_ui()});
         }
       } else if (n.kind != Kind::number && n.kind != Kind::sum) {
         others.push_back(id);
@@ -245,43 +251,57 @@ class Normalizer {
     const Node& n = g_.node(id);
     if (whole(id)) return plain(generator(generator_.at(id)));
     switch (n.kind) {
-      case Kind::number: return plain(constant(g_.value(id)));
-      case Kind::sum: {
-        Fraction total = plain(constant(0));
-        for (const Term& t : g_.summands(id)) {
-          const Fraction& x = fractions_.at(t.node);
-          total = add(total, {constant(g_.rational(t.weight)) * x.num, x.den});
-        }
-        return total;
+    case Kind::number:
+      return plain(constant(g_.value(id)));
+    case Kind::sum: {
+      Fraction total = plain(constant(0));
+      for (const Term& t : g_.summands(id)) {
+        const Fraction& x = fractions_.at(t.node);
+        total = add(total, {constant(g_.rational(t.weight)) * x.num, x.den});
       }
-      case Kind::product: {
-        Fraction total = plain(constant(1));
-        for (const Term& t : g_.terms(id)) {
-          const Rational& e = g_.rational(t.weight);
-          if (abs(e) > 1000) throw TooLarge{};
-          if (e < 0 && whole_.fractions) {
-            total = multiply(total, power(reciprocal(t.node, e.get_den().get_ui()), -e.get_num().get_si()));
-            continue;
-          }
-          const Fraction base = e.get_den() == 1 ? fractions_.at(t.node) : root(t.node, e.get_den().get_ui());
-          total = multiply(total, power(base, e.get_num().get_si()));
+      return total;
+    }
+    case Kind::product: {
+      Fraction total = plain(constant(1));
+      for (const Term& t : g_.terms(id)) {
+        const Rational& e = g_.rational(t.weight);
+        if (abs(e) > 1000) throw TooLarge{};
+        if (e < 0 && whole_.fractions) {
+          total = multiply(total, power(reciprocal(t.node, e.get_den().get_ui()), -e.get_num().get_si()));
+          continue;
         }
-        return total;
+        const Fraction base = e.get_den() == 1 ? fractions_.at(t.node) : root(t.node, e.get_den().get_ui());
+        total = multiply(total, power(base, e.get_num().get_si()));
       }
-      case Kind::function:
-        if (trigonometric(n)) {
-          const auto [s, c] = sine_cosine(g_.terms(id)[0].node);
-          switch (static_cast<Function>(n.index)) {
-            case Function::sin: return plain(s);
-            case Function::cos: return plain(c);
-            default: return {s, c};  // tan
-          }
+      return total;
+    }
+    case Kind::function:
+      if (trigonometric(n)) {
+        const auto [s, c] = sine_cosine(g_.terms(id)[0].node);
+        switch (static_cast<Function>(n.index)) {
+        case Function::sin:
+          return plain(s);
+        case Function::cos:
+          return plain(c);
+        default:
+          return {s, c};  // tan
         }
-        return plain(generator(generator_.at(id)));
-      case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass:
-      case Kind::multiplier: case Kind::given: case Kind::quasi: case Kind::atan2:
-      case Kind::state: case Kind::control: case Kind::select: case Kind::lookup:
-        return plain(generator(generator_.at(id)));
+      }
+      return plain(generator(generator_.at(id)));
+    case Kind::pi:
+    case Kind::time:
+    case Kind::jet:
+    case Kind::parameter:
+    case Kind::mass:
+    case Kind::multiplier:
+    case Kind::given:
+    case Kind::quasi:
+    case Kind::atan2:
+    case Kind::state:
+    case Kind::control:
+    case Kind::select:
+    case Kind::lookup:
+      return plain(generator(generator_.at(id)));
     }
     return plain(constant(0));
   }

@@ -15,8 +15,8 @@ namespace anholon {
 bool proved_zero(Expr e);
 
 // The same expression written out as a reduced sum of monomials (over a denominator, where it has
-// one); nothing if that leads beyond the term limit, or takes more than `most_work` products of terms. Equal to e wherever e
-// is defined.
+// one); nothing if that leads beyond the term limit, or takes more than `most_work` products of terms. Equal to e
+// wherever e is defined.
 std::optional<Expr> expanded(Expr e);
 std::optional<Expr> expanded(Expr e, long most_work);
 
@@ -28,9 +28,9 @@ struct Monomial {
 using Monomials = std::vector<Monomial>;
 
 struct NormalForm {
-  std::vector<Expr> generators;                              // what each stands for
-  std::vector<std::pair<std::size_t, std::size_t>> angles;   // generators that are sine and cosine of one angle
-  Monomials numerator, denominator;                          // in lowest terms, if short
+  std::vector<Expr> generators;                             // what each stands for
+  std::vector<std::pair<std::size_t, std::size_t>> angles;  // generators that are sine and cosine of one angle
+  Monomials numerator, denominator;                         // in lowest terms, if short
 };
 
 // What is left as the user wrote it: sines of sums (and tangents), denominators, named subexpressions.

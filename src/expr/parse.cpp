@@ -61,15 +61,15 @@ class Parser {
     const bool zero = right.op == Syntax::Op::number && parse_rational(right.text).value_or(1) == 0;
     const bool sum = right.op == Syntax::Op::add || right.op == Syntax::Op::negate;
     const std::string gap = print(left) + (zero ? "" : " - " + (sum ? "(" + print(right) + ")" : print(right)));
-    fail(sign, "an equation is expected, '" + sign.text + "' makes an inequality", "an [[event]] finds where its two sides meet: when = \"" + gap + "\"");
+    fail(sign, "an equation is expected, '" + sign.text + "' makes an inequality",
+         "an [[event]] finds where its two sides meet: when = \"" + gap + "\"");
   }
 
   const Lexeme& peek() const { return lexemes_[at_]; }
   Lexeme next() { return lexemes_[at_ < lexemes_.size() - 1 ? at_++ : at_]; }
 
   Syntax make(Syntax::Op op, const Lexeme& at, std::vector<Syntax> args = {}) const {
-    Syntax s{op, at.text, std::move(args), source_.span(at.offset, at.length), at.offset,
-             at.offset + at.length, {}};
+    Syntax s{op, at.text, std::move(args), source_.span(at.offset, at.length), at.offset, at.offset + at.length, {}};
     for (const Syntax& a : s.args) {
       s.offset = std::min(s.offset, a.offset);
       s.end = std::max(s.end, a.end);
@@ -78,22 +78,38 @@ class Parser {
   }
 
   Syntax expression(int strength) {
-    if (++depth_ > kDeepest) fail(peek(), "nested deeper than " + std::to_string(kDeepest) + " levels",
-                                  "give parts of the formula a name under [define]");
+    if (++depth_ > kDeepest)
+      fail(peek(), "nested deeper than " + std::to_string(kDeepest) + " levels",
+           "give parts of the formula a name under [define]");
     Syntax left = prefix();
     for (;;) {
       const Lexeme at = peek();
       int power = 0;
       Syntax::Op op = Syntax::Op::add;
       switch (at.token) {
-        case Token::plus: power = 1, op = Syntax::Op::add; break;
-        case Token::minus: power = 1, op = Syntax::Op::subtract; break;
-        case Token::times: power = 2, op = Syntax::Op::multiply; break;
-        case Token::over: power = 2, op = Syntax::Op::divide; break;
-        case Token::middle_dot: power = 2, op = Syntax::Op::dot; break;
-        case Token::cross_sign: power = 2, op = Syntax::Op::cross; break;
-        case Token::caret: power = 4, op = Syntax::Op::power; break;
-        default: break;
+      case Token::plus:
+        power = 1, op = Syntax::Op::add;
+        break;
+      case Token::minus:
+        power = 1, op = Syntax::Op::subtract;
+        break;
+      case Token::times:
+        power = 2, op = Syntax::Op::multiply;
+        break;
+      case Token::over:
+        power = 2, op = Syntax::Op::divide;
+        break;
+      case Token::middle_dot:
+        power = 2, op = Syntax::Op::dot;
+        break;
+      case Token::cross_sign:
+        power = 2, op = Syntax::Op::cross;
+        break;
+      case Token::caret:
+        power = 4, op = Syntax::Op::power;
+        break;
+      default:
+        break;
       }
       if (power == 0 || power <= strength) break;
       next();
@@ -141,60 +157,62 @@ class Parser {
   Syntax primary() {
     const Lexeme at = next();
     switch (at.token) {
-      case Token::number: {
-        Syntax s = make(Syntax::Op::number, at);
-        return unit_follows(at) ? quantity(std::move(s)) : s;
-      }
-      case Token::name: {
-        if (peek().token == Token::open) {
-          Syntax s = make(Syntax::Op::call, at, arguments(Token::close, ")"));
-          s.end = lexemes_[at_ - 1].offset + 1;
-          return s;
-        }
-        if (peek().token == Token::left) {
-          Syntax s = make(Syntax::Op::index, at, arguments(Token::right, "]"));
-          s.end = lexemes_[at_ - 1].offset + 1;
-          if (peek().token == Token::open) {
-            std::vector<Syntax> all = one(std::move(s));
-            for (Syntax& a : arguments(Token::close, ")")) all.push_back(std::move(a));
-            s = make(Syntax::Op::apply, at, std::move(all));
-            s.end = lexemes_[at_ - 1].offset + 1;
-          }
-          indexed_ = true;
-          return s;
-        }
-        return make(Syntax::Op::name, at);
-      }
-      case Token::open: {
-        Syntax s = expression(0);
-        if (peek().token == Token::compare) {
-          const Lexeme sign = next();
-          s = make(Syntax::Op::compare, sign, two(std::move(s), expression(0)));
-        }
-        if (peek().token != Token::close)
-          fail(peek(), peek().token == Token::end ? "')' is missing at the end" : "')' is expected here");
-        s.offset = at.offset;
-        s.end = peek().offset + 1;
-        next();
-        return s;
-      }
-      case Token::left: {
-        --at_;
-        Syntax s = make(Syntax::Op::array, at, arguments(Token::right, "]"));
+    case Token::number: {
+      Syntax s = make(Syntax::Op::number, at);
+      return unit_follows(at) ? quantity(std::move(s)) : s;
+    }
+    case Token::name: {
+      if (peek().token == Token::open) {
+        Syntax s = make(Syntax::Op::call, at, arguments(Token::close, ")"));
         s.end = lexemes_[at_ - 1].offset + 1;
         return s;
       }
-      case Token::end:
-        fail(at, lexemes_.size() == 1 ? "the formula is empty" : "the formula ends where a number, a name or '(' should follow");
-      default:
-        fail(at, "'" + at.text + "' stands where a number, a name or '(' should");
+      if (peek().token == Token::left) {
+        Syntax s = make(Syntax::Op::index, at, arguments(Token::right, "]"));
+        s.end = lexemes_[at_ - 1].offset + 1;
+        if (peek().token == Token::open) {
+          std::vector<Syntax> all = one(std::move(s));
+          for (Syntax& a : arguments(Token::close, ")")) all.push_back(std::move(a));
+          s = make(Syntax::Op::apply, at, std::move(all));
+          s.end = lexemes_[at_ - 1].offset + 1;
+        }
+        indexed_ = true;
+        return s;
+      }
+      return make(Syntax::Op::name, at);
+    }
+    case Token::open: {
+      Syntax s = expression(0);
+      if (peek().token == Token::compare) {
+        const Lexeme sign = next();
+        s = make(Syntax::Op::compare, sign, two(std::move(s), expression(0)));
+      }
+      if (peek().token != Token::close)
+        fail(peek(), peek().token == Token::end ? "')' is missing at the end" : "')' is expected here");
+      s.offset = at.offset;
+      s.end = peek().offset + 1;
+      next();
+      return s;
+    }
+    case Token::left: {
+      --at_;
+      Syntax s = make(Syntax::Op::array, at, arguments(Token::right, "]"));
+      s.end = lexemes_[at_ - 1].offset + 1;
+      return s;
+    }
+    case Token::end:
+      fail(at, lexemes_.size() == 1 ? "the formula is empty"
+                                    : "the formula ends where a number, a name or '(' should follow");
+    default:
+      fail(at, "'" + at.text + "' stands where a number, a name or '(' should");
     }
   }
 
   // A name after a number and a blank is a unit; a call or a member of a family is not.
   bool unit_follows(const Lexeme& number) const {
     const Lexeme &name = peek(), &after = lexemes_[std::min(at_ + 1, lexemes_.size() - 1)];
-    return name.token == Token::name && number.offset + number.length < name.offset && after.token != Token::open && after.token != Token::left;
+    return name.token == Token::name && number.offset + number.length < name.offset && after.token != Token::open &&
+           after.token != Token::left;
   }
 
   // Within a unit there are no blanks: "2 m/s * t" is a product with t.
@@ -214,10 +232,12 @@ class Parser {
         fail(name, "conditions are not joined by '" + name.text + "'", habit_of_sign(name.text == "and" ? "&" : "∨"));
       if (!find_unit(name.text)) {
         const std::string near = did_you_mean(name.text, unit_names());
-        fail(name, "'" + name.text + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "a name after a number is a unit; write " + number.text + "*" + name.text + " for a product");
+        fail(name, "'" + name.text + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+             "a name after a number is a unit; write " + number.text + "*" + name.text + " for a product");
       }
       text += name.text;
-      if (peek().token == Token::prime && touches(at_)) fail(peek(), "a unit has no derivative", "write " + number.text + "*" + name.text + "' for a product");
+      if (peek().token == Token::prime && touches(at_))
+        fail(peek(), "a unit has no derivative", "write " + number.text + "*" + name.text + "' for a product");
       if (peek().token == Token::superscript && touches(at_)) {
         text += "^" + next().text;
       } else if (peek().token == Token::caret && touches(at_)) {
@@ -225,16 +245,20 @@ class Parser {
         text += "^";
         if (peek().token == Token::minus) text += "-", next();
         const Lexeme power = next();
-        if (power.token != Token::number || power.text.size() > 2 || power.text.find_first_not_of("0123456789") != std::string::npos || std::stoi(power.text) > 20)
+        if (power.token != Token::number || power.text.size() > 2 ||
+            power.text.find_first_not_of("0123456789") != std::string::npos || std::stoi(power.text) > 20)
           fail(power, "the power of a unit is a whole number between -20 and 20");
         text += power.text;
       }
       // t is the time except right after the number.
       const Token sign = peek().token;
-      const bool joins = (sign == Token::times || sign == Token::middle_dot || sign == Token::over) && touches(at_) && touches(at_ + 1);
+      const bool joins = (sign == Token::times || sign == Token::middle_dot || sign == Token::over) && touches(at_) &&
+                         touches(at_ + 1);
       if (!joins) break;
       const Lexeme &after = lexemes_[at_ + 1], &behind = lexemes_[std::min(at_ + 2, lexemes_.size() - 1)];
-      if (after.token != Token::name || after.text == "t" || !find_unit(after.text) || behind.token == Token::open || behind.token == Token::left) break;
+      if (after.token != Token::name || after.text == "t" || !find_unit(after.text) || behind.token == Token::open ||
+          behind.token == Token::left)
+        break;
       text += next().token == Token::over ? "/" : "*";
     }
     if (!read_unit(text)) fail(lexemes_[first], "this unit is out of all proportion");
@@ -262,8 +286,10 @@ class Parser {
       const Lexeme at = next();
       if (at.token == close) return args;
       if (at.token != Token::comma) {
-        if (at.token == Token::end) fail(opened, std::string("this bracket is not closed: '") + closer + "' is missing");
-        if (at.token == Token::equals) fail(at, "a condition compares with <, <=, > or >=", "a mode is told by choose(mode, v1, v2)");
+        if (at.token == Token::end)
+          fail(opened, std::string("this bracket is not closed: '") + closer + "' is missing");
+        if (at.token == Token::equals)
+          fail(at, "a condition compares with <, <=, > or >=", "a mode is told by choose(mode, v1, v2)");
         if (at.token == Token::name && (at.text == "and" || at.text == "or"))
           fail(at, "conditions are not joined by '" + at.text + "'", habit_of_sign(at.text == "and" ? "&" : "∨"));
         fail(at, std::string("',' or '") + closer + "' is expected here");
@@ -286,7 +312,8 @@ class Parser {
       } else if (at.token == Token::point) {
         next();
         const Lexeme member = next();
-        if (member.token != Token::name && member.token != Token::number) fail(member, "a member name (x, y, z or center) is expected after '.'");
+        if (member.token != Token::name && member.token != Token::number)
+          fail(member, "a member name (x, y, z or center) is expected after '.'");
         s = make(Syntax::Op::member, member, one(std::move(s)));
         if (peek().token == Token::left) {  // lambda.axle[2]
           for (Syntax& a : arguments(Token::right, "]")) s.args.push_back(std::move(a));
@@ -308,17 +335,21 @@ class Parser {
 
   // What to write where an operator is missing.
   std::string hint_for_missing(const Lexeme& before, const Lexeme& at) const {
-    if (before.token == Token::prime && at_ > 1) return "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product";
+    if (before.token == Token::prime && at_ > 1)
+      return "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product";
     if (at.text == "and" || at.text == "or") return habit_of_sign(at.text == "and" ? "&" : "∨");
     if (before.token != Token::name && before.token != Token::number) return "a product is written with '*'";
     const std::vector<std::string> functions = function_names();
     // sin^2(x)
-    if (at_ > 2 && lexemes_[at_ - 2].token == Token::caret && std::find(functions.begin(), functions.end(), lexemes_[at_ - 3].text) != functions.end())
+    if (at_ > 2 && lexemes_[at_ - 2].token == Token::caret &&
+        std::find(functions.begin(), functions.end(), lexemes_[at_ - 3].text) != functions.end())
       return "write " + lexemes_[at_ - 3].text + "(…)^" + before.text;
     if (before.token == Token::name && std::find(functions.begin(), functions.end(), before.text) != functions.end())
       return "write " + before.text + "(" + at.text + (at.token == Token::open ? "…" : "") + ")";
     return "write " + before.text + "*" + at.text + (at.token == Token::open ? "…)" : "") + " for a product" +
-           (before.token == Token::number && at.token == Token::name && find_unit(at.text) ? ", " + before.text + " " + at.text + " for a unit" : "");
+           (before.token == Token::number && at.token == Token::name && find_unit(at.text)
+                ? ", " + before.text + " " + at.text + " for a unit"
+                : "");
   }
 
   void finish() {
@@ -326,8 +357,10 @@ class Parser {
     if (at.token == Token::end) return;
     if (at.token == Token::compare)
       fail(at, "'" + at.text + "' stands in a condition of piecewise only", "piecewise(x > 0, x, 0)");
-    if (at.token == Token::comma && at_ > 0 && lexemes_[at_ - 1].token == Token::number && touches(at_) && touches(at_ + 1) && lexemes_[at_ + 1].token == Token::number)
-      fail(at, "',' is not expected here", "a decimal has a point: " + lexemes_[at_ - 1].text + "." + lexemes_[at_ + 1].text);
+    if (at.token == Token::comma && at_ > 0 && lexemes_[at_ - 1].token == Token::number && touches(at_) &&
+        touches(at_ + 1) && lexemes_[at_ + 1].token == Token::number)
+      fail(at, "',' is not expected here",
+           "a decimal has a point: " + lexemes_[at_ - 1].text + "." + lexemes_[at_ + 1].text);
     if (at.token == Token::close || at.token == Token::right) fail(at, "'" + at.text + "' closes nothing");
     const Lexeme& before = lexemes_[at_ - 1];
     if (at.token == Token::name || at.token == Token::number || at.token == Token::open) {

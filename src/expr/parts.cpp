@@ -18,15 +18,20 @@ std::vector<Expr> name_parts(std::span<const Expr> es, SymbolNames& names) {
     for (const Term& t : g.summands(id)) ++uses[t.node];
   std::string prefix = "w";
   const auto taken = [&](const std::string& p) {
-    const auto begins = [&](const std::string& n) { return n.size() > p.size() && n.compare(0, p.size(), p) == 0 && std::isdigit(static_cast<unsigned char>(n[p.size()])); };
-    for (const auto* list : {&names.coordinates, &names.parameters, &names.masses, &names.given, &names.quasi, &names.states, &names.controls})
+    const auto begins = [&](const std::string& n) {
+      return n.size() > p.size() && n.compare(0, p.size(), p) == 0 &&
+             std::isdigit(static_cast<unsigned char>(n[p.size()]));
+    };
+    for (const auto* list : {&names.coordinates, &names.parameters, &names.masses, &names.given, &names.quasi,
+                             &names.states, &names.controls})
       if (std::any_of(list->begin(), list->end(), begins)) return true;
     return false;
   };
   while (taken(prefix)) prefix += "w";
   for (NodeId id : ids) {
     const Node& n = g.node(id);
-    if (uses[id] < 2 || n.view_count < 2 || (n.kind != Kind::sum && n.kind != Kind::product) || names.defined.count(id)) continue;
+    if (uses[id] < 2 || n.view_count < 2 || (n.kind != Kind::sum && n.kind != Kind::product) || names.defined.count(id))
+      continue;
     parts.push_back({&g, id});
     names.defined.emplace(id, prefix + std::to_string(parts.size()));
   }

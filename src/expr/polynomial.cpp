@@ -24,8 +24,8 @@ Relations::Rule Relations::rule(Poly relation) const {
 void Relations::add(Poly relation) { rules_.push_back(rule(std::move(relation))); }
 void Relations::add_first(Poly relation) { rules_.insert(rules_.begin(), rule(std::move(relation))); }
 
-// The rules that may divide a term, of p or of a tail that a division brings in. The others never do: leaving them out changes
-// nothing but the time it takes, which FLINT spends on comparing every term with every relation.
+// The rules that may divide a term, of p or of a tail that a division brings in. The others never do: leaving them out
+// changes nothing but the time it takes, which FLINT spends on comparing every term with every relation.
 std::vector<const Relations::Rule*> Relations::needed(const std::vector<long>& degrees) const {
   std::vector<bool> wanted(rules_.size()), open(degrees.size());
   for (bool more = true; more;) {
@@ -43,8 +43,8 @@ std::vector<const Relations::Rule*> Relations::needed(const std::vector<long>& d
   return out;
 }
 
-// About how many terms a reduction makes: each relation g^k = (a tail of T terms) opens g^(mk + …) into as many as the m-th
-// power of its tail has, at most binomial(m + T - 1, m).
+// About how many terms a reduction makes: each relation g^k = (a tail of T terms) opens g^(mk + …) into as many as the
+// m-th power of its tail has, at most binomial(m + T - 1, m).
 void Relations::pay(const Poly& p, const std::vector<const Rule*>& rules) const {
   // In large rings each term is compared with many relations, over exponents of many words.
   const std::size_t words = 1 + static_cast<std::size_t>(ring_->generators()) / 8;
@@ -52,7 +52,8 @@ void Relations::pay(const Poly& p, const std::vector<const Rule*>& rules) const 
   for (long i = 0; i < p.length() && work < 1e9 && !rules.empty(); ++i) {
     double opened = 1;
     for (const Rule* rule : rules) {
-      const unsigned long e = fmpq_mpoly_get_term_var_exp_ui(p.p_, i, static_cast<slong>(rule->generator), ring_->context());
+      const unsigned long e =
+          fmpq_mpoly_get_term_var_exp_ui(p.p_, i, static_cast<slong>(rule->generator), ring_->context());
       for (unsigned long m = e / rule->power, k = 1; k <= m && opened < 1e9; ++k)
         opened *= static_cast<double>(rule->tail - 1 + static_cast<long>(k)) / static_cast<double>(k);
     }

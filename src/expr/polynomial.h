@@ -1,13 +1,13 @@
 // Polynomials over Q with exact arithmetic, on FLINT: what the normal form and the arrangement of
 // expressions for print are made of. Every product is paid for, so that no expression takes long.
 #pragma once
-#include <flint/fmpq_mpoly.h>
-#include <flint/fmpq_mpoly_factor.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <utility>
 #include <vector>
+
+#include <flint/fmpq_mpoly.h>
+#include <flint/fmpq_mpoly_factor.h>
 
 #include "expr/normal.h"
 
@@ -52,8 +52,14 @@ class Poly {
     fmpq_mpoly_init(p_, ring_->context());
     fmpq_mpoly_swap(p_, o.p_, ring_->context());
   }
-  Poly& operator=(const Poly& o) { fmpq_mpoly_set(p_, o.p_, ring_->context()); return *this; }
-  Poly& operator=(Poly&& o) noexcept { fmpq_mpoly_swap(p_, o.p_, ring_->context()); return *this; }
+  Poly& operator=(const Poly& o) {
+    fmpq_mpoly_set(p_, o.p_, ring_->context());
+    return *this;
+  }
+  Poly& operator=(Poly&& o) noexcept {
+    fmpq_mpoly_swap(p_, o.p_, ring_->context());
+    return *this;
+  }
   ~Poly() { fmpq_mpoly_clear(p_, ring_->context()); }
   static Poly constant(const Ring& ring, const Rational& r) {
     Poly p(ring);
@@ -138,7 +144,8 @@ class Poly {
       for (long k = 0; k < fmpq_mpoly_factor_length(f, ring_->context()); ++k) {
         Poly base(*ring_);
         fmpq_mpoly_factor_get_base(base.p_, f, k, ring_->context());
-        out.emplace_back(std::move(base), static_cast<unsigned long>(fmpq_mpoly_factor_get_exp_si(f, k, ring_->context())));
+        out.emplace_back(std::move(base),
+                         static_cast<unsigned long>(fmpq_mpoly_factor_get_exp_si(f, k, ring_->context())));
       }
     fmpq_mpoly_factor_clear(f, ring_->context());
     return out;

@@ -26,9 +26,12 @@ std::string function_name(const std::string& latex) {
 
 std::string written_name(const std::string& name, Format format) {
   switch (format) {
-    case Format::text: return name;
-    case Format::latex: return latex_name(name);
-    case Format::mathml: return mathml_name(name);
+  case Format::text:
+    return name;
+  case Format::latex:
+    return latex_name(name);
+  case Format::mathml:
+    return mathml_name(name);
   }
   return name;
 }
@@ -110,16 +113,43 @@ class Printer {
     Rank r{0, -1};
     const Node& n = g_.node(id);
     switch (n.kind) {
-      case Kind::number: case Kind::pi: r.kind = 0; break;
-      case Kind::parameter: r.kind = 1; break;
-      case Kind::mass: r.kind = 2; break;
-      case Kind::multiplier: r.kind = 4; break;
-      case Kind::given: case Kind::time: r.kind = 5; break;
-      case Kind::jet: r = {6, n.order}; break;
-      case Kind::quasi: r = {6, static_cast<int>(n.order) + 1}; break;
-      case Kind::state: case Kind::control: r = {5, static_cast<int>(n.order)}; break;
-      case Kind::function: case Kind::atan2: case Kind::select: case Kind::lookup: r.kind = 7; break;
-      case Kind::sum: case Kind::product: r.kind = 8; break;
+    case Kind::number:
+    case Kind::pi:
+      r.kind = 0;
+      break;
+    case Kind::parameter:
+      r.kind = 1;
+      break;
+    case Kind::mass:
+      r.kind = 2;
+      break;
+    case Kind::multiplier:
+      r.kind = 4;
+      break;
+    case Kind::given:
+    case Kind::time:
+      r.kind = 5;
+      break;
+    case Kind::jet:
+      r = {6, n.order};
+      break;
+    case Kind::quasi:
+      r = {6, static_cast<int>(n.order) + 1};
+      break;
+    case Kind::state:
+    case Kind::control:
+      r = {5, static_cast<int>(n.order)};
+      break;
+    case Kind::function:
+    case Kind::atan2:
+    case Kind::select:
+    case Kind::lookup:
+      r.kind = 7;
+      break;
+    case Kind::sum:
+    case Kind::product:
+      r.kind = 8;
+      break;
     }
     r.constant = r.kind <= 2 || r.kind >= 7;
     // Operands were ranked before (ids ascend), so this does not go deep.
@@ -129,7 +159,9 @@ class Printer {
         if (o->second.order == r.order) r.inside &= o->second.inside;
         r.constant &= o->second.constant;
       }
-    if (n.kind == Kind::sum || n.kind == Kind::function || n.kind == Kind::atan2 || n.kind == Kind::select || n.kind == Kind::lookup) r.inside = true;
+    if (n.kind == Kind::sum || n.kind == Kind::function || n.kind == Kind::atan2 || n.kind == Kind::select ||
+        n.kind == Kind::lookup)
+      r.inside = true;
     if (n.kind == Kind::sum && r.constant) r.kind = 3;
     return rank_[id] = r;
   }
@@ -160,42 +192,59 @@ class Printer {
   Printed content(NodeId id) {
     const Node& n = g_.node(id);
     switch (n.kind) {
-      case Kind::number: return number(g_.value(id));
-      case Kind::pi: return {written_name("pi", format_)};
-      case Kind::time: return {written_name("t", format_)};
-      case Kind::jet: return {symbol(names_.coordinates, n, "q")};
-      case Kind::parameter: return {symbol(names_.parameters, n, "p")};
-      case Kind::mass: return {symbol(names_.masses, n, "mu")};
-      case Kind::given: return {symbol(names_.given, n, "f")};
-      case Kind::quasi: return {symbol(names_.quasi, n, "u")};
-      case Kind::state: return {symbol(names_.states, n, "z")};
-      case Kind::control: return {symbol(names_.controls, n, "u")};
-      case Kind::multiplier: {
-        const std::string base = n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
-        const auto indexed = indexed_name(base);
-        const auto chosen = names_.notation.find(base);
-        const bool plain = chosen == names_.notation.end();
-        const std::string own = "\\mathrm{" + latex_escape(indexed ? indexed->first : base) + "}" + (indexed ? "," + indexed->second : "");
-        const std::string name = latex()    ? "\\lambda_{" + (plain ? own : chosen->second.latex) + "}"
-                                 : mathml() ? "<msub><mi>λ</mi>" + (plain ? "<mtext>" + markup_escape(base) + "</mtext>" : chosen->second.mathml) + "</msub>"
-                                            : "lambda." + base;
-        return {derivative_name(name, n.order, format_)};
-      }
-      case Kind::function: {
-        const FunctionInfo& f = info(static_cast<Function>(n.index));
-        return {call(f.name, f.latex, done_[g_.terms(id)[0].node].text)};
-      }
-      case Kind::atan2: {
-        const std::string &y = done_[g_.terms(id)[0].node].text, &x = done_[g_.terms(id)[1].node].text;
-        return {call("atan2", "\\operatorname{atan2}", y + (mathml() ? "<mo>,</mo>" : ", ") + x)};
-      }
-      case Kind::select: return branches(id);
-      case Kind::lookup: {
-        const std::string& name = g_.step_function(n.index).name;
-        return {call(name, "\\operatorname{" + latex_escape(name) + "}", done_[g_.terms(id)[0].node].text)};
-      }
-      case Kind::sum: return sum(id);
-      case Kind::product: return product(id);
+    case Kind::number:
+      return number(g_.value(id));
+    case Kind::pi:
+      return {written_name("pi", format_)};
+    case Kind::time:
+      return {written_name("t", format_)};
+    case Kind::jet:
+      return {symbol(names_.coordinates, n, "q")};
+    case Kind::parameter:
+      return {symbol(names_.parameters, n, "p")};
+    case Kind::mass:
+      return {symbol(names_.masses, n, "mu")};
+    case Kind::given:
+      return {symbol(names_.given, n, "f")};
+    case Kind::quasi:
+      return {symbol(names_.quasi, n, "u")};
+    case Kind::state:
+      return {symbol(names_.states, n, "z")};
+    case Kind::control:
+      return {symbol(names_.controls, n, "u")};
+    case Kind::multiplier: {
+      const std::string base =
+          n.index < names_.multipliers.size() ? names_.multipliers[n.index] : std::to_string(n.index);
+      const auto indexed = indexed_name(base);
+      const auto chosen = names_.notation.find(base);
+      const bool plain = chosen == names_.notation.end();
+      const std::string own =
+          "\\mathrm{" + latex_escape(indexed ? indexed->first : base) + "}" + (indexed ? "," + indexed->second : "");
+      const std::string name =
+          latex()    ? "\\lambda_{" + (plain ? own : chosen->second.latex) + "}"
+          : mathml() ? "<msub><mi>λ</mi>" +
+                           (plain ? "<mtext>" + markup_escape(base) + "</mtext>" : chosen->second.mathml) + "</msub>"
+                     : "lambda." + base;
+      return {derivative_name(name, n.order, format_)};
+    }
+    case Kind::function: {
+      const FunctionInfo& f = info(static_cast<Function>(n.index));
+      return {call(f.name, f.latex, done_[g_.terms(id)[0].node].text)};
+    }
+    case Kind::atan2: {
+      const std::string &y = done_[g_.terms(id)[0].node].text, &x = done_[g_.terms(id)[1].node].text;
+      return {call("atan2", "\\operatorname{atan2}", y + (mathml() ? "<mo>,</mo>" : ", ") + x)};
+    }
+    case Kind::select:
+      return branches(id);
+    case Kind::lookup: {
+      const std::string& name = g_.step_function(n.index).name;
+      return {call(name, "\\operatorname{" + latex_escape(name) + "}", done_[g_.terms(id)[0].node].text)};
+    }
+    case Kind::sum:
+      return sum(id);
+    case Kind::product:
+      return product(id);
     }
     return {};
   }
@@ -209,10 +258,12 @@ class Printer {
   Printed branches(NodeId id) const {
     const std::span<const Term> t = g_.terms(id);
     const std::string &s = done_.at(t[0].node).text, &a = done_.at(t[1].node).text, &b = done_.at(t[2].node).text;
-    if (latex()) return {cut("\\begin{cases} " + a + " & " + s + " \\ge 0 \\\\ " + b + " & \\text{else} \\end{cases}"), kSum};
+    if (latex())
+      return {cut("\\begin{cases} " + a + " & " + s + " \\ge 0 \\\\ " + b + " & \\text{else} \\end{cases}"), kSum};
     if (mathml())
-      return {cut(row("<mo>{</mo><mtable><mtr><mtd>" + row(a) + "</mtd><mtd>" + row(s + "<mo>≥</mo><mn>0</mn>") + "</mtd></mtr><mtr><mtd>" +
-                      row(b) + "</mtd><mtd><mtext>else</mtext></mtd></mtr></mtable>")), kSum};
+      return {cut(row("<mo>{</mo><mtable><mtr><mtd>" + row(a) + "</mtd><mtd>" + row(s + "<mo>≥</mo><mn>0</mn>") +
+                      "</mtd></mtr><mtr><mtd>" + row(b) + "</mtd><mtd><mtext>else</mtext></mtd></mtr></mtable>")),
+              kSum};
     return {cut("piecewise(" + s + " >= 0, " + a + ", " + b + ")")};
   }
 
@@ -278,7 +329,8 @@ class Printer {
     std::size_t positive = 0;
     while (positive < terms.size() && alike(terms[positive]) && below_zero(terms[positive])) ++positive;
     if (positive < terms.size() && alike(terms[positive]))
-      std::rotate(terms.begin(), terms.begin() + static_cast<std::ptrdiff_t>(positive), terms.begin() + static_cast<std::ptrdiff_t>(positive) + 1);
+      std::rotate(terms.begin(), terms.begin() + static_cast<std::ptrdiff_t>(positive),
+                  terms.begin() + static_cast<std::ptrdiff_t>(positive) + 1);
 
     const std::string plus_sign = mathml() ? "<mo>+</mo>" : " + ", minus_sign = mathml() ? minus() : " - ";
     Printed out;
@@ -316,7 +368,8 @@ class Printer {
 
   Printed product(NodeId id) {
     std::vector<Term> terms(g_.terms(id).begin(), g_.terms(id).end());
-    std::stable_sort(terms.begin(), terms.end(), [&](const Term& a, const Term& b) { return rank(a.node).kind < rank(b.node).kind; });
+    std::stable_sort(terms.begin(), terms.end(),
+                     [&](const Term& a, const Term& b) { return rank(a.node).kind < rank(b.node).kind; });
     std::string top, bottom;
     int below = 0, strength = kProduct;
     bool negative = false;

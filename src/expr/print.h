@@ -34,10 +34,11 @@ struct SymbolNames {
 
 std::string print(Expr e, const SymbolNames& names, Format format);
 std::vector<std::string> print(std::span<const Expr> es, const SymbolNames& names, Format format);
-// What stands behind names: expressions that have one in `names.defined` are written out, their operands stand under theirs.
+// What stands behind names: expressions that have one in `names.defined` are written out, their operands stand under
+// theirs.
 std::vector<std::string> print_contents(std::span<const Expr> es, const SymbolNames& names, Format format);
-// Gives names to all sums and products that occur more than once in `es`: with them, everything is as long as the graph is large.
-// In the order in which they can be read.
+// Gives names to all sums and products that occur more than once in `es`: with them, everything is as long as the graph
+// is large. In the order in which they can be read.
 std::vector<Expr> name_parts(std::span<const Expr> es, SymbolNames& names);
 
 // "theta" -> "\theta", "x1" -> "x_{1}", "front_wheel" -> "\mathrm{front\_wheel}".

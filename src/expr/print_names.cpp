@@ -10,13 +10,13 @@
 namespace anholon {
 
 static const std::array kGreekNames = {
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda",
-    "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma",
-    "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Phi", "Psi", "Omega"};
+    "alpha", "beta",  "gamma", "delta", "epsilon", "zeta",  "eta", "theta",   "iota", "kappa", "lambda",
+    "mu",    "nu",    "xi",    "pi",    "rho",     "sigma", "tau", "upsilon", "phi",  "chi",   "psi",
+    "omega", "Gamma", "Delta", "Theta", "Lambda",  "Xi",    "Pi",  "Sigma",   "Phi",  "Psi",   "Omega"};
 
 static const std::array<const char*, kGreekNames.size()> kGreekLetters = {
-    "α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "ι", "κ", "λ", "μ", "ν", "ξ", "π", "ρ", "σ", "τ", "υ", "φ", "χ", "ψ", "ω", "Γ",
-    "Δ", "Θ", "Λ", "Ξ", "Π", "Σ", "Φ", "Ψ", "Ω"};
+    "α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "ι", "κ", "λ", "μ", "ν", "ξ", "π", "ρ", "σ",
+    "τ", "υ", "φ", "χ", "ψ", "ω", "Γ", "Δ", "Θ", "Λ", "Ξ", "Π", "Σ", "Φ", "Ψ", "Ω"};
 
 static bool is_greek(const std::string& s) {
   return std::find(kGreekNames.begin(), kGreekNames.end(), s) != kGreekNames.end();
@@ -33,7 +33,8 @@ std::string latex_name(const std::string& name) {
     const auto& [base, index] = *indexed;
     const std::string written = latex_name(base);
     // One subscript holds what the name had and the index: x_{1,3}.
-    if (written.find("_{") != std::string::npos && written.back() == '}') return written.substr(0, written.size() - 1) + "," + index + "}";
+    if (written.find("_{") != std::string::npos && written.back() == '}')
+      return written.substr(0, written.size() - 1) + "," + index + "}";
     return written + "_{" + index + "}";
   }
   if (is_greek(name)) return "\\" + name;
@@ -55,7 +56,8 @@ std::string mathml_name(const std::string& name) {
     for (const char c : index) own += c == ',' ? std::string("</mn><mo>,</mo><mn>") : std::string(1, c);
     own += "</mn>";
     const std::string written = mathml_name(base), open = "<msub>", close = "</msub>";
-    if (written.rfind(open, 0) != 0) return open + written + (index.find(',') == std::string::npos ? own : row(own)) + close;
+    if (written.rfind(open, 0) != 0)
+      return open + written + (index.find(',') == std::string::npos ? own : row(own)) + close;
     // Its second child, the subscript, goes before the index.
     const std::size_t underscore = base.find('_'), digit = base.find_last_not_of("0123456789") + 1;
     const std::string root = mathml_name(base.substr(0, underscore != std::string::npos ? underscore : digit));
@@ -63,7 +65,8 @@ std::string mathml_name(const std::string& name) {
     return open + root + row(written.substr(start, written.size() - start - close.size()) + "<mo>,</mo>" + own) + close;
   }
   const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
-  if (greek != kGreekNames.end()) return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
+  if (greek != kGreekNames.end())
+    return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
   if (name.size() == 1) return "<mi>" + markup_escape(name) + "</mi>";
   std::size_t digits = name.size();
   while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
@@ -79,19 +82,19 @@ std::string mathml_name(const std::string& name) {
 std::string derivative_name(const std::string& name, unsigned order, Format format) {
   if (order == 0) return name;
   switch (format) {
-    case Format::text:
-      if (order <= 3) return name + std::string(order, '\'');
-      return "D(" + name + "," + std::to_string(order) + ")";
-    case Format::latex: {
-      static const char* const kDots[] = {"\\dot{", "\\ddot{", "\\dddot{"};
-      if (order <= 3) return kDots[order - 1] + name + "}";
-      return name + "^{(" + std::to_string(order) + ")}";
-    }
-    case Format::mathml: {
-      static const char* const kDots[] = {"˙", "¨", "⃛"};
-      if (order <= 3) return "<mover accent=\"true\">" + name + "<mo>" + kDots[order - 1] + "</mo></mover>";
-      return "<msup>" + name + row("<mo>(</mo><mn>" + std::to_string(order) + "</mn><mo>)</mo>") + "</msup>";
-    }
+  case Format::text:
+    if (order <= 3) return name + std::string(order, '\'');
+    return "D(" + name + "," + std::to_string(order) + ")";
+  case Format::latex: {
+    static const char* const kDots[] = {"\\dot{", "\\ddot{", "\\dddot{"};
+    if (order <= 3) return kDots[order - 1] + name + "}";
+    return name + "^{(" + std::to_string(order) + ")}";
+  }
+  case Format::mathml: {
+    static const char* const kDots[] = {"˙", "¨", "⃛"};
+    if (order <= 3) return "<mover accent=\"true\">" + name + "<mo>" + kDots[order - 1] + "</mo></mover>";
+    return "<msup>" + name + row("<mo>(</mo><mn>" + std::to_string(order) + "</mn><mo>)</mo>") + "</msup>";
+  }
   }
   return name;
 }

@@ -87,7 +87,8 @@ class FieldPoint {
   }
 
   Circle turned(Circle a, Circle b) const {
-    return {f_.add(f_.multiply(a.sin, b.cos), f_.multiply(a.cos, b.sin)), f_.subtract(f_.multiply(a.cos, b.cos), f_.multiply(a.sin, b.sin))};
+    return {f_.add(f_.multiply(a.sin, b.cos), f_.multiply(a.cos, b.sin)),
+            f_.subtract(f_.multiply(a.cos, b.cos), f_.multiply(a.sin, b.sin))};
   }
   // Of the atom divided by q.
   Circle base(NodeId atom) {
@@ -106,7 +107,8 @@ class FieldPoint {
       const long k = multiple.get_si();
       Circle power = base(atom);
       if (k < 0) power.sin = f_.negate(power.sin);
-      for (unsigned long n = k < 0 ? -static_cast<unsigned long>(k) : static_cast<unsigned long>(k); n > 0; n >>= 1, power = turned(power, power))
+      for (unsigned long n = k < 0 ? -static_cast<unsigned long>(k) : static_cast<unsigned long>(k); n > 0;
+           n >>= 1, power = turned(power, power))
         if (n & 1) all = turned(all, power);
     }
     return all;
@@ -130,33 +132,48 @@ class FieldPoint {
   Word value(NodeId id) {
     const Node& n = g_.node(id);
     switch (n.kind) {
-      case Kind::number: return number(g_.value(id));
-      case Kind::sum: {
-        Word total = 0;
-        for (const Term& t : g_.summands(id)) {
-          const Rational& c = g_.rational(t.weight);
-          total = f_.add(total, c == 1 ? known(t.node) : f_.multiply(number(c), known(t.node)));
-        }
-        return total;
+    case Kind::number:
+      return number(g_.value(id));
+    case Kind::sum: {
+      Word total = 0;
+      for (const Term& t : g_.summands(id)) {
+        const Rational& c = g_.rational(t.weight);
+        total = f_.add(total, c == 1 ? known(t.node) : f_.multiply(number(c), known(t.node)));
       }
-      case Kind::product: {
-        Word total = 1;
-        for (const Term& t : g_.terms(id)) total = f_.multiply(total, power(known(t.node), g_.rational(t.weight)));
-        return total;
-      }
-      case Kind::function:
-        if (trigonometric(n)) {
-          const Circle c = sine_cosine(id);
-          switch (static_cast<Function>(n.index)) {
-            case Function::sin: return c.sin;
-            case Function::cos: return c.cos;
-            default: return f_.multiply(c.sin, inverse(c.cos));  // tan
-          }
+      return total;
+    }
+    case Kind::product: {
+      Word total = 1;
+      for (const Term& t : g_.terms(id)) total = f_.multiply(total, power(known(t.node), g_.rational(t.weight)));
+      return total;
+    }
+    case Kind::function:
+      if (trigonometric(n)) {
+        const Circle c = sine_cosine(id);
+        switch (static_cast<Function>(n.index)) {
+        case Function::sin:
+          return c.sin;
+        case Function::cos:
+          return c.cos;
+        default:
+          return f_.multiply(c.sin, inverse(c.cos));  // tan
         }
-        return random(id, 0);
-      case Kind::pi: case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::quasi:
-      case Kind::atan2: case Kind::state: case Kind::control: case Kind::select: case Kind::lookup:
-        return random(id, 0);
+      }
+      return random(id, 0);
+    case Kind::pi:
+    case Kind::time:
+    case Kind::jet:
+    case Kind::parameter:
+    case Kind::mass:
+    case Kind::multiplier:
+    case Kind::given:
+    case Kind::quasi:
+    case Kind::atan2:
+    case Kind::state:
+    case Kind::control:
+    case Kind::select:
+    case Kind::lookup:
+      return random(id, 0);
     }
     return 0;
   }

@@ -10,7 +10,8 @@ namespace {
 void must_be(Expr e, int value, Span at) {
   const std::optional<Expr> constant = expanded(e - value);
   if (constant && is_number(*constant) && !is_zero(*constant))
-    throw Failure(at, "this matrix is no rotation", "its columns are the new axes: of length 1, at right angles, right-handed");
+    throw Failure(at, "this matrix is no rotation",
+                  "its columns are the new axes: of length 1, at right angles, right-handed");
 }
 
 }  // namespace
@@ -52,8 +53,7 @@ Rotation rotation_matrix(const Syntax& call, Names& names) {
     const Syntax& row = rows->args[static_cast<std::size_t>(i)];
     if (row.op != Syntax::Op::array || row.args.size() != 3)
       throw Failure(row.span, "matrix takes three rows of three numbers");
-    for (int j = 0; j < 3; ++j)
-      columns[j][i] = evaluate_number(row.args[static_cast<std::size_t>(j)], names);
+    for (int j = 0; j < 3; ++j) columns[j][i] = evaluate_number(row.args[static_cast<std::size_t>(j)], names);
   }
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j) must_be(dot(columns[i], columns[j]), i == j, call.span);

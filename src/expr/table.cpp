@@ -13,7 +13,8 @@ namespace {
 
 using Numbers = std::vector<Rational>;
 
-// Second derivatives at the knots: tridiagonal, diagonally dominant. Their digits would grow with every knot; a hundred are kept.
+// Second derivatives at the knots: tridiagonal, diagonally dominant. Their digits would grow with every knot; a hundred
+// are kept.
 Numbers natural_spline(const Numbers& x, const Numbers& y) {
   const std::size_t n = x.size();
   const auto rounded = [](const Rational& r) {
@@ -62,14 +63,20 @@ std::vector<Cubic> stretches(const Table& t) {
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const Rational h = t.x[i + 1] - t.x[i], m = (t.y[i + 1] - t.y[i]) / h;
     switch (t.fit) {
-      case Fit::hold: list.push_back({t.y[i]}); break;
-      case Fit::linear: list.push_back({t.y[i], m}); break;
-      case Fit::monotone:
-        list.push_back({t.y[i], slope[i], Rational((3 * m - 2 * slope[i] - slope[i + 1]) / h), Rational((slope[i] + slope[i + 1] - 2 * m) / (h * h))});
-        break;
-      case Fit::spline:
-        list.push_back({t.y[i], Rational(m - h * (2 * second[i] + second[i + 1]) / 6), Rational(second[i] / 2), Rational((second[i + 1] - second[i]) / (6 * h))});
-        break;
+    case Fit::hold:
+      list.push_back({t.y[i]});
+      break;
+    case Fit::linear:
+      list.push_back({t.y[i], m});
+      break;
+    case Fit::monotone:
+      list.push_back({t.y[i], slope[i], Rational((3 * m - 2 * slope[i] - slope[i + 1]) / h),
+                      Rational((slope[i] + slope[i + 1] - 2 * m) / (h * h))});
+      break;
+    case Fit::spline:
+      list.push_back({t.y[i], Rational(m - h * (2 * second[i] + second[i + 1]) / 6), Rational(second[i] / 2),
+                      Rational((second[i + 1] - second[i]) / (6 * h))});
+      break;
     }
   }
   return list;

@@ -2,7 +2,8 @@
 //
 //   f(x) = c0(x) + d (c1(x) + d (c2(x) + d c3(x))),  d = x - knot(x)
 //
-// so that differentiation, Taylor arithmetic and kinks are those of step functions. All coefficients are exact rationals.
+// so that differentiation, Taylor arithmetic and kinks are those of step functions. All coefficients are exact
+// rationals.
 #pragma once
 #include <optional>
 
@@ -40,8 +41,8 @@ class TableFunction {
 // How many continuous derivatives a fit has; -1: it jumps.
 int smoothness(Fit fit);
 
-// The name of a table in e whose derivative of this order would be wrong, as it is not continuous below it; nothing if there
-// is none.
+// The name of a table in e whose derivative of this order would be wrong, as it is not continuous below it; nothing if
+// there is none.
 std::optional<std::string> too_rough(Expr e, int derivative);
 
 }  // namespace anholon

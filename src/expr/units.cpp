@@ -13,8 +13,9 @@ struct Prefix {
   const char* name;
   int power;
 };
-constexpr Prefix kPrefixes[] = {{"Y", 24}, {"Z", 21}, {"E", 18}, {"P", 15}, {"T", 12}, {"G", 9}, {"M", 6}, {"k", 3}, {"h", 2}, {"da", 1}, {"d", -1},
-                                {"c", -2}, {"m", -3}, {"u", -6}, {"mu", -6}, {"n", -9}, {"p", -12}, {"f", -15}, {"a", -18}, {"z", -21}, {"y", -24}};
+constexpr Prefix kPrefixes[] = {{"Y", 24},  {"Z", 21}, {"E", 18},  {"P", 15},  {"T", 12},  {"G", 9},   {"M", 6},
+                                {"k", 3},   {"h", 2},  {"da", 1},  {"d", -1},  {"c", -2},  {"m", -3},  {"u", -6},
+                                {"mu", -6}, {"n", -9}, {"p", -12}, {"f", -15}, {"a", -18}, {"z", -21}, {"y", -24}};
 
 Rational power_of_ten(int n) {
   mpz_class p;
@@ -33,12 +34,31 @@ struct Named {
   const char* unit;
   const char* name;
 };
-constexpr Named kQuantities[] = {
-    {"m", "a length"}, {"kg", "a mass"}, {"s", "a time"}, {"A", "a current"}, {"K", "a temperature"}, {"m^2", "an area"}, {"m^3", "a volume"},
-    {"m/s", "a velocity"}, {"m/s^2", "an acceleration"}, {"m/s^3", "a jerk"}, {"1/s", "an angular velocity or frequency"},
-    {"1/s^2", "an angular acceleration"}, {"N", "a force"}, {"N*m", "a torque or energy"}, {"W", "a power"}, {"Pa", "a pressure"},
-    {"N/m", "a stiffness"}, {"kg*m^2", "a moment of inertia"}, {"kg/m^3", "a density"}, {"kg/s", "a mass flow or damping"},
-    {"N*s", "a momentum"}, {"N*m*s", "an angular momentum"}, {"V", "a voltage"}, {"ohm", "a resistance"}, {"C", "a charge"}};
+constexpr Named kQuantities[] = {{"m", "a length"},
+                                 {"kg", "a mass"},
+                                 {"s", "a time"},
+                                 {"A", "a current"},
+                                 {"K", "a temperature"},
+                                 {"m^2", "an area"},
+                                 {"m^3", "a volume"},
+                                 {"m/s", "a velocity"},
+                                 {"m/s^2", "an acceleration"},
+                                 {"m/s^3", "a jerk"},
+                                 {"1/s", "an angular velocity or frequency"},
+                                 {"1/s^2", "an angular acceleration"},
+                                 {"N", "a force"},
+                                 {"N*m", "a torque or energy"},
+                                 {"W", "a power"},
+                                 {"Pa", "a pressure"},
+                                 {"N/m", "a stiffness"},
+                                 {"kg*m^2", "a moment of inertia"},
+                                 {"kg/m^3", "a density"},
+                                 {"kg/s", "a mass flow or damping"},
+                                 {"N*s", "a momentum"},
+                                 {"N*m*s", "an angular momentum"},
+                                 {"V", "a voltage"},
+                                 {"ohm", "a resistance"},
+                                 {"C", "a charge"}};
 
 }  // namespace
 
@@ -139,7 +159,10 @@ std::optional<Unit> read_unit(const std::string& text) {
     long power = 1;
     if (i < text.size() && text[i] == '^') {
       std::string digits;
-      for (++i; i < text.size() && (std::isdigit(static_cast<unsigned char>(text[i])) || (digits.empty() && text[i] == '-')); ++i) digits += text[i];
+      for (++i;
+           i < text.size() && (std::isdigit(static_cast<unsigned char>(text[i])) || (digits.empty() && text[i] == '-'));
+           ++i)
+        digits += text[i];
       if (digits.empty() || digits == "-" || digits.size() > 3) return std::nullopt;
       power = std::stol(digits);
       if (std::abs(power) > kMostPower) return std::nullopt;
@@ -155,7 +178,8 @@ std::optional<Unit> read_unit(const std::string& text) {
 }
 
 std::vector<std::string> unit_names() {
-  std::vector<std::string> list = {"kg", "mg", "km", "cm", "mm", "ms", "kN", "kJ", "kW", "MW", "kPa", "MPa", "kHz", "mrad"};
+  std::vector<std::string> list = {"kg", "mg", "km", "cm",  "mm",  "ms",  "kN",
+                                   "kJ", "kW", "MW", "kPa", "MPa", "kHz", "mrad"};
   for (const UnitRow& r : unit_table()) list.emplace_back(r.name);
   return list;
 }
@@ -170,7 +194,10 @@ std::string print(const Dimension& d) {
     if (d[k] == 0) continue;
     std::string& list = d[k] > 0 ? top : bottom;
     const Rational p = abs(d[k]);
-    list += (list.empty() ? "" : d[k] > 0 ? "*" : "/") + std::string(kBase[k]) + (p == 1 ? "" : "^" + (p.get_den() == 1 ? p.get_str() : "(" + p.get_str() + ")"));
+    list += (list.empty() ? ""
+             : d[k] > 0   ? "*"
+                          : "/") +
+            std::string(kBase[k]) + (p == 1 ? "" : "^" + (p.get_den() == 1 ? p.get_str() : "(" + p.get_str() + ")"));
   }
   if (top.empty()) top = "1";
   return bottom.empty() ? top : top + "/" + bottom;

@@ -1,6 +1,6 @@
-// Units of measurement: exact factors to SI. A number with a unit is the number in SI units, so that all that follows is
-// plain mathematics; the degree is pi/180, not a decimal. Dimensions are exponents of the seven SI base units; they may be
-// fractions (the square root of a length); an angle is a pure number.
+// Units of measurement: exact factors to SI. A number with a unit is the number in SI units, so that all that follows
+// is plain mathematics; the degree is pi/180, not a decimal. Dimensions are exponents of the seven SI base units; they
+// may be fractions (the square root of a length); an angle is a pure number.
 #pragma once
 #include <array>
 #include <optional>
@@ -25,7 +25,7 @@ struct UnitRow {
   const char* factor;  // exact, "1/3.6" is not: "5/18"
   int pi;
   std::array<int, 7> dimension;
-  bool prefixes;       // k, M, m, … may stand before it
+  bool prefixes;  // k, M, m, … may stand before it
   const char* meaning;
 };
 const std::vector<UnitRow>& unit_table();

@@ -29,17 +29,17 @@ Vector operator*(const Rotation& r, const Vector& a) {
   const Vector z = a.z * r[2], y = a.y * r[1], x = a.x * r[0];
   return x + y + z;
 }
-Vector transpose_times(const Rotation& r, const Vector& a) {
-  return {dot(r[0], a), dot(r[1], a), dot(r[2], a)};
-}
+Vector transpose_times(const Rotation& r, const Vector& a) { return {dot(r[0], a), dot(r[1], a), dot(r[2], a)}; }
 Rotation operator*(const Rotation& a, const Rotation& b) {
-  return {{a * b[0], a * b[1], a * b[2]}, a.rate + a * b.rate, transpose_times(b, a.own_rate) + b.own_rate,
+  return {{a * b[0], a * b[1], a * b[2]},
+          a.rate + a * b.rate,
+          transpose_times(b, a.own_rate) + b.own_rate,
           a.by_turns && b.by_turns};
 }
 Rotation identity_rotation(Graph& g) {
   const Vector zero = zero_vector(g);
-  return {{{g.one(), g.zero(), g.zero()}, {g.zero(), g.one(), g.zero()}, {g.zero(), g.zero(), g.one()}},
-          zero, zero, true};
+  return {
+      {{g.one(), g.zero(), g.zero()}, {g.zero(), g.one(), g.zero()}, {g.zero(), g.zero(), g.one()}}, zero, zero, true};
 }
 
 Rotation turn(int axis, Expr angle) {
@@ -59,8 +59,7 @@ Rotation turn(const Vector& a, Expr angle) {
   Rotation r = identity_rotation(g);
   const Rotation e = r;
   const Expr c = cos(angle), s = sin(angle);
-  for (int k = 0; k < 3; ++k)
-    r.columns[k] = c * e[k] + s * cross(a, e[k]) + ((1 - c) * a[k]) * a;
+  for (int k = 0; k < 3; ++k) r.columns[k] = c * e[k] + s * cross(a, e[k]) + ((1 - c) * a[k]) * a;
   if (!is_zero(total_derivative(a))) return rotation_from_axes(r[0], r[1], r[2]);
   r.rate = r.own_rate = total_derivative(angle) * a;
   return r;

@@ -1,7 +1,7 @@
 // A formulation: one classical form of the equations of motion, as one file in forms/.
 //
-// A form maps Mechanics (and, where it has eliminated the multipliers, an Elimination) to its equations, left side = right
-// side, with masses frozen. Adding a file forms/NAME.cpp adds the form; no other file is touched.
+// A form maps Mechanics (and, where it has eliminated the multipliers, an Elimination) to its equations, left side =
+// right side, with masses frozen. Adding a file forms/NAME.cpp adds the form; no other file is touched.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,17 +16,17 @@ struct Equations {
 
 // What a form's equations stand in, and how many there are.
 enum class Unknowns : std::uint8_t {
-  multipliers,        // n equations in q and lambda
-  coordinates,        // n - s equations, dependent coordinates eliminated; or n without lambda
-  quasi_velocities,   // n - s equations in quasi-velocities
-  variational,        // n equations in q and multipliers of another mechanics
+  multipliers,       // n equations in q and lambda
+  coordinates,       // n - s equations, dependent coordinates eliminated; or n without lambda
+  quasi_velocities,  // n - s equations in quasi-velocities
+  variational,       // n equations in q and multipliers of another mechanics
 };
 
 // No order m of a form is higher: equations of order m hold T^(m), which grows with every derivative.
 inline constexpr unsigned kHighestM = 12;
 
 struct Formulation {
-  const char* name;      // as --form accepts it
+  const char* name;  // as --form accepts it
   const char* title;
   const char* equation;  // number in its source; empty for the classics
   const char* source;
@@ -43,15 +43,18 @@ struct Formulation {
 };
 
 // Names of the seed papers, as every form gives its source.
-inline constexpr const char* kLuoZhao = "Luo & Zhao, Routh's Equations for General Nonholonomic Mechanical Systems of Variable Mass";
+inline constexpr const char* kLuoZhao =
+    "Luo & Zhao, Routh's Equations for General Nonholonomic Mechanical Systems of Variable Mass";
 inline constexpr const char* kQiu = "Qiu, Extended Mac-Millan's Equation";
-inline constexpr const char* kMicevicRusov = "a paper on equations of Mićević–Rusov type for nonholonomic systems of higher order";
+inline constexpr const char* kMicevicRusov =
+    "a paper on equations of Mićević–Rusov type for nonholonomic systems of higher order";
 
 // What the forms have in common.
 //
 // The given and the inertial forces and the reactions sum lambda dphi/dq^(m)  [L 2.7], right side
 Column right_side(const Mechanics& M);
-// The highest order of the constraints, at least 1. A constraint of lower order may be lifted to it without a change of N.
+// The highest order of the constraints, at least 1. A constraint of lower order may be lifted to it without a change of
+// N.
 unsigned highest_order(const Mechanics& M);
 // The m of the forms of order m with multipliers: the one asked for, else the highest order of the constraints.
 unsigned order_of(const Mechanics& M, const Elimination& E);
@@ -71,12 +74,13 @@ std::string no_obstacle(const Mechanics&);
 // For the forms of first order: holonomic constraints are lifted to it, higher ones cannot be.
 std::string first_order_only(const Mechanics& M);
 
-// Why a form does not apply to a model: its own reason, or that a constraint is kept by an input, which no elimination of ideal
-// reactions knows. Empty if it applies.
+// Why a form does not apply to a model: its own reason, or that a constraint is kept by an input, which no elimination
+// of ideal reactions knows. Empty if it applies.
 std::string obstacle(const Formulation& form, const Mechanics& M);
 
-// Why a form that applies does not do so with this order m. Empty if it does. Constraints and quasi-velocities of lower order are
-// lifted to m; the equations of forms with multipliers hold for every m, those of the others from the highest order on.
+// Why a form that applies does not do so with this order m. Empty if it does. Constraints and quasi-velocities of lower
+// order are lifted to m; the equations of forms with multipliers hold for every m, those of the others from the highest
+// order on.
 std::string order_obstacle(const Formulation& form, const Mechanics& M, unsigned m);
 
 // All forms, sorted by name; made by the build from the files in forms/.

@@ -4,10 +4,13 @@ namespace anholon {
 
 namespace {
 
-std::string fraction(const std::string& above, const std::string& below) { return "<mfrac><mrow>" + above + "</mrow><mrow>" + below + "</mrow></mfrac>"; }
+std::string fraction(const std::string& above, const std::string& below) {
+  return "<mfrac><mrow>" + above + "</mrow><mrow>" + below + "</mrow></mfrac>";
+}
 
 Label applied(const std::string& text, const std::string& d, const Label& of) {
-  return {text + " " + of.text, "\\frac{" + d + "}{" + d + "t} " + of.latex, fraction("<mi>" + d + "</mi>", "<mi>" + d + "</mi><mi>t</mi>") + of.mathml};
+  return {text + " " + of.text, "\\frac{" + d + "}{" + d + "t} " + of.latex,
+          fraction("<mi>" + d + "</mi>", "<mi>" + d + "</mi><mi>t</mi>") + of.mathml};
 }
 
 }  // namespace
@@ -16,17 +19,23 @@ Label letter(const std::string& name) { return {name, latex_name(name), mathml_n
 
 Label energy(const std::string& name, unsigned k, Over over) {
   Label out = letter(name);
-  const std::string order = std::to_string(k), latex = k ? "(" + order + ")" : "", mathml = k ? "<mo>(</mo><mn>" + order + "</mn><mo>)</mo>" : "";
+  const std::string order = std::to_string(k), latex = k ? "(" + order + ")" : "",
+                    mathml = k ? "<mo>(</mo><mn>" + order + "</mn><mo>)</mo>" : "";
   std::string star_latex, star_mathml;
   switch (over) {
-    case Over::nothing: break;
-    case Over::tilde: out = {name + "~", "\\tilde{" + out.latex + "}", "<mover accent=\"true\">" + out.mathml + "<mo>~</mo></mover>"}; break;
-    case Over::star:
-      out.text += "*";
-      star_latex = "*";
-      star_mathml = "<mo>*</mo>";
-      break;
-    case Over::bar: out = {name + "bar", "\\bar{" + out.latex + "}", "<mover accent=\"true\">" + out.mathml + "<mo>¯</mo></mover>"}; break;
+  case Over::nothing:
+    break;
+  case Over::tilde:
+    out = {name + "~", "\\tilde{" + out.latex + "}", "<mover accent=\"true\">" + out.mathml + "<mo>~</mo></mover>"};
+    break;
+  case Over::star:
+    out.text += "*";
+    star_latex = "*";
+    star_mathml = "<mo>*</mo>";
+    break;
+  case Over::bar:
+    out = {name + "bar", "\\bar{" + out.latex + "}", "<mover accent=\"true\">" + out.mathml + "<mo>¯</mo></mover>"};
+    break;
   }
   if (k) out.text += "^(" + order + ")";
   if (!k && star_latex.empty()) return out;
@@ -41,23 +50,28 @@ Label indexed(const Label& of, const std::string& text, const std::vector<Label>
     latex += (latex.empty() ? "" : ",") + p.latex;
     mathml += (mathml.empty() ? "" : "<mo>,</mo>") + p.mathml;
   }
-  return {of.text + "." + text, of.latex + "_{" + latex + "}", "<msub><mrow>" + of.mathml + "</mrow><mrow>" + mathml + "</mrow></msub>"};
+  return {of.text + "." + text, of.latex + "_{" + latex + "}",
+          "<msub><mrow>" + of.mathml + "</mrow><mrow>" + mathml + "</mrow></msub>"};
 }
 
 Label with_superscript(const std::string& text, const Label& base, const Label& upper) {
-  return {text, base.latex + "^{" + upper.latex + "}", "<msup>" + base.mathml + "<mrow>" + upper.mathml + "</mrow></msup>"};
+  return {text, base.latex + "^{" + upper.latex + "}",
+          "<msup>" + base.mathml + "<mrow>" + upper.mathml + "</mrow></msup>"};
 }
 
 Label minus(const Label& of) { return {"-" + of.text, "-" + of.latex, "<mo>-</mo>" + of.mathml}; }
 
-Label operator-(const Label& a, const Label& b) { return {a.text + " - " + b.text, a.latex + " - " + b.latex, a.mathml + "<mo>−</mo>" + b.mathml}; }
+Label operator-(const Label& a, const Label& b) {
+  return {a.text + " - " + b.text, a.latex + " - " + b.latex, a.mathml + "<mo>−</mo>" + b.mathml};
+}
 
 Label name_of(const Model& model, const std::string& name) { return derivative_of(model, name, 0); }
 
 Label derivative_of(const Model& model, const std::string& name, unsigned k) {
   const auto chosen = model.names.notation.find(name);
   const bool own = chosen != model.names.notation.end();
-  return {derivative_name(name, k, Format::text), derivative_name(own ? chosen->second.latex : latex_name(name), k, Format::latex),
+  return {derivative_name(name, k, Format::text),
+          derivative_name(own ? chosen->second.latex : latex_name(name), k, Format::latex),
           derivative_name(own ? chosen->second.mathml : mathml_name(name), k, Format::mathml)};
 }
 
@@ -69,7 +83,8 @@ Labels jet_labels(const Mechanics& M, unsigned k) {
 
 Labels free_labels(const Mechanics& M, const Elimination& E, unsigned more) {
   Labels out;
-  for (std::size_t a = 0; a < E.names.size(); ++a) out.push_back(derivative_of(*M.model, E.names[a], E.orders[a] + more));
+  for (std::size_t a = 0; a < E.names.size(); ++a)
+    out.push_back(derivative_of(*M.model, E.names[a], E.orders[a] + more));
   return out;
 }
 

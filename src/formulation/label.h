@@ -9,7 +9,8 @@ struct Label {
 };
 using Labels = std::vector<Label>;
 
-// What stands over a letter: T~ is reduced by coordinates, T* by quasi-velocities, Tbar by solved constraints of order 1.
+// What stands over a letter: T~ is reduced by coordinates, T* by quasi-velocities, Tbar by solved constraints of
+// order 1.
 enum class Over : std::uint8_t { nothing, tilde, star, bar };
 
 // A letter, or a word that stands for one, as SymbolNames would write it.
@@ -28,7 +29,8 @@ Label name_of(const Model& model, const std::string& name);
 Label derivative_of(const Model& model, const std::string& name, unsigned k);
 // q^(k) of all coordinates.
 Labels jet_labels(const Mechanics& M, unsigned k);
-// The free quantities u: q^(m) of the independent coordinates, or quasi-velocities with their own order; differentiated `more` times.
+// The free quantities u: q^(m) of the independent coordinates, or quasi-velocities with their own order; differentiated
+// `more` times.
 Labels free_labels(const Mechanics& M, const Elimination& E, unsigned more = 0);
 Labels pick(const Labels& all, const std::vector<std::size_t>& which);
 

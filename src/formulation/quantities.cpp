@@ -57,9 +57,8 @@ Quantities of_nielsen(const Mechanics& M, unsigned m) {
 Quantities of_lagrange(const Mechanics& M) { return of_nielsen(M, 1); }
 
 Quantities of_micevic_rusov(const Mechanics& M, unsigned m) {
-  const Quantities list = listed({
-      with_partials(M, energy("T", m), T(M, m), m),
-      with_partials(M, energy("T", m - 1), T(M, m - 1), m - 1)});
+  const Quantities list =
+      listed({with_partials(M, energy("T", m), T(M, m), m), with_partials(M, energy("T", m - 1), T(M, m - 1), m - 1)});
   return m == 1 ? list : listed({list, partials_of(M, energy("T"), M.T, 0)});
 }
 

@@ -1,7 +1,8 @@
-// What the equations of a form are made of, each quantity with its name: the lines that `derive --steps` prints before them.
+// What the equations of a form are made of, each quantity with its name: the lines that `derive --steps` prints before
+// them.
 //
-// A form lists what its own equation names, in the order in which it would be computed by hand. What all forms have in common is
-// listed elsewhere: the generalized forces, the constraints, and what the elimination puts in.
+// A form lists what its own equation names, in the order in which it would be computed by hand. What all forms have in
+// common is listed elsewhere: the generalized forces, the constraints, and what the elimination puts in.
 #pragma once
 #include <initializer_list>
 
@@ -54,7 +55,8 @@ Quantities dependent_partials(const Mechanics& M, const Elimination& E, const La
 Quantities f_by_lower(const Mechanics& M, const Elimination& E);
 Quantities rates_of_f_by_u(const Mechanics& M, const Elimination& E);
 Quantities f_rate_by_u(const Mechanics& M, const Elimination& E);
-// The velocities (or what f says) of all weighted points, component by component: v.NAME.x, of the axes of a body v.NAME.1.x.
+// The velocities (or what f says) of all weighted points, component by component: v.NAME.x, of the axes of a body
+// v.NAME.1.x.
 Labels point_labels(const Mechanics& M, const Label& of);
 // sum_s G_s B_sa, the forces along the constraints: G.x, G.u1
 Quantities forces_along(const Mechanics& M, const Elimination& E);

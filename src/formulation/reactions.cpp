@@ -26,7 +26,8 @@ ReactionFormulas reaction_formulas(const Mechanics& M, const Formulation& form, 
     out.multipliers[E.constraints[k]] = terms.empty() ? g.zero() : sum(terms);
   }
   for (const Load& load : reactions(*M.model)) {
-    const Column r = here(substitute(Column{load.force.x, load.force.y, load.force.z, load.torque.x, load.torque.y, load.torque.z}, kept_by_inputs));
+    const Column r = here(substitute(
+        Column{load.force.x, load.force.y, load.force.z, load.torque.x, load.torque.y, load.torque.z}, kept_by_inputs));
     out.loads.push_back({{r[0], r[1], r[2]}, {r[3], r[4], r[5]}});
   }
   return out;

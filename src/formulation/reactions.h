@@ -1,12 +1,13 @@
 // The reactions as formulas: multipliers, generalized reactions, and what acts on each body.
 //
-// Routh's equations say Phi^T lambda = a, a = E - G [L 3.1, 3.2]. The rows of the dependent coordinates give the multipliers,
+// Routh's equations say Phi^T lambda = a, a = E - G [L 3.1, 3.2]. The rows of the dependent coordinates give the
+// multipliers,
 //
 //   lambda = Phi_D^-T a_D                                          [L 3.5]
 //
-// and N_a = sum_r lambda_r dphi_r/dq_a^(m) = E_a - G_a [L 2.6, 2.7]: [L 4.4, 4.11, 4.12] are the second of these. What acts on a
-// body follows from Newton's law alone (theory: certificate). Accelerations stand in all of it; for a form without multipliers,
-// those of the dependent coordinates as the constraints give them.
+// and N_a = sum_r lambda_r dphi_r/dq_a^(m) = E_a - G_a [L 2.6, 2.7]: [L 4.4, 4.11, 4.12] are the second of these. What
+// acts on a body follows from Newton's law alone (theory: certificate). Accelerations stand in all of it; for a form
+// without multipliers, those of the dependent coordinates as the constraints give them.
 //
 // Hypotheses: ideal reactions; Phi_D is regular. Constraints that follow from others have multipliers zero.
 #pragma once

@@ -1,4 +1,5 @@
-// The part of the stepper that looks along the polynomial of the present step: where J may become singular, or its branch end.
+// The part of the stepper that looks along the polynomial of the present step: where J may become singular, or its
+// branch end.
 #include <algorithm>
 #include <cmath>
 
@@ -21,8 +22,10 @@ void Stepper<N>::polynomial(const W& h, std::vector<W>& increments, std::vector<
         for (int f = 1; f <= k; ++f) factor = factor * W(i + f);
         s = (s + dense(j, k + i) * factor) * h;
       }
-      if (k < d) increments[expansion_.offset(j) + static_cast<std::size_t>(k)] = s;
-      else leading[j] = point_.derivative(j, k) + s;
+      if (k < d)
+        increments[expansion_.offset(j) + static_cast<std::size_t>(k)] = s;
+      else
+        leading[j] = point_.derivative(j, k) + s;
     }
   }
 }
@@ -47,8 +50,8 @@ void Stepper<N>::on_polynomial(const W& h, std::vector<W>& state, std::vector<W>
   for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
 }
 
-// J and its LU at t + h on the polynomial, or nothing where it has none. What was met elsewhere says nothing there: the iteration
-// for the singular value starts anew, so that a run that goes on finds the same.
+// J and its LU at t + h on the polynomial, or nothing where it has none. What was met elsewhere says nothing there: the
+// iteration for the singular value starts anew, so that a run that goes on finds the same.
 template <Number N>
 Expansion<N>* Stepper<N>::ahead(const W& h) {
   std::vector<W> leading, state;
@@ -98,7 +101,8 @@ template <Number N>
 typename Stepper<N>::W Stepper<N>::on_the_branch(W h) {
   // From a horizon of e^300 (a polynomial motion) to far below any step.
   constexpr int kMostHalvings = 600;
-  if (record_.branch_step > W(0) && abs(h) > record_.branch_step * W(4)) h = h > W(0) ? record_.branch_step * W(4) : record_.branch_step * W(-4);
+  if (record_.branch_step > W(0) && abs(h) > record_.branch_step * W(4))
+    h = h > W(0) ? record_.branch_step * W(4) : record_.branch_step * W(-4);
   for (int k = 0; k < kMostHalvings && !(near_in_branch(h) && near_in_branch(h * W(0.5))); ++k) h = h * W(0.5);
   record_.branch_step = abs(h);
   return h;
@@ -116,8 +120,8 @@ std::optional<Mode<N>> Stepper<N>::mode_of(Expansion<N>* there) {
   return weakest_mode(*there, sigma);
 }
 
-// Whether the weakest direction at one point is mapped to the opposite at another: where several singular values pass zero together, the weakest direction
-// there is any of theirs.
+// Whether the weakest direction at one point is mapped to the opposite at another: where several singular values pass
+// zero together, the weakest direction there is any of theirs.
 template <Number N>
 static bool reversed(const Mode<N>& from, const Expansion<N>& there) {
   constexpr double kOpposite = -0.5;
@@ -140,8 +144,10 @@ template <Number N>
 std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
   constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
   constexpr int kBisections = 60, kRoundoffs = 4096;
-  // A singular value that vanishes within the step has fallen by more than half in one as long; what it was is not known after steps by the kernel.
-  const bool suspected = by_kernel_ || suspected_ || record_.last_step == W(0) || sigma_ < record_.sigma_before * N(kFaster) || abs(h) > record_.last_step * W(kLonger);
+  // A singular value that vanishes within the step has fallen by more than half in one as long; what it was is not
+  // known after steps by the kernel.
+  const bool suspected = by_kernel_ || suspected_ || record_.last_step == W(0) ||
+                         sigma_ < record_.sigma_before * N(kFaster) || abs(h) > record_.last_step * W(kLonger);
   if (!suspected) return std::nullopt;
   settle();
   const std::size_t n = program_->system->coordinates;
@@ -161,26 +167,28 @@ std::optional<typename Stepper<N>::W> Stepper<N>::singular_within(const W& h) {
     Expansion<N>* there = ahead(middle);
     std::optional<Mode<N>> m = mode_of(there);
     if (!m) return middle;
-    if (crossed(low, *m, n) || reversed(low, *there)) to = middle;
-    else from = middle, low = std::move(*m);
+    if (crossed(low, *m, n) || reversed(low, *there))
+      to = middle;
+    else
+      from = middle, low = std::move(*m);
   }
   // A step that begins beside the singular point finds a value there that is round-off, however small it was.
   const N roundoff = unit_roundoff<N>() * N(kRoundoffs);
   return low.sigma < start * N(kVanished) || low.sigma < roundoff ? std::optional<W>(from) : std::nullopt;
 }
 
-#define INSTANTIATE(N)                                                                                 \
-  template void Stepper<N>::polynomial(const W&, std::vector<W>&, std::vector<W>&) const;              \
-  template void Stepper<N>::on_polynomial(const W&, std::vector<W>&, std::vector<W>&) const;           \
-  template Expansion<N>* Stepper<N>::ahead(const W&);                                                  \
-  template Expansion<N>* Stepper<N>::prepared(const W&, const std::vector<W>&, const std::vector<W>&); \
-  template Expansion<N>& Stepper<N>::loaded_ahead(const W&, const std::vector<W>&, const std::vector<W>&); \
-  template std::optional<N> Stepper<N>::quadrature_ahead(std::size_t, const N&);                       \
-  template std::optional<N> Stepper<N>::quadrature_there(std::size_t);                                 \
-  template bool Stepper<N>::near_in_branch(const W&);                                                  \
-  template Wider<N> Stepper<N>::on_the_branch(W);                                                      \
-  template std::optional<Mode<N>> Stepper<N>::mode_at(const W&, const std::vector<W>&);                \
-  template std::optional<Mode<N>> Stepper<N>::mode_of(Expansion<N>*);                                  \
+#define INSTANTIATE(N)                                                                                                 \
+  template void Stepper<N>::polynomial(const W&, std::vector<W>&, std::vector<W>&) const;                              \
+  template void Stepper<N>::on_polynomial(const W&, std::vector<W>&, std::vector<W>&) const;                           \
+  template Expansion<N>* Stepper<N>::ahead(const W&);                                                                  \
+  template Expansion<N>* Stepper<N>::prepared(const W&, const std::vector<W>&, const std::vector<W>&);                 \
+  template Expansion<N>& Stepper<N>::loaded_ahead(const W&, const std::vector<W>&, const std::vector<W>&);             \
+  template std::optional<N> Stepper<N>::quadrature_ahead(std::size_t, const N&);                                       \
+  template std::optional<N> Stepper<N>::quadrature_there(std::size_t);                                                 \
+  template bool Stepper<N>::near_in_branch(const W&);                                                                  \
+  template Wider<N> Stepper<N>::on_the_branch(W);                                                                      \
+  template std::optional<Mode<N>> Stepper<N>::mode_at(const W&, const std::vector<W>&);                                \
+  template std::optional<Mode<N>> Stepper<N>::mode_of(Expansion<N>*);                                                  \
   template std::optional<Wider<N>> Stepper<N>::singular_within(const W&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

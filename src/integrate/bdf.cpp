@@ -6,23 +6,25 @@
 
 namespace anholon {
 
-// Errors of steps of low order add up over the many steps that BDF takes: each may make but this part of the tolerance, for a motion that is
-// as close as by the other methods.
+// Errors of steps of low order add up over the many steps that BDF takes: each may make but this part of the tolerance,
+// for a motion that is as close as by the other methods.
 constexpr double kOfTolerance = 0.01;
 
 Bdf::Bdf(StateRate rate, const StepSettings& settings) : rate_(std::move(rate)), settings_(settings) {}
 
 Outcome Bdf::start(const MotionPoint& from, long double end) {
   ANHOLON_ASSERT(rate_);
-  const auto narrow = [](const std::vector<long double>& list) { return std::vector<double>(list.begin(), list.end()); };
+  const auto narrow = [](const std::vector<long double>& list) {
+    return std::vector<double>(list.begin(), list.end());
+  };
   SundialsSettings settings;
   settings.integral_tolerance = std::exp(settings_.log_tolerance);
   settings.tolerance = kOfTolerance * settings.integral_tolerance;
   settings.most_steps = settings_.most_steps;
   settings.cancelled = settings_.cancelled;
   now_ = before_ = from;
-  motion_.emplace(std::move(*rate_), settings, static_cast<double>(from.t), static_cast<double>(end), narrow(from.state), from.leading,
-                  narrow(from.integrals));
+  motion_.emplace(std::move(*rate_), settings, static_cast<double>(from.t), static_cast<double>(end),
+                  narrow(from.state), from.leading, narrow(from.integrals));
   rate_.reset();
   return {};
 }

@@ -1,4 +1,5 @@
-// The motion by BDF, for stiff motions: CVODE's (sundials.h), with steps that end on all hidden constraints (theory: methods).
+// The motion by BDF, for stiff motions: CVODE's (sundials.h), with steps that end on all hidden constraints (theory:
+// methods).
 #pragma once
 #include <optional>
 

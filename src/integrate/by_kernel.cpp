@@ -14,7 +14,8 @@ namespace {
 
 bool may_turn(const Instruction& in) {
   return in.op == Op::select || in.op == Op::lookup ||
-         (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign)));
+         (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) ||
+                                    in.index == static_cast<std::uint32_t>(Function::sign)));
 }
 
 }  // namespace
@@ -35,7 +36,8 @@ template <Number N>
 void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane) {
   if constexpr (std::same_as<N, double>) {
     const Tape& tape = program_->tape;
-    const bool kinks = std::any_of(tape.code.begin(), tape.code.begin() + kinks_end(), [](const Instruction& in) { return !in.constant && may_turn(in); });
+    const bool kinks = std::any_of(tape.code.begin(), tape.code.begin() + kinks_end(),
+                                   [](const Instruction& in) { return !in.constant && may_turn(in); });
     if (kinks || !events_.empty()) return;
     settle();
     kernel_ = std::move(kernel);
@@ -46,14 +48,15 @@ void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane) {
     own_.clear();
     // The roots of a kernel with unknowns of its own are its own, too: of what J keeps from zero.
     if (mapped()) return;
-    for (const auto& [slot, place] : kernel_->plan().plan().roots_of_even_powers) kink_series_.push_back({slot, place.at});
+    for (const auto& [slot, place] : kernel_->plan().plan().roots_of_even_powers)
+      kink_series_.push_back({slot, place.at});
   } else {
     (void)kernel, (void)lane;
   }
 }
 
-// Not where the reference has to be asked: some expansions are its own, for the measure of how regular J is: the first, others ever more rarely, and
-// see below.
+// Not where the reference has to be asked: some expansions are its own, for the measure of how regular J is: the first,
+// others ever more rarely, and see below.
 template <Number N>
 bool Stepper<N>::kernel_serves() const {
   if constexpr (std::same_as<N, double>) {
@@ -90,7 +93,8 @@ void Stepper<N>::load_kernel(const std::vector<W>& guess) {
   }
 }
 
-// What is with the kernel is fetched. Its last two expansions, too; while one is being made, there is nothing to settle.
+// What is with the kernel is fetched. Its last two expansions, too; while one is being made, there is nothing to
+// settle.
 template <Number N>
 void Stepper<N>::settle() const {
   if constexpr (std::same_as<N, double>) {
@@ -179,7 +183,8 @@ bool Stepper<N>::take_from_kernel() {
     const double health = pivots.health;
     suspected_ = by_kernel_ && may_have_vanished(pivots_before_, pivots);
     pivots_before_ = pivots;
-    if (!(health > trusted_health()) || (settings_.measure && health < record_.least_health * kNewsOfPivots) || !kernel_->reaches(lane_)) {
+    if (!(health > trusted_health()) || (settings_.measure && health < record_.least_health * kNewsOfPivots) ||
+        !kernel_->reaches(lane_)) {
       record_.least_health = std::min(record_.least_health, health);
       return false;
     }
@@ -197,7 +202,8 @@ bool Stepper<N>::take_from_kernel() {
   }
 }
 
-// Who asks for the last digits gets them from the reference, which refines its solutions in wider numbers, where an elimination begins to lose some.
+// Who asks for the last digits gets them from the reference, which refines its solutions in wider numbers, where an
+// elimination begins to lose some.
 template <Number N>
 double Stepper<N>::trusted_health() const {
   constexpr double kLosesNone = 0.25;
@@ -258,7 +264,9 @@ N Stepper<N>::coefficient(std::size_t j, int k) const {
     if (by_kernel_) {
       kernel_->show_last();
       const auto own = kernel_unknown(j);
-      return own && k <= kernel_->plan().plan().stages + kernel_->plan().plan().d[*own] ? kernel_->coefficient(*own, k, lane_) : 0;
+      return own && k <= kernel_->plan().plan().stages + kernel_->plan().plan().d[*own]
+                 ? kernel_->coefficient(*own, k, lane_)
+                 : 0;
     }
   return expansion_.coefficient(j, k);
 }
@@ -291,8 +299,10 @@ void Stepper<N>::find_hidden_by_kernel(const N& h) {
 
 template <Number N>
 N Stepper<N>::defect_by_kernel() const {
-  if constexpr (std::same_as<N, double>) return kernel_->defect(lane_);
-  else return N(0);
+  if constexpr (std::same_as<N, double>)
+    return kernel_->defect(lane_);
+  else
+    return N(0);
 }
 
 template <Number N>
@@ -301,9 +311,11 @@ void Stepper<N>::advance_kernel(const W& h) const {
   kernel_->change_over_step();
 }
 
-// The solution h beyond where the expansion was made, in the unknowns of the kernel. What the kernel does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
+// The solution h beyond where the expansion was made, in the unknowns of the kernel. What the kernel does not see of
+// the wider state is added: t_i h^(i-k) / (i-k)!.
 template <Number N>
-void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std::vector<W>& state, std::vector<W>& leading) const {
+void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std::vector<W>& state,
+                                    std::vector<W>& leading) const {
   if constexpr (std::same_as<N, double>) {
     kernel_->show_last();
     const Program& p = kernel_->plan().program();
@@ -334,30 +346,31 @@ void Stepper<N>::advanced_by_kernel(const W& h, const std::vector<W>& base, std:
   }
 }
 
-#define INSTANTIATE(N)                                                                        \
-  template N Stepper<N>::coefficient(std::size_t, int) const;                                 \
-  template N Stepper<N>::quadrature_coefficient(std::size_t, int) const;                      \
-  template void Stepper<N>::find_hidden_by_kernel(const N&);                                  \
-  template N Stepper<N>::defect_by_kernel() const;                                            \
-  template void Stepper<N>::advance_kernel(const W&) const;                                   \
-  template void Stepper<N>::advanced_by_kernel(const W&, const std::vector<W>&, std::vector<W>&, std::vector<W>&) const; \
-  template void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan>);                    \
-  template void Stepper<N>::accelerate(std::shared_ptr<Kernel>, int);                         \
-  template bool Stepper<N>::kernel_serves() const;                                            \
-  template void Stepper<N>::load_kernel(const std::vector<W>&);                               \
-  template void Stepper<N>::settle() const;                                                   \
-  template void Stepper<N>::settle_as_begun();                                                \
-  template void Stepper<N>::settle_at_base();                                                 \
-  template void Stepper<N>::show_roots();                                                      \
-  template bool Stepper<N>::take_from_kernel();                                               \
-  template double Stepper<N>::trusted_health() const;                                         \
-  template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;                          \
-  template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;                         \
-  template std::optional<std::size_t> Stepper<N>::kernel_unknown(std::size_t) const;          \
-  template StepperState<N>& Stepper<N>::settled(int) const;                                   \
-  template bool Stepper<N>::mapped() const;                                                   \
-  template void Stepper<N>::read(const W&, const std::vector<W>&, std::vector<W>&) const;     \
-  template void Stepper<N>::fetch_own_base(std::vector<W>&) const;                            \
+#define INSTANTIATE(N)                                                                                                 \
+  template N Stepper<N>::coefficient(std::size_t, int) const;                                                          \
+  template N Stepper<N>::quadrature_coefficient(std::size_t, int) const;                                               \
+  template void Stepper<N>::find_hidden_by_kernel(const N&);                                                           \
+  template N Stepper<N>::defect_by_kernel() const;                                                                     \
+  template void Stepper<N>::advance_kernel(const W&) const;                                                            \
+  template void Stepper<N>::advanced_by_kernel(const W&, const std::vector<W>&, std::vector<W>&, std::vector<W>&)      \
+      const;                                                                                                           \
+  template void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan>);                                             \
+  template void Stepper<N>::accelerate(std::shared_ptr<Kernel>, int);                                                  \
+  template bool Stepper<N>::kernel_serves() const;                                                                     \
+  template void Stepper<N>::load_kernel(const std::vector<W>&);                                                        \
+  template void Stepper<N>::settle() const;                                                                            \
+  template void Stepper<N>::settle_as_begun();                                                                         \
+  template void Stepper<N>::settle_at_base();                                                                          \
+  template void Stepper<N>::show_roots();                                                                              \
+  template bool Stepper<N>::take_from_kernel();                                                                        \
+  template double Stepper<N>::trusted_health() const;                                                                  \
+  template const Expansion<Wider<N>>& Stepper<N>::point(bool) const;                                                   \
+  template std::vector<Wider<N>> Stepper<N>::leading_at_base() const;                                                  \
+  template std::optional<std::size_t> Stepper<N>::kernel_unknown(std::size_t) const;                                   \
+  template StepperState<N>& Stepper<N>::settled(int) const;                                                            \
+  template bool Stepper<N>::mapped() const;                                                                            \
+  template void Stepper<N>::read(const W&, const std::vector<W>&, std::vector<W>&) const;                              \
+  template void Stepper<N>::fetch_own_base(std::vector<W>&) const;                                                     \
   template void Stepper<N>::fetch_base(std::vector<W>&) const;
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -1,7 +1,7 @@
 // The first time at which a polynomial passes from one sign to the other, none stepped over.
 //
-// In Bernstein form on [0, h] a polynomial lies within the hull of its coefficients. Stretches on which the hull stays on one
-// side are passed over whole; others are halved, the earlier half first (de Casteljau).
+// In Bernstein form on [0, h] a polynomial lies within the hull of its coefficients. Stretches on which the hull stays
+// on one side are passed over whole; others are halved, the earlier half first (de Casteljau).
 #pragma once
 #include <optional>
 
@@ -17,13 +17,13 @@ N value_at(const N* c, int degree, const N& x) {
   return s;
 }
 
-// The first x in (0, h], h of either sign, from where on p = sum c_k x^k is below -floor, taken back to where p left the side
-// p >= 0 (where it does not hold at 0: 0). A dip that stays above -floor is none: p only touches zero there.
+// The first x in (0, h], h of either sign, from where on p = sum c_k x^k is below -floor, taken back to where p left
+// the side p >= 0 (where it does not hold at 0: 0). A dip that stays above -floor is none: p only touches zero there.
 template <Number N>
 std::optional<N> first_below(const N* c, int degree, const N& h, const N& floor);
 
-// The logarithm of how far the sum of c_k x^k is known by its first terms: the last two stay below the tolerance times the
-// greatest of those before them, or of `floor`, which is round-off. 300, as for a step, where nothing bounds it.
+// The logarithm of how far the sum of c_k x^k is known by its first terms: the last two stay below the tolerance times
+// the greatest of those before them, or of `floor`, which is round-off. 300, as for a step, where nothing bounds it.
 template <Number N>
 double log_reach(const N* c, int degree, const N& floor, double log_tolerance);
 

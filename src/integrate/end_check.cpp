@@ -6,8 +6,8 @@ namespace anholon {
 
 namespace {
 
-// Steps end with up to so many times the tolerance, or so many round-offs (the shipped models: up to 10, mostly 0.5); a defect that is so many times what there is
-// near the start of the step is none of round-off.
+// Steps end with up to so many times the tolerance, or so many round-offs (the shipped models: up to 10, mostly 0.5); a
+// defect that is so many times what there is near the start of the step is none of round-off.
 constexpr double kTolerances = 100, kRoundoffs = 4096, kAboveNoise = 64;
 // A step that would have to be shorter than 2^-60 of what its series allow is not helped by shortening.
 constexpr int kMostShortened = 60;

@@ -1,10 +1,12 @@
-// Whether a step may end where its series say. Series tell how far they reach by their highest coefficients, but nothing of a function that is all but
-// constant where they were made: a tanh far from its ramp, a wall that begins further on. There the equations tell: the leading derivatives that the
-// series foretell at the end of the step, and at points of suspicion on the way, are put into them, and what Newton's method changes of them there is
-// the defect of the motion.
+// Whether a step may end where its series say. Series tell how far they reach by their highest coefficients, but
+// nothing of a function that is all but constant where they were made: a tanh far from its ramp, a wall that begins
+// further on. There the equations tell: the leading derivatives that the series foretell at the end of the step, and at
+// points of suspicion on the way, are put into them, and what Newton's method changes of them there is the defect of
+// the motion.
 //
-// A defect of x^(d) over a step h moves x^(d-1) by some h times as much; in relation to the size of that it is to stay near the tolerance. Where J is
-// nearly singular, Newton's change is round-off, however short the step: that is looked at near the start of the step before one is refused.
+// A defect of x^(d) over a step h moves x^(d-1) by some h times as much; in relation to the size of that it is to stay
+// near the tolerance. Where J is nearly singular, Newton's change is round-off, however short the step: that is looked
+// at near the start of the step before one is refused.
 #pragma once
 #include <vector>
 
@@ -21,7 +23,9 @@ class EndCheck {
   // A try of another length, with looks at these points on the way.
   void begin(const N& length, const std::vector<N>& on_the_way);
   // Where the next look is to be; the last one is at the end.
-  N where() const { return near_ >= 0 ? length_ * N(kNear[near_]) : index_ < on_the_way_.size() ? on_the_way_[index_] : length_; }
+  N where() const {
+    return near_ >= 0 ? length_ * N(kNear[near_]) : index_ < on_the_way_.size() ? on_the_way_[index_] : length_;
+  }
   // Whether it is one of the looks that decide, not one for round-off.
   bool decides() const { return near_ < 0; }
   enum class Next { good, look, shorten };

@@ -8,7 +8,8 @@ namespace anholon {
 
 namespace {
 
-// Values below so many round-offs of what they are made of are zero; events nearer than so many round-offs are at one moment.
+// Values below so many round-offs of what they are made of are zero; events nearer than so many round-offs are at one
+// moment.
 constexpr int kNoise = 64, kOneMoment = 64;
 // A value that a restart leaves at zero was not much farther from it before.
 constexpr int kMargin = 16;
@@ -62,12 +63,14 @@ static N improved(const N* c, int degree, N x, const N& h, const std::function<s
 
 template <Number N>
 void EventWatch<N>::restart() {
-  for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i] = i < at_zero_.size() && at_zero_[i] ? (sides_[i] > 0 ? 2 : sides_[i] < 0 ? -2 : 0) : 0;
+  for (std::size_t i = 0; i < sides_.size(); ++i)
+    sides_[i] = i < at_zero_.size() && at_zero_[i] ? (sides_[i] > 0 ? 2 : sides_[i] < 0 ? -2 : 0) : 0;
 }
 
 // All within (0, h], up to the first that ends the step.
 template <Number N>
-std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side) {
+std::vector<typename EventWatch<N>::Crossing>
+EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side) {
   const int forward = h > N(0) ? 1 : -1;
   std::vector<Crossing> list;
   N from(0), noise = floor;
@@ -110,11 +113,14 @@ bool EventWatch<N>::has_series(const N* c, int degree) {
 
 template <Number N>
 bool EventWatch<N>::without_series(const Expansion<N>& e, int degree) const {
-  return std::any_of(series_.begin(), series_.end(), [&](const WatchedSeries& s) { return s.of_state && !has_series(e.quadrature(s.quadrature), degree); });
+  return std::any_of(series_.begin(), series_.end(), [&](const WatchedSeries& s) {
+    return s.of_state && !has_series(e.quadrature(s.quadrature), degree);
+  });
 }
 
 template <Number N>
-bool EventWatch<N>::as_foretold(const Expansion<N>& e, int degree, const N& where, double log_tolerance, const ValueThere& value) const {
+bool EventWatch<N>::as_foretold(const Expansion<N>& e, int degree, const N& where, double log_tolerance,
+                                const ValueThere& value) const {
   // Measured as the steps of the motion are (end_check.cpp); where there is no value, the motion is what ends.
   constexpr double kTolerances = 100, kRoundoffs = 4096;
   for (const WatchedSeries& s : series_) {
@@ -134,7 +140,8 @@ bool EventWatch<N>::as_foretold(const Expansion<N>& e, int degree, const N& wher
 
 // All that values at the ends of parts of (0, h] show, up to the first that ends the step.
 template <Number N>
-std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings_of_values(const WatchedSeries& s, int& side, const N& h, const Values& values) {
+std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings_of_values(const WatchedSeries& s, int& side,
+                                                                                 const N& h, const Values& values) {
   constexpr int kParts = 32, kHalvings = 120;
   const int forward = h > N(0) ? 1 : -1;
   std::vector<Crossing> list;
@@ -167,7 +174,8 @@ std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings_of_values
 }
 
 template <Number N>
-std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h, const std::optional<N>& kink, const Values& values) {
+std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h,
+                                          const std::optional<N>& kink, const Values& values) {
   const N eps = unit_roundoff<N>();
   const int forward = h > N(0) ? 1 : -1;
   std::vector<std::vector<Crossing>> each;
@@ -188,8 +196,10 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
       if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
       continue;
     }
-    if (sides_[i] == 0) sides_[i] = side_after(c, degree, h, floor);
-    else if (abs(sides_[i]) > 1) sides_[i] = abs(c[0]) > floor ? (c[0] > N(0) ? 1 : -1) : sides_[i] / 2;
+    if (sides_[i] == 0)
+      sides_[i] = side_after(c, degree, h, floor);
+    else if (abs(sides_[i]) > 1)
+      sides_[i] = abs(c[0]) > floor ? (c[0] > N(0) ? 1 : -1) : sides_[i] / 2;
     each.push_back(crossings(c, degree, h, floor, s, sides_[i]));
     // What the series do beyond a kink is not what the formula does: it may touch zero there, and turn.
     if (s.of_state && kink && !each[i].empty() && !(abs(each[i].back().where) < abs(*kink))) {
@@ -197,7 +207,8 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
       if (there && !(each[i].back().towards > 0 ? *there > N(0) : *there < N(0))) each[i].pop_back();
     }
     if (s.of_state)
-      for (Crossing& x : each[i]) x.where = improved<N>(c, degree, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
+      for (Crossing& x : each[i])
+        x.where = improved<N>(c, degree, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
     if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards * forward)) continue;
     if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
   }
@@ -208,9 +219,11 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     for (const Crossing& x : each[i]) {
       if (abs(x.where) > abs(end) + slack) break;
       sides_[i] = x.towards;
-      if (series_[i].fires(x.towards * forward)) fired.push_back({i, ended && !(abs(x.where) < abs(end) - slack) ? end : x.where});
+      if (series_[i].fires(x.towards * forward))
+        fired.push_back({i, ended && !(abs(x.where) < abs(end) - slack) ? end : x.where});
     }
-  std::stable_sort(fired.begin(), fired.end(), [](const Fired<N>& a, const Fired<N>& b) { return abs(a.where) < abs(b.where); });
+  std::stable_sort(fired.begin(), fired.end(),
+                   [](const Fired<N>& a, const Fired<N>& b) { return abs(a.where) < abs(b.where); });
   if (ended) h = end;
   at_zero_.clear();
   for (std::size_t i = 0; i < series_.size(); ++i)

@@ -1,11 +1,11 @@
 // Events along a motion: the strict changes of sign of given series, located on the Taylor polynomial.
 //
-// Each series has a side, the sign it last had. At the start and after a restart it is that of the value, or, where the value is
-// round-off, that which the series takes right afterwards; so nothing fires there. A series that had not fired and that a restart
-// leaves at zero keeps its side: it may be about to pass.
+// Each series has a side, the sign it last had. At the start and after a restart it is that of the value, or, where the
+// value is round-off, that which the series takes right afterwards; so nothing fires there. A series that had not fired
+// and that a restart leaves at zero keeps its side: it may be about to pass.
 //
-// A series is cut off like the state's, and a formula of the state converges more slowly than the state: its zeros are improved on
-// values of the formula itself, by Newton's method. Where a formula has no series, its values tell.
+// A series is cut off like the state's, and a formula of the state converges more slowly than the state: its zeros are
+// improved on values of the formula itself, by Newton's method. Where a formula has no series, its values tell.
 #pragma once
 #include <functional>
 #include <vector>
@@ -18,7 +18,7 @@ struct WatchedSeries {
   std::size_t quadrature = 0;  // of the program
   int direction = 0;           // 1: only upwards, -1: only downwards
   bool ends_step = false;
-  bool of_state = false;       // its value follows from the state and the leading derivatives
+  bool of_state = false;  // its value follows from the state and the leading derivatives
   // `towards` in the direction of time, whichever way the motion goes.
   bool fires(int towards) const { return direction == 0 || direction == towards; }
 };
@@ -46,15 +46,18 @@ class EventWatch {
 
   // The value of a quadrature on the state at a time from the start of the step, where it has one.
   using Values = std::function<std::optional<N>(std::size_t quadrature, const N& where)>;
-  // Whether the series of formulas of the state, finite ones, have their values at a point on the way; `value`: of a quadrature there.
+  // Whether the series of formulas of the state, finite ones, have their values at a point on the way; `value`: of a
+  // quadrature there.
   using ValueThere = std::function<std::optional<N>(std::size_t quadrature)>;
-  bool as_foretold(const Expansion<N>& e, int degree, const N& where, double log_tolerance, const ValueThere& value) const;
+  bool as_foretold(const Expansion<N>& e, int degree, const N& where, double log_tolerance,
+                   const ValueThere& value) const;
   // A formula of the state that has a value, but no series: the root of what is zero.
   bool without_series(const Expansion<N>& e, int degree) const;
-  // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time, those of
-  // one moment in the order of the series. Sides become those after it. `t`: the time of the expansion.
+  // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time,
+  // those of one moment in the order of the series. Sides become those after it. `t`: the time of the expansion.
   // `kink`: series hold up to there only, and the step ends shortly after.
-  std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h, const std::optional<N>& kink, const Values& values);
+  std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h, const std::optional<N>& kink,
+                             const Values& values);
 
  private:
   struct Crossing {
@@ -63,7 +66,8 @@ class EventWatch {
   };
   static bool has_series(const N* c, int degree);
   static std::vector<Crossing> crossings_of_values(const WatchedSeries& s, int& side, const N& h, const Values& values);
-  static std::vector<Crossing> crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side);
+  static std::vector<Crossing> crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s,
+                                         int side);
 
   std::vector<WatchedSeries> series_;
   std::vector<int> sides_;

@@ -8,7 +8,8 @@
 
 namespace anholon {
 
-// So many round-offs of what it was at the start a singular value of J may fall to: below, fewer than six digits are left of a solution.
+// So many round-offs of what it was at the start a singular value of J may fall to: below, fewer than six digits are
+// left of a solution.
 static constexpr double kNoDigits = 1e6;
 
 template <Number N>
@@ -37,8 +38,10 @@ bool Stepper<N>::ends_expansion(const std::vector<W>& guess) {
   loaded_ = false;
   if (by_kernel && !suspected_) return true;
   Outcome o = by_kernel ? Outcome{} : expand_by_reference(guess);
-  if (o.ok() && suspected_) o = look_back();
-  else if (!o.ok() && again) expand_again(StepperState<N>(settled(1 - now_)));
+  if (o.ok() && suspected_)
+    o = look_back();
+  else if (!o.ok() && again)
+    expand_again(StepperState<N>(settled(1 - now_)));
   return o.ok() || fail(std::move(o));
 }
 
@@ -63,7 +66,8 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
 template <Number N>
 Outcome Stepper<N>::look_back() {
   settle();
-  const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, settled(1 - now_).state), here = mode_at(t_, state_);
+  const std::optional<Mode<N>> before = mode_at(begun_[1 - now_].t, settled(1 - now_).state),
+                               here = mode_at(t_, state_);
   if (before && here && !crossed(*before, *here, program_->system->coordinates)) return {};
   const StepperState<N> now = settled(now_), last = settled(1 - now_);
   const W length = record_.last_step;
@@ -72,7 +76,10 @@ Outcome Stepper<N>::look_back() {
   record_.last_step = W(0);
   const std::optional<W> met = singular_within(now.t - last.t);
   record_.last_step = length;
-  if (met) return {OutcomeKind::singular, "the system Jacobian becomes singular at t = " + number_text(to_double(W(last.t + *met)), 12), "end the motion before"};
+  if (met)
+    return {OutcomeKind::singular,
+            "the system Jacobian becomes singular at t = " + number_text(to_double(W(last.t + *met)), 12),
+            "end the motion before"};
   record_.careful = true;
   const Outcome o = expand_here(now.leading);
   begun_[now_] = now;
@@ -152,12 +159,14 @@ Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
   if (Outcome o = expansion_.prepare(); !o.ok()) return o;
   sigma_ = expansion_.smallest_singular_value();
   note_sigma(sigma_);
-  // Steps shrink towards where constraints lose their hold, and would come out on the other side, with one motion of several. Where coordinates are
-  // singular (Euler's angles) there is one.
+  // Steps shrink towards where constraints lose their hold, and would come out on the other side, with one motion of
+  // several. Where coordinates are singular (Euler's angles) there is one.
   const std::vector<N>& v = expansion_.weakest_direction();
   const auto larger = [](const N& a, const N& b) { return abs(a) < abs(b); };
-  const bool of_constraints = std::max_element(v.begin(), v.end(), larger) - v.begin() >= static_cast<std::ptrdiff_t>(program_->system->coordinates);
-  if (of_constraints && sigma_ < record_.first_sigma * unit_roundoff<N>() * N(kNoDigits)) return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+  const bool of_constraints = std::max_element(v.begin(), v.end(), larger) - v.begin() >=
+                              static_cast<std::ptrdiff_t>(program_->system->coordinates);
+  if (of_constraints && sigma_ < record_.first_sigma * unit_roundoff<N>() * N(kNoDigits))
+    return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
   point_.load(t_, state_, guess);
   if constexpr (std::same_as<N, W>) {
     if (Outcome o = expansion_.project(); !o.ok()) return o;
@@ -198,8 +207,9 @@ Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
   if (Outcome o = expansion_.extend(); !o.ok()) return o;
   horizon_ = step_size();
   // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
-  const double reach = std::min(kinks_log_reach<N>(expansion_.machine(), kinks_end(), order_ - 1, settings_.log_tolerance),
-                                events_.log_reach(expansion_, order_ - 1, settings_.log_tolerance));
+  const double reach =
+      std::min(kinks_log_reach<N>(expansion_.machine(), kinks_end(), order_ - 1, settings_.log_tolerance),
+               events_.log_reach(expansion_, order_ - 1, settings_.log_tolerance));
   if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
   heed_integrals();
   expanded_ = true;
@@ -244,13 +254,14 @@ N Stepper<N>::step_size() const {
     pole = std::max(pole, to_double(N(log(top))) - std::max(0.0, to_double(N(log(value)))));
   }
   constexpr double kFar = 300;
-  const double log_rho = std::min({kFar, -last_weight / order_, -before_weight / (order_ - 1)}), log_pole = std::min(kFar, -pole / (order_ - 1));
+  const double log_rho = std::min({kFar, -last_weight / order_, -before_weight / (order_ - 1)}),
+               log_pole = std::min(kFar, -pole / (order_ - 1));
   return N(std::exp(std::min(log_rho - shrink() - 0.7 / (order_ - 1), log_pole - 0.7)));
 }
 
-// An integral along the motion carries no error on, but it is to be as good as the motion. A power is a product: where the motion is smooth everywhere (an
-// oscillator) its series converges much more slowly. The last two terms over the step stay below the tolerance, in relation to the first three, to the
-// integral so far and to 1.
+// An integral along the motion carries no error on, but it is to be as good as the motion. A power is a product: where
+// the motion is smooth everywhere (an oscillator) its series converges much more slowly. The last two terms over the
+// step stay below the tolerance, in relation to the first three, to the integral so far and to 1.
 template <Number N>
 void Stepper<N>::heed_integrals() {
   for (std::size_t i = 0; i < std::min(settings_.integrals, integrals_.size()); ++i) {
@@ -259,7 +270,8 @@ void Stepper<N>::heed_integrals() {
     double power = 1, square = h;
     for (int p = order_ - 1; p > 0; p >>= 1, square *= square)
       if (p & 1) power *= square;
-    const double whole = std::max(1.0, std::abs(to_double(integrals_[i]))), tail = power * std::max(coefficient(order_ - 1) * h / order_, coefficient(order_ - 2) / (order_ - 1));
+    const double whole = std::max(1.0, std::abs(to_double(integrals_[i]))),
+                 tail = power * std::max(coefficient(order_ - 1) * h / order_, coefficient(order_ - 2) / (order_ - 1));
     const double first = h * std::max({coefficient(0), coefficient(1) * h / 2, coefficient(2) * h * h / 3});
     if (tail <= std::exp(settings_.log_tolerance) * std::max(whole, first)) continue;
     // Closely; what leaves the range of double has a logarithm.
@@ -269,7 +281,8 @@ void Stepper<N>::heed_integrals() {
       const N c = abs(quadrature_coefficient(i, k));
       return c > N(0) ? to_double(N(log(c))) + (k + 1) * log_h - std::log(k + 1) : kNothing;
     };
-    const double excess = std::max(term(order_ - 1), term(order_ - 2)) - settings_.log_tolerance - std::max({std::log(whole), term(0), term(1), term(2)});
+    const double excess = std::max(term(order_ - 1), term(order_ - 2)) - settings_.log_tolerance -
+                          std::max({std::log(whole), term(0), term(1), term(2)});
     if (excess > 0) horizon_ *= N(std::exp(-excess / order_));
   }
 }
@@ -280,19 +293,19 @@ double Stepper<N>::shrink() const {
   return 2.0 * least_work_order(settings_.log_tolerance) / order_;
 }
 
-#define INSTANTIATE(N)                                                     \
-  template Outcome Stepper<N>::expand(const std::vector<W>&);              \
-  template void Stepper<N>::begin_expansion(const std::vector<W>&);        \
-  template bool Stepper<N>::ends_expansion(const std::vector<W>&);         \
-  template Outcome Stepper<N>::expand_here(const std::vector<W>&);         \
-  template Outcome Stepper<N>::look_back();                                \
-  template void Stepper<N>::expand_again(const StepperState<N>&);          \
-  template void Stepper<N>::note_begun(const std::vector<W>&);             \
-  template const StepperState<N>& Stepper<N>::begun() const;               \
-  template Outcome Stepper<N>::expand_by_reference(const std::vector<W>&); \
-  template Outcome Stepper<N>::expand_regularly(const std::vector<W>&);    \
-  template N Stepper<N>::step_size() const;                                \
-  template void Stepper<N>::heed_integrals();                              \
+#define INSTANTIATE(N)                                                                                                 \
+  template Outcome Stepper<N>::expand(const std::vector<W>&);                                                          \
+  template void Stepper<N>::begin_expansion(const std::vector<W>&);                                                    \
+  template bool Stepper<N>::ends_expansion(const std::vector<W>&);                                                     \
+  template Outcome Stepper<N>::expand_here(const std::vector<W>&);                                                     \
+  template Outcome Stepper<N>::look_back();                                                                            \
+  template void Stepper<N>::expand_again(const StepperState<N>&);                                                      \
+  template void Stepper<N>::note_begun(const std::vector<W>&);                                                         \
+  template const StepperState<N>& Stepper<N>::begun() const;                                                           \
+  template Outcome Stepper<N>::expand_by_reference(const std::vector<W>&);                                             \
+  template Outcome Stepper<N>::expand_regularly(const std::vector<W>&);                                                \
+  template N Stepper<N>::step_size() const;                                                                            \
+  template void Stepper<N>::heed_integrals();                                                                          \
   template double Stepper<N>::shrink() const;
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -18,16 +18,18 @@ bool stays_positive(const N* c, int degree, const N& h) {
 
 namespace {
 
-constexpr int kNoise = 64;         // values below so many round-offs of what they are made of are zero
+constexpr int kNoise = 64;  // values below so many round-offs of what they are made of are zero
 
 bool turns_at_zero(const Instruction& in) {
-  return in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) || in.index == static_cast<std::uint32_t>(Function::sign));
+  return in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) ||
+                                   in.index == static_cast<std::uint32_t>(Function::sign));
 }
 
 template <Number N>
 class Search {
  public:
-  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) : machine_(machine), end_(end), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
+  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h)
+      : machine_(machine), end_(end), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
 
   const Kink<N>& run() {
     const Tape& tape = machine_.tape();
@@ -41,8 +43,10 @@ class Search {
     if (turns_at_zero(in)) {
       const N* c = machine_.series(in.a);
       if (!(c[0] > N(0)) && !(c[0] < N(0)))
-        kink_.at_start = kink_.at_start || std::any_of(c + 1, c + degree_ + 1, [](const N& x) { return x > N(0) || x < N(0); });
-      else leaves(c, c[0] > N(0));
+        kink_.at_start =
+            kink_.at_start || std::any_of(c + 1, c + degree_ + 1, [](const N& x) { return x > N(0) || x < N(0); });
+      else
+        leaves(c, c[0] > N(0));
     } else if (in.op == Op::select) {
       if (tape.code[in.first].constant) return;
       const N* c = machine_.series(in.first);
@@ -67,8 +71,10 @@ class Search {
     for (int k = 0; k <= degree_; ++k) turned_[static_cast<std::size_t>(k)] = not_negative ? c[k] : N(-c[k]);
     const auto x = first_below<N>(turned_.data(), degree_, h_, N(0));
     if (!x) return;
-    if (*x == N(0)) kink_.at_start = true;
-    else ahead(*x);
+    if (*x == N(0))
+      kink_.at_start = true;
+    else
+      ahead(*x);
   }
 
   // A root goes on as another one where its argument, falling, turns at zero.

@@ -1,6 +1,6 @@
-// Where a function on the way of a step goes on as another one, of which its Taylor series knows nothing: abs and sign where their
-// argument passes zero, a choice where its condition changes, a table at its knots, a square root (a norm) where its argument
-// touches zero.
+// Where a function on the way of a step goes on as another one, of which its Taylor series knows nothing: abs and sign
+// where their argument passes zero, a choice where its condition changes, a table at its knots, a square root (a norm)
+// where its argument touches zero.
 #pragma once
 #include "tape/tape.h"
 
@@ -16,7 +16,8 @@ struct Kink {
 template <Number N>
 Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h);
 
-// Whether a polynomial that is positive at 0 surely stays so over [0, h], and its root the same root: by the sizes of its coefficients.
+// Whether a polynomial that is positive at 0 surely stays so over [0, h], and its root the same root: by the sizes of
+// its coefficients.
 template <Number N>
 bool stays_positive(const N* c, int degree, const N& h);
 

@@ -1,9 +1,10 @@
-// The part of the stepper that goes on from where a formula has no derivatives along the motion, or no value: a root, norm or unit vector whose argument is
-// zero there (theory: taylor, "One-sided starts").
+// The part of the stepper that goes on from where a formula has no derivatives along the motion, or no value: a root,
+// norm or unit vector whose argument is zero there (theory: taylor, "One-sided starts").
 //
-// One step, so short that the leading derivatives a say all about it: x(h) = x + ... + a h^d/d!. They are those that the equations have at its end,
-// a = G(a), found by iteration: so a formula is taken on the side that the motion enters. Where they are not determined that way (dry friction that holds,
-// a thrust along a velocity that is zero), the outcome names the formula.
+// One step, so short that the leading derivatives a say all about it: x(h) = x + ... + a h^d/d!. They are those that
+// the equations have at its end, a = G(a), found by iteration: so a formula is taken on the side that the motion
+// enters. Where they are not determined that way (dry friction that holds, a thrust along a velocity that is zero), the
+// outcome names the formula.
 #include <algorithm>
 #include <cmath>
 
@@ -18,9 +19,11 @@ namespace {
 constexpr double kPartOfTolerance = 2.0 / 3;
 constexpr int kRoundoffsOfTime = 32;
 constexpr int kMostIterations = 60;
-// Iterations end when they change this part of the leading derivatives; what depends on the step by more than kSame grows without bound at its start.
+// Iterations end when they change this part of the leading derivatives; what depends on the step by more than kSame
+// grows without bound at its start.
 constexpr double kSettled = 1e-10, kSame = 0.05;
-// A simple iteration goes on while it shrinks its changes to this part; Newton's differences are taken over this part of the derivatives.
+// A simple iteration goes on while it shrinks its changes to this part; Newton's differences are taken over this part
+// of the derivatives.
 constexpr double kContracts = 0.3, kDifference = 1e-4;
 
 template <Number W>
@@ -48,7 +51,8 @@ bool all_finite(const std::vector<W>& list) {
 template <Number W>
 std::vector<W> arbitrary(std::size_t size, double sign) {
   std::vector<W> list;
-  for (std::size_t j = 0; j < size; ++j) list.push_back(W(sign * (1 + 0.6180339887498949 * static_cast<double>(j % 5))));
+  for (std::size_t j = 0; j < size; ++j)
+    list.push_back(W(sign * (1 + 0.6180339887498949 * static_cast<double>(j % 5))));
   return list;
 }
 
@@ -65,13 +69,16 @@ typename Stepper<N>::W Stepper<N>::one_sided_step() const {
       if (k < p.d[j]) size = std::max(size, std::abs(to_double(point_.derivative(j, k))));
     for (std::size_t j = 0; j < p.unknowns(); ++j)
       for (int i = k + 1; i <= p.d[j]; ++i)
-        if (const double rate = std::abs(to_double(point_.derivative(j, i))); rate > 0 && std::isfinite(rate)) time = std::min(time, std::pow(size / rate, 1.0 / (i - k)));
+        if (const double rate = std::abs(to_double(point_.derivative(j, i))); rate > 0 && std::isfinite(rate))
+          time = std::min(time, std::pow(size / rate, 1.0 / (i - k)));
   }
-  const W part = W(std::exp(settings_.log_tolerance * kPartOfTolerance)) * W(time), resolved = convert<W>(unit_roundoff<N>()) * W(kRoundoffsOfTime) * abs(t_);
+  const W part = W(std::exp(settings_.log_tolerance * kPartOfTolerance)) * W(time),
+          resolved = convert<W>(unit_roundoff<N>()) * W(kRoundoffsOfTime) * abs(t_);
   return part > resolved ? part : resolved;
 }
 
-// G: the leading derivatives that the equations have h beyond, on the polynomial that ends with these; nullopt where they have none.
+// G: the leading derivatives that the equations have h beyond, on the polynomial that ends with these; nullopt where
+// they have none.
 template <Number N>
 std::optional<std::vector<typename Stepper<N>::W>> Stepper<N>::leading_beyond(const W& h, std::vector<W> leading) {
   std::vector<N> narrow;
@@ -121,8 +128,8 @@ std::optional<std::vector<typename Stepper<N>::W>> Stepper<N>::settled_leading(c
   return std::nullopt;
 }
 
-// The one solution; nullopt if there is none or another one. Where the equations have no value at the point itself, every direction has to lead to the
-// same derivatives, their opposite included.
+// The one solution; nullopt if there is none or another one. Where the equations have no value at the point itself,
+// every direction has to lead to the same derivatives, their opposite included.
 template <Number N>
 std::optional<std::vector<typename Stepper<N>::W>> Stepper<N>::one_sided_leading(const W& h) {
   if (!one_sided_->at_point.empty()) return settled_leading(h, one_sided_->at_point);
@@ -142,7 +149,8 @@ std::optional<std::vector<typename Stepper<N>::W>> Stepper<N>::one_sided_leading
   return found;
 }
 
-// Ends the expansion with the leading derivatives for a step h of either sign; false if they are not determined, or grow without bound as h shrinks.
+// Ends the expansion with the leading derivatives for a step h of either sign; false if they are not determined, or
+// grow without bound as h shrinks.
 template <Number N>
 bool Stepper<N>::take_one_sided(const W& h) {
   const auto a = one_sided_leading(h), nearer = a ? one_sided_leading(h * W(0.5)) : std::nullopt;
@@ -155,15 +163,18 @@ bool Stepper<N>::take_one_sided(const W& h) {
   return true;
 }
 
-// Where the equations have no value at the point, but one beside it in every direction, it is the direction that is not determined.
+// Where the equations have no value at the point, but one beside it in every direction, it is the direction that is not
+// determined.
 template <Number N>
 Outcome Stepper<N>::open_direction(const W& h) {
   Outcome o = one_sided_->fault;
   const std::vector<W> somewhere = arbitrary<W>(program_->unknowns(), 1);
   const auto a = leading_beyond(h, somewhere), nearer = leading_beyond(h * W(0.5), somewhere);
   if (one_sided_->at_point.empty() && a && nearer && !(difference(*a, *nearer) > kSame))
-    o.hint = "the equations do not determine in which direction the motion goes on here, or whether it does: give a small velocity in that direction, or, for a body "
-             "that dry friction holds, put a function that is smooth at rest in place of unit(v) or sign(v), such as v/sqrt(norm2(v) + 1e-6) or tanh(v/0.001)";
+    o.hint = "the equations do not determine in which direction the motion goes on here, or whether it does: give a "
+             "small velocity in that direction, or, for a body "
+             "that dry friction holds, put a function that is smooth at rest in place of unit(v) or sign(v), such as "
+             "v/sqrt(norm2(v) + 1e-6) or tanh(v/0.001)";
   return o;
 }
 
@@ -199,7 +210,8 @@ bool Stepper<N>::aims_one_sided(const W& left) {
   fired_.clear();
   if (!events_.empty()) {
     N to = convert<N>(h);
-    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to, std::nullopt, [this](std::size_t i, const N& where) { return quadrature_ahead(i, where); });
+    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to, std::nullopt,
+                          [this](std::size_t i, const N& where) { return quadrature_ahead(i, where); });
     h = convert<W>(to);
   }
   const bool last = !(abs(h) < abs(left));
@@ -207,14 +219,14 @@ bool Stepper<N>::aims_one_sided(const W& left) {
   return true;
 }
 
-#define INSTANTIATE(N)                                                                                          \
-  template Wider<N> Stepper<N>::one_sided_step() const;                                                         \
-  template std::optional<std::vector<Wider<N>>> Stepper<N>::leading_beyond(const W&, std::vector<W>);           \
-  template std::optional<std::vector<Wider<N>>> Stepper<N>::one_sided_leading(const W&);                        \
-  template std::optional<std::vector<Wider<N>>> Stepper<N>::settled_leading(const W&, std::vector<W>);          \
-  template bool Stepper<N>::take_one_sided(const W&);                                                           \
-  template Outcome Stepper<N>::open_direction(const W&);                                                        \
-  template bool Stepper<N>::expand_one_sided(Outcome&);                                                         \
+#define INSTANTIATE(N)                                                                                                 \
+  template Wider<N> Stepper<N>::one_sided_step() const;                                                                \
+  template std::optional<std::vector<Wider<N>>> Stepper<N>::leading_beyond(const W&, std::vector<W>);                  \
+  template std::optional<std::vector<Wider<N>>> Stepper<N>::one_sided_leading(const W&);                               \
+  template std::optional<std::vector<Wider<N>>> Stepper<N>::settled_leading(const W&, std::vector<W>);                 \
+  template bool Stepper<N>::take_one_sided(const W&);                                                                  \
+  template Outcome Stepper<N>::open_direction(const W&);                                                               \
+  template bool Stepper<N>::expand_one_sided(Outcome&);                                                                \
   template bool Stepper<N>::aims_one_sided(const W&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -13,11 +13,13 @@ namespace {
 constexpr int kParts = 8, kHalvings = 40;
 // A function whose argument changes by less, in relation to what it takes to change the function, hides nothing.
 constexpr double kMoves = 0.5;
-// In relation to the greatest of the function and 1: what a function is that ramps lies there. The equations decide, not this.
+// In relation to the greatest of the function and 1: what a function is that ramps lies there. The equations decide,
+// not this.
 constexpr double kDiffers = 1e-3;
 // A divisor this small, in relation to what it is at the start, makes a wall or a pole.
 constexpr double kNearZero = 1e-3;
-// Values below so many round-offs of what they are made of are zero; the stretch where they are is looked at in so many points.
+// Values below so many round-offs of what they are made of are zero; the stretch where they are is looked at in so many
+// points.
 constexpr int kNoise = 64, kAcross = 16;
 
 template <Number N>
@@ -25,8 +27,9 @@ N value_of(const Hiding& f, const N& u) {
   [[maybe_unused]] const auto sign = [](const N& x) { return x > N(0) ? N(1) : x < N(0) ? N(-1) : N(0); };
   if (f.function) {
     switch (*f.function) {
-#define ROW(name, derivative, parity, latex, domain) \
-  case Function::name: return name(u);
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
+  case Function::name:                                                                                                 \
+    return name(u);
 #include "expr/elementary.def"
 #undef ROW
     }
@@ -38,7 +41,8 @@ N value_of(const Hiding& f, const N& u) {
 }  // namespace
 
 template <Number N>
-void add_hidden(const Hiding& function, const N* argument, const N* value, int degree, const N& h, std::vector<N>& points) {
+void add_hidden(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
+                std::vector<N>& points) {
   const N length = abs(h);
   N moves(0);
   for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
@@ -54,7 +58,8 @@ void add_hidden(const Hiding& function, const N* argument, const N* value, int d
     const N size = abs(is) > N(1) ? abs(is) : N(1);
     if (!(abs(N(is - foretold)) <= size * N(kDiffers))) points.push_back(x);
   };
-  // A point, and those on both sides where the argument is by 1 another one: at its centre a pulse of both signs is zero.
+  // A point, and those on both sides where the argument is by 1 another one: at its centre a pulse of both signs is
+  // zero.
   const auto ask_around = [&](const N& x, const N& from, const N& to) {
     ask(x);
     if (!function.function) return;
@@ -87,7 +92,8 @@ void add_hidden(const Hiding& function, const N* argument, const N* value, int d
         for (int k = 1; k <= kAcross && abs(u(from)) <= noise; ++k) from = high - h * N(k) / N(2 * kAcross);
         for (int k = 1; k <= kAcross && abs(u(to)) <= noise; ++k) to = high + h * N(k) / N(2 * kAcross);
         for (int k = 1; k < kAcross; ++k)
-          if (const N x = from + (to - from) * N(k) / N(kAcross); abs(x) < length && (x > N(0)) == (h > N(0))) points.push_back(x);
+          if (const N x = from + (to - from) * N(k) / N(kAcross); abs(x) < length && (x > N(0)) == (h > N(0)))
+            points.push_back(x);
       }
     }
     if (const bool up = rise > N(0); (now > N(0)) != up) {
@@ -95,8 +101,10 @@ void add_hidden(const Hiding& function, const N* argument, const N* value, int d
       N low = end_of(std::max(0, i - 2)), high = end_of(i);
       for (int k = 0; k < kHalvings; ++k) {
         const N a = low + (high - low) / N(3), b = high - (high - low) / N(3);
-        if ((u(a) > u(b)) == up) high = b;
-        else low = a;
+        if ((u(a) > u(b)) == up)
+          high = b;
+        else
+          low = a;
       }
       ask_around((low + high) / N(2), end_of(std::max(0, i - 2)), end_of(i));
     }
@@ -107,7 +115,8 @@ void add_hidden(const Hiding& function, const N* argument, const N* value, int d
 }
 
 template void add_hidden(const Hiding&, const double*, const double*, int, const double&, std::vector<double>&);
-template void add_hidden(const Hiding&, const long double*, const long double*, int, const long double&, std::vector<long double>&);
+template void add_hidden(const Hiding&, const long double*, const long double*, int, const long double&,
+                         std::vector<long double>&);
 template void add_hidden(const Hiding&, const Quad*, const Quad*, int, const Quad&, std::vector<Quad>&);
 template void add_hidden(const Hiding&, const Multi*, const Multi*, int, const Multi&, std::vector<Multi>&);
 

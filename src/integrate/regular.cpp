@@ -4,8 +4,8 @@
 
 namespace anholon {
 
-// A diagonal similarity by powers of 2 that brings rows and columns to like sizes (Osborne 1960): the norm of a matrix in badly
-// scaled unknowns says nothing about its spectral radius.
+// A diagonal similarity by powers of 2 that brings rows and columns to like sizes (Osborne 1960): the norm of a matrix
+// in badly scaled unknowns says nothing about its spectral radius.
 template <Number N>
 static void balance(Matrix<N>& a) {
   constexpr int kSweeps = 4;
@@ -81,8 +81,11 @@ static double cosine(const std::vector<N>& a, const std::vector<N>& b, std::size
 template <Number N>
 bool crossed(const Mode<N>& a, const Mode<N>& b, std::size_t coordinates) {
   constexpr double kSameDirection = 0.5;
-  const auto flipped = [](double x, double y) { return std::abs(x) > kSameDirection && std::abs(y) > kSameDirection && x * y < 0; };
-  return flipped(cosine(a.v, b.v), cosine(a.image, b.image)) || flipped(cosine(a.v, b.v, coordinates), cosine(a.reaction, b.reaction));
+  const auto flipped = [](double x, double y) {
+    return std::abs(x) > kSameDirection && std::abs(y) > kSameDirection && x * y < 0;
+  };
+  return flipped(cosine(a.v, b.v), cosine(a.image, b.image)) ||
+         flipped(cosine(a.v, b.v, coordinates), cosine(a.reaction, b.reaction));
 }
 
 template bool near(const Expansion<double>&, const Expansion<double>&);

@@ -22,7 +22,8 @@ constexpr int kMostShortKinks = 20;
 // Taylor's steps miss by about this part of the tolerance; it is to mean the same here.
 constexpr double kOfTolerance = 0.1;
 // PI controller (Hairer & Wanner, IV.2): exponents for an estimate of order 8, and the bounds of one change.
-constexpr double kProportional = 0.7 / method::kOrder, kIntegral = 0.4 / method::kOrder, kSafety = 0.9, kLeast = 0.2, kMost = 5;
+constexpr double kProportional = 0.7 / method::kOrder, kIntegral = 0.4 / method::kOrder, kSafety = 0.9, kLeast = 0.2,
+                 kMost = 5;
 
 // The coefficients in double, those that vanish left out.
 struct Term {
@@ -119,7 +120,9 @@ Outcome RungeKutta::first_rate() {
 double RungeKutta::first_step(double direction) {
   narrow(now_.state, start_);
   level_sizes(rate_, start_, sizes_);
-  const auto weight = [&](std::size_t i) { return 1 / (tolerance_ * sizes_[static_cast<std::size_t>(rate_.level()[i])]); };
+  const auto weight = [&](std::size_t i) {
+    return 1 / (tolerance_ * sizes_[static_cast<std::size_t>(rate_.level()[i])]);
+  };
   double d0 = 1, d1 = 0, d2 = 0;
   for (std::size_t i = 0; i < start_.size(); ++i)
     d0 = std::max(d0, std::abs(start_[i]) * weight(i)), d1 = std::max(d1, std::abs(here_[i]) * weight(i));
@@ -157,8 +160,8 @@ Outcome RungeKutta::whole(double h) {
 // Whether f was evaluated beyond a kink.
 bool RungeKutta::turned() const { return rate_.sides().size() == sides_.size() && rate_.sides() != sides_; }
 
-// After a whole step of h that has gone beyond a kink: the step to just beyond the first one, with its stages. By secants (Illinois) through whole
-// steps that end on both sides of it.
+// After a whole step of h that has gone beyond a kink: the step to just beyond the first one, with its stages. By
+// secants (Illinois) through whole steps that end on both sides of it.
 Outcome RungeKutta::cut_at_kink(double& h) {
   constexpr int kPastKink = 32, kMostTries = 60;
   struct End {
@@ -167,7 +170,8 @@ Outcome RungeKutta::cut_at_kink(double& h) {
     double weight = 1;
   };
   const double direction = h < 0 ? -1 : 1;
-  const double past = 0x1p-53 * kPastKink * std::max(std::abs(static_cast<double>(now_.t)), std::abs(h)) + tolerance_ * std::abs(h);
+  const double past =
+      0x1p-53 * kPastKink * std::max(std::abs(static_cast<double>(now_.t)), std::abs(h)) + tolerance_ * std::abs(h);
   End low{0, arguments_}, high{std::abs(h), rate_.arguments()};
   std::vector<int> ends = rate_.sides();
   bool at_high = true;
@@ -178,7 +182,9 @@ Outcome RungeKutta::cut_at_kink(double& h) {
       if (ends[i] == sides_[i]) continue;
       const double before = low.weight * rate_.beyond(i, low.arguments[i], sides_[i], ends[i]),
                    after = high.weight * rate_.beyond(i, high.arguments[i], sides_[i], ends[i]);
-      root = std::min(root, before < 0 && after > 0 ? low.h + (high.h - low.h) * before / (before - after) : before < 0 ? high.h : low.h);
+      root = std::min(root, before < 0 && after > 0 ? low.h + (high.h - low.h) * before / (before - after)
+                            : before < 0            ? high.h
+                                                    : low.h);
     }
     const double there = std::clamp(root + past / 2, low.h + past / 4, high.h - past / 4);
     if (Outcome o = whole(direction * there); !o.ok()) return o;
@@ -221,7 +227,8 @@ double RungeKutta::error(double h) {
     // Integrals carry no error on: the tolerance itself is enough for them.
     const double allowed = k < sizes_.size()
                                ? tolerance_ * sizes_[k]
-                               : tolerance_ / kOfTolerance * std::max(1.0, static_cast<double>(std::abs(now_.integrals[k - sizes_.size()])));
+                               : tolerance_ / kOfTolerance *
+                                     std::max(1.0, static_cast<double>(std::abs(now_.integrals[k - sizes_.size()])));
     worst = std::max(worst, std::abs(h) * five / std::sqrt(five + 0.01 * three) / allowed);
   }
   return worst;
@@ -234,15 +241,18 @@ void RungeKutta::advance(MotionPoint& to, std::vector<long double>& carry, doubl
 }
 
 Outcome RungeKutta::step(long double end) {
-  if (settings_.cancelled && settings_.cancelled()) return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
-  if (steps_ >= settings_.most_steps) return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
+  if (settings_.cancelled && settings_.cancelled())
+    return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
+  if (steps_ >= settings_.most_steps)
+    return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
   const long double left = end - now_.t;
   const double floor = 0x1p-53 * kCollapsedRoundoffs * static_cast<double>(std::abs(now_.t));
   if (steps_ >= kStepsToJudge) {
     const double mean = static_cast<double>(std::abs(now_.t - started_)) / static_cast<double>(steps_);
     if (static_cast<double>(std::abs(left)) > std::max(mean, h_) * static_cast<double>(settings_.most_steps - steps_))
       return {OutcomeKind::interrupted,
-              "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(h_, 2) + " long",
+              "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " +
+                  number_text(h_, 2) + " long",
               "end the motion earlier, or take what is very fast or very stiff out of the model"};
   }
   k_[0] = here_;
@@ -266,7 +276,8 @@ Outcome RungeKutta::step(long double end) {
       trouble = cut_at_kink(h);
       cut = true;
       reached = static_cast<long double>(static_cast<double>(now_.t + h));
-      if (short_kinks_ > kMostShortKinks) return {OutcomeKind::step_collapse, "the motion stays at a kink", "put a smooth function in its place"};
+      if (short_kinks_ > kMostShortKinks)
+        return {OutcomeKind::step_collapse, "the motion stays at a kink", "put a smooth function in its place"};
     } else {
       short_kinks_ = 0;
     }
@@ -285,8 +296,10 @@ Outcome RungeKutta::step(long double end) {
     advance(next, carry, h);
     for (long double x : next.state)
       if (!std::isfinite(x) || std::abs(x) > kBlowUp)
-        return {OutcomeKind::blow_up, "the motion grows without bound", "look at the last good state: a velocity or position diverges"};
-    for (std::size_t i = 0; i < next.integrals.size(); ++i) add(next.integrals[i], integral_carry[i], h * change_[rate_.size() + i]);
+        return {OutcomeKind::blow_up, "the motion grows without bound",
+                "look at the last good state: a velocity or position diverges"};
+    for (std::size_t i = 0; i < next.integrals.size(); ++i)
+      add(next.integrals[i], integral_carry[i], h * change_[rate_.size() + i]);
     next.t = reached;
     std::swap(before_, now_);
     std::swap(now_, next);

@@ -1,8 +1,9 @@
-// The motion by Dormand and Prince's explicit Runge-Kutta method of order 8 (dormand_prince.h): for tolerances so loose, or forces so little
-// smooth, that Taylor's polynomials do not pay.
+// The motion by Dormand and Prince's explicit Runge-Kutta method of order 8 (dormand_prince.h): for tolerances so
+// loose, or forces so little smooth, that Taylor's polynomials do not pay.
 //
-// The state is kept wider than its rates and summed up with its round-off carried along; every step ends on all hidden constraints, by the
-// first evaluation of the next one. Step sizes follow the error estimate by a PI controller (theory: methods).
+// The state is kept wider than its rates and summed up with its round-off carried along; every step ends on all hidden
+// constraints, by the first evaluation of the next one. Step sizes follow the error estimate by a PI controller
+// (theory: methods).
 #pragma once
 #include "integrate/dormand_prince.h"
 #include "integrate/state_rate.h"
@@ -36,8 +37,8 @@ class RungeKutta final : public StateStepper {
   StateRate rate_;
   StepSettings settings_;
   double tolerance_;
-  Stages k_;                        // rates of the state, then the quadratures
-  std::vector<double> here_;        // the first of them at now()
+  Stages k_;                  // rates of the state, then the quadratures
+  std::vector<double> here_;  // the first of them at now()
   std::vector<double> start_, y_, change_, sizes_, e5_, e3_;
   std::vector<std::pair<double, double>> most_;
   std::vector<long double> carry_, integral_carry_;
@@ -46,7 +47,7 @@ class RungeKutta final : public StateStepper {
   std::size_t refused_ = 0;
   std::vector<int> sides_;  // of the kinks, at now()
   std::vector<double> arguments_;
-  int short_kinks_ = 0;     // steps in a row that were cut at their very start
+  int short_kinks_ = 0;  // steps in a row that were cut at their very start
 };
 
 }  // namespace anholon

@@ -5,8 +5,9 @@
 
 namespace anholon {
 
-StateRate::StateRate(const Program& program, const std::vector<double>& parameters, const std::vector<long double>& wide_parameters,
-                     std::shared_ptr<const KernelPlan> plan, std::vector<Guard> guards)
+StateRate::StateRate(const Program& program, const std::vector<double>& parameters,
+                     const std::vector<long double>& wide_parameters, std::shared_ptr<const KernelPlan> plan,
+                     std::vector<Guard> guards)
     : program_(&program), point_(program, parameters, 0), guards_(std::move(guards)), leading_(program.unknowns(), 0.0),
       integrands_(program.quadratures, 0.0) {
   if (plan) {
@@ -24,8 +25,8 @@ StateRate::StateRate(const Program& program, const std::vector<double>& paramete
 
 void StateRate::find_kinks() {
   for (const Step& s : kernel_->plan().plan().point) {
-    const bool turns =
-        s.act == Act::function && (s.index == static_cast<std::uint32_t>(Function::abs) || s.index == static_cast<std::uint32_t>(Function::sign));
+    const bool turns = s.act == Act::function && (s.index == static_cast<std::uint32_t>(Function::abs) ||
+                                                  s.index == static_cast<std::uint32_t>(Function::sign));
     if (turns)
       kinks_.push_back({s.a});
     else if (s.act == Act::select)
@@ -50,7 +51,8 @@ Outcome StateRate::evaluate(double t, const std::vector<double>& state, bool pro
   };
   const auto no_value = [&] {
     return Outcome{OutcomeKind::not_a_number,
-                   "a formula has no value (a root or logarithm of a negative number, or a division by zero) at t = " + number_text(t, 12),
+                   "a formula has no value (a root or logarithm of a negative number, or a division by zero) at t = " +
+                       number_text(t, 12),
                    "the motion leaves the region where the model is defined: stop it before, or change the formula"};
   };
   if (!finite(state)) return no_value();
@@ -72,7 +74,8 @@ Outcome StateRate::evaluate(double t, const std::vector<double>& state, bool pro
 
 bool StateRate::by_kernel(double t, const std::vector<double>& state, bool projected) {
   if (!kernel_) return false;
-  if (std::any_of(leading_.begin(), leading_.end(), [](double x) { return !std::isfinite(x); })) leading_.assign(leading_.size(), 0.0);
+  if (std::any_of(leading_.begin(), leading_.end(), [](double x) { return !std::isfinite(x); }))
+    leading_.assign(leading_.size(), 0.0);
   kernel_->load(0, t, state, leading_);
   kernel_->expand(projected);
   pivots_ = kernel_->pivots(0);
@@ -91,7 +94,8 @@ bool StateRate::by_kernel(double t, const std::vector<double>& state, bool proje
   for (const Kink& k : kinks_) {
     const double x = kernel_->series(k.argument, 0);
     arguments_.push_back(x);
-    sides_.push_back(k.knots ? static_cast<int>(std::upper_bound(k.knots->begin(), k.knots->end(), x) - k.knots->begin()) : x >= 0);
+    sides_.push_back(
+        k.knots ? static_cast<int>(std::upper_bound(k.knots->begin(), k.knots->end(), x) - k.knots->begin()) : x >= 0);
   }
   return true;
 }

@@ -1,10 +1,11 @@
 // The motion as an ordinary differential equation x' = f(t, x) of its state, for methods that ask for no more than f.
 //
-//   x = (x_j^(k), k < d_j);  f solves the equations for the leading derivatives and shifts: x_j^(k)' = x_j^(k+1)  (theory: methods)
+//   x = (x_j^(k), k < d_j);  f solves the equations for the leading derivatives and shifts: x_j^(k)' = x_j^(k+1)
+//   (theory: methods)
 //
-// On the hidden constraints f is the motion's own field, around them a smooth one; a state is taken back to them where that is asked
-// for. Evaluated by a kernel without stages beyond the leading derivatives; by the reference where there is none or its pivots have become
-// small.
+// On the hidden constraints f is the motion's own field, around them a smooth one; a state is taken back to them where
+// that is asked for. Evaluated by a kernel without stages beyond the leading derivatives; by the reference where there
+// is none or its pivots have become small.
 #pragma once
 #include <memory>
 #include <optional>
@@ -23,8 +24,9 @@ struct Guard {
 class StateRate {
  public:
   // `plan`: of a program for the same unknowns and quadratures, or null.
-  StateRate(const Program& program, const std::vector<double>& parameters, const std::vector<long double>& wide_parameters,
-            std::shared_ptr<const KernelPlan> plan, std::vector<Guard> guards = {});
+  StateRate(const Program& program, const std::vector<double>& parameters,
+            const std::vector<long double>& wide_parameters, std::shared_ptr<const KernelPlan> plan,
+            std::vector<Guard> guards = {});
 
   // At the state, or at the nearest one on the hidden constraints.
   Outcome evaluate(double t, const std::vector<double>& state, bool projected = false);
@@ -38,8 +40,8 @@ class StateRate {
   bool moved() const { return moved_; }
   // Of the kernel, also where they were so small that the reference was asked; none without a kernel.
   const std::optional<Pivots>& pivots() const { return pivots_; }
-  // Where f may have a kink: on which side each abs, sign, piecewise or table was, the number of a piece or of an interval between knots.
-  // By a kernel alone.
+  // Where f may have a kink: on which side each abs, sign, piecewise or table was, the number of a piece or of an
+  // interval between knots. By a kernel alone.
   const std::vector<int>& sides() const { return sides_; }
   // Their arguments there; how far one is beyond the end of a side, in the direction of another one.
   const std::vector<double>& arguments() const { return arguments_; }

@@ -1,6 +1,6 @@
-// The part of the stepper that looks at the equations where a step is to end, and shortens it where they have become others.
+// The part of the stepper that looks at the equations where a step is to end, and shortens it where they have become
+// others.
 #include <algorithm>
-
 #include <cmath>
 
 #include "integrate/kink.h"
@@ -12,7 +12,8 @@ namespace anholon {
 
 namespace {
 
-// A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other side.
+// A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other
+// side.
 constexpr int kPastKink = 32;
 // Kinks met so soon after another one are other kinks, until they are too many.
 constexpr int kMostShortKinks = 20;
@@ -20,8 +21,8 @@ constexpr int kMostShortKinks = 20;
 // A step of so many round-offs of the time is none.
 constexpr int kLeastRoundoffs = 64;
 
-// Of the lengths that a step is shortened to, the largest surely below h: halves of what it would be without an end, so that steps do not depend on where
-// a run is to stop.
+// Of the lengths that a step is shortened to, the largest surely below h: halves of what it would be without an end, so
+// that steps do not depend on where a run is to stop.
 template <Number W>
 W shorter(W whole, const W& h) {
   constexpr double kSurely = 1 - 0x1p-20;  // h has been rounded with the time
@@ -31,8 +32,8 @@ W shorter(W whole, const W& h) {
 
 }  // namespace
 
-// What Newton's method would change of the leading derivatives h beyond the expansion, in relation to the size of the derivatives below them; with the
-// LU of where the step begins, which does not lose more digits than the step itself.
+// What Newton's method would change of the leading derivatives h beyond the expansion, in relation to the size of the
+// derivatives below them; with the LU of where the step begins, which does not lose more digits than the step itself.
 template <Number N>
 N Stepper<N>::defect_at(const W& h) {
   const Program& p = *program_;
@@ -74,11 +75,13 @@ template <Number N>
 void Stepper<N>::find_hidden(const W& h) {
   hidden_.clear();
   const N length = convert<N>(h);
-  if (by_kernel_) find_hidden_by_kernel(length);
+  if (by_kernel_)
+    find_hidden_by_kernel(length);
   else
     for (const auto& [slot, function] : hiding_) {
       const Machine<N>& machine = expansion_.machine();
-      add_hidden(function, machine.series(hidden_argument(program_->tape.code[slot])), machine.series(slot), order_ - 1, length, hidden_);
+      add_hidden(function, machine.series(hidden_argument(program_->tape.code[slot])), machine.series(slot), order_ - 1,
+                 length, hidden_);
     }
   std::sort(hidden_.begin(), hidden_.end(), [](const N& a, const N& b) { return abs(a) < abs(b); });
 }
@@ -93,34 +96,47 @@ bool Stepper<N>::may_end_at(const W& h) {
     const bool decides = check_.decides();
     const N where = check_.where();
     auto next = check_.seen(defect_at(decides && where == length ? h : convert<W>(where)));
-    if (decides && next != EndCheck<N>::Next::shorten && !events_.as_foretold(expansion_, order_ - 1, where, settings_.log_tolerance, [this](std::size_t i) { return quadrature_there(i); }))
+    if (decides && next != EndCheck<N>::Next::shorten &&
+        !events_.as_foretold(expansion_, order_ - 1, where, settings_.log_tolerance,
+                             [this](std::size_t i) { return quadrature_there(i); }))
       next = check_.refuse();
     switch (next) {
-      case EndCheck<N>::Next::good: return true;
-      case EndCheck<N>::Next::look: break;
-      case EndCheck<N>::Next::shorten: return false;
+    case EndCheck<N>::Next::good:
+      return true;
+    case EndCheck<N>::Next::look:
+      break;
+    case EndCheck<N>::Next::shorten:
+      return false;
     }
   }
 }
 
-// Shortens a step over h to what the equations hold for, and to its first kink. `whole`: what it would be without an end.
+// Shortens a step over h to what the equations hold for, and to its first kink. `whole`: what it would be without an
+// end.
 template <Number N>
 bool Stepper<N>::ends_as_foretold(W& h, const W& whole) {
   const bool forward = h > W(0);
-  // Where a formula that is watched has no series, its values are looked at, in a short step: then it has some, or none at all.
+  // Where a formula that is watched has no series, its values are looked at, in a short step: then it has some, or none
+  // at all.
   constexpr double kShort = 0x1p-10, kAsShort = 0x1p-8;
-  if (!events_.empty() && (record_.last_step == W(0) || record_.last_step > abs(h) * W(kAsShort)) && events_.without_series(expansion_, order_ - 1))
+  if (!events_.empty() && (record_.last_step == W(0) || record_.last_step > abs(h) * W(kAsShort)) &&
+      events_.without_series(expansion_, order_ - 1))
     h = shorter(whole, W(h * W(kShort)));
   Kink<N> kink;
   W where, past;
-  // Where no length serves that the time can show, as a formula loses its value ahead, the step is made: that is what ends the motion, and has a name.
+  // Where no length serves that the time can show, as a formula loses its value ahead, the step is made: that is what
+  // ends the motion, and has a name.
   const W first = h, least = convert<W>(unit_roundoff<N>()) * W(kLeastRoundoffs) * abs(t_);
   for (bool refused = false;; h = shorter(whole, h)) {
-    if (refused && !(abs(h) > least)) h = first;
-    else refused = false;
-    if (!by_kernel_ || may_touch_zero_) kink = first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
+    if (refused && !(abs(h) > least))
+      h = first;
+    else
+      refused = false;
+    if (!by_kernel_ || may_touch_zero_)
+      kink = first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
-    past = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t_) > abs(h) ? W(abs(t_)) : W(abs(h))) + W(std::exp(settings_.log_tolerance)) * abs(h);
+    past = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t_) > abs(h) ? W(abs(t_)) : W(abs(h))) +
+           W(std::exp(settings_.log_tolerance)) * abs(h);
     // Beyond a kink other functions hold.
     looked_ = kink.ahead ? W(where - (forward ? past : W(-past))) : where;
     if (!(abs(where) > past)) looked_ = W(0);
@@ -136,7 +152,8 @@ bool Stepper<N>::ends_as_foretold(W& h, const W& whole) {
   short_kinks_ = !kink.at_start && !(abs(where) > past * W(4)) ? short_kinks_ + 1 : 0;
   if (short_kinks_ > kMostShortKinks)
     return fail({OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
-                 "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such as tanh(x/0.01) for sign(x)"});
+                 "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such "
+                 "as tanh(x/0.01) for sign(x)"});
   const W beyond = where + (forward ? past : W(-past));
   if (abs(beyond) < abs(h)) h = beyond, ++kinks_;
   return true;
@@ -158,13 +175,16 @@ EndOfStep Stepper<N>::looks_at_end(const W& end) {
   const W h = aimed_ - t_;
   const N length = convert<N>(looked_);
   switch (looked_ == W(0) ? EndCheck<N>::Next::good : check_.seen(defect_by_kernel())) {
-    case EndCheck<N>::Next::good:
-      if (sent_ == h) return EndOfStep::good;
-      looked_ = W(0);
-      send_kernel(h);
-      return EndOfStep::elsewhere;
-    case EndCheck<N>::Next::look: send_kernel(check_.where() == length ? looked_ : convert<W>(check_.where())); return EndOfStep::elsewhere;
-    case EndCheck<N>::Next::shorten: break;
+  case EndCheck<N>::Next::good:
+    if (sent_ == h) return EndOfStep::good;
+    looked_ = W(0);
+    send_kernel(h);
+    return EndOfStep::elsewhere;
+  case EndCheck<N>::Next::look:
+    send_kernel(check_.where() == length ? looked_ : convert<W>(check_.where()));
+    return EndOfStep::elsewhere;
+  case EndCheck<N>::Next::shorten:
+    break;
   }
   const W limit = abs(shorter(convert<W>(horizon_), looked_));
   if (!(limit > convert<W>(unit_roundoff<N>()) * W(kLeastRoundoffs) * abs(t_))) {
@@ -182,13 +202,13 @@ EndOfStep Stepper<N>::looks_at_end(const W& end) {
   return good ? EndOfStep::elsewhere : EndOfStep::failed;
 }
 
-#define INSTANTIATE(N)                                            \
-  template N Stepper<N>::defect_at(const W&);                     \
-  template bool Stepper<N>::may_end_at(const W&);                 \
-  template void Stepper<N>::find_hiding(std::uint32_t);           \
-  template void Stepper<N>::find_hidden(const W&);                \
-  template bool Stepper<N>::ends_as_foretold(W&, const W&);       \
-  template void Stepper<N>::send_kernel(const W&);                \
+#define INSTANTIATE(N)                                                                                                 \
+  template N Stepper<N>::defect_at(const W&);                                                                          \
+  template bool Stepper<N>::may_end_at(const W&);                                                                      \
+  template void Stepper<N>::find_hiding(std::uint32_t);                                                                \
+  template void Stepper<N>::find_hidden(const W&);                                                                     \
+  template bool Stepper<N>::ends_as_foretold(W&, const W&);                                                            \
+  template void Stepper<N>::send_kernel(const W&);                                                                     \
   template EndOfStep Stepper<N>::looks_at_end(const W&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

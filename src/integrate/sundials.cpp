@@ -1,5 +1,9 @@
 #include "integrate/sundials.h"
 
+#include <algorithm>
+#include <cmath>
+#include <new>
+
 #include <cvode/cvode.h>
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
@@ -7,10 +11,6 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
-
-#include <algorithm>
-#include <cmath>
-#include <new>
 
 #include "base/assert.h"
 
@@ -46,8 +46,10 @@ bool all_finite(const double* x, std::size_t count) {
 }  // namespace
 
 struct Sundials::Work {
-  Work(const Program& p, const std::vector<double>& parameters, const SundialsSettings& s, std::optional<StateRate> f = std::nullopt)
-      : program(p), settings(s), field(std::move(f)), point(p, parameters, 0), ida(!field && s.integrator == Integrator::ida) {
+  Work(const Program& p, const std::vector<double>& parameters, const SundialsSettings& s,
+       std::optional<StateRate> f = std::nullopt)
+      : program(p), settings(s), field(std::move(f)), point(p, parameters, 0),
+        ida(!field && s.integrator == Integrator::ida) {
     for (std::size_t j = 0; j < p.unknowns(); ++j)
       if (ida && p.d[j] == 0) algebraic.push_back(j);
     if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
@@ -80,12 +82,13 @@ struct Sundials::Work {
     return for_good ? -1 : 1;  // otherwise SUNDIALS tries a smaller step
   }
   Outcome no_value() const {
-    return {OutcomeKind::not_a_number, "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
+    return {OutcomeKind::not_a_number,
+            "a formula has no value (a root or logarithm of a negative number, or a division by zero)",
             "the motion leaves the region where the model is defined: stop it before, or change the formula"};
   }
 
-  // y' = f(t, y). Newton's method starts from the leading derivatives of the last accepted step, not from those of a trial that
-  // may have been refused: so the motion keeps to its branch.
+  // y' = f(t, y). Newton's method starts from the leading derivatives of the last accepted step, not from those of a
+  // trial that may have been refused: so the motion keeps to its branch.
   int rates(double t, const double* from, double* out) {
     ++evaluations;
     now.assign(from, from + states());
@@ -120,8 +123,10 @@ struct Sundials::Work {
   int weights(const double* from, double* out) {
     now.assign(from, from + states());
     level_sizes(*field, now, sizes);
-    for (std::size_t i = 0; i < states(); ++i) out[i] = 1 / (settings.tolerance * sizes[static_cast<std::size_t>(field->level()[i])]);
-    for (std::size_t i = first_integral(); i < size(); ++i) out[i] = 1 / (settings.integral_tolerance * std::max(1.0, std::abs(from[i])));
+    for (std::size_t i = 0; i < states(); ++i)
+      out[i] = 1 / (settings.tolerance * sizes[static_cast<std::size_t>(field->level()[i])]);
+    for (std::size_t i = first_integral(); i < size(); ++i)
+      out[i] = 1 / (settings.integral_tolerance * std::max(1.0, std::abs(from[i])));
     return 0;
   }
 
@@ -183,8 +188,10 @@ struct Sundials::Work {
 void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
   // F asks for rates that fit the state; f needs a branch.
   point.load(t, state, leading_guess);
-  if (Outcome o = point.prepare(); !o.ok()) trouble = std::move(o);
-  else if (o = point.solve(); !o.ok()) trouble = std::move(o);
+  if (Outcome o = point.prepare(); !o.ok())
+    trouble = std::move(o);
+  else if (o = point.solve(); !o.ok())
+    trouble = std::move(o);
   point.leading(leading);
   branch = leading;
   const auto vector = [&] {
@@ -200,7 +207,9 @@ void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
   put_rates(state.data(), leading, N_VGetArrayPointer(rate.get()));
   put_integrands(N_VGetArrayPointer(rate.get()) + first_integral());
 
-  const auto keep_message = [](int, const char*, const char*, char* message, void* work) { static_cast<Work*>(work)->last_error = message; };
+  const auto keep_message = [](int, const char*, const char*, char* message, void* work) {
+    static_cast<Work*>(work)->last_error = message;
+  };
   const double tolerance = settings.tolerance;
   bool good = true;
   const auto set = [&](int flag) { good = good && flag == 0; };
@@ -208,7 +217,8 @@ void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
   if (!memory) throw std::bad_alloc();
   if (ida) {
     const auto f = [](realtype time, N_Vector from, N_Vector from_rate, N_Vector out, void* work) {
-      return static_cast<Work*>(work)->residual(time, N_VGetArrayPointer(from), N_VGetArrayPointer(from_rate), N_VGetArrayPointer(out));
+      return static_cast<Work*>(work)->residual(time, N_VGetArrayPointer(from), N_VGetArrayPointer(from_rate),
+                                                N_VGetArrayPointer(out));
     };
     matrix = owned(SUNDenseMatrix(static_cast<sunindextype>(size()), static_cast<sunindextype>(size()), context));
     linear = owned(SUNLinSol_Dense(y.get(), matrix.get(), context));
@@ -218,8 +228,8 @@ void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
     set(IDASStolerances(memory, tolerance, tolerance));
     set(IDASetLinearSolver(memory, linear.get(), matrix.get()));
     set(IDASetStopTime(memory, end));
-    // z carries no error on, but with y' at its side it shows the noise of y / h: in the error test it would keep the order down
-    // and cost a hundred times the steps.
+    // z carries no error on, but with y' at its side it shows the noise of y / h: in the error test it would keep the
+    // order down and cost a hundred times the steps.
     id = vector();
     N_VConst(1, id.get());
     for (std::size_t k = 0; k < algebraic.size(); ++k) N_VGetArrayPointer(id.get())[states() + k] = 0;
@@ -246,7 +256,9 @@ void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
 
 bool Sundials::Work::start_stiff() {
   const auto n = static_cast<sunindextype>(size());
-  const auto weigh = [](N_Vector from, N_Vector out, void* work) { return static_cast<Work*>(work)->weights(N_VGetArrayPointer(from), N_VGetArrayPointer(out)); };
+  const auto weigh = [](N_Vector from, N_Vector out, void* work) {
+    return static_cast<Work*>(work)->weights(N_VGetArrayPointer(from), N_VGetArrayPointer(out));
+  };
   const auto onto = [](realtype time, N_Vector from, N_Vector correction, realtype, N_Vector, void* work) {
     return static_cast<Work*>(work)->project(time, N_VGetArrayPointer(from), N_VGetArrayPointer(correction));
   };
@@ -259,9 +271,11 @@ bool Sundials::Work::start_stiff() {
 }
 
 Outcome Sundials::Work::step() {
-  if (settings.cancelled && settings.cancelled()) return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
+  if (settings.cancelled && settings.cancelled())
+    return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   if (steps >= settings.most_steps)
-    return {OutcomeKind::interrupted, std::string(title()) + " has reached the step limit", "allow more steps, or loosen the tolerance"};
+    return {OutcomeKind::interrupted, std::string(title()) + " has reached the step limit",
+            "allow more steps, or loosen the tolerance"};
   if (!trouble.ok()) return failed(0);
   const int flag = ida ? IDASolve(memory, end, &reached, y.get(), rate.get(), IDA_ONE_STEP)
                        : CVode(memory, end, y.get(), &reached, CV_ONE_STEP);
@@ -273,17 +287,23 @@ Outcome Sundials::Work::step() {
 }
 
 Outcome Sundials::Work::failed(int flag) const {
-  static_assert(CV_TOO_MUCH_ACC == IDA_TOO_MUCH_ACC && CV_ERR_FAILURE == IDA_ERR_FAIL && CV_CONV_FAILURE == IDA_CONV_FAIL);
+  static_assert(CV_TOO_MUCH_ACC == IDA_TOO_MUCH_ACC && CV_ERR_FAILURE == IDA_ERR_FAIL &&
+                CV_CONV_FAILURE == IDA_CONV_FAIL);
   if (flag == (ida ? IDA_MEM_FAIL : CV_MEM_FAIL)) throw std::bad_alloc();
   const std::string who = title(), when = " at t = " + number_text(reached, 12);
-  const std::string remedy = "loosen the tolerance, end the motion before, or leave the motion to Taylor's series: --integrator taylor";
+  const std::string remedy =
+      "loosen the tolerance, end the motion before, or leave the motion to Taylor's series: --integrator taylor";
   // What the equations themselves had to say.
   if (!trouble.ok()) return {trouble.kind, trouble.message + ", says " + who + when, trouble.hint};
   switch (flag) {
-    case CV_TOO_MUCH_ACC: return {OutcomeKind::step_collapse, who + " cannot keep the tolerance in double numbers" + when, remedy};
-    case CV_ERR_FAILURE: return {OutcomeKind::step_collapse, who + " misses the tolerance with the smallest steps" + when, remedy};
-    case CV_CONV_FAILURE: return {OutcomeKind::no_convergence, who + "'s iteration does not converge with the smallest steps" + when, remedy};
-    default: return {OutcomeKind::no_convergence, who + " cannot go on" + when + ": " + last_error, remedy};
+  case CV_TOO_MUCH_ACC:
+    return {OutcomeKind::step_collapse, who + " cannot keep the tolerance in double numbers" + when, remedy};
+  case CV_ERR_FAILURE:
+    return {OutcomeKind::step_collapse, who + " misses the tolerance with the smallest steps" + when, remedy};
+  case CV_CONV_FAILURE:
+    return {OutcomeKind::no_convergence, who + "'s iteration does not converge with the smallest steps" + when, remedy};
+  default:
+    return {OutcomeKind::no_convergence, who + " cannot go on" + when + ": " + last_error, remedy};
   }
 }
 
@@ -291,7 +311,8 @@ Outcome Sundials::Work::failed(int flag) const {
 Outcome Sundials::Work::interpolate(double t) {
   const int flag = ida ? IDAGetDky(memory, t, 0, y.get()) : CVodeGetDky(memory, t, 0, y.get());
   if (flag != 0)
-    return {OutcomeKind::interrupted, std::string(title()) + " has gone past t = " + number_text(t, 12), "ask for rows in the order of time"};
+    return {OutcomeKind::interrupted, std::string(title()) + " has gone past t = " + number_text(t, 12),
+            "ask for rows in the order of time"};
   const double* values = N_VGetArrayPointer(y.get());
   if (ida) {
     IDAGetDky(memory, t, 1, rate.get());
@@ -305,13 +326,15 @@ Outcome Sundials::Work::interpolate(double t) {
   return {};
 }
 
-Sundials::Sundials(const Program& program, const std::vector<double>& parameters, const SundialsSettings& settings, double t, double end,
-                   const std::vector<double>& state, const std::vector<double>& leading, const std::vector<double>& integrals)
+Sundials::Sundials(const Program& program, const std::vector<double>& parameters, const SundialsSettings& settings,
+                   double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
+                   const std::vector<double>& integrals)
     : work_(std::make_unique<Work>(program, parameters, settings)) {
   begin(t, end, state, leading, integrals);
 }
 
-Sundials::Sundials(StateRate rate, const SundialsSettings& settings, double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
+Sundials::Sundials(StateRate rate, const SundialsSettings& settings, double t, double end,
+                   const std::vector<double>& state, const std::vector<double>& leading,
                    const std::vector<double>& integrals) {
   const Program& program = rate.program();
   const std::vector<double> parameters = rate.parameters();
@@ -319,7 +342,8 @@ Sundials::Sundials(StateRate rate, const SundialsSettings& settings, double t, d
   begin(t, end, state, leading, integrals);
 }
 
-void Sundials::begin(double t, double end, const std::vector<double>& state, const std::vector<double>& leading, const std::vector<double>& integrals) {
+void Sundials::begin(double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
+                     const std::vector<double>& integrals) {
   Work& w = *work_;
   w.settings.tolerance = std::max(w.settings.tolerance, kLeastSundialsTolerance);
   w.end = end;
@@ -348,7 +372,8 @@ Outcome Sundials::step() {
 
 std::size_t Sundials::refused() const {
   long tests = 0, newton = 0;
-  if (work_->memory && work_->field) CVodeGetNumErrTestFails(work_->memory, &tests), CVodeGetNumStepSolveFails(work_->memory, &newton);
+  if (work_->memory && work_->field)
+    CVodeGetNumErrTestFails(work_->memory, &tests), CVodeGetNumStepSolveFails(work_->memory, &newton);
   return static_cast<std::size_t>(tests + newton);
 }
 

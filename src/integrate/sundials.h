@@ -1,17 +1,22 @@
-// The motion by SUNDIALS, as a second opinion on Taylor's: CVODE integrates the state's ordinary differential equations, IDA the
-// implicit equations themselves.
+// The motion by SUNDIALS, as a second opinion on Taylor's: CVODE integrates the state's ordinary differential
+// equations, IDA the implicit equations themselves.
 //
-//   CVODE  y' = f(t, y),           y = (x_j^(k), k < d_j): x_j^(k)' = x_j^(k+1), and at the end of each chain the leading
+//   CVODE  y' = f(t, y),           y = (x_j^(k), k < d_j): x_j^(k)' = x_j^(k+1), and at the end of each chain the
+//   leading
 //                                  derivative, which the equations determine; Adams' methods, fixed-point iteration
-//   IDA    F(t, y, z, y', z') = 0, z = (x_j, d_j = 0): x_j^(k)' = x_j^(k+1), and E_i^(c_i) = 0 with y' in place of the leading
+//   IDA    F(t, y, z, y', z') = 0, z = (x_j, d_j = 0): x_j^(k)' = x_j^(k+1), and E_i^(c_i) = 0 with y' in place of the
+//   leading
 //                                  derivatives; BDF, Newton's method with difference quotients for dF/dy + alpha dF/dy'
 //
-//   BDF    as CVODE, for stiff motions in earnest (theory: methods): BDF, Newton's method with difference quotients; f is that of
-//          StateRate, every step is taken back to the hidden constraints, and each level of derivatives is measured by its own size
+//   BDF    as CVODE, for stiff motions in earnest (theory: methods): BDF, Newton's method with difference quotients; f
+//   is that of
+//          StateRate, every step is taken back to the hidden constraints, and each level of derivatives is measured by
+//          its own size
 //
-// and the integrals W of the program's quadratures, W' = P. Hypothesis: J = dE_i^(c_i) / dx_j^(d_j) is regular, so F has index 1
-// (theory: dae-view). The hidden constraints E_i^(k) = 0, k < c_i, are what the start satisfies; for CVODE and IDA nothing holds them, they
-// drift with the error of the integration (theory: second-opinion). Source: Hindmarsh et al. 2005.
+// and the integrals W of the program's quadratures, W' = P. Hypothesis: J = dE_i^(c_i) / dx_j^(d_j) is regular, so F
+// has index 1 (theory: dae-view). The hidden constraints E_i^(k) = 0, k < c_i, are what the start satisfies; for CVODE
+// and IDA nothing holds them, they drift with the error of the integration (theory: second-opinion). Source: Hindmarsh
+// et al. 2005.
 #pragma once
 #include <functional>
 #include <memory>
@@ -28,23 +33,24 @@ struct SundialsSettings {
   Integrator integrator = Integrator::cvode;  // or ida
   double tolerance = 1e-12;                   // relative and absolute, of each step
   std::size_t most_steps = 50'000'000;
-  std::function<bool()> cancelled;            // asked between steps
-  double integral_tolerance = 1e-12;          // of BDF: integrals carry no error on
+  std::function<bool()> cancelled;    // asked between steps
+  double integral_tolerance = 1e-12;  // of BDF: integrals carry no error on
 };
 
 // Not copied, and used by one thread at a time; several may be used at once.
 class Sundials {
  public:
   // Starts at t towards `end`, beyond which the equations are not evaluated. `leading` names the branch.
-  Sundials(const Program& program, const std::vector<double>& parameters, const SundialsSettings& settings, double t, double end,
-           const std::vector<double>& state, const std::vector<double>& leading, const std::vector<double>& integrals);
+  Sundials(const Program& program, const std::vector<double>& parameters, const SundialsSettings& settings, double t,
+           double end, const std::vector<double>& state, const std::vector<double>& leading,
+           const std::vector<double>& integrals);
   ~Sundials();
   Sundials(const Sundials&) = delete;
   Sundials& operator=(const Sundials&) = delete;
 
   // BDF with `rate`, of the same program.
-  Sundials(StateRate rate, const SundialsSettings& settings, double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
-           const std::vector<double>& integrals);
+  Sundials(StateRate rate, const SundialsSettings& settings, double t, double end, const std::vector<double>& state,
+           const std::vector<double>& leading, const std::vector<double>& integrals);
 
   // Goes on until the step in which t lies, and interpolates there; t never goes back by more than a step.
   Outcome advance(double t);
@@ -63,10 +69,11 @@ class Sundials {
   std::size_t setups() const;       // of Newton's method, each of which solves for size^3 numbers
   StateRate& rate();                // of BDF
 
-  double drift() const;             // from the hidden constraints, of its steps
+  double drift() const;  // from the hidden constraints, of its steps
 
  private:
-  void begin(double t, double end, const std::vector<double>& state, const std::vector<double>& leading, const std::vector<double>& integrals);
+  void begin(double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
+             const std::vector<double>& integrals);
 
   struct Work;
   std::unique_ptr<Work> work_;

@@ -23,9 +23,14 @@ void add_compensated(N& s, N& carry, const N& x) {
   s = sum;
 }
 
-Outcome blow_up() { return {OutcomeKind::blow_up, "the motion grows without bound", "look at the last good state: a velocity or position diverges"}; }
+Outcome blow_up() {
+  return {OutcomeKind::blow_up, "the motion grows without bound",
+          "look at the last good state: a velocity or position diverges"};
+}
 
-Outcome becomes_singular() { return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"}; }
+Outcome becomes_singular() {
+  return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+}
 
 }  // namespace
 
@@ -42,9 +47,12 @@ bool asks_for_last_digits(double log_tolerance) {
 }
 
 template <Number N>
-Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters, const StepSettings& settings)
-    : program_(&program), settings_(settings), order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
-      parameters_(parameters), expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1), check_(settings_.log_tolerance) {
+Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
+                    const StepSettings& settings)
+    : program_(&program), settings_(settings),
+      order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)), parameters_(parameters),
+      expansion_(program, parameters, order_ - 1), point_(program, wide_parameters, 1),
+      check_(settings_.log_tolerance) {
   find_hiding(program.tape.main_end);
 }
 
@@ -170,7 +178,8 @@ template <Number N>
 bool Stepper<N>::end_out_of_reach(const W& h, const W& left) const {
   if (record_.steps < kStepsToJudge) return false;
   const double mean = std::abs(to_double(W(t_ - started_))) / static_cast<double>(record_.steps);
-  return std::abs(to_double(left)) > std::max(mean, to_double(h)) * static_cast<double>(settings_.most_steps - record_.steps);
+  return std::abs(to_double(left)) >
+         std::max(mean, to_double(h)) * static_cast<double>(settings_.most_steps - record_.steps);
 }
 
 template <Number N>
@@ -204,14 +213,17 @@ bool Stepper<N>::aims_with_care(const W& end) {
   const bool forward = left > W(0);
   if (one_sided_) return aims_one_sided(left);
   W h = horizon();
-  // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from there.
+  // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from
+  // there.
   if (program_->nonlinear) h = abs(on_the_branch(forward ? h : W(-h)));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(t_);
   if (!(h > floor))
     return fail({OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
                  "the motion approaches a singularity: stop before it, or look at the last good state"});
   if (end_out_of_reach(h, left))
-    return fail({OutcomeKind::interrupted, "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " + number_text(to_double(h), 2) + " long",
+    return fail({OutcomeKind::interrupted,
+                 "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " +
+                     number_text(to_double(h), 2) + " long",
                  "end the motion earlier, or take what is very fast or very stiff out of the model"});
   if (singular_ahead_) return fail(becomes_singular());
   const W whole = h;
@@ -229,20 +241,24 @@ bool Stepper<N>::aims_with_care(const W& end) {
   if (!events_.empty()) {
     N to = convert<N>(h);
     const N length = to;
-    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to, at_kink_ ? std::optional<N>(convert<N>(looked_)) : std::nullopt,
+    fired_ = events_.look(expansion_, order_ - 1, convert<N>(t_), to,
+                          at_kink_ ? std::optional<N>(convert<N>(looked_)) : std::nullopt,
                           [this](std::size_t i, const N& where) { return quadrature_ahead(i, where); });
     if (to != length) h = convert<W>(to), singular_ahead_ = false;
   }
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
-  if (h == left) aim_at(end, true);
-  else aim_at(convert<W>(convert<N>(W(t_ + h))), false);
+  if (h == left)
+    aim_at(end, true);
+  else
+    aim_at(convert<W>(convert<N>(W(t_ + h))), false);
   return true;
 }
 
 // An ordinary step, of the length that the series allow.
 template <Number N>
 bool Stepper<N>::nothing_in_the_way() const {
-  return by_kernel_ && !suspected_ && !singular_ahead_ && !may_touch_zero_ && short_kinks_ == 0 && fired_.empty() && events_.empty() &&
+  return by_kernel_ && !suspected_ && !singular_ahead_ && !may_touch_zero_ && short_kinks_ == 0 && fired_.empty() &&
+         events_.empty() &&
          to_double(horizon()) > std::abs(to_double(t_)) * (2 * kCollapsedRoundoffs * unit_roundoff<double>());
 }
 
@@ -277,7 +293,8 @@ bool Stepper<N>::goes_on(const W& h) {
   if (by_kernel_) {
     base_state_.swap(state_);
     advanced_by_kernel(h, base_state_, state_, leading_);
-    if (!std::all_of(state_.begin(), state_.end(), [](const W& x) { return abs(x) < W(kBlowUp); })) return state_.swap(base_state_), false;
+    if (!std::all_of(state_.begin(), state_.end(), [](const W& x) { return abs(x) < W(kBlowUp); }))
+      return state_.swap(base_state_), false;
     return true;
   }
   polynomial(h, change_, leading_);

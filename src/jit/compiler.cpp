@@ -1,16 +1,15 @@
 // The module behind kernel/code.h: LLVM IR by the Emitter, machine code by ORC, kept on disk between runs.
+#include <cmath>
+#include <mutex>
+
+#include <elf.h>
+#include <link.h>
 #include <llvm/ExecutionEngine/Orc/LLJIT.h>
 #include <llvm/IR/LegacyPassManager.h>
 #include <llvm/Support/CommandLine.h>
 #include <llvm/Support/TargetSelect.h>
 #include <llvm/Support/xxhash.h>
 #include <llvm/Target/TargetMachine.h>
-
-#include <cmath>
-#include <mutex>
-
-#include <elf.h>
-#include <link.h>
 
 #include "jit/emitter.h"
 #include "jit/store.h"
@@ -49,7 +48,8 @@ std::string build_of(const void* address) {
           for (const char* end = at + part.p_memsz; at + sizeof(ElfW(Nhdr)) <= end;) {
             const auto* note = reinterpret_cast<const ElfW(Nhdr)*>(at);
             const char *name = at + sizeof *note, *text = name + padded(note->n_namesz);
-            if (note->n_type == NT_GNU_BUILD_ID && std::string(name, note->n_namesz) == std::string("GNU", 4)) q.answer.assign(text, note->n_descsz);
+            if (note->n_type == NT_GNU_BUILD_ID && std::string(name, note->n_namesz) == std::string("GNU", 4))
+              q.answer.assign(text, note->n_descsz);
             at = text + padded(note->n_descsz);
           }
         }
@@ -59,9 +59,11 @@ std::string build_of(const void* address) {
   return question.answer;
 }
 
-// All that decides the code: this compiler, LLVM, the machine, the plan. Nothing if the builds have no names: no code of another one, then.
+// All that decides the code: this compiler, LLVM, the machine, the plan. Nothing if the builds have no names: no code
+// of another one, then.
 bool name(const KernelTables& tables, int lanes, int several_sines, const Builder& builder, Key& key) {
-  static const std::string ours = build_of(&anholon_compiler), llvms = build_of(reinterpret_cast<const void*>(&llvm::xxh3_128bits));
+  static const std::string ours = build_of(&anholon_compiler),
+                           llvms = build_of(reinterpret_cast<const void*>(&llvm::xxh3_128bits));
   if (ours.empty() || llvms.empty()) return false;
   Writer w;
   w.add(ours), w.add(llvms);
@@ -72,7 +74,8 @@ bool name(const KernelTables& tables, int lanes, int several_sines, const Builde
   return true;
 }
 
-std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, int several_sines, Builder& builder, std::string& message) {
+std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, int several_sines, Builder& builder,
+                                             std::string& message) {
   auto target = builder.createTargetMachine();
   if (!target) return message = text_of(target.takeError()), nullptr;
   llvm::LLVMContext context;
@@ -83,31 +86,41 @@ std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lan
   llvm::SmallVector<char, 0> bytes;
   llvm::raw_svector_ostream out(bytes);
   llvm::legacy::PassManager passes;
-  if ((*target)->addPassesToEmitFile(passes, out, nullptr, llvm::CodeGenFileType::ObjectFile)) return message = "the compiler makes no object files", nullptr;
+  if ((*target)->addPassesToEmitFile(passes, out, nullptr, llvm::CodeGenFileType::ObjectFile))
+    return message = "the compiler makes no object files", nullptr;
   passes.run(module);
   return llvm::MemoryBuffer::getMemBufferCopy(llvm::StringRef(bytes.data(), bytes.size()), "kernel");
 }
 
-Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, int levels, const CalledFunctions& called, std::string& message) {
+Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, int levels,
+            const CalledFunctions& called, std::string& message) {
   // No platform: there are no initializers to run, and the general one compiles a module of its own.
-  auto jit = llvm::orc::LLJITBuilder().setJITTargetMachineBuilder(builder).setPlatformSetUp(llvm::orc::setUpInactivePlatform).create();
+  auto jit = llvm::orc::LLJITBuilder()
+                 .setJITTargetMachineBuilder(builder)
+                 .setPlatformSetUp(llvm::orc::setUpInactivePlatform)
+                 .create();
   if (!jit) return message = text_of(jit.takeError()), Code{};
-  (*jit)->getExecutionSession().setErrorReporter([](llvm::Error error) { llvm::consumeError(std::move(error)); });  // what fails, fails at lookup
+  (*jit)->getExecutionSession().setErrorReporter(
+      [](llvm::Error error) { llvm::consumeError(std::move(error)); });  // what fails, fails at lookup
   llvm::orc::SymbolMap symbols;
   const auto add = [&](const char* symbol, auto* function) {
-    symbols[(*jit)->mangleAndIntern(symbol)] = {llvm::orc::ExecutorAddr::fromPtr(function), llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
+    symbols[(*jit)->mangleAndIntern(symbol)] = {llvm::orc::ExecutorAddr::fromPtr(function),
+                                                llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
   };
   add("anholon_sines", called.sines);
   add("anholon_several_sines", called.several_sines);
   add("anholon_power", called.power);
   add("anholon_function", called.function);
   add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
-  if (auto error = (*jit)->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(symbols)))) return message = text_of(std::move(error)), Code{};
+  if (auto error = (*jit)->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(symbols))))
+    return message = text_of(std::move(error)), Code{};
   if (auto error = (*jit)->addObjectFile(std::move(object))) return message = text_of(std::move(error)), Code{};
   const auto find = [&](const std::string& part, auto& function) {
     auto symbol = (*jit)->lookup(part);
-    if (symbol) function = symbol->toPtr<std::remove_reference_t<decltype(function)>>();
-    else message = text_of(symbol.takeError());
+    if (symbol)
+      function = symbol->toPtr<std::remove_reference_t<decltype(function)>>();
+    else
+      message = text_of(symbol.takeError());
   };
   Code made;
   find("values", made.values);
@@ -119,27 +132,32 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
   find("begin", made.begin);
   find("go_on", made.go_on);
   made.level.resize(static_cast<std::size_t>(levels));
-  for (int level = 1; level <= levels; ++level) find(Emitter::level_name(level), made.level[static_cast<std::size_t>(level - 1)]);
+  for (int level = 1; level <= levels; ++level)
+    find(Emitter::level_name(level), made.level[static_cast<std::size_t>(level - 1)]);
   if (!message.empty()) return {};
   made.keeper = std::shared_ptr<void>(jit->release(), [](void* p) { delete static_cast<llvm::orc::LLJIT*>(p); });
   return made;
 }
 
-void compile(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache, Code& code, std::string& message) {
+void compile(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache, Code& code,
+             std::string& message) {
   static std::once_flag once;
   std::call_once(once, [] {
     llvm::InitializeNativeTarget();
     llvm::InitializeNativeTargetAsmPrinter();
     // The order of operations is ours; what reorders them looks at every pair of loads and stores.
     const auto& options = llvm::cl::getRegisteredOptions();
-    if (const auto o = options.find("enable-misched"); o != options.end()) o->second->addOccurrence(1, o->first(), "false");
+    if (const auto o = options.find("enable-misched"); o != options.end())
+      o->second->addOccurrence(1, o->first(), "false");
   });
   auto builder = Builder::detectHost();
   if (!builder) return void(message = text_of(builder.takeError()));
-  // Twice as fast to compile as Default where that takes long, and no slower to run; a simpler register allocator gains nothing more.
+  // Twice as fast to compile as Default where that takes long, and no slower to run; a simpler register allocator gains
+  // nothing more.
   builder->setCodeGenOptLevel(llvm::CodeGenOptLevel::Less);
   builder->setRelocationModel(llvm::Reloc::PIC_);
-  // What is called lies anywhere and is called by stubs; constants lie beside the code, each an operand and not an address first.
+  // What is called lies anywhere and is called by stubs; constants lie beside the code, each an operand and not an
+  // address first.
   builder->setCodeModel(llvm::CodeModel::Small);
 
   Key key;

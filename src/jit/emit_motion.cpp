@@ -1,7 +1,8 @@
-// What motions need between expansions: where one begins, how well its pivots serve, how far its series reach, where the state goes on.
-#include <llvm/IR/Intrinsics.h>
-
+// What motions need between expansions: where one begins, how well its pivots serve, how far its series reach, where
+// the state goes on.
 #include <limits>
+
+#include <llvm/IR/Intrinsics.h>
 
 #include "jit/emitter.h"
 
@@ -16,7 +17,9 @@ llvm::Value* Emitter::larger(Value* a, Value* b) { return b_.CreateSelect(b_.Cre
 llvm::Value* Emitter::smaller(Value* a, Value* b) { return b_.CreateSelect(b_.CreateFCmpOLT(b, a), b, a); }
 llvm::Value* Emitter::of_bits(Value* b) { return b_.CreateBitCast(b, lane_); }
 llvm::Value* Emitter::bits(Value* v) { return b_.CreateBitCast(v, lane_->getWithNewType(b_.getInt64Ty())); }
-llvm::Value* Emitter::pattern(std::uint64_t x) { return llvm::ConstantInt::get(lane_->getWithNewType(b_.getInt64Ty()), x); }
+llvm::Value* Emitter::pattern(std::uint64_t x) {
+  return llvm::ConstantInt::get(lane_->getWithNewType(b_.getInt64Ty()), x);
+}
 llvm::Value* Emitter::magnitude(Value* v) { return b_.CreateIntrinsic(llvm::Intrinsic::fabs, {lane_}, {v}); }
 // What is multiplied by one is as it was.
 llvm::Value* Emitter::times(Value* v, double x) { return x == 1 ? v : b_.CreateFMul(v, number(x)); }
@@ -27,21 +30,23 @@ void Emitter::begin_motion() {
   begin("begin", 1);
   std::int64_t high = 0, guess = 2 * std::int64_t{k_.state_size};
   for (std::size_t j = 0; j < p_.x.size(); ++j)
-    for (int k = 0; k <= p_.d[j]; ++k)
-    {
+    for (int k = 0; k <= p_.d[j]; ++k) {
       Value* x = load_from(function_->getArg(1), k < p_.d[j] ? high++ : guess++);
       x = k <= 2 ? times(x, k_.inverse_factorial[static_cast<std::size_t>(k)]) : b_.CreateFDiv(x, number(factorial(k)));
       store(x, std::int64_t{p_.x[j]} + k);
     }
-  for (const Beyond& b : p_.beyond_double) store(load_from(function_->getArg(1), std::int64_t{k_.state_size} + b.index), b.at);
+  for (const Beyond& b : p_.beyond_double)
+    store(load_from(function_->getArg(1), std::int64_t{k_.state_size} + b.index), b.at);
   end();
 }
 
 void Emitter::judge(const std::vector<Value*>& lu) {
-  Value *zero = number(0), *health = number(std::numeric_limits<double>::max()), *determinant = number(1), *invalid = zero;
+  Value *zero = number(0), *health = number(std::numeric_limits<double>::max()), *determinant = number(1),
+        *invalid = zero;
   std::int64_t inverse = k_.inverse_pivots;
   for (const JudgedPivot& p : k_.judged) {
-    Value *ratio = b_.CreateFMul(p.at < k_.lu ? load(p.at) : lu[p.at - k_.lu], load(inverse++)), *size = magnitude(ratio);
+    Value *ratio = b_.CreateFMul(p.at < k_.lu ? load(p.at) : lu[p.at - k_.lu], load(inverse++)),
+          *size = magnitude(ratio);
     health = b_.CreateSelect(b_.CreateFCmpOLT(size, health), size, health);
     determinant = b_.CreateFMul(determinant, ratio);
     invalid = b_.CreateFAdd(invalid, b_.CreateFSub(ratio, ratio));
@@ -94,7 +99,8 @@ void Emitter::measure() {
     Value* top = coefficient_of(j, p_.stages + p_.d[j]);
     unfit = b_.CreateFAdd(unfit, b_.CreateFSub(top, top));
     if (p_.d[j] > 0) continue;
-    Value *value = magnitude(coefficient_of(j, 0)), *relative = b_.CreateFMul(magnitude(top), b_.CreateFDiv(one, larger(one, value)));
+    Value *value = magnitude(coefficient_of(j, 0)),
+          *relative = b_.CreateFMul(magnitude(top), b_.CreateFDiv(one, larger(one, value)));
     pole = b_.CreateSelect(b_.CreateFCmpOGT(value, zero), larger(pole, relative), pole);
     poles = true;
   }
@@ -114,14 +120,18 @@ llvm::Value* Emitter::cubic(const double* c, Value* x) {
 
 llvm::Value* Emitter::reach(Value* weight, int by, Value* margin) {
   Value* exponent = b_.CreateAShr(b_.CreateSub(bits(weight), pattern(kRootOfHalf)), pattern(52));
-  Value *u = b_.CreateFSub(of_bits(b_.CreateSub(bits(weight), b_.CreateShl(exponent, pattern(52)))), number(1)), *each = number(-1.0 / by);
-  Value* whole = fma(b_.CreateFSub(of_bits(b_.CreateAdd(exponent, bits(number(kInteger)))), number(kInteger)), each, margin);
-  return b_.CreateSelect(b_.CreateFCmpOGT(weight, number(0)), fma(cubic(kLog2, u), b_.CreateFMul(u, each), whole), number(kFarthest));
+  Value *u = b_.CreateFSub(of_bits(b_.CreateSub(bits(weight), b_.CreateShl(exponent, pattern(52)))), number(1)),
+        *each = number(-1.0 / by);
+  Value* whole =
+      fma(b_.CreateFSub(of_bits(b_.CreateAdd(exponent, bits(number(kInteger)))), number(kInteger)), each, margin);
+  return b_.CreateSelect(b_.CreateFCmpOGT(weight, number(0)), fma(cubic(kLog2, u), b_.CreateFMul(u, each), whole),
+                         number(kFarthest));
 }
 
 llvm::Value* Emitter::exp2(Value* x) {
   Value *n = b_.CreateFAdd(x, number(kInteger)), *f = b_.CreateFSub(x, b_.CreateFSub(n, number(kInteger)));
-  return of_bits(b_.CreateAdd(bits(cubic(kExp2, f)), b_.CreateShl(b_.CreateSub(bits(n), bits(number(kInteger))), pattern(52))));
+  return of_bits(
+      b_.CreateAdd(bits(cubic(kExp2, f)), b_.CreateShl(b_.CreateSub(bits(n), bits(number(kInteger))), pattern(52))));
 }
 
 // An error of a sum, rounded to what a long double keeps of both.
@@ -140,7 +150,8 @@ void Emitter::go_on() {
     b_.CreateCall(advance_, {w_});
     for (std::uint32_t i = 0; i < k_.state_size + p_.x.size(); ++i) added.push_back(load(k_.increments + i));
   }
-  Value *base = function_->getArg(1), *to = function_->getArg(2), *step = load(k_.step), *largest = number(0), *invalid = number(0);
+  Value *base = function_->getArg(1), *to = function_->getArg(2), *step = load(k_.step), *largest = number(0),
+        *invalid = number(0);
   const std::int64_t n = k_.state_size;
   std::int64_t at = 0;
   auto change = added.begin();
@@ -152,8 +163,10 @@ void Emitter::go_on() {
       Value *s = b_.CreateFAdd(low[static_cast<std::size_t>(k)], *change++), *power = step;
       for (int i = k + 1; i < d; ++i) {
         const auto place = static_cast<std::size_t>(i);
-        s = fma(b_.CreateFAdd(b_.CreateFSub(high[place], times(coefficient_of(j, i), factorial(i))), low[place]), power, s);
-        if (i + 1 < d) power = b_.CreateFMul(power, times(step, k_.order.reciprocal[static_cast<std::size_t>(i - k + 1)]));
+        s = fma(b_.CreateFAdd(b_.CreateFSub(high[place], times(coefficient_of(j, i), factorial(i))), low[place]), power,
+                s);
+        if (i + 1 < d)
+          power = b_.CreateFMul(power, times(step, k_.order.reciprocal[static_cast<std::size_t>(i - k + 1)]));
       }
       Value *h = high[static_cast<std::size_t>(k)], *sum = b_.CreateFAdd(h, s), *part = b_.CreateFSub(sum, h);
       Value* error = b_.CreateFAdd(b_.CreateFSub(h, b_.CreateFSub(sum, part)), b_.CreateFSub(s, part));
@@ -162,7 +175,8 @@ void Emitter::go_on() {
       largest = larger(largest, magnitude(sum));
       invalid = b_.CreateFAdd(invalid, b_.CreateFSub(sum, sum));
     }
-    store_to(b_.CreateFAdd(times(coefficient_of(j, d), factorial(d)), *change++), to, 2 * n + static_cast<std::int64_t>(j));
+    store_to(b_.CreateFAdd(times(coefficient_of(j, d), factorial(d)), *change++), to,
+             2 * n + static_cast<std::int64_t>(j));
   }
   store(b_.CreateFAdd(largest, invalid), k_.found.largest);
   end();

@@ -1,4 +1,5 @@
-// What isomorphic steps of one motion do in lanes (packs.h): their histories, their part of a stage, the memory that serves them.
+// What isomorphic steps of one motion do in lanes (packs.h): their histories, their part of a stage, the memory that
+// serves them.
 #include <set>
 
 #include "jit/emitter.h"
@@ -20,16 +21,20 @@ void Emitter::pack_histories() {
     std::vector<InLanes> group;
     for (std::size_t i = from; i < to; ++i) {
       Value* b = own(memory_->coefficient(packs[i].b, packs[i].lead, false).at);
-      group.push_back({own(memory_->coefficient(packs[i].a, 0, false).at), b_.CreateInBoundsGEP(lane, b, k0_), own(memory_->sums_of_pack(i))});
+      group.push_back({own(memory_->coefficient(packs[i].a, 0, false).at), b_.CreateInBoundsGEP(lane, b, k0_),
+                       own(memory_->sums_of_pack(i))});
     }
     known_before_in_lanes(lane, packs[from].lead, group);
     // The first place in a block has nothing new.
     for (std::size_t i = from; i < to; ++i)
-      b_.CreateAlignedStore(llvm::ConstantAggregateZero::get(lane), own(memory_->sums_of_pack(i) + kBlock * memory_->width()), llvm::Align(8 * memory_->width()));
+      b_.CreateAlignedStore(llvm::ConstantAggregateZero::get(lane),
+                            own(memory_->sums_of_pack(i) + kBlock * memory_->width()),
+                            llvm::Align(8 * memory_->width()));
   });
 }
 
-// The block that was just written: histories in lanes, to be kept if that is all it makes, else the newest coefficients of the series.
+// The block that was just written: histories in lanes, to be kept if that is all it makes, else the newest coefficients
+// of the series.
 void Emitter::pack_stage() {
   const Packs& packs = memory_->packs();
   if (packs.packs.empty()) return;
@@ -57,7 +62,8 @@ void Emitter::pack_stage() {
   for (std::size_t i = 0; i < packs.bundles.size() && relative_; ++i) {
     const Packs::Bundle& bundle = packs.bundles[i];
     Packer::Lanes newest;
-    for (const std::uint32_t at : bundle.at) newest.push_back(at == Packs::kNobody ? nullptr : known_.at({at, stage_ + bundle.newest}));
+    for (const std::uint32_t at : bundle.at)
+      newest.push_back(at == Packs::kNobody ? nullptr : known_.at({at, stage_ + bundle.newest}));
     packer.keep(newest, memory_->coefficient(i, stage_ + bundle.newest, true));
   }
   packer.run();
@@ -74,7 +80,8 @@ void Emitter::fill_packed_memory() {
   };
   const std::vector<Packs::Bundle>& bundles = memory_->packs().bundles;
   for (std::size_t i = 0; i < bundles.size(); ++i)
-    for (int order = 0; order <= bundles[i].newest; ++order) fill(bundles[i].at, order, memory_->coefficient(i, order, false).at);
+    for (int order = 0; order <= bundles[i].newest; ++order)
+      fill(bundles[i].at, order, memory_->coefficient(i, order, false).at);
   for (const auto& [slots, to] : memory_->constants()) fill(slots, 0, to);
 }
 

@@ -26,7 +26,8 @@ void Emitter::factor() {
     const SparseLu::Pivot& p = e.pivots[k];
     if (!p.one) {
       reciprocal[k] = p.minus_one ? number(-1) : b_.CreateFDiv(number(1), at(p.entry));
-      for (std::uint32_t i = p.first_scaled; i < p.first_scaled + p.scaled; ++i) lu[e.scaled_entries[i]] = b_.CreateFMul(at(e.scaled_entries[i]), reciprocal[k]);
+      for (std::uint32_t i = p.first_scaled; i < p.first_scaled + p.scaled; ++i)
+        lu[e.scaled_entries[i]] = b_.CreateFMul(at(e.scaled_entries[i]), reciprocal[k]);
     }
     for (std::uint32_t i = p.first_update; i < p.first_update + p.updates; ++i) {
       const SparseLu::Update& u = e.update_list[i];
@@ -46,8 +47,10 @@ void Emitter::factor() {
 void Emitter::invert(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal) {
   const SparseLu& e = *k_.elimination;
   if (!e.own.empty()) {
-    if (lanes_ == 1) invert_sides_at_once(lu, reciprocal);
-    else invert_sides_by_call();
+    if (lanes_ == 1)
+      invert_sides_at_once(lu, reciprocal);
+    else
+      invert_sides_by_call();
     return;
   }
   for (const std::uint32_t side : p_.sides) {
@@ -55,15 +58,21 @@ void Emitter::invert(const std::vector<Value*>& lu, const std::vector<Value*>& r
     rhs[side] = number(1);
     const std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
     for (std::size_t i = 0; i < e.influences.size(); ++i)
-      if (e.influences[i].side == side && e.influences[i].sign == 0) store(y[e.influences[i].column], k_.inverse + static_cast<std::int64_t>(i));
+      if (e.influences[i].side == side && e.influences[i].sign == 0)
+        store(y[e.influences[i].column], k_.inverse + static_cast<std::int64_t>(i));
   }
 }
 
 // Without what is always zero. Right sides may be vectors of several.
-std::vector<llvm::Value*> Emitter::solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal) {
+std::vector<llvm::Value*> Emitter::solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu,
+                                                const std::vector<Value*>& reciprocal) {
   const SparseLu& e = *k_.elimination;
   std::vector<Value*> y(p_.rows, nullptr);
-  const auto as = [&](Value* v, Value* x) { return v->getType() == x->getType() ? v : b_.CreateVectorSplat(llvm::cast<llvm::FixedVectorType>(x->getType())->getNumElements(), v); };
+  const auto as = [&](Value* v, Value* x) {
+    return v->getType() == x->getType()
+               ? v
+               : b_.CreateVectorSplat(llvm::cast<llvm::FixedVectorType>(x->getType())->getNumElements(), v);
+  };
   const auto minus = [&](Value* s, std::uint32_t entry, Value* x) {
     return x && lu[entry] ? fma(as(b_.CreateFNeg(lu[entry]), x), x, s ? s : llvm::ConstantFP::get(x->getType(), 0)) : s;
   };
@@ -98,11 +107,14 @@ void Emitter::invert_sides_at_once(const std::vector<Value*>& lu, const std::vec
       for (std::size_t r = side; r < side + full; ++r) part.push_back(static_cast<int>(r));
       for (std::size_t j = column; j < column + full; ++j) square.push_back(b_.CreateShuffleVector(y[j], part));
       transpose(square);
-      for (std::size_t r = 0; r < full; ++r) b_.CreateAlignedStore(square[r], address(k_.inverse + static_cast<std::int64_t>((side + r) * n + column), false), llvm::Align(8));
+      for (std::size_t r = 0; r < full; ++r)
+        b_.CreateAlignedStore(
+            square[r], address(k_.inverse + static_cast<std::int64_t>((side + r) * n + column), false), llvm::Align(8));
     }
   for (std::size_t i = 0; i < e.influences.size(); ++i) {
     const std::size_t column = e.influences[i].column, side = rank[e.influences[i].side];
-    if (column >= turned(n) || side >= turned(m)) store(b_.CreateExtractElement(y[column], side), k_.inverse + static_cast<std::int64_t>(i));
+    if (column >= turned(n) || side >= turned(m))
+      store(b_.CreateExtractElement(y[column], side), k_.inverse + static_cast<std::int64_t>(i));
   }
 }
 
@@ -130,7 +142,8 @@ void Emitter::invert_sides_by_call() {
     for (const std::uint32_t other : p_.sides) store(number(other == side ? 1 : 0), k_.side + std::int64_t{other});
     b_.CreateCall(substitution_, {w_});
     for (std::size_t i = 0; i < e.influences.size(); ++i)
-      if (e.influences[i].side == side) store(load(k_.solution + std::int64_t{e.influences[i].column}), k_.inverse + static_cast<std::int64_t>(i));
+      if (e.influences[i].side == side)
+        store(load(k_.solution + std::int64_t{e.influences[i].column}), k_.inverse + static_cast<std::int64_t>(i));
   }
 }
 
@@ -165,13 +178,16 @@ void Emitter::solve() {
   if (const SparseLu& e = *k_.elimination; !e.influences.empty()) {
     solution_.assign(p_.rows, nullptr);
     std::uint32_t from = 0;  // columns before are solved for
-    if (lanes_ == 1 && p_.x.size() >= kManyUnknowns && e.influences.size() == p_.x.size() * p_.sides.size()) from = multiply_by_inverse();
+    if (lanes_ == 1 && p_.x.size() >= kManyUnknowns && e.influences.size() == p_.x.size() * p_.sides.size())
+      from = multiply_by_inverse();
     for (std::size_t i = 0; i < e.influences.size(); ++i) {
       if (e.influences[i].column < from) continue;
       const SparseLu::Influence& of = e.influences[i];
       Value*& y = solution_[of.column];
       Value* const side = side_[of.side];
-      y = of.sign == 0 ? fma(load(k_.inverse + static_cast<std::int64_t>(i)), side, y ? y : number(0)) : of.sign > 0 ? side : opposite(side);
+      y = of.sign == 0  ? fma(load(k_.inverse + static_cast<std::int64_t>(i)), side, y ? y : number(0))
+           : of.sign > 0 ? side
+                        : opposite(side);
     }
     for (const SparseLu::Own& own : e.own) {
       Value* y = nullptr;
@@ -199,7 +215,9 @@ std::uint32_t Emitter::multiply_by_inverse() {
   for (std::size_t r = 0; r < p_.sides.size(); ++r) {
     Value* side = b_.CreateVectorSplat(4, side_[p_.sides[r]]);
     for (std::size_t c = 0; c < sums.size(); ++c)
-      sums[c] = fma(b_.CreateAlignedLoad(four, address(k_.inverse + static_cast<std::int64_t>(r * n + 4 * c), false), llvm::Align(8)), side, sums[c]);
+      sums[c] = fma(b_.CreateAlignedLoad(four, address(k_.inverse + static_cast<std::int64_t>(r * n + 4 * c), false),
+                                         llvm::Align(8)),
+                    side, sums[c]);
   }
   for (std::size_t j = 0; j < whole; ++j) solution_[j] = b_.CreateExtractElement(sums[j / 4], j % 4);
   return static_cast<std::uint32_t>(whole);
@@ -223,11 +241,13 @@ void Emitter::substitute(bool all_sides) {
   const SparseLu& e = *k_.elimination;
   for (Value*& v : side_)
     if (!v) v = number(0);
-  for (const SparseLu::Forward& f : all_sides ? e.forward_all : e.forward) side_[f.to] = fma(b_.CreateFNeg(load(k_.lu + f.entry)), side_[f.from], side_[f.to]);
+  for (const SparseLu::Forward& f : all_sides ? e.forward_all : e.forward)
+    side_[f.to] = fma(b_.CreateFNeg(load(k_.lu + f.entry)), side_[f.from], side_[f.to]);
   solution_.assign(p_.rows, nullptr);
   for (const SparseLu::Backward& back : e.backward) {
     Value* s = back.zero_side && !all_sides ? number(0) : side_[back.row];
-    for (std::uint32_t i = back.first; i < back.first + back.count; ++i) s = fma(b_.CreateFNeg(load(k_.lu + e.terms[i].entry)), solution_[e.terms[i].column], s);
+    for (std::uint32_t i = back.first; i < back.first + back.count; ++i)
+      s = fma(b_.CreateFNeg(load(k_.lu + e.terms[i].entry)), solution_[e.terms[i].column], s);
     solution_[back.column] = e.pivots[back.pivot].one ? s : b_.CreateFMul(s, load(k_.reciprocal + back.pivot));
   }
 }
@@ -247,7 +267,8 @@ void Emitter::substitution() {
       if (!v) v = number(0);
     for (std::size_t i = 0; i < p_.entries.size(); ++i) {
       const Entry& entry = p_.entries[i];
-      left[entry.row] = fma(b_.CreateFNeg(load(k_.entries + static_cast<std::int64_t>(i))), first[entry.column], left[entry.row]);
+      left[entry.row] =
+          fma(b_.CreateFNeg(load(k_.entries + static_cast<std::int64_t>(i))), first[entry.column], left[entry.row]);
     }
     side_ = left;
     substitute(true);

@@ -1,7 +1,7 @@
 // Stages in blocks of four, and what is known before a block.
-#include <llvm/IR/Intrinsics.h>
-
 #include <set>
+
+#include <llvm/IR/Intrinsics.h>
 
 #include "jit/emitter.h"
 
@@ -10,9 +10,11 @@ namespace anholon::jit {
 namespace {
 // Convolutions summed side by side: enough to hide the latency of a fused multiplication, few enough for the registers.
 constexpr std::size_t kSideBySide = 8;
-// So many numbers of isomorphic steps are a vector. Eight, where the machine has such vectors, are not faster: more lanes stay empty.
+// So many numbers of isomorphic steps are a vector. Eight, where the machine has such vectors, are not faster: more
+// lanes stay empty.
 constexpr unsigned kWidth = 4;
-// So few steps are written out for the first four stages and for every place in a block: of one motion, what is packed in parts is faster.
+// So few steps are written out for the first four stages and for every place in a block: of one motion, what is packed
+// in parts is faster.
 constexpr std::size_t kFewSteps = 16, kFewStepsInLanes = 64;
 }  // namespace
 
@@ -25,7 +27,9 @@ void Emitter::stage(const std::vector<Step>& steps, bool solved) {
   complete();
 }
 
-std::vector<llvm::Value*> Emitter::over_known(std::uint8_t lead, const std::vector<Value*>& sums, const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body) {
+std::vector<llvm::Value*>
+Emitter::over_known(std::uint8_t lead, const std::vector<Value*>& sums,
+                    const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body) {
   // A block begins at stage 5 or later, so there is at least one.
   llvm::BasicBlock* before = b_.GetInsertBlock();
   auto* loop = llvm::BasicBlock::Create(m_.getContext(), "known", function_);
@@ -76,7 +80,8 @@ void Emitter::known_before(const Convolution* group, std::size_t count) {
       Value* b = b_.CreateShuffleVector(b_at(group[k].b, b_.getInt64(static_cast<std::uint64_t>(j))), zero, mask);
       sums[k] = fma(a_at(group[k].a, b_.getInt64(static_cast<std::uint64_t>(j))), b, sums[k]);
     }
-  for (std::size_t k = 0; k < count; ++k) b_.CreateAlignedStore(sums[k], own(place_of_sum(group[k], 0, false)), llvm::Align(32));
+  for (std::size_t k = 0; k < count; ++k)
+    b_.CreateAlignedStore(sums[k], own(place_of_sum(group[k], 0, false)), llvm::Align(32));
 }
 
 // The same where every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move on by one with j.
@@ -86,9 +91,15 @@ void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const s
   const llvm::Align align(m_.getDataLayout().getTypeStoreSize(lane).getFixedValue());
   std::vector<Value*> sums(count * n, llvm::ConstantFP::get(lane, 0));
   const auto b_at = [&](const InLanes& c, Value* j, int i) {
-    return b_.CreateAlignedLoad(lane, b_.CreateInBoundsGEP(lane, b_.CreateConstInBoundsGEP1_64(lane, c.b, static_cast<std::uint64_t>(i)), b_.CreateNeg(j)), align);
+    return b_.CreateAlignedLoad(
+        lane,
+        b_.CreateInBoundsGEP(lane, b_.CreateConstInBoundsGEP1_64(lane, c.b, static_cast<std::uint64_t>(i)),
+                             b_.CreateNeg(j)),
+        align);
   };
-  const auto a_at = [&](const InLanes& c, Value* j) { return b_.CreateAlignedLoad(lane, b_.CreateInBoundsGEP(lane, c.a, j), align); };
+  const auto a_at = [&](const InLanes& c, Value* j) {
+    return b_.CreateAlignedLoad(lane, b_.CreateInBoundsGEP(lane, c.a, j), align);
+  };
   // After the sums: b of the orders 0 .. 2 of the block for the present j.
   for (const InLanes& c : group)
     for (int i = 0; i + 1 < kBlock; ++i) sums.push_back(b_at(c, b_.getInt64(kBlock), i + 1));
@@ -107,10 +118,13 @@ void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const s
     for (std::size_t k = 0; k < count; ++k) {
       Value* at = b_.getInt64(static_cast<std::uint64_t>(j));
       Value* a = a_at(group[k], at);
-      for (int i = 0; i < j; ++i) sums[k * n + static_cast<std::size_t>(i)] = fma(a, b_at(group[k], at, i), sums[k * n + static_cast<std::size_t>(i)]);
+      for (int i = 0; i < j; ++i)
+        sums[k * n + static_cast<std::size_t>(i)] =
+            fma(a, b_at(group[k], at, i), sums[k * n + static_cast<std::size_t>(i)]);
     }
   for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t i = 0; i < n; ++i) b_.CreateAlignedStore(sums[k * n + i], b_.CreateConstInBoundsGEP1_64(lane, group[k].sums, i), align);
+    for (std::size_t i = 0; i < n; ++i)
+      b_.CreateAlignedStore(sums[k * n + i], b_.CreateConstInBoundsGEP1_64(lane, group[k].sums, i), align);
 }
 
 void Emitter::bulk() {
@@ -123,7 +137,8 @@ void Emitter::bulk() {
   for_runs(all, kSideBySideInLanes, [&](std::size_t from, std::size_t to) {
     std::vector<InLanes> group;
     for (std::size_t i = from; i < to; ++i)
-      group.push_back({address(all[i].a, false), address(std::int64_t{all[i].b} + all[i].lead, true), own(place_of_sum(all[i], 0, false))});
+      group.push_back({address(all[i].a, false), address(std::int64_t{all[i].b} + all[i].lead, true),
+                       own(place_of_sum(all[i], 0, false))});
     known_before_in_lanes(lane_, all[from].lead, group);
   });
 }
@@ -167,16 +182,20 @@ void Emitter::over_blocks(const std::function<void(Value*)>& before, const std::
 }
 
 void Emitter::stages(const std::vector<Step>& steps, bool solved) {
-  const bool in_parts = steps.size() > (lanes_ == 1 ? kFewSteps : kFewStepsInLanes), packed = in_parts && solved && lanes_ == 1 && p_.stages > 2 * kBlock;
+  const bool in_parts = steps.size() > (lanes_ == 1 ? kFewSteps : kFewStepsInLanes),
+             packed = in_parts && solved && lanes_ == 1 && p_.stages > 2 * kBlock;
   std::set<Convolution> all;
   for (const Step& s : steps)
     for (const Convolution& c : convolutions(s)) all.insert(c);
-  memory_.emplace(p_, packed ? choose_packs(p_, kWidth) : Packs{}, kWidth, std::vector<Convolution>(all.begin(), all.end()));
+  memory_.emplace(p_, packed ? choose_packs(p_, kWidth) : Packs{}, kWidth,
+                  std::vector<Convolution>(all.begin(), all.end()));
   llvm::AllocaInst* const memory = scratch_memory();
   scratch_ = memory;
   forget();
-  if (in_parts) stages_in_parts(steps, solved);
-  else stages_in_line(steps, solved);
+  if (in_parts)
+    stages_in_parts(steps, solved);
+  else
+    stages_in_line(steps, solved);
   memory->setOperand(0, b_.getInt32(std::max(memory_->size(), 1U)));
   relative_ = false;
   forget();
@@ -200,7 +219,8 @@ void Emitter::begin_block(Value* k0) {
   forget();
 }
 
-// A function for each place in a block. That of the first place serves the first block as well, whose histories are made stage by stage.
+// A function for each place in a block. That of the first place serves the first block as well, whose histories are
+// made stage by stage.
 void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
   const std::string list = solved ? "stage" : "after";
   llvm::Function* const whole = function_;
@@ -226,7 +246,8 @@ void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
   if (p_.stages > kBlock) {
     before_block = begin_part(list + "_known");
     bulk();
-    for (const Convolution& c : memory_->alone()) b_.CreateAlignedStore(number(0), own(place_of_sum(c, 0, true)), align());
+    for (const Convolution& c : memory_->alone())
+      b_.CreateAlignedStore(number(0), own(place_of_sum(c, 0, true)), align());
     end();
   }
   for (stage_ = 0; stage_ < (before_block ? kBlock : 1); ++stage_) {

@@ -1,7 +1,7 @@
 // What is known at the point of an expansion: values, partial derivatives, coefficients that no unknown enters.
-#include <llvm/IR/Intrinsics.h>
-
 #include <set>
+
+#include <llvm/IR/Intrinsics.h>
 
 #include "jit/emitter.h"
 
@@ -30,7 +30,9 @@ void Emitter::values_of_stage() {
         if (missing.count(x.at)) return true;
       const std::uint32_t count = s.count + (s.act == Act::beyond ? 0 : s.constants);
       for (std::uint32_t k = 0; k < count; ++k)
-        if (missing.count(p_.terms[s.first + k].x.at) || (s.act == Act::beyond && missing.count(p_.terms[s.index + k].x.at))) return true;
+        if (missing.count(p_.terms[s.first + k].x.at) ||
+            (s.act == Act::beyond && missing.count(p_.terms[s.index + k].x.at)))
+          return true;
       return false;
     };
     for (const Step* s : left) {
@@ -91,9 +93,11 @@ llvm::Value* Emitter::beyond_of_sum(const Step& s) {
   for (std::uint32_t k = 0; k < s.count + s.constants; ++k) {
     const PlanTerm& t = p_.terms[s.first + k];
     Value *c = load(t.coefficient), *x = k < s.count ? get(t.x, s.lead) : number(1);
-    Value *product = b_.CreateFMul(c, x), *sum = b_.CreateFAdd(product, r), *part = b_.CreateFSub(sum, product), *rounded = fma(c, x, r);
+    Value *product = b_.CreateFMul(c, x), *sum = b_.CreateFAdd(product, r), *part = b_.CreateFSub(sum, product),
+          *rounded = fma(c, x, r);
     Value* of_addition = b_.CreateFAdd(b_.CreateFSub(product, b_.CreateFSub(sum, part)), b_.CreateFSub(r, part));
-    beyond = b_.CreateFAdd(beyond, b_.CreateFAdd(b_.CreateFAdd(b_.CreateFSub(sum, rounded), of_addition), fma(c, x, b_.CreateFNeg(product))));
+    beyond = b_.CreateFAdd(beyond, b_.CreateFAdd(b_.CreateFAdd(b_.CreateFSub(sum, rounded), of_addition),
+                                                 fma(c, x, b_.CreateFNeg(product))));
     if (k < s.count && p_.terms[s.index + k].x.at != 0) beyond = fma(c, load(p_.terms[s.index + k].x.at), beyond);
     r = rounded;
   }
@@ -104,43 +108,64 @@ void Emitter::value(const Step& s) {
   const std::uint8_t l = s.lead;
   Value* a = s.act == Act::linear || s.act == Act::beyond || s.act == Act::sine_cosine ? nullptr : get(s.a, l);
   switch (s.act) {
-    case Act::input: put(s.out, l, b_.CreateFMul(load(s.a.at + s.index), number(k_.factorial[s.index]))); break;
-    case Act::linear: put(s.out, l, sum(s, s.count + s.constants)); break;
-    case Act::beyond: put(s.out, l, beyond_of_sum(s)); break;
-    case Act::multiply: put(s.out, l, b_.CreateFMul(a, get(s.b, l))); break;
-    case Act::square: put(s.out, l, b_.CreateFMul(a, a)); break;
-    case Act::divide: {
-      Value* r = b_.CreateFDiv(number(1), get(s.b, l));
-      store(r, s.c.at);
-      known_[{s.c.at, kNoOrder}] = r;
-      put(s.out, l, b_.CreateFMul(a, r));
-      break;
-    }
-    case Act::square_root: put(s.out, l, b_.CreateIntrinsic(llvm::Intrinsic::sqrt, {lane_}, {a})); break;
-    case Act::power: {
-      Value *power = call("anholon_power", {a, llvm::ConstantFP::get(b_.getDoubleTy(), s.value)}), *r = b_.CreateFDiv(number(1), a);
-      put(s.out, l, power);
-      store(r, s.b.at);
-      put(s.d, l, number(0));
-      store(b_.CreateFMul(b_.CreateFMul(number(s.value), power), r), s.e.at);
-      break;
-    }
-    case Act::sine_cosine: {
-      Value* beyond = s.d.at != 0 ? address(s.d.at, false) : llvm::ConstantPointerNull::get(b_.getPtrTy());
-      call_scalar("anholon_sines", {address(s.a.at, false), beyond, address(s.out.at, false), address(s.c.at, false)}, b_.getVoidTy());
-      known_.erase({s.out.at, 0});
-      known_.erase({s.c.at, 0});
-      break;
-    }
-    case Act::function: put(s.out, l, call("anholon_function", {b_.getInt32(s.index), a})); break;
-    case Act::arctan2: put(s.out, l, call("atan2", {a, get(s.b, l)})); break;
-    case Act::weigh: put(s.out, l, number(0)); break;
-    case Act::select: {
-      Value* negative = b_.CreateFCmpOLT(load(s.c.at), number(0));
-      put(s.out, l, b_.CreateSelect(negative, get(s.b, l), get(s.a, l)));
-      break;
-    }
-    case Act::lookup: break;  // refused before
+  case Act::input:
+    put(s.out, l, b_.CreateFMul(load(s.a.at + s.index), number(k_.factorial[s.index])));
+    break;
+  case Act::linear:
+    put(s.out, l, sum(s, s.count + s.constants));
+    break;
+  case Act::beyond:
+    put(s.out, l, beyond_of_sum(s));
+    break;
+  case Act::multiply:
+    put(s.out, l, b_.CreateFMul(a, get(s.b, l)));
+    break;
+  case Act::square:
+    put(s.out, l, b_.CreateFMul(a, a));
+    break;
+  case Act::divide: {
+    Value* r = b_.CreateFDiv(number(1), get(s.b, l));
+    store(r, s.c.at);
+    known_[{s.c.at, kNoOrder}] = r;
+    put(s.out, l, b_.CreateFMul(a, r));
+    break;
+  }
+  case Act::square_root:
+    put(s.out, l, b_.CreateIntrinsic(llvm::Intrinsic::sqrt, {lane_}, {a}));
+    break;
+  case Act::power: {
+    Value *power = call("anholon_power", {a, llvm::ConstantFP::get(b_.getDoubleTy(), s.value)}),
+          *r = b_.CreateFDiv(number(1), a);
+    put(s.out, l, power);
+    store(r, s.b.at);
+    put(s.d, l, number(0));
+    store(b_.CreateFMul(b_.CreateFMul(number(s.value), power), r), s.e.at);
+    break;
+  }
+  case Act::sine_cosine: {
+    Value* beyond = s.d.at != 0 ? address(s.d.at, false) : llvm::ConstantPointerNull::get(b_.getPtrTy());
+    call_scalar("anholon_sines", {address(s.a.at, false), beyond, address(s.out.at, false), address(s.c.at, false)},
+                b_.getVoidTy());
+    known_.erase({s.out.at, 0});
+    known_.erase({s.c.at, 0});
+    break;
+  }
+  case Act::function:
+    put(s.out, l, call("anholon_function", {b_.getInt32(s.index), a}));
+    break;
+  case Act::arctan2:
+    put(s.out, l, call("atan2", {a, get(s.b, l)}));
+    break;
+  case Act::weigh:
+    put(s.out, l, number(0));
+    break;
+  case Act::select: {
+    Value* negative = b_.CreateFCmpOLT(load(s.c.at), number(0));
+    put(s.out, l, b_.CreateSelect(negative, get(s.b, l), get(s.a, l)));
+    break;
+  }
+  case Act::lookup:
+    break;  // refused before
   }
 }
 
@@ -149,11 +174,21 @@ void Emitter::partial(const Partial& d) {
   Value* a = load(d.a);
   Value* r = nullptr;
   switch (d.kind) {
-    case K::twice: r = b_.CreateFAdd(a, a); break;
-    case K::half_reciprocal: r = b_.CreateFDiv(number(0.5), a); break;
-    case K::quotient: r = b_.CreateFMul(a, load(d.b)); break;
-    case K::chosen: r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(0), number(1)); break;
-    case K::not_chosen: r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(1), number(0)); break;
+  case K::twice:
+    r = b_.CreateFAdd(a, a);
+    break;
+  case K::half_reciprocal:
+    r = b_.CreateFDiv(number(0.5), a);
+    break;
+  case K::quotient:
+    r = b_.CreateFMul(a, load(d.b));
+    break;
+  case K::chosen:
+    r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(0), number(1));
+    break;
+  case K::not_chosen:
+    r = b_.CreateSelect(b_.CreateFCmpOLT(a, number(0)), number(1), number(0));
+    break;
   }
   store(r, d.out);
 }

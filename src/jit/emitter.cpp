@@ -1,8 +1,8 @@
 #include "jit/emitter.h"
 
-#include <llvm/IR/Intrinsics.h>
-
 #include <algorithm>
+
+#include <llvm/IR/Intrinsics.h>
 
 namespace anholon::jit {
 
@@ -13,7 +13,10 @@ constexpr double kLongElimination = 100;
 
 Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines)
     : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes), several_sines_(several_sines),
-      lane_(lanes == 1 ? b_.getDoubleTy() : static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(lanes)))), asked_(p_.rows, false) {
+      lane_(lanes == 1
+                ? b_.getDoubleTy()
+                : static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(lanes)))),
+      asked_(p_.rows, false) {
   for (std::size_t j = 0; j < p_.x.size(); ++j) asked_[j] = true;
   for (const Completion& c : p_.completions) asked_[c.column] = true;
 }
@@ -33,7 +36,8 @@ void Emitter::run() {
 }
 
 void Emitter::begin(const char* name, unsigned places, bool answers) {
-  auto* type = llvm::FunctionType::get(answers ? b_.getInt32Ty() : b_.getVoidTy(), std::vector<llvm::Type*>(1 + places, b_.getPtrTy()), false);
+  auto* type = llvm::FunctionType::get(answers ? b_.getInt32Ty() : b_.getVoidTy(),
+                                       std::vector<llvm::Type*>(1 + places, b_.getPtrTy()), false);
   function_ = llvm::Function::Create(type, llvm::Function::ExternalLinkage, name, m_);
   function_->addFnAttr(llvm::Attribute::NoUnwind);
   w_ = function_->getArg(0);
@@ -57,8 +61,10 @@ llvm::Function* Emitter::begin_part(const std::string& name) {
 }
 
 void Emitter::end(Value* answer) {
-  if (answer) b_.CreateRet(b_.CreateZExt(answer, b_.getInt32Ty()));
-  else b_.CreateRetVoid();
+  if (answer)
+    b_.CreateRet(b_.CreateZExt(answer, b_.getInt32Ty()));
+  else
+    b_.CreateRetVoid();
 }
 
 llvm::Value* Emitter::address(std::int64_t slot, bool relative) {
@@ -76,7 +82,9 @@ llvm::Value* Emitter::earlier(std::uint32_t at, int order) {
   return it != known_.end() ? it->second : read(at, order, relative_);
 }
 
-llvm::Value* Emitter::constant(std::int64_t slot) { return noted(load(slot), {Origin::Kind::constant, static_cast<std::uint32_t>(slot)}); }
+llvm::Value* Emitter::constant(std::int64_t slot) {
+  return noted(load(slot), {Origin::Kind::constant, static_cast<std::uint32_t>(slot)});
+}
 
 llvm::Value* Emitter::read(std::uint32_t at, int order, bool relative) {
   Value* const x = load(std::int64_t{at} + order, relative);
@@ -105,7 +113,8 @@ void Emitter::put(const Place& place, int lead, Value* v) {
     }
   }
   // Beyond stage 0 nobody asks for it again.
-  else if (!relative_ && stage_ <= 0) store(v, place.at);
+  else if (!relative_ && stage_ <= 0)
+    store(v, place.at);
 }
 
 // Of a divisor, as kernel/lanes.h has it.
@@ -118,7 +127,8 @@ llvm::Value* Emitter::quotient(Value* x, Value* reciprocal, Value* beyond) {
 llvm::Value* Emitter::order(int offset) { return table("order", k_.order.number, offset); }
 
 llvm::Value* Emitter::over_order(Value* x, int offset) {
-  return quotient(x, table("reciprocal", k_.order.reciprocal, offset), table("reciprocal_beyond", k_.order.beyond, offset));
+  return quotient(x, table("reciprocal", k_.order.reciprocal, offset),
+                  table("reciprocal_beyond", k_.order.beyond, offset));
 }
 
 llvm::Value* Emitter::row(const char* name, const std::vector<double>& rows, int m, int offset) {
@@ -128,7 +138,9 @@ llvm::Value* Emitter::row(const char* name, const std::vector<double>& rows, int
 
 llvm::Value* Emitter::rising(int m, int offset) { return row("rising", k_.rising_.number, m, offset); }
 
-llvm::Value* Emitter::over_rising(Value* x, int m) { return quotient(x, row("falling", k_.rising_.reciprocal, m, 0), row("falling_beyond", k_.rising_.beyond, m, 0)); }
+llvm::Value* Emitter::over_rising(Value* x, int m) {
+  return quotient(x, row("falling", k_.rising_.reciprocal, m, 0), row("falling_beyond", k_.rising_.beyond, m, 0));
+}
 
 llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, int offset) {
   if (!relative_) return number(row[static_cast<std::size_t>(stage_ + offset)]);
@@ -140,12 +152,15 @@ llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, in
     t = new llvm::GlobalVariable(m_, data->getType(), true, llvm::GlobalValue::PrivateLinkage, data, name);
   }
   Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), t, k0_);
-  at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at, static_cast<std::uint64_t>(static_cast<std::int64_t>(stage_ + offset)));
+  at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at,
+                             static_cast<std::uint64_t>(static_cast<std::int64_t>(stage_ + offset)));
   Value* x = b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8));
   return element = lanes_ == 1 ? x : b_.CreateVectorSplat(static_cast<unsigned>(lanes_), x);
 }
 
-llvm::Value* Emitter::fma(Value* a, Value* b, Value* c) { return b_.CreateIntrinsic(llvm::Intrinsic::fma, {c->getType()}, {a, b, c}); }
+llvm::Value* Emitter::fma(Value* a, Value* b, Value* c) {
+  return b_.CreateIntrinsic(llvm::Intrinsic::fma, {c->getType()}, {a, b, c});
+}
 
 llvm::Value* Emitter::call_scalar(const char* name, const std::vector<Value*>& arguments, llvm::Type* result) {
   std::vector<llvm::Type*> types;
@@ -197,7 +212,9 @@ void Emitter::level(int level) {
   for (std::size_t i = 0; i < p_.roots.size(); ++i) {
     const int order = p_.c[i] - level;
     const Place r = p_.roots[i];
-    side_.push_back(order < 0 ? number(0) : b_.CreateFMul(load(r.at + (r.series ? order : 0)), number(-k_.factorial[static_cast<std::size_t>(order)])));
+    side_.push_back(order < 0 ? number(0)
+                              : b_.CreateFMul(load(r.at + (r.series ? order : 0)),
+                                              number(-k_.factorial[static_cast<std::size_t>(order)])));
   }
   solve();
   // All are asked for: they are looked at before they are used.
@@ -233,7 +250,9 @@ std::vector<llvm::Value*> Emitter::increments() {
     for (std::size_t i = 0; i < count; ++i) {
       const auto rising = [&](int order) { return order <= most - k ? k_.rising(k, order) : 0; };
       const int order = static_cast<int>(i) * (alone ? kBlock : 1) + 1;
-      Value* factor = alone ? llvm::ConstantDataVector::get(m_.getContext(), std::vector<double>{rising(order), rising(order + 1), rising(order + 2), rising(order + 3)})
+      Value* factor = alone ? llvm::ConstantDataVector::get(m_.getContext(),
+                                                            std::vector<double>{rising(order), rising(order + 1),
+                                                                                rising(order + 2), rising(order + 3)})
                             : number(rising(order));
       weights[static_cast<std::size_t>(k)].push_back(k == 0 ? powers[i] : b_.CreateFMul(powers[i], factor));
     }
@@ -251,7 +270,8 @@ std::vector<llvm::Value*> Emitter::increments() {
           } else {
             std::vector<llvm::Constant*> mask;
             for (int order = i; order < i + kBlock; ++order) mask.push_back(b_.getInt1(order <= last));
-            x = b_.CreateMaskedLoad(four, at, llvm::Align(8), llvm::ConstantVector::get(mask), llvm::ConstantAggregateZero::get(four));
+            x = b_.CreateMaskedLoad(four, at, llvm::Align(8), llvm::ConstantVector::get(mask),
+                                    llvm::ConstantAggregateZero::get(four));
           }
           sum = fma(x, weights[static_cast<std::size_t>(k)][static_cast<std::size_t>((i - 1) / kBlock)], sum);
         }
@@ -259,7 +279,8 @@ std::vector<llvm::Value*> Emitter::increments() {
       } else {
         for (int i = last; i >= 1; --i) {
           Value*& sum = s[static_cast<std::size_t>((i - 1) % kBlock)];
-          sum = fma(load(std::int64_t{p_.x[j]} + k + i), weights[static_cast<std::size_t>(k)][static_cast<std::size_t>(i - 1)], sum);
+          sum = fma(load(std::int64_t{p_.x[j]} + k + i),
+                    weights[static_cast<std::size_t>(k)][static_cast<std::size_t>(i - 1)], sum);
         }
       }
       all.push_back(b_.CreateFAdd(s[0], b_.CreateFAdd(s[1], b_.CreateFAdd(s[2], s[3]))));

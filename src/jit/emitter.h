@@ -1,20 +1,23 @@
-// LLVM IR for a kernel of one lane or several: the arithmetic of kernel/sweep.h, operation by operation in the same order, so the bits are the same.
+// LLVM IR for a kernel of one lane or several: the arithmetic of kernel/sweep.h, operation by operation in the same
+// order, so the bits are the same.
 //
-// Shape of the code: blocks of four stages. What a convolution knows before a block is summed for its four orders at once, several convolutions side by
-// side; what is new in the block is added stage by stage. Few steps are written out for each of the first four stages and for each place in a block, so
-// that what is new stays in registers; of many, each place in a block is a function, and the first block, where little is known, uses that of the first
-// place. Where the elimination is long it is a function of its own. Of one motion with many steps, those that do the same are lanes of vectors (packs.h).
+// Shape of the code: blocks of four stages. What a convolution knows before a block is summed for its four orders at
+// once, several convolutions side by side; what is new in the block is added stage by stage. Few steps are written out
+// for each of the first four stages and for each place in a block, so that what is new stays in registers; of many,
+// each place in a block is a function, and the first block, where little is known, uses that of the first place. Where
+// the elimination is long it is a function of its own. Of one motion with many steps, those that do the same are lanes
+// of vectors (packs.h).
 #pragma once
-#include <llvm/IR/IRBuilder.h>
-#include <llvm/IR/Module.h>
-#include <llvm/IR/ValueHandle.h>
-
 #include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
 #include <unordered_map>
 #include <vector>
+
+#include <llvm/IR/IRBuilder.h>
+#include <llvm/IR/Module.h>
+#include <llvm/IR/ValueHandle.h>
 
 #include "jit/packed_memory.h"
 #include "kernel/code.h"
@@ -38,15 +41,18 @@ class Emitter {
  public:
   // `several_sines`: that anholon_several_sines takes.
   Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines);
-  // The parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend", "measure", "advance", "begin", "go_on", and
-  // "level1", …: the solution for the residuals of hidden constraints.
+  // The parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend", "measure",
+  // "advance", "begin", "go_on", and "level1", …: the solution for the residuals of hidden constraints.
   void run();
-  static int levels(const KernelTables& tables) { return *std::max_element(tables.plan->c.begin(), tables.plan->c.end()); }
+  static int levels(const KernelTables& tables) {
+    return *std::max_element(tables.plan->c.begin(), tables.plan->c.end());
+  }
   static std::string level_name(int level) { return "level" + std::to_string(level); }
 
  private:
   using Value = llvm::Value;
-  // Series and sums of a convolution where orders are vectors: of the first factor from order 0 on, of the second from that of the block.
+  // Series and sums of a convolution where orders are vectors: of the first factor from order 0 on, of the second from
+  // that of the block.
   struct InLanes {
     Value *a, *b, *sums;
   };
@@ -63,7 +69,8 @@ class Emitter {
   void invert(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
   void invert_sides_at_once(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
   void invert_sides_by_call();
-  std::vector<Value*> solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal);
+  std::vector<Value*> solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu,
+                                   const std::vector<Value*>& reciprocal);
   std::uint32_t multiply_by_inverse();
   void transpose(std::vector<Value*>& rows);
   Value* minus_entry(std::uint32_t entry, Value* x, Value* s);
@@ -90,7 +97,8 @@ class Emitter {
   void fill_packed_memory();
   void leave_out_what_nobody_reads(const std::vector<llvm::Function*>& parts);
   // A loop over j = 4 .. order of the block - 1; `body` takes j and the sums so far, and gives the new ones.
-  std::vector<Value*> over_known(std::uint8_t lead, const std::vector<Value*>& sums, const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body);
+  std::vector<Value*> over_known(std::uint8_t lead, const std::vector<Value*>& sums,
+                                 const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body);
 
   void value(const Step& s);
   void coefficient(const Step& s);
@@ -132,10 +140,19 @@ class Emitter {
   // Orders are of the present stage: absolute, or relative to it.
   Value* number(double x) { return llvm::ConstantFP::get(lane_, x); }
   Value* address(std::int64_t slot, bool relative);
-  Value* load(std::int64_t slot, bool relative = false) { return b_.CreateAlignedLoad(lane_, address(slot, relative), align()); }
-  llvm::StoreInst* store(Value* v, std::int64_t slot, bool relative = false) { return b_.CreateAlignedStore(v, address(slot, relative), align()); }
-  Value* load_from(Value* place, std::int64_t i) { return b_.CreateAlignedLoad(lane_, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align()); }
-  void store_to(Value* v, Value* place, std::int64_t i) { b_.CreateAlignedStore(v, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align()); }
+  Value* load(std::int64_t slot, bool relative = false) {
+    return b_.CreateAlignedLoad(lane_, address(slot, relative), align());
+  }
+  llvm::StoreInst* store(Value* v, std::int64_t slot, bool relative = false) {
+    return b_.CreateAlignedStore(v, address(slot, relative), align());
+  }
+  Value* load_from(Value* place, std::int64_t i) {
+    return b_.CreateAlignedLoad(lane_, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)),
+                                align());
+  }
+  void store_to(Value* v, Value* place, std::int64_t i) {
+    b_.CreateAlignedStore(v, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align());
+  }
   llvm::Align align() const { return llvm::Align(8 * static_cast<std::uint64_t>(lanes_)); }
   // Loads of which it is noted what they read.
   Value* constant(std::int64_t slot);
@@ -162,28 +179,33 @@ class Emitter {
   // A function of doubles, lane by lane.
   Value* call(const char* name, const std::vector<Value*>& arguments);
   Value* call_scalar(const char* name, const std::vector<Value*>& arguments, llvm::Type* result);
-  Value* of_lane(Value* v, int lane) { return lanes_ == 1 || !v->getType()->isVectorTy() ? v : b_.CreateExtractElement(v, static_cast<std::uint64_t>(lane)); }
+  Value* of_lane(Value* v, int lane) {
+    return lanes_ == 1 || !v->getType()->isVectorTy() ? v
+                                                      : b_.CreateExtractElement(v, static_cast<std::uint64_t>(lane));
+  }
 
   const KernelTables& k_;
   const Plan& p_;
   llvm::Module& m_;
   llvm::IRBuilder<> b_;
   const int lanes_, several_sines_;
-  llvm::Type* const lane_;  // double, or a vector of them
-  std::vector<bool> asked_;      // columns of the solution
+  llvm::Type* const lane_;   // double, or a vector of them
+  std::vector<bool> asked_;  // columns of the solution
   llvm::Function *substitution_ = nullptr, *advance_ = nullptr;
   llvm::Function* function_ = nullptr;
-  Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr, *sines_ = nullptr;  // arena; arena + stage; that stage, or the first of a block
+  Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr,
+        *sines_ = nullptr;  // arena; arena + stage; that stage, or the first of a block
   bool relative_ = false;
   int stage_ = 0;  // absolute, or from the first of its block
-  bool history_is_whole_ = false;  // in the scratch memory lies all that a convolution sums before the newest coefficients
+  bool history_is_whole_ =
+      false;  // in the scratch memory lies all that a convolution sums before the newest coefficients
   // What need not be loaded, by its order, counted as `stage_` is.
   static constexpr int kNoOrder = -1000;
   std::map<std::pair<std::uint32_t, int>, Value*> known_;
   std::map<std::pair<std::string, int>, Value*> elements_;  // of tables, by what is added to the stage
   std::optional<PackedMemory> memory_;                      // where in the scratch memory
   std::unordered_map<Value*, Origin> origins_;
-  std::map<Convolution, std::pair<Value*, Value*>> histories_;  // of the present stage
+  std::map<Convolution, std::pair<Value*, Value*>> histories_;        // of the present stage
   std::map<std::pair<std::uint32_t, int>, llvm::StoreInst*> stores_;  // of coefficients, by their order
   // Of all parts, by series.
   std::vector<std::pair<std::uint32_t, llvm::WeakVH>> reads_;

@@ -1,14 +1,15 @@
 #include "jit/key.h"
 
-#include <llvm/Support/xxhash.h>
-
 #include <cstdio>
+
+#include <llvm/Support/xxhash.h>
 
 namespace anholon::jit {
 
 std::string Key::text() const {
   char digits[33];
-  std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(half[0]), static_cast<unsigned long long>(half[1]));
+  std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(half[0]),
+                static_cast<unsigned long long>(half[1]));
   return digits;
 }
 
@@ -25,8 +26,10 @@ void Writer::add(const Place& place) {
 }
 
 void Writer::add(const Step& step) {
-  const auto& [act, lead, a_constant, b_constant, a_unknown, b_unknown, b_later, out, a, b, c, d, e, f, first, count, constants, index, value] = step;
-  all(act, lead, a_constant, b_constant, a_unknown, b_unknown, b_later, out, a, b, c, d, e, f, first, count, constants, index, value);
+  const auto& [act, lead, a_constant, b_constant, a_unknown, b_unknown, b_later, out, a, b, c, d, e, f, first, count,
+               constants, index, value] = step;
+  all(act, lead, a_constant, b_constant, a_unknown, b_unknown, b_later, out, a, b, c, d, e, f, first, count, constants,
+      index, value);
 }
 
 void Writer::add(const PlanTerm& term) {
@@ -59,7 +62,8 @@ void Writer::add(const Completion& completion) {
 
 // The values at the samples have chosen the pivots and are not looked at again.
 void Writer::add(const SparseLu::Pivot& pivot) {
-  [[maybe_unused]] const auto& [row, column, entry, one, minus_one, first_scaled, scaled, first_update, updates, value] = pivot;
+  [[maybe_unused]] const auto& [row, column, entry, one, minus_one, first_scaled, scaled, first_update, updates,
+                                value] = pivot;
   all(row, column, entry, one, minus_one, first_scaled, scaled, first_update, updates);
 }
 
@@ -111,23 +115,32 @@ void Writer::add(const KernelTables::Divisors& divisors) {
 }
 
 void Writer::add(const Plan& plan) {
-  // What roots of even powers and functions that hide are is for whoever chooses steps; the determinant is among what is judged.
-  [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
-                                roots_of_even_powers, hiding, rows, largest_lead, largest_d, c, d, apart, determinant] = plan;
-  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double, rows, largest_lead, largest_d, c, d, apart);
+  // What roots of even powers and functions that hide are is for whoever chooses steps; the determinant is among what
+  // is judged.
+  [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again,
+                                entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
+                                roots_of_even_powers, hiding, rows, largest_lead, largest_d, c, d, apart, determinant] =
+      plan;
+  all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x,
+      time, roots, root_is_zero, sides, quadratures, beyond_double, rows, largest_lead, largest_d, c, d, apart);
 }
 
 void Writer::add(const SparseLu& elimination) {
-  const auto& [entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences, own, own_terms] = elimination;
-  all(entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences, own, own_terms);
+  const auto& [entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences,
+               own, own_terms] = elimination;
+  all(entries, place, pivots, scaled_entries, update_list, forward, forward_all, backward, terms, influences, own,
+      own_terms);
 }
 
 void Writer::add(const KernelTables& tables) {
-  // Knots: models that look tables up are not compiled. The code is told which places of motions it is to read and write.
-  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments, motions, projected, margin,
-                                inverse_pivots, found, size, state_size, judged, refine, factorial, inverse_factorial, order, rising, orders] = tables;
-  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial, order,
-      rising, orders);
+  // Knots: models that look tables up are not compiled. The code is told which places of motions it is to read and
+  // write.
+  [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined,
+                                entries, step, weights, increments, motions, projected, margin, inverse_pivots, found,
+                                size, state_size, judged, refine, factorial, inverse_factorial, order, rising, orders] =
+      tables;
+  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments,
+      margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial, order, rising, orders);
 }
 
 }  // namespace anholon::jit

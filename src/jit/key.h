@@ -1,12 +1,13 @@
-// What names compiled code on disk: a hash of all that decides it. The plan's numbers and not the IR, which takes long to build and to print.
+// What names compiled code on disk: a hash of all that decides it. The plan's numbers and not the IR, which takes long
+// to build and to print.
 #pragma once
-#include <llvm/ADT/StringRef.h>
-
 #include <array>
 #include <cstdint>
 #include <string>
 #include <type_traits>
 #include <vector>
+
+#include <llvm/ADT/StringRef.h>
 
 #include "kernel/code.h"
 

@@ -1,5 +1,6 @@
-// The machine code's own memory for numbers that vectors take side by side: the sums of histories, copies of series, copies of what is constant while an
-// expansion is extended. Places are counted in numbers from its beginning, those for vectors multiples of the width.
+// The machine code's own memory for numbers that vectors take side by side: the sums of histories, copies of series,
+// copies of what is constant while an expansion is extended. Places are counted in numbers from its beginning, those
+// for vectors multiples of the width.
 #pragma once
 #include "jit/packs.h"
 
@@ -8,10 +9,12 @@ namespace anholon::jit {
 // Where a number of the stages' code was read.
 struct Origin {
   enum class Kind : std::uint8_t { constant, series, own } kind;
-  std::uint32_t at = 0;  // in the arena; of a series, its begin; of own memory, the place
-  int order = 0;         // of a coefficient
+  std::uint32_t at = 0;   // in the arena; of a series, its begin; of own memory, the place
+  int order = 0;          // of a coefficient
   bool relative = false;  // counted from the first stage of the block
-  bool operator==(const Origin& o) const { return kind == o.kind && at == o.at && order == o.order && relative == o.relative; }
+  bool operator==(const Origin& o) const {
+    return kind == o.kind && at == o.at && order == o.order && relative == o.relative;
+  }
 };
 
 class PackedMemory {
@@ -21,7 +24,8 @@ class PackedMemory {
     bool relative = false;  // `width` times the first stage of the block further
   };
   struct Sums {
-    std::uint32_t at, step;  // of the order i of a block at + step i, what is new of the first factor kBlock steps further
+    std::uint32_t at,
+        step;  // of the order i of a block at + step i, what is new of the first factor kBlock steps further
   };
 
   // For the histories of these, as packs and alone.

@@ -1,9 +1,9 @@
 #include "jit/packer.h"
 
-#include <llvm/IR/IntrinsicInst.h>
-
 #include <algorithm>
 #include <queue>
+
+#include <llvm/IR/IntrinsicInst.h>
 
 namespace anholon::jit {
 
@@ -16,9 +16,15 @@ bool is_fma(const llvm::Instruction& i) {
 
 bool calculates(const llvm::Instruction& i) {
   switch (i.getOpcode()) {
-    case llvm::Instruction::FAdd: case llvm::Instruction::FSub: case llvm::Instruction::FMul: case llvm::Instruction::FNeg: return i.getType()->isDoubleTy();
-    case llvm::Instruction::Call: return is_fma(i) && i.getType()->isDoubleTy();
-    default: return false;
+  case llvm::Instruction::FAdd:
+  case llvm::Instruction::FSub:
+  case llvm::Instruction::FMul:
+  case llvm::Instruction::FNeg:
+    return i.getType()->isDoubleTy();
+  case llvm::Instruction::Call:
+    return is_fma(i) && i.getType()->isDoubleTy();
+  default:
+    return false;
   }
 }
 
@@ -29,10 +35,10 @@ bool is_call(const llvm::Instruction& i) { return llvm::isa<llvm::CallInst>(i) &
 
 }  // namespace
 
-Packer::Packer(llvm::BasicBlock& block, llvm::IRBuilder<>& builder, PackedMemory& memory, const std::unordered_map<Value*, Origin>& origins,
-               std::function<Value*(PackedMemory::Place)> address)
-    : block_(block), b_(builder), memory_(memory), origins_(origins), address_(std::move(address)), width_(memory.width()),
-      vector_type_(llvm::FixedVectorType::get(builder.getDoubleTy(), memory.width())) {}
+Packer::Packer(llvm::BasicBlock& block, llvm::IRBuilder<>& builder, PackedMemory& memory,
+               const std::unordered_map<Value*, Origin>& origins, std::function<Value*(PackedMemory::Place)> address)
+    : block_(block), b_(builder), memory_(memory), origins_(origins), address_(std::move(address)),
+      width_(memory.width()), vector_type_(llvm::FixedVectorType::get(builder.getDoubleTy(), memory.width())) {}
 
 void Packer::run() {
   read();
@@ -43,7 +49,8 @@ void Packer::run() {
   clear();
 }
 
-// The instructions before the end of the block and what each has to wait for: its operands, and of memory what was written or called before.
+// The instructions before the end of the block and what each has to wait for: its operands, and of memory what was
+// written or called before.
 void Packer::read() {
   for (Instruction& i : block_)
     if (!i.isTerminator()) {
@@ -59,7 +66,8 @@ void Packer::read() {
   const auto address = [](const Value* pointer) -> Address {
     const auto* at = llvm::dyn_cast<llvm::GetElementPtrInst>(pointer);
     if (at && at->getNumIndices() == 1)
-      if (const auto* offset = llvm::dyn_cast<llvm::ConstantInt>(at->getOperand(1))) return {at->getPointerOperand(), offset->getSExtValue()};
+      if (const auto* offset = llvm::dyn_cast<llvm::ConstantInt>(at->getOperand(1)))
+        return {at->getPointerOperand(), offset->getSExtValue()};
     return {pointer, 0};
   };
   std::map<Address, std::vector<int>> touched;  // since it was written, and that
@@ -69,7 +77,8 @@ void Packer::read() {
     Instruction& in = *code_[i];
     std::vector<int>& needs = needs_[i];
     for (const Value* v : in.operands())
-      if (const auto it = index_.find(v); it != index_.end()) needs.push_back(it->second), users_[it->second].push_back(i);
+      if (const auto it = index_.find(v); it != index_.end())
+        needs.push_back(it->second), users_[it->second].push_back(i);
     if (is_call(in)) {
       needs.insert(needs.end(), since_call.begin(), since_call.end());
       if (last_call != kNone) needs.push_back(last_call);
@@ -127,7 +136,9 @@ bool Packer::same_operation(const std::vector<Instruction*>& members) const {
   for (const Instruction* i : members) {
     if (!i) continue;
     if (!first) first = i;
-    if (i->getOpcode() != first->getOpcode() || i->getType() != first->getType() || (llvm::isa<llvm::CallInst>(i) && !is_fma(*i))) return false;
+    if (i->getOpcode() != first->getOpcode() || i->getType() != first->getType() ||
+        (llvm::isa<llvm::CallInst>(i) && !is_fma(*i)))
+      return false;
     ++count;
   }
   return count >= fewest_lanes(width_);
@@ -172,13 +183,16 @@ bool Packer::form(const Lanes& values) {
   for (unsigned l = 0; l < width_; ++l) {
     if (!values[l]) continue;
     const auto it = index_.find(values[l]);
-    if (it == index_.end() || group_[it->second] != kNone || std::find(members.begin(), members.end(), code_[it->second]) != members.end()) return false;
+    if (it == index_.end() || group_[it->second] != kNone ||
+        std::find(members.begin(), members.end(), code_[it->second]) != members.end())
+      return false;
     members[l] = code_[it->second];
     origins[l] = origin(values[l]);
     known = known && origins[l];
   }
   if (!same_operation(members)) return false;
-  const Instruction& some = **std::find_if(members.begin(), members.end(), [](const Instruction* m) { return m != nullptr; });
+  const Instruction& some =
+      **std::find_if(members.begin(), members.end(), [](const Instruction* m) { return m != nullptr; });
   Group g{members, {}, false, nullptr, std::vector<Value*>(width_, nullptr)};
   if (llvm::isa<llvm::LoadInst>(some)) {
     if (!known || !(g.place = memory_.find(origins))) return false;
@@ -243,14 +257,16 @@ void Packer::grow(std::size_t number) {
 void Packer::write() {
   const int groups = static_cast<int>(groups_.size());
   const auto unit = [&](int i) { return group_[i] == kNone ? groups + i : group_[i]; };
-  std::vector<int> waits(static_cast<std::size_t>(groups) + code_.size(), 0), first(waits.size(), static_cast<int>(code_.size()));
+  std::vector<int> waits(static_cast<std::size_t>(groups) + code_.size(), 0),
+      first(waits.size(), static_cast<int>(code_.size()));
   std::vector<std::vector<int>> next(waits.size());
   for (int i = 0; i < static_cast<int>(code_.size()); ++i) {
     first[unit(i)] = std::min(first[unit(i)], i);
     for (const int o : needs_[i])
       if (unit(o) != unit(i)) next[unit(o)].push_back(unit(i)), ++waits[unit(i)];
   }
-  std::priority_queue<std::pair<int, int>, std::vector<std::pair<int, int>>, std::greater<>> open;  // in the order of the code
+  std::priority_queue<std::pair<int, int>, std::vector<std::pair<int, int>>, std::greater<>>
+      open;  // in the order of the code
   for (std::size_t u = 0; u < waits.size(); ++u)
     if (waits[u] == 0 && first[u] < static_cast<int>(code_.size())) open.push({first[u], static_cast<int>(u)});
   b_.SetInsertPoint(block_.getTerminator());
@@ -275,7 +291,8 @@ void Packer::write() {
 }
 
 void Packer::write_group(Group& g) {
-  const Instruction& some = **std::find_if(g.lanes.begin(), g.lanes.end(), [](const Instruction* m) { return m != nullptr; });
+  const Instruction& some =
+      **std::find_if(g.lanes.begin(), g.lanes.end(), [](const Instruction* m) { return m != nullptr; });
   if (g.place) {
     g.vector = b_.CreateAlignedLoad(vector_type_, address_(*g.place), llvm::Align(8 * width_));
     return;
@@ -287,11 +304,21 @@ void Packer::write_group(Group& g) {
   std::vector<Value*> x;
   for (unsigned k = 0; k < operand_count(some); ++k) x.push_back(vector(operands(g, k)));
   switch (some.getOpcode()) {
-    case Instruction::FAdd: g.vector = b_.CreateFAdd(x[0], x[1]); break;
-    case Instruction::FSub: g.vector = b_.CreateFSub(x[0], x[1]); break;
-    case Instruction::FMul: g.vector = b_.CreateFMul(x[0], x[1]); break;
-    case Instruction::FNeg: g.vector = b_.CreateFNeg(x[0]); break;
-    default: g.vector = b_.CreateIntrinsic(llvm::Intrinsic::fma, {vector_type_}, x); break;
+  case Instruction::FAdd:
+    g.vector = b_.CreateFAdd(x[0], x[1]);
+    break;
+  case Instruction::FSub:
+    g.vector = b_.CreateFSub(x[0], x[1]);
+    break;
+  case Instruction::FMul:
+    g.vector = b_.CreateFMul(x[0], x[1]);
+    break;
+  case Instruction::FNeg:
+    g.vector = b_.CreateFNeg(x[0]);
+    break;
+  default:
+    g.vector = b_.CreateIntrinsic(llvm::Intrinsic::fma, {vector_type_}, x);
+    break;
   }
 }
 
@@ -299,7 +326,8 @@ llvm::Value* Packer::scalar(Value* v) {
   const int g = group_of(v);
   if (g == kNone) return v;
   Group& group = groups_[g];
-  const std::size_t lane = static_cast<std::size_t>(std::find(group.lanes.begin(), group.lanes.end(), v) - group.lanes.begin());
+  const std::size_t lane =
+      static_cast<std::size_t>(std::find(group.lanes.begin(), group.lanes.end(), v) - group.lanes.begin());
   if (!group.scalars[lane]) group.scalars[lane] = b_.CreateExtractElement(group.vector, lane);
   return group.scalars[lane];
 }
@@ -312,7 +340,8 @@ llvm::Value* Packer::vector(const Lanes& values) {
     if (v && !first) first = v;
   if (ready(values)) {
     bool splat = true, constants = true;
-    for (Value* v : values) splat = splat && (!v || alike(v, first)), constants = constants && (!v || llvm::isa<llvm::ConstantFP>(v));
+    for (Value* v : values)
+      splat = splat && (!v || alike(v, first)), constants = constants && (!v || llvm::isa<llvm::ConstantFP>(v));
     if (splat) return made = b_.CreateVectorSplat(width_, scalar(first));
     if (!constants) return made = groups_[group_of(first)].vector;
   }

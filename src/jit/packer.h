@@ -1,12 +1,13 @@
-// Straight code made vectors: operations of a block of scalar code that do the same, each on numbers of its own lane, become one. Nothing else changes, so
-// neither do the bits.
+// Straight code made vectors: operations of a block of scalar code that do the same, each on numbers of its own lane,
+// become one. Nothing else changes, so neither do the bits.
 //
-// It starts from values that are wanted side by side (of one kind, for isomorphic steps), takes in what they are computed from and what is computed from
-// them as long as each lane does the same, and leaves the rest as it is: a chain along the mechanism, say, where every link waits for the one before.
+// It starts from values that are wanted side by side (of one kind, for isomorphic steps), takes in what they are
+// computed from and what is computed from them as long as each lane does the same, and leaves the rest as it is: a
+// chain along the mechanism, say, where every link waits for the one before.
 #pragma once
-#include <llvm/IR/IRBuilder.h>
-
 #include <unordered_map>
+
+#include <llvm/IR/IRBuilder.h>
 
 #include "jit/packed_memory.h"
 
@@ -17,7 +18,8 @@ class Packer {
   // One value in each lane, null where there is none.
   using Lanes = std::vector<llvm::Value*>;
   // `address` gives where in the packed memory a place is; `origins` says of loads what they read.
-  Packer(llvm::BasicBlock& block, llvm::IRBuilder<>& builder, PackedMemory& memory, const std::unordered_map<llvm::Value*, Origin>& origins,
+  Packer(llvm::BasicBlock& block, llvm::IRBuilder<>& builder, PackedMemory& memory,
+         const std::unordered_map<llvm::Value*, Origin>& origins,
          std::function<llvm::Value*(PackedMemory::Place)> address);
 
   void want(Lanes values) { wanted_.push_back(std::move(values)); }

@@ -8,20 +8,34 @@ namespace anholon::jit {
 
 std::vector<Convolution> convolutions(const Step& s) {
   switch (s.act) {
-    case Act::multiply: return {{s.a.at, s.b.at, s.lead}};
-    case Act::square: return {{s.a.at, s.a.at, s.lead}};
-    case Act::divide: return {{s.b.at, s.out.at, s.lead}};
-    case Act::square_root: return {{s.out.at, s.out.at, s.lead}};
-    case Act::power: return {{s.c.at, s.out.at, s.lead}, {s.d.at, s.a.at, s.lead}};
-    case Act::sine_cosine: return {{s.b.at, s.c.at, s.lead}, {s.b.at, s.out.at, s.lead}};
-    case Act::function: if (s.b_constant) return {}; return {{s.c.at, s.b.at, s.lead}};
-    case Act::arctan2: {
-      std::vector<Convolution> r;
-      if (!s.a_constant) r.push_back({s.e.at, s.c.at, s.lead});
-      if (!s.b_constant) r.push_back({s.f.at, s.d.at, s.lead});
-      return r;
-    }
-    case Act::input: case Act::linear: case Act::beyond: case Act::weigh: case Act::select: case Act::lookup: return {};
+  case Act::multiply:
+    return {{s.a.at, s.b.at, s.lead}};
+  case Act::square:
+    return {{s.a.at, s.a.at, s.lead}};
+  case Act::divide:
+    return {{s.b.at, s.out.at, s.lead}};
+  case Act::square_root:
+    return {{s.out.at, s.out.at, s.lead}};
+  case Act::power:
+    return {{s.c.at, s.out.at, s.lead}, {s.d.at, s.a.at, s.lead}};
+  case Act::sine_cosine:
+    return {{s.b.at, s.c.at, s.lead}, {s.b.at, s.out.at, s.lead}};
+  case Act::function:
+    if (s.b_constant) return {};
+    return {{s.c.at, s.b.at, s.lead}};
+  case Act::arctan2: {
+    std::vector<Convolution> r;
+    if (!s.a_constant) r.push_back({s.e.at, s.c.at, s.lead});
+    if (!s.b_constant) r.push_back({s.f.at, s.d.at, s.lead});
+    return r;
+  }
+  case Act::input:
+  case Act::linear:
+  case Act::beyond:
+  case Act::weigh:
+  case Act::select:
+  case Act::lookup:
+    return {};
   }
   return {};
 }
@@ -39,7 +53,8 @@ class Chooser {
       if (c.out.series) newest_[c.out.at] = c.lead;
     for (const std::vector<Step>* list : {&p_.stage, &p_.weigh_again})
       for (const Step& s : *list)
-        for (const Place& made : {s.out, s.act == Act::sine_cosine ? s.c : Place{}, s.act == Act::power ? s.d : Place{}})
+        for (const Place& made :
+             {s.out, s.act == Act::sine_cosine ? s.c : Place{}, s.act == Act::power ? s.d : Place{}})
           if (made.series) newest_[made.at] = s.lead;
   }
 
@@ -47,9 +62,12 @@ class Chooser {
     for (const Step& s : p_.stage) place(s);
     for (const Row& row : rows_) {
       std::vector<const Step*> steps;
-      std::copy_if(row.steps.begin(), row.steps.end(), std::back_inserter(steps), [](const Step* s) { return s != nullptr; });
-      if (steps.size() >= fewest_lanes(width_)) pack(row);
-      else for (const Step* s : steps) leave(*s);
+      std::copy_if(row.steps.begin(), row.steps.end(), std::back_inserter(steps),
+                   [](const Step* s) { return s != nullptr; });
+      if (steps.size() >= fewest_lanes(width_))
+        pack(row);
+      else
+        for (const Step* s : steps) leave(*s);
     }
     if (seen_.size() <= kFewSums) left_.clear();
     for (const auto& [kind, rest] : left_)
@@ -76,7 +94,9 @@ class Chooser {
 
   void place(const Step& s) {
     const std::vector<Convolution> sums = convolutions(s);
-    if (sums.empty() || !std::all_of(sums.begin(), sums.end(), [&](const Convolution& c) { return seen_.insert(c).second; })) return;
+    if (sums.empty() ||
+        !std::all_of(sums.begin(), sums.end(), [&](const Convolution& c) { return seen_.insert(c).second; }))
+      return;
     Kind kind{static_cast<int>(s.act), s.lead, s.a_constant, s.b_constant, s.a_unknown, s.b_unknown, s.b_later};
     const Seat* seat = nullptr;
     int position = 0, found_at = 0;
@@ -94,8 +114,10 @@ class Chooser {
     std::size_t& row = open_.try_emplace(kind, rows_.size()).first->second;
     std::size_t lane = 0;
     const auto taken = [&] { return row < rows_.size() && (lane == width_ || rows_[row].steps[lane]); };
-    if (seat) lane = seat->lane;
-    else while (lane < width_ && taken()) ++lane;
+    if (seat)
+      lane = seat->lane;
+    else
+      while (lane < width_ && taken()) ++lane;
     if (taken()) row = rows_.size(), lane = seat ? lane : 0;
     if (row == rows_.size()) rows_.push_back({std::vector<const Step*>(width_, nullptr)});
     rows_[row].steps[lane] = &s;
@@ -161,9 +183,9 @@ class Chooser {
   Packs out_;
   std::map<std::uint32_t, int> newest_;  // by series
   std::map<std::uint32_t, Seat> seats_;
-  std::map<Kind, std::size_t> open_;     // rows that are not full
+  std::map<Kind, std::size_t> open_;  // rows that are not full
   std::vector<Row> rows_;
-  std::set<Convolution> seen_;           // two steps may ask for the same
+  std::set<Convolution> seen_;  // two steps may ask for the same
   std::map<std::array<int, 3>, std::vector<Convolution>> left_;
 };
 

@@ -1,8 +1,9 @@
 // Series side by side: which convolutions of one motion are summed in the lanes of vectors, one convolution in each.
 //
-// A mechanism repeats itself: links, wheels, trailers. Of steps that do the same, the histories of the convolutions (all but the newest coefficients) never
-// wait for each other, so those of up to `width` steps are one. For that the coefficients of their factors lie side by side, [order][lane], in memory of
-// the machine code's own, beside the arena, where they lie series by series. Lanes are given so that who works on the other's result is in its lane.
+// A mechanism repeats itself: links, wheels, trailers. Of steps that do the same, the histories of the convolutions
+// (all but the newest coefficients) never wait for each other, so those of up to `width` steps are one. For that the
+// coefficients of their factors lie side by side, [order][lane], in memory of the machine code's own, beside the arena,
+// where they lie series by series. Lanes are given so that who works on the other's result is in its lane.
 #pragma once
 #include <cstdint>
 #include <map>

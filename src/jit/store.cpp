@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMost = 256U << 20, kEnough = kMost / 4 * 3;  // bytes; removing goes on until there is room for a while
+constexpr std::uintmax_t kMost = 256U << 20,
+                         kEnough = kMost / 4 * 3;  // bytes; removing goes on until there is room for a while
 constexpr char kPrefix[] = "kernel-";
 // A part of an entry this old belongs to a process that was killed.
 constexpr std::chrono::hours kAbandoned{1};
@@ -65,7 +66,8 @@ std::unique_ptr<llvm::MemoryBuffer> Store::read(const Key& key) const {
   if (file.number < 0 || fstat(file.number, &about) != 0 || !trusted(about, geteuid())) return nullptr;
   const auto size = static_cast<std::uint64_t>(about.st_size);
   if (size <= sizeof(Key) || size > kMost) return nullptr;
-  // Volatile and with a zero at its end: otherwise it is mapped if it is large, and a file that is cut short while mapped kills the reader.
+  // Volatile and with a zero at its end: otherwise it is mapped if it is large, and a file that is cut short while
+  // mapped kills the reader.
   auto all = llvm::MemoryBuffer::getOpenFile(file.number, path.c_str(), size, true, true);
   if (!all || (*all)->getBufferSize() != size) return nullptr;
   const llvm::StringRef object = (*all)->getBuffer().drop_back(sizeof(Key));
@@ -74,7 +76,8 @@ std::unique_ptr<llvm::MemoryBuffer> Store::read(const Key& key) const {
   if (!(found == seal(key, object))) return nullptr;
   std::error_code none;
   const auto now = fs::file_time_type::clock::now();
-  if (const auto last = fs::last_write_time(path, none); !none && now - last > kUsed) fs::last_write_time(path, now, none);
+  if (const auto last = fs::last_write_time(path, none); !none && now - last > kUsed)
+    fs::last_write_time(path, now, none);
   return llvm::MemoryBuffer::getMemBufferCopy(object, "kernel");
 }
 
@@ -89,11 +92,14 @@ void Store::write(const Key& key, const llvm::MemoryBuffer& object) const {
   {
     const Descriptor file(mkostemp(part.data(), O_CLOEXEC));
     if (file.number < 0) return;
-    good = write_all(file.number, object.getBuffer()) && write_all(file.number, {reinterpret_cast<const char*>(&end), sizeof end});
+    good = write_all(file.number, object.getBuffer()) &&
+           write_all(file.number, {reinterpret_cast<const char*>(&end), sizeof end});
   }
   if (good) fs::rename(part, path, none);
-  if (!good || none) fs::remove(part, none);
-  else bound();
+  if (!good || none)
+    fs::remove(part, none);
+  else
+    bound();
 }
 
 void Store::bound() const {
@@ -114,8 +120,10 @@ void Store::bound() const {
     if (bad) continue;
     const std::uintmax_t size = it->file_size(bad);
     if (bad) continue;
-    if (it->path().extension() != ".o" && now - used > kAbandoned) fs::remove(it->path(), bad);
-    else entries.push_back({used, size, it->path()}), total += size;
+    if (it->path().extension() != ".o" && now - used > kAbandoned)
+      fs::remove(it->path(), bad);
+    else
+      entries.push_back({used, size, it->path()}), total += size;
   }
   if (total <= kMost) return;
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });

@@ -1,12 +1,13 @@
 // Compiled kernels on disk, between runs.
 //
-// Whatever happens to the folder costs time and nothing else: an entry is taken only if it is whole, ours, and made for this key; it appears
-// under its name by one rename, so any number of processes may write it, and be killed while they do. Nothing here reports an error.
+// Whatever happens to the folder costs time and nothing else: an entry is taken only if it is whole, ours, and made for
+// this key; it appears under its name by one rename, so any number of processes may write it, and be killed while they
+// do. Nothing here reports an error.
 #pragma once
-#include <llvm/Support/MemoryBuffer.h>
-
 #include <memory>
 #include <string>
+
+#include <llvm/Support/MemoryBuffer.h>
 
 #include "jit/key.h"
 

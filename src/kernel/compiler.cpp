@@ -1,8 +1,8 @@
-#include <dlfcn.h>
-
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+
+#include <dlfcn.h>
 
 #include "kernel/code.h"
 
@@ -21,7 +21,8 @@ static const CompilerModule* load() {
     const auto* module = static_cast<const CompilerModule*>(dlsym(library, "anholon_compiler"));
     // It reads our plans: one that was built from other headers is left alone.
     const auto* layout = static_cast<const char*>(dlsym(library, "anholon_compiler_layout"));
-    if (module && module->version == kCompilerVersion && layout && std::strcmp(layout, ANHOLON_KERNEL_LAYOUT) == 0) return module;
+    if (module && module->version == kCompilerVersion && layout && std::strcmp(layout, ANHOLON_KERNEL_LAYOUT) == 0)
+      return module;
     dlclose(library);
   }
   return nullptr;

@@ -19,12 +19,13 @@ constexpr double kAround = 3.3;
 constexpr double kWaiting = 5;
 // Steps of a stage, operations of the elimination: more would be compiled for more than some five seconds.
 constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 12000;
-// The inverse of J takes the place of an elimination while it has so few entries: more operations, that do not wait for each other. First all that a stage
-// asks for, then the unknowns alone.
+// The inverse of J takes the place of an elimination while it has so few entries: more operations, that do not wait for
+// each other. First all that a stage asks for, then the unknowns alone.
 constexpr std::size_t kMostInfluences = 64;
 constexpr std::size_t kMostInfluencesOfUnknowns = 48 * 48, kMostInLanes = 100;
-// Solutions are refined where that changes them by more. Below, at the tightest tolerance, motions are nearer to their references for it by a factor of
-// two at most, mostly not at all (chains of 8 to 64 links, whose solutions it changes by 8 to 360 round-offs: bench/RESULTS.md).
+// Solutions are refined where that changes them by more. Below, at the tightest tolerance, motions are nearer to their
+// references for it by a factor of two at most, mostly not at all (chains of 8 to 64 links, whose solutions it changes
+// by 8 to 360 round-offs: bench/RESULTS.md).
 constexpr double kRefined = 512 * 0x1p-53;
 
 // Numbers in [-1, 1) from a counter (a step of splitmix64).
@@ -42,12 +43,18 @@ double KernelTables::lookup(std::uint32_t function, double x) const {
   return f.values[static_cast<std::size_t>(std::upper_bound(f.at.begin(), f.at.end(), x) - f.at.begin())];
 }
 
-double power_of(double x, double exponent) { return exponent == -0.5 ? 1 / std::sqrt(x) : exponent == 1.5 ? x * std::sqrt(x) : exponent == -1.5 ? 1 / (x * std::sqrt(x)) : std::pow(x, exponent); }
+double power_of(double x, double exponent) {
+  return exponent == -0.5   ? 1 / std::sqrt(x)
+         : exponent == 1.5  ? x * std::sqrt(x)
+         : exponent == -1.5 ? 1 / (x * std::sqrt(x))
+                            : std::pow(x, exponent);
+}
 
 double function_of(std::uint32_t function, double x) {
   switch (static_cast<Function>(function)) {
-#define ROW(name, derivative, parity, latex, domain) \
-  case Function::name: return name(x);
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
+  case Function::name:                                                                                                 \
+    return name(x);
 #include "expr/elementary.def"
 #undef ROW
   }
@@ -60,7 +67,8 @@ const std::vector<Tier>& tiers() {
   static const std::vector<Tier> list = [] {
     std::vector<Tier> all{tier_plain};
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) all.push_back(tier_avx2);
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) all.push_back(tier_avx512);
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+      all.push_back(tier_avx512);
     return all;
   }();
   return list;
@@ -73,8 +81,10 @@ void KernelTables::Divisors::add(long double n) {
   beyond.push_back(n > 0 ? static_cast<double>(std::fma(-reciprocal_of_n, n, 1.0L) / n) : 0);
 }
 
-KernelPlan::KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages, Company company)
-    : program_(std::move(program)), map_(std::move(map)), plan_(anholon::plan(*program_, stages, judged)), company_(company) {
+KernelPlan::KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged,
+                       int stages, Company company)
+    : program_(std::move(program)), map_(std::move(map)), plan_(anholon::plan(*program_, stages, judged)),
+      company_(company) {
   if (map_) plan_.apart = plan_.x.size() - map_->velocities();
   for (int d : plan_.d) tables_.state_size += static_cast<std::uint32_t>(d);
   levels_ = *std::max_element(plan_.c.begin(), plan_.c.end());
@@ -122,17 +132,22 @@ void KernelPlan::lay_out() {
   tables_.margin = take(1);
   tables_.inverse_pivots = take(static_cast<std::uint32_t>(elimination_.pivots.size()) + (plan_.determinant ? 1 : 0));
   Findings& f = tables_.found;
-  for (std::uint32_t* place : {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest, &f.defect}) *place = take(1);
+  for (std::uint32_t* place :
+       {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest, &f.defect})
+    *place = take(1);
   tables_.size = even(at);
 }
 
-std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
+std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, int stages,
+                                                   const std::vector<long double>& parameters, double t,
                                                    const std::vector<double>& state, Company company) {
   return make(std::move(program), nullptr, false, stages, parameters, t, state, company);
 }
 
-std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages,
-                                                   const std::vector<long double>& parameters, double t, const std::vector<double>& motion, Company company) {
+std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program,
+                                                   std::shared_ptr<const StateMap> map, bool judged, int stages,
+                                                   const std::vector<long double>& parameters, double t,
+                                                   const std::vector<double>& motion, Company company) {
   if (!no_plan(*program).empty()) return nullptr;
   std::vector<double> state = motion;
   if (map) {
@@ -156,12 +171,14 @@ std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program
 }
 
 // At the state and at some around it, so that a pivot is not one that vanishes when the machine has moved on.
-KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state) {
+KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& parameters, double t,
+                                              const std::vector<double>& state) {
   lay_out();
   Sampled out;
   std::vector<SampledEntry>& entries = out.entries;
   for (const Entry& e : plan_.entries) {
-    const bool exact = e.from < plan_.coefficients.size() && (plan_.coefficients[e.from].one() || plan_.coefficients[e.from].minus_one());
+    const bool exact = e.from < plan_.coefficients.size() &&
+                       (plan_.coefficients[e.from].one() || plan_.coefficients[e.from].minus_one());
     entries.push_back({e.row, e.column, {}, exact});
   }
   std::vector<double> arena(tables_.size, 0.0);
@@ -173,7 +190,9 @@ KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& pa
     std::size_t i = 0;
     for (std::size_t j = 0; j < plan_.d.size(); ++j) {
       for (int k = 0; k < plan_.d[j]; ++k, ++i)
-        arena[plan_.x[j] + static_cast<std::uint32_t>(k)] = (state[i] + (attempt == 0 ? 0 : kAround * scattered(64 * attempt + i))) * tables_.inverse_factorial[static_cast<std::size_t>(k)];
+        arena[plan_.x[j] + static_cast<std::uint32_t>(k)] =
+            (state[i] + (attempt == 0 ? 0 : kAround * scattered(64 * attempt + i))) *
+            tables_.inverse_factorial[static_cast<std::size_t>(k)];
       arena[plan_.x[j] + static_cast<std::uint32_t>(plan_.d[j])] = 0;
     }
     arena[plan_.time] = t;
@@ -185,8 +204,10 @@ KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& pa
       good = good && std::isfinite(value);
       entries[e].value[samples] = value;
     }
-    if (good) ++samples;
-    else if (attempt == 0) return out;
+    if (good)
+      ++samples;
+    else if (attempt == 0)
+      return out;
     if (attempt == 0 && plan_.determinant) out.determinant = arena[plan_.determinant->at];
   }
   // Samples may lie where the system is singular: fewer, then.
@@ -211,7 +232,8 @@ void KernelPlan::solve_by(const Sampled& sampled) {
     std::vector<bool> unknowns(plan_.rows, false);
     std::fill_n(unknowns.begin(), n, true);
     SparseLu e = solver(sampled.elimination, sides, unknowns);
-    if (invert(e, sampled.entries, plan_.sides, unknowns, company_ == Company::alone ? kMostInfluencesOfUnknowns : kMostInLanes)) {
+    if (invert(e, sampled.entries, plan_.sides, unknowns,
+               company_ == Company::alone ? kMostInfluencesOfUnknowns : kMostInLanes)) {
       leave_to_own_rows(e, n, sampled.entries, needed);
       elimination_ = std::move(e);
     }
@@ -224,21 +246,28 @@ void KernelPlan::solve_by(const Sampled& sampled) {
   waits_ = latency(plan_, elimination_);
 }
 
-double KernelPlan::cost() const { return company_ == Company::alone ? work() + kWaiting * waits_ * (plan_.stages + 1) : work(); }
+double KernelPlan::cost() const {
+  return company_ == Company::alone ? work() + kWaiting * waits_ * (plan_.stages + 1) : work();
+}
 
 std::string KernelPlan::compile(const std::string& cache, int lanes) const {
   const CompilerModule* module = compiler();
   if (!module) return "there is no compiler beside the program";
   const SparseLu& e = elimination_;
   const std::size_t substitution = e.forward.size() + e.terms.size();
-  if (plan_.stage.size() + plan_.after.size() > kMostCompiled || e.update_list.size() + substitution * (tables_.refine ? 3 : 1) > kMostEliminated) return "it is too large to be compiled in a short time";
+  if (plan_.stage.size() + plan_.after.size() > kMostCompiled ||
+      e.update_list.size() + substitution * (tables_.refine ? 3 : 1) > kMostEliminated)
+    return "it is too large to be compiled in a short time";
   for (const std::vector<Step>* list : {&plan_.point, &plan_.after})
     for (const Step& s : *list)
       if (s.act == Act::lookup) return "tables are looked up";
   Code code;
   std::string message;
   const Tier& tier = tiers().back();
-  module->compile(tables_, lanes, {power_of, function_of, lanes == 1 ? tier.sines_of_one : tier.sines_of_all, tier.sines_of_all, tier.lanes}, cache, code, message);
+  module->compile(
+      tables_, lanes,
+      {power_of, function_of, lanes == 1 ? tier.sines_of_one : tier.sines_of_all, tier.sines_of_all, tier.lanes}, cache,
+      code, message);
   if (!code.values) return message;
   Compiled& made = lanes == 1 ? one_ : several_;
   made.code = std::move(code);
@@ -250,7 +279,8 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
 void Kernel::Free::operator()(double* p) const { std::free(p); }
 
 Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* tier)
-    : plan_(std::move(plan)), lanes_(lanes), next_(plan_->tables().motions[0]), begun_(plan_->tables().motions[1]), before_(plan_->tables().motions[2]), base_(next_) {
+    : plan_(std::move(plan)), lanes_(lanes), next_(plan_->tables().motions[0]), begun_(plan_->tables().motions[1]),
+      before_(plan_->tables().motions[2]), base_(next_) {
   if (!tier) tier = &tiers().back();
   ANHOLON_ASSERT(lanes == 1 || lanes == tier->lanes);
   const std::size_t bytes = plan_->tables().size * sizeof(double) * static_cast<std::size_t>(lanes);
@@ -264,9 +294,11 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
   set_shrink(2);
   const Plan& p = plan_->plan();
   for (std::size_t j = 0; j < p.x.size(); ++j) low_orders_.push_back({p.x[j], static_cast<std::uint32_t>(p.d[j]) + 1});
-  for (const Place& q : p.quadratures) low_orders_.push_back({q.at, q.series ? static_cast<std::uint32_t>(p.largest_lead) + 1 : 1});
+  for (const Place& q : p.quadratures)
+    low_orders_.push_back({q.at, q.series ? static_cast<std::uint32_t>(p.largest_lead) + 1 : 1});
   for (const Plan::HidingSlot& slot : p.hiding)
-    for (const Place& place : {slot.argument, slot.value}) low_orders_.push_back({place.at, static_cast<std::uint32_t>(p.largest_lead) + 1});
+    for (const Place& place : {slot.argument, slot.value})
+      low_orders_.push_back({place.at, static_cast<std::uint32_t>(p.largest_lead) + 1});
   // Without overlaps.
   std::sort(low_orders_.begin(), low_orders_.end(), [](const LowOrders& a, const LowOrders& b) { return a.at < b.at; });
   std::size_t numbers = 0;
@@ -285,7 +317,9 @@ void Kernel::set_all(std::uint32_t slot, double x) {
   for (int lane = 0; lane < lanes_; ++lane) number(slot, lane) = x;
 }
 
-void Kernel::set_shrink(double shrink) { set_all(plan_->tables().margin, -(shrink + 0.7 / plan_->plan().stages) * kLog2e); }
+void Kernel::set_shrink(double shrink) {
+  set_all(plan_->tables().margin, -(shrink + 0.7 / plan_->plan().stages) * kLog2e);
+}
 
 void Kernel::set_parameters(int lane, const std::vector<long double>& parameters) {
   const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters);
@@ -324,8 +358,10 @@ bool Kernel::solve(const Code* code, bool projected) {
 }
 
 void Kernel::extend(const Code* code) {
-  if (code) code->extend(arena_);
-  else arithmetic_->extend();
+  if (code)
+    code->extend(arena_);
+  else
+    arithmetic_->extend();
 }
 
 double Kernel::correction_of_solution() {
@@ -345,11 +381,15 @@ double Kernel::correction_of_solution() {
 bool Kernel::project(const Code* code) {
   bool moved = false;
   for (int level = plan_->levels(); level >= 1; --level) {
-    if (code ? code->level[static_cast<std::size_t>(level - 1)](arena_) == 0 : (arithmetic_->residual(level), !arithmetic_->displaced(level))) continue;
+    if (code ? code->level[static_cast<std::size_t>(level - 1)](arena_) == 0
+             : (arithmetic_->residual(level), !arithmetic_->displaced(level)))
+      continue;
     moved = true;
     arithmetic_->correct(level);
-    if (code) code->values(arena_);
-    else arithmetic_->values(-plan_->plan().largest_lead);
+    if (code)
+      code->values(arena_);
+    else
+      arithmetic_->values(-plan_->plan().largest_lead);
   }
   return moved;
 }

@@ -1,8 +1,8 @@
 // Taylor expansions of a motion in doubles, fast: one trajectory, or one in each SIMD lane.
 //
-// What is shared (the plan, the order of pivots, tables) is made once per program; a Kernel is the workspace of one thread. Against
-// Expansion<double>, the reference: the same expansion to round-off, without refinement. The pivots are static: `health` says whether
-// they still serve; where it is small, the reference takes the step.
+// What is shared (the plan, the order of pivots, tables) is made once per program; a Kernel is the workspace of one
+// thread. Against Expansion<double>, the reference: the same expansion to round-off, without refinement. The pivots are
+// static: `health` says whether they still serve; where it is small, the reference takes the step.
 #pragma once
 #include <atomic>
 #include <optional>
@@ -14,18 +14,23 @@
 
 namespace anholon {
 
-// What a plan is laid out for: one motion, where operations wait for each other, or many side by side, where their number and the memory they touch count.
+// What a plan is laid out for: one motion, where operations wait for each other, or many side by side, where their
+// number and the memory they touch count.
 enum class Company { alone, in_lanes };
 
 class KernelPlan {
  public:
-  // `state`: where the pivots are chosen, and around it. Nothing if the program has no plan, or the equations are singular there.
-  static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, int stages, const std::vector<long double>& parameters, double t,
+  // `state`: where the pivots are chosen, and around it. Nothing if the program has no plan, or the equations are
+  // singular there.
+  static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, int stages,
+                                                const std::vector<long double>& parameters, double t,
                                                 const std::vector<double>& state, Company company = Company::alone);
-  // Of a program for other unknowns than those of the motion; `judged`: its last quadrature is the determinant of the motion's J, up to a factor.
-  static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages,
-                                                const std::vector<long double>& parameters, double t, const std::vector<double>& state,
-                                                Company company = Company::alone);
+  // Of a program for other unknowns than those of the motion; `judged`: its last quadrature is the determinant of the
+  // motion's J, up to a factor.
+  static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program,
+                                                std::shared_ptr<const StateMap> map, bool judged, int stages,
+                                                const std::vector<long double>& parameters, double t,
+                                                const std::vector<double>& state, Company company = Company::alone);
   KernelPlan(const KernelPlan&) = delete;
   KernelPlan& operator=(const KernelPlan&) = delete;
 
@@ -39,20 +44,25 @@ class KernelPlan {
   Company company() const { return company_; }
   int waits() const { return waits_; }
   int levels() const { return levels_; }  // of hidden constraints
-  // Makes machine code for one lane, or for so many, with the same bits; such kernels take it up at their next expansion. At most once for each, from
-  // any thread. Why there is none, or nothing.
+  // Makes machine code for one lane, or for so many, with the same bits; such kernels take it up at their next
+  // expansion. At most once for each, from any thread. Why there is none, or nothing.
   std::string compile(const std::string& cache, int lanes = 1) const;
   const Code* code(int lanes = 1) const {
     const Compiled& c = lanes == 1 ? one_ : several_;
     const Code* ready = c.ready.load(std::memory_order_acquire);
     return ready && c.lanes == lanes ? ready : nullptr;
   }
-  // Operations of one expansion; and what it costs, in operations: alone, it counts how many a stage makes one after the other (latency.h).
+  // Operations of one expansion; and what it costs, in operations: alone, it counts how many a stage makes one after
+  // the other (latency.h).
   double cost() const;
-  double work() const { return plan_.work() + elimination_.work() * (plan_.stages + 2) + static_cast<double>(elimination_.update_list.size()); }
+  double work() const {
+    return plan_.work() + elimination_.work() * (plan_.stages + 2) +
+           static_cast<double>(elimination_.update_list.size());
+  }
 
  private:
-  KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages, Company company);
+  KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<const StateMap> map, bool judged, int stages,
+             Company company);
   struct Sampled {
     std::vector<SampledEntry> entries;
     SparseElimination elimination;
@@ -103,8 +113,8 @@ class Kernel {
     for (const Beyond& b : p.beyond_double) number(b.at, lane) = 0;
     set_time(lane, t);
   }
-  // Projects the state on the hidden constraints where it has left them (or leaves it as it is), solves for the leading derivatives, and computes
-  // all coefficients.
+  // Projects the state on the hidden constraints where it has left them (or leaves it as it is), solves for the leading
+  // derivatives, and computes all coefficients.
   void expand(bool projected = true) { expand(code(), projected); }
 
   // By how much refinement changes the solution for the leading derivatives, in relation to it.
@@ -117,8 +127,9 @@ class Kernel {
   double drift(int lane) const { return number(found().drift, lane); }
   bool moved(int lane) const { return number(found().moved, lane) > 0; }
 
-  // Motions, step by step, in all lanes at once. The kernel keeps their states in the width of long double: they are placed there where they come
-  // from elsewhere; then `begin` (the expansions at the times set) and, over the steps set, `advance` follow each other.
+  // Motions, step by step, in all lanes at once. The kernel keeps their states in the width of long double: they are
+  // placed there where they come from elsewhere; then `begin` (the expansions at the times set) and, over the steps
+  // set, `advance` follow each other.
   void place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading);
   void set_time(int lane, double t) {
     double& now = number(plan_->plan().time, lane);
@@ -127,11 +138,14 @@ class Kernel {
     number(plan_->plan().time + 1, lane) = 1;
   }
   void begin();
-  // After `advance`, at the times set: the part of `begin` that solves for the leading derivatives, which says how well the series have foretold them
-  // (`defect`). Until `begin` goes on from there, or another `advance` takes it back, series are those of the last expansion; on request, see below.
+  // After `advance`, at the times set: the part of `begin` that solves for the leading derivatives, which says how well
+  // the series have foretold them
+  // (`defect`). Until `begin` goes on from there, or another `advance` takes it back, series are those of the last
+  // expansion; on request, see below.
   void start_next();
   double defect(int lane) const { return number(found().defect, lane); }
-  // Whether motions are seen as they are after `advance`, or where the last expansion was made, as before: by who is to choose another end.
+  // Whether motions are seen as they are after `advance`, or where the last expansion was made, as before: by who is to
+  // choose another end.
   void show_advanced(bool advanced) {
     show_last();
     gone_on_ = advanced;
@@ -148,30 +162,45 @@ class Kernel {
   // Whether the highest coefficients are numbers, and the largest number of a state after a step.
   bool reaches(int lane) const { return number(found().unfit, lane) == 0; }
   double largest(int lane) const { return number(found().largest, lane); }
-  // The state and the first guess of the leading derivatives as they are, as the present expansion was begun, the one before.
+  // The state and the first guess of the leading derivatives as they are, as the present expansion was begun, the one
+  // before.
   enum class Moment { now, begun, before };
   void fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const;
   // The state where the expansion was made that the last step followed.
   void fetch_base(int lane, std::vector<long double>& state) const;
 
   // The series of unknown j in a lane: number k lies k * lanes() further on.
-  const double* unknown(std::size_t j, int lane) const { return arena_ + plan_->plan().x[j] * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane); }
-  double coefficient(std::size_t j, int k, int lane = 0) const { return number(plan_->plan().x[j] + static_cast<std::uint32_t>(k), lane); }
-  double derivative(std::size_t j, int k, int lane = 0) const { return coefficient(j, k, lane) * plan_->tables().factorial[static_cast<std::size_t>(k)]; }
+  const double* unknown(std::size_t j, int lane) const {
+    return arena_ + plan_->plan().x[j] * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
+  }
+  double coefficient(std::size_t j, int k, int lane = 0) const {
+    return number(plan_->plan().x[j] + static_cast<std::uint32_t>(k), lane);
+  }
+  double derivative(std::size_t j, int k, int lane = 0) const {
+    return coefficient(j, k, lane) * plan_->tables().factorial[static_cast<std::size_t>(k)];
+  }
   // Taylor coefficient of quadrature i.
   double quadrature(std::size_t i, int order, int lane = 0) const {
     const Place q = plan_->plan().quadratures[i];
     return q.series ? number(q.at + static_cast<std::uint32_t>(order), lane) : order == 0 ? number(q.at, lane) : 0;
   }
-  double series(const Place& place, int order, int lane = 0) const { return number(place.at + static_cast<std::uint32_t>(order), lane); }
+  double series(const Place& place, int order, int lane = 0) const {
+    return number(place.at + static_cast<std::uint32_t>(order), lane);
+  }
   // The changes of x_j^(k), k = 0..d_j, one after the other, over the steps set.
   void change_over_step();
   // Number i lies i * lanes() further on.
-  const double* increments(int lane) const { return arena_ + plan_->tables().increments * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane); }
+  const double* increments(int lane) const {
+    return arena_ + plan_->tables().increments * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
+  }
 
  private:
-  double number(std::uint32_t slot, int lane) const { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
-  double& number(std::uint32_t slot, int lane) { return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)]; }
+  double number(std::uint32_t slot, int lane) const {
+    return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)];
+  }
+  double& number(std::uint32_t slot, int lane) {
+    return arena_[slot * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)];
+  }
   double* slot(std::uint32_t slot) { return arena_ + slot * static_cast<std::size_t>(lanes_); }
   void set_all(std::uint32_t slot, double x);
   bool expand(const Code* code, bool projected);
@@ -197,7 +226,8 @@ class Kernel {
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
   std::vector<StateReader> readers_;
-  // Places of motions (KernelTables): where the next expansion begins, the present one was begun, the one before; where that was made.
+  // Places of motions (KernelTables): where the next expansion begins, the present one was begun, the one before; where
+  // that was made.
   std::uint32_t next_, begun_, before_, base_;
   bool gone_on_ = true;  // or placed, since the present one was made
   // What solving for the leading derivatives writes over of the series: so many numbers from each of these places on.
@@ -205,7 +235,7 @@ class Kernel {
     std::uint32_t at, count;
   };
   std::vector<LowOrders> low_orders_;
-  mutable std::vector<double> aside_;  // those of the last expansion, or of the next one
+  mutable std::vector<double> aside_;     // those of the last expansion, or of the next one
   bool started_ = false, moved_ = false;  // the next expansion; and moved a state by that
   mutable bool shows_last_ = true;
 };

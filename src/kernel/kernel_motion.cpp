@@ -43,14 +43,18 @@ void Kernel::begin() {
     arithmetic_->adopt(slot(begun_));
     base_ = plan_->tables().projected;
   }
-  if (code) code->measure(arena_);
-  else arithmetic_->measure();
+  if (code)
+    code->measure(arena_);
+  else
+    arithmetic_->measure();
 }
 
 // The expansion at the next place.
 void Kernel::start(const Code* code) {
-  if (code) code->begin(arena_, slot(next_));
-  else arithmetic_->begin(slot(next_));
+  if (code)
+    code->begin(arena_, slot(next_));
+  else
+    arithmetic_->begin(slot(next_));
   moved_ = solve(code, true);
 }
 
@@ -89,11 +93,15 @@ void Kernel::advance() {
 void Kernel::sum_up(std::uint32_t at, int lane, std::vector<long double>& state) const {
   const std::uint32_t n = plan_->tables().state_size;
   state.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) state[i] = static_cast<long double>(number(at + i, lane)) + number(at + n + i, lane);
+  for (std::uint32_t i = 0; i < n; ++i)
+    state[i] = static_cast<long double>(number(at + i, lane)) + number(at + n + i, lane);
 }
 
 void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const {
-  const std::uint32_t at = moment == Moment::before ? before_ : moment == Moment::now && gone_on_ ? next_ : begun_, m = static_cast<std::uint32_t>(plan_->plan().x.size());
+  const std::uint32_t at = moment == Moment::before            ? before_
+                           : moment == Moment::now && gone_on_ ? next_
+                                                               : begun_,
+                      m = static_cast<std::uint32_t>(plan_->plan().x.size());
   sum_up(moment == Moment::now && !gone_on_ ? base_ : at, lane, state);
   leading.resize(m);
   for (std::uint32_t j = 0; j < m; ++j) leading[j] = number(at + 2 * plan_->tables().state_size + j, lane);
@@ -103,8 +111,10 @@ void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_u
 
 void Kernel::change_over_step() {
   show_last();
-  if (const Code* code = this->code()) code->advance(arena_);
-  else arithmetic_->advance();
+  if (const Code* code = this->code())
+    code->advance(arena_);
+  else
+    arithmetic_->advance();
 }
 
 }  // namespace anholon

@@ -18,8 +18,10 @@ class Clock {
     for (const Step& s : p_.stage) run(s);
     solve();
     int last = 0;
-    for (std::size_t j = 0; j < p_.x.size(); ++j) last = std::max(last, finish({p_.x[j], true}, p_.d[j], solution_[j] + (p_.d[j] > 0 ? kQuotient : 0)));
-    for (const Completion& c : p_.completions) last = std::max(last, finish(c.out, c.lead, solution_[c.column] + (c.lead > 0 ? kQuotient : 0) + !c.fresh));
+    for (std::size_t j = 0; j < p_.x.size(); ++j)
+      last = std::max(last, finish({p_.x[j], true}, p_.d[j], solution_[j] + (p_.d[j] > 0 ? kQuotient : 0)));
+    for (const Completion& c : p_.completions)
+      last = std::max(last, finish(c.out, c.lead, solution_[c.column] + (c.lead > 0 ? kQuotient : 0) + !c.fresh));
     for (const Step& s : p_.weigh_again) last = std::max(last, finish(s.out, s.lead, ready(s.a, s.lead) + 1));
     return last;
   }
@@ -46,38 +48,62 @@ class Clock {
   }
 
   // What was known before, divided by the order, and the newest coefficient added to it.
-  int newest(int before, const Place& x, int lead, bool missing) const { return missing ? before + kQuotient : std::max(before + kQuotient, ready(x, lead)) + 1; }
+  int newest(int before, const Place& x, int lead, bool missing) const {
+    return missing ? before + kQuotient : std::max(before + kQuotient, ready(x, lead)) + 1;
+  }
 
   void run(const Step& s) {
     const int l = s.lead, a = s.act == Act::linear || s.a_unknown ? 0 : ready(s.a, l);
     switch (s.act) {
-      case Act::input: finish(s.out, l, ready(s.a, l + static_cast<int>(s.index)) + 1); break;
-      case Act::linear: {
-        std::vector<int> terms;
-        for (std::uint32_t k = s.first; k < s.first + s.count; ++k) terms.push_back(ready(p_.terms[k].x, l));
-        int at = 0;
-        for (const int t : terms) at = std::max(at, t) + 1;
-        finish(s.out, l, at);
-        break;
-      }
-      case Act::multiply: finish(s.out, l, product(s)); break;
-      case Act::square: finish(s.out, l, a + 2); break;
-      case Act::divide: finish(s.out, l, std::max(a, ready(s.b, l) + 1) + 2); break;
-      case Act::square_root: finish(s.out, l, a + 2); break;
-      case Act::power:
-        finish(s.d, l, finish(s.out, l, newest(3, s.a, l, s.a_unknown)) + 1);
-        break;
-      case Act::sine_cosine: {
-        const int at = newest(0, s.a, l, s.a_unknown);
-        finish(s.out, l, at);
-        finish(s.c, l, at);
-        break;
-      }
-      case Act::function: finish(s.out, l, s.b_constant ? a + 1 : newest(0, s.a, l, s.a_unknown)); break;
-      case Act::arctan2: finish(s.out, l, std::max(newest(1, s.a, l, s.a_constant || s.a_unknown), s.b_constant || s.b_unknown ? 0 : ready(s.b, l)) + 1); break;
-      case Act::weigh: finish(s.out, l, a + 1); break;
-      case Act::select: finish(s.out, l, std::max(a, ready(s.b, l)) + 1); break;
-      case Act::beyond: case Act::lookup: break;
+    case Act::input:
+      finish(s.out, l, ready(s.a, l + static_cast<int>(s.index)) + 1);
+      break;
+    case Act::linear: {
+      std::vector<int> terms;
+      for (std::uint32_t k = s.first; k < s.first + s.count; ++k) terms.push_back(ready(p_.terms[k].x, l));
+      int at = 0;
+      for (const int t : terms) at = std::max(at, t) + 1;
+      finish(s.out, l, at);
+      break;
+    }
+    case Act::multiply:
+      finish(s.out, l, product(s));
+      break;
+    case Act::square:
+      finish(s.out, l, a + 2);
+      break;
+    case Act::divide:
+      finish(s.out, l, std::max(a, ready(s.b, l) + 1) + 2);
+      break;
+    case Act::square_root:
+      finish(s.out, l, a + 2);
+      break;
+    case Act::power:
+      finish(s.d, l, finish(s.out, l, newest(3, s.a, l, s.a_unknown)) + 1);
+      break;
+    case Act::sine_cosine: {
+      const int at = newest(0, s.a, l, s.a_unknown);
+      finish(s.out, l, at);
+      finish(s.c, l, at);
+      break;
+    }
+    case Act::function:
+      finish(s.out, l, s.b_constant ? a + 1 : newest(0, s.a, l, s.a_unknown));
+      break;
+    case Act::arctan2:
+      finish(s.out, l,
+             std::max(newest(1, s.a, l, s.a_constant || s.a_unknown), s.b_constant || s.b_unknown ? 0 : ready(s.b, l)) +
+                 1);
+      break;
+    case Act::weigh:
+      finish(s.out, l, a + 1);
+      break;
+    case Act::select:
+      finish(s.out, l, std::max(a, ready(s.b, l)) + 1);
+      break;
+    case Act::beyond:
+    case Act::lookup:
+      break;
     }
   }
 
@@ -87,9 +113,11 @@ class Clock {
       if (!p_.root_is_zero[i]) side[i] = ready(p_.roots[i], p_.c[i]) + (p_.c[i] > 0);
     solution_.assign(p_.rows, 0);
     if (!e_.influences.empty()) {
-      for (const SparseLu::Influence& of : e_.influences) solution_[of.column] = std::max(solution_[of.column], side[of.side]) + (of.sign == 0);
+      for (const SparseLu::Influence& of : e_.influences)
+        solution_[of.column] = std::max(solution_[of.column], side[of.side]) + (of.sign == 0);
       for (const SparseLu::Own& own : e_.own)
-        for (std::uint32_t i = own.first; i < own.first + own.count; ++i) solution_[own.column] = std::max(solution_[own.column], solution_[e_.own_terms[i].column]) + 1;
+        for (std::uint32_t i = own.first; i < own.first + own.count; ++i)
+          solution_[own.column] = std::max(solution_[own.column], solution_[e_.own_terms[i].column]) + 1;
       return;
     }
     for (const SparseLu::Forward& f : e_.forward) side[f.to] = std::max(side[f.to], side[f.from]) + 1;

@@ -16,7 +16,8 @@ constexpr int kHighestOrder = 12;
 
 class Planner {
  public:
-  Planner(const Program& p, int stages, bool judged) : p_(p), tape_(p.tape), code_(tape_.code), slots_(p), stages_(stages), judged_(judged) {}
+  Planner(const Program& p, int stages, bool judged)
+      : p_(p), tape_(p.tape), code_(tape_.code), slots_(p), stages_(stages), judged_(judged) {}
 
   Plan run() {
     if (judged_) find_values_only();
@@ -88,14 +89,17 @@ class Planner {
 
   Place at(std::uint32_t s) const { return place_[slots_.same_as(s)]; }
 
-  std::vector<Step>& list(std::uint32_t s, bool beyond) { return !slots_.in_main(s) && !value_only(s) ? plan_.after : beyond ? plan_.stage : plan_.point; }
+  std::vector<Step>& list(std::uint32_t s, bool beyond) {
+    return !slots_.in_main(s) && !value_only(s) ? plan_.after : beyond ? plan_.stage : plan_.point;
+  }
   bool value_only(std::uint32_t s) const { return judged_ && value_only_[s]; }
 
   // What only the last root needs, of which nothing is asked but its value.
   void find_values_only() {
     value_only_.assign(code_.size(), true);
     std::fill(value_only_.begin(), value_only_.begin() + tape_.main_end, false);
-    for (std::size_t i = p_.unknowns(); i + 1 < tape_.roots.size(); ++i) value_only_[slots_.same_as(tape_.roots[i])] = false;
+    for (std::size_t i = p_.unknowns(); i + 1 < tape_.roots.size(); ++i)
+      value_only_[slots_.same_as(tape_.roots[i])] = false;
     for (std::uint32_t s = static_cast<std::uint32_t>(code_.size()); s-- > 0;)
       if (!value_only_[s] && slots_.live[s] && !code_[s].constant) {
         for (const std::uint32_t o : slots_.operands(s)) value_only_[o] = false;
@@ -142,7 +146,8 @@ class Planner {
       bool any = false;
       for (std::uint32_t k = step.first; k < step.first + step.count; ++k) {
         terms.push_back({plan_.terms[k].coefficient, {}});
-        if (const auto x = coordinate_at_.find(plan_.terms[k].x.at); x != coordinate_at_.end()) terms.back().x = beyond_double(x->second);
+        if (const auto x = coordinate_at_.find(plan_.terms[k].x.at); x != coordinate_at_.end())
+          terms.back().x = beyond_double(x->second);
         any = any || terms.back().x.at != 0;
       }
       if (!any) return out;
@@ -183,7 +188,9 @@ class Planner {
   }
 
   // What a stage has computed before is there first.
-  int arrival(std::uint32_t s, std::uint8_t lead) const { return code_[s].constant || code_[s].lead > lead ? -1 : depth_[s]; }
+  int arrival(std::uint32_t s, std::uint8_t lead) const {
+    return code_[s].constant || code_[s].lead > lead ? -1 : depth_[s];
+  }
 
   void emit() {
     depth_.assign(code_.size(), 0);
@@ -201,73 +208,84 @@ class Planner {
       step.out = place_[s];
       const bool after = !slots_.in_main(s);
       switch (in.op) {
-        case Op::constant: case Op::pi: case Op::parameter: case Op::linear: case Op::scale: continue;
-        case Op::input:
-          if (slots_.inputs[s]->kind != ProgramInput::Kind::variable || slots_.inputs[s]->order == 0) continue;
-          step.act = Act::input;
-          step.a = {plan_.x[slots_.inputs[s]->variable], true};
-          step.index = static_cast<std::uint32_t>(slots_.inputs[s]->order);
-          break;
-        case Op::rate:
-          step.act = Act::input;
-          step.index = in.index;
-          break;
-        case Op::multiply: step.act = Act::multiply; break;
-        case Op::square: step.act = Act::square; break;
-        case Op::divide:
-          step.act = Act::divide;
-          step.c = {take(1), false};
-          reciprocal_[s] = step.c.at;
-          break;
-        case Op::power:
-          step.act = tape_.rationals[in.index] == Rational(1, 2) ? Act::square_root : Act::power;
-          step.value = tape_.rationals[in.index].get_d();
-          if (step.act == Act::power) {
-            step.c = weighted(slots_.same_as(in.a), after);
-            step.b = {take(1), false};
-            step.d = {take(plan_.stride), true};
-            step.e = {take(1), false};
-            derivative_[s] = step.e.at;
-            if (slots_.tainted[s]) again_ = true;
-          }
-          break;
-        case Op::function:
-          if (slots_.sine_of.count(s) || slots_.cosine_of.count(s)) {
-            const std::uint32_t sine = slots_.sine_of.count(s) ? slots_.sine_of.at(s) : s, cosine = slots_.cosine_of.at(sine);
-            if (std::max(sine, cosine) == s) continue;  // made with the first of the two
-            ANHOLON_ASSERT(code_[cosine].lead == code_[sine].lead && slots_.in_main(sine) == slots_.in_main(cosine));
-            step.act = Act::sine_cosine;
-            step.b = weighted(slots_.same_as(in.a), after);
-            step.out = place_[sine];
-            step.c = place_[cosine];
-            step.d = beyond_double(slots_.same_as(in.a));
-          } else {
-            step.act = Act::function;
-            step.c = weighted(slots_.same_as(in.a), after);
-          }
-          step.index = in.index;
-          break;
-        case Op::arctan2:
-          step.act = Act::arctan2;
-          step.c = at(in.first);
-          step.d = at(in.count);
-          if (!code_[in.a].constant) step.e = weighted(slots_.same_as(in.a), after);
-          if (!code_[in.b].constant) step.f = weighted(slots_.same_as(in.b), after);
-          break;
-        case Op::select:
-          step.act = Act::select;
-          step.c = at(in.first);
-          break;
-        case Op::lookup:
-          step.act = Act::lookup;
-          step.index = in.index;
-          break;
+      case Op::constant:
+      case Op::pi:
+      case Op::parameter:
+      case Op::linear:
+      case Op::scale:
+        continue;
+      case Op::input:
+        if (slots_.inputs[s]->kind != ProgramInput::Kind::variable || slots_.inputs[s]->order == 0) continue;
+        step.act = Act::input;
+        step.a = {plan_.x[slots_.inputs[s]->variable], true};
+        step.index = static_cast<std::uint32_t>(slots_.inputs[s]->order);
+        break;
+      case Op::rate:
+        step.act = Act::input;
+        step.index = in.index;
+        break;
+      case Op::multiply:
+        step.act = Act::multiply;
+        break;
+      case Op::square:
+        step.act = Act::square;
+        break;
+      case Op::divide:
+        step.act = Act::divide;
+        step.c = {take(1), false};
+        reciprocal_[s] = step.c.at;
+        break;
+      case Op::power:
+        step.act = tape_.rationals[in.index] == Rational(1, 2) ? Act::square_root : Act::power;
+        step.value = tape_.rationals[in.index].get_d();
+        if (step.act == Act::power) {
+          step.c = weighted(slots_.same_as(in.a), after);
+          step.b = {take(1), false};
+          step.d = {take(plan_.stride), true};
+          step.e = {take(1), false};
+          derivative_[s] = step.e.at;
+          if (slots_.tainted[s]) again_ = true;
+        }
+        break;
+      case Op::function:
+        if (slots_.sine_of.count(s) || slots_.cosine_of.count(s)) {
+          const std::uint32_t sine = slots_.sine_of.count(s) ? slots_.sine_of.at(s) : s,
+                              cosine = slots_.cosine_of.at(sine);
+          if (std::max(sine, cosine) == s) continue;  // made with the first of the two
+          ANHOLON_ASSERT(code_[cosine].lead == code_[sine].lead && slots_.in_main(sine) == slots_.in_main(cosine));
+          step.act = Act::sine_cosine;
+          step.b = weighted(slots_.same_as(in.a), after);
+          step.out = place_[sine];
+          step.c = place_[cosine];
+          step.d = beyond_double(slots_.same_as(in.a));
+        } else {
+          step.act = Act::function;
+          step.c = weighted(slots_.same_as(in.a), after);
+        }
+        step.index = in.index;
+        break;
+      case Op::arctan2:
+        step.act = Act::arctan2;
+        step.c = at(in.first);
+        step.d = at(in.count);
+        if (!code_[in.a].constant) step.e = weighted(slots_.same_as(in.a), after);
+        if (!code_[in.b].constant) step.f = weighted(slots_.same_as(in.b), after);
+        break;
+      case Op::select:
+        step.act = Act::select;
+        step.c = at(in.first);
+        break;
+      case Op::lookup:
+        step.act = Act::lookup;
+        step.index = in.index;
+        break;
       }
       if (in.op != Op::input) {
         const std::uint32_t a = slots_.same_as(in.a);
         step.a = place_[a];
         step.a_constant = code_[a].constant;
-        if (in.op == Op::multiply || in.op == Op::divide || in.op == Op::arctan2 || in.op == Op::select || step.act == Act::function) {
+        if (in.op == Op::multiply || in.op == Op::divide || in.op == Op::arctan2 || in.op == Op::select ||
+            step.act == Act::function) {
           const std::uint32_t b = slots_.same_as(in.b);
           step.b = place_[b];
           step.b_constant = code_[b].constant;
@@ -308,13 +326,15 @@ class Planner {
     return out;
   }
 
-  // Rows and columns beyond the unknowns: one for every slot that depends on them. The rows of the equations: root = right side.
+  // Rows and columns beyond the unknowns: one for every slot that depends on them. The rows of the equations: root =
+  // right side.
   void linearize() {
     const std::uint32_t n = static_cast<std::uint32_t>(p_.unknowns()), unit = coefficient({Rational(1), {}});
     column_.assign(code_.size(), kNone);
     plan_.rows = n;
     for (std::uint32_t s = 0; s < tape_.main_end; ++s)
-      if (slots_.live[s] && slots_.tainted[s] && code_[s].op != Op::input && code_[s].op != Op::rate) column_[s] = plan_.rows++;
+      if (slots_.live[s] && slots_.tainted[s] && code_[s].op != Op::input && code_[s].op != Op::rate)
+        column_[s] = plan_.rows++;
     const auto enter = [&](std::uint32_t s, std::uint32_t o, std::uint32_t from, double sign) {
       plan_.entries.push_back({column_[s], column(o), from, sign});
     };
@@ -328,53 +348,67 @@ class Planner {
         continue;
       }
       const std::uint32_t a = slots_.same_as(in.a), w = place_[s].at;
-      const std::uint32_t b = in.op == Op::multiply || in.op == Op::divide || in.op == Op::arctan2 || in.op == Op::select ? slots_.same_as(in.b) : a;
+      const std::uint32_t b =
+          in.op == Op::multiply || in.op == Op::divide || in.op == Op::arctan2 || in.op == Op::select
+              ? slots_.same_as(in.b)
+              : a;
       const bool by_a = slots_.unknown(a, in.lead), by_b = slots_.unknown(b, in.lead);
       switch (in.op) {
-        case Op::multiply:
-          if (by_a) enter(s, a, place_[b].at, -1);
-          if (by_b) enter(s, b, place_[a].at, -1);
-          break;
-        case Op::square: enter(s, a, partial(Partial::Kind::twice, place_[a].at, 0), -1); break;
-        case Op::divide: {
-          const std::uint32_t reciprocal = reciprocal_.at(s);
-          if (by_a) enter(s, a, reciprocal, -1);
-          if (by_b) enter(s, b, partial(Partial::Kind::quotient, w, reciprocal), 1);
-          break;
-        }
-        case Op::power:
-          if (tape_.rationals[in.index] == Rational(1, 2)) enter(s, a, partial(Partial::Kind::half_reciprocal, w, 0), -1);
-          else enter(s, a, derivative_.at(s), -1);
-          break;
-        case Op::function:
-          if (const auto cosine = slots_.cosine_of.find(s); cosine != slots_.cosine_of.end()) enter(s, a, place_[cosine->second].at, -1);
-          else if (const auto sine = slots_.sine_of.find(s); sine != slots_.sine_of.end()) enter(s, a, place_[sine->second].at, 1);
-          else enter(s, a, at(in.b).at, -1);
-          break;
-        case Op::arctan2:
-          if (by_a) enter(s, a, at(in.first).at, -1);
-          if (by_b) enter(s, b, at(in.count).at, -1);
-          break;
-        case Op::select:
-          if (by_a) enter(s, a, partial(Partial::Kind::chosen, at(in.first).at, 0), -1);
-          if (by_b) enter(s, b, partial(Partial::Kind::not_chosen, at(in.first).at, 0), -1);
-          break;
-        default: ANHOLON_ASSERT(!"no slot that depends on unknowns");
+      case Op::multiply:
+        if (by_a) enter(s, a, place_[b].at, -1);
+        if (by_b) enter(s, b, place_[a].at, -1);
+        break;
+      case Op::square:
+        enter(s, a, partial(Partial::Kind::twice, place_[a].at, 0), -1);
+        break;
+      case Op::divide: {
+        const std::uint32_t reciprocal = reciprocal_.at(s);
+        if (by_a) enter(s, a, reciprocal, -1);
+        if (by_b) enter(s, b, partial(Partial::Kind::quotient, w, reciprocal), 1);
+        break;
+      }
+      case Op::power:
+        if (tape_.rationals[in.index] == Rational(1, 2))
+          enter(s, a, partial(Partial::Kind::half_reciprocal, w, 0), -1);
+        else
+          enter(s, a, derivative_.at(s), -1);
+        break;
+      case Op::function:
+        if (const auto cosine = slots_.cosine_of.find(s); cosine != slots_.cosine_of.end())
+          enter(s, a, place_[cosine->second].at, -1);
+        else if (const auto sine = slots_.sine_of.find(s); sine != slots_.sine_of.end())
+          enter(s, a, place_[sine->second].at, 1);
+        else
+          enter(s, a, at(in.b).at, -1);
+        break;
+      case Op::arctan2:
+        if (by_a) enter(s, a, at(in.first).at, -1);
+        if (by_b) enter(s, b, at(in.count).at, -1);
+        break;
+      case Op::select:
+        if (by_a) enter(s, a, partial(Partial::Kind::chosen, at(in.first).at, 0), -1);
+        if (by_b) enter(s, b, partial(Partial::Kind::not_chosen, at(in.first).at, 0), -1);
+        break;
+      default:
+        ANHOLON_ASSERT(!"no slot that depends on unknowns");
       }
     }
     for (std::size_t i = 0; i < p_.unknowns(); ++i) {
       const std::uint32_t alias = tape_.roots[i], r = slots_.same_as(alias);
       plan_.roots.push_back(place_[r]);
       plan_.root_is_zero.push_back(code_[r].constant || (slots_.unknown(r, code_[alias].lead) && slots_.pure[r]));
-      if (!code_[r].constant && slots_.unknown(r, code_[alias].lead)) plan_.entries.push_back({static_cast<std::uint32_t>(i), column(r), unit, 1});
+      if (!code_[r].constant && slots_.unknown(r, code_[alias].lead))
+        plan_.entries.push_back({static_cast<std::uint32_t>(i), column(r), unit, 1});
     }
     std::vector<int> depth;
     for (std::uint32_t i = 0; i < p_.unknowns(); ++i) {
       plan_.sides.push_back(i);
       depth.push_back(depth_[slots_.same_as(tape_.roots[i])]);
     }
-    std::stable_sort(plan_.sides.begin(), plan_.sides.end(), [&](std::uint32_t i, std::uint32_t j) { return depth[i] < depth[j]; });
-    for (std::size_t i = p_.unknowns(); i < tape_.roots.size(); ++i) plan_.quadratures.push_back(place_[slots_.same_as(tape_.roots[i])]);
+    std::stable_sort(plan_.sides.begin(), plan_.sides.end(),
+                     [&](std::uint32_t i, std::uint32_t j) { return depth[i] < depth[j]; });
+    for (std::size_t i = p_.unknowns(); i < tape_.roots.size(); ++i)
+      plan_.quadratures.push_back(place_[slots_.same_as(tape_.roots[i])]);
     plan_.apart = p_.unknowns();
     if (judged_) {
       plan_.determinant = plan_.quadratures.back();
@@ -384,10 +418,12 @@ class Planner {
 
   void finish() {
     for (std::uint32_t s = 0; s < code_.size(); ++s)
-      if (slots_.live[s] && !code_[s].constant && code_[s].op == Op::power && tape_.rationals[code_[s].index].get_den() % 2 == 0)
+      if (slots_.live[s] && !code_[s].constant && code_[s].op == Op::power &&
+          tape_.rationals[code_[s].index].get_den() % 2 == 0)
         plan_.roots_of_even_powers.push_back({code_[s].a, at(code_[s].a)});
     for (std::uint32_t s = 0; s < tape_.main_end; ++s)
-      if (const auto function = slots_.live[s] && !code_[s].constant ? may_hide(tape_, code_[s]) : std::nullopt) plan_.hiding.push_back({*function, at(hidden_argument(code_[s])), at(s)});
+      if (const auto function = slots_.live[s] && !code_[s].constant ? may_hide(tape_, code_[s]) : std::nullopt)
+        plan_.hiding.push_back({*function, at(hidden_argument(code_[s])), at(s)});
     for (std::uint32_t s = 0; s < tape_.main_end; ++s) {
       if (!slots_.live[s] || !slots_.tainted[s] || !slots_.series[s]) continue;
       if (code_[s].op == Op::input) {
@@ -412,8 +448,8 @@ class Planner {
   std::map<std::string, std::uint32_t> coefficient_;
   std::map<std::uint32_t, std::uint32_t> reciprocal_, derivative_;  // of divisors, of powers
   std::map<std::pair<std::uint32_t, bool>, Place> weighted_;
-  std::map<std::uint32_t, Place> beyond_;                  // what slots are beyond their doubles, if that is known
-  std::map<std::uint32_t, Step> sums_;                     // of slots
+  std::map<std::uint32_t, Place> beyond_;                 // what slots are beyond their doubles, if that is known
+  std::map<std::uint32_t, Step> sums_;                    // of slots
   std::map<std::uint32_t, std::uint32_t> coordinate_at_;  // slots of coordinates by their places
   std::uint32_t zero_ = 0;
   bool again_ = false;  // the weighted series of a power depends on the unknowns of the stage
@@ -435,7 +471,8 @@ Plan plan(const Program& program, int stages, bool judged) {
   return Planner(program, stages, judged).run();
 }
 
-std::vector<double> coefficient_values(const Plan& plan, const Program& program, const std::vector<long double>& parameters) {
+std::vector<double> coefficient_values(const Plan& plan, const Program& program,
+                                       const std::vector<long double>& parameters) {
   const Machine<long double> machine(program.tape, 0, parameters);
   std::vector<double> values;
   for (const Coefficient& c : plan.coefficients) {
@@ -454,12 +491,31 @@ double Plan::work() const {
   double w = 0;
   for (const std::vector<Step>* list : {&stage, &after})
     for (const Step& s : *list) switch (s.act) {
-        case Act::linear: w += orders * s.count; break;
-        case Act::multiply: case Act::divide: case Act::function: w += convolution; break;
-        case Act::square: case Act::square_root: w += convolution / 2; break;
-        case Act::power: case Act::sine_cosine: case Act::arctan2: w += 2 * convolution; break;
-        case Act::input: case Act::weigh: case Act::select: case Act::lookup: w += orders; break;
-        case Act::beyond: break;  // once only
+      case Act::linear:
+        w += orders * s.count;
+        break;
+      case Act::multiply:
+      case Act::divide:
+      case Act::function:
+        w += convolution;
+        break;
+      case Act::square:
+      case Act::square_root:
+        w += convolution / 2;
+        break;
+      case Act::power:
+      case Act::sine_cosine:
+      case Act::arctan2:
+        w += 2 * convolution;
+        break;
+      case Act::input:
+      case Act::weigh:
+      case Act::select:
+      case Act::lookup:
+        w += orders;
+        break;
+      case Act::beyond:
+        break;  // once only
       }
   return w;
 }

@@ -1,12 +1,15 @@
-// The stepping program laid out for speed: what one Taylor expansion in doubles computes, step by step, over one arena of numbers.
+// The stepping program laid out for speed: what one Taylor expansion in doubles computes, step by step, over one arena
+// of numbers.
 //
-// A plan is made once per program and holds no numbers of a motion, so any number of kernels (one trajectory, or one in each SIMD lane)
-// and threads share it. Against the tape (tape/tape.h), which stays the reference:
+// A plan is made once per program and holds no numbers of a motion, so any number of kernels (one trajectory, or one in
+// each SIMD lane) and threads share it. Against the tape (tape/tape.h), which stays the reference:
 //   - sums of sums are one sum, factors constant in time are its coefficients, a sine and its cosine are one step;
 //   - only what a convolution needs keeps its series, all else is one number per stage;
 //   - what is zero in a sweep because the unknowns of the stage are not known yet is left out of the stages beyond 0;
-//   - J is never formed: the linearized tape itself, one row for every slot that depends on the unknowns, is eliminated by a sparse
-//     LU (sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
+//   - J is never formed: the linearized tape itself, one row for every slot that depends on the unknowns, is eliminated
+//   by a sparse
+//     LU (sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of
+//     elimination.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -26,14 +29,15 @@ struct Place {
 };
 
 enum class Act : std::uint8_t {
-  input,        // x^(k): a = series of x, index = k
-  linear,       // sum of coefficient * value
-  beyond,       // of such a sum, what it is beyond its double; the terms from `index` on: its coefficients, what its values are beyond their doubles
+  input,   // x^(k): a = series of x, index = k
+  linear,  // sum of coefficient * value
+  beyond,  // of such a sum, what it is beyond its double; the terms from `index` on: its coefficients, what its values
+           // are beyond their doubles
   multiply,     // a * b
   square,       // a^2
   divide,       // a / b; c: 1 / b_0
   square_root,  // sqrt(a)
-  power,        // a^value; b: 1 / a_0, c, d = weighted series of a and of itself, e: its derivative value * a_0^value / a_0
+  power,  // a^value; b: 1 / a_0, c, d = weighted series of a and of itself, e: its derivative value * a_0^value / a_0
   sine_cosine,  // out = sin a, c = cos a; b = weighted series of a; d: what a is beyond its double, where that is known
   function,     // elementary function `index` of a; b = its derivative, c = weighted series of a
   arctan2,      // atan2(a, b); c, d = derivatives by a and b; e, f = weighted series of a and b
@@ -74,7 +78,8 @@ struct Partial {
   std::uint32_t out, a, b;  // twice a; 1/(2a); a b; a >= 0; a < 0
 };
 
-// The linearized tape: `row` of it has `sign` * arena[`from`] in `column`. Unknowns come first, then the slots that depend on them.
+// The linearized tape: `row` of it has `sign` * arena[`from`] in `column`. Unknowns come first, then the slots that
+// depend on them.
 struct Entry {
   std::uint32_t row, column, from;
   double sign;
@@ -88,13 +93,14 @@ struct Completion {
   bool fresh;  // out is zero before (beyond stage 0)
 };
 
-// The state is kept in more digits than a double has. An angle that has turned often would lose those of its sine: `at` gets what number `index` of the
-// state (x_j^(k), k < d_j, one after the other) is beyond its double.
+// The state is kept in more digits than a double has. An angle that has turned often would lose those of its sine: `at`
+// gets what number `index` of the state (x_j^(k), k < d_j, one after the other) is beyond its double.
 struct Beyond {
   std::uint32_t at, index;
 };
 
-// A function of one argument that may be all but constant far from where it is not; not a sine, whose series show what it does.
+// A function of one argument that may be all but constant far from where it is not; not a sine, whose series show what
+// it does.
 struct Hiding {
   std::optional<Function> function;  // else a power
   double exponent = 0;
@@ -115,24 +121,25 @@ struct Plan {
   std::vector<Step> weigh_again;  // weighted series of what the unknowns of the stage change
   std::vector<Entry> entries;
   std::vector<Completion> completions;
-  std::vector<std::uint32_t> x;       // series of every unknown
-  std::uint32_t time = 0;             // series of t
-  std::vector<Place> roots;           // of the equations; the right side of row i is that of root i
-  std::vector<char> root_is_zero;     // beyond stage 0, before the unknowns of the stage are known
-  std::vector<std::uint32_t> sides;   // roots as they become known in a stage
+  std::vector<std::uint32_t> x;      // series of every unknown
+  std::uint32_t time = 0;            // series of t
+  std::vector<Place> roots;          // of the equations; the right side of row i is that of root i
+  std::vector<char> root_is_zero;    // beyond stage 0, before the unknowns of the stage are known
+  std::vector<std::uint32_t> sides;  // roots as they become known in a stage
   std::vector<Place> quadratures;
   std::vector<Beyond> beyond_double;  // of the angles of sines
-  std::vector<std::pair<std::uint32_t, Place>> roots_of_even_powers;  // slot of the tape of what roots are taken of: they may pass zero
+  std::vector<std::pair<std::uint32_t, Place>>
+      roots_of_even_powers;  // slot of the tape of what roots are taken of: they may pass zero
   struct HidingSlot {
     Hiding function;
     Place argument, value;
   };
   std::vector<HidingSlot> hiding;
-  std::uint32_t rows = 0;             // of the linearized tape
+  std::uint32_t rows = 0;  // of the linearized tape
   int largest_lead = 0, largest_d = 0;
   std::vector<int> c, d;
-  std::size_t apart = 0;              // the unknowns from here on are measured against their own size when a step is chosen
-  std::optional<Place> determinant;   // to be judged with the pivots
+  std::size_t apart = 0;  // the unknowns from here on are measured against their own size when a step is chosen
+  std::optional<Place> determinant;  // to be judged with the pivots
 
   // For choices of representation: multiplications and additions of one expansion (without the elimination).
   double work() const;
@@ -145,6 +152,7 @@ std::string no_plan(const Program& program);
 Plan plan(const Program& program, int stages, bool judged = false);
 
 // The coefficients' values; the slots' in long double, rounded once.
-std::vector<double> coefficient_values(const Plan& plan, const Program& program, const std::vector<long double>& parameters);
+std::vector<double> coefficient_values(const Plan& plan, const Program& program,
+                                       const std::vector<long double>& parameters);
 
 }  // namespace anholon

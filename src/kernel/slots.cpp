@@ -9,7 +9,9 @@ namespace {
 // A sum takes in the sums it is made of up to so many terms.
 constexpr std::size_t kLongestSum = 48;
 
-bool is(const Instruction& in, Function f) { return in.op == Op::function && in.index == static_cast<std::uint32_t>(f); }
+bool is(const Instruction& in, Function f) {
+  return in.op == Op::function && in.index == static_cast<std::uint32_t>(f);
+}
 
 }  // namespace
 
@@ -26,7 +28,8 @@ Slots::Slots(const Program& program) : tape(program.tape), code(tape.code), p_(p
 }
 
 std::uint32_t Slots::same_as(std::uint32_t s) const {
-  while (code[s].op == Op::linear && code[s].count == 1 && tape.rationals[tape.linear_terms[code[s].first].coefficient] == 1)
+  while (code[s].op == Op::linear && code[s].count == 1 &&
+         tape.rationals[tape.linear_terms[code[s].first].coefficient] == 1)
     s = tape.linear_terms[code[s].first].slot;
   return s;
 }
@@ -45,18 +48,35 @@ std::vector<std::uint32_t> Slots::operands(std::uint32_t s) const {
   const Instruction& in = code[s];
   std::vector<std::uint32_t> r;
   switch (in.op) {
-    case Op::constant: case Op::pi: case Op::input: case Op::parameter: break;
-    case Op::linear:
-      for (std::uint32_t k = in.first; k < in.first + in.count; ++k) r.push_back(tape.linear_terms[k].slot);
-      break;
-    case Op::multiply: case Op::scale: case Op::divide: r = {in.a, in.b}; break;
-    case Op::square: case Op::power: case Op::lookup: case Op::rate: r = {in.a}; break;
-    case Op::function:
-      r = {in.a};
-      if (!cosine_of.count(s) && !sine_of.count(s)) r.push_back(in.b);
-      break;
-    case Op::arctan2: r = {in.a, in.b, in.first, in.count}; break;
-    case Op::select: r = {in.a, in.b, in.first}; break;
+  case Op::constant:
+  case Op::pi:
+  case Op::input:
+  case Op::parameter:
+    break;
+  case Op::linear:
+    for (std::uint32_t k = in.first; k < in.first + in.count; ++k) r.push_back(tape.linear_terms[k].slot);
+    break;
+  case Op::multiply:
+  case Op::scale:
+  case Op::divide:
+    r = {in.a, in.b};
+    break;
+  case Op::square:
+  case Op::power:
+  case Op::lookup:
+  case Op::rate:
+    r = {in.a};
+    break;
+  case Op::function:
+    r = {in.a};
+    if (!cosine_of.count(s) && !sine_of.count(s)) r.push_back(in.b);
+    break;
+  case Op::arctan2:
+    r = {in.a, in.b, in.first, in.count};
+    break;
+  case Op::select:
+    r = {in.a, in.b, in.first};
+    break;
   }
   for (std::uint32_t& x : r) x = same_as(x);
   return r;
@@ -96,23 +116,29 @@ void Slots::gather_sums() {
     if (!sum_like(s)) continue;
     const auto add = [&](Coefficient c, std::uint32_t slot) {
       slot = same_as(slot);
-      if (code[slot].constant) sums[s].push_back({product(c, {Rational(1), {slot}}), kNone});
-      else sums[s].push_back({std::move(c), slot});
+      if (code[slot].constant)
+        sums[s].push_back({product(c, {Rational(1), {slot}}), kNone});
+      else
+        sums[s].push_back({std::move(c), slot});
     };
     if (in.op == Op::scale) {
       add({Rational(1), {in.a}}, in.b);
     } else if (in.op == Op::divide) {
       add({Rational(1), {in.b | kReciprocal}}, in.a);
     } else {
-      for (std::uint32_t k = in.first; k < in.first + in.count; ++k) add({tape.rationals[tape.linear_terms[k].coefficient], {}}, tape.linear_terms[k].slot);
+      for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+        add({tape.rationals[tape.linear_terms[k].coefficient], {}}, tape.linear_terms[k].slot);
     }
   }
   for (std::uint32_t r : tape.roots) ++uses_[same_as(r)];
 }
 
-static bool same_up_to_sign(const Coefficient& a, const Coefficient& b, int sign) { return a.slots == b.slots && a.rational == sign * b.rational; }
+static bool same_up_to_sign(const Coefficient& a, const Coefficient& b, int sign) {
+  return a.slots == b.slots && a.rational == sign * b.rational;
+}
 
-// Where all terms of `part` are in `whole`, with the same sign or the opposite one: which. Else 0. Terms are ordered by their slots.
+// Where all terms of `part` are in `whole`, with the same sign or the opposite one: which. Else 0. Terms are ordered by
+// their slots.
 static int contained(const std::vector<Slots::Summand>& part, const std::vector<Slots::Summand>& whole) {
   int sign = 0;
   std::size_t at = 0;
@@ -125,14 +151,16 @@ static int contained(const std::vector<Slots::Summand>& part, const std::vector<
   return sign;
 }
 
-// A sum takes over what an earlier one has added already, the longest first: along a chain of links every sum is the last one and a term.
+// A sum takes over what an earlier one has added already, the longest first: along a chain of links every sum is the
+// last one and a term.
 void Slots::share_sums() {
   std::map<std::uint32_t, std::vector<std::uint32_t>> sums_with;  // by their first term
   for (std::uint32_t s = 0; s < code.size(); ++s) {
     std::vector<Slots::Summand>& terms = sums[s];
     const auto unfit = [](const Slots::Summand& t) { return t.slot == kNone; };
     if (terms.size() < 2 || std::any_of(terms.begin(), terms.end(), unfit)) continue;
-    std::sort(terms.begin(), terms.end(), [](const Slots::Summand& a, const Slots::Summand& b) { return a.slot < b.slot; });
+    std::sort(terms.begin(), terms.end(),
+              [](const Slots::Summand& a, const Slots::Summand& b) { return a.slot < b.slot; });
     const auto twice = [](const Slots::Summand& a, const Slots::Summand& b) { return a.slot == b.slot; };
     if (std::adjacent_find(terms.begin(), terms.end(), twice) != terms.end()) continue;
     for (bool again = true; again;) {
@@ -141,18 +169,21 @@ void Slots::share_sums() {
       for (const Slots::Summand& t : terms)
         if (const auto with = sums_with.find(t.slot); with != sums_with.end())
           for (const std::uint32_t r : with->second)
-            if (code[r].lead == code[s].lead && in_main(r) == in_main(s) && sums[r].size() < terms.size() && (longest == kNone || sums[r].size() > sums[longest].size()) &&
-                contained(sums[r], terms) != 0)
+            if (code[r].lead == code[s].lead && in_main(r) == in_main(s) && sums[r].size() < terms.size() &&
+                (longest == kNone || sums[r].size() > sums[longest].size()) && contained(sums[r], terms) != 0)
               longest = r;
       if (longest == kNone) break;
       const Rational sign(contained(sums[longest], terms));
       for (const Slots::Summand& t : sums[longest]) {
         --uses_[t.slot];
-        terms.erase(std::find_if(terms.begin(), terms.end(), [&](const Slots::Summand& u) { return u.slot == t.slot; }));
+        terms.erase(
+            std::find_if(terms.begin(), terms.end(), [&](const Slots::Summand& u) { return u.slot == t.slot; }));
       }
       const Slots::Summand taken{{sign, {}}, longest};
       ++uses_[longest];
-      terms.insert(std::upper_bound(terms.begin(), terms.end(), taken, [](const Slots::Summand& a, const Slots::Summand& b) { return a.slot < b.slot; }), taken);
+      terms.insert(std::upper_bound(terms.begin(), terms.end(), taken,
+                                    [](const Slots::Summand& a, const Slots::Summand& b) { return a.slot < b.slot; }),
+                   taken);
       again = true;
     }
     if (terms.size() > 1) sums_with[terms.front().slot].push_back(s);
@@ -187,8 +218,9 @@ void Slots::inline_sums() {
     if (!live[s] || code[s].constant || !sum_like(s)) continue;
     std::vector<Slots::Summand> all;
     for (Slots::Summand& t : sums[s]) {
-      const bool inlined = t.slot != kNone && sum_like(t.slot) && uses_[t.slot] == 1 && !series[t.slot] && code[t.slot].lead == code[s].lead &&
-                           in_main(t.slot) == in_main(s) && sums[t.slot].size() + sums[s].size() + all.size() <= kLongestSum;
+      const bool inlined = t.slot != kNone && sum_like(t.slot) && uses_[t.slot] == 1 && !series[t.slot] &&
+                           code[t.slot].lead == code[s].lead && in_main(t.slot) == in_main(s) &&
+                           sums[t.slot].size() + sums[s].size() + all.size() <= kLongestSum;
       if (!inlined) {
         all.push_back(t);
         continue;

@@ -1,5 +1,5 @@
-// What a plan makes of the slots of a tape before it lays them out: which are needed, which are sums and of what, which keep their series, and which
-// depend on the unknowns of a stage.
+// What a plan makes of the slots of a tape before it lays them out: which are needed, which are sums and of what, which
+// keep their series, and which depend on the unknowns of a stage.
 #pragma once
 #include <map>
 
@@ -20,13 +20,16 @@ class Slots {
 
   const Tape& tape;
   const std::vector<Instruction>& code;
-  std::vector<const ProgramInput*> inputs;  // null for other slots
+  std::vector<const ProgramInput*> inputs;                    // null for other slots
   std::map<std::uint32_t, std::uint32_t> cosine_of, sine_of;  // of a sine, a cosine of the same argument; and back
   std::vector<bool> live, series;
   std::vector<bool> tainted, pure;  // the newest coefficient depends on the unknowns of the stage; is zero without them
   std::vector<std::vector<Summand>> sums;
 
-  bool sum_like(std::uint32_t s) const { return code[s].op == Op::linear || code[s].op == Op::scale || (code[s].op == Op::divide && code[code[s].b].constant); }
+  bool sum_like(std::uint32_t s) const {
+    return code[s].op == Op::linear || code[s].op == Op::scale ||
+           (code[s].op == Op::divide && code[code[s].b].constant);
+  }
   bool in_main(std::uint32_t s) const { return s < tape.main_end; }
   bool unknown(std::uint32_t s, std::uint8_t lead) const { return tainted[s] && code[s].lead == lead; }
   // The slot whose value this one repeats.

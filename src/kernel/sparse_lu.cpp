@@ -20,7 +20,8 @@ struct Order {
   enum class Tie { largest, first_row, last_column } tie;
 };
 constexpr Order kUsual{6, Order::Tie::largest};
-// Where that fills in more for each row, on matrices that are not large, others are tried as well: no rule was found that knows before.
+// Where that fills in more for each row, on matrices that are not large, others are tried as well: no rule was found
+// that knows before.
 constexpr std::size_t kMuchFill = 5, kLarge = 1000;
 constexpr int kAll = 2 * static_cast<int>(kLarge);
 constexpr Order kOthers[] = {{kAll, Order::Tie::first_row}, {kAll, Order::Tie::last_column}};
@@ -29,7 +30,8 @@ using Values = std::array<double, kSamples>;
 
 class Matrix {
  public:
-  Matrix(std::uint32_t n, std::size_t samples, const Order& order, SparseLu& out) : n_(n), samples_(samples), order_(order), out_(out), rows_(n), columns_(n), largest_(n) {}
+  Matrix(std::uint32_t n, std::size_t samples, const Order& order, SparseLu& out)
+      : n_(n), samples_(samples), order_(order), out_(out), rows_(n), columns_(n), largest_(n) {}
 
   void add(const SampledEntry& e) {
     const auto [it, fresh] = rows_[e.row].try_emplace(e.column, static_cast<std::uint32_t>(entries_.size()));
@@ -52,12 +54,14 @@ class Matrix {
       for (int round = 0; round < kScalings; ++round) {
         std::vector<double> most(n_, 0);
         for (std::uint32_t i = 0; i < n_; ++i)
-          for (const auto& [j, e] : rows_[i]) most[i] = std::max(most[i], std::abs(entries_[e].value[k]) * row_scale_[i][k] * column_scale_[j][k]);
+          for (const auto& [j, e] : rows_[i])
+            most[i] = std::max(most[i], std::abs(entries_[e].value[k]) * row_scale_[i][k] * column_scale_[j][k]);
         for (std::uint32_t i = 0; i < n_; ++i)
           if (most[i] > 0) row_scale_[i][k] *= std::exp2(-std::round(std::log2(most[i])));
         most.assign(n_, 0);
         for (std::uint32_t i = 0; i < n_; ++i)
-          for (const auto& [j, e] : rows_[i]) most[j] = std::max(most[j], std::abs(entries_[e].value[k]) * row_scale_[i][k] * column_scale_[j][k]);
+          for (const auto& [j, e] : rows_[i])
+            most[j] = std::max(most[j], std::abs(entries_[e].value[k]) * row_scale_[i][k] * column_scale_[j][k]);
         for (std::uint32_t j = 0; j < n_; ++j)
           if (most[j] > 0) column_scale_[j][k] *= std::exp2(-std::round(std::log2(most[j])));
       }
@@ -65,7 +69,8 @@ class Matrix {
   }
 
   bool run() {
-    for (std::uint32_t i = 0; i < n_; ++i) short_rows_.insert({rows_[i].size(), i}), short_columns_.insert({columns_[i].size(), i});
+    for (std::uint32_t i = 0; i < n_; ++i)
+      short_rows_.insert({rows_[i].size(), i}), short_columns_.insert({columns_[i].size(), i});
     for (std::int64_t k = 0; k < n_; ++k) {
       best_ = {};
       int looked = 0;
@@ -141,9 +146,12 @@ class Matrix {
 
   bool wins(std::uint32_t i, std::uint32_t j, double size) const {
     switch (order_.tie) {
-      case Order::Tie::largest: return size > best_.size;
-      case Order::Tie::first_row: return i < best_.row;
-      case Order::Tie::last_column: return j > best_.column;
+    case Order::Tie::largest:
+      return size > best_.size;
+    case Order::Tie::first_row:
+      return i < best_.row;
+    case Order::Tie::last_column:
+      return j > best_.column;
     }
     return false;
   }
@@ -193,7 +201,8 @@ class Matrix {
           columns_[other].insert(r);
           resize_column(other, column_from);
         }
-        for (std::size_t k = 0; k < samples_; ++k) entries_[it->second].value[k] -= entries_[l].value[k] * entries_[u].value[k];
+        for (std::size_t k = 0; k < samples_; ++k)
+          entries_[it->second].value[k] -= entries_[l].value[k] * entries_[u].value[k];
         entries_[it->second].exact = false;
         out_.update_list.push_back({it->second, l, u});
       }
@@ -223,7 +232,8 @@ class Matrix {
 
 std::size_t operations(const SparseElimination& e) { return e.lu.update_list.size() + e.lu.scaled_entries.size(); }
 
-SparseElimination eliminate_in(const Order& order, std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples) {
+SparseElimination eliminate_in(const Order& order, std::uint32_t rows, std::span<const SampledEntry> entries,
+                               std::size_t samples) {
   SparseElimination e;
   Matrix m(rows, samples, order, e.lu);
   for (const SampledEntry& entry : entries) m.add(entry);
@@ -239,7 +249,9 @@ SparseElimination eliminate_sparse(std::uint32_t rows, std::span<const SampledEn
   SparseElimination best = eliminate_in(kUsual, rows, entries, samples);
   if (rows <= kLarge && operations(best) > kMuchFill * rows)
     for (const Order& order : kOthers)
-      if (SparseElimination e = eliminate_in(order, rows, entries, samples); !e.lu.pivots.empty() && operations(e) < operations(best)) best = std::move(e);
+      if (SparseElimination e = eliminate_in(order, rows, entries, samples);
+          !e.lu.pivots.empty() && operations(e) < operations(best))
+        best = std::move(e);
   return best;
 }
 
@@ -269,7 +281,8 @@ SparseLu solver(const SparseElimination& e, std::uint32_t sides, const std::vect
   for (std::size_t k = out.pivots.size(); k-- > 0;) {
     const SparseLu::Pivot& p = out.pivots[k];
     if (!kept[k]) continue;
-    SparseLu::Backward b{p.column, p.row, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(out.terms.size()), 0, !side[p.row]};
+    SparseLu::Backward b{
+        p.column, p.row, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(out.terms.size()), 0, !side[p.row]};
     for (const auto& [column, entry] : e.upper[k]) out.terms.push_back({entry, column});
     b.count = static_cast<std::uint32_t>(out.terms.size()) - b.first;
     out.backward.push_back(b);
@@ -299,7 +312,8 @@ std::vector<Known> known_factors(const SparseLu& e, std::span<const SampledEntry
     sum = entries[i].exact && sum ? Known(*sum + entries[i].value[0]) : std::nullopt;
   }
   for (const SparseLu::Pivot& p : e.pivots) {
-    for (std::uint32_t i = p.first_scaled; i < p.first_scaled + p.scaled; ++i) lu[e.scaled_entries[i]] = product(lu[e.scaled_entries[i]], reciprocal(p));
+    for (std::uint32_t i = p.first_scaled; i < p.first_scaled + p.scaled; ++i)
+      lu[e.scaled_entries[i]] = product(lu[e.scaled_entries[i]], reciprocal(p));
     for (std::uint32_t i = p.first_update; i < p.first_update + p.updates; ++i) {
       const SparseLu::Update& u = e.update_list[i];
       lu[u.to] = difference(lu[u.to], product(lu[u.l], lu[u.u]));
@@ -309,13 +323,15 @@ std::vector<Known> known_factors(const SparseLu& e, std::span<const SampledEntry
 }
 
 // The solution for a side of one.
-std::vector<Known> known_solution(const SparseLu& e, const std::vector<Known>& lu, std::uint32_t side, std::size_t rows) {
+std::vector<Known> known_solution(const SparseLu& e, const std::vector<Known>& lu, std::uint32_t side,
+                                  std::size_t rows) {
   std::vector<Known> rhs(rows, 0.0), y(rows, 0.0);
   rhs[side] = 1.0;
   for (const SparseLu::Forward& f : e.forward) rhs[f.to] = difference(rhs[f.to], product(lu[f.entry], rhs[f.from]));
   for (const SparseLu::Backward& b : e.backward) {
     Known s = rhs[b.row];
-    for (std::uint32_t i = b.first; i < b.first + b.count; ++i) s = difference(s, product(lu[e.terms[i].entry], y[e.terms[i].column]));
+    for (std::uint32_t i = b.first; i < b.first + b.count; ++i)
+      s = difference(s, product(lu[e.terms[i].entry], y[e.terms[i].column]));
     y[b.column] = product(s, reciprocal(e.pivots[b.pivot]));
   }
   return y;
@@ -323,7 +339,8 @@ std::vector<Known> known_solution(const SparseLu& e, const std::vector<Known>& l
 
 }  // namespace
 
-bool invert(SparseLu& e, std::span<const SampledEntry> entries, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most) {
+bool invert(SparseLu& e, std::span<const SampledEntry> entries, const std::vector<std::uint32_t>& sides,
+            const std::vector<bool>& needed, std::size_t most) {
   std::vector<std::vector<std::uint32_t>> met(needed.size());
   std::size_t count = 0;
   for (const std::uint32_t side : sides) {
@@ -346,22 +363,29 @@ bool invert(SparseLu& e, std::span<const SampledEntry> entries, const std::vecto
     const std::vector<Known> y = known_solution(e, lu, side, needed.size());
     for (std::uint32_t column = 0; column < met.size(); ++column)
       if (std::find(met[column].begin(), met[column].end(), side) != met[column].end())
-        e.influences.push_back({column, side, met[column].size() > 1 ? 0 : y[column] == 1.0 ? 1 : y[column] == -1.0 ? -1 : 0});
+        e.influences.push_back({column, side,
+                                met[column].size() > 1 ? 0
+                                : y[column] == 1.0     ? 1
+                                : y[column] == -1.0    ? -1
+                                                       : 0});
   }
   return true;
 }
 
-void leave_to_own_rows(SparseLu& e, std::uint32_t first, std::span<const SampledEntry> entries, const std::vector<bool>& needed) {
+void leave_to_own_rows(SparseLu& e, std::uint32_t first, std::span<const SampledEntry> entries,
+                       const std::vector<bool>& needed) {
   std::vector<std::vector<SparseLu::Term>> rows(needed.size());
   for (std::uint32_t i = 0; i < entries.size(); ++i)
-    if (entries[i].row >= first && entries[i].column != entries[i].row) rows[entries[i].row].push_back({i, entries[i].column});
+    if (entries[i].row >= first && entries[i].column != entries[i].row)
+      rows[entries[i].row].push_back({i, entries[i].column});
   std::vector<bool> wanted = needed;
   for (std::uint32_t column = static_cast<std::uint32_t>(needed.size()); column-- > first;)
     if (wanted[column])
       for (const SparseLu::Term& t : rows[column]) wanted[t.column] = true;
   for (std::uint32_t column = first; column < needed.size(); ++column) {
     if (!wanted[column]) continue;
-    e.own.push_back({column, static_cast<std::uint32_t>(e.own_terms.size()), static_cast<std::uint32_t>(rows[column].size())});
+    e.own.push_back(
+        {column, static_cast<std::uint32_t>(e.own_terms.size()), static_cast<std::uint32_t>(rows[column].size())});
     e.own_terms.insert(e.own_terms.end(), rows[column].begin(), rows[column].end());
   }
 }

@@ -1,7 +1,8 @@
 // A sparse LU with a fixed order of pivots, found once and used at every step.
 //
-// The order is Markowitz's (least fill first) among pivots that are not small in their row, at any of the sample points given; exact 1 and -1 are
-// preferred, as they need no division. What comes out are lists of operations on the entries: no search, no branch at run time.
+// The order is Markowitz's (least fill first) among pivots that are not small in their row, at any of the sample points
+// given; exact 1 and -1 are preferred, as they need no division. What comes out are lists of operations on the entries:
+// no search, no branch at run time.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -29,9 +30,9 @@ struct SparseLu {
   struct Pivot {
     std::uint32_t row, column, entry;
     bool one = false, minus_one = false;
-    std::uint32_t first_scaled = 0, scaled = 0;    // into `scaled_entries`: multipliers of this pivot
-    std::uint32_t first_update = 0, updates = 0;   // into `update_list`
-    std::array<double, kSamples> value{};          // at the samples
+    std::uint32_t first_scaled = 0, scaled = 0;   // into `scaled_entries`: multipliers of this pivot
+    std::uint32_t first_update = 0, updates = 0;  // into `update_list`
+    std::array<double, kSamples> value{};         // at the samples
   };
   struct Update {
     std::uint32_t to, l, u;  // entry `to` -= l u
@@ -57,21 +58,26 @@ struct SparseLu {
   std::vector<Backward> backward;
   std::vector<Term> terms;
 
-  // Of a system that is not large, the inverse in place of the two: solution[column] = sum of influence * side, side by side, what becomes known last
-  // last. It is made of solutions for sides of one. `sign`: the solution is that side, always, or its opposite (1, -1); else 0.
+  // Of a system that is not large, the inverse in place of the two: solution[column] = sum of influence * side, side by
+  // side, what becomes known last last. It is made of solutions for sides of one. `sign`: the solution is that side,
+  // always, or its opposite (1, -1); else 0.
   struct Influence {
     std::uint32_t column, side;
     int sign = 0;
   };
   std::vector<Influence> influences;
-  // Columns that are left to their own rows, once those before are solved: solution[column] = -sum given entry * solution[other].
+  // Columns that are left to their own rows, once those before are solved: solution[column] = -sum given entry *
+  // solution[other].
   struct Own {
     std::uint32_t column, first, count;  // into `own_terms`
   };
   std::vector<Own> own;
   std::vector<Term> own_terms;  // of entries as they are given
 
-  double work() const { return static_cast<double>(influences.empty() ? forward.size() + terms.size() + backward.size() : influences.size() + own_terms.size()); }
+  double work() const {
+    return static_cast<double>(influences.empty() ? forward.size() + terms.size() + backward.size()
+                                                  : influences.size() + own_terms.size());
+  }
 };
 
 // The pivots with what they update, and the rows they leave: column and entry.
@@ -83,14 +89,19 @@ struct SparseElimination {
 // No pivots if the matrix is singular at a sample.
 SparseElimination eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples);
 
-// What solves by it. `sides`: rows 0..sides-1 have a right side, all others zero. `needed`: the columns whose solution is asked for.
+// What solves by it. `sides`: rows 0..sides-1 have a right side, all others zero. `needed`: the columns whose solution
+// is asked for.
 SparseLu solver(const SparseElimination& elimination, std::uint32_t sides, const std::vector<bool>& needed);
 
-// The inverse for the columns needed, if it has no more than `most` entries: a solution then waits for its last side only, not for a chain of
-// eliminations. `sides`: in the order in which they become known; `entries`: those that were eliminated.
-bool invert(SparseLu& elimination, std::span<const SampledEntry> entries, const std::vector<std::uint32_t>& sides, const std::vector<bool>& needed, std::size_t most);
+// The inverse for the columns needed, if it has no more than `most` entries: a solution then waits for its last side
+// only, not for a chain of eliminations. `sides`: in the order in which they become known; `entries`: those that were
+// eliminated.
+bool invert(SparseLu& elimination, std::span<const SampledEntry> entries, const std::vector<std::uint32_t>& sides,
+            const std::vector<bool>& needed, std::size_t most);
 
-// Of all columns from `first` on, each with 1 on its diagonal and no column after it in its row, those that are needed are left to their own rows.
-void leave_to_own_rows(SparseLu& elimination, std::uint32_t first, std::span<const SampledEntry> entries, const std::vector<bool>& needed);
+// Of all columns from `first` on, each with 1 on its diagonal and no column after it in its row, those that are needed
+// are left to their own rows.
+void leave_to_own_rows(SparseLu& elimination, std::uint32_t first, std::span<const SampledEntry> entries,
+                       const std::vector<bool>& needed);
 
 }  // namespace anholon

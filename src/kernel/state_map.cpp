@@ -5,12 +5,14 @@
 namespace anholon {
 
 static Tape compiled(const Column& es, const QuasiVelocities& q) {
-  return compile(es, std::vector<int>(es.size(), 0), false, q.system.rates, static_cast<std::uint32_t>(q.system.coordinates));
+  return compile(es, std::vector<int>(es.size(), 0), false, q.system.rates,
+                 static_cast<std::uint32_t>(q.system.coordinates));
 }
 
 StateMap::StateMap(const QuasiVelocities& q)
-    : coordinates_(q.system.coordinates), states_(q.system.size() - q.system.coordinates - q.count), velocities_(q.count), to_own_(compiled(q.of_state, q)),
-      to_motion_(compiled(q.velocities, q)), of_own_(inputs(to_own_, q)), of_motion_(inputs(to_motion_, q)) {
+    : coordinates_(q.system.coordinates), states_(q.system.size() - q.system.coordinates - q.count),
+      velocities_(q.count), to_own_(compiled(q.of_state, q)), to_motion_(compiled(q.velocities, q)),
+      of_own_(inputs(to_own_, q)), of_motion_(inputs(to_motion_, q)) {
   // Series that velocities are made of are in both tapes; p are none of what p are made of.
   std::erase_if(of_own_, [&](const Input& in) { return in.from == From::other && in.index >= states_; });
 }
@@ -20,7 +22,11 @@ std::vector<StateMap::Input> StateMap::inputs(const Tape& tape, const QuasiVeloc
   for (const anholon::Input& in : tape.inputs) {
     const Node& n = q.system.model->graph->node(in.symbol);
     ANHOLON_ASSERT(n.kind == Kind::time || n.kind == Kind::state || (n.kind == Kind::jet && n.order <= 1));
-    list.push_back({n.kind == Kind::time ? From::time : n.kind == Kind::state ? From::other : n.order == 0 ? From::coordinate : From::velocity, in.slot, n.index});
+    list.push_back({n.kind == Kind::time    ? From::time
+                    : n.kind == Kind::state ? From::other
+                    : n.order == 0          ? From::coordinate
+                                            : From::velocity,
+                    in.slot, n.index});
   }
   return list;
 }
@@ -30,7 +36,9 @@ void StateReader::own(long double t, const Numbers& state, Numbers& own) {
   ANHOLON_ASSERT(state.size() == 2 * n + map_->states_);
   using From = StateMap::From;
   for (const StateMap::Input& in : map_->of_own_) {
-    to_own_.series(in.slot)[0] = in.from == From::time ? t : in.from == From::other ? state[2 * n + in.index] : state[2 * in.index + (in.from == From::velocity)];
+    to_own_.series(in.slot)[0] = in.from == From::time    ? t
+                                 : in.from == From::other ? state[2 * n + in.index]
+                                                          : state[2 * in.index + (in.from == From::velocity)];
   }
   to_own_.evaluate();
   own.resize(map_->own_size());

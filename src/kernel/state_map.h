@@ -1,5 +1,6 @@
-// A kernel may have other unknowns than the motion it serves: coordinates, the model's states and quasi-velocities p, all of first order
-// (system/quasi_velocities.h), where the motion's state is q, q', z. From one to the other, in the width of the motion's state.
+// A kernel may have other unknowns than the motion it serves: coordinates, the model's states and quasi-velocities p,
+// all of first order (system/quasi_velocities.h), where the motion's state is q, q', z. From one to the other, in the
+// width of the motion's state.
 #pragma once
 #include <optional>
 
@@ -40,7 +41,8 @@ class StateMap {
 class StateReader {
  public:
   using Numbers = std::vector<long double>;
-  StateReader(const StateMap& map, const Numbers& parameters) : map_(&map), to_own_(map.to_own_, 0, parameters), to_motion_(map.to_motion_, 0, parameters) {}
+  StateReader(const StateMap& map, const Numbers& parameters)
+      : map_(&map), to_own_(map.to_own_, 0, parameters), to_motion_(map.to_motion_, 0, parameters) {}
   // State of the motion: q_a, q_a', one after the other, then z. Of the kernel: q, z, p.
   void own(long double t, const Numbers& state, Numbers& own);
   void motion(long double t, const Numbers& own, Numbers& state);

@@ -1,4 +1,5 @@
-// The arithmetic of a kernel over one lane type: what makes a step of an expansion. How far it reaches, and the state at its end.
+// The arithmetic of a kernel over one lane type: what makes a step of an expansion. How far it reaches, and the state
+// at its end.
 #pragma once
 #include <algorithm>
 
@@ -15,9 +16,11 @@ class SweepSteps : public Arithmetic {
   using B = typename T::B;
 
  public:
-  SweepSteps(const KernelTables& tables, double* arena) : k_(tables), p_(*tables.plan), w_(reinterpret_cast<V*>(arena)) {}
+  SweepSteps(const KernelTables& tables, double* arena)
+      : k_(tables), p_(*tables.plan), w_(reinterpret_cast<V*>(arena)) {}
 
-  // Sums of every fourth term, from the highest on, so that none waits for a power, and four orders are one vector elsewhere.
+  // Sums of every fourth term, from the highest on, so that none waits for a power, and four orders are one vector
+  // elsewhere.
   void advance() override {
     weigh();
     V* out = w_ + k_.increments;
@@ -27,7 +30,8 @@ class SweepSteps : public Arithmetic {
         const V* weight = w_ + k_.weight(k, 0);
         V s[kBlock];
         std::fill(s, s + kBlock, T::broadcast(0));
-        for (int i = p_.stages + p_.d[j] - k; i >= 1; --i) s[(i - 1) % kBlock] = T::fma(x[k + i], weight[i], s[(i - 1) % kBlock]);
+        for (int i = p_.stages + p_.d[j] - k; i >= 1; --i)
+          s[(i - 1) % kBlock] = T::fma(x[k + i], weight[i], s[(i - 1) % kBlock]);
         *out++ = s[0] + (s[1] + (s[2] + s[3]));
       }
     }
@@ -51,7 +55,10 @@ class SweepSteps : public Arithmetic {
     V* to = w_ + k_.projected;
     std::copy_n(high + k_.state_size, k_.state_size, to + k_.state_size);
     for (std::size_t j = 0; j < p_.x.size(); ++j)
-      for (int k = 0; k < p_.d[j]; ++k, ++high) *to++ = moved ? V(w_[p_.x[j] + static_cast<std::uint32_t>(k)] * T::broadcast(k_.factorial[static_cast<std::size_t>(k)])) : *high;
+      for (int k = 0; k < p_.d[j]; ++k, ++high)
+        *to++ = moved ? V(w_[p_.x[j] + static_cast<std::uint32_t>(k)] *
+                          T::broadcast(k_.factorial[static_cast<std::size_t>(k)]))
+                      : *high;
   }
 
   // The newest coefficients come last: no division, no logarithm of anything else waits for them.
@@ -154,7 +161,8 @@ class SweepSteps : public Arithmetic {
   // That of order k, of a derivative. Up to 2! the product is exact.
   V coefficient_of(V derivative, int k) const {
     const auto i = static_cast<std::size_t>(k);
-    return k <= 2 ? V(derivative * T::broadcast(k_.inverse_factorial[i])) : V(derivative / T::broadcast(k_.factorial[i]));
+    return k <= 2 ? V(derivative * T::broadcast(k_.inverse_factorial[i]))
+                  : V(derivative / T::broadcast(k_.factorial[i]));
   }
 
   void weigh() {
@@ -162,7 +170,11 @@ class SweepSteps : public Arithmetic {
     V* power = w_ + k_.weight(0, 0);
     const int most = p_.stages + p_.largest_d;
     power[1] = h;
-    for (int i = 2; i <= most; ++i) power[i] = i == 2 ? square : i == 3 ? V(square * h) : i == kBlock ? V(square * square) : V(power[i - kBlock] * power[kBlock]);
+    for (int i = 2; i <= most; ++i)
+      power[i] = i == 2        ? square
+                 : i == 3      ? V(square * h)
+                 : i == kBlock ? V(square * square)
+                               : V(power[i - kBlock] * power[kBlock]);
     for (int k = 1; k <= p_.largest_d; ++k)
       for (int i = 1; i <= most - k; ++i) w_[k_.weight(k, i)] = power[i] * T::broadcast(k_.rising(k, i));
   }

@@ -30,18 +30,23 @@ bool free_of(Expr e, std::initializer_list<Kind> kinds) {
 bool free_of_time(Expr e) { return free_of(e, {Kind::time, Kind::given}); }
 bool constant(Expr e) { return free_of(e, {Kind::time, Kind::given, Kind::jet, Kind::multiplier, Kind::mass}); }
 template <class Test>
-bool each(const Vector& v, Test test) { return test(v.x) && test(v.y) && test(v.z); }
+bool each(const Vector& v, Test test) {
+  return test(v.x) && test(v.y) && test(v.z);
+}
 
 // Values between -2 and 2 that depend on the symbol and the point alone; parameters and masses are positive.
 PointValues random_point(std::uint64_t point) {
   return PointValues([point](const Node& n) {
-    std::uint64_t h = point * 0x9e3779b97f4a7c15U + (static_cast<std::uint64_t>(n.kind) << 40) + (static_cast<std::uint64_t>(n.order) << 32) + n.index;
+    std::uint64_t h = point * 0x9e3779b97f4a7c15U + (static_cast<std::uint64_t>(n.kind) << 40) +
+                      (static_cast<std::uint64_t>(n.order) << 32) + n.index;
     for (int k = 0; k < 3; ++k) {
       h ^= h >> 33;
       h *= 0xff51afd7ed558ccdU;
     }
     const double unit = static_cast<double>(h >> 11) / 9007199254740992.0;
-    return n.kind == Kind::parameter || n.kind == Kind::mass ? 0.4 + 1.2 * unit : n.kind == Kind::pi ? 3.14159265358979323846 : 4 * unit - 2;
+    return n.kind == Kind::parameter || n.kind == Kind::mass ? 0.4 + 1.2 * unit
+           : n.kind == Kind::pi                              ? 3.14159265358979323846
+                                                             : 4 * unit - 2;
   });
 }
 
@@ -53,7 +58,8 @@ bool small_at_points(Expr e) {
   return true;
 }
 
-// Far from zero at a point, where it has a value: many roots defeat the exact refutation, and the normal form of what is not zero may be long.
+// Far from zero at a point, where it has a value: many roots defeat the exact refutation, and the normal form of what
+// is not zero may be long.
 bool nonzero_at_a_point(Expr e) {
   constexpr double kFar = 1e-3;
   for (std::uint64_t k = 1; k <= 3; ++k) {
@@ -67,8 +73,8 @@ bool vanishes(Expr e) { return is_zero(e) || (!nonzero_at_a_point(e) && proved_z
 
 // ---- energy ------------------------------------------------------------------------------------
 
-// A potential of a force F that is homogeneous of degree k in the place r it depends on: U = -F.r/(k + 1). Tried are constant
-// forces, springs and inverse squares; the proof is power + dU/dt = 0.
+// A potential of a force F that is homogeneous of degree k in the place r it depends on: U = -F.r/(k + 1). Tried are
+// constant forces, springs and inverse squares; the proof is power + dU/dt = 0.
 std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
   for (const Rational& factor : {Rational(-1), Rational(-1, 2), Rational(1)}) {
     const Expr u = factor * product;
@@ -77,11 +83,14 @@ std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
   return std::nullopt;
 }
 
-// On the motion, of the reaction N of constraint r: its power is lambda times dphi/dt where phi depends on q alone, and times degree * phi where phi is
-// homogeneous in q'.
+// On the motion, of the reaction N of constraint r: its power is lambda times dphi/dt where phi depends on q alone, and
+// times degree * phi where phi is homogeneous in q'.
 bool without_power(const Mechanics& m, std::size_t r) {
-  if (m.order[r] == 0 && free_of(m.phi[r], {Kind::time, Kind::given, Kind::state, Kind::control, Kind::mass})) return true;
-  if (m.order[r] == 1 && homogeneous_degree(m.phi[r], [](const Node& n) { return n.kind == Kind::jet && n.order == 1; })) return true;
+  if (m.order[r] == 0 && free_of(m.phi[r], {Kind::time, Kind::given, Kind::state, Kind::control, Kind::mass}))
+    return true;
+  if (m.order[r] == 1 &&
+      homogeneous_degree(m.phi[r], [](const Node& n) { return n.kind == Kind::jet && n.order == 1; }))
+    return true;
   Expr rate = m.graph().zero();
   for (std::size_t a = 0; a < m.q.size(); ++a) rate += partial(m.N[a], m.lambda[r]) * m.qd[a];
   if (vanishes(rate)) return true;
@@ -121,7 +130,8 @@ bool add_force(const Mechanics& m, const Force& f, Column& potentials) {
     std::vector<Expr> terms;
     if (sum)
       for (const Term& t : g.terms(tension.id)) terms.push_back(g.rational(t.weight) * Expr{&g, t.node});
-    else terms.push_back(tension);
+    else
+      terms.push_back(tension);
     for (Expr t : terms) forces.push_back((t * along) * place);
   } else {
     forces.push_back(f.vector);
@@ -149,15 +159,16 @@ bool add_gravity(const Body& body, Column& potentials) {
   return u.has_value();
 }
 
-// The torque of a field that varies over the body has the potential -1/2 sum e u.(dg/dr u) where the centre does not move
-// through the field.
+// The torque of a field that varies over the body has the potential -1/2 sum e u.(dg/dr u) where the centre does not
+// move through the field.
 bool add_gravity_gradient(const Body& body, Column& potentials) {
   if (body.gravity_gradient.empty()) return true;
   Graph& g = *body.mass.graph;
   Expr u = g.zero();
   Vector torque = zero_vector(g);
   for (const Axis& axis : body.axes) {
-    const Vector x = axis.vector.x * body.gravity_gradient[0], y = axis.vector.y * body.gravity_gradient[1], z = axis.vector.z * body.gravity_gradient[2];
+    const Vector x = axis.vector.x * body.gravity_gradient[0], y = axis.vector.y * body.gravity_gradient[1],
+                 z = axis.vector.z * body.gravity_gradient[2];
     const Vector field = x + y + z;
     u += Rational(-1, 2) * (axis.weight * dot(axis.vector, field));
     torque = torque + axis.weight * cross(axis.vector, field);
@@ -170,12 +181,15 @@ bool add_gravity_gradient(const Body& body, Column& potentials) {
 
 bool add_observer(const Mechanics& m, Column& potentials) {
   const Observer& o = m.model->observer;
-  if (!each(o.origin_acceleration, constant) || !each(o.spin, constant) || !free_of_time(m.V_O) || !free_of_time(m.V_omega)) return false;
+  if (!each(o.origin_acceleration, constant) || !each(o.spin, constant) || !free_of_time(m.V_O) ||
+      !free_of_time(m.V_omega))
+    return false;
   if (!is_zero(m.V_O)) potentials.push_back(m.V_O);
   if (is_zero(o.spin)) return true;
   potentials.push_back(m.V_omega);
   // Coriolis forces have no power where the places are free of t.
-  return std::all_of(m.points.begin(), m.points.end(), [](const WeightedPoint& p) { return each(p.place, free_of_time); });
+  return std::all_of(m.points.begin(), m.points.end(),
+                     [](const WeightedPoint& p) { return each(p.place, free_of_time); });
 }
 
 std::optional<Conserved> energy(const Mechanics& m) {
@@ -198,9 +212,11 @@ std::optional<Conserved> energy(const Mechanics& m) {
     if (!add_force(m, f, parts)) return std::nullopt;
   // A force that is none of these would show here.
   const Power balance = power(m);
-  const Expr rate = balance.noncons + total_derivative(put_masses(model, sum(parts.empty() ? Column{m.graph().zero()} : parts)));
+  const Expr rate =
+      balance.noncons + total_derivative(put_masses(model, sum(parts.empty() ? Column{m.graph().zero()} : parts)));
   if (!small_at_points(rate)) return std::nullopt;
-  const bool scleronomic = std::all_of(m.points.begin(), m.points.end(), [](const WeightedPoint& p) { return each(p.place, free_of_time); });
+  const bool scleronomic =
+      std::all_of(m.points.begin(), m.points.end(), [](const WeightedPoint& p) { return each(p.place, free_of_time); });
   Conserved e;
   e.name = model.observer.inertial && scleronomic ? "energy" : "Jacobi integral";
   e.because = "every force has a potential or no power";
@@ -214,8 +230,9 @@ std::optional<Conserved> energy(const Mechanics& m) {
 
 // ---- momenta -----------------------------------------------------------------------------------
 
-// dT/dq' and dT/dq + G + sum mdot d(dT/dq')/dm, and Phi; masses put in. Where the observer turns, the momentum is that of the
-// velocities v + omega x rho, which is what a symmetry keeps: Coriolis forces are then the rate of its second part.
+// dT/dq' and dT/dq + G + sum mdot d(dT/dq')/dm, and Phi; masses put in. Where the observer turns, the momentum is that
+// of the velocities v + omega x rho, which is what a symmetry keeps: Coriolis forces are then the rate of its second
+// part.
 struct Rates {
   Column momentum, rate;
   std::vector<Column> phi;
@@ -259,7 +276,8 @@ Expr rate_along(const Mechanics& m, const Rates& r, const Column& field) {
   return terms.empty() ? m.graph().zero() : sum(terms);
 }
 
-// Solutions x of A x = 0, one for each column that is no combination of those before it; its entries in later such columns are 0.
+// Solutions x of A x = 0, one for each column that is no combination of those before it; its entries in later such
+// columns are 0.
 std::vector<std::vector<double>> kernel(std::vector<std::vector<double>> a, std::size_t columns) {
   std::vector<std::size_t> pivots, free;
   std::size_t row = 0;
@@ -325,12 +343,14 @@ std::vector<Column> fields(const Mechanics& m, const Rates& r) {
   for (std::uint64_t k = 0; k < terms.size() + 4; ++k) {
     PointValues at = random_point(k);
     std::vector<double> q(n + 1, 1.0), qd(n + 1, 0.0), rate(n), momentum(n);
-    for (std::size_t a = 0; a < n; ++a) q[a] = at(m.q[a]), qd[a] = at(m.qd[a]), rate[a] = at(r.rate[a]), momentum[a] = at(r.momentum[a]);
+    for (std::size_t a = 0; a < n; ++a)
+      q[a] = at(m.q[a]), qd[a] = at(m.qd[a]), rate[a] = at(r.rate[a]), momentum[a] = at(r.momentum[a]);
     const auto add = [&](const auto& coefficient) {
       std::vector<double> line;
       for (const auto& [a, b] : terms) line.push_back(coefficient(a, b));
       // A point outside the domain of a formula says nothing.
-      if (std::all_of(line.begin(), line.end(), [](double v) { return std::isfinite(v); })) lines.push_back(std::move(line));
+      if (std::all_of(line.begin(), line.end(), [](double v) { return std::isfinite(v); }))
+        lines.push_back(std::move(line));
     };
     add([&](std::size_t a, std::size_t b) { return q[b] * rate[a] + qd[b] * momentum[a]; });
     for (const Column& row : r.phi) {
@@ -373,7 +393,8 @@ std::string name_of(const Model& model, const Column& field) {
     if (!name.empty()) name += part[0] == '-' ? " - " : " + ";
     name += name.empty() || part[0] != '-' ? part : part.substr(1);
   }
-  return terms == 1 && field[last] == g.one() ? "momentum of " + model.coordinates[last].name : "momentum along " + name;
+  return terms == 1 && field[last] == g.one() ? "momentum of " + model.coordinates[last].name
+                                              : "momentum along " + name;
 }
 
 }  // namespace

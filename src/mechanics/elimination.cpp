@@ -20,7 +20,8 @@ constexpr double kPivot = 1e-3;
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
 
-// e as short as a person would write it: common factors of fractions cancelled, also those that sin^2 + cos^2 = 1 hides.
+// e as short as a person would write it: common factors of fractions cancelled, also those that sin^2 + cos^2 = 1
+// hides.
 Expr shortest(Expr e) {
   const std::size_t size = nodes(e);
   if (size <= 3 || size > kShortEnough) return e;
@@ -111,7 +112,8 @@ Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable) {
         const std::size_t cost = is_number(left[i][j]) ? 0 : nodes(left[i][j]);
         if (cost < best) best = cost, row = i, column = j;
       }
-    if (row == n) throw Failure({}, "the constraints do not determine the dependent coordinates", "choose others with --eliminate");
+    if (row == n)
+      throw Failure({}, "the constraints do not determine the dependent coordinates", "choose others with --eliminate");
     used[row] = column_used[column] = true;
     row_of[column] = row;
     const Expr pivot = left[row][column];
@@ -124,7 +126,8 @@ Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable) {
       const Expr factor = left[i][column];
       if (i == row || is_zero(factor)) continue;
       for (std::size_t j = 0; j < n; ++j) {
-        if (!is_zero(left[row][j])) left[i][j] = j == column ? g.zero() : shorter(left[i][j] - factor * left[row][j], longest);
+        if (!is_zero(left[row][j]))
+          left[i][j] = j == column ? g.zero() : shorter(left[i][j] - factor * left[row][j], longest);
         if (!is_zero(right[row][j])) right[i][j] = shorter(right[i][j] - factor * right[row][j], longest);
       }
     }
@@ -160,8 +163,10 @@ Elimination::Elimination(const Mechanics& M, const EliminationChoice& choice, st
     Phi_D.push_back(D(put_masses(model, M.Phi[r])));
   }
   Phi_D_inverse = inverse(Phi_D, *at_, pivots_, true);
-  if (choice.by_quasi) by_quasi_velocities(choice.quasi, choice.solve);
-  else by_coordinates(choice.solve);
+  if (choice.by_quasi)
+    by_quasi_velocities(choice.quasi, choice.solve);
+  else
+    by_coordinates(choice.solve);
   finish();
 }
 
@@ -176,8 +181,7 @@ void Elimination::by_coordinates(bool solve) {
   const std::size_t n = top_.size(), s = dependent.size();
   u = u_value_ = I(top_);
   u_rate_ = u_rate_value_ = I(next_);
-  for (std::size_t a : independent)
-    names.push_back(mechanics_->model->coordinates[a].name);
+  for (std::size_t a : independent) names.push_back(mechanics_->model->coordinates[a].name);
   orders.assign(names.size(), m);
   g = top_;
   // Linear in q_D^(m): the coefficients do not hold it.
@@ -259,7 +263,8 @@ void Elimination::finish() {
     for (Expr e : g_rate_) g_rate_by_u_.push_back(gradient(e, u));
     return;
   }
-  for (const Column& row : W_inverse_) B_.push_back(Column(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(free)));
+  for (const Column& row : W_inverse_)
+    B_.push_back(Column(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(free)));
   // W q^(m+1) + (the rest of dw/dt) = (u', 0).
   Column all = u_value_;
   all.insert(all.end(), phi.begin(), phi.end());
@@ -303,9 +308,7 @@ Column Elimination::by_u(Expr X) const {
   return a.empty() ? a : a + gradient(X, next_) * g_rate_by_u_;
 }
 
-Column Elimination::by_u_rate(Expr X) const {
-  return solved ? gradient(on(X), u_rate_) : gradient(X, next_) * B_;
-}
+Column Elimination::by_u_rate(Expr X) const { return solved ? gradient(on(X), u_rate_) : gradient(X, next_) * B_; }
 
 Column Elimination::by(unsigned k, Expr X) const {
   const Column lower = jets(*mechanics_->model, k);
@@ -335,7 +338,8 @@ static Rows part(const Rows& X, const std::vector<std::size_t>& rows, const std:
   Rows out;
   for (std::size_t r : rows) {
     out.emplace_back();
-    if (!columns) out.back() = X[r];
+    if (!columns)
+      out.back() = X[r];
     else
       for (std::size_t c : *columns) out.back().push_back(X[r][c]);
   }

@@ -1,17 +1,17 @@
 // The constraints solved for highest derivatives (theory: elimination).
 //
-// All constraints are lifted to one order m, the highest among them or a higher one that was asked for (N does not change). On their manifold the highest derivatives are functions of
-// the lower ones and of n - s free quantities u:
+// All constraints are lifted to one order m, the highest among them or a higher one that was asked for (N does not
+// change). On their manifold the highest derivatives are functions of the lower ones and of n - s free quantities u:
 //
 //   q^(m) = g(q, …, q^(m-1), u, t)
 //
 // where u are the highest derivatives of the independent coordinates, u = q_I^(m), so that g_b = f_b of [L 3.8] for the
 // dependent ones, or quasi-velocities u = pi^(m) as in [N 4.2].
 //
-// Constraints that can be solved are: then `on` puts g in for q^(m) and its derivative for q^(m+1). The others are not solved:
-// q^(m) stands for its own value on the manifold, `on` changes nothing, and derivatives along the manifold follow from the
-// implicit function theorem, dg/dy = -W^-1 dw/dy with w = (u, phi) and W = dw/dq^(m). One or the other, a formulation writes
-// the same: it differentiates along the manifold with the operators below.
+// Constraints that can be solved are: then `on` puts g in for q^(m) and its derivative for q^(m+1). The others are not
+// solved: q^(m) stands for its own value on the manifold, `on` changes nothing, and derivatives along the manifold
+// follow from the implicit function theorem, dg/dy = -W^-1 dw/dy with w = (u, phi) and W = dw/dq^(m). One or the other,
+// a formulation writes the same: it differentiates along the manifold with the operators below.
 #pragma once
 #include <memory>
 
@@ -27,9 +27,9 @@ inline constexpr std::size_t kShortEnough = 200;
 // e, or its expanded form where that is shorter.
 Expr shorter(Expr e, std::size_t longest = kShortEnough);
 
-// A^-1 by elimination on the graph, each entry in the shorter of its forms; pivots are entries that are not small at the point.
-// Those that can vanish elsewhere are added to `pivots`.
-// `readable`: the result is to be read, and worth more work.
+// A^-1 by elimination on the graph, each entry in the shorter of its forms; pivots are entries that are not small at
+// the point. Those that can vanish elsewhere are added to `pivots`. `readable`: the result is to be read, and worth
+// more work.
 Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable);
 
 // What is eliminated and which free quantities are used instead.
@@ -38,8 +38,8 @@ struct EliminationChoice {
   std::vector<std::size_t> dependent;    // as many coordinates, dphi/dq_D^(m) regular
   bool by_quasi = false;                 // u are quasi-velocities, n - s of them; else u = q_I^(m)
   std::vector<QuasiVelocity> quasi;
-  bool solve = true;                     // where the constraints can be solved
-  unsigned m = 0;                        // the common order asked for; 0: the highest of the constraints and quasi-velocities
+  bool solve = true;  // where the constraints can be solved
+  unsigned m = 0;     // the common order asked for; 0: the highest of the constraints and quasi-velocities
 };
 
 class Elimination {
@@ -50,14 +50,14 @@ class Elimination {
   // `at`: values near the state, by which pivots are chosen.
   Elimination(const Mechanics& mechanics, const EliminationChoice& choice, std::shared_ptr<PointValues> at);
 
-  unsigned m = 1;                         // common order of the lifted constraints, at least 1
-  unsigned asked = 0;                     // m, if it was asked for
+  unsigned m = 1;      // common order of the lifted constraints, at least 1
+  unsigned asked = 0;  // m, if it was asked for
   std::vector<std::size_t> constraints, dependent, independent;
-  Column phi;                             // lifted constraints, masses put in
-  Rows Phi_D, Phi_D_inverse;              // dphi/dq_D^(m), s x s
-  std::vector<std::string> names;         // of u: coordinates or quasi-velocities
-  std::vector<unsigned> orders;           // u is the derivative of this order of what has the name
-  bool solved = false;                    // g is known as a formula
+  Column phi;                      // lifted constraints, masses put in
+  Rows Phi_D, Phi_D_inverse;       // dphi/dq_D^(m), s x s
+  std::vector<std::string> names;  // of u: coordinates or quasi-velocities
+  std::vector<unsigned> orders;    // u is the derivative of this order of what has the name
+  bool solved = false;             // g is known as a formula
   bool quasi = false;
 
   Column u;  // as symbols where solved, else as functions of q, …, q^(m)
@@ -71,12 +71,12 @@ class Elimination {
   Column rate(const Column& X) const { return on(total_derivative(X)); }
   Rows rate(const Rows& X) const;
   // Partial derivatives of X, on the manifold and with the other free quantities held, by
-  Column by_u(Expr X) const;                  // u                    (n - s)
-  Column by_u_rate(Expr X) const;             // u'                   (n - s)
-  Column by(unsigned k, Expr X) const;        // q^(k), k < m         (n)
+  Column by_u(Expr X) const;            // u                    (n - s)
+  Column by_u_rate(Expr X) const;       // u'                   (n - s)
+  Column by(unsigned k, Expr X) const;  // q^(k), k < m         (n)
   // The same of g and of its derivative g' = dg/dt: row s is the gradient of g_s.
-  const Rows& g_by_u() const { return B_; }   // B of [N 4.3], n x (n - s)
-  const Rows& g_by(unsigned k) const;         // n x n
+  const Rows& g_by_u() const { return B_; }  // B of [N 4.3], n x (n - s)
+  const Rows& g_by(unsigned k) const;        // n x n
   const Rows& g_rate_by_u() const { return g_rate_by_u_; }
   // f_b,nu and the like: the rows of the dependent coordinates, the columns of the independent ones.
   Rows f_by_u() const;
@@ -110,10 +110,10 @@ class Elimination {
 
   const Mechanics* mechanics_ = nullptr;
   std::shared_ptr<PointValues> at_;
-  Column top_, next_;          // q^(m), q^(m+1)
+  Column top_, next_;  // q^(m), q^(m+1)
   Column u_rate_, g_rate_;
   Column u_value_, u_rate_value_;  // in coordinates
-  Rows W_inverse_;             // not solved: n x n
+  Rows W_inverse_;                 // not solved: n x n
   Rows B_, g_rate_by_u_;
   mutable std::vector<Rows> g_by_;
   mutable Column pivots_;

@@ -23,26 +23,28 @@ struct GaveUp {
 // The forms of a model, and a basis of their kernel.
 struct Pfaffian {
   FormSpace space;
-  Rows forms;                        // holonomic first, then those of `constraints`
+  Rows forms;  // holonomic first, then those of `constraints`
   std::size_t holonomic = 0;
   std::vector<std::size_t> constraints;
-  std::vector<std::size_t> pivots;   // as many columns as forms
-  Rows inverse;                      // of the pivot columns
-  Rows kernel;                       // vector fields X with w(X) = 0
-  Column phi;                        // of the holonomic ones
+  std::vector<std::size_t> pivots;  // as many columns as forms
+  Rows inverse;                     // of the pivot columns
+  Rows kernel;                      // vector fields X with w(X) = 0
+  Column phi;                       // of the holonomic ones
 
   std::size_t s() const { return constraints.size(); }
   Column of(std::size_t i) const { return forms[holonomic + i]; }
 };
 
-// (A, b) of a linear constraint. A does not depend on velocities; where its formula holds them all the same, they may have any
-// values, but not 0, with which the formula may be 0/0.
+// (A, b) of a linear constraint. A does not depend on velocities; where its formula holds them all the same, they may
+// have any values, but not 0, with which the formula may be 0/0.
 Column coefficients(const Mechanics& m, std::size_t r) {
   Graph& g = m.graph();
   Column row = put_masses(*m.model, m.Phi[r]);
   const Expr phi = put_masses(*m.model, m.phi[r]);
   const bool clean = std::all_of(row.begin(), row.end(), [](Expr e) { return jet_order(e) <= 0; });
-  const auto velocity = [&](std::size_t a) { return clean ? g.zero() : g.number(Rational(static_cast<long>(a * a + 2 * a + 3), 2)); };
+  const auto velocity = [&](std::size_t a) {
+    return clean ? g.zero() : g.number(Rational(static_cast<long>(a * a + 2 * a + 3), 2));
+  };
   const auto put = [&](Expr e) {
     return substitute({&e, 1}, [&](NodeId id) {
       const Node n = g.node(id);
@@ -58,8 +60,8 @@ Column coefficients(const Mechanics& m, std::size_t r) {
   return row;
 }
 
-// Pivots among the coordinates: constant columns before others, columns of few entries before others, and then the large, or
-// those of the first or the last coordinates.
+// Pivots among the coordinates: constant columns before others, columns of few entries before others, and then the
+// large, or those of the first or the last coordinates.
 enum class Prefer : std::uint8_t { large, early, late };
 
 std::vector<std::size_t> pivots_of(const Pfaffian& p, FormPoint& at, Prefer prefer) {
@@ -71,7 +73,9 @@ std::vector<std::size_t> pivots_of(const Pfaffian& p, FormPoint& at, Prefer pref
     Multi weight(c >= coordinates ? 0 : constant ? kConstant : 1);
     for (const Column& w : p.forms)
       if (!is_zero(w[c])) weight /= Multi(kSparser);
-    const std::size_t behind = prefer == Prefer::large ? 0 : prefer == Prefer::early ? c : coordinates - std::min(c, coordinates);
+    const std::size_t behind = prefer == Prefer::large   ? 0
+                               : prefer == Prefer::early ? c
+                                                         : coordinates - std::min(c, coordinates);
     for (std::size_t k = 0; k < std::min<std::size_t>(behind, 12); ++k) weight /= Multi(kNext);
     for (std::size_t i = 0; i < a.rows; ++i) a(i, c) *= weight;
   }
@@ -103,7 +107,8 @@ void solve(Pfaffian& p, std::vector<std::size_t> pivots, FormPoint& at) {
   }
 }
 
-Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bool values, FormPoint& at, FormPoint& generic, bool& special) {
+Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bool values, FormPoint& at,
+                  FormPoint& generic, bool& special) {
   const Model& model = *m.model;
   Graph& g = m.graph();
   // Rows (A, b) of all constraints that matter, and phi of the holonomic ones.
@@ -145,8 +150,10 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
     special = special || independent != (rank(values_at(more, generic)) == more.size());
     if (!independent) continue;
     kept = more;
-    if (i < holonomic) ++p.holonomic, p.phi.push_back(phi[i]);
-    else p.constraints.push_back(from[i]);
+    if (i < holonomic)
+      ++p.holonomic, p.phi.push_back(phi[i]);
+    else
+      p.constraints.push_back(from[i]);
   }
   p.forms = kept;
   // Of several choices of pivots the one with the shortest kernel: brackets of brackets grow with it.
@@ -197,7 +204,8 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
     const Expr factor = V[pivots[k]];
     if (is_zero(factor)) continue;
     for (std::size_t a = 0; a < V.size(); ++a)
-      if (!is_zero(before[k][a])) V[a] = a == pivots[k] ? factor.graph->zero() : simplified(V[a] - factor * before[k][a]);
+      if (!is_zero(before[k][a]))
+        V[a] = a == pivots[k] ? factor.graph->zero() : simplified(V[a] - factor * before[k][a]);
   }
   // The shortest of the components that are not small.
   constexpr double kPivot = 1e-3;
@@ -218,9 +226,10 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
   return V;
 }
 
-// D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel, in reduced echelon
-// form with their pivots. Only these become formulas; of the others the values at the point are enough.
-Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag, std::vector<std::size_t>& pivots, bool& special) {
+// D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel, in reduced
+// echelon form with their pivots. Only these become formulas; of the others the values at the point are enough.
+Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag,
+                  std::vector<std::size_t>& pivots, bool& special) {
   const std::size_t s = p.s();
   flag = {static_cast<int>(s)};
   const Matrix<Multi> forms_here = values_at(p.forms, at), forms_elsewhere = values_at(p.forms, generic);
@@ -257,13 +266,14 @@ Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vec
     for (std::size_t i = 0; i < k; ++i) {
       const Expr factor = formulas[i][pivots[k]];
       if (is_zero(factor)) continue;
-      for (std::size_t a = 0; a < formulas[i].size(); ++a) formulas[i][a] = simplified(formulas[i][a] - factor * formulas[k][a]);
+      for (std::size_t a = 0; a < formulas[i].size(); ++a)
+        formulas[i][a] = simplified(formulas[i][a] - factor * formulas[k][a]);
     }
   return formulas;
 }
 
-// The forms that annul the kernel and the brackets V, in reduced echelon form: with w_s = dz_s - sum_i X_i,s dz_i of the pivot
-// columns, those of them that are pivots of no V, less V_k,s times that of the pivot of V_k.
+// The forms that annul the kernel and the brackets V, in reduced echelon form: with w_s = dz_s - sum_i X_i,s dz_i of
+// the pivot columns, those of them that are pivots of no V, less V_k,s times that of the pivot of V_k.
 Rows annihilator(const Pfaffian& p, const Rows& brackets, const std::vector<std::size_t>& pivots) {
   Graph& g = *p.space.z[0].graph;
   const auto unit = [&](std::size_t s) {
@@ -290,7 +300,8 @@ Rows annihilator(const Pfaffian& p, const Rows& brackets, const std::vector<std:
   return out;
 }
 
-void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointValues& near, bool values, Integrability& out) {
+void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointValues& near, bool values,
+            Integrability& out) {
   FormPoint at(m, near, 1, false), generic(m, near, 2, true);
   bool special = false;
   const Pfaffian p = pfaffian(m, linear, values, at, generic, special);

@@ -23,7 +23,7 @@ bool proved(Expr e) { return is_zero(e) || (nodes(e) <= kLongestProof && proved_
 
 // A form with its values and those of its derivatives: they tell what is worth trying.
 struct Tried {
-  Rows d;             // dw_a/dz_b
+  Rows d;  // dw_a/dz_b
   Matrix<Multi> w, v;
 
   Tried(const FormSpace& space, const Column& form, FormPoint& at) {
@@ -71,7 +71,8 @@ std::optional<Expr> integrating_factor(const FormSpace& space, const Column& w, 
 
 bool holds_logarithm(Expr e) {
   for (NodeId id : reachable({&e, 1}))
-    if (const Node& n = e.graph->node(id); n.kind == Kind::function && static_cast<Function>(n.index) == Function::log) return true;
+    if (const Node& n = e.graph->node(id); n.kind == Kind::function && static_cast<Function>(n.index) == Function::log)
+      return true;
   return false;
 }
 
@@ -97,7 +98,8 @@ std::optional<Expr> integral_of(const FormSpace& space, const Column& w, FormPoi
   return std::nullopt;
 }
 
-// Goes through the forms, and then through their reduced echelon forms with several choices of pivots, until one serves.
+// Goes through the forms, and then through their reduced echelon forms with several choices of pivots, until one
+// serves.
 bool any_form(const Rows& forms, FormPoint& at, const std::function<bool(const Column&)>& serves) {
   if (std::any_of(forms.begin(), forms.end(), serves)) return true;
   const std::size_t p = forms.size(), n = forms[0].size();
@@ -123,7 +125,8 @@ bool any_form(const Rows& forms, FormPoint& at, const std::function<bool(const C
       for (Expr& e : w) e = shorter(e);
       if (serves(w)) return true;
     }
-  } while (choices < kMostChoices && ++looked_at < 10 * kMostChoices && std::prev_permutation(chosen.begin(), chosen.end()));
+  } while (choices < kMostChoices && ++looked_at < 10 * kMostChoices &&
+           std::prev_permutation(chosen.begin(), chosen.end()));
   return false;
 }
 
@@ -135,7 +138,9 @@ class Level {
     for (int pass = 0; pass < 2 && !found_; ++pass)  // a constant factor first
       for (std::size_t a = space.z.size() - (space.time ? 1 : 0); a-- > 0 && !found_;) {
         if (is_zero(df[a]) || (pass == 0 && !is_number(df[a]))) continue;
-        if (const std::vector<NodeId> in = symbols({&df[a], 1}); std::binary_search(in.begin(), in.end(), space.z[a].id)) continue;
+        if (const std::vector<NodeId> in = symbols({&df[a], 1});
+            std::binary_search(in.begin(), in.end(), space.z[a].id))
+          continue;
         if (!(abs(at(df[a])) > Multi(kFormZero))) continue;
         found_ = true;
         variable_ = a;
@@ -180,7 +185,8 @@ Rows independent_of(const Rows& forms, FormPoint& at) {
 
 }  // namespace
 
-std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, Rows own, const Column& holonomic, const Rows& kernel, FormPoint& at) {
+std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, Rows own, const Column& holonomic,
+                                  const Rows& kernel, FormPoint& at) {
   Graph& g = *whole.z[0].graph;
   FormSpace space = whole;
   // What the symbols c_k stand for: everywhere, and where the holonomic constraints hold.
@@ -219,7 +225,8 @@ std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, Rows own, 
     Rows more = differentials;
     more.push_back(df);
     if (rank(values_at(more, at)) < more.size()) return false;
-    if (!std::all_of(kernel.begin(), kernel.end(), [&](const Column& X) { return proved(applied(df, X)); })) return false;
+    if (!std::all_of(kernel.begin(), kernel.end(), [&](const Column& X) { return proved(applied(df, X)); }))
+      return false;
     differentials = more;
     out.push_back(on_surface);
     return restrict_to(*on_level, f, on_surface);  // else it stays with the others
@@ -244,7 +251,8 @@ Expr readable(const FormSpace& space, Expr f, const SymbolNames& names) {
     Expr multiple = Rational(denominators, common) * expression(form->numerator, form->generators);
     const Expr below = expression(form->denominator, form->generators);
     bool varies = false;
-    for (NodeId id : symbols({&below, 1})) varies = varies || std::any_of(space.z.begin(), space.z.end(), [&](Expr z) { return z.id == id; });
+    for (NodeId id : symbols({&below, 1}))
+      varies = varies || std::any_of(space.z.begin(), space.z.end(), [&](Expr z) { return z.id == id; });
     if (varies) multiple = multiple / below;
     f = multiple;
   }

@@ -8,12 +8,14 @@
 
 namespace anholon {
 
-// Independent functions f, each proved: X f = 0 for all X of `kernel`, the fields that the forms of all constraints annul.
-// `forms`: a basis of a span closed under d, in which the differentials of `holonomic` lie. `own`: more forms of that span, which
-// are tried first.
-std::vector<Expr> first_integrals(const FormSpace& space, Rows forms, Rows own, const Column& holonomic, const Rows& kernel, FormPoint& at);
+// Independent functions f, each proved: X f = 0 for all X of `kernel`, the fields that the forms of all constraints
+// annul. `forms`: a basis of a span closed under d, in which the differentials of `holonomic` lie. `own`: more forms of
+// that span, which are tried first.
+std::vector<Expr> first_integrals(const FormSpace& space, Rows forms, Rows own, const Column& holonomic,
+                                  const Rows& kernel, FormPoint& at);
 
-// A multiple of the integral by a constant, without constant denominators and common factors, as a person would write it.
+// A multiple of the integral by a constant, without constant denominators and common factors, as a person would write
+// it.
 Expr readable(const FormSpace& space, Expr f, const SymbolNames& names);
 
 // dw = 0 modulo the forms, for each of them: dw(X, Y) = 0 on the fields that they all annul, w(X) = 0; proved.

@@ -35,7 +35,7 @@ std::vector<WeightedPoint> weighted_points(const Model& model) {
   return points;
 }
 
-Expr weighted_sum(Graph& g, const std::vector<WeightedPoint>& points, Expr WeightedPoint::*square) {
+Expr weighted_sum(Graph& g, const std::vector<WeightedPoint>& points, Expr WeightedPoint::* square) {
   std::vector<std::pair<Rational, Expr>> parts;
   for (const WeightedPoint& p : points) parts.push_back({Rational(1, 2), p.weight * (p.*square)});
   return g.sum(parts);
@@ -170,8 +170,7 @@ std::vector<Column> mass_matrix(const Mechanics& m) {
 
 Column newton_left_side(const Mechanics& m) {
   Pull pull;
-  for (const WeightedPoint& p : m.points)
-    pull.add(p.place, p.weight * total_derivative(total_derivative(p.place)));
+  for (const WeightedPoint& p : m.points) pull.add(p.place, p.weight * total_derivative(total_derivative(p.place)));
   return put_masses(*m.model, pull.back(m.q));
 }
 

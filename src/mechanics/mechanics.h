@@ -10,9 +10,9 @@ namespace anholon {
 
 // A particle, a mass centre, or an axis vector of a body (weight e_k, dimensionless).
 struct WeightedPoint {
-  Expr weight;            // frozen mass or axis weight
-  Vector place;           // rho (or the axis vector u_k)
-  bool uniform_field;     // feels a0 and gravity: true for mass points, false for axes
+  Expr weight;         // frozen mass or axis weight
+  Vector place;        // rho (or the axis vector u_k)
+  bool uniform_field;  // feels a0 and gravity: true for mass points, false for axes
   std::size_t body;
   Expr speed2, acceleration2;  // |v|^2, |a|^2
 };
@@ -35,11 +35,11 @@ struct Mechanics {
   Column minus_dVomega;  // -dV_omega/dq
   Column Gamma;          // -2 m omega x v
 
-  Column phi;                // constraints
-  std::vector<int> order;    // m of each
-  std::vector<Column> Phi;   // dphi/dq^(m), one row per constraint
-  Column lambda;             // multipliers
-  Column N;                  // sum lambda Phi
+  Column phi;               // constraints
+  std::vector<int> order;   // m of each
+  std::vector<Column> Phi;  // dphi/dq^(m), one row per constraint
+  Column lambda;            // multipliers
+  Column N;                 // sum lambda Phi
 
   Graph& graph() const { return *model->graph; }
 };
@@ -51,10 +51,10 @@ Column forces(const Mechanics& m);
 
 // Energy and its rate (theory: certificate). Masses put in.
 struct Power {
-  Expr h;                // q' dT/dq' - T
-  Expr noncons;          // right side of the power identity without the constraints
-  Expr constraint;       // P_c = sum lambda Phi q'
-  Expr dh_dt;            // the total derivative of h, for comparison
+  Expr h;           // q' dT/dq' - T
+  Expr noncons;     // right side of the power identity without the constraints
+  Expr constraint;  // P_c = sum lambda Phi q'
+  Expr dh_dt;       // the total derivative of h, for comparison
 };
 Power power(const Mechanics& m);
 

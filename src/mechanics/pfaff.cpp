@@ -50,7 +50,8 @@ Column bracket(const VectorField& X, const VectorField& Y) {
 
 // A number in [0, 1) that depends on the symbol and the seed alone.
 static double arbitrary(const Node& n, std::uint64_t seed) {
-  std::uint64_t h = seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order;
+  std::uint64_t h =
+      seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order;
   for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
   return static_cast<double>(h >> 40) / 16777216.0;
 }

@@ -14,7 +14,7 @@
 namespace anholon {
 
 struct FormSpace {
-  Column z;           // q_1..q_n and, with time, t
+  Column z;  // q_1..q_n and, with time, t
   bool time = false;
   // df as a form.
   Column differential(Expr f) const;
@@ -34,7 +34,8 @@ struct VectorField {
 };
 Column bracket(const VectorField& X, const VectorField& Y);
 
-// Numbers of kFormDigits digits decide ranks: round-off lies far below what counts as zero, and that below any true value.
+// Numbers of kFormDigits digits decide ranks: round-off lies far below what counts as zero, and that below any true
+// value.
 inline constexpr int kFormDigits = 60;
 inline constexpr double kFormZero = 1e-35, kIndependent = 1e-25;
 

@@ -30,7 +30,9 @@ Expr power_factor(const Mechanics& m, std::size_t r) {
     })[0];
     return proved_zero(by_time) ? g.zero() : arranged(-by_time, model.names);
   }
-  if (m.order[r] == 1 && homogeneous_degree(m.phi[r], [](const Node& n) { return n.kind == Kind::jet && n.order == 1; })) return g.zero();
+  if (m.order[r] == 1 &&
+      homogeneous_degree(m.phi[r], [](const Node& n) { return n.kind == Kind::jet && n.order == 1; }))
+    return g.zero();
   Expr radial = g.zero();
   for (std::size_t a = 0; a < m.q.size(); ++a)
     if (!is_zero(m.Phi[r][a])) radial += m.qd[a] * put_masses(model, m.Phi[r][a]);

@@ -29,22 +29,23 @@ std::vector<Load> given_loads(const Model& model) {
   const Expr minus = g.number(-1);
   for (const Force& f : model.forces) {
     switch (f.kind) {
-      case Force::Kind::vector:
-        apply(loads, model, f.on, f.vector);
-        if (f.from) apply(loads, model, *f.from, minus * f.vector);
-        break;
-      case Force::Kind::torque:
-        loads[f.on.body].torque = loads[f.on.body].torque + f.vector;
-        if (f.from) loads[f.from->body].torque = loads[f.from->body].torque - f.vector;
-        break;
-      case Force::Kind::tension: {
-        const Vector line = f.from->point - f.on.point;
-        const Vector pull = (f.tension * pow(dot(line, line), {-1, 2})) * line;
-        apply(loads, model, f.on, pull);
-        apply(loads, model, *f.from, minus * pull);
-        break;
-      }
-      case Force::Kind::generalized: break;
+    case Force::Kind::vector:
+      apply(loads, model, f.on, f.vector);
+      if (f.from) apply(loads, model, *f.from, minus * f.vector);
+      break;
+    case Force::Kind::torque:
+      loads[f.on.body].torque = loads[f.on.body].torque + f.vector;
+      if (f.from) loads[f.from->body].torque = loads[f.from->body].torque - f.vector;
+      break;
+    case Force::Kind::tension: {
+      const Vector line = f.from->point - f.on.point;
+      const Vector pull = (f.tension * pow(dot(line, line), {-1, 2})) * line;
+      apply(loads, model, f.on, pull);
+      apply(loads, model, *f.from, minus * pull);
+      break;
+    }
+    case Force::Kind::generalized:
+      break;
     }
   }
   return loads;
@@ -91,12 +92,9 @@ Load of_motion(const Model& model, const Body& body) {
 
 Load difference(const Model& model, const Load& total, const Load& given, const Load& reactive) {
   const Expr parts[] = {
-      total.force.x - given.force.x - reactive.force.x,
-      total.force.y - given.force.y - reactive.force.y,
-      total.force.z - given.force.z - reactive.force.z,
-      total.torque.x - given.torque.x - reactive.torque.x,
-      total.torque.y - given.torque.y - reactive.torque.y,
-      total.torque.z - given.torque.z - reactive.torque.z};
+      total.force.x - given.force.x - reactive.force.x,    total.force.y - given.force.y - reactive.force.y,
+      total.force.z - given.force.z - reactive.force.z,    total.torque.x - given.torque.x - reactive.torque.x,
+      total.torque.y - given.torque.y - reactive.torque.y, total.torque.z - given.torque.z - reactive.torque.z};
   const Column r = put_masses(model, parts);
   return {{r[0], r[1], r[2]}, {r[3], r[4], r[5]}};
 }

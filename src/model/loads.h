@@ -1,4 +1,5 @@
-// What acts on each body of a model: given forces with their places, and by Newton's law the reaction of all constraints.
+// What acts on each body of a model: given forces with their places, and by Newton's law the reaction of all
+// constraints.
 #pragma once
 #include "model/model.h"
 
@@ -12,8 +13,8 @@ struct Load {
 std::vector<Load> given_loads(const Model& model);
 std::vector<Load> reactive_loads(const Model& model);
 
-// The total constraint reaction on each body, or on body b: m a - F - mdot u - fictitious forces, and its torque about the mass
-// centre (theory: certificate). Masses put in; accelerations stand in it.
+// The total constraint reaction on each body, or on body b: m a - F - mdot u - fictitious forces, and its torque about
+// the mass centre (theory: certificate). Masses put in; accelerations stand in it.
 std::vector<Load> reactions(const Model& model);
 Load reaction(const Model& model, std::size_t b);
 

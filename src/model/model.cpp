@@ -31,9 +31,9 @@ Column put_controls(const Model& model, std::span<const Expr> es) {
 Column put_masses(const Model& model, std::span<const Expr> es) {
   Graph& g = *model.graph;
   return put_controls(model, substitute(es, [&](NodeId id) {
-    const Node& n = g.node(id);
-    return n.kind == Kind::mass ? model.masses[n.index].value : Expr{};
-  }));
+                        const Node& n = g.node(id);
+                        return n.kind == Kind::mass ? model.masses[n.index].value : Expr{};
+                      }));
 }
 
 Expr put_state_rates(const Model& model, Expr e, unsigned from) {

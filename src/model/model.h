@@ -32,10 +32,10 @@ struct Parameter {
 // The observer's frame: moving components of its angular velocity and of the inertial acceleration
 // of its origin, functions of time only.
 struct Observer {
-  Vector spin;                 // omega
-  Vector origin_acceleration;  // a0
+  Vector spin;                            // omega
+  Vector origin_acceleration;             // a0
   std::optional<Vector> origin_velocity;  // moving components of the inertial velocity of the origin
-  bool inertial = true;        // neither turns nor accelerates
+  bool inertial = true;                   // neither turns nor accelerates
 };
 
 // A mass or axis weight that varies with t, q, q': its frozen symbol is graph.mass(index).
@@ -73,7 +73,7 @@ struct Force {
   enum class Kind : std::uint8_t { vector, torque, tension, generalized };
   struct Place {
     std::size_t body = 0;
-    Vector point;          // position of the material point
+    Vector point;  // position of the material point
     bool at_center = true;
   };
   std::string name;
@@ -101,12 +101,13 @@ struct Dissipation {
 };
 
 struct Constraint {
-  std::string name;     // "blade", or "rolling.x" for a component of a vector equation
-  Expr phi;             // left side - right side
-  int order = 0;        // highest derivative that truly occurs
-  std::string equation; // as written
+  std::string name;      // "blade", or "rolling.x" for a component of a vector equation
+  Expr phi;              // left side - right side
+  int order = 0;         // highest derivative that truly occurs
+  std::string equation;  // as written
   Span span;
-  std::optional<std::size_t> by = std::nullopt;  // kept by this input, which takes the place of lambda (servo constraint)
+  std::optional<std::size_t> by =
+      std::nullopt;  // kept by this input, which takes the place of lambda (servo constraint)
 };
 
 // An unknown function of the user's with z' = rate: propellant, controller, actuator.
@@ -116,8 +117,8 @@ struct StateVariable {
   Span span;
 };
 
-// A control: a formula of anything, held as a symbol of its own while equations are derived. Of a servo constraint it is the
-// multiplier.
+// A control: a formula of anything, held as a symbol of its own while equations are derived. Of a servo constraint it
+// is the multiplier.
 struct Control {
   std::string name;
   std::optional<Expr> value;

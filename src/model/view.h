@@ -1,5 +1,5 @@
-// The picture of a model: what is drawn beside its bodies, and from where it is looked at. All vectors are components along the
-// observer's axes; nothing here has a part in the motion.
+// The picture of a model: what is drawn beside its bodies, and from where it is looked at. All vectors are components
+// along the observer's axes; nothing here has a part in the motion.
 #pragma once
 #include <optional>
 #include <string>
@@ -22,10 +22,11 @@ struct View {
   struct Element {
     std::string name;
     Kind kind = Kind::solid;
-    std::string color;               // "#a33" or "#aa3333"; empty: of the page
-    std::optional<Shape> shape;      // of a solid
-    std::vector<Vector> places;      // a line's corners; else where it is (a solid named as a body: none, that is where the body is)
-    std::optional<Rotation> axes;    // of a solid
+    std::string color;           // "#a33" or "#aa3333"; empty: of the page
+    std::optional<Shape> shape;  // of a solid
+    std::vector<Vector>
+        places;  // a line's corners; else where it is (a solid named as a body: none, that is where the body is)
+    std::optional<Rotation> axes;  // of a solid
     std::optional<Vector> vector;
     Span span;
   };

@@ -1,7 +1,9 @@
-// Factors of rows and columns that bring all entries of a matrix to like sizes: the largest entry of each row and of each column is then
-// about 1 (Ruiz 2001: all rows and columns at once are divided by the root of their largest entry, again and again).
+// Factors of rows and columns that bring all entries of a matrix to like sizes: the largest entry of each row and of
+// each column is then about 1 (Ruiz 2001: all rows and columns at once are divided by the root of their largest entry,
+// again and again).
 //
-// Rows of a system mean forces, torques, accelerations, its unknowns metres, angles, newtons. Balanced, they compare, whatever the units.
+// Rows of a system mean forces, torques, accelerations, its unknowns metres, angles, newtons. Balanced, they compare,
+// whatever the units.
 #pragma once
 #include <cmath>
 
@@ -19,7 +21,9 @@ Balance balance_of(const Matrix<N>& a) {
   Balance b{std::vector<double>(a.rows, 1.0), std::vector<double>(a.cols, 1.0)};
   std::vector<double> size(a.data.size()), row(a.rows), column(a.cols);
   for (std::size_t k = 0; k < size.size(); ++k) size[k] = std::abs(to_double(a.data[k]));
-  const auto factor = [](double largest) { return largest > 0 && std::isfinite(largest) ? std::exp2(-std::round(0.5 * std::log2(largest))) : 1.0; };
+  const auto factor = [](double largest) {
+    return largest > 0 && std::isfinite(largest) ? std::exp2(-std::round(0.5 * std::log2(largest))) : 1.0;
+  };
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     std::fill(row.begin(), row.end(), 0.0);
     std::fill(column.begin(), column.end(), 0.0);

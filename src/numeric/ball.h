@@ -5,11 +5,11 @@
 // defined on the whole ball the result is not finite; comparisons are therefore questions
 // (contains_zero), never operators.
 #pragma once
-#include <arb.h>
-
 #include <optional>
 #include <string>
 #include <utility>
+
+#include <arb.h>
 
 #include "numeric/multi.h"
 #include "numeric/quad.h"
@@ -22,27 +22,57 @@ class Ball {
   static slong& working_bits();
 
   Ball() { arb_init(v_); }
-  Ball(int i) { arb_init(v_); arb_set_si(v_, i); }
-  explicit Ball(long double x);      // exactly x
-  explicit Ball(Quad x);             // exactly x
-  explicit Ball(const Multi& x);     // exactly x
-  explicit Ball(const Rational& r);  // encloses r; exactly r if the precision allows
+  Ball(int i) {
+    arb_init(v_);
+    arb_set_si(v_, i);
+  }
+  explicit Ball(long double x);                            // exactly x
+  explicit Ball(Quad x);                                   // exactly x
+  explicit Ball(const Multi& x);                           // exactly x
+  explicit Ball(const Rational& r);                        // encloses r; exactly r if the precision allows
   Ball(const Rational& midpoint, const Rational& radius);  // encloses [midpoint - radius, midpoint + radius]
-  Ball(const Ball& o) { arb_init(v_); arb_set(v_, o.v_); }
-  Ball(Ball&& o) noexcept { arb_init(v_); arb_swap(v_, o.v_); }
-  Ball& operator=(const Ball& o) { arb_set(v_, o.v_); return *this; }
-  Ball& operator=(Ball&& o) noexcept { arb_swap(v_, o.v_); return *this; }
+  Ball(const Ball& o) {
+    arb_init(v_);
+    arb_set(v_, o.v_);
+  }
+  Ball(Ball&& o) noexcept {
+    arb_init(v_);
+    arb_swap(v_, o.v_);
+  }
+  Ball& operator=(const Ball& o) {
+    arb_set(v_, o.v_);
+    return *this;
+  }
+  Ball& operator=(Ball&& o) noexcept {
+    arb_swap(v_, o.v_);
+    return *this;
+  }
   ~Ball() { arb_clear(v_); }
 
-  Ball& operator+=(const Ball& o) { arb_add(v_, v_, o.v_, working_bits()); return settle(); }
-  Ball& operator-=(const Ball& o) { arb_sub(v_, v_, o.v_, working_bits()); return settle(); }
-  Ball& operator*=(const Ball& o) { arb_mul(v_, v_, o.v_, working_bits()); return settle(); }
-  Ball& operator/=(const Ball& o) { arb_div(v_, v_, o.v_, working_bits()); return settle(); }
+  Ball& operator+=(const Ball& o) {
+    arb_add(v_, v_, o.v_, working_bits());
+    return settle();
+  }
+  Ball& operator-=(const Ball& o) {
+    arb_sub(v_, v_, o.v_, working_bits());
+    return settle();
+  }
+  Ball& operator*=(const Ball& o) {
+    arb_mul(v_, v_, o.v_, working_bits());
+    return settle();
+  }
+  Ball& operator/=(const Ball& o) {
+    arb_div(v_, v_, o.v_, working_bits());
+    return settle();
+  }
   friend Ball operator+(Ball a, const Ball& b) { return std::move(a += b); }
   friend Ball operator-(Ball a, const Ball& b) { return std::move(a -= b); }
   friend Ball operator*(Ball a, const Ball& b) { return std::move(a *= b); }
   friend Ball operator/(Ball a, const Ball& b) { return std::move(a /= b); }
-  friend Ball operator-(Ball a) { arb_neg(a.v_, a.v_); return a; }
+  friend Ball operator-(Ball a) {
+    arb_neg(a.v_, a.v_);
+    return a;
+  }
 
   static Ball pi();
   // Everything: what is known of a value that is not defined.
@@ -93,8 +123,12 @@ class BallScope {
   slong before_;
 };
 
-#define ANHOLON_BALL_FUNCTION(name, arb_name) \
-  inline Ball name(const Ball& x) { Ball r; arb_name(r.raw(), x.raw(), Ball::working_bits()); return std::move(r.settle()); }
+#define ANHOLON_BALL_FUNCTION(name, arb_name)                                                                          \
+  inline Ball name(const Ball& x) {                                                                                    \
+    Ball r;                                                                                                            \
+    arb_name(r.raw(), x.raw(), Ball::working_bits());                                                                  \
+    return std::move(r.settle());                                                                                      \
+  }
 ANHOLON_BALL_FUNCTION(sin, arb_sin)
 ANHOLON_BALL_FUNCTION(cos, arb_cos)
 ANHOLON_BALL_FUNCTION(tan, arb_tan)
@@ -119,8 +153,8 @@ inline void addmul(Ball& acc, const Ball& a, const Ball& b) {
   arb_addmul(acc.raw(), a.raw(), b.raw(), Ball::working_bits());
   acc.settle();
 }
-Ball sign(const Ball& x);                      // -1, 0, 1, or a ball that holds what is possible
+Ball sign(const Ball& x);                           // -1, 0, 1, or a ball that holds what is possible
 Ball pow(const Ball& x, const Rational& exponent);  // of a negative number: integer exponents only
-Ball atan2(const Ball& y, const Ball& x);      // in (-pi, pi]
+Ball atan2(const Ball& y, const Ball& x);           // in (-pi, pi]
 
 }  // namespace anholon

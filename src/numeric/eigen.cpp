@@ -1,8 +1,8 @@
 #include "numeric/eigen.h"
 
-#include <acb_mat.h>
-
 #include <algorithm>
+
+#include <acb_mat.h>
 
 namespace anholon {
 
@@ -19,7 +19,9 @@ Multi multi_of(const arb_t x) {
 
 Multi least_change_of(const Multi& largest) {
   Multi u = largest;
-  mpfr_div_2ui(u.raw(), u.raw(), static_cast<unsigned long>(std::max(1L, static_cast<long>(Multi::working_bits()) - kGuardBits)), MPFR_RNDN);
+  mpfr_div_2ui(u.raw(), u.raw(),
+               static_cast<unsigned long>(std::max(1L, static_cast<long>(Multi::working_bits()) - kGuardBits)),
+               MPFR_RNDN);
   return u;
 }
 
@@ -34,7 +36,9 @@ bool solve(const Matrix<Multi>& a, std::vector<Complex>& values, std::vector<std
   acb_mat_init(right, n, n);
   acb_ptr e = _acb_vec_init(n);
   for (slong i = 0; i < n; ++i)
-    for (slong j = 0; j < n; ++j) arf_set_mpfr(arb_midref(acb_realref(acb_mat_entry(m, i, j))), a(static_cast<std::size_t>(i), static_cast<std::size_t>(j)).raw());
+    for (slong j = 0; j < n; ++j)
+      arf_set_mpfr(arb_midref(acb_realref(acb_mat_entry(m, i, j))),
+                   a(static_cast<std::size_t>(i), static_cast<std::size_t>(j)).raw());
   const bool found = acb_mat_approx_eig_qr(e, nullptr, vectors ? right : nullptr, m, nullptr, 0, bits) != 0;
   values.clear();
   for (slong i = 0; i < n; ++i) values.push_back({multi_of(acb_realref(e + i)), multi_of(acb_imagref(e + i))});
@@ -42,7 +46,8 @@ bool solve(const Matrix<Multi>& a, std::vector<Complex>& values, std::vector<std
     vectors->assign(a.rows, std::vector<Complex>(a.rows));
     for (slong i = 0; i < n; ++i)
       for (slong j = 0; j < n; ++j)
-        (*vectors)[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = {multi_of(acb_realref(acb_mat_entry(right, i, j))), multi_of(acb_imagref(acb_mat_entry(right, i, j)))};
+        (*vectors)[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = {
+            multi_of(acb_realref(acb_mat_entry(right, i, j))), multi_of(acb_imagref(acb_mat_entry(right, i, j)))};
   }
   _acb_vec_clear(e, n);
   acb_mat_clear(right);
@@ -116,7 +121,9 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
   const Multi change = least_change_of(largest);
   Matrix<Multi> moved = a;
   for (std::size_t i = 0; i < a.rows; ++i)
-    for (std::size_t j = 0; j < a.cols; ++j) moved(i, j) += change * Multi(2 * static_cast<int>((i * 37 + j * 53 + 11) % 17) - 17) / Multi(16);  // none of them 0
+    for (std::size_t j = 0; j < a.cols; ++j)
+      moved(i, j) +=
+          change * Multi(2 * static_cast<int>((i * 37 + j * 53 + 11) % 17) - 17) / Multi(16);  // none of them 0
   std::vector<Complex> values, others;
   std::vector<std::vector<Complex>> vectors;
   if (!solve(a, values, &vectors) || !solve(moved, others, nullptr)) return false;
@@ -125,7 +132,8 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
     std::size_t nearest = 0;
     Multi distance(-1);
     for (std::size_t k = 0; k < others.size(); ++k)
-      if (Multi d = modulus(minus(values[i], others[k])); distance < Multi(0) || d < distance) distance = d, nearest = k;
+      if (Multi d = modulus(minus(values[i], others[k])); distance < Multi(0) || d < distance)
+        distance = d, nearest = k;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(nearest));
     normalise(vectors[i]);
     out.push_back({values[i], 1, std::max(distance, change), std::move(vectors[i])});
@@ -133,7 +141,8 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
   gather(out);
   for (Eigenvalue& e : out)
     for (Multi* part : {&e.value.re, &e.value.im})
-      if (!(abs(*part) > Multi(kSpread) * change) || (e.multiplicity == 1 && !(abs(*part) > Multi(kSpread) * e.radius))) *part = Multi(0);
+      if (!(abs(*part) > Multi(kSpread) * change) || (e.multiplicity == 1 && !(abs(*part) > Multi(kSpread) * e.radius)))
+        *part = Multi(0);
   for (Eigenvalue& e : out)
     for (Complex& z : e.vector)
       for (Multi* part : {&z.re, &z.im})
@@ -142,7 +151,8 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!(out[i].value.im > Multi(0))) continue;
     for (Eigenvalue& e : out)
-      if (modulus(minus({e.value.re, -e.value.im}, out[i].value)) <= Multi(kSpread) * std::max(e.radius, out[i].radius)) e.value = {out[i].value.re, -out[i].value.im};
+      if (modulus(minus({e.value.re, -e.value.im}, out[i].value)) <= Multi(kSpread) * std::max(e.radius, out[i].radius))
+        e.value = {out[i].value.re, -out[i].value.im};
   }
   std::stable_sort(out.begin(), out.end(), [](const Eigenvalue& x, const Eigenvalue& y) {
     if (!(x.value.re == y.value.re)) return x.value.re > y.value.re;

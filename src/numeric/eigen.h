@@ -2,9 +2,10 @@
 //
 //   A x = mu x,  by the QR algorithm (Arb's acb_mat_approx_eig_qr) at the working precision.
 //
-// A rounding of size u moves an eigenvalue of multiplicity m by u^(1/m). So A is solved a second time with its entries changed in
-// their last digits: the eigenvalues that lie nearer together than they moved are one multiple eigenvalue, for which their mean
-// stands (it moves by u only), and `radius` says how far its members were spread. What is smaller than the radius is zero.
+// A rounding of size u moves an eigenvalue of multiplicity m by u^(1/m). So A is solved a second time with its entries
+// changed in their last digits: the eigenvalues that lie nearer together than they moved are one multiple eigenvalue,
+// for which their mean stands (it moves by u only), and `radius` says how far its members were spread. What is smaller
+// than the radius is zero.
 #pragma once
 #include <string>
 #include <vector>

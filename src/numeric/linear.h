@@ -120,9 +120,9 @@ class Lu {
     std::vector<N> y, scaled(n);
     N sigma(0);
     for (int k = 0; k < sweeps; ++k) {
-      solve_transposed(direction, y);               // (D^-1 A)^T w = v  with  w = D y
+      solve_transposed(direction, y);  // (D^-1 A)^T w = v  with  w = D y
       for (std::size_t i = 0; i < n; ++i) scaled[i] = y[i] * row_scale_[i] * row_scale_[i];
-      solve_once(scaled, direction);                // (D^-1 A) v' = w
+      solve_once(scaled, direction);  // (D^-1 A) v' = w
       N norm2(0);
       for (const N& v : direction) addmul(norm2, v, v);
       const N length = sqrt(norm2);
@@ -183,8 +183,7 @@ RowChoice<N> choose_rows(Matrix<N> a, const N& threshold) {
       for (std::size_t j = 0; j < a.cols; ++j) addmul(a(i, j), factor, a(row, j));
     }
   }
-  for (std::size_t i = 0; i < a.rows; ++i)
-    (used[i] ? choice.independent : choice.dependent).push_back(i);
+  for (std::size_t i = 0; i < a.rows; ++i) (used[i] ? choice.independent : choice.dependent).push_back(i);
   return choice;
 }
 
@@ -193,8 +192,7 @@ RowChoice<N> choose_rows(Matrix<N> a, const N& threshold) {
 //   [ A    0  ] [mu] = [b].
 // A has independent rows and M is positive definite on the kernel of A; false otherwise.
 template <Number N>
-bool least_change(const Matrix<N>& m, const Matrix<N>& a, const std::vector<N>& b,
-                  std::vector<N>& x) {
+bool least_change(const Matrix<N>& m, const Matrix<N>& a, const std::vector<N>& b, std::vector<N>& x) {
   const std::size_t n = m.rows, s = a.rows;
   Matrix<N> k(n + s, n + s);
   std::vector<N> rhs(n + s, N(0)), solution;

@@ -3,10 +3,10 @@
 // Every value is made with the working precision of its thread, set by PrecisionScope.
 // Rounding is to nearest, so results do not depend on anything but the precision.
 #pragma once
-#include <mpfr.h>
-
 #include <string>
 #include <utility>
+
+#include <mpfr.h>
 
 #include "numeric/rational.h"
 
@@ -16,26 +16,68 @@ class Multi {
  public:
   static mpfr_prec_t& working_bits();
 
-  Multi() { init(); mpfr_set_zero(v_, 1); }
-  Multi(double d) { init(); mpfr_set_d(v_, d, MPFR_RNDN); }
-  Multi(int i) { init(); mpfr_set_si(v_, i, MPFR_RNDN); }
-  explicit Multi(long double d) { init(); mpfr_set_ld(v_, d, MPFR_RNDN); }
-  explicit Multi(const Rational& r) { init(); mpfr_set_q(v_, r.get_mpq_t(), MPFR_RNDN); }
-  Multi(const Multi& o) { init(); mpfr_set(v_, o.v_, MPFR_RNDN); }
-  Multi(Multi&& o) noexcept { init(); mpfr_swap(v_, o.v_); }
-  Multi& operator=(const Multi& o) { if (this != &o) mpfr_set(v_, o.v_, MPFR_RNDN); return *this; }
-  Multi& operator=(Multi&& o) noexcept { mpfr_swap(v_, o.v_); return *this; }
+  Multi() {
+    init();
+    mpfr_set_zero(v_, 1);
+  }
+  Multi(double d) {
+    init();
+    mpfr_set_d(v_, d, MPFR_RNDN);
+  }
+  Multi(int i) {
+    init();
+    mpfr_set_si(v_, i, MPFR_RNDN);
+  }
+  explicit Multi(long double d) {
+    init();
+    mpfr_set_ld(v_, d, MPFR_RNDN);
+  }
+  explicit Multi(const Rational& r) {
+    init();
+    mpfr_set_q(v_, r.get_mpq_t(), MPFR_RNDN);
+  }
+  Multi(const Multi& o) {
+    init();
+    mpfr_set(v_, o.v_, MPFR_RNDN);
+  }
+  Multi(Multi&& o) noexcept {
+    init();
+    mpfr_swap(v_, o.v_);
+  }
+  Multi& operator=(const Multi& o) {
+    if (this != &o) mpfr_set(v_, o.v_, MPFR_RNDN);
+    return *this;
+  }
+  Multi& operator=(Multi&& o) noexcept {
+    mpfr_swap(v_, o.v_);
+    return *this;
+  }
   ~Multi() { mpfr_clear(v_); }
 
-  Multi& operator+=(const Multi& o) { mpfr_add(v_, v_, o.v_, MPFR_RNDN); return *this; }
-  Multi& operator-=(const Multi& o) { mpfr_sub(v_, v_, o.v_, MPFR_RNDN); return *this; }
-  Multi& operator*=(const Multi& o) { mpfr_mul(v_, v_, o.v_, MPFR_RNDN); return *this; }
-  Multi& operator/=(const Multi& o) { mpfr_div(v_, v_, o.v_, MPFR_RNDN); return *this; }
+  Multi& operator+=(const Multi& o) {
+    mpfr_add(v_, v_, o.v_, MPFR_RNDN);
+    return *this;
+  }
+  Multi& operator-=(const Multi& o) {
+    mpfr_sub(v_, v_, o.v_, MPFR_RNDN);
+    return *this;
+  }
+  Multi& operator*=(const Multi& o) {
+    mpfr_mul(v_, v_, o.v_, MPFR_RNDN);
+    return *this;
+  }
+  Multi& operator/=(const Multi& o) {
+    mpfr_div(v_, v_, o.v_, MPFR_RNDN);
+    return *this;
+  }
   friend Multi operator+(Multi a, const Multi& b) { return std::move(a += b); }
   friend Multi operator-(Multi a, const Multi& b) { return std::move(a -= b); }
   friend Multi operator*(Multi a, const Multi& b) { return std::move(a *= b); }
   friend Multi operator/(Multi a, const Multi& b) { return std::move(a /= b); }
-  friend Multi operator-(Multi a) { mpfr_neg(a.v_, a.v_, MPFR_RNDN); return a; }
+  friend Multi operator-(Multi a) {
+    mpfr_neg(a.v_, a.v_, MPFR_RNDN);
+    return a;
+  }
   friend bool operator==(const Multi& a, const Multi& b) { return mpfr_equal_p(a.v_, b.v_) != 0; }
   friend bool operator<(const Multi& a, const Multi& b) { return mpfr_less_p(a.v_, b.v_) != 0; }
   friend bool operator>(const Multi& a, const Multi& b) { return b < a; }
@@ -59,8 +101,7 @@ class Multi {
 // Sets the working precision of the current thread for its lifetime.
 class PrecisionScope {
  public:
-  explicit PrecisionScope(int decimal_digits)
-      : before_(std::exchange(Multi::working_bits(), bits(decimal_digits))) {}
+  explicit PrecisionScope(int decimal_digits) : before_(std::exchange(Multi::working_bits(), bits(decimal_digits))) {}
   ~PrecisionScope() { Multi::working_bits() = before_; }
   PrecisionScope(const PrecisionScope&) = delete;
   PrecisionScope& operator=(const PrecisionScope&) = delete;
@@ -70,8 +111,12 @@ class PrecisionScope {
   mpfr_prec_t before_;
 };
 
-#define ANHOLON_MULTI_FUNCTION(name, mpfr_name) \
-  inline Multi name(const Multi& x) { Multi r; mpfr_name(r.raw(), x.raw(), MPFR_RNDN); return r; }
+#define ANHOLON_MULTI_FUNCTION(name, mpfr_name)                                                                        \
+  inline Multi name(const Multi& x) {                                                                                  \
+    Multi r;                                                                                                           \
+    mpfr_name(r.raw(), x.raw(), MPFR_RNDN);                                                                            \
+    return r;                                                                                                          \
+  }
 ANHOLON_MULTI_FUNCTION(sin, mpfr_sin)
 ANHOLON_MULTI_FUNCTION(cos, mpfr_cos)
 ANHOLON_MULTI_FUNCTION(tan, mpfr_tan)

@@ -9,8 +9,7 @@ namespace anholon {
 std::string number_text(double x, int digits) {
   if (!std::isfinite(x)) return std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
   char buffer[64];
-  const auto r = digits > 0 ? std::to_chars(buffer, buffer + sizeof buffer, x,
-                                            std::chars_format::general, digits)
+  const auto r = digits > 0 ? std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::general, digits)
                             : std::to_chars(buffer, buffer + sizeof buffer, x);
   return std::string(buffer, r.ptr);
 }
@@ -18,8 +17,7 @@ std::string number_text(double x, int digits) {
 std::string number_text(long double x, int digits) {
   if (!std::isfinite(x)) return std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
   char buffer[64];
-  const auto r = digits > 0 ? std::to_chars(buffer, buffer + sizeof buffer, x,
-                                            std::chars_format::general, digits)
+  const auto r = digits > 0 ? std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::general, digits)
                             : std::to_chars(buffer, buffer + sizeof buffer, x);
   return std::string(buffer, r.ptr);
 }

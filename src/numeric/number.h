@@ -16,18 +16,22 @@
 namespace anholon {
 
 using std::abs, std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh;
-using std::tanh, std::asinh, std::acosh, std::atanh, std::exp, std::log, std::sqrt, std::pow;
 using std::atan2;
+using std::tanh, std::asinh, std::acosh, std::atanh, std::exp, std::log, std::sqrt, std::pow;
 
 template <class N>
-concept Number = std::same_as<N, double> || std::same_as<N, long double> || std::same_as<N, Quad> || std::same_as<N, Multi>;
+concept Number =
+    std::same_as<N, double> || std::same_as<N, long double> || std::same_as<N, Quad> || std::same_as<N, Multi>;
 
 // Bits of the significand.
 template <Number N>
 long significand_bits() {
-  if constexpr (std::same_as<N, Multi>) return Multi::working_bits();
-  else if constexpr (std::same_as<N, Quad>) return kQuadBits;
-  else return std::numeric_limits<N>::digits;
+  if constexpr (std::same_as<N, Multi>)
+    return Multi::working_bits();
+  else if constexpr (std::same_as<N, Quad>)
+    return kQuadBits;
+  else
+    return std::numeric_limits<N>::digits;
 }
 
 // The unit round-off: half the distance from 1 to the next number.
@@ -54,15 +58,19 @@ N from_rational(const Rational& r) {
     if constexpr (!std::same_as<N, Quad>) {
       constexpr long kHeld = 1L << std::min(std::numeric_limits<N>::digits, 62);
       if (r.get_num().fits_slong_p() && r.get_den().fits_slong_p())
-        if (const long num = r.get_num().get_si(), den = r.get_den().get_si(); num <= kHeld && num >= -kHeld && den <= kHeld) return static_cast<N>(num) / static_cast<N>(den);
+        if (const long num = r.get_num().get_si(), den = r.get_den().get_si();
+            num <= kHeld && num >= -kHeld && den <= kHeld)
+          return static_cast<N>(num) / static_cast<N>(den);
     }
     // mpq_get_d truncates, and long double has no conversion: go through MPFR, which rounds.
     mpfr_t v;
     mpfr_init2(v, significand_bits<N>());
     mpfr_set_q(v, r.get_mpq_t(), MPFR_RNDN);
     N n;
-    if constexpr (std::same_as<N, Quad>) n = quad_of(v);
-    else n = static_cast<N>(mpfr_get_ld(v, MPFR_RNDN));
+    if constexpr (std::same_as<N, Quad>)
+      n = quad_of(v);
+    else
+      n = static_cast<N>(mpfr_get_ld(v, MPFR_RNDN));
     mpfr_clear(v);
     return n;
   }

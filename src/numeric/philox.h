@@ -1,7 +1,7 @@
 // Random numbers by number: the n-th draw of a stream follows from n alone, so draws do not depend on their order.
 //
-// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy as 1, 2, 3, SC 2011): ten rounds of two 32-bit products
-// and Weyl keys on a counter of 128 bits.
+// Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy as 1, 2, 3, SC 2011): ten rounds of two
+// 32-bit products and Weyl keys on a counter of 128 bits.
 #pragma once
 #include <array>
 #include <cmath>

@@ -21,8 +21,7 @@ static std::optional<Rational> parse_decimal(std::string_view text) {
   std::size_t i = 0;
   bool negative = false, any = false;
   if (i < text.size() && (text[i] == '+' || text[i] == '-')) negative = text[i++] == '-';
-  for (; i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])); ++i, any = true)
-    digits += text[i];
+  for (; i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])); ++i, any = true) digits += text[i];
   if (i < text.size() && text[i] == '.')
     for (++i; i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])); ++i, any = true) {
       digits += text[i];
@@ -42,8 +41,7 @@ static std::optional<Rational> parse_decimal(std::string_view text) {
   if (i != text.size()) return std::nullopt;
   mpz_class mantissa(digits, 10);
   if (negative) mantissa = -mantissa;
-  Rational r = scale >= 0 ? Rational(mantissa * power_of_ten(scale))
-                          : Rational(mantissa, power_of_ten(-scale));
+  Rational r = scale >= 0 ? Rational(mantissa * power_of_ten(scale)) : Rational(mantissa, power_of_ten(-scale));
   r.canonicalize();
   return r;
 }
@@ -68,8 +66,8 @@ double natural_logarithm(const Rational& r) {
 std::optional<Rational> exact_root(const Rational& r, unsigned long n) {
   if (r < 0 && n % 2 == 0) return std::nullopt;
   mpz_class p, q;
-  const bool exact = mpz_root(p.get_mpz_t(), r.get_num_mpz_t(), n) != 0 &&
-                     mpz_root(q.get_mpz_t(), r.get_den_mpz_t(), n) != 0;
+  const bool exact =
+      mpz_root(p.get_mpz_t(), r.get_num_mpz_t(), n) != 0 && mpz_root(q.get_mpz_t(), r.get_den_mpz_t(), n) != 0;
   if (!exact) return std::nullopt;
   return Rational(p, q);
 }

@@ -1,10 +1,10 @@
 // Exact rational numbers and the decimal text that denotes them.
 #pragma once
-#include <gmpxx.h>
-
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include <gmpxx.h>
 
 namespace anholon {
 

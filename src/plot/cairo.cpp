@@ -29,35 +29,43 @@ namespace {
 
 void colour(cairo_t* c, const char* hex) {
   const unsigned long rgb = std::strtoul(hex + 1, nullptr, 16);
-  cairo_set_source_rgb(c, static_cast<double>(rgb >> 16) / 255, static_cast<double>(rgb >> 8 & 255) / 255, static_cast<double>(rgb & 255) / 255);
+  cairo_set_source_rgb(c, static_cast<double>(rgb >> 16) / 255, static_cast<double>(rgb >> 8 & 255) / 255,
+                       static_cast<double>(rgb & 255) / 255);
 }
 
 void stroke(cairo_t* c, const Stroke& s) {
   cairo_set_dash(c, nullptr, 0, 0);
   switch (s.role) {
-    case Role::grid: colour(c, "#e4e4e4"), cairo_set_line_width(c, 0.5); break;
-    case Role::axis: colour(c, "#222222"), cairo_set_line_width(c, 0.6); break;
-    case Role::series: {
-      const double dashes[] = {4, 2};
-      colour(c, kColour[s.series % kColours]);
-      cairo_set_line_width(c, 1.1);
-      if (s.series >= kColours) cairo_set_dash(c, dashes, 2, 0);
-      break;
-    }
+  case Role::grid:
+    colour(c, "#e4e4e4"), cairo_set_line_width(c, 0.5);
+    break;
+  case Role::axis:
+    colour(c, "#222222"), cairo_set_line_width(c, 0.6);
+    break;
+  case Role::series: {
+    const double dashes[] = {4, 2};
+    colour(c, kColour[s.series % kColours]);
+    cairo_set_line_width(c, 1.1);
+    if (s.series >= kColours) cairo_set_dash(c, dashes, 2, 0);
+    break;
   }
-  for (std::size_t i = 0; i < s.points.size(); ++i) i == 0 ? cairo_move_to(c, s.points[i].x, s.points[i].y) : cairo_line_to(c, s.points[i].x, s.points[i].y);
+  }
+  for (std::size_t i = 0; i < s.points.size(); ++i)
+    i == 0 ? cairo_move_to(c, s.points[i].x, s.points[i].y) : cairo_line_to(c, s.points[i].x, s.points[i].y);
   cairo_stroke(c);
 }
 
 void font(cairo_t* c, const Word& w, const TextPiece& p) {
-  cairo_select_font_face(c, "serif", p.italic ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_select_font_face(c, "serif", p.italic ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL,
+                         CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(c, p.sub ? 0.7 * w.size : w.size);
 }
 
 // Dots are drawn: where a mark that combines with the letter would come to stand differs with the font.
 void dots(cairo_t* c, const Word& w, double x, double y, const cairo_text_extents_t& letter, unsigned count) {
   const double radius = 0.055 * w.size, apart = 0.2 * w.size;
-  const double middle = x + letter.x_bearing + letter.width / 2 + 0.04 * w.size, height = y + letter.y_bearing - 0.16 * w.size;
+  const double middle = x + letter.x_bearing + letter.width / 2 + 0.04 * w.size,
+               height = y + letter.y_bearing - 0.16 * w.size;
   for (unsigned k = 0; k < count; ++k) {
     cairo_new_path(c);
     cairo_arc(c, middle + apart * (k - (count - 1) / 2.0), height, radius, 0, 2 * M_PI);
@@ -108,12 +116,14 @@ std::string draw_cairo(const Figure& figure, CairoFormat format, const std::stri
   if (format == CairoFormat::pdf) {
     surface = cairo_pdf_surface_create_for_stream(keep, &bytes, d.width, d.height);
     if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
-      if (!figure.title.empty()) cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, figure.title.c_str());
+      if (!figure.title.empty())
+        cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, figure.title.c_str());
       // The same figure makes the same bytes.
       cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
     }
   } else {
-    surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(d.width * kPixelsPerPoint)), static_cast<int>(std::ceil(d.height * kPixelsPerPoint)));
+    surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(d.width * kPixelsPerPoint)),
+                                         static_cast<int>(std::ceil(d.height * kPixelsPerPoint)));
   }
   cairo_t* c = cairo_create(surface);
   if (format == CairoFormat::png) {
@@ -127,12 +137,14 @@ std::string draw_cairo(const Figure& figure, CairoFormat format, const std::stri
   for (const Word& w : d.words) word(c, w);
   cairo_status_t status = cairo_status(c);
   cairo_destroy(c);
-  if (status == CAIRO_STATUS_SUCCESS && format == CairoFormat::png) status = cairo_surface_write_to_png_stream(surface, keep, &bytes);
+  if (status == CAIRO_STATUS_SUCCESS && format == CairoFormat::png)
+    status = cairo_surface_write_to_png_stream(surface, keep, &bytes);
   cairo_surface_finish(surface);
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
   cairo_surface_destroy(surface);
   std::string why = status == CAIRO_STATUS_SUCCESS ? "" : cairo_status_to_string(status);
-  if (why.empty() && (std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() || std::fflush(file) != 0)) why = std::strerror(errno);
+  if (why.empty() && (std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() || std::fflush(file) != 0))
+    why = std::strerror(errno);
   if (std::fclose(file) != 0 && why.empty()) why = std::strerror(errno);
   return why;
 }

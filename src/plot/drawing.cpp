@@ -7,16 +7,20 @@
 
 namespace anholon::plot {
 
-const char* const kColour[kColours] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c564b"};
+const char* const kColour[kColours] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                       "#e69f00", "#56b4e9", "#000000", "#8c564b"};
 
 namespace {
 
 constexpr double kPointsPerCm = 72 / 2.54;
-constexpr double kSize = 9, kSmall = 8;       // of words
-constexpr double kLetter = 0.62;              // mean width of a letter, of its size
-constexpr double kTick = 3, kGap = 4, kEntry = 18;  // marks at ticks; between things; the line of an entry of the legend
+constexpr double kSize = 9, kSmall = 8;  // of words
+constexpr double kLetter = 0.62;         // mean width of a letter, of its size
+constexpr double kTick = 3, kGap = 4,
+                 kEntry = 18;  // marks at ticks; between things; the line of an entry of the legend
 
-double width_of(const std::string& text, double size) { return kLetter * size * static_cast<double>(shown_width(text)); }
+double width_of(const std::string& text, double size) {
+  return kLetter * size * static_cast<double>(shown_width(text));
+}
 
 double width_of(const RichText& text, double size) {
   double width = 0;
@@ -61,10 +65,12 @@ class Layout {
     }
     x_ticks_ = ticks(f_.x_axis, static_cast<int>(d_.width / 55));
     d_.words[x_word].at.x = (left_ + right_) / 2;
-    if (!x_ticks_.note.empty()) d_.words.push_back({{right_, d_.words[x_word].at.y}, {{x_ticks_.note}}, kSmall, Anchor::end});
+    if (!x_ticks_.note.empty())
+      d_.words.push_back({{right_, d_.words[x_word].at.y}, {{x_ticks_.note}}, kSmall, Anchor::end});
     for (std::size_t i = 0; i < f_.panels.size(); ++i) {
       const double from = top + each * static_cast<double>(i);
-      panel(f_.panels[i], y_ticks[i], from, from + each - (i + 1 < f_.panels.size() ? 1.5 * kGap : 0), i + 1 == f_.panels.size());
+      panel(f_.panels[i], y_ticks[i], from, from + each - (i + 1 < f_.panels.size() ? 1.5 * kGap : 0),
+            i + 1 == f_.panels.size());
     }
     return std::move(d_);
   }
@@ -118,12 +124,18 @@ class Layout {
     if (p.series.size() > 1) {
       top = legend(p, top);
     } else {
-      d_.words.push_back({{kGap + kSize, (top + bottom) / 2}, rich_label(p.series[0].name, p.series[0].unit, f_.labels), kSize, Anchor::middle, true});
+      d_.words.push_back({{kGap + kSize, (top + bottom) / 2},
+                          rich_label(p.series[0].name, p.series[0].unit, f_.labels),
+                          kSize,
+                          Anchor::middle,
+                          true});
       top += kGap;
     }
     const double height = own_ ? box_ : std::max(10.0, bottom - top), width = right_ - left_;
-    if (own_) top = bottom - height;
-    else bottom = top + height;
+    if (own_)
+      top = bottom - height;
+    else
+      bottom = top + height;
     for (std::size_t i = 0; i < x_ticks_.at.size(); ++i) {
       const double x = left_ + width * f_.x_axis.place(x_ticks_.at[i]);
       line({x, top}, {x, bottom}, Role::grid);
@@ -136,7 +148,8 @@ class Layout {
       line({left_ - kTick, y}, {left_, y}, Role::axis);
       d_.words.push_back({{left_ - kTick - 2, y + 0.36 * kSmall}, minus_signs(y_ticks.labels[i]), kSmall, Anchor::end});
     }
-    d_.strokes.push_back({{{left_, top}, {right_, top}, {right_, bottom}, {left_, bottom}, {left_, top}}, Role::axis, 0});
+    d_.strokes.push_back(
+        {{{left_, top}, {right_, top}, {right_, bottom}, {left_, bottom}, {left_, top}}, Role::axis, 0});
     // Four points of the decimation on a point of paper: finer than print.
     constexpr double kFiner = 4;
     for (const Series& s : p.series)

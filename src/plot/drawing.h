@@ -1,5 +1,5 @@
-// A figure laid out on paper: lines and words with their places, in points of 1/72 inch, y downwards. What draws it needs to know
-// nothing of axes.
+// A figure laid out on paper: lines and words with their places, in points of 1/72 inch, y downwards. What draws it
+// needs to know nothing of axes.
 #pragma once
 #include "plot/figure.h"
 
@@ -34,7 +34,8 @@ Drawing lay_out(const Figure& figure);
 inline constexpr std::size_t kColours = 8;
 extern const char* const kColour[kColours];
 
-// An SVG of its own, on which a page can set colours: classes s0 … s7, axis, grid, words; variables --s0 …, --ink, --grid, --paper.
+// An SVG of its own, on which a page can set colours: classes s0 … s7, axis, grid, words; variables --s0 …, --ink,
+// --grid, --paper.
 std::string draw_svg(const Figure& figure);
 // An axis of pgfplots, to be \input.
 std::string draw_tex(const Figure& figure);

@@ -22,7 +22,9 @@ std::string list_of(const std::vector<std::string>& names) {
 [[noreturn]] void unknown(const RunTable& table, const std::string& name) {
   const bool pattern = name.find_first_of("*?") != std::string::npos;
   const std::string near = pattern ? "" : did_you_mean(name, table.columns);
-  throw Failure(Span{}, pattern ? "no column fits '" + name + "'" : "there is no column '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+  throw Failure(Span{},
+                pattern ? "no column fits '" + name + "'"
+                        : "there is no column '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 "the columns are " + list_of(table.columns));
 }
 
@@ -32,7 +34,9 @@ std::vector<std::size_t> coordinates(const RunTable& table, std::size_t x) {
   std::vector<std::size_t> list;
   for (const bool all : {false, true}) {
     for (std::size_t j = 0; j < table.columns.size() && list.size() < kMost; ++j)
-      if (j != x && table.columns[j] != "t" && table.columns[j].back() != '\'' && (all || table.find(table.columns[j] + "'") < table.columns.size())) list.push_back(j);
+      if (j != x && table.columns[j] != "t" && table.columns[j].back() != '\'' &&
+          (all || table.find(table.columns[j] + "'") < table.columns.size()))
+        list.push_back(j);
     if (!list.empty()) break;
   }
   return list;
@@ -44,8 +48,8 @@ struct Range {
   bool empty() const { return least > greatest; }
 };
 
-// The slopes of a column at its rows: the derivative, where there is a column of it, or those of a curve that stays between the rows
-// (Fritsch and Carlson).
+// The slopes of a column at its rows: the derivative, where there is a column of it, or those of a curve that stays
+// between the rows (Fritsch and Carlson).
 std::vector<double> slopes(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> s(y.size(), 0);
   for (std::size_t i = 1; i + 1 < y.size(); ++i) {
@@ -58,17 +62,19 @@ std::vector<double> slopes(const std::vector<double>& x, const std::vector<doubl
   return s;
 }
 
-// Rows at the ends of steps are far apart: between them the curve is the cubic of both slopes. Where these do not fit to the rows,
-// something has jumped in between, and the line stays straight.
+// Rows at the ends of steps are far apart: between them the curve is the cubic of both slopes. Where these do not fit
+// to the rows, something has jumped in between, and the line stays straight.
 void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
   constexpr std::size_t kPoints = 1000, kMost = 20;
   const std::size_t n = f.x.size(), parts = n < 2 ? 1 : std::min(kMost, kPoints / n);
-  const bool in_order = std::is_sorted(f.x.begin(), f.x.end(), std::less_equal<>()) || std::is_sorted(f.x.rbegin(), f.x.rend(), std::less_equal<>());
+  const bool in_order = std::is_sorted(f.x.begin(), f.x.end(), std::less_equal<>()) ||
+                        std::is_sorted(f.x.rbegin(), f.x.rend(), std::less_equal<>());
   if (parts < 2 || !in_order) return;
   const std::vector<double> x = std::move(f.x);
   f.x.clear();
   for (std::size_t i = 0; i + 1 < n; ++i)
-    for (std::size_t k = 0; k < parts; ++k) f.x.push_back(x[i] + (x[i + 1] - x[i]) * static_cast<double>(k) / static_cast<double>(parts));
+    for (std::size_t k = 0; k < parts; ++k)
+      f.x.push_back(x[i] + (x[i + 1] - x[i]) * static_cast<double>(k) / static_cast<double>(parts));
   f.x.push_back(x.back());
   std::size_t number = 0;
   for (Panel& p : f.panels)
@@ -79,10 +85,14 @@ void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
       for (std::size_t i = 0; i + 1 < n; ++i) {
         const double h = x[i + 1] - x[i], rise = y[i + 1] - y[i], mean = h * (d[i] + d[i + 1]) / 2;
         constexpr double kFits = 0.25;
-        const bool curved = std::abs(rise - mean) <= kFits * (std::abs(rise) + std::abs(h) * (std::abs(d[i]) + std::abs(d[i + 1])) / 2);
+        const bool curved =
+            std::abs(rise - mean) <= kFits * (std::abs(rise) + std::abs(h) * (std::abs(d[i]) + std::abs(d[i + 1])) / 2);
         for (std::size_t k = 0; k < parts; ++k) {
           const double u = static_cast<double>(k) / static_cast<double>(parts), v = 1 - u;
-          s.y.push_back(k == 0 ? y[i] : curved ? y[i] * v * v * (1 + 2 * u) + y[i + 1] * u * u * (1 + 2 * v) + h * u * v * (d[i] * v - d[i + 1] * u) : y[i] + u * rise);
+          s.y.push_back(k == 0   ? y[i]
+                        : curved ? y[i] * v * v * (1 + 2 * u) + y[i + 1] * u * u * (1 + 2 * v) +
+                                       h * u * v * (d[i] * v - d[i + 1] * u)
+                                 : y[i] + u * rise);
         }
       }
       s.y.push_back(y.back());
@@ -94,10 +104,14 @@ void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
 bool matches(const std::string& pattern, const std::string& name) {
   std::size_t p = 0, n = 0, star = std::string::npos, back = 0;
   while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') star = p++, back = n;
-    else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) ++p, ++n;
-    else if (star != std::string::npos) p = star + 1, n = ++back;
-    else return false;
+    if (p < pattern.size() && pattern[p] == '*')
+      star = p++, back = n;
+    else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n]))
+      ++p, ++n;
+    else if (star != std::string::npos)
+      p = star + 1, n = ++back;
+    else
+      return false;
   }
   while (p < pattern.size() && pattern[p] == '*') ++p;
   return p == pattern.size();
@@ -159,7 +173,9 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
   for (std::size_t i = 0; i < table.rows(); ++i)
     if (!(o.from && !(t[i] >= *o.from)) && !(o.to && !(t[i] <= *o.to))) rows.push_back(i);
   if (rows.empty())
-    throw Failure(Span{}, "no row lies between these times", "the rows go from t = " + table.text(0, time < table.columns.size() ? time : x) + " to " + table.text(table.rows() - 1, time < table.columns.size() ? time : x));
+    throw Failure(Span{}, "no row lies between these times",
+                  "the rows go from t = " + table.text(0, time < table.columns.size() ? time : x) + " to " +
+                      table.text(table.rows() - 1, time < table.columns.size() ? time : x));
   const auto taken = [&](std::size_t column) {
     std::vector<double> v;
     v.reserve(rows.size());
@@ -175,10 +191,13 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
   f.x_axis = axis_for(xs.least, xs.greatest, false, f.x_name == "t");
 
   const std::vector<std::size_t> columns = select_columns(table, o.names, x);
-  if (columns.empty()) throw Failure(Span{}, "there is nothing to draw over '" + f.x_name + "'", "the columns are " + list_of(table.columns));
+  if (columns.empty())
+    throw Failure(Span{}, "there is nothing to draw over '" + f.x_name + "'",
+                  "the columns are " + list_of(table.columns));
   constexpr std::size_t kMostPanels = 40;
   if (o.each && columns.size() > kMostPanels)
-    throw Failure(Span{}, std::to_string(columns.size()) + " panels are too many for one figure", "fewer columns, or without --each");
+    throw Failure(Span{}, std::to_string(columns.size()) + " panels are too many for one figure",
+                  "fewer columns, or without --each");
   std::vector<std::vector<double>> derivatives;
   for (const std::size_t j : columns) {
     if (o.each || f.panels.empty()) f.panels.emplace_back();
@@ -195,7 +214,9 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
       for (const double v : s.y)
         if (std::isfinite(v) && (!o.log || v > 0)) ys.see(v);
     if (ys.empty())
-      throw Failure(Span{}, "the column '" + p.series[0].name + "' has no " + (o.log ? "positive " : "") + "number to be shown", o.log ? "without --log" : "another column, or other times");
+      throw Failure(Span{},
+                    "the column '" + p.series[0].name + "' has no " + (o.log ? "positive " : "") + "number to be shown",
+                    o.log ? "without --log" : "another column, or other times");
     p.y = axis_for(ys.least, ys.greatest, o.log, false);
   }
   return f;
@@ -234,8 +255,8 @@ class ByColumns {
   Point first_{}, last_{}, least_{}, greatest_{};
 };
 
-// Leaves out points of a path that lie on a straight way between others, within what can be seen: from the last point that was kept,
-// all since lie in a narrow cone.
+// Leaves out points of a path that lie on a straight way between others, within what can be seen: from the last point
+// that was kept, all since lie in a narrow cone.
 class AlongAPath {
  public:
   explicit AlongAPath(std::vector<Point>& out) : out_(out) {}
@@ -286,7 +307,8 @@ class AlongAPath {
 };
 
 template <class Keeper>
-std::vector<std::vector<Point>> kept(const Figure& f, const Panel& panel, const Series& s, double width, double height) {
+std::vector<std::vector<Point>> kept(const Figure& f, const Panel& panel, const Series& s, double width,
+                                     double height) {
   std::vector<std::vector<Point>> pieces;
   std::optional<Keeper> keeper;
   for (std::size_t i = 0; i < std::min(f.x.size(), s.y.size()); ++i) {
@@ -305,7 +327,8 @@ std::vector<std::vector<Point>> kept(const Figure& f, const Panel& panel, const 
 
 }  // namespace
 
-std::vector<std::vector<Point>> curve(const Figure& f, const Panel& panel, const Series& s, double width, double height) {
+std::vector<std::vector<Point>> curve(const Figure& f, const Panel& panel, const Series& s, double width,
+                                      double height) {
   const bool in_order = std::is_sorted(f.x.begin(), f.x.end()) || std::is_sorted(f.x.rbegin(), f.x.rend());
   return in_order ? kept<ByColumns>(f, panel, s, width, height) : kept<AlongAPath>(f, panel, s, width, height);
 }

@@ -13,11 +13,12 @@ namespace anholon::plot {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 33> kGreek = {{
-    {"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"epsilon", "ε"}, {"zeta", "ζ"}, {"eta", "η"}, {"theta", "θ"}, {"iota", "ι"},
-    {"kappa", "κ"}, {"lambda", "λ"}, {"mu", "μ"}, {"nu", "ν"}, {"xi", "ξ"}, {"pi", "π"}, {"rho", "ρ"}, {"sigma", "σ"}, {"tau", "τ"}, {"upsilon", "υ"},
-    {"phi", "φ"}, {"chi", "χ"}, {"psi", "ψ"}, {"omega", "ω"}, {"Gamma", "Γ"}, {"Delta", "Δ"}, {"Theta", "Θ"}, {"Lambda", "Λ"}, {"Xi", "Ξ"}, {"Pi", "Π"},
-    {"Sigma", "Σ"}, {"Phi", "Φ"}, {"Psi", "Ψ"}, {"Omega", "Ω"}}};
+constexpr std::array<std::pair<const char*, const char*>, 33> kGreek = {
+    {{"alpha", "α"}, {"beta", "β"},  {"gamma", "γ"}, {"delta", "δ"},  {"epsilon", "ε"}, {"zeta", "ζ"},   {"eta", "η"},
+     {"theta", "θ"}, {"iota", "ι"},  {"kappa", "κ"}, {"lambda", "λ"}, {"mu", "μ"},      {"nu", "ν"},     {"xi", "ξ"},
+     {"pi", "π"},    {"rho", "ρ"},   {"sigma", "σ"}, {"tau", "τ"},    {"upsilon", "υ"}, {"phi", "φ"},    {"chi", "χ"},
+     {"psi", "ψ"},   {"omega", "ω"}, {"Gamma", "Γ"}, {"Delta", "Δ"},  {"Theta", "Θ"},   {"Lambda", "Λ"}, {"Xi", "Ξ"},
+     {"Pi", "Π"},    {"Sigma", "Σ"}, {"Phi", "Φ"},   {"Psi", "Ψ"},    {"Omega", "Ω"}}};
 
 std::string greek(const std::string& name) {
   for (const auto& [word, letter] : kGreek)
@@ -27,7 +28,9 @@ std::string greek(const std::string& name) {
 
 bool is_identifier(const std::string& name) {
   return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
-         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '.' || c == '[' || c == ']' || c == ','; });
+         std::all_of(name.begin(), name.end(), [](unsigned char c) {
+           return std::isalnum(c) || c == '_' || c == '.' || c == '[' || c == ']' || c == ',';
+         });
 }
 
 // A column as its letter, derivative and index.
@@ -41,7 +44,8 @@ Symbol symbol(const std::string& column) {
   Symbol s;
   s.name = column;
   if (column.rfind("D(", 0) == 0 && column.back() == ')')
-    if (const std::size_t comma = column.rfind(','); comma != std::string::npos && comma + 2 < column.size() && column.size() - comma < 6 &&
+    if (const std::size_t comma = column.rfind(',');
+        comma != std::string::npos && comma + 2 < column.size() && column.size() - comma < 6 &&
         column.find_first_not_of("0123456789", comma + 1) == column.size() - 1) {
       s.name = column.substr(2, comma - 2);
       s.order = static_cast<unsigned>(std::stoul(column.substr(comma + 1)));
@@ -118,18 +122,21 @@ RichText rich_label(const std::string& column, const std::string& unit, LabelSty
   const bool letter = one_letter(s.root);
   RichText text = {{s.root, letter, false, letter && s.order <= 3 ? s.order : 0}};
   if (s.order > 3 || (s.order > 0 && !letter)) text.push_back({marks(s.order, false)});
-  if (!s.sub.empty()) text.push_back({s.sub, one_letter(s.sub) && !std::isdigit(static_cast<unsigned char>(s.sub[0])), true});
+  if (!s.sub.empty())
+    text.push_back({s.sub, one_letter(s.sub) && !std::isdigit(static_cast<unsigned char>(s.sub[0])), true});
   if (!in_unit(unit).empty()) text.push_back({in_unit(unit)});
   return text;
 }
 
 std::string latex_label(const std::string& column, const std::string& unit) {
   const Symbol s = symbol(column);
-  if (s.root == column && utf8_length(column) != 1 && !is_identifier(column)) return latex_escape(column + in_unit(unit));
+  if (s.root == column && utf8_length(column) != 1 && !is_identifier(column))
+    return latex_escape(column + in_unit(unit));
   std::string name = s.name;
   // A point makes a subscript, as an underscore does.
   if (const std::size_t point = name.find('.'); point != std::string::npos && name.find('_') > point) name[point] = '_';
-  return "$" + derivative_name(latex_name(name), s.order, Format::latex) + "$" + (in_unit(unit).empty() ? "" : " (" + latex_escape(unit) + ")");
+  return "$" + derivative_name(latex_name(name), s.order, Format::latex) + "$" +
+         (in_unit(unit).empty() ? "" : " (" + latex_escape(unit) + ")");
 }
 
 std::size_t shown_width(const std::string& text) {

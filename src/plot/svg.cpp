@@ -19,15 +19,19 @@ std::string number(double x) {
 
 std::string path(const std::vector<Point>& points) {
   std::string d;
-  for (std::size_t i = 0; i < points.size(); ++i) d += (i == 0 ? "M" : i == 1 ? "L" : " ") + number(points[i].x) + " " + number(points[i].y);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    d += (i == 0 ? "M" : i == 1 ? "L" : " ") + number(points[i].x) + " " + number(points[i].y);
   return d;
 }
 
 std::string class_of(const Stroke& s) {
   switch (s.role) {
-    case Role::grid: return "grid";
-    case Role::axis: return "axis";
-    case Role::series: break;
+  case Role::grid:
+    return "grid";
+  case Role::axis:
+    return "axis";
+  case Role::series:
+    break;
   }
   return "s s" + std::to_string(s.series % kColours) + (s.series >= kColours ? " dashed" : "");
 }
@@ -37,18 +41,25 @@ std::string class_of(const Stroke& s) {
 std::string draw_svg(const Figure& figure) {
   const Drawing d = lay_out(figure);
   const std::string w = number(d.width), h = number(d.height);
-  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "pt\" height=\"" + h + "pt\" viewBox=\"0 0 " + w + " " + h + "\" class=\"anholon-plot\">\n";
+  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "pt\" height=\"" + h +
+                    "pt\" viewBox=\"0 0 " + w + " " + h + "\" class=\"anholon-plot\">\n";
   if (!figure.title.empty()) out += "<title>" + markup_escape(figure.title) + "</title>\n";
-  out += "<style>\n.anholon-plot{background:var(--paper,#fff)}\n.anholon-plot path{fill:none;stroke-linejoin:round}\n.anholon-plot .grid{stroke:var(--grid,#e4e4e4);stroke-width:.5}\n"
-         ".anholon-plot .axis{stroke:var(--ink,#222);stroke-width:.6}\n.anholon-plot .s{stroke-width:1.1}\n.anholon-plot .dashed{stroke-dasharray:4 2}\n"
-         ".anholon-plot text{fill:var(--ink,#222);font-family:var(--font,\"STIX Two Text\",\"Liberation Serif\",\"Times New Roman\",serif)}\n";
-  for (std::size_t k = 0; k < kColours; ++k) out += ".anholon-plot .s" + std::to_string(k) + "{stroke:var(--s" + std::to_string(k) + "," + kColour[k] + ")}\n";
+  out += "<style>\n.anholon-plot{background:var(--paper,#fff)}\n.anholon-plot "
+         "path{fill:none;stroke-linejoin:round}\n.anholon-plot .grid{stroke:var(--grid,#e4e4e4);stroke-width:.5}\n"
+         ".anholon-plot .axis{stroke:var(--ink,#222);stroke-width:.6}\n.anholon-plot "
+         ".s{stroke-width:1.1}\n.anholon-plot .dashed{stroke-dasharray:4 2}\n"
+         ".anholon-plot text{fill:var(--ink,#222);font-family:var(--font,\"STIX Two Text\",\"Liberation "
+         "Serif\",\"Times New Roman\",serif)}\n";
+  for (std::size_t k = 0; k < kColours; ++k)
+    out += ".anholon-plot .s" + std::to_string(k) + "{stroke:var(--s" + std::to_string(k) + "," + kColour[k] + ")}\n";
   out += "</style>\n";
   for (const Stroke& s : d.strokes) out += "<path class=\"" + class_of(s) + "\" d=\"" + path(s.points) + "\"/>\n";
   for (const Word& word : d.words) {
     const std::string at = number(word.at.x) + (word.upwards ? " " : "\" y=\"") + number(word.at.y);
-    out += "<text " + (word.upwards ? "transform=\"translate(" + at + ") rotate(-90)\"" : "x=\"" + at + "\"") + " font-size=\"" + number(word.size) + "\"";
-    if (word.anchor != Anchor::start) out += std::string(" text-anchor=\"") + (word.anchor == Anchor::middle ? "middle" : "end") + "\"";
+    out += "<text " + (word.upwards ? "transform=\"translate(" + at + ") rotate(-90)\"" : "x=\"" + at + "\"") +
+           " font-size=\"" + number(word.size) + "\"";
+    if (word.anchor != Anchor::start)
+      out += std::string(" text-anchor=\"") + (word.anchor == Anchor::middle ? "middle" : "end") + "\"";
     out += ">";
     bool low = false;
     for (const TextPiece& p : word.text) {

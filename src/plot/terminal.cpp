@@ -10,18 +10,22 @@ namespace anholon::plot {
 
 namespace {
 
-constexpr const char* kInk[] = {"36", "33", "32", "35", "31", "34", "37", "90"};  // of ANSI: readable on light and dark ground
+constexpr const char* kInk[] = {"36", "33", "32", "35",
+                                "31", "34", "37", "90"};  // of ANSI: readable on light and dark ground
 constexpr std::size_t kInks = std::size(kInk);
 
 std::string braille(std::uint8_t dots) {
   const unsigned code = 0x2800u + dots;
-  return {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 63)), static_cast<char>(0x80 | (code & 63))};
+  return {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 63)),
+          static_cast<char>(0x80 | (code & 63))};
 }
 
 // Dots, two by four to a character; a character has the colour of who drew there last.
 class Canvas {
  public:
-  Canvas(int columns, int rows) : columns_(columns), rows_(rows), dots_(static_cast<std::size_t>(columns * rows)), owner_(dots_.size()), letter_(dots_.size(), 0) {}
+  Canvas(int columns, int rows)
+      : columns_(columns), rows_(rows), dots_(static_cast<std::size_t>(columns * rows)), owner_(dots_.size()),
+        letter_(dots_.size(), 0) {}
   int width() const { return 2 * columns_; }
   int height() const { return 4 * rows_; }
 
@@ -68,8 +72,10 @@ class Canvas {
       }
       out += letter_[cell] ? std::string(1, letter_[cell]) : empty ? std::string(" ") : braille(dots_[cell]);
     }
-    if (ink != kInks) out += "\033[0m";
-    else while (!out.empty() && out.back() == ' ') out.pop_back();
+    if (ink != kInks)
+      out += "\033[0m";
+    else
+      while (!out.empty() && out.back() == ' ') out.pop_back();
     return out;
   }
 
@@ -92,7 +98,8 @@ void stripped(std::string& out, std::string line) {
 
 class Terminal {
  public:
-  Terminal(const Figure& f, const TerminalSize& size) : own_(f.equal ? std::optional<Figure>(f) : std::nullopt), f_(own_ ? *own_ : f), size_(size) {}
+  Terminal(const Figure& f, const TerminalSize& size)
+      : own_(f.equal ? std::optional<Figure>(f) : std::nullopt), f_(own_ ? *own_ : f), size_(size) {}
 
   std::string draw() {
     std::vector<Ticks> y_ticks = scales();
@@ -104,7 +111,9 @@ class Terminal {
       if (round == 1) columns_ = columns;
     }
     x_ticks_ = ticks(f_.x_axis, std::max(2, columns_ / 12));
-    if (!f_.title.empty()) stripped(out_, padded(shown(f_.title), (static_cast<std::size_t>(size_.columns) + shown_width(shown(f_.title))) / 2));
+    if (!f_.title.empty())
+      stripped(out_,
+               padded(shown(f_.title), (static_cast<std::size_t>(size_.columns) + shown_width(shown(f_.title))) / 2));
     for (std::size_t i = 0; i < f_.panels.size(); ++i) panel(f_.panels[i], y_ticks[i], i + 1 == f_.panels.size());
     x_labels();
     return std::move(out_);
@@ -130,11 +139,15 @@ class Terminal {
     std::string line = indent;
     std::size_t width = indent.size();
     for (const Series& s : p.series) {
-      const std::string label = text_label(s.name, s.unit, f_.labels), sign = lettered ? std::string(1, letter(s)) : "──";
+      const std::string label = text_label(s.name, s.unit, f_.labels),
+                        sign = lettered ? std::string(1, letter(s)) : "──";
       const std::size_t w = shown_width(label) + shown_width(sign) + 3;
-      if (width > indent.size() && width + w > static_cast<std::size_t>(size_.columns)) stripped(out_, line), line = indent, width = indent.size();
-      if (size_.colours) line += std::string("\033[") + kInk[s.number % kInks] + "m" + sign + "\033[0m " + label + "  ";
-      else line += (p.series.size() > 1 ? sign + " " : "") + label + "  ";
+      if (width > indent.size() && width + w > static_cast<std::size_t>(size_.columns))
+        stripped(out_, line), line = indent, width = indent.size();
+      if (size_.colours)
+        line += std::string("\033[") + kInk[s.number % kInks] + "m" + sign + "\033[0m " + label + "  ";
+      else
+        line += (p.series.size() > 1 ? sign + " " : "") + label + "  ";
       width += w;
     }
     if (!note.empty()) line += " [" + note + "]";
@@ -149,7 +162,8 @@ class Terminal {
       for (const auto& piece : curve(f_, p, s, w, h))
         for (std::size_t i = 0; i < piece.size(); ++i) {
           const Point &a = piece[i == 0 ? 0 : i - 1], &b = piece[i];
-          canvas.line(static_cast<int>(std::lround(a.x)), static_cast<int>(std::lround(a.y)), static_cast<int>(std::lround(b.x)), static_cast<int>(std::lround(b.y)), s.number);
+          canvas.line(static_cast<int>(std::lround(a.x)), static_cast<int>(std::lround(a.y)),
+                      static_cast<int>(std::lround(b.x)), static_cast<int>(std::lround(b.y)), s.number);
         }
     if (!size_.colours && p.series.size() > 1)
       for (const Series& s : p.series) {
@@ -160,7 +174,8 @@ class Terminal {
       std::string label, edge = "│";
       // The tick whose dot lies in this row.
       for (std::size_t k = 0; k < y_ticks.at.size(); ++k)
-        if (const int y = static_cast<int>(std::lround(p.y.place(y_ticks.at[k]) * h)); (h - y) / 4 == r) label = y_ticks.labels[k], edge = "┤";
+        if (const int y = static_cast<int>(std::lround(p.y.place(y_ticks.at[k]) * h)); (h - y) / 4 == r)
+          label = y_ticks.labels[k], edge = "┤";
       stripped(out_, padded(label, margin_) + " " + edge + canvas.row(r, size_.colours));
     }
     std::string axis(margin_ + 1, ' ');
@@ -179,12 +194,15 @@ class Terminal {
       const std::string& l = x_ticks_.labels[k];
       const int begin = static_cast<int>(margin_) + 2 + column(x_ticks_.at[k]) - static_cast<int>(shown_width(l)) / 2;
       // Labels that would touch are left out.
-      if (begin < static_cast<int>(width) + (width > 0 ? 1 : 0) || begin + static_cast<int>(shown_width(l)) > size_.columns) continue;
+      if (begin < static_cast<int>(width) + (width > 0 ? 1 : 0) ||
+          begin + static_cast<int>(shown_width(l)) > size_.columns)
+        continue;
       line += std::string(static_cast<std::size_t>(begin) - width, ' ') + l;
       width = static_cast<std::size_t>(begin) + shown_width(l);
     }
     stripped(out_, line);
-    const std::string name = text_label(f_.x_name, f_.x_unit, f_.labels) + (x_ticks_.note.empty() ? "" : " [" + x_ticks_.note + "]");
+    const std::string name =
+        text_label(f_.x_name, f_.x_unit, f_.labels) + (x_ticks_.note.empty() ? "" : " [" + x_ticks_.note + "]");
     stripped(out_, padded(name, margin_ + 2 + (static_cast<std::size_t>(columns_) + shown_width(name)) / 2));
   }
 

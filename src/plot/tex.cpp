@@ -17,10 +17,13 @@ std::string number(double x) {
 // TeX computes with few digits: the rows come as they are, by a decimation that print does not show.
 void series(std::string& out, const Figure& f, const Panel& p, const Series& s, std::size_t number_of) {
   constexpr double kDots = 1200;
-  const auto back = [](const Axis& a, double place) { return a.log ? a.from * std::pow(a.to / a.from, place) : a.from + (a.to - a.from) * place; };
+  const auto back = [](const Axis& a, double place) {
+    return a.log ? a.from * std::pow(a.to / a.from, place) : a.from + (a.to - a.from) * place;
+  };
   bool first = true;
   for (const auto& piece : curve(f, p, s, kDots, kDots)) {
-    out += "\\addplot[color=anholon" + std::to_string(s.number % kColours) + (s.number >= kColours ? ", dashed" : "") + (first ? "" : ", forget plot") + "] coordinates {\n";
+    out += "\\addplot[color=anholon" + std::to_string(s.number % kColours) + (s.number >= kColours ? ", dashed" : "") +
+           (first ? "" : ", forget plot") + "] coordinates {\n";
     std::string line;
     for (const Point& q : piece) {
       const std::string pair = "(" + number(back(f.x_axis, q.x / kDots)) + "," + number(back(p.y, q.y / kDots)) + ")";
@@ -36,16 +39,22 @@ void series(std::string& out, const Figure& f, const Panel& p, const Series& s, 
 }  // namespace
 
 std::string draw_tex(const Figure& f) {
-  std::string out = "% In the preamble: \\usepackage{pgfplots} \\pgfplotsset{compat=1.16} \\usepgfplotslibrary{groupplots}; then \\input{THIS FILE}\n";
+  std::string out = "% In the preamble: \\usepackage{pgfplots} \\pgfplotsset{compat=1.16} "
+                    "\\usepgfplotslibrary{groupplots}; then \\input{THIS FILE}\n";
   for (std::size_t k = 0; k < kColours; ++k) {
     std::string hex = kColour[k] + 1;
     for (char& c : hex) c = static_cast<char>(c >= 'a' && c <= 'f' ? c - 'a' + 'A' : c);
     out += "\\definecolor{anholon" + std::to_string(k) + "}{HTML}{" + hex + "}\n";
   }
   const std::size_t n = f.panels.size();
-  out += "\\begin{tikzpicture}\n\\begin{groupplot}[\n  group style={group size=1 by " + std::to_string(n) + ", x descriptions at=edge bottom, vertical sep=6pt},\n  width=" + number(f.width) +
-         "cm, height=" + number(f.height / static_cast<double>(n)) + "cm, " + (f.equal ? "axis equal, " : "") + "grid=major, grid style={gray!20}, no markers,\n  every axis plot/.append style={line width=0.6pt},\n  xlabel={" +
-         latex_label(f.x_name, f.x_unit) + "}, xmin=" + number(f.x_axis.from) + ", xmax=" + number(f.x_axis.to) + ",\n  legend style={draw=none, fill=none, at={(0.5,1.02)}, anchor=south, legend columns=-1, /tikz/every even column/.append style={column sep=6pt}},\n]\n";
+  out +=
+      "\\begin{tikzpicture}\n\\begin{groupplot}[\n  group style={group size=1 by " + std::to_string(n) +
+      ", x descriptions at=edge bottom, vertical sep=6pt},\n  width=" + number(f.width) +
+      "cm, height=" + number(f.height / static_cast<double>(n)) + "cm, " + (f.equal ? "axis equal, " : "") +
+      "grid=major, grid style={gray!20}, no markers,\n  every axis plot/.append style={line width=0.6pt},\n  xlabel={" +
+      latex_label(f.x_name, f.x_unit) + "}, xmin=" + number(f.x_axis.from) + ", xmax=" + number(f.x_axis.to) +
+      ",\n  legend style={draw=none, fill=none, at={(0.5,1.02)}, anchor=south, legend columns=-1, /tikz/every even "
+      "column/.append style={column sep=6pt}},\n]\n";
   for (std::size_t i = 0; i < n; ++i) {
     const Panel& p = f.panels[i];
     std::string options;

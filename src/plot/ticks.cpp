@@ -39,8 +39,10 @@ Ticks linear(const Axis& axis, int most) {
       break;
     }
     last_e = e, last_m = m;
-    if (m == 5) m = 1, ++e;
-    else m = m == 1 ? 2 : 5;
+    if (m == 5)
+      m = 1, ++e;
+    else
+      m = m == 1 ? 2 : 5;
   }
   const double step = multiple(1, m, e), largest = std::max(std::abs(axis.from), std::abs(axis.to));
   if (!(largest / step < 1e15)) return t;  // ticks a double cannot tell apart
@@ -58,7 +60,8 @@ Ticks linear(const Axis& axis, int most) {
   if (factor != 0) t.note = "×" + power_of_ten(factor);
   if (offset != 0) {
     const double base = multiple(offset, m, e);
-    const std::string digits = number_text(std::abs(base), std::clamp(static_cast<int>(std::log10(std::abs(base) / step)) + 1, 1, 16));
+    const std::string digits =
+        number_text(std::abs(base), std::clamp(static_cast<int>(std::log10(std::abs(base) / step)) + 1, 1, 16));
     t.note += (t.note.empty() ? "" : " ") + std::string(base < 0 ? "- " : "+ ") + digits;
   }
   return t;
@@ -71,12 +74,14 @@ Ticks logarithmic(const Axis& axis, int most) {
   const int decades = std::max(1, static_cast<int>(std::ceil((to - from) / std::max(1, most))));
   if (last - first >= 2) {
     for (int d = first; d <= last; ++d)
-      if (((d % decades) + decades) % decades == 0) t.at.push_back(std::pow(10.0, d)), t.labels.push_back(power_of_ten(d));
+      if (((d % decades) + decades) % decades == 0)
+        t.at.push_back(std::pow(10.0, d)), t.labels.push_back(power_of_ten(d));
     return t;
   }
   for (int d = first - 1; d <= last; ++d)
     for (const int m : {1, 2, 5})
-      if (const double x = multiple(1, m, d); x >= axis.from * (1 - 1e-9) && x <= axis.to * (1 + 1e-9)) t.at.push_back(x), t.labels.push_back(number_text(x, 3));
+      if (const double x = multiple(1, m, d); x >= axis.from * (1 - 1e-9) && x <= axis.to * (1 + 1e-9))
+        t.at.push_back(x), t.labels.push_back(number_text(x, 3));
   if (t.at.size() >= 2) return t;
   return linear(axis, most);
 }
@@ -85,7 +90,9 @@ Ticks logarithmic(const Axis& axis, int most) {
 
 double Axis::place(double x) const { return log ? std::log(x / from) / std::log(to / from) : (x - from) / (to - from); }
 
-Ticks ticks(const Axis& axis, int most) { return axis.log ? logarithmic(axis, std::max(2, most)) : linear(axis, std::max(2, most)); }
+Ticks ticks(const Axis& axis, int most) {
+  return axis.log ? logarithmic(axis, std::max(2, most)) : linear(axis, std::max(2, most));
+}
 
 Axis axis_for(double least, double greatest, bool log, bool tight) {
   constexpr double kRoom = 0.04;

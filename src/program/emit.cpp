@@ -11,15 +11,111 @@ namespace anholon::emit {
 namespace {
 
 // Words of C, of Python, and what the texts use themselves.
-constexpr const char* kReserved[] = {
-    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
-    "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof", "static",
-    "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "asm", "typeof", "bool", "true",
-    "false", "nullptr", "constexpr", "alignas", "alignof", "static_assert", "thread_local", "linux", "unix", "and", "as",
-    "assert", "async", "await", "class", "def", "del", "elif", "except", "finally", "from", "global", "import", "in", "is",
-    "lambda", "nonlocal", "not", "or", "pass", "raise", "try", "with", "yield", "match", "type", "None", "True", "False",
-    "np", "numpy", "main", "t", "state", "lead", "p", "out", "i", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh",
-    "tanh", "asinh", "acosh", "atanh", "exp", "log", "fabs", "sqrt", "pow", "atan2", "isfinite"};
+constexpr const char* kReserved[] = {"auto",
+                                     "break",
+                                     "case",
+                                     "char",
+                                     "const",
+                                     "continue",
+                                     "default",
+                                     "do",
+                                     "double",
+                                     "else",
+                                     "enum",
+                                     "extern",
+                                     "float",
+                                     "for",
+                                     "goto",
+                                     "if",
+                                     "inline",
+                                     "int",
+                                     "long",
+                                     "register",
+                                     "restrict",
+                                     "return",
+                                     "short",
+                                     "signed",
+                                     "sizeof",
+                                     "static",
+                                     "struct",
+                                     "switch",
+                                     "typedef",
+                                     "union",
+                                     "unsigned",
+                                     "void",
+                                     "volatile",
+                                     "while",
+                                     "asm",
+                                     "typeof",
+                                     "bool",
+                                     "true",
+                                     "false",
+                                     "nullptr",
+                                     "constexpr",
+                                     "alignas",
+                                     "alignof",
+                                     "static_assert",
+                                     "thread_local",
+                                     "linux",
+                                     "unix",
+                                     "and",
+                                     "as",
+                                     "assert",
+                                     "async",
+                                     "await",
+                                     "class",
+                                     "def",
+                                     "del",
+                                     "elif",
+                                     "except",
+                                     "finally",
+                                     "from",
+                                     "global",
+                                     "import",
+                                     "in",
+                                     "is",
+                                     "lambda",
+                                     "nonlocal",
+                                     "not",
+                                     "or",
+                                     "pass",
+                                     "raise",
+                                     "try",
+                                     "with",
+                                     "yield",
+                                     "match",
+                                     "type",
+                                     "None",
+                                     "True",
+                                     "False",
+                                     "np",
+                                     "numpy",
+                                     "main",
+                                     "t",
+                                     "state",
+                                     "lead",
+                                     "p",
+                                     "out",
+                                     "i",
+                                     "sin",
+                                     "cos",
+                                     "tan",
+                                     "asin",
+                                     "acos",
+                                     "atan",
+                                     "sinh",
+                                     "cosh",
+                                     "tanh",
+                                     "asinh",
+                                     "acosh",
+                                     "atanh",
+                                     "exp",
+                                     "log",
+                                     "fabs",
+                                     "sqrt",
+                                     "pow",
+                                     "atan2",
+                                     "isfinite"};
 
 std::string times_differentiated(int c) {
   return c == 0 ? "" : c == 1 ? ", differentiated once" : ", differentiated " + std::to_string(c) + " times";
@@ -62,8 +158,10 @@ std::string number(const Rational& r) {
   const long shift = static_cast<long>(kDigits) + 1 + static_cast<long>(mpz_sizeinbase(den.get_mpz_t(), 10)) -
                      static_cast<long>(mpz_sizeinbase(num.get_mpz_t(), 10));
   mpz_class top = abs(num), below = den;
-  if (shift > 0) top *= ten(static_cast<unsigned long>(shift));
-  else below *= ten(static_cast<unsigned long>(-shift));
+  if (shift > 0)
+    top *= ten(static_cast<unsigned long>(shift));
+  else
+    below *= ten(static_cast<unsigned long>(-shift));
   mpz_class quotient, rest;
   mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), top.get_mpz_t(), below.get_mpz_t());
   std::string digits = quotient.get_str();
@@ -74,7 +172,9 @@ std::string number(const Rational& r) {
   while (digits.size() > 1 && digits.back() == '0') digits.pop_back();
   const std::string sign = num < 0 ? "-" : "";
   if (exponent > std::numeric_limits<double>::max_exponent10 || exponent <= std::numeric_limits<double>::min_exponent10)
-    throw Failure(Span{}, "a number near " + sign + digits.substr(0, 1) + "e" + std::to_string(exponent - 1) + " occurs: double cannot hold it",
+    throw Failure(Span{},
+                  "a number near " + sign + digits.substr(0, 1) + "e" + std::to_string(exponent - 1) +
+                      " occurs: double cannot hold it",
                   "choose units in which numbers lie between 1e-300 and 1e300");
   // A short decimal as one, a quotient of exact numbers as such: either is rounded once.
   if (!(terminates && digits.size() <= 17) && abs(num) < exact_limit && den < exact_limit)
@@ -101,10 +201,13 @@ std::size_t Motion::place(std::size_t variable, unsigned order) const {
 Motion motion(const System& s, const Structure& structure, const EmitOptions& options) {
   const Model& model = *s.model;
   if (!model.states.empty())
-    throw Failure(model.states[0].span, "a program for a model with states ('" + model.states[0].name + "') is not written yet", "anholon simulate computes its motion");
+    throw Failure(model.states[0].span,
+                  "a program for a model with states ('" + model.states[0].name + "') is not written yet",
+                  "anholon simulate computes its motion");
   for (const Event& e : model.events)
     if (!e.set.empty())
-      throw Failure(e.span, "a program for a model whose events set something ('" + e.name + "') is not written yet", "anholon simulate computes its motion");
+      throw Failure(e.span, "a program for a model whose events set something ('" + e.name + "') is not written yet",
+                    "anholon simulate computes its motion");
   Graph& g = *model.graph;
   const std::size_t n = s.size();
   for (NodeId id : symbols(s.equations)) {
@@ -132,9 +235,11 @@ Motion motion(const System& s, const Structure& structure, const EmitOptions& op
   for (int k = 0; k < largest_d; ++k)
     for (std::size_t j = 0; j < n; ++j)
       if (k < structure.d[j]) m.state.push_back({j, static_cast<unsigned>(k)});
-  for (const StateEntry& e : m.state) m.state_names.push_back(derivative_name(s.variable_names[e.variable], e.order, Format::text));
+  for (const StateEntry& e : m.state)
+    m.state_names.push_back(derivative_name(s.variable_names[e.variable], e.order, Format::text));
   for (std::size_t j = 0; j < n; ++j)
-    m.leading_names.push_back(derivative_name(s.variable_names[j], static_cast<unsigned>(structure.d[j]), Format::text));
+    m.leading_names.push_back(
+        derivative_name(s.variable_names[j], static_cast<unsigned>(structure.d[j]), Format::text));
 
   for (std::size_t i = 0; i < n; ++i) {
     const int c = structure.c[i];
@@ -142,7 +247,8 @@ Motion motion(const System& s, const Structure& structure, const EmitOptions& op
     Column leading;
     for (std::size_t j = 0; j < n; ++j)
       leading.push_back(structure.sigma[i][j] != kAbsent && structure.sigma[i][j] == structure.d[j] - c
-                            ? s.symbol(j, static_cast<unsigned>(structure.sigma[i][j])) : g.zero());
+                            ? s.symbol(j, static_cast<unsigned>(structure.sigma[i][j]))
+                            : g.zero());
     // A symbol that is no leading one stands in `leading` as 0, on which nothing depends.
     Column row = gradient(e[0], leading);
     for (std::size_t j = 0; j < n; ++j)
@@ -181,7 +287,9 @@ Motion motion(const System& s, const Structure& structure, const EmitOptions& op
 std::vector<double> start_state(const System& s, const Motion& m, const EmitOptions::Start& start) {
   std::vector<double> out;
   for (const StateEntry& e : m.state)
-    out.push_back(e.variable >= s.coordinates || e.order > 1 ? 0 : e.order == 0 ? start.q[e.variable] : start.qd[e.variable]);
+    out.push_back(e.variable >= s.coordinates || e.order > 1 ? 0
+                  : e.order == 0                             ? start.q[e.variable]
+                                                             : start.qd[e.variable]);
   return out;
 }
 
@@ -190,12 +298,14 @@ std::vector<double> start_state(const System& s, const Motion& m, const EmitOpti
 std::string LocalNames::fresh(const std::string& wanted) {
   std::string name = identifier(wanted, "x");
   // Capitals only may be a macro of math.h.
-  if (name.size() > 2 && std::none_of(name.begin(), name.end(), [](unsigned char c) { return std::islower(c); })) name += '_';
+  if (name.size() > 2 && std::none_of(name.begin(), name.end(), [](unsigned char c) { return std::islower(c); }))
+    name += '_';
   while (!taken_.insert(name).second) name += '_';
   return name;
 }
 
-LocalNames::LocalNames(const System& s, const Structure& structure, const Motion& motion) : taken_(std::begin(kReserved), std::end(kReserved)) {
+LocalNames::LocalNames(const System& s, const Structure& structure, const Motion& motion)
+    : taken_(std::begin(kReserved), std::end(kReserved)) {
   Graph& g = *s.model->graph;
   symbols_[g.time().id] = "t";
   if (!motion.inputs.empty()) taken_.insert({"u", "own"});
@@ -242,23 +352,27 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
   std::vector<std::string> values;
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const Parameter& p = model.parameters[i];
-    values.push_back(p.name + " = " + print(p.value, model.names, Format::text) + (p.doc.empty() ? "" : "    " + p.doc));
+    values.push_back(p.name + " = " + print(p.value, model.names, Format::text) +
+                     (p.doc.empty() ? "" : "    " + p.doc));
   }
   list(values);
   if (!m.inputs.empty()) {
     add("u" + count(m.inputs.size()) + ": inputs; where there is none (a null pointer, None) these formulas give them");
     std::vector<std::string> formulas;
-    for (std::size_t k = 0; k < m.inputs.size(); ++k) formulas.push_back(m.input_names[k] + " = " + print(m.input_values[k], model.names, Format::text));
+    for (std::size_t k = 0; k < m.inputs.size(); ++k)
+      formulas.push_back(m.input_names[k] + " = " + print(m.input_values[k], model.names, Format::text));
     list(formulas);
   }
   add("residual" + count(s.size()) + ": the equations, left side minus right side");
   list(m.equation_names);
   add("jacobian" + count(s.size() * s.size()) + ": derivatives of the residuals (rows) by lead (columns), row by row");
-  if (!m.hidden.empty()) add("hidden" + count(m.hidden.size()) + ": constraints that the state must satisfy; an integrator lets them drift");
+  if (!m.hidden.empty())
+    add("hidden" + count(m.hidden.size()) + ": constraints that the state must satisfy; an integrator lets them drift");
   list(m.hidden_names);
   for (std::size_t r = 0; r < model.constraints.size(); ++r)
     if (std::find(s.constraints.begin(), s.constraints.end(), r) == s.constraints.end())
-      add("The constraint " + model.constraints[r].name + " follows from the others: it is left out, its multiplier is 0.");
+      add("The constraint " + model.constraints[r].name +
+          " follows from the others: it is left out, its multiplier is 0.");
   add(m.linear ? "The equations are linear in lead."
                : "The equations are not linear in lead: Newton's method needs a start that is not too far off.");
   if (structure.state_dimension < static_cast<int>(m.state.size()))

@@ -31,7 +31,7 @@ struct EmitOptions {
     double t = 0;
     std::vector<double> q, qd;  // by coordinate
   };
-  std::optional<Start> start;   // a state to begin with
+  std::optional<Start> start;  // a state to begin with
   std::vector<InputFormula> inputs;
 };
 

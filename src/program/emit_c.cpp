@@ -99,11 +99,14 @@ int $_leading(double t, const double *state, const double *p, double *lead)
 )";
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
   return text;
 }
 
-std::string put(std::string text, const std::string& mark, const std::string& by) { return text.replace(text.find(mark), mark.size(), by); }
+std::string put(std::string text, const std::string& mark, const std::string& by) {
+  return text.replace(text.find(mark), mark.size(), by);
+}
 
 std::vector<std::string> targets(const std::string& array, std::size_t count) {
   std::vector<std::string> out;
@@ -137,17 +140,21 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
   const auto with_inputs = [&](std::string text) {
     if (!inputs) return text;
     text = replaced(std::move(text), "const double *p, double *", "const double *p, const double *u, double *");
-    return replaced(replaced(replaced(std::move(text), "p, f)", "p, u, f)"), "p, a)", "p, u, a)"), "p, lead)", "p, u, lead)");
+    return replaced(replaced(replaced(std::move(text), "p, f)", "p, u, f)"), "p, a)", "p, u, a)"), "p, lead)",
+                    "p, u, lead)");
   };
   // In front of statements that read u.
   const auto own_inputs = [&](const Statements& s) {
-    return !inputs ? std::string() : s.inputs ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n" : "  (void)u;\n";
+    return !inputs    ? std::string()
+           : s.inputs ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n"
+                      : "  (void)u;\n";
   };
   const auto not_read = [](const Statements& s) {
     const bool all = s.inputs;  // handed on to the formulas of the inputs
     return unused({{"t", all || s.time}, {"state", all || s.state}, {"lead", s.lead}, {"p", all || s.parameters}});
   };
-  const std::string arguments = with_inputs("(double t, const double *state, const double *lead, const double *p, double *out)");
+  const std::string arguments =
+      with_inputs("(double t, const double *state, const double *lead, const double *p, double *out)");
   const Statements residual = writer.body(m.residual, targets("out", n));
   Column entries;
   for (const Column& row : m.jacobian) entries.insert(entries.end(), row.begin(), row.end());
@@ -167,7 +174,8 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
   std::string out = R"( *
  * $_defaults      sets p to the default values
 )";
-  if (!derived.empty()) out += " * $_derived       computes anew the parameters that depend on others: call it after a change of p\n";
+  if (!derived.empty())
+    out += " * $_derived       computes anew the parameters that depend on others: call it after a change of p\n";
   if (inputs) out += " * $_inputs        the inputs by the formulas of the model\n";
   out += R"( * $_residual      the equations, out of any state and lead
  * $_jacobian      their derivatives by lead
@@ -199,7 +207,8 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
   std::vector<std::string> parameter_names;
   for (const Parameter& p : system.model->parameters) parameter_names.push_back(p.name);
   out += names_table("$_parameter_names", parameter_names) + names_table("$_state_names", m.state_names) +
-         names_table("$_lead_names", m.leading_names) + (inputs ? names_table("$_input_names", m.input_names) : std::string());
+         names_table("$_lead_names", m.leading_names) +
+         (inputs ? names_table("$_input_names", m.input_names) : std::string());
   if (writer.used_sign()) out += "\nstatic double $_sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }\n";
 
   out += "\nvoid $_defaults(double *p)\n{\n" + unused({{"p", parameters > 0}}) + defaults.text;
@@ -207,7 +216,8 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
   out += "}\n";
   if (inputs)
     out += "\nvoid $_inputs(double t, const double *state, const double *p, double *out)\n{\n" +
-           unused({{"t", formulas.time}, {"state", formulas.state}, {"p", formulas.parameters}}) + formulas.text + "}\n";
+           unused({{"t", formulas.time}, {"state", formulas.state}, {"p", formulas.parameters}}) + formulas.text +
+           "}\n";
   out += "\nvoid $_residual" + arguments + "\n{\n" + own_inputs(residual) + not_read(residual) + residual.text + "}\n";
   out += "\nvoid $_jacobian" + arguments + "\n{\n  int i;\n" + own_inputs(jacobian) + not_read(jacobian) +
          "  for (i = 0; i < $_UNKNOWNS * $_UNKNOWNS; ++i) out[i] = 0;\n" + jacobian.text + "}\n";
@@ -216,29 +226,35 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
          hidden.text + "}\n";
 
   out += kSolver;
-  const std::vector<std::string> factor = {"$_jacobian(t, state, lead, p, a);", "status = $_factor(a, order, row, column);", "if (status) return status;"};
+  const std::vector<std::string> factor = {"$_jacobian(t, state, lead, p, a);",
+                                           "status = $_factor(a, order, row, column);", "if (status) return status;"};
   std::string newton = put(kNewton, "@ONCE", m.linear ? lines(factor, "  ") : "");
   newton = put(newton, "@EACH", m.linear ? "" : lines(factor, "    "));
   newton = with_inputs(newton);
-  out += put(newton, "@SETTLED", m.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size && length > 0.5 * before)");
+  out +=
+      put(newton, "@SETTLED", m.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size && length > 0.5 * before)");
 
-  out += with_inputs("\nint $_rhs(double t, const double *state, const double *p, double *dstate)\n{\n") + unused({{"dstate", !m.state.empty()}}) +
+  out += with_inputs("\nint $_rhs(double t, const double *state, const double *p, double *dstate)\n{\n") +
+         unused({{"dstate", !m.state.empty()}}) +
          with_inputs("  double lead[$_UNKNOWNS] = {0};\n  const int status = $_leading(t, state, p, lead);\n");
   for (std::size_t i = 0; i < m.state.size(); ++i) {
     const StateEntry& e = m.state[i];
     const bool last = static_cast<int>(e.order) + 1 == structure.d[e.variable];
     out += "  dstate[" + std::to_string(i) + "] = " +
-           (last ? "lead[" + std::to_string(e.variable) : "state[" + std::to_string(m.place(e.variable, e.order + 1))) + "];\n";
+           (last ? "lead[" + std::to_string(e.variable) : "state[" + std::to_string(m.place(e.variable, e.order + 1))) +
+           "];\n";
   }
   out += "  return status;\n}\n";
   if (options.start) {
     out += "\nvoid $_start(double *t, double *state)\n{\n  *t = " + number_text(options.start->t) + ";\n";
     const std::vector<double> state = start_state(system, m, *options.start);
-    for (std::size_t i = 0; i < state.size(); ++i) out += "  state[" + std::to_string(i) + "] = " + number_text(state[i]) + ";\n";
+    for (std::size_t i = 0; i < state.size(); ++i)
+      out += "  state[" + std::to_string(i) + "] = " + number_text(state[i]) + ";\n";
     out += "}\n";
   }
   // A title may hold a $ of its own.
-  return "/*\n" + lines(head(system, structure, m, options), " * ") + replaced(out, "$", identifier(options.name, "motion"));
+  return "/*\n" + lines(head(system, structure, m, options), " * ") +
+         replaced(out, "$", identifier(options.name, "motion"));
 }
 
 }  // namespace anholon

@@ -50,7 +50,9 @@ def leading(t, state, p=None, start=None@GIVEN):
     raise ArithmeticError("Newton's method for the leading derivatives does not converge")
 )";
 
-std::string put(std::string text, const std::string& mark, const std::string& by) { return text.replace(text.find(mark), mark.size(), by); }
+std::string put(std::string text, const std::string& mark, const std::string& by) {
+  return text.replace(text.find(mark), mark.size(), by);
+}
 
 std::string table(const std::string& name, const std::vector<std::string>& list) {
   std::string out = name + " = (\n";
@@ -61,7 +63,8 @@ std::string table(const std::string& name, const std::vector<std::string>& list)
 std::vector<std::string> targets(std::size_t count, std::size_t columns = 0) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < count; ++i)
-    out.push_back(columns == 0 ? "out[" + std::to_string(i) + "]" : "out[" + std::to_string(i / columns) + ", " + std::to_string(i % columns) + "]");
+    out.push_back(columns == 0 ? "out[" + std::to_string(i) + "]"
+                               : "out[" + std::to_string(i / columns) + ", " + std::to_string(i % columns) + "]");
   return out;
 }
 
@@ -108,7 +111,8 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
 )";
   if (!options.start) out = put(out, "START", "start");
   out += "import numpy as np\n\n" + table("STATE", m.state_names) + table("LEAD", m.leading_names) +
-         table("PARAMETERS", parameter_names) + table("HIDDEN", m.hidden_names) + (inputs ? table("INPUTS", m.input_names) : "");
+         table("PARAMETERS", parameter_names) + table("HIDDEN", m.hidden_names) +
+         (inputs ? table("INPUTS", m.input_names) : "");
   if (options.start) {
     out += "T0 = " + number_text(options.start->t) + "\nSTART = np.array([";
     const std::vector<double> state = start_state(system, m, *options.start);
@@ -116,42 +120,53 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     out += state.empty() ? "], dtype=float)\n" : "\n], dtype=float)\n";
   }
 
-  out += "\n\ndef defaults():\n    \"\"\"The default values of the parameters.\"\"\"\n    p = np.empty(len(PARAMETERS))\n" +
+  out += "\n\ndef defaults():\n    \"\"\"The default values of the parameters.\"\"\"\n    p = "
+         "np.empty(len(PARAMETERS))\n" +
          writer.body(free, free_targets).text + (derived.empty() ? "    return p\n" : "    return derived(p)\n");
   if (!derived.empty())
-    out += "\n\ndef derived(p):\n    \"\"\"Computes anew, in p, the parameters that depend on others: call it after a change of p.\"\"\"\n" +
+    out += "\n\ndef derived(p):\n    \"\"\"Computes anew, in p, the parameters that depend on others: call it after a "
+           "change of p.\"\"\"\n" +
            writer.body(derived, derived_targets).text + "    return p\n";
   out += "\n\nDEFAULTS = defaults()\n";
 
   if (inputs) {
     const Statements formulas = writer.body(m.input_values, targets(m.inputs.size()));
-    out += "\n\ndef inputs(t, state, p=None):\n    \"\"\"The inputs by the formulas of the model.\"\"\"\n" + arrays(formulas) +
-           "    out = np.empty((len(INPUTS),) + state.shape[1:])\n" + formulas.text + "    return out\n";
+    out += "\n\ndef inputs(t, state, p=None):\n    \"\"\"The inputs by the formulas of the model.\"\"\"\n" +
+           arrays(formulas) + "    out = np.empty((len(INPUTS),) + state.shape[1:])\n" + formulas.text +
+           "    return out\n";
   }
   const Statements residual = writer.body(m.residual, targets(n));
-  out += "\n\ndef residual(t, state, lead, p=None" + u_argument + "):\n    \"\"\"The equations, left side minus right side.\"\"\"\n" + arrays(residual) +
+  out += "\n\ndef residual(t, state, lead, p=None" + u_argument +
+         "):\n    \"\"\"The equations, left side minus right side.\"\"\"\n" + arrays(residual) +
          "    out = np.empty((len(LEAD),) + state.shape[1:])\n" + residual.text + "    return out\n";
   Column entries;
   for (const Column& row : m.jacobian) entries.insert(entries.end(), row.begin(), row.end());
   const Statements jacobian = writer.body(entries, targets(n * n, n), true);
-  out += "\n\ndef jacobian(t, state, lead, p=None" + u_argument + "):\n    \"\"\"The derivatives of the residuals by lead.\"\"\"\n" + arrays(jacobian) +
+  out += "\n\ndef jacobian(t, state, lead, p=None" + u_argument +
+         "):\n    \"\"\"The derivatives of the residuals by lead.\"\"\"\n" + arrays(jacobian) +
          "    out = np.zeros((len(LEAD), len(LEAD)) + state.shape[1:])\n" + jacobian.text + "    return out\n";
   const Statements hidden = writer.body(m.hidden, targets(m.hidden.size()));
-  out += "\n\ndef hidden(t, state, p=None):\n    \"\"\"What must be zero at a state that satisfies the constraints.\"\"\"\n" + arrays(hidden) +
-         "    out = np.empty((len(HIDDEN),) + state.shape[1:])\n" + hidden.text + "    return out\n";
+  out += "\n\ndef hidden(t, state, p=None):\n    \"\"\"What must be zero at a state that satisfies the "
+         "constraints.\"\"\"\n" +
+         arrays(hidden) + "    out = np.empty((len(HIDDEN),) + state.shape[1:])\n" + hidden.text + "    return out\n";
 
   const std::string factor = "a, row, column = _scaled(jacobian(t, state, lead, p" + u + "))\n";
-  std::string newton = put(put(put(kNewton, "@GIVEN", u_argument), "@INPUTS", u), "@ONCE", m.linear ? "    " + factor : "");
+  std::string newton =
+      put(put(put(kNewton, "@GIVEN", u_argument), "@INPUTS", u), "@ONCE", m.linear ? "    " + factor : "");
   newton = put(newton, "@EACH", m.linear ? "" : "        " + factor);
-  out += "\n" + put(newton, "@SETTLED", m.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size and length > 0.5 * before)");
+  out += "\n" + put(newton, "@SETTLED",
+                    m.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size and length > 0.5 * before)");
 
-  out += "\n\ndef rhs(t, state, p=None" + u_argument + "):\n    \"\"\"d state / dt\"\"\"\n"
-         "    lead = leading(t, state, p" + (inputs ? ", u=u" : "") + ")\n    out = np.empty(len(STATE))\n";
+  out += "\n\ndef rhs(t, state, p=None" + u_argument +
+         "):\n    \"\"\"d state / dt\"\"\"\n"
+         "    lead = leading(t, state, p" +
+         (inputs ? ", u=u" : "") + ")\n    out = np.empty(len(STATE))\n";
   for (std::size_t i = 0; i < m.state.size(); ++i) {
     const StateEntry& e = m.state[i];
     const bool last = static_cast<int>(e.order) + 1 == structure.d[e.variable];
     out += "    out[" + std::to_string(i) + "] = " +
-           (last ? "lead[" + std::to_string(e.variable) : "state[" + std::to_string(m.place(e.variable, e.order + 1))) + "]\n";
+           (last ? "lead[" + std::to_string(e.variable) : "state[" + std::to_string(m.place(e.variable, e.order + 1))) +
+           "]\n";
   }
   out += "    return out\n";
   if (options.start)

@@ -21,22 +21,38 @@ constexpr int kSum = 1, kProduct = 2, kPower = 3, kAtom = 4;
 const char* function_name(Function f, Language language) {
   const bool c = language == Language::c;
   switch (f) {
-    case Function::sin: return c ? "sin" : "np.sin";
-    case Function::cos: return c ? "cos" : "np.cos";
-    case Function::tan: return c ? "tan" : "np.tan";
-    case Function::asin: return c ? "asin" : "np.arcsin";
-    case Function::acos: return c ? "acos" : "np.arccos";
-    case Function::atan: return c ? "atan" : "np.arctan";
-    case Function::sinh: return c ? "sinh" : "np.sinh";
-    case Function::cosh: return c ? "cosh" : "np.cosh";
-    case Function::tanh: return c ? "tanh" : "np.tanh";
-    case Function::asinh: return c ? "asinh" : "np.arcsinh";
-    case Function::acosh: return c ? "acosh" : "np.arccosh";
-    case Function::atanh: return c ? "atanh" : "np.arctanh";
-    case Function::exp: return c ? "exp" : "np.exp";
-    case Function::log: return c ? "log" : "np.log";
-    case Function::abs: return c ? "fabs" : "np.abs";
-    case Function::sign: return c ? "$_sign" : "np.sign";
+  case Function::sin:
+    return c ? "sin" : "np.sin";
+  case Function::cos:
+    return c ? "cos" : "np.cos";
+  case Function::tan:
+    return c ? "tan" : "np.tan";
+  case Function::asin:
+    return c ? "asin" : "np.arcsin";
+  case Function::acos:
+    return c ? "acos" : "np.arccos";
+  case Function::atan:
+    return c ? "atan" : "np.arctan";
+  case Function::sinh:
+    return c ? "sinh" : "np.sinh";
+  case Function::cosh:
+    return c ? "cosh" : "np.cosh";
+  case Function::tanh:
+    return c ? "tanh" : "np.tanh";
+  case Function::asinh:
+    return c ? "asinh" : "np.arcsinh";
+  case Function::acosh:
+    return c ? "acosh" : "np.arccosh";
+  case Function::atanh:
+    return c ? "atanh" : "np.arctanh";
+  case Function::exp:
+    return c ? "exp" : "np.exp";
+  case Function::log:
+    return c ? "log" : "np.log";
+  case Function::abs:
+    return c ? "fabs" : "np.abs";
+  case Function::sign:
+    return c ? "$_sign" : "np.sign";
   }
   return "";
 }
@@ -50,8 +66,10 @@ std::size_t bases(const Rational& exponent) {
 
 }  // namespace
 
-Writer::Writer(const System& system, const Structure& structure, const Motion& motion, const LocalNames& names, Language language)
-    : g_(*system.model->graph), system_(system), structure_(structure), motion_(motion), names_(names), language_(language) {}
+Writer::Writer(const System& system, const Structure& structure, const Motion& motion, const LocalNames& names,
+               Language language)
+    : g_(*system.model->graph), system_(system), structure_(structure), motion_(motion), names_(names),
+      language_(language) {}
 
 std::string Writer::wrapped(const Text& t, int strength) { return t.strength >= strength ? t.s : "(" + t.s + ")"; }
 
@@ -82,11 +100,15 @@ std::vector<Writer::Piece> Writer::product(NodeId id) {
   std::vector<Text> bottom;
   std::vector<Piece> out;
   // x*x may stand among other factors as it is, a quotient of numbers not.
-  const auto factor = [](const Text& x) { return x.s.find('/') == std::string::npos ? wrapped(x, kProduct) : wrapped(x, kPower); };
+  const auto factor = [](const Text& x) {
+    return x.s.find('/') == std::string::npos ? wrapped(x, kProduct) : wrapped(x, kPower);
+  };
   for (const Term& t : g_.terms(id)) {
     const Rational& e = g_.rational(t.weight);
-    if (e < 0) bottom.push_back(power(t.node, -e));
-    else out.push_back({'*', factor(power(t.node, e))});
+    if (e < 0)
+      bottom.push_back(power(t.node, -e));
+    else
+      out.push_back({'*', factor(power(t.node, e))});
   }
   if (bottom.size() > 1 && bottom.size() <= kMostPieces) {
     std::string all;
@@ -110,9 +132,12 @@ std::vector<Writer::Piece> Writer::sum(NodeId id) {
     const Text& x = text_.at(t.node);
     const char op = c < 0 ? '-' : '+';
     c = abs(c);
-    if (c == 1) out.push_back({op, wrapped(x, kProduct)});
-    else if (x.strength == kProduct && x.s.compare(0, 4, "1.0/") == 0) out.push_back({op, number(c) + x.s.substr(3)});
-    else out.push_back({op, number(c) + "*" + wrapped(x, kProduct)});
+    if (c == 1)
+      out.push_back({op, wrapped(x, kProduct)});
+    else if (x.strength == kProduct && x.s.compare(0, 4, "1.0/") == 0)
+      out.push_back({op, number(c) + x.s.substr(3)});
+    else
+      out.push_back({op, number(c) + "*" + wrapped(x, kProduct)});
   }
   return out;
 }
@@ -120,7 +145,8 @@ std::vector<Writer::Piece> Writer::sum(NodeId id) {
 std::string Writer::call(NodeId id) {
   const Node& n = g_.node(id);
   const auto choice = [&](const std::string& condition, const std::string& a, const std::string& b) {
-    return language_ == Language::c ? "(" + condition + " ? " + a + " : " + b + ")" : "np.where(" + condition + ", " + a + ", " + b + ")";
+    return language_ == Language::c ? "(" + condition + " ? " + a + " : " + b + ")"
+                                    : "np.where(" + condition + ", " + a + ", " + b + ")";
   };
   if (n.kind == Kind::select) {
     const std::span<const Term> t = g_.terms(id);
@@ -134,7 +160,8 @@ std::string Writer::call(NodeId id) {
       for (const Rational& r : numbers) out += (out.empty() ? "" : ", ") + number(r);
       return "[" + out + "]";
     };
-    if (language_ == Language::python) return "np.take(" + list(f.values) + ", np.searchsorted(" + list(f.knots) + ", " + x + ", side='right'))";
+    if (language_ == Language::python)
+      return "np.take(" + list(f.values) + ", np.searchsorted(" + list(f.knots) + ", " + x + ", side='right'))";
     // By halves: compilers recurse over what is nested.
     const std::function<std::string(std::size_t, std::size_t)> among = [&](std::size_t from, std::size_t to) {
       if (from == to) return number(f.values[from]);
@@ -153,10 +180,14 @@ std::string Writer::call(NodeId id) {
 
 static std::string joined(char op, const std::string& s, bool first) {
   switch (op) {
-    case '+': return first ? s : " + " + s;
-    case '-': return first ? "-" + s : " - " + s;
-    case '*': return first ? s : "*" + s;
-    default: return first ? "1.0/" + s : "/" + s;
+  case '+':
+    return first ? s : " + " + s;
+  case '-':
+    return first ? "-" + s : " - " + s;
+  case '*':
+    return first ? s : "*" + s;
+  default:
+    return first ? "1.0/" + s : "/" + s;
   }
 }
 
@@ -186,8 +217,10 @@ std::string Writer::assign(const std::string& name, const std::vector<Piece>& al
     text += line;
     // What a line break would end in Python, brackets hold together.
     if (!c && broken) {
-      if (from > 0) out += begin.substr(0, begin.size() - name.size()) + "(" + name + text + ")\n";
-      else out += begin + "(" + text + ")\n";
+      if (from > 0)
+        out += begin.substr(0, begin.size() - name.size()) + "(" + name + text + ")\n";
+      else
+        out += begin + "(" + text + ")\n";
     } else {
       out += begin + text + (c ? ";\n" : "\n");
     }
@@ -200,21 +233,39 @@ void Writer::write(NodeId id, Statements& body) {
   std::vector<Piece> pieces;
   int strength = kAtom;
   switch (n.kind) {
-    case Kind::number: {
-      const std::string s = number(g_.value(id));
-      text_[id] = {s, s[0] == '-' ? kSum : s.find('/') != std::string::npos ? kProduct : kAtom};
-      return;
-    }
-    case Kind::pi: text_[id] = {language_ == Language::c ? "3.14159265358979323846" : "np.pi", kAtom}; return;
-    case Kind::time: case Kind::jet: case Kind::parameter: case Kind::multiplier: case Kind::control:
-      text_[id] = {names_.symbol(id), kAtom};
-      return;
-    case Kind::mass: case Kind::given: case Kind::quasi: case Kind::state:
-      ANHOLON_ASSERT(!"a frozen mass, unknown function, quasi-velocity or state in a program");
-      return;
-    case Kind::sum: pieces = sum(id), strength = kSum; break;
-    case Kind::product: pieces = product(id), strength = kProduct; break;
-    case Kind::function: case Kind::atan2: case Kind::select: case Kind::lookup: pieces = {{'*', call(id)}}; break;
+  case Kind::number: {
+    const std::string s = number(g_.value(id));
+    text_[id] = {s, s[0] == '-' ? kSum : s.find('/') != std::string::npos ? kProduct : kAtom};
+    return;
+  }
+  case Kind::pi:
+    text_[id] = {language_ == Language::c ? "3.14159265358979323846" : "np.pi", kAtom};
+    return;
+  case Kind::time:
+  case Kind::jet:
+  case Kind::parameter:
+  case Kind::multiplier:
+  case Kind::control:
+    text_[id] = {names_.symbol(id), kAtom};
+    return;
+  case Kind::mass:
+  case Kind::given:
+  case Kind::quasi:
+  case Kind::state:
+    ANHOLON_ASSERT(!"a frozen mass, unknown function, quasi-velocity or state in a program");
+    return;
+  case Kind::sum:
+    pieces = sum(id), strength = kSum;
+    break;
+  case Kind::product:
+    pieces = product(id), strength = kProduct;
+    break;
+  case Kind::function:
+  case Kind::atan2:
+  case Kind::select:
+  case Kind::lookup:
+    pieces = {{'*', call(id)}};
+    break;
   }
   std::size_t length = 0;
   for (const Piece& p : pieces) length += p.s.size() + 3;
@@ -242,8 +293,10 @@ void Writer::load(const std::vector<NodeId>& ids, Statements& body) {
     }
     const auto j = system_.variable(id);
     if (!j) continue;
-    if (static_cast<int>(n.order) < structure_.d[*j]) state.push_back({motion_.place(*j, n.order), id});
-    else lead.push_back({*j, id});
+    if (static_cast<int>(n.order) < structure_.d[*j])
+      state.push_back({motion_.place(*j, n.order), id});
+    else
+      lead.push_back({*j, id});
   }
   const auto read = [&](std::vector<std::pair<std::size_t, NodeId>>& list, const char* array) {
     std::sort(list.begin(), list.end());

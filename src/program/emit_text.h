@@ -57,7 +57,8 @@ std::string identifier(const std::string& text, const std::string& otherwise);
 // A number of the house as a number of both languages: 2.5, 2.0/3.0, 1e-9.
 std::string number(const Rational& r);
 
-// The statements of one function. Where a name that C gives the file is needed stands $. A node that is used more than once, or long, gets a variable.
+// The statements of one function. Where a name that C gives the file is needed stands $. A node that is used more than
+// once, or long, gets a variable.
 struct Statements {
   std::string text;
   bool time = false, state = false, lead = false, parameters = false, inputs = false;  // what it reads
@@ -65,7 +66,8 @@ struct Statements {
 
 class Writer {
  public:
-  Writer(const System& system, const Structure& structure, const Motion& motion, const LocalNames& names, Language language);
+  Writer(const System& system, const Structure& structure, const Motion& motion, const LocalNames& names,
+         Language language);
   // targets[i] = es[i], after the variables; structural zeros are left out if `sparse`.
   Statements body(const Column& es, const std::vector<std::string>& targets, bool sparse = false);
   bool used_sign() const { return used_sign_; }

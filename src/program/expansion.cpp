@@ -13,7 +13,8 @@ constexpr int kMostProjections = 4;
 // An LU whose smallest scaled singular value is below this many round-offs is singular.
 constexpr int kSingularRoundoffs = 50;
 
-// to! / from!. A quotient of factorials is rounded, and in the same way at every step, so that the errors of a motion would add up; this product is exact.
+// to! / from!. A quotient of factorials is rounded, and in the same way at every step, so that the errors of a motion
+// would add up; this product is exact.
 template <Number N>
 N rising(std::size_t from, std::size_t to) {
   N product(1);
@@ -24,7 +25,8 @@ N rising(std::size_t from, std::size_t to) {
 
 template <Number N>
 Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters, int stages)
-    : program_(&program), parameters_(parameters), stages_(stages), machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters) {
+    : program_(&program), parameters_(parameters), stages_(stages),
+      machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters) {
   const int largest_d = *std::max_element(program.d.begin(), program.d.end());
   stride_ = static_cast<std::size_t>(stages + largest_d + 2);
   x_.assign(program.unknowns() * stride_, N(0));
@@ -83,14 +85,17 @@ void Expansion<N>::set_inputs(int stage, std::size_t from, std::size_t to) {
     if (p < 0) continue;
     N& w = machine_.series(in.slot)[p];
     switch (in.kind) {
-      case ProgramInput::Kind::time: w = p == 0 ? t_ : p == 1 ? N(1) : N(0); break;
-      case ProgramInput::Kind::variable: {
-        // (x^(k))_p = x_(p+k) (p+k)! / p!
-        const std::size_t up = static_cast<std::size_t>(p), k = up + static_cast<std::size_t>(in.order);
-        w = k < stride_ ? x_[in.variable * stride_ + k] * rising<N>(up, k) : N(0);
-        break;
-      }
-      case ProgramInput::Kind::other: break;
+    case ProgramInput::Kind::time:
+      w = p == 0 ? t_ : p == 1 ? N(1) : N(0);
+      break;
+    case ProgramInput::Kind::variable: {
+      // (x^(k))_p = x_(p+k) (p+k)! / p!
+      const std::size_t up = static_cast<std::size_t>(p), k = up + static_cast<std::size_t>(in.order);
+      w = k < stride_ ? x_[in.variable * stride_ + k] * rising<N>(up, k) : N(0);
+      break;
+    }
+    case ProgramInput::Kind::other:
+      break;
     }
   }
 }
@@ -194,17 +199,22 @@ Outcome Expansion<N>::singular() const {
     return {OutcomeKind::singular,
             "singular configuration: the constraint " + names + " has lost its hold" +
                 (vanishes ? " (all its coefficients vanish)" : " (its coefficients depend on those of the others)"),
-            "start or stop the motion away from this configuration, or write the constraint in a form that is regular here"};
+            "start or stop the motion away from this configuration, or write the constraint in a form that is regular "
+            "here"};
   }
   const RowChoice<N> all = choose_rows(j_, N(kLost));
   std::vector<bool> used(s.size(), false);
   for (std::size_t column : all.pivot_columns) used[column] = true;
   std::string names;
   for (std::size_t j = 0; j < s.size(); ++j)
-    if (!used[j]) names += (names.empty() ? "" : ", ") + derivative_name(s.variable_names[j], static_cast<unsigned>(program_->d[j]), Format::text);
+    if (!used[j])
+      names += (names.empty() ? "" : ", ") +
+               derivative_name(s.variable_names[j], static_cast<unsigned>(program_->d[j]), Format::text);
   return {OutcomeKind::singular,
-          "singular configuration: the equations do not determine " + (names.empty() ? std::string("the accelerations") : names),
-          "no inertia acts in some direction, a constraint has lost its hold, or angles are at their singularity (Euler angles "
+          "singular configuration: the equations do not determine " +
+              (names.empty() ? std::string("the accelerations") : names),
+          "no inertia acts in some direction, a constraint has lost its hold, or angles are at their singularity "
+          "(Euler angles "
           "at theta = 0)"};
 }
 
@@ -219,8 +229,8 @@ N Expansion<N>::terms_of(std::size_t i, int level) const {
   return moved > scale ? moved : scale;
 }
 
-// The greatest x_j^(d_j - level), or force that makes one, as J balanced measures them. Where a whole level is round-off of what those above and below
-// make of it (the velocities of a motion at rest), that counts.
+// The greatest x_j^(d_j - level), or force that makes one, as J balanced measures them. Where a whole level is
+// round-off of what those above and below make of it (the velocities of a motion at rest), that counts.
 template <Number N>
 const N& Expansion<N>::balanced_size(int level) const {
   const Program& p = *program_;
@@ -278,7 +288,8 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
   return any;
 }
 
-// How far the state lies from the hidden constraints of a level, in relation to its size: residuals r in relation to their rows of J.
+// How far the state lies from the hidden constraints of a level, in relation to its size: residuals r in relation to
+// their rows of J.
 template <Number N>
 N Expansion<N>::displacement(int level, const std::vector<N>& r) const {
   const Program& p = *program_;
@@ -317,8 +328,7 @@ Outcome Expansion<N>::project(const Solver& solver) {
       if (k == 0)
         if (const N d = displacement(level, r_); d > drift_) drift_ = d;
       if (!any || !(worst > quiet)) break;
-      if (!is_finite(worst))
-        return fault_outcome(*program_, machine_, -level);
+      if (!is_finite(worst)) return fault_outcome(*program_, machine_, -level);
       if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;
       before = worst;
       solver(r_, y_);

@@ -72,8 +72,8 @@ class Expansion {
   const Lu<N>& lu() const { return lu_; }
   // Coefficients of all stages 1..stages().
   Outcome extend();
-  // In place of extend(), where formulas have no derivatives: the polynomials end with these leading derivatives, and all other series with the
-  // coefficients of stage 0.
+  // In place of extend(), where formulas have no derivatives: the polynomials end with these leading derivatives, and
+  // all other series with the coefficients of stage 0.
   void cut_to(const std::vector<N>& leading);
 
   // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms (numeric/relative.h), at the state as
@@ -82,11 +82,14 @@ class Expansion {
   // How far project() found the state from the hidden constraints, in relation to the state's size.
   const N& drift() const { return drift_; }
   // That of derivative k < c_i of equation i alone.
-  const N& hidden_residual(std::size_t i, int k) const { return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)]; }
+  const N& hidden_residual(std::size_t i, int k) const {
+    return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)];
+  }
   // Residual of the equations at the leading derivatives found, in relation to their terms.
   const N& equation_residual() const { return equation_residual_; }
-  // The greatest of all terms at derivative order c_i - level, in the units of equation i, after prepare(). Round-off of that is what its residual
-  // may be, even where all its own terms vanish: it comes with the numbers that were solved for together.
+  // The greatest of all terms at derivative order c_i - level, in the units of equation i, after prepare(). Round-off
+  // of that is what its residual may be, even where all its own terms vanish: it comes with the numbers that were
+  // solved for together.
   N size_of_level(int level, std::size_t i) const;
   N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
   // The unknowns' change that J shows least; its iteration goes on from here.
@@ -132,15 +135,15 @@ class Expansion {
   std::vector<std::size_t> offset_;
   Machine<N> machine_;
   N t_{0};
-  std::vector<N> x_;           // Taylor coefficients of the unknowns
+  std::vector<N> x_;  // Taylor coefficients of the unknowns
   std::vector<N> factorial_;
   Matrix<N> tangent_, j_;
   Lu<N> lu_;
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_, delta_x_, r_, y_, direction_;
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
-  std::vector<N> hidden_;      // residuals of the hidden constraints, equation by equation
-  mutable std::optional<Balance> balance_;   // of J
+  std::vector<N> hidden_;                       // residuals of the hidden constraints, equation by equation
+  mutable std::optional<Balance> balance_;      // of J
   mutable std::vector<std::optional<N>> size_;  // of each level, balanced, as the point is
   std::vector<std::size_t> hidden_offset_;
 };

@@ -36,12 +36,26 @@ Described described(const Program& p, std::uint32_t slot) {
     return text.empty() ? std::string("...") : text;
   };
   switch (in.op) {
-    case Op::power: return {power_text(name(in.a), p.tape.rationals[in.index]), in.a};
-    case Op::divide: return {"a division by " + name(in.b), in.b};
-    case Op::arctan2: return {"atan2(" + name(in.a) + ", " + name(in.b) + ")", in.a};
-    case Op::function: return {short_text(p, slot).empty() ? "a function of " + name(in.a) : short_text(p, slot), in.a};
-    case Op::constant: case Op::pi: case Op::input: case Op::parameter: case Op::linear: case Op::multiply: case Op::scale: case Op::square: case Op::select:
-    case Op::lookup: case Op::rate: break;
+  case Op::power:
+    return {power_text(name(in.a), p.tape.rationals[in.index]), in.a};
+  case Op::divide:
+    return {"a division by " + name(in.b), in.b};
+  case Op::arctan2:
+    return {"atan2(" + name(in.a) + ", " + name(in.b) + ")", in.a};
+  case Op::function:
+    return {short_text(p, slot).empty() ? "a function of " + name(in.a) : short_text(p, slot), in.a};
+  case Op::constant:
+  case Op::pi:
+  case Op::input:
+  case Op::parameter:
+  case Op::linear:
+  case Op::multiply:
+  case Op::scale:
+  case Op::square:
+  case Op::select:
+  case Op::lookup:
+  case Op::rate:
+    break;
   }
   return {short_text(p, slot).empty() ? "a formula" : short_text(p, slot), slot};
 }
@@ -64,19 +78,22 @@ template <Number N>
 Outcome fault_outcome(const Program& program, const Machine<N>& machine, int last_stage) {
   const std::optional<std::uint32_t> slot = first_fault(program, machine, last_stage);
   if (!slot)
-    return {OutcomeKind::not_a_number, "the equations have no finite solution", "start or stop the motion away from this point, or change the formulas"};
+    return {OutcomeKind::not_a_number, "the equations have no finite solution",
+            "start or stop the motion away from this point, or change the formulas"};
   const Described d = described(program, *slot);
   const bool value = is_finite(machine.series(*slot)[0]);
   std::string message = d.formula + (value ? " has no derivatives" : " has no value");
   if (d.argument != *slot) {
     const std::string argument = short_text(program, d.argument);
-    if (!argument.empty()) message += ", where " + argument + " = " + number_text(to_double(machine.series(d.argument)[0]), 6);
+    if (!argument.empty())
+      message += ", where " + argument + " = " + number_text(to_double(machine.series(d.argument)[0]), 6);
   }
-  return {OutcomeKind::not_a_number, std::move(message), "start or stop the motion away from this point, or change the formula so that it is smooth here"};
+  return {OutcomeKind::not_a_number, std::move(message),
+          "start or stop the motion away from this point, or change the formula so that it is smooth here"};
 }
 
-#define INSTANTIATE(N)                                                                                        \
-  template std::optional<std::uint32_t> first_fault<N>(const Program&, const Machine<N>&, int);              \
+#define INSTANTIATE(N)                                                                                                 \
+  template std::optional<std::uint32_t> first_fault<N>(const Program&, const Machine<N>&, int);                        \
   template Outcome fault_outcome<N>(const Program&, const Machine<N>&, int);
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -19,8 +19,8 @@ Outcome Expansion<N>::solve(const Solver& solver) {
   return newton(solver, false);
 }
 
-// Whether no residual of the equations exceeds what the rounding of its evaluation may leave. Terms that vanish together count where they are made:
-// a small factor may stand before a difference of large accelerations.
+// Whether no residual of the equations exceeds what the rounding of its evaluation may leave. Terms that vanish
+// together count where they are made: a small factor may stand before a difference of large accelerations.
 template <Number N>
 bool Expansion<N>::left_is_roundoff() const {
   const Program& p = *program_;
@@ -60,8 +60,9 @@ bool Expansion<N>::left_is_roundoff() const {
   return true;
 }
 
-// A step from where all residuals are round-off of their terms is round-off itself, however large: J^-1 times that. It leads to a solution as good as any, and
-// no further step gains. Nothing is asked of the sizes of steps: where J is nearly singular, or masses are very different, they do not shrink.
+// A step from where all residuals are round-off of their terms is round-off itself, however large: J^-1 times that. It
+// leads to a solution as good as any, and no further step gains. Nothing is asked of the sizes of steps: where J is
+// nearly singular, or masses are very different, they do not shrink.
 template <Number N>
 Outcome Expansion<N>::newton(const Solver& solver, bool own) {
   const Program& p = *program_;
@@ -86,7 +87,8 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
       if (abs(y_[j]) > step) step = abs(y_[j]);
       if (N v = abs(x) * factorial_[static_cast<std::size_t>(p.d[j])]; v > size) size = v;
     }
-    // What is left is below the range of the numbers that solve for it: a function that all but vanishes, the only force.
+    // What is left is below the range of the numbers that solve for it: a function that all but vanishes, the only
+    // force.
     if (!(step > N(0))) return {};
     sweep(0);
     // The terms of a guess may be larger than those of the solution.
@@ -106,15 +108,16 @@ Outcome Expansion<N>::unsolved() const {
   if (program_->nonlinear)
     return {OutcomeKind::no_convergence, "Newton's iteration for the leading derivatives did not converge",
             "the equations may have no real solution here (a branch ends), or another branch is near: give a guess"};
-  return {OutcomeKind::no_convergence, "the equations are so nearly singular that round-off hides their solution for the leading derivatives",
+  return {OutcomeKind::no_convergence,
+          "the equations are so nearly singular that round-off hides their solution for the leading derivatives",
           "ask for more digits (--digits 30), or write coordinates and constraints so that they are regular here"};
 }
 
-#define INSTANTIATE(N)                             \
-  template Outcome Expansion<N>::solve();          \
-  template Outcome Expansion<N>::solve(const Solver&); \
-  template Outcome Expansion<N>::newton(const Solver&, bool); \
-  template bool Expansion<N>::left_is_roundoff() const; \
+#define INSTANTIATE(N)                                                                                                 \
+  template Outcome Expansion<N>::solve();                                                                              \
+  template Outcome Expansion<N>::solve(const Solver&);                                                                 \
+  template Outcome Expansion<N>::newton(const Solver&, bool);                                                          \
+  template bool Expansion<N>::left_is_roundoff() const;                                                                \
   template Outcome Expansion<N>::unsolved() const;
 INSTANTIATE(double)
 INSTANTIATE(long double)

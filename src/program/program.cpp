@@ -43,22 +43,39 @@ Program program(const System& system, const Structure& structure, std::span<cons
     const Instruction& in = code[s];
     TaintedSlot t{s, 0, false, false};
     switch (in.op) {
-      case Op::constant: case Op::pi: case Op::input: case Op::parameter: case Op::lookup: continue;
-      case Op::linear:
-        for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
-          t.a = t.a || tainted(p.tape.linear_terms[k].slot, in.lead);
-        break;
-      case Op::multiply: case Op::scale: case Op::divide: case Op::arctan2: case Op::select:
-        t.a = tainted(in.a, in.lead);
-        t.b = tainted(in.b, in.lead);
-        break;
-      case Op::square: case Op::power: case Op::function: t.a = tainted(in.a, in.lead); break;
-      case Op::rate: t.a = tainted(in.a, static_cast<std::uint8_t>(in.lead + in.index)); break;
+    case Op::constant:
+    case Op::pi:
+    case Op::input:
+    case Op::parameter:
+    case Op::lookup:
+      continue;
+    case Op::linear:
+      for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+        t.a = t.a || tainted(p.tape.linear_terms[k].slot, in.lead);
+      break;
+    case Op::multiply:
+    case Op::scale:
+    case Op::divide:
+    case Op::arctan2:
+    case Op::select:
+      t.a = tainted(in.a, in.lead);
+      t.b = tainted(in.b, in.lead);
+      break;
+    case Op::square:
+    case Op::power:
+    case Op::function:
+      t.a = tainted(in.a, in.lead);
+      break;
+    case Op::rate:
+      t.a = tainted(in.a, static_cast<std::uint8_t>(in.lead + in.index));
+      break;
     }
     if (!t.a && !t.b) continue;
     // At higher orders of the series (leads above 0) they enter linearly whatever the operation.
     const bool product = in.op == Op::multiply || in.op == Op::scale;
-    if (in.lead == 0 && in.op != Op::linear && in.op != Op::select && in.op != Op::rate && (product ? t.a && t.b : in.op != Op::divide || t.b)) p.nonlinear = true;
+    if (in.lead == 0 && in.op != Op::linear && in.op != Op::select && in.op != Op::rate &&
+        (product ? t.a && t.b : in.op != Op::divide || t.b))
+      p.nonlinear = true;
     t.row = static_cast<std::uint32_t>(p.tangent_rows++);
     p.tangent_row[s] = t.row;
     p.tainted.push_back(t);
@@ -71,10 +88,28 @@ ProgramSize size(const Program& p) {
   for (const Instruction& in : p.tape.code) {
     if (in.constant) continue;
     switch (in.op) {
-      case Op::constant: case Op::pi: case Op::input: case Op::parameter: break;
-      case Op::linear: case Op::scale: case Op::select: case Op::lookup: case Op::rate: ++r.linear; break;
-      case Op::multiply: case Op::square: case Op::divide: ++r.products; break;
-      case Op::power: case Op::function: case Op::arctan2: ++r.functions; break;
+    case Op::constant:
+    case Op::pi:
+    case Op::input:
+    case Op::parameter:
+      break;
+    case Op::linear:
+    case Op::scale:
+    case Op::select:
+    case Op::lookup:
+    case Op::rate:
+      ++r.linear;
+      break;
+    case Op::multiply:
+    case Op::square:
+    case Op::divide:
+      ++r.products;
+      break;
+    case Op::power:
+    case Op::function:
+    case Op::arctan2:
+      ++r.functions;
+      break;
     }
   }
   return r;
@@ -84,29 +119,43 @@ static std::string line(const Program& p, std::uint32_t s) {
   const Instruction& in = p.tape.code[s];
   const auto slot = [](std::uint32_t k) { return "s" + std::to_string(k); };
   switch (in.op) {
-    case Op::constant: return p.tape.rationals[in.index].get_str();
-    case Op::pi: return "pi";
-    case Op::parameter: return p.system->model->names.parameters[in.index];
-    case Op::input:
-      return print(Expr{p.system->model->graph.get(), p.tape.inputs[in.index].symbol}, p.system->model->names, Format::text);
-    case Op::linear: {
-      std::string out;
-      for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
-        const LinearTerm& t = p.tape.linear_terms[k];
-        const std::string c = p.tape.rationals[t.coefficient].get_str();
-        out += (out.empty() ? "" : " + ") + (c == "1" ? "" : c + " ") + slot(t.slot);
-      }
-      return out;
+  case Op::constant:
+    return p.tape.rationals[in.index].get_str();
+  case Op::pi:
+    return "pi";
+  case Op::parameter:
+    return p.system->model->names.parameters[in.index];
+  case Op::input:
+    return print(Expr{p.system->model->graph.get(), p.tape.inputs[in.index].symbol}, p.system->model->names,
+                 Format::text);
+  case Op::linear: {
+    std::string out;
+    for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
+      const LinearTerm& t = p.tape.linear_terms[k];
+      const std::string c = p.tape.rationals[t.coefficient].get_str();
+      out += (out.empty() ? "" : " + ") + (c == "1" ? "" : c + " ") + slot(t.slot);
     }
-    case Op::multiply: case Op::scale: return slot(in.a) + " * " + slot(in.b);
-    case Op::square: return slot(in.a) + "^2";
-    case Op::divide: return slot(in.a) + " / " + slot(in.b);
-    case Op::power: return slot(in.a) + "^(" + p.tape.rationals[in.index].get_str() + ")";
-    case Op::function: return std::string(info(static_cast<Function>(in.index)).name) + "(" + slot(in.a) + ")";
-    case Op::arctan2: return "atan2(" + slot(in.a) + ", " + slot(in.b) + ")";
-    case Op::select: return slot(in.first) + " >= 0 ? " + slot(in.a) + " : " + slot(in.b);
-    case Op::lookup: return p.tape.step_functions[in.index].name + "(" + slot(in.a) + ")";
-    case Op::rate: return "D^" + std::to_string(in.index) + " " + slot(in.a);
+    return out;
+  }
+  case Op::multiply:
+  case Op::scale:
+    return slot(in.a) + " * " + slot(in.b);
+  case Op::square:
+    return slot(in.a) + "^2";
+  case Op::divide:
+    return slot(in.a) + " / " + slot(in.b);
+  case Op::power:
+    return slot(in.a) + "^(" + p.tape.rationals[in.index].get_str() + ")";
+  case Op::function:
+    return std::string(info(static_cast<Function>(in.index)).name) + "(" + slot(in.a) + ")";
+  case Op::arctan2:
+    return "atan2(" + slot(in.a) + ", " + slot(in.b) + ")";
+  case Op::select:
+    return slot(in.first) + " >= 0 ? " + slot(in.a) + " : " + slot(in.b);
+  case Op::lookup:
+    return p.tape.step_functions[in.index].name + "(" + slot(in.a) + ")";
+  case Op::rate:
+    return "D^" + std::to_string(in.index) + " " + slot(in.a);
   }
   return {};
 }
@@ -121,8 +170,8 @@ std::string print(const Program& p) {
     out += "\n";
   }
   for (std::size_t i = 0; i < p.c.size(); ++i)
-    out += "equation " + p.system->equation_names[i] + ": s" + std::to_string(p.tape.roots[i]) + " = 0, differentiated " +
-           std::to_string(p.c[i]) + " times\n";
+    out += "equation " + p.system->equation_names[i] + ": s" + std::to_string(p.tape.roots[i]) +
+           " = 0, differentiated " + std::to_string(p.c[i]) + " times\n";
   const ProgramSize n = size(p);
   out += std::to_string(n.slots) + " slots: " + std::to_string(n.products) + " products, " + std::to_string(n.linear) +
          " linear, " + std::to_string(n.functions) + " functions; " + std::to_string(n.tainted) +

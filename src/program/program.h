@@ -20,8 +20,8 @@ struct ProgramInput {
 
 struct TaintedSlot {
   std::uint32_t slot;
-  std::uint32_t row;   // its row in the tangent matrix
-  bool a, b;           // which operands are tainted (of a linear slot: see its terms)
+  std::uint32_t row;  // its row in the tangent matrix
+  bool a, b;          // which operands are tainted (of a linear slot: see its terms)
 };
 
 struct Program {
@@ -29,11 +29,11 @@ struct Program {
   std::vector<int> c, d;
   Tape tape;
   std::vector<ProgramInput> inputs;
-  std::vector<TaintedSlot> tainted;              // ascending, leading inputs not among them
-  std::vector<std::uint32_t> tangent_row;        // slot -> row, or kUntainted
+  std::vector<TaintedSlot> tainted;        // ascending, leading inputs not among them
+  std::vector<std::uint32_t> tangent_row;  // slot -> row, or kUntainted
   std::size_t tangent_rows = 0;
-  std::size_t quadratures = 0;                   // roots after the equations
-  bool nonlinear = false;                        // leading derivatives enter nonlinearly: J depends on them
+  std::size_t quadratures = 0;  // roots after the equations
+  bool nonlinear = false;       // leading derivatives enter nonlinearly: J depends on them
 
   static constexpr std::uint32_t kUntainted = 0xffffffffU;
   std::size_t unknowns() const { return d.size(); }
@@ -42,7 +42,8 @@ struct Program {
 // `quadratures`: expressions whose Taylor series follow from the solution (powers to integrate,
 // energies to watch).
 // `shared`: of the tape (tape/tape.h).
-Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {}, bool shared = false);
+Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {},
+                bool shared = false);
 
 // Counts for tests and `--show program`.
 struct ProgramSize {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <set>
+
+#include <nlohmann/json.hpp>
 
 #include "base/diagnostic.h"
 #include "base/json.h"
@@ -47,22 +48,28 @@ void write(JsonWriter& j, const Certificate::Node& n, std::size_t index) {
   using enum Certificate::Operation;
   j.open_array().integer(static_cast<long long>(index));
   switch (n.operation) {
-    case number: j.string("number").string(to_string(n.value)); break;
-    case pi: j.string("pi"); break;
-    case symbol: j.string("symbol").integer(n.symbol); break;
-    case sum:
-      j.string("sum");
-      for (const Certificate::Term& t : n.terms) j.open_array().string(to_string(t.weight)).integer(t.node).close();
-      break;
-    case product:
-      j.string("product");
-      for (const Certificate::Term& t : n.terms) j.open_array().integer(t.node).string(to_string(t.weight)).close();
-      break;
-    case function:
-    case atan2:
-      j.string(n.operation == atan2 ? "atan2" : n.function);
-      for (const Certificate::Term& t : n.terms) j.integer(t.node);
-      break;
+  case number:
+    j.string("number").string(to_string(n.value));
+    break;
+  case pi:
+    j.string("pi");
+    break;
+  case symbol:
+    j.string("symbol").integer(n.symbol);
+    break;
+  case sum:
+    j.string("sum");
+    for (const Certificate::Term& t : n.terms) j.open_array().string(to_string(t.weight)).integer(t.node).close();
+    break;
+  case product:
+    j.string("product");
+    for (const Certificate::Term& t : n.terms) j.open_array().integer(t.node).string(to_string(t.weight)).close();
+    break;
+  case function:
+  case atan2:
+    j.string(n.operation == atan2 ? "atan2" : n.function);
+    for (const Certificate::Term& t : n.terms) j.integer(t.node);
+    break;
   }
   j.close();
 }
@@ -123,7 +130,8 @@ std::string in_quotes(const std::string& s) {
 
 // Depth and repeated keys are refused while the text is parsed, before anything is built of them.
 Json parse(std::string_view text) {
-  if (text.size() > kLongestText) fail("", "the certificate is longer than " + std::to_string(kLongestText >> 20) + " MiB");
+  if (text.size() > kLongestText)
+    fail("", "the certificate is longer than " + std::to_string(kLongestText >> 20) + " MiB");
   std::vector<std::set<std::string>> keys;
   const auto watch = [&keys](int depth, Json::parse_event_t event, Json& parsed) {
     using enum Json::parse_event_t;
@@ -149,7 +157,9 @@ Json parse(std::string_view text) {
 class CertificateReader {
  public:
   Certificate run(const Json& root) {
-    check_keys(root, "", {"format", "version", "program", "model", "source_hash", "hypotheses", "meaning", "symbols", "nodes", "claims"});
+    check_keys(root, "",
+               {"format", "version", "program", "model", "source_hash", "hypotheses", "meaning", "symbols", "nodes",
+                "claims"});
     if (string(root, "", "format") != "anholon-certificate") fail("format", "this is not a certificate of anholon");
     const Json& version = member(root, "", "version");
     if (!version.is_number_integer() || version != 1) fail("version", "only version 1 is known");
@@ -179,7 +189,8 @@ class CertificateReader {
   static void check_keys(const Json& object, const std::string& where, const std::vector<std::string>& known) {
     if (!object.is_object()) fail(where, "an object {…} is expected");
     for (const auto& item : object.items())
-      if (std::find(known.begin(), known.end(), item.key()) == known.end()) fail(where, "the key " + in_quotes(item.key()) + " is not known");
+      if (std::find(known.begin(), known.end(), item.key()) == known.end())
+        fail(where, "the key " + in_quotes(item.key()) + " is not known");
   }
   static const Json& member(const Json& object, const std::string& where, const char* key) {
     const auto it = object.find(key);
@@ -210,14 +221,18 @@ class CertificateReader {
   static Index index(const Json& value, std::size_t end, const std::string& where, const char* what) {
     if (!value.is_number_unsigned()) fail(where, std::string("the number of ") + what + " is expected");
     const auto i = value.get<std::uint64_t>();
-    if (i >= end) fail(where, std::string(what) + " " + std::to_string(i) + (end == 0 ? " is not there yet" : " is not below " + std::to_string(end)));
+    if (i >= end)
+      fail(where, std::string(what) + " " + std::to_string(i) +
+                      (end == 0 ? " is not there yet" : " is not below " + std::to_string(end)));
     return static_cast<Index>(i);
   }
   Index earlier(const Json& value, const std::string& where) {
     count_term(where);
     return index(value, c_.nodes.size(), where, "a node");
   }
-  Index symbol(const Json& value, const std::string& where) { return index(value, c_.symbols.size(), where, "a symbol"); }
+  Index symbol(const Json& value, const std::string& where) {
+    return index(value, c_.symbols.size(), where, "a symbol");
+  }
 
   Rational rational(const Json& value, const std::string& where) {
     const std::string text = string(value, where);
@@ -324,7 +339,8 @@ class CertificateReader {
     for (const Json& node : array(json, where, "equations", kMostSymbols))
       w.equations.push_back(earlier(node, at(path(where, "equations"), w.equations.size())));
     if (w.equations.size() != w.enclosed.size())
-      fail(where, std::to_string(w.equations.size()) + " equations for " + std::to_string(w.enclosed.size()) + " enclosed symbols");
+      fail(where, std::to_string(w.equations.size()) + " equations for " + std::to_string(w.enclosed.size()) +
+                      " enclosed symbols");
     return w;
   }
 

@@ -4,8 +4,9 @@ namespace anholon {
 
 static Ball apply(Function f, const Ball& u) {
   switch (f) {
-#define ROW(name, derivative, parity, latex, domain) \
-  case Function::name: return name(u);
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
+  case Function::name:                                                                                                 \
+    return name(u);
 #include "expr/elementary.def"
 #undef ROW
   }
@@ -30,27 +31,46 @@ std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at) {
     const Node& n = g.node(id);
     Ball v;
     switch (n.kind) {
-      case Kind::number: v = Ball(g.value(id)); break;
-      case Kind::pi: v = Ball::pi(); break;
-      case Kind::sum:
-        for (const Term& t : g.summands(id)) v += Ball(g.rational(t.weight)) * value.at(t.node);
-        break;
-      case Kind::product:
-        v = Ball(1);
-        for (const Term& t : g.terms(id)) v *= pow(value.at(t.node), g.rational(t.weight));
-        break;
-      case Kind::function: v = apply(static_cast<Function>(n.index), value.at(g.terms(id)[0].node)); break;
-      case Kind::atan2: v = atan2(value.at(g.terms(id)[0].node), value.at(g.terms(id)[1].node)); break;
-      case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given:
-      case Kind::quasi: case Kind::state: case Kind::control:
-        v = at.at(id);
-        break;
-      case Kind::select: {
-        const Ball& s = value.at(g.terms(id)[0].node);
-        v = s.is_positive() ? value.at(g.terms(id)[1].node) : !s.contains_zero() ? value.at(g.terms(id)[2].node) : Ball::unknown();
-        break;
-      }
-      case Kind::lookup: v = lookup(g.step_function(n.index), value.at(g.terms(id)[0].node)); break;
+    case Kind::number:
+      v = Ball(g.value(id));
+      break;
+    case Kind::pi:
+      v = Ball::pi();
+      break;
+    case Kind::sum:
+      for (const Term& t : g.summands(id)) v += Ball(g.rational(t.weight)) * value.at(t.node);
+      break;
+    case Kind::product:
+      v = Ball(1);
+      for (const Term& t : g.terms(id)) v *= pow(value.at(t.node), g.rational(t.weight));
+      break;
+    case Kind::function:
+      v = apply(static_cast<Function>(n.index), value.at(g.terms(id)[0].node));
+      break;
+    case Kind::atan2:
+      v = atan2(value.at(g.terms(id)[0].node), value.at(g.terms(id)[1].node));
+      break;
+    case Kind::time:
+    case Kind::jet:
+    case Kind::parameter:
+    case Kind::mass:
+    case Kind::multiplier:
+    case Kind::given:
+    case Kind::quasi:
+    case Kind::state:
+    case Kind::control:
+      v = at.at(id);
+      break;
+    case Kind::select: {
+      const Ball& s = value.at(g.terms(id)[0].node);
+      v = s.is_positive()      ? value.at(g.terms(id)[1].node)
+          : !s.contains_zero() ? value.at(g.terms(id)[2].node)
+                               : Ball::unknown();
+      break;
+    }
+    case Kind::lookup:
+      v = lookup(g.step_function(n.index), value.at(g.terms(id)[0].node));
+      break;
     }
     value.emplace(id, std::move(v));
   }

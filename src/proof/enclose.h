@@ -2,8 +2,8 @@
 #pragma once
 #include <unordered_map>
 
-#include "numeric/enclosure.h"
 #include "expr/diff.h"
+#include "numeric/enclosure.h"
 
 namespace anholon {
 

@@ -11,10 +11,12 @@ namespace anholon {
 namespace {
 
 constexpr int kPoints = 3, kAttempts = 60, kNewtonSteps = 60;
-constexpr double kSingular = 1e-7;   // a pivot, in relation to its row
-constexpr double kFollows = 1e-6;    // what is left out holds up to this
+constexpr double kSingular = 1e-7;  // a pivot, in relation to its row
+constexpr double kFollows = 1e-6;   // what is left out holds up to this
 
-std::uint64_t key(const Node& n) { return (static_cast<std::uint64_t>(n.kind) << 40) | (static_cast<std::uint64_t>(n.order) << 32) | n.index; }
+std::uint64_t key(const Node& n) {
+  return (static_cast<std::uint64_t>(n.kind) << 40) | (static_cast<std::uint64_t>(n.order) << 32) | n.index;
+}
 
 double arbitrary(const Node& n, int attempt) {
   std::uint64_t h = key(n) * 131 + static_cast<std::uint64_t>(attempt) * 7919 + 17;
@@ -34,7 +36,8 @@ PointValues values_of(std::unordered_map<std::uint64_t, double> known, int attem
   });
 }
 
-Matrix<double> values(const std::vector<std::vector<Expr>>& rows, const std::vector<std::size_t>& which, const std::vector<std::size_t>& columns, PointValues& at) {
+Matrix<double> values(const std::vector<std::vector<Expr>>& rows, const std::vector<std::size_t>& which,
+                      const std::vector<std::size_t>& columns, PointValues& at) {
   Matrix<double> a(which.size(), columns.size());
   for (std::size_t i = 0; i < which.size(); ++i)
     for (std::size_t j = 0; j < columns.size(); ++j) a(i, j) = at(rows[which[i]][columns[j]]);
@@ -58,7 +61,9 @@ std::optional<Expr> solved_for(Expr psi, Expr s) {
     const std::vector<NodeId> ids = symbols({&e, 1});
     return std::binary_search(ids.begin(), ids.end(), s.id);
   };
-  const auto at_zero = [&](Expr e) { return substitute({&e, 1}, [&](NodeId id) { return id == s.id ? g.zero() : Expr{}; })[0]; };
+  const auto at_zero = [&](Expr e) {
+    return substitute({&e, 1}, [&](NodeId id) { return id == s.id ? g.zero() : Expr{}; })[0];
+  };
   try {
     const Expr slope = partial(psi, s);
     Expr curve = partial(slope, s);
@@ -93,7 +98,9 @@ bool EquationsOfMotion::choose(Stage& s, const std::vector<std::size_t>& preferr
   return true;
 }
 
-EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order, const std::vector<std::size_t>& preferred) : highest(std::max(2U, highest_order)) {
+EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order,
+                                     const std::vector<std::size_t>& preferred)
+    : highest(std::max(2U, highest_order)) {
   const Model& model = *M.model;
   Graph& g = M.graph();
   const std::size_t n = M.q.size();
@@ -109,11 +116,13 @@ EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order,
     Stage s;
     for (std::size_t r = 0; r < M.phi.size(); ++r)
       if (const int times = static_cast<int>(k) - M.order[r]; times >= 0)
-        s.rows.push_back({true, r, static_cast<unsigned>(times), total_derivative(put_masses(model, M.phi[r]), static_cast<unsigned>(times))});
+        s.rows.push_back({true, r, static_cast<unsigned>(times),
+                          total_derivative(put_masses(model, M.phi[r]), static_cast<unsigned>(times))});
     s.symbols = jets(model, k);
     if (k >= 2) {
       for (std::size_t a = 0; a < n; ++a) s.rows.push_back({false, a, k - 2, total_derivative(routh[a], k - 2)});
-      for (std::size_t r = 0; r < M.phi.size(); ++r) s.symbols.push_back(g.multiplier(static_cast<std::uint32_t>(r), k - 2));
+      for (std::size_t r = 0; r < M.phi.size(); ++r)
+        s.symbols.push_back(g.multiplier(static_cast<std::uint32_t>(r), k - 2));
       top.insert(top.end(), s.symbols.begin(), s.symbols.end());
     }
     for (const DerivedEquation& e : s.rows) s.jacobian.push_back(gradient(e.residual, s.symbols));

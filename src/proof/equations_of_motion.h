@@ -1,8 +1,8 @@
-// The motion as equations in one place: the constraints with their derivatives, and Routh's equations [L 2.7]; and points at
-// which all of them hold.
+// The motion as equations in one place: the constraints with their derivatives, and Routh's equations [L 2.7]; and
+// points at which all of them hold.
 //
-// What is solved at order k = 0, 1, 2, …, h: the constraints' derivatives of order k for some of the q^(k); from k = 2 on
-// Routh's equations, differentiated k - 2 times, with them for q^(k) and lambda^(k-2).
+// What is solved at order k = 0, 1, 2, …, h: the constraints' derivatives of order k for some of the q^(k); from k = 2
+// on Routh's equations, differentiated k - 2 times, with them for q^(k) and lambda^(k-2).
 #pragma once
 #include <unordered_map>
 
@@ -33,10 +33,10 @@ class EquationsOfMotion {
   Column top;                          // q'', …, q^(h), lambda, …: the rows are affine in these, if the constraints are
   // As many equations as unknowns: those of all orders.
   Column equations, unknowns;
-  bool regular = false;                // the equations determine their unknowns, and what is left out follows from them
+  bool regular = false;  // the equations determine their unknowns, and what is left out follows from them
 
-  // Values in double: on the motion; with the constraints of orders 0 and 1 only; anywhere. As many of each, unless none
-  // was found.
+  // Values in double: on the motion; with the constraints of orders 0 and 1 only; anywhere. As many of each, unless
+  // none was found.
   std::vector<PointValues>& on_motion() { return on_motion_; }
   std::vector<PointValues>& on_constraints() { return on_constraints_; }
   std::vector<PointValues>& anywhere() { return anywhere_; }
@@ -47,7 +47,7 @@ class EquationsOfMotion {
  private:
   struct Stage {
     std::vector<DerivedEquation> rows;
-    Column symbols;                       // for which they might be solved
+    Column symbols;  // for which they might be solved
     std::vector<std::vector<Expr>> jacobian;
     std::vector<std::size_t> chosen_rows, chosen_symbols, dropped_rows;
   };

@@ -13,7 +13,9 @@ using Index = Certificate::Index;
 
 class Exporter {
  public:
-  Exporter(Certificate& c, Graph& g, SymbolNames names) : c_(c), g_(g), names_(std::move(names)) { names_.defined.clear(); }
+  Exporter(Certificate& c, Graph& g, SymbolNames names) : c_(c), g_(g), names_(std::move(names)) {
+    names_.defined.clear();
+  }
 
   Index node(Expr e) {
     for (NodeId id : reachable({&e, 1}))
@@ -31,7 +33,8 @@ class Exporter {
     if (!w) return std::nullopt;
     Certificate::Witness out;
     for (const auto& [s, value] : w->values) out.values.push_back({symbol(s.id), value});
-    for (const WitnessPoint::Enclosed& e : w->enclosed) out.enclosed.push_back({symbol(e.symbol.id), e.midpoint, e.radius});
+    for (const WitnessPoint::Enclosed& e : w->enclosed)
+      out.enclosed.push_back({symbol(e.symbol.id), e.midpoint, e.radius});
     for (Expr e : w->equations) out.equations.push_back(node(e));
     return out;
   }
@@ -51,35 +54,45 @@ class Exporter {
       for (const Term& t : from) out.terms.push_back({g_.rational(t.weight), index_.at(t.node)});
     };
     switch (n.kind) {
-      case Kind::number:
-        out.operation = Certificate::Operation::number;
-        out.value = g_.value(id);
-        break;
-      case Kind::pi: out.operation = Certificate::Operation::pi; break;
-      case Kind::sum:
-        out.operation = Certificate::Operation::sum;
-        terms(g_.summands(id));
-        break;
-      case Kind::product:
-        out.operation = Certificate::Operation::product;
-        terms(g_.terms(id));
-        break;
-      case Kind::function:
-        out.operation = Certificate::Operation::function;
-        out.function = info(static_cast<Function>(n.index)).name;
-        out.terms.push_back({1, index_.at(g_.terms(id)[0].node)});
-        break;
-      case Kind::atan2:
-        out.operation = Certificate::Operation::atan2;
-        for (const Term& t : g_.terms(id)) out.terms.push_back({1, index_.at(t.node)});
-        break;
-      case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given:
-      case Kind::quasi: case Kind::state: case Kind::control:
-      // Of what has branches a proof uses only that equal ones are equal.
-      case Kind::select: case Kind::lookup:
-        out.operation = Certificate::Operation::symbol;
-        out.symbol = symbol(id);
-        break;
+    case Kind::number:
+      out.operation = Certificate::Operation::number;
+      out.value = g_.value(id);
+      break;
+    case Kind::pi:
+      out.operation = Certificate::Operation::pi;
+      break;
+    case Kind::sum:
+      out.operation = Certificate::Operation::sum;
+      terms(g_.summands(id));
+      break;
+    case Kind::product:
+      out.operation = Certificate::Operation::product;
+      terms(g_.terms(id));
+      break;
+    case Kind::function:
+      out.operation = Certificate::Operation::function;
+      out.function = info(static_cast<Function>(n.index)).name;
+      out.terms.push_back({1, index_.at(g_.terms(id)[0].node)});
+      break;
+    case Kind::atan2:
+      out.operation = Certificate::Operation::atan2;
+      for (const Term& t : g_.terms(id)) out.terms.push_back({1, index_.at(t.node)});
+      break;
+    case Kind::time:
+    case Kind::jet:
+    case Kind::parameter:
+    case Kind::mass:
+    case Kind::multiplier:
+    case Kind::given:
+    case Kind::quasi:
+    case Kind::state:
+    case Kind::control:
+    // Of what has branches a proof uses only that equal ones are equal.
+    case Kind::select:
+    case Kind::lookup:
+      out.operation = Certificate::Operation::symbol;
+      out.symbol = symbol(id);
+      break;
     }
     c_.nodes.push_back(std::move(out));
     return static_cast<Index>(c_.nodes.size() - 1);
@@ -100,7 +113,8 @@ std::string list_of(const Model& model, const std::vector<std::size_t>& which) {
 void hypotheses(const Mechanics& M, const Proof& proof, const Eliminations& eliminations, Certificate& c) {
   const Model& model = *M.model;
   const Elimination& e = eliminations.coordinates;
-  c.hypotheses.push_back("T, the forces and the constraints are those of the model; masses are frozen symbols in every derivative of T and S");
+  c.hypotheses.push_back("T, the forces and the constraints are those of the model; masses are frozen symbols in every "
+                         "derivative of T and S");
   if (e.asked) c.hypotheses.push_back("the forms of order m are taken with m = " + std::to_string(e.asked));
   if (e.constraints.empty()) {
     c.hypotheses.push_back("there are no constraints");
@@ -110,31 +124,36 @@ void hypotheses(const Mechanics& M, const Proof& proof, const Eliminations& elim
   for (std::size_t r : e.constraints) {
     const Constraint& constraint = model.constraints[r];
     std::string& list = constraint.by ? kept : names;
-    list += (list.empty() ? "" : ", ") + constraint.name + (constraint.by ? " by " + model.controls[*constraint.by].name : "");
+    list += (list.empty() ? "" : ", ") + constraint.name +
+            (constraint.by ? " by " + model.controls[*constraint.by].name : "");
   }
-  if (!names.empty()) c.hypotheses.push_back("the reactions are ideal (Chetaev-Niu): N = sum lambda dphi/dq^(m); constraints: " + names);
+  if (!names.empty())
+    c.hypotheses.push_back("the reactions are ideal (Chetaev-Niu): N = sum lambda dphi/dq^(m); constraints: " + names);
   if (!kept.empty()) c.hypotheses.push_back("inputs keep constraints, and no reaction does: " + kept);
   if (e.constraints.size() < model.constraints.size())
     c.hypotheses.push_back("constraints not listed follow from these; their multipliers are zero");
-  c.hypotheses.push_back("the constraints are lifted to order " + std::to_string(e.m) + " and have rank " + std::to_string(e.constraints.size()) +
-                         ": the columns " + list_of(model, e.dependent) + " of dphi/dq^(" + std::to_string(e.m) + ") are regular");
-  c.hypotheses.push_back(e.solved ? "the derivatives of order " + std::to_string(e.m) + " of " + list_of(model, e.dependent) +
-                                        " are put in as the constraints give them"
-                                  : "the constraints are not solved: the derivatives of order " + std::to_string(e.m) + " of " +
-                                        list_of(model, e.dependent) + " stand for their values on the manifold");
+  c.hypotheses.push_back("the constraints are lifted to order " + std::to_string(e.m) + " and have rank " +
+                         std::to_string(e.constraints.size()) + ": the columns " + list_of(model, e.dependent) +
+                         " of dphi/dq^(" + std::to_string(e.m) + ") are regular");
+  c.hypotheses.push_back(e.solved
+                             ? "the derivatives of order " + std::to_string(e.m) + " of " +
+                                   list_of(model, e.dependent) + " are put in as the constraints give them"
+                             : "the constraints are not solved: the derivatives of order " + std::to_string(e.m) +
+                                   " of " + list_of(model, e.dependent) + " stand for their values on the manifold");
   for (const Difference& d : proof.pivots)
     if (d.verdict != Verdict::proved) c.hypotheses.push_back(d.component + " does not vanish (not shown)");
 }
 
 }  // namespace
 
-Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations, const std::string& program,
-                        const std::string& source_hash) {
+Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations,
+                        const std::string& program, const std::string& source_hash) {
   Certificate c;
   c.program = program;
   c.model = M.model->title;
   c.source_hash = source_hash;
-  c.meaning = "The forms follow from each other given the same T, forces and constraints. This does not prove that the model describes the machine.";
+  c.meaning = "The forms follow from each other given the same T, forces and constraints. This does not prove that the "
+              "model describes the machine.";
   hypotheses(M, proof, eliminations, c);
   SymbolNames names = M.model->names;
   for (std::size_t i = 0; i < names.masses.size() || i < M.model->masses.size(); ++i) {
@@ -150,7 +169,8 @@ Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminatio
   for (const FormProof& f : proof.forms)
     for (const Difference& d : f.differences) {
       if (d.verdict == Verdict::unknown) continue;
-      out.claim(d.verdict == Verdict::proved ? Certificate::ClaimKind::agree : Certificate::ClaimKind::differ, f.form->name, "routh", d);
+      out.claim(d.verdict == Verdict::proved ? Certificate::ClaimKind::agree : Certificate::ClaimKind::differ,
+                f.form->name, "routh", d);
     }
   return c;
 }

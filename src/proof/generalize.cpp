@@ -10,8 +10,8 @@ namespace anholon {
 
 namespace {
 
-constexpr long double kVanishes = 1e-9L;    // of the largest term on the way
-constexpr std::size_t kShort = 12;          // nodes: a subexpression not longer than this stays
+constexpr long double kVanishes = 1e-9L;       // of the largest term on the way
+constexpr std::size_t kShort = 12;             // nodes: a subexpression not longer than this stays
 constexpr std::size_t kMostWork = 40'000'000;  // node evaluations
 
 long double arbitrary(std::uint64_t seed) {
@@ -22,8 +22,9 @@ long double arbitrary(std::uint64_t seed) {
 
 long double apply(Function f, long double u) {
   switch (f) {
-#define ROW(name, derivative, parity, latex, domain) \
-  case Function::name: return name(u);
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
+  case Function::name:                                                                                                 \
+    return name(u);
 #include "expr/elementary.def"
 #undef ROW
   }
@@ -33,7 +34,9 @@ long double apply(Function f, long double u) {
 // The nodes below e in order, with their operands as positions, and their values at one point.
 class Values {
  public:
-  explicit Values(Expr e) : g_(*e.graph), ids_(reachable({&e, 1})), value_(ids_.size()), scale_(ids_.size()), free_(ids_.size(), false), size_(ids_.size(), 1) {
+  explicit Values(Expr e)
+      : g_(*e.graph), ids_(reachable({&e, 1})), value_(ids_.size()), scale_(ids_.size()), free_(ids_.size(), false),
+        size_(ids_.size(), 1) {
     std::unordered_map<NodeId, std::size_t> position;
     for (std::size_t i = 0; i < ids_.size(); ++i) position.emplace(ids_[i], i);
     for (std::size_t i = 0; i < ids_.size(); ++i) {
@@ -58,25 +61,34 @@ class Values {
       const Node& n = g_.node(ids_[i]);
       if (free_[i] || n.view_count == 0) {
         value_[i] = !free_[i] && n.kind == Kind::number ? from_rational<long double>(g_.value(ids_[i]))
-                    : !free_[i] && n.kind == Kind::pi ? pi<long double>() : arbitrary(i);
+                    : !free_[i] && n.kind == Kind::pi   ? pi<long double>()
+                                                        : arbitrary(i);
         scale_[i] = std::abs(value_[i]);
         continue;
       }
       long double v = 0, s = 0;
       switch (n.kind) {
-        case Kind::sum:
-          for (const auto& [k, weight] : terms_[i]) v += weight * value_[k], s = std::max(s, std::abs(weight) * scale_[k]);
-          break;
-        case Kind::product:
-          v = s = 1;
-          for (const auto& [k, weight] : terms_[i]) {
-            v *= weight == 1 ? value_[k] : std::pow(value_[k], weight);
-            s *= weight == 1 ? scale_[k] : weight > 0 ? std::pow(scale_[k], weight) : std::abs(std::pow(value_[k], weight));
-          }
-          break;
-        case Kind::function: v = apply(static_cast<Function>(n.index), value_[terms_[i][0].first]), s = std::abs(v); break;
-        case Kind::atan2: v = std::atan2(value_[terms_[i][0].first], value_[terms_[i][1].first]), s = std::abs(v); break;
-        default: break;
+      case Kind::sum:
+        for (const auto& [k, weight] : terms_[i])
+          v += weight * value_[k], s = std::max(s, std::abs(weight) * scale_[k]);
+        break;
+      case Kind::product:
+        v = s = 1;
+        for (const auto& [k, weight] : terms_[i]) {
+          v *= weight == 1 ? value_[k] : std::pow(value_[k], weight);
+          s *= weight == 1  ? scale_[k]
+               : weight > 0 ? std::pow(scale_[k], weight)
+                            : std::abs(std::pow(value_[k], weight));
+        }
+        break;
+      case Kind::function:
+        v = apply(static_cast<Function>(n.index), value_[terms_[i][0].first]), s = std::abs(v);
+        break;
+      case Kind::atan2:
+        v = std::atan2(value_[terms_[i][0].first], value_[terms_[i][1].first]), s = std::abs(v);
+        break;
+      default:
+        break;
       }
       value_[i] = v;
       scale_[i] = std::max(s, std::abs(v));
@@ -103,7 +115,8 @@ Expr generalized(Expr e, std::uint32_t first) {
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i + 1 < values.count(); ++i)
     if (values.size(i) > kShort) candidates.push_back(i);
-  std::stable_sort(candidates.begin(), candidates.end(), [&](std::size_t a, std::size_t b) { return values.size(a) > values.size(b); });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](std::size_t a, std::size_t b) { return values.size(a) > values.size(b); });
   std::unordered_map<NodeId, Expr> replacement;
   std::size_t work = 0;
   for (std::size_t i : candidates) {

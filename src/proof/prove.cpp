@@ -10,9 +10,12 @@ namespace anholon {
 
 const char* name(Verdict v) {
   switch (v) {
-    case Verdict::proved: return "proved";
-    case Verdict::refuted: return "refuted";
-    case Verdict::unknown: return "unknown";
+  case Verdict::proved:
+    return "proved";
+  case Verdict::refuted:
+    return "refuted";
+  case Verdict::unknown:
+    return "unknown";
   }
   return "";
 }
@@ -92,7 +95,8 @@ void pivot_claims(const Mechanics& M, const Elimination& e, long bits, std::vect
   }
 }
 
-FormProof against_routh(const Mechanics& M, const Formulation& form, const Equations& equations, const Elimination& e, Effort effort, long bits) {
+FormProof against_routh(const Mechanics& M, const Formulation& form, const Equations& equations, const Elimination& e,
+                        Effort effort, long bits) {
   FormProof proof{&form, Verdict::unknown, {}};
   const Model& model = *M.model;
   const Column residual = equations.left - equations.right;
@@ -105,7 +109,8 @@ FormProof against_routh(const Mechanics& M, const Formulation& form, const Equat
     }
   } else {
     const Column a = e.on(lagrange_operator(M) - forces(M));
-    const bool along = residual.size() == M.q.size() && !e.constraints.empty();  // n equations: what they say along the constraints
+    const bool along =
+        residual.size() == M.q.size() && !e.constraints.empty();  // n equations: what they say along the constraints
     const Column contracted = along ? e.contract(residual) : residual;
     for (std::size_t nu = 0; nu < contracted.size(); ++nu) {
       Difference d{e.names[nu], contracted[nu], {}, {}, {}, {}};
@@ -125,8 +130,8 @@ const Elimination& Eliminations::of(const Formulation& form) const {
   return form.unknowns == Unknowns::quasi_velocities ? quasi : coordinates;
 }
 
-FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations, const std::vector<Eliminations>& eliminations,
-                     const ProofOptions& options) {
+FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations,
+                     const std::vector<Eliminations>& eliminations, const ProofOptions& options) {
   FormProof proof;
   for (const Effort effort : {Effort::brief, Effort::full})
     for (std::size_t k = 0; k < eliminations.size(); ++k) {
@@ -138,14 +143,16 @@ FormProof prove_form(const Mechanics& M, const Formulation& form, const Equation
   return proof;
 }
 
-Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const std::vector<Eliminations>& eliminations, const ProofOptions& options) {
+Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms,
+            const std::vector<Eliminations>& eliminations, const ProofOptions& options) {
   Proof proof;
   std::vector<const Elimination*> used;
   for (const Formulation* form : forms) {
     if (options.progress) options.progress(*form);
     proof.forms.push_back(prove_form(M, *form, form->equations, eliminations, options));
     const Elimination* e = &eliminations[proof.forms.back().elimination].of(*form);
-    if (form->unknowns != Unknowns::multipliers && std::find(used.begin(), used.end(), e) == used.end()) used.push_back(e);
+    if (form->unknowns != Unknowns::multipliers && std::find(used.begin(), used.end(), e) == used.end())
+      used.push_back(e);
   }
   for (const Elimination* e : used) {
     kernel_claims(M, *e, options.bits(), proof.kernel);

@@ -2,7 +2,8 @@
 //
 // Every form is compared with Routh's equations a = E - G - N [L 2.7]:
 //   with multipliers      each residual is that of Routh's equations, identically in all derivatives;
-//   without               each residual is sum_s B_s,nu a_s, where B spans the kernel of dphi/dq^(m) on the manifold of the
+//   without               each residual is sum_s B_s,nu a_s, where B spans the kernel of dphi/dq^(m) on the manifold of
+//   the
 //                         constraints. N drops out, and B^T a = 0 says that a is a combination of constraint rows: the
 //                         multipliers exist, and the form has the solutions of Routh's equations.
 // Two forms that agree with Routh's agree with each other; if one does and the other does not, they differ.
@@ -11,8 +12,8 @@
 // refuted  a point of the manifold with rational free coordinates, where a ball that holds the difference excludes zero
 // unknown  neither was found within the limits; with the size of the difference at some points
 //
-// What is proved: the forms follow from each other given the same T, forces and constraints. Nothing is said about whether
-// these describe the machine.
+// What is proved: the forms follow from each other given the same T, forces and constraints. Nothing is said about
+// whether these describe the machine.
 #pragma once
 #include <functional>
 #include <optional>
@@ -53,7 +54,6 @@ struct Difference {
   Expr expression() const;
 };
 
-
 struct FormProof {
   const Formulation* form = nullptr;
   Verdict verdict = Verdict::unknown;
@@ -62,9 +62,9 @@ struct FormProof {
 };
 
 struct Proof {
-  std::vector<FormProof> forms;      // against Routh's equations
-  std::vector<Difference> kernel;    // that B spans the kernel, and that the solved constraints satisfy the constraints
-  std::vector<Difference> pivots;    // that what was divided by is not zero identically
+  std::vector<FormProof> forms;    // against Routh's equations
+  std::vector<Difference> kernel;  // that B spans the kernel, and that the solved constraints satisfy the constraints
+  std::vector<Difference> pivots;  // that what was divided by is not zero identically
   Verdict between(std::size_t a, std::size_t b) const;
 };
 
@@ -79,16 +79,16 @@ struct ProofOptions {
   long bits() const { return static_cast<long>(digits * 3.3219281) + 1; }
 };
 
-// One form's equations against Routh's. Several eliminations may be offered, which say the same in other words (constraints
-// solved or not): a form is proved with the first that serves.
+// One form's equations against Routh's. Several eliminations may be offered, which say the same in other words
+// (constraints solved or not): a form is proved with the first that serves.
 using EquationsOf = std::function<Equations(const Mechanics&, const Elimination&)>;
-FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations, const std::vector<Eliminations>& eliminations,
-                     const ProofOptions& options = {});
-Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms, const std::vector<Eliminations>& eliminations,
-            const ProofOptions& options = {});
+FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations,
+                     const std::vector<Eliminations>& eliminations, const ProofOptions& options = {});
+Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms,
+            const std::vector<Eliminations>& eliminations, const ProofOptions& options = {});
 
 // Everything that was found, for a checker that trusts nobody.
-Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations, const std::string& program,
-                        const std::string& source_hash);
+Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations,
+                        const std::string& program, const std::string& source_hash);
 
 }  // namespace anholon

@@ -18,8 +18,8 @@ using verification::RealProgram;
 using verification::Work;
 using Index = Certificate::Index;
 
-constexpr int kRealPoints = 3;      // that a claim of zero must survive
-constexpr int kRealAttempts = 64;   // to find them, or one that contradicts
+constexpr int kRealPoints = 3;     // that a claim of zero must survive
+constexpr int kRealAttempts = 64;  // to find them, or one that contradicts
 constexpr std::array<slong, 2> kRealBits = {128, 512};
 constexpr std::size_t kMostEnclosed = 64;
 
@@ -81,7 +81,8 @@ void real_points(const Certificate& c, const HashKey& key, Work& work, std::vect
         if (!d.contains_zero()) {
           const RealProgram alone(c, {&c.claims[k]});
           const std::string at = text(c, alone.symbols(), point);
-          findings[k] = {Finding::contradicted, false, 0, (at.empty() ? "" : "at " + at + " ") + "the difference is " + text(d)};
+          findings[k] = {Finding::contradicted, false, 0,
+                         (at.empty() ? "" : "at " + at + " ") + "the difference is " + text(d)};
           return true;
         }
         return findings[k].finding == Finding::confirmed && ++seen[k] == kRealPoints;
@@ -101,13 +102,15 @@ ClaimFinding at_witness(const Certificate& c, const Certificate::Claim& claim, s
   for (const Certificate::Enclosed& e : w.enclosed) known[e.symbol] = true, unknowns.push_back(e.symbol);
   for (const Index s : program.symbols())
     if (!known[s]) return unchecked("the witness has no value of '" + c.symbols[s] + "'");
-  if (unknowns.size() > kMostEnclosed) return unchecked("the witness encloses more than " + std::to_string(kMostEnclosed) + " symbols");
+  if (unknowns.size() > kMostEnclosed)
+    return unchecked("the witness encloses more than " + std::to_string(kMostEnclosed) + " symbols");
 
   Ball last = Ball::unknown();
   bool rooted = false;
   for (slong bits = 64; bits <= most_bits; bits = bits < most_bits ? std::min(2 * bits, most_bits) : 2 * bits) {
     const BallScope precision(bits);
-    if (!work.spend(static_cast<std::uint64_t>(bits) * 2 * (program.size() + 1) * (unknowns.empty() ? 1 : 70 * (1 + unknowns.size()))))
+    if (!work.spend(static_cast<std::uint64_t>(bits) * 2 * (program.size() + 1) *
+                    (unknowns.empty() ? 1 : 70 * (1 + unknowns.size()))))
       return unchecked("the limit of work is reached");
     std::vector<Ball> symbols(c.symbols.size());
     for (const Certificate::Value& v : w.values) symbols[v.symbol] = Ball(v.value);
@@ -133,7 +136,9 @@ ClaimFinding at_witness(const Certificate& c, const Certificate::Claim& claim, s
       const std::vector<Ball> values = system.value(box);
       for (std::size_t i = 0; i < values.size(); ++i)
         if (values[i].is_finite() && !values[i].contains_zero())
-          return {Finding::contradicted, false, 0, "equation " + std::to_string(i + 1) + " of the witness has no root in its box: it is " + text(values[i])};
+          return {Finding::contradicted, false, 0,
+                  "equation " + std::to_string(i + 1) + " of the witness has no root in its box: it is " +
+                      text(values[i])};
       const auto root = prove_root(system, box);
       if (!root) continue;
       rooted = true;
@@ -156,15 +161,19 @@ ClaimFinding at_witness(const Certificate& c, const Certificate::Claim& claim, s
 
 const char* name(Finding f) {
   switch (f) {
-    case Finding::confirmed: return "confirmed";
-    case Finding::contradicted: return "contradicted";
-    case Finding::unchecked: return "could not be checked";
+  case Finding::confirmed:
+    return "confirmed";
+  case Finding::contradicted:
+    return "contradicted";
+  case Finding::unchecked:
+    return "could not be checked";
   }
   return "";
 }
 
 bool Verification::all_confirmed() const {
-  return !claims.empty() && std::all_of(claims.begin(), claims.end(), [](const ClaimFinding& f) { return f.finding == Finding::confirmed; });
+  return !claims.empty() && std::all_of(claims.begin(), claims.end(),
+                                        [](const ClaimFinding& f) { return f.finding == Finding::confirmed; });
 }
 
 Verification verify(const Certificate& c, const VerifyOptions& options) {
@@ -176,16 +185,21 @@ Verification verify(const Certificate& c, const VerifyOptions& options) {
   for (std::size_t k = 0; k < c.claims.size(); ++k) {
     if (!c.claims[k].says_zero()) continue;
     switch (modular[k].is) {
-      case ModularFinding::Is::zero: result.claims[k] = {Finding::confirmed, false, modular[k].log2_chance, ""}; break;
-      case ModularFinding::Is::nonzero:
-        result.claims[k].detail = "it is not zero by the rules of the checker, but no real point was found that shows it";
-        break;
-      case ModularFinding::Is::unknown: result.claims[k].detail = modular[k].detail; break;
+    case ModularFinding::Is::zero:
+      result.claims[k] = {Finding::confirmed, false, modular[k].log2_chance, ""};
+      break;
+    case ModularFinding::Is::nonzero:
+      result.claims[k].detail = "it is not zero by the rules of the checker, but no real point was found that shows it";
+      break;
+    case ModularFinding::Is::unknown:
+      result.claims[k].detail = modular[k].detail;
+      break;
     }
   }
   real_points(c, key, work, result.claims);
   for (std::size_t k = 0; k < c.claims.size(); ++k)
-    if (!c.claims[k].says_zero()) result.claims[k] = at_witness(c, c.claims[k], static_cast<slong>(options.digits * 3.3219281) + 1, work);
+    if (!c.claims[k].says_zero())
+      result.claims[k] = at_witness(c, c.claims[k], static_cast<slong>(options.digits * 3.3219281) + 1, work);
   return result;
 }
 

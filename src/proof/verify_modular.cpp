@@ -30,9 +30,11 @@ std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) 
     std::vector<double> degree;
     for (const std::size_t k : claims_) degree.push_back(difference_degree(c_.claims[k]));
 
-    const auto roots = static_cast<double>(std::count_if(sites_.begin(), sites_.end(), [](const Site& s) { return s.root && !s.constant; }));
+    const auto roots = static_cast<double>(
+        std::count_if(sites_.begin(), sites_.end(), [](const Site& s) { return s.root && !s.constant; }));
     const auto branches = [this] {
-      return static_cast<int>(std::count_if(sites_.begin(), sites_.end(), [](const Site& s) { return !s.failed && !s.constant; }));
+      return static_cast<int>(
+          std::count_if(sites_.begin(), sites_.end(), [](const Site& s) { return !s.failed && !s.constant; }));
     };
     const auto most_tries = static_cast<int>(200 * std::exp2(std::min(roots, 12.0)));
     std::vector<bool> nonzero(claims_.size(), false);
@@ -46,7 +48,8 @@ std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) 
       for (int attempt = 0;; ++attempt) {
         if (!work_.spend(cost_)) throw Unable{"the limit of work is reached"};
         if (attempt == most_tries)
-          throw Unable{roots > 0 ? "no point was found where it is defined and its roots exist" : "no point was found where it is defined"};
+          throw Unable{roots > 0 ? "no point was found where it is defined and its roots exist"
+                                 : "no point was found where it is defined"};
         const std::array<std::uint64_t, 2> words{f.prime(), ++draws};
         const HashKey point{siphash(key, words), key.high ^ draws};
         const Drawn drawn = draw(f, r, point, v);
@@ -56,7 +59,8 @@ std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) 
         for (std::size_t k = 0; k < claims_.size(); ++k) {
           const Certificate::Claim& claim = c_.claims[claims_[k]];
           Word difference = v[local_[claim.left]];
-          for (const Certificate::Pair& p : claim.right) difference = f.subtract(difference, f.multiply(v[local_[p.coefficient]], v[local_[p.node]]));
+          for (const Certificate::Pair& p : claim.right)
+            difference = f.subtract(difference, f.multiply(v[local_[p.coefficient]], v[local_[p.node]]));
           if (difference != 0) nonzero[k] = true;
         }
         ++accepted;
@@ -69,13 +73,19 @@ std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) 
       Reduced r;
       if (!reduce(f, r)) continue;
       const int before = accepted;
-      while (accepted < before + points && one_point(f, r)) {}
-      if (accepted == before + points) fields.emplace_back(f, std::move(r));
-      else accepted = before;
+      while (accepted < before + points && one_point(f, r)) {
+      }
+      if (accepted == before + points)
+        fields.emplace_back(f, std::move(r));
+      else
+        accepted = before;
     }
     if (fields.size() < 2) throw Unable{"its constant roots exist modulo none of the primes at hand"};
-    const auto needed = [&](int m) { return m == 0 || m > kMostBranches ? 0 : static_cast<int>(std::ceil(-kLargestChance * 0.7 * std::exp2(m))) + 1; };
-    for (std::size_t turn_of = 0; accepted < needed(branches()); turn_of ^= 1) one_point(fields[turn_of].first, fields[turn_of].second);
+    const auto needed = [&](int m) {
+      return m == 0 || m > kMostBranches ? 0 : static_cast<int>(std::ceil(-kLargestChance * 0.7 * std::exp2(m))) + 1;
+    };
+    for (std::size_t turn_of = 0; accepted < needed(branches()); turn_of ^= 1)
+      one_point(fields[turn_of].first, fields[turn_of].second);
 
     for (std::size_t k = 0; k < claims_.size(); ++k) {
       if (nonzero[k]) {
@@ -88,9 +98,12 @@ std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) 
       double chance = std::exp2(std::log2(std::max(zeros, 1.0)) + log2_conjugates_ + roots - 60.99);
       if (const int m = branches(); m > 0) chance += 1 - std::exp2(-m);
       findings[k].log2_chance = std::isfinite(chance) && chance < 1 ? accepted * std::log2(chance) : 0;
-      if (findings[k].log2_chance <= kLargestChance) findings[k].is = ModularFinding::Is::zero;
-      else if (branches() > kMostBranches) findings[k].detail = "it has too many roots or signs to try all their branches";
-      else findings[k].detail = "it is zero at all points tried, but its degree is too high to conclude from that";
+      if (findings[k].log2_chance <= kLargestChance)
+        findings[k].is = ModularFinding::Is::zero;
+      else if (branches() > kMostBranches)
+        findings[k].detail = "it has too many roots or signs to try all their branches";
+      else
+        findings[k].detail = "it is zero at all points tried, but its degree is too high to conclude from that";
     }
   } catch (const Unable& u) {
     for (ModularFinding& finding : findings) finding = {ModularFinding::Is::unknown, 0, u.reason};

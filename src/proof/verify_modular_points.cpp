@@ -1,6 +1,6 @@
-#include "proof/verify_modular_program.h"
-
 #include <algorithm>
+
+#include "proof/verify_modular_program.h"
 
 namespace anholon::verification {
 
@@ -48,7 +48,8 @@ bool ModularProgram::reduce(const Field& f, Reduced& r) const {
       for (const Part& part : s.angle.parts) {
         const auto content = f.from(part.content);
         if (!content || *content == 0) return false;
-        r.turns[i].push_back({f.inverse(*content), modulo(part.coefficient * (circle ? circle_q_ : growth_q_), circle ? p + 1 : p - 1)});
+        r.turns[i].push_back(
+            {f.inverse(*content), modulo(part.coefficient * (circle ? circle_q_ : growth_q_), circle ? p + 1 : p - 1)});
       }
     }
   }
@@ -63,11 +64,15 @@ Word ModularProgram::random(const Field& f, const HashKey& key, std::uint64_t ta
   }
 }
 
-Word ModularProgram::atom(const Field& f, const Part& part, const Turn& t, const HashKey& key, const std::vector<Word>& v) const {
+Word ModularProgram::atom(const Field& f, const Part& part, const Turn& t, const HashKey& key,
+                          const std::vector<Word>& v) const {
   switch (part.of) {
-    case Part::Of::node: return f.multiply(v[part.local], t.scale);
-    case Part::Of::one: return 1;
-    case Part::Of::pi: return pi_value(f, key);
+  case Part::Of::node:
+    return f.multiply(v[part.local], t.scale);
+  case Part::Of::one:
+    return 1;
+  case Part::Of::pi:
+    return pi_value(f, key);
   }
   return 0;
 }
@@ -84,8 +89,8 @@ static std::pair<Word, Word> rotate(const Field& f, std::pair<Word, Word> a, Wor
   return r;
 }
 
-ModularProgram::Point ModularProgram::turn(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key,
-                             const std::vector<Word>& v, const Point& twelfth) const {
+ModularProgram::Point ModularProgram::turn(const Field& f, const Step& step, const std::vector<Turn>& turns,
+                                           const HashKey& key, const std::vector<Word>& v, const Point& twelfth) const {
   std::pair<Word, Word> r = rotate(f, std::pair{twelfth.c, twelfth.s}, Word{step.angle.twelfths});
   for (std::size_t k = 0; k < turns.size(); ++k) {
     const Word u = random(f, key, 3, atom(f, step.angle.parts[k], turns[k], key, v)), square = f.multiply(u, u);
@@ -96,7 +101,8 @@ ModularProgram::Point ModularProgram::turn(const Field& f, const Step& step, con
   return {r.first, r.second};
 }
 
-Word ModularProgram::grow(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key, const std::vector<Word>& v) const {
+Word ModularProgram::grow(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key,
+                          const std::vector<Word>& v) const {
   Word r = 1;
   for (std::size_t k = 0; k < turns.size(); ++k) {
     const Word value = atom(f, step.angle.parts[k], turns[k], key, v);
@@ -118,62 +124,75 @@ ModularProgram::Drawn ModularProgram::draw(const Field& f, const Reduced& r, con
     const Step& s = steps_[i];
     Word value = 0;
     switch (s.node->operation) {
-      case Operation::number: value = r.weights[i][0]; break;
-      case Operation::pi: value = pi_value(f, key); break;
-      case Operation::symbol: value = random(f, key, 1, s.node->symbol); break;
-      case Operation::sum:
-        for (std::size_t k = 0; k < s.operands.size(); ++k) value = f.add(value, f.multiply(r.weights[i][k], v[s.operands[k]]));
-        break;
-      case Operation::product:
-        value = 1;
-        for (std::size_t k = 0; k < s.operands.size(); ++k) {
-          if (s.operands[k] == kNone) continue;
-          const Factor& factor = r.factors[i][k];
-          const Word x = v[s.operands[k]];
-          if (x == 0) {
-            if (!factor.zero_allowed) return Drawn::undefined;
-            value = 0;
-            continue;
-          }
-          if (factor.site != kNone && !f.is_square(x)) {
-            failed_site_ = factor.site;
-            return sites_[factor.site].constant ? Drawn::bad_prime : Drawn::not_square;
-          }
-          value = f.multiply(value, f.power(x, factor.exponent));
+    case Operation::number:
+      value = r.weights[i][0];
+      break;
+    case Operation::pi:
+      value = pi_value(f, key);
+      break;
+    case Operation::symbol:
+      value = random(f, key, 1, s.node->symbol);
+      break;
+    case Operation::sum:
+      for (std::size_t k = 0; k < s.operands.size(); ++k)
+        value = f.add(value, f.multiply(r.weights[i][k], v[s.operands[k]]));
+      break;
+    case Operation::product:
+      value = 1;
+      for (std::size_t k = 0; k < s.operands.size(); ++k) {
+        if (s.operands[k] == kNone) continue;
+        const Factor& factor = r.factors[i][k];
+        const Word x = v[s.operands[k]];
+        if (x == 0) {
+          if (!factor.zero_allowed) return Drawn::undefined;
+          value = 0;
+          continue;
         }
-        break;
-      case Operation::atan2:
-        if (v[s.operands[0]] == 0 && v[s.operands[1]] == 0) return Drawn::undefined;
-        value = random(f, key, 5, v[s.operands[0]], v[s.operands[1]]);
-        break;
-      case Operation::function: {
-        const std::string& name = s.node->function;
-        const Word u = v[s.operands[0]];
-        if (s.family == Family::circle) {
-          const Point point = turn(f, s, r.turns[i], key, v, twelfth);
-          if (name == "tan" && point.c == 0) return Drawn::undefined;
-          value = name == "sin" ? point.s : name == "cos" ? point.c : f.multiply(point.s, f.inverse(point.c));
-        } else if (s.family == Family::exponential) {
-          const Word e = grow(f, s, r.turns[i], key, v), inverse = f.inverse(e);
-          const Word twice_sinh = f.subtract(e, inverse), twice_cosh = f.add(e, inverse);
-          if (name == "tanh" && twice_cosh == 0) return Drawn::undefined;
-          value = name == "exp" ? e : name == "sinh" ? f.multiply(half, twice_sinh) : name == "cosh" ? f.multiply(half, twice_cosh)
-                                                                                                     : f.multiply(twice_sinh, f.inverse(twice_cosh));
-        } else if (name == "abs" || name == "sign") {
-          const Certificate::Node& of = *steps_[s.operands[0]].node;
-          const Word plus = of.operation != Operation::number ? sign(u) : of.value == 0 ? Word{0} : of.value > 0 ? Word{1} : f.prime() - 1;
-          value = name == "abs" ? f.multiply(u, plus) : plus;
-        } else if (is_odd(name) || name == "acos") {
-          static const auto& all = Certificate::functions();
-          static const auto asin_name = static_cast<std::uint64_t>(std::find(all.begin(), all.end(), "asin") - all.begin());
-          const Word plus = sign(u);
-          value = f.multiply(plus, random(f, key, 6 + (name == "acos" ? asin_name : s.name), f.multiply(u, plus)));
-          if (name == "acos") value = f.subtract(f.multiply(half, pi_value(f, key)), value);
-        } else {
-          value = random(f, key, 6 + s.name, u);
+        if (factor.site != kNone && !f.is_square(x)) {
+          failed_site_ = factor.site;
+          return sites_[factor.site].constant ? Drawn::bad_prime : Drawn::not_square;
         }
-        break;
+        value = f.multiply(value, f.power(x, factor.exponent));
       }
+      break;
+    case Operation::atan2:
+      if (v[s.operands[0]] == 0 && v[s.operands[1]] == 0) return Drawn::undefined;
+      value = random(f, key, 5, v[s.operands[0]], v[s.operands[1]]);
+      break;
+    case Operation::function: {
+      const std::string& name = s.node->function;
+      const Word u = v[s.operands[0]];
+      if (s.family == Family::circle) {
+        const Point point = turn(f, s, r.turns[i], key, v, twelfth);
+        if (name == "tan" && point.c == 0) return Drawn::undefined;
+        value = name == "sin" ? point.s : name == "cos" ? point.c : f.multiply(point.s, f.inverse(point.c));
+      } else if (s.family == Family::exponential) {
+        const Word e = grow(f, s, r.turns[i], key, v), inverse = f.inverse(e);
+        const Word twice_sinh = f.subtract(e, inverse), twice_cosh = f.add(e, inverse);
+        if (name == "tanh" && twice_cosh == 0) return Drawn::undefined;
+        value = name == "exp"    ? e
+                : name == "sinh" ? f.multiply(half, twice_sinh)
+                : name == "cosh" ? f.multiply(half, twice_cosh)
+                                 : f.multiply(twice_sinh, f.inverse(twice_cosh));
+      } else if (name == "abs" || name == "sign") {
+        const Certificate::Node& of = *steps_[s.operands[0]].node;
+        const Word plus = of.operation != Operation::number ? sign(u)
+                          : of.value == 0                   ? Word{0}
+                          : of.value > 0                    ? Word{1}
+                                                            : f.prime() - 1;
+        value = name == "abs" ? f.multiply(u, plus) : plus;
+      } else if (is_odd(name) || name == "acos") {
+        static const auto& all = Certificate::functions();
+        static const auto asin_name =
+            static_cast<std::uint64_t>(std::find(all.begin(), all.end(), "asin") - all.begin());
+        const Word plus = sign(u);
+        value = f.multiply(plus, random(f, key, 6 + (name == "acos" ? asin_name : s.name), f.multiply(u, plus)));
+        if (name == "acos") value = f.subtract(f.multiply(half, pi_value(f, key)), value);
+      } else {
+        value = random(f, key, 6 + s.name, u);
+      }
+      break;
+    }
     }
     v[i] = value;
   }

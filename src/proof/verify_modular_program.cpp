@@ -43,7 +43,9 @@ void ModularProgram::collect() {
     Step& s = steps_[i];
     s.node = &c_.nodes[nodes_[i]];
     const bool algebraic = s.node->operation == Operation::sum || s.node->operation == Operation::product;
-    s.constant = algebraic || s.node->operation == Operation::number || (s.node->operation == Operation::function && (s.node->function == "abs" || s.node->function == "sign"));
+    s.constant =
+        algebraic || s.node->operation == Operation::number ||
+        (s.node->operation == Operation::function && (s.node->function == "abs" || s.node->function == "sign"));
     cost_ += 30 + (s.node->operation == Operation::sum ? 5 : 400) * s.node->terms.size();
     for (const Certificate::Term& t : s.node->terms) {
       const bool used = s.node->operation != Operation::product || t.weight != 0;
@@ -75,7 +77,8 @@ Angle ModularProgram::flatten(Index argument, bool circle) {
   Rational ones = 0, pis = 0;
   std::map<Index, Rational, std::greater<>> open{{argument, 1}};
   const auto check = [](const Rational& r) {
-    if (mpz_sizeinbase(r.get_num_mpz_t(), 2) + mpz_sizeinbase(r.get_den_mpz_t(), 2) > kMostBits) throw Unable{"an angle has a coefficient of too many digits"};
+    if (mpz_sizeinbase(r.get_num_mpz_t(), 2) + mpz_sizeinbase(r.get_den_mpz_t(), 2) > kMostBits)
+      throw Unable{"an angle has a coefficient of too many digits"};
   };
   while (!open.empty()) {
     const Index at = open.begin()->first;
@@ -86,31 +89,42 @@ Angle ModularProgram::flatten(Index argument, bool circle) {
     const Certificate::Node& n = c_.nodes[at];
     if (!work_.spend(4 + 4 * n.terms.size())) throw Unable{"the limit of work is reached"};
     switch (n.operation) {
-      case Operation::number: ones += coefficient * n.value; break;
-      case Operation::pi: pis += coefficient; break;
-      case Operation::sum:
-        for (const Certificate::Term& t : n.terms) open[t.node] += coefficient * t.weight;
-        break;
-      case Operation::product: {
-        Rational content = 1;
-        const Certificate::Term* other = nullptr;
-        std::size_t others = 0;
-        for (const Certificate::Term& t : n.terms) {
-          if (t.weight == 0) continue;
-          const Certificate::Node& factor = c_.nodes[t.node];
-          const bool number = factor.operation == Operation::number && factor.value != 0 && t.weight.get_den() == 1;
-          const auto power = number ? exact_power(factor.value, t.weight.get_num().get_si()) : std::nullopt;
-          if (power) content *= *power, check(content);
-          else other = &t, ++others;
-        }
-        if (others == 0) ones += coefficient * content;
-        else if (others == 1 && other->weight == 1) open[other->node] += coefficient * content;
-        else angle.parts.push_back({Part::Of::node, local_[at], content, coefficient * content});
-        break;
+    case Operation::number:
+      ones += coefficient * n.value;
+      break;
+    case Operation::pi:
+      pis += coefficient;
+      break;
+    case Operation::sum:
+      for (const Certificate::Term& t : n.terms) open[t.node] += coefficient * t.weight;
+      break;
+    case Operation::product: {
+      Rational content = 1;
+      const Certificate::Term* other = nullptr;
+      std::size_t others = 0;
+      for (const Certificate::Term& t : n.terms) {
+        if (t.weight == 0) continue;
+        const Certificate::Node& factor = c_.nodes[t.node];
+        const bool number = factor.operation == Operation::number && factor.value != 0 && t.weight.get_den() == 1;
+        const auto power = number ? exact_power(factor.value, t.weight.get_num().get_si()) : std::nullopt;
+        if (power)
+          content *= *power, check(content);
+        else
+          other = &t, ++others;
       }
-      case Operation::symbol:
-      case Operation::function:
-      case Operation::atan2: angle.parts.push_back({Part::Of::node, local_[at], 1, coefficient}); break;
+      if (others == 0)
+        ones += coefficient * content;
+      else if (others == 1 && other->weight == 1)
+        open[other->node] += coefficient * content;
+      else
+        angle.parts.push_back({Part::Of::node, local_[at], content, coefficient * content});
+      break;
+    }
+    case Operation::symbol:
+    case Operation::function:
+    case Operation::atan2:
+      angle.parts.push_back({Part::Of::node, local_[at], 1, coefficient});
+      break;
     }
   }
   check(ones), check(pis);
@@ -146,7 +160,8 @@ Degree ModularProgram::sum_degree(const std::vector<const Degree*>& terms) {
     }
   Degree sum;
   double all = 0;
-  for (const auto& [base, exponent] : common) all += exponent * base_degree_.at(base), sum.denominators.emplace_back(base, exponent);
+  for (const auto& [base, exponent] : common)
+    all += exponent * base_degree_.at(base), sum.denominators.emplace_back(base, exponent);
   for (const Degree* d : terms) {
     const double missing = all - (total(*d) - d->numerator);
     sum.numerator = std::max(sum.numerator, std::isnan(missing) ? kInfinity : d->numerator + missing);
@@ -169,8 +184,10 @@ void ModularProgram::multiply_degree(Degree& d, const Degree& by, double exponen
     d.numerator += exponent * by.numerator;
     for (const auto& [b, e] : by.denominators) {
       const auto it = std::lower_bound(d.denominators.begin(), d.denominators.end(), std::pair{b, -kInfinity});
-      if (it != d.denominators.end() && it->first == b) it->second += e * exponent;
-      else d.denominators.insert(it, {b, e * exponent});
+      if (it != d.denominators.end() && it->first == b)
+        it->second += e * exponent;
+      else
+        d.denominators.insert(it, {b, e * exponent});
     }
   }
   if (std::isnan(d.numerator)) d.numerator = kInfinity;
@@ -187,60 +204,66 @@ void ModularProgram::degrees() {
     Degree& d = degree_[i];
     const auto operand = [&](std::size_t k) -> const Degree& { return degree_[s.operands[k]]; };
     switch (s.node->operation) {
-      case Operation::number: break;
-      case Operation::pi:
-      case Operation::symbol: d.numerator = 1; break;
-      case Operation::sum: {
-        std::vector<const Degree*> terms;
-        for (std::size_t k = 0; k < s.operands.size(); ++k)
-          if (s.node->terms[k].weight != 0) terms.push_back(&operand(k));
-        d = sum_degree(terms);
-        break;
+    case Operation::number:
+      break;
+    case Operation::pi:
+    case Operation::symbol:
+      d.numerator = 1;
+      break;
+    case Operation::sum: {
+      std::vector<const Degree*> terms;
+      for (std::size_t k = 0; k < s.operands.size(); ++k)
+        if (s.node->terms[k].weight != 0) terms.push_back(&operand(k));
+      d = sum_degree(terms);
+      break;
+    }
+    case Operation::product:
+      for (std::size_t k = 0; k < s.operands.size(); ++k) {
+        if (s.operands[k] == kNone) continue;
+        const Rational& weight = s.node->terms[k].weight;
+        multiply_degree(d, operand(k), weight.get_d(), s.operands[k] * kBases + kInverted);
+        if (weight.get_den() != 1) roots.emplace_back(s.operands[k], weight.get_den());
       }
-      case Operation::product:
-        for (std::size_t k = 0; k < s.operands.size(); ++k) {
-          if (s.operands[k] == kNone) continue;
-          const Rational& weight = s.node->terms[k].weight;
-          multiply_degree(d, operand(k), weight.get_d(), s.operands[k] * kBases + kInverted);
-          if (weight.get_den() != 1) roots.emplace_back(s.operands[k], weight.get_den());
-        }
-        break;
-      case Operation::atan2:
+      break;
+    case Operation::atan2:
+      d.numerator = 1;
+      key(std::max(total(operand(0)), total(operand(1))));
+      break;
+    case Operation::function: {
+      const std::string& name = s.node->function;
+      if (name == "abs") d = operand(0);
+      if (name == "abs" || name == "sign") break;
+      if (s.family == Family::none) {
         d.numerator = 1;
-        key(std::max(total(operand(0)), total(operand(1))));
-        break;
-      case Operation::function: {
-        const std::string& name = s.node->function;
-        if (name == "abs") d = operand(0);
-        if (name == "abs" || name == "sign") break;
-        if (s.family == Family::none) {
-          d.numerator = 1;
-          key(total(operand(0)));
-          break;
-        }
-        const bool circle = s.family == Family::circle;
-        double sum = 0;
-        for (const Part& part : s.angle.parts) {
-          const double times = std::abs(Rational(part.coefficient * (circle ? circle_q_ : growth_q_)).get_d());
-          sum += 2 * times;
-          const std::uint64_t atom = part.of == Part::Of::node ? part.local * kBases : special + (part.of == Part::Of::pi ? 1 : 0) * kBases;
-          const std::uint64_t base = atom + (circle ? kCircle : kGrowth);
-          base_degree_[base] = 2;
-          Degree by;
-          if (name == "exp" && part.coefficient > 0) by.numerator = 2 * times;
-          else by.denominators.emplace_back(base, times);
-          multiply_degree(d, by, 1, base);
-          key(part.of == Part::Of::node ? total(degree_[part.local]) : 1);
-        }
-        if (circle) d.numerator += sum;
-        if (name == "sinh" || name == "cosh" || name == "tanh") d.numerator += 2 * sum;
-        if (name == "tan" || name == "tanh") {
-          const std::uint64_t base = i * kBases + kQuotient;
-          base_degree_[base] = name == "tan" ? sum : 2 * sum;
-          d = Degree{base_degree_[base], {{base, 1}}};
-        }
+        key(total(operand(0)));
         break;
       }
+      const bool circle = s.family == Family::circle;
+      double sum = 0;
+      for (const Part& part : s.angle.parts) {
+        const double times = std::abs(Rational(part.coefficient * (circle ? circle_q_ : growth_q_)).get_d());
+        sum += 2 * times;
+        const std::uint64_t atom =
+            part.of == Part::Of::node ? part.local * kBases : special + (part.of == Part::Of::pi ? 1 : 0) * kBases;
+        const std::uint64_t base = atom + (circle ? kCircle : kGrowth);
+        base_degree_[base] = 2;
+        Degree by;
+        if (name == "exp" && part.coefficient > 0)
+          by.numerator = 2 * times;
+        else
+          by.denominators.emplace_back(base, times);
+        multiply_degree(d, by, 1, base);
+        key(part.of == Part::Of::node ? total(degree_[part.local]) : 1);
+      }
+      if (circle) d.numerator += sum;
+      if (name == "sinh" || name == "cosh" || name == "tanh") d.numerator += 2 * sum;
+      if (name == "tan" || name == "tanh") {
+        const std::uint64_t base = i * kBases + kQuotient;
+        base_degree_[base] = name == "tan" ? sum : 2 * sum;
+        d = Degree{base_degree_[base], {{base, 1}}};
+      }
+      break;
+    }
     }
     if (std::isnan(d.numerator)) d.numerator = kInfinity;
     if (work_.done()) throw Unable{"the limit of work is reached"};

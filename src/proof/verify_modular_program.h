@@ -1,6 +1,6 @@
-// The nodes that claims need, compiled for evaluation in finite fields (verify_modular.h): angles as combinations of atoms
-// and bounds on degrees (verify_modular_program.cpp), values at random points (verify_modular_points.cpp), what follows from
-// them (verify_modular.cpp).
+// The nodes that claims need, compiled for evaluation in finite fields (verify_modular.h): angles as combinations of
+// atoms and bounds on degrees (verify_modular_program.cpp), values at random points (verify_modular_points.cpp), what
+// follows from them (verify_modular.cpp).
 #pragma once
 #include <cstdint>
 #include <map>
@@ -46,9 +46,9 @@ struct Step {
 // A place where the sign of a root, or of a number, has to be chosen.
 struct Site {
   std::uint32_t local = 0;
-  bool root = false;      // the argument must be a square
+  bool root = false;  // the argument must be a square
   bool constant = false;
-  bool failed = false;    // it was seen not to be a square: its root is in no smaller field
+  bool failed = false;  // it was seen not to be a square: its root is in no smaller field
 };
 
 // Degrees as rational functions of everything that is drawn at random. The denominators are kept
@@ -83,7 +83,7 @@ class ModularProgram {
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   struct Factor {
-    Word exponent = 0;      // modulo the order of the group
+    Word exponent = 0;  // modulo the order of the group
     std::uint32_t site = kNone;
     bool zero_allowed = true;
   };
@@ -115,8 +115,10 @@ class ModularProgram {
   bool reduce(const Field& f, Reduced& r) const;
   Drawn draw(const Field& f, const Reduced& r, const HashKey& key, std::vector<Word>& v);
   Word random(const Field& f, const HashKey& key, std::uint64_t tag, Word a, Word b = 0) const;
-  Point turn(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key, const std::vector<Word>& v, const Point& twelfth) const;
-  Word grow(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key, const std::vector<Word>& v) const;
+  Point turn(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key,
+             const std::vector<Word>& v, const Point& twelfth) const;
+  Word grow(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key,
+            const std::vector<Word>& v) const;
   Word atom(const Field& f, const Part& part, const Turn& t, const HashKey& key, const std::vector<Word>& v) const;
   Word pi_value(const Field& f, const HashKey& key) const { return random(f, key, 2, 0); }
 

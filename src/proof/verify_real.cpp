@@ -24,27 +24,43 @@ const Function& function(const std::string& name) {
       {"sin", {[](const Ball& u) { return sin(u); }, [](const Ball& u, const Ball&) { return cos(u); }}},
       {"cos", {[](const Ball& u) { return cos(u); }, [](const Ball& u, const Ball&) { return -sin(u); }}},
       {"tan", {[](const Ball& u) { return tan(u); }, [](const Ball&, const Ball& v) { return Ball(1) + v * v; }}},
-      {"asin", {[](const Ball& u) { return asin(u); }, [](const Ball& u, const Ball&) { return pow(Ball(1) - u * u, kMinusHalf); }}},
-      {"acos", {[](const Ball& u) { return acos(u); }, [](const Ball& u, const Ball&) { return -pow(Ball(1) - u * u, kMinusHalf); }}},
-      {"atan", {[](const Ball& u) { return atan(u); }, [](const Ball& u, const Ball&) { return Ball(1) / (Ball(1) + u * u); }}},
+      {"asin",
+       {[](const Ball& u) { return asin(u); },
+        [](const Ball& u, const Ball&) { return pow(Ball(1) - u * u, kMinusHalf); }}},
+      {"acos",
+       {[](const Ball& u) { return acos(u); },
+        [](const Ball& u, const Ball&) { return -pow(Ball(1) - u * u, kMinusHalf); }}},
+      {"atan",
+       {[](const Ball& u) { return atan(u); }, [](const Ball& u, const Ball&) { return Ball(1) / (Ball(1) + u * u); }}},
       {"sinh", {[](const Ball& u) { return sinh(u); }, [](const Ball& u, const Ball&) { return cosh(u); }}},
       {"cosh", {[](const Ball& u) { return cosh(u); }, [](const Ball& u, const Ball&) { return sinh(u); }}},
       {"tanh", {[](const Ball& u) { return tanh(u); }, [](const Ball&, const Ball& v) { return Ball(1) - v * v; }}},
-      {"asinh", {[](const Ball& u) { return asinh(u); }, [](const Ball& u, const Ball&) { return pow(Ball(1) + u * u, kMinusHalf); }}},
-      {"acosh", {[](const Ball& u) { return acosh(u); }, [](const Ball& u, const Ball&) { return pow(u * u - Ball(1), kMinusHalf); }}},
-      {"atanh", {[](const Ball& u) { return atanh(u); }, [](const Ball& u, const Ball&) { return Ball(1) / (Ball(1) - u * u); }}},
+      {"asinh",
+       {[](const Ball& u) { return asinh(u); },
+        [](const Ball& u, const Ball&) { return pow(Ball(1) + u * u, kMinusHalf); }}},
+      {"acosh",
+       {[](const Ball& u) { return acosh(u); },
+        [](const Ball& u, const Ball&) { return pow(u * u - Ball(1), kMinusHalf); }}},
+      {"atanh",
+       {[](const Ball& u) { return atanh(u); },
+        [](const Ball& u, const Ball&) { return Ball(1) / (Ball(1) - u * u); }}},
       {"exp", {[](const Ball& u) { return exp(u); }, [](const Ball&, const Ball& v) { return v; }}},
       {"log", {[](const Ball& u) { return log(u); }, [](const Ball& u, const Ball&) { return Ball(1) / u; }}},
       // At the edge itself there is no derivative.
-      {"abs", {[](const Ball& u) { return abs(u); }, [](const Ball& u, const Ball&) { return u.contains_zero() ? Ball::unknown() : sign(u); }}},
-      {"sign", {[](const Ball& u) { return sign(u); }, [](const Ball& u, const Ball&) { return u.contains_zero() ? Ball::unknown() : Ball(0); }}},
+      {"abs",
+       {[](const Ball& u) { return abs(u); },
+        [](const Ball& u, const Ball&) { return u.contains_zero() ? Ball::unknown() : sign(u); }}},
+      {"sign",
+       {[](const Ball& u) { return sign(u); },
+        [](const Ball& u, const Ball&) { return u.contains_zero() ? Ball::unknown() : Ball(0); }}},
   };
   return all.at(name);
 }
 
 }  // namespace
 
-RealProgram::RealProgram(const Certificate& c, const std::vector<const Certificate::Claim*>& claims, const std::vector<Index>& others)
+RealProgram::RealProgram(const Certificate& c, const std::vector<const Certificate::Claim*>& claims,
+                         const std::vector<Index>& others)
     : c_(c), local_(c.nodes.size(), kNone) {
   for (const Certificate::Claim* claim : claims) {
     add(claim->left);
@@ -76,19 +92,30 @@ void RealProgram::evaluate(const std::vector<Ball>& symbols) {
     const auto operand = [&](std::size_t k) -> const Ball& { return value_[local_[n.terms[k].node]]; };
     Ball v;
     switch (n.operation) {
-      case Operation::number: v = Ball(n.value); break;
-      case Operation::pi: v = Ball::pi(); break;
-      case Operation::symbol: v = symbols[n.symbol]; break;
-      case Operation::sum:
-        for (std::size_t k = 0; k < n.terms.size(); ++k) v += n.terms[k].weight == 1 ? operand(k) : Ball(n.terms[k].weight) * operand(k);
-        break;
-      case Operation::product:
-        v = Ball(1);
-        for (std::size_t k = 0; k < n.terms.size(); ++k)
-          if (n.terms[k].weight != 0) v *= n.terms[k].weight == 1 ? operand(k) : pow(operand(k), n.terms[k].weight);
-        break;
-      case Operation::function: v = function(n.function).value(operand(0)); break;
-      case Operation::atan2: v = anholon::atan2(operand(0), operand(1)); break;
+    case Operation::number:
+      v = Ball(n.value);
+      break;
+    case Operation::pi:
+      v = Ball::pi();
+      break;
+    case Operation::symbol:
+      v = symbols[n.symbol];
+      break;
+    case Operation::sum:
+      for (std::size_t k = 0; k < n.terms.size(); ++k)
+        v += n.terms[k].weight == 1 ? operand(k) : Ball(n.terms[k].weight) * operand(k);
+      break;
+    case Operation::product:
+      v = Ball(1);
+      for (std::size_t k = 0; k < n.terms.size(); ++k)
+        if (n.terms[k].weight != 0) v *= n.terms[k].weight == 1 ? operand(k) : pow(operand(k), n.terms[k].weight);
+      break;
+    case Operation::function:
+      v = function(n.function).value(operand(0));
+      break;
+    case Operation::atan2:
+      v = anholon::atan2(operand(0), operand(1));
+      break;
     }
     value_[i] = std::move(v);
   }
@@ -113,35 +140,38 @@ std::vector<Ball> RealProgram::jacobian(const std::vector<Index>& nodes, const s
     };
     const auto operand = [&](std::size_t k) { return local_[n.terms[k].node]; };
     switch (n.operation) {
-      case Operation::number:
-      case Operation::pi: break;
-      case Operation::symbol:
-        if (const auto at = std::find(symbols.begin(), symbols.end(), n.symbol); at != symbols.end()) {
-          t.resize(m);
-          t[static_cast<std::size_t>(at - symbols.begin())] = Ball(1);
-        }
-        break;
-      case Operation::sum:
-        for (std::size_t k = 0; k < n.terms.size(); ++k) add_to(Ball(n.terms[k].weight), tangent[operand(k)]);
-        break;
-      case Operation::product:
-        for (std::size_t k = 0; k < n.terms.size(); ++k) {
-          if (n.terms[k].weight == 0 || tangent[operand(k)].empty()) continue;
-          Ball factor = Ball(n.terms[k].weight) * pow(value_[operand(k)], n.terms[k].weight - 1);
-          for (std::size_t l = 0; l < n.terms.size(); ++l)
-            if (l != k && n.terms[l].weight != 0) factor *= pow(value_[operand(l)], n.terms[l].weight);
-          add_to(factor, tangent[operand(k)]);
-        }
-        break;
-      case Operation::function: add_to(function(n.function).derivative(value_[operand(0)], value_[i]), tangent[operand(0)]); break;
-      case Operation::atan2: {
-        const Ball &y = value_[operand(0)], &x = value_[operand(1)], scale = Ball(1) / (x * x + y * y);
-        // Across the cut it is not even continuous.
-        const bool cut = !x.is_positive() && y.contains_zero();
-        add_to(cut ? Ball::unknown() : x * scale, tangent[operand(0)]);
-        add_to(cut ? Ball::unknown() : -y * scale, tangent[operand(1)]);
-        break;
+    case Operation::number:
+    case Operation::pi:
+      break;
+    case Operation::symbol:
+      if (const auto at = std::find(symbols.begin(), symbols.end(), n.symbol); at != symbols.end()) {
+        t.resize(m);
+        t[static_cast<std::size_t>(at - symbols.begin())] = Ball(1);
       }
+      break;
+    case Operation::sum:
+      for (std::size_t k = 0; k < n.terms.size(); ++k) add_to(Ball(n.terms[k].weight), tangent[operand(k)]);
+      break;
+    case Operation::product:
+      for (std::size_t k = 0; k < n.terms.size(); ++k) {
+        if (n.terms[k].weight == 0 || tangent[operand(k)].empty()) continue;
+        Ball factor = Ball(n.terms[k].weight) * pow(value_[operand(k)], n.terms[k].weight - 1);
+        for (std::size_t l = 0; l < n.terms.size(); ++l)
+          if (l != k && n.terms[l].weight != 0) factor *= pow(value_[operand(l)], n.terms[l].weight);
+        add_to(factor, tangent[operand(k)]);
+      }
+      break;
+    case Operation::function:
+      add_to(function(n.function).derivative(value_[operand(0)], value_[i]), tangent[operand(0)]);
+      break;
+    case Operation::atan2: {
+      const Ball &y = value_[operand(0)], &x = value_[operand(1)], scale = Ball(1) / (x * x + y * y);
+      // Across the cut it is not even continuous.
+      const bool cut = !x.is_positive() && y.contains_zero();
+      add_to(cut ? Ball::unknown() : x * scale, tangent[operand(0)]);
+      add_to(cut ? Ball::unknown() : -y * scale, tangent[operand(1)]);
+      break;
+    }
     }
   }
   std::vector<Ball> rows;

@@ -14,7 +14,8 @@ namespace anholon::verification {
 class RealProgram {
  public:
   using Index = Certificate::Index;
-  RealProgram(const Certificate& c, const std::vector<const Certificate::Claim*>& claims, const std::vector<Index>& others = {});
+  RealProgram(const Certificate& c, const std::vector<const Certificate::Claim*>& claims,
+              const std::vector<Index>& others = {});
 
   // Values of symbols by their index, those of nodes by number of node. A node that is not defined on
   // all of the balls is not finite.

@@ -10,15 +10,16 @@ namespace anholon {
 
 namespace {
 
-constexpr int kPoints = 40;          // tried before the search ends
-constexpr int kSizes = 4;            // of the free derivatives: 1, 1/2, 1/4, …
+constexpr int kPoints = 40;  // tried before the search ends
+constexpr int kSizes = 4;    // of the free derivatives: 1, 1/2, 1/4, …
 constexpr slong kFirstBits = 64;
-constexpr slong kRootBits = 256;     // of the box of a root, where no more than usual are asked for
+constexpr slong kRootBits = 256;  // of the box of a root, where no more than usual are asked for
 constexpr int kNewtonSteps = 60;
 
 // A rational in (1/5, 8/5) that depends on the symbol and the attempt.
 Rational arbitrary(const Node& n, int attempt) {
-  std::uint64_t h = static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order + static_cast<std::uint64_t>(attempt) * 7919;
+  std::uint64_t h = static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order +
+                    static_cast<std::uint64_t>(attempt) * 7919;
   for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
   const unsigned long step = (h >> 40) % 89;
   Rational r(13 + step, 64);
@@ -54,8 +55,9 @@ class Search {
   }
   Search(const Difference& d, const Elimination& elimination, const Model& model) : Search(d, {}, {}, model, true) {
     if (elimination.phi.empty()) return;
-    // The constraints and their derivatives, as far as the dependent derivatives occur. Of solved constraints the first two are
-    // put in already, except in differences that were never brought to the manifold: those of forms with multipliers.
+    // The constraints and their derivatives, as far as the dependent derivatives occur. Of solved constraints the first
+    // two are put in already, except in differences that were never brought to the manifold: those of forms with
+    // multipliers.
     Graph& g = *e_.graph;
     unsigned highest = 0;
     bool put_in = elimination.solved;
@@ -96,7 +98,8 @@ class Search {
       }
       largest = value;
     }
-    out.detail = tried == 0 ? "no point of the manifold was found" : "zero to " + largest + " at " + std::to_string(tried) + " points";
+    out.detail = tried == 0 ? "no point of the manifold was found"
+                            : "zero to " + largest + " at " + std::to_string(tried) + " points";
     return out;
   }
 

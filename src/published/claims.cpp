@@ -67,7 +67,8 @@ class TableReader {
     for (const Item& i : table.items)
       if (std::find(keys.begin(), keys.end(), i.key) == keys.end()) {
         const std::string near = did_you_mean(i.key, keys);
-        throw Failure(i.key_span, "unknown key '" + i.key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+        throw Failure(i.key_span,
+                      "unknown key '" + i.key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
       }
   }
   static std::string text(const Item& table, const char* key, bool needed = true) {
@@ -89,7 +90,8 @@ class TableReader {
   }
 
   Claim claim(const Item& i) {
-    known(i, {"tag", "unnumbered", "title", "kind", "formula", "hypotheses", "difference", "class", "form", "quantity", "theory", "corrected", "check"});
+    known(i, {"tag", "unnumbered", "title", "kind", "formula", "hypotheses", "difference", "class", "form", "quantity",
+              "theory", "corrected", "check"});
     Claim c;
     c.span = i.span;
     c.tag = text(i, "tag");
@@ -97,7 +99,8 @@ class TableReader {
     c.numbered = !(unnumbered && unnumbered->kind == Item::Kind::boolean && unnumbered->truth);
     c.title = text(i, "title");
     c.kind = text(i, "kind");
-    if (std::none_of(std::begin(kKinds), std::end(kKinds), [&](const char* k) { return c.kind == k; })) throw Failure(i.find("kind")->span, "unknown kind '" + c.kind + "'");
+    if (std::none_of(std::begin(kKinds), std::end(kKinds), [&](const char* k) { return c.kind == k; }))
+      throw Failure(i.find("kind")->span, "unknown kind '" + c.kind + "'");
     c.formula = text(i, "formula");
     c.hypotheses = text(i, "hypotheses", false);
     c.difference = text(i, "difference", false);
@@ -106,10 +109,14 @@ class TableReader {
     c.quantity = text(i, "quantity", false);
     c.theory = text(i, "theory", false);
     const std::string by = text(i, "class", false);
-    if (by == "reading") c.by = DifferenceBy::reading;
-    else if (by == "text") c.by = DifferenceBy::text;
-    else if (by == "undecidable") c.by = DifferenceBy::undecidable;
-    else if (!by.empty()) throw Failure(i.find("class")->span, "unknown class '" + by + "'", "reading, text or undecidable");
+    if (by == "reading")
+      c.by = DifferenceBy::reading;
+    else if (by == "text")
+      c.by = DifferenceBy::text;
+    else if (by == "undecidable")
+      c.by = DifferenceBy::undecidable;
+    else if (!by.empty())
+      throw Failure(i.find("class")->span, "unknown class '" + by + "'", "reading, text or undecidable");
     if (c.difference.empty() != by.empty()) throw Failure(i.span, "'difference' and 'class' stand together");
     if (const Item* checks = i.find("check")) {
       if (checks->kind != Item::Kind::array) throw Failure(checks->span, "[[claim.check]] is a list");
@@ -139,10 +146,15 @@ class TableReader {
         for (const Item& v : p.items) c.points.back().push_back({v.key, v.text()});
       }
     }
-    c.kind = !c.forms.empty() ? ClaimCheck::Kind::forms : !c.points.empty() ? ClaimCheck::Kind::points : ClaimCheck::Kind::equation;
-    if (!c.equation.empty() + !c.forms.empty() + !c.points.empty() != 1) throw Failure(c.span, "a check has one of 'equation', 'forms' and 'points'");
-    if (c.kind == ClaimCheck::Kind::equation && c.expected && c.mutant.empty()) throw Failure(c.span, "'mutant' is missing: a change of the equation that must be false");
-    if (c.kind == ClaimCheck::Kind::points && c.points.size() < 2) throw Failure(c.span, "at least two points are compared");
+    c.kind = !c.forms.empty()    ? ClaimCheck::Kind::forms
+             : !c.points.empty() ? ClaimCheck::Kind::points
+                                 : ClaimCheck::Kind::equation;
+    if (!c.equation.empty() + !c.forms.empty() + !c.points.empty() != 1)
+      throw Failure(c.span, "a check has one of 'equation', 'forms' and 'points'");
+    if (c.kind == ClaimCheck::Kind::equation && c.expected && c.mutant.empty())
+      throw Failure(c.span, "'mutant' is missing: a change of the equation that must be false");
+    if (c.kind == ClaimCheck::Kind::points && c.points.size() < 2)
+      throw Failure(c.span, "at least two points are compared");
     return c;
   }
 
@@ -156,11 +168,16 @@ std::string plain(const std::string& spelling) {
   for (std::size_t i = 0; i < spelling.size();) {
     const std::string letter = spelling.substr(i, utf8_width(spelling, i));
     i += letter.size();
-    if (letter == "′" || letter == "’") out += '\'';
-    else if (letter == "ć" || letter == "č") out += 'c';
-    else if (letter == "š") out += 's';
-    else if (letter.size() > 1) out += normal_name(letter) == letter ? letter : plain(normal_name(letter));
-    else if (std::isalnum(static_cast<unsigned char>(letter[0])) || letter == "." || letter == "'" || letter == "-" || letter == "_")
+    if (letter == "′" || letter == "’")
+      out += '\'';
+    else if (letter == "ć" || letter == "č")
+      out += 'c';
+    else if (letter == "š")
+      out += 's';
+    else if (letter.size() > 1)
+      out += normal_name(letter) == letter ? letter : plain(normal_name(letter));
+    else if (std::isalnum(static_cast<unsigned char>(letter[0])) || letter == "." || letter == "'" || letter == "-" ||
+             letter == "_")
       out += static_cast<char>(std::tolower(static_cast<unsigned char>(letter[0])));
   }
   return out;
@@ -175,15 +192,21 @@ std::string letters_only(std::string s) {
 
 const char* in_words(DifferenceBy d) {
   switch (d) {
-    case DifferenceBy::reading: return "a loss of the machine reading";
-    case DifferenceBy::text: return "an error of the text";
-    case DifferenceBy::undecidable: return "undecidable without the scan";
-    case DifferenceBy::none: break;
+  case DifferenceBy::reading:
+    return "a loss of the machine reading";
+  case DifferenceBy::text:
+    return "an error of the text";
+  case DifferenceBy::undecidable:
+    return "undecidable without the scan";
+  case DifferenceBy::none:
+    break;
   }
   return "";
 }
 
-std::optional<Paper> read_paper(const SourceText& source, Diagnostics& diagnostics) { return TableReader(source, diagnostics).run(); }
+std::optional<Paper> read_paper(const SourceText& source, Diagnostics& diagnostics) {
+  return TableReader(source, diagnostics).run();
+}
 
 std::vector<FoundClaim> find_claims(const std::vector<Paper>& papers, const std::string& spelling) {
   const std::string wanted = plain(spelling);

@@ -1,4 +1,5 @@
-// The claims of a paper, one for each numbered equation and each displayed formula, and how the machine decides each. They stand in papers/*.toml.
+// The claims of a paper, one for each numbered equation and each displayed formula, and how the machine decides each.
+// They stand in papers/*.toml.
 #pragma once
 #include <optional>
 #include <string>
@@ -20,17 +21,17 @@ struct ClaimCheck {
   };
   Kind kind = Kind::equation;
   Span span;
-  std::string model;               // the name of a shipped model, or a file beside the table
-  bool expected = true;            // `is`
-  std::string says;                // "as read", "restored", "corrected", or empty
-  std::vector<std::string> lets;   // NAME = formula
-  std::string equation, mutant;    // in the language of published equations
+  std::string model;              // the name of a shipped model, or a file beside the table
+  bool expected = true;           // `is`
+  std::string says;               // "as read", "restored", "corrected", or empty
+  std::vector<std::string> lets;  // NAME = formula
+  std::string equation, mutant;   // in the language of published equations
   std::vector<std::string> forms;
   std::vector<std::vector<std::pair<std::string, std::string>>> points;  // symbol, rational value
 };
 
 struct Claim {
-  std::string tag;       // "3.13"; of an unnumbered formula a short name
+  std::string tag;  // "3.13"; of an unnumbered formula a short name
   bool numbered = true;
   std::string title, kind, formula, hypotheses;
   std::string difference, corrected;
@@ -44,7 +45,7 @@ struct Claim {
 };
 
 struct Paper {
-  std::string key;       // "L": tags are written L3.13
+  std::string key;  // "L": tags are written L3.13
   std::string title, english, reference;
   std::vector<std::string> authors;
   std::vector<Claim> claims;

@@ -17,14 +17,15 @@ constexpr double kVanishes = 1e-8;  // in relation to the size of the terms
 constexpr long kWorkOfCount = 200'000;
 constexpr std::size_t kLongestCounted = 800;  // nodes
 constexpr std::size_t kLongestFactor = 40;    // nodes
-constexpr std::size_t kPrinted = 5;          // differences that are arranged for a choice
+constexpr std::size_t kPrinted = 5;           // differences that are arranged for a choice
 constexpr const char* kIdentity = "an identity, no equation of motion";
 constexpr std::size_t kMostCombined = 6;  // equations in a combination that is written out
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
 
 bool vanishes(Expr e, std::vector<PointValues>& points) {
-  return std::all_of(points.begin(), points.end(), [&](PointValues& at) { return std::abs(at(e)) <= kVanishes * (1e-6 + size_at(e, at)); });
+  return std::all_of(points.begin(), points.end(),
+                     [&](PointValues& at) { return std::abs(at(e)) <= kVanishes * (1e-6 + size_at(e, at)); });
 }
 
 bool is_not_zero(Expr e, PointValues& at) { return std::abs(at(e)) > 1e-9 * (1e-6 + size_at(e, at)); }
@@ -62,13 +63,17 @@ bool zero_by_parts(Expr e, const Column& symbols) {
   Graph& g = *e.graph;
   const Column slopes = gradient(e, symbols);
   const auto at_zero = [&](Expr x) {
-    return substitute({&x, 1}, [&](NodeId id) { return std::any_of(symbols.begin(), symbols.end(), [&](Expr s) { return s.id == id; }) ? g.zero() : Expr{}; })[0];
+    return substitute({&x, 1}, [&](NodeId id) {
+      return std::any_of(symbols.begin(), symbols.end(), [&](Expr s) { return s.id == id; }) ? g.zero() : Expr{};
+    })[0];
   };
   for (Expr slope : slopes)
     for (Expr curve : gradient(slope, symbols))
       if (!is_zero(curve)) return shown_zero(e, Effort::full);
   try {
-    return std::all_of(slopes.begin(), slopes.end(), [](Expr x) { return is_zero(x) || shown_zero(x, Effort::full); }) && shown_zero(at_zero(e), Effort::full);
+    return std::all_of(slopes.begin(), slopes.end(),
+                       [](Expr x) { return is_zero(x) || shown_zero(x, Effort::full); }) &&
+           shown_zero(at_zero(e), Effort::full);
   } catch (const Failure&) {
     return false;
   }
@@ -107,11 +112,13 @@ unsigned order_of_motion(Expr e) {
   return highest;
 }
 
-Comparer::Comparer(const Mechanics& M, const Elimination& elimination, SymbolNames names) : M_(M), elimination_(elimination), names_(std::move(names)) {}
+Comparer::Comparer(const Mechanics& M, const Elimination& elimination, SymbolNames names)
+    : M_(M), elimination_(elimination), names_(std::move(names)) {}
 
 EquationsOfMotion& Comparer::motion(unsigned highest) {
   const auto it = motions_.find(highest);
-  return it != motions_.end() ? it->second : motions_.try_emplace(highest, M_, highest, elimination_.dependent).first->second;
+  return it != motions_.end() ? it->second
+                              : motions_.try_emplace(highest, M_, highest, elimination_.dependent).first->second;
 }
 
 EquationsOfMotion& Comparer::motion_for_changes(Expr published) {
@@ -123,14 +130,13 @@ EquationsOfMotion& Comparer::motion_for_changes(Expr published) {
 }
 
 std::string Comparer::name(const DerivedEquation& e) const {
-  std::string text = e.constraint ? "the constraint " + M_.model->constraints[e.index].name : "the equation of " + M_.model->coordinates[e.index].name;
+  std::string text = e.constraint ? "the constraint " + M_.model->constraints[e.index].name
+                                  : "the equation of " + M_.model->coordinates[e.index].name;
   if (e.times > 0) text += times_in_words(e.times);
   return text;
 }
 
-Expr Comparer::tidy(Expr e) const {
-  return is_number(e) ? e : arranged(e, names_);
-}
+Expr Comparer::tidy(Expr e) const { return is_number(e) ? e : arranged(e, names_); }
 
 std::string Comparer::times(Expr factor) const {
   if (is_number(factor) && number_value(factor) == 1) return {};
@@ -169,8 +175,10 @@ bool Comparer::directly(Expr P, const DerivedEquation& e, EquationsOfMotion& mot
   return true;
 }
 
-// The coefficients of a combination of rows that has the same derivatives by q'', lambda as P, and what is then left of P.
-std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion, std::vector<std::pair<std::size_t, Expr>>& terms) {
+// The coefficients of a combination of rows that has the same derivatives by q'', lambda as P, and what is then left of
+// P.
+std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
+                                          std::vector<std::pair<std::size_t, Expr>>& terms) {
   std::vector<PointValues>& points = motion.on_constraints();
   const std::size_t n = motion.rows.size();
   if (points.empty()) return std::nullopt;
@@ -221,7 +229,8 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion, std
     if (columns.size() == support.size()) break;
     Matrix<double> a(columns.size() + 1, support.size());
     for (std::size_t r = 0; r <= columns.size(); ++r)
-      for (std::size_t i = 0; i < support.size(); ++i) a(r, i) = points[0](K[support[i]][r < columns.size() ? columns[r] : j]);
+      for (std::size_t i = 0; i < support.size(); ++i)
+        a(r, i) = points[0](K[support[i]][r < columns.size() ? columns[r] : j]);
     if (choose_rows(a, 1e-7).independent.size() == columns.size() + 1) columns.push_back(j);
   }
   if (columns.size() < support.size()) return std::nullopt;
@@ -267,8 +276,10 @@ bool Comparer::combined(Expr P, EquationsOfMotion& motion, Comparison& out) {
     if (std::find(used.begin(), used.end(), n) == used.end()) used.push_back(n);
   };
   for (const auto& [i, c] : terms) {
-    if (motion.rows[i].constraint) use(motion.rows[i].index);
-    else of_motion.push_back({i, c});
+    if (motion.rows[i].constraint)
+      use(motion.rows[i].index);
+    else
+      of_motion.push_back({i, c});
   }
   if (constrained)
     for (const DerivedEquation& e : motion.lower) use(e.index);
@@ -339,7 +350,8 @@ void Comparer::nearest(Expr P, Comparison& out) {
   Column by = motion.top;
   const Column p_top = gradient(P, motion.top);
   if (std::all_of(p_top.begin(), p_top.end(), [](Expr x) { return is_zero(x); }))
-    for (std::size_t k = 0; k < M_.model->parameters.size(); ++k) by.push_back(M_.graph().parameter(static_cast<std::uint32_t>(k)));
+    for (std::size_t k = 0; k < M_.model->parameters.size(); ++k)
+      by.push_back(M_.graph().parameter(static_cast<std::uint32_t>(k)));
   const Column p = gradient(P, by);
   const auto factors_of = [&](Expr residual) {
     Column factors = {one, -one};
@@ -349,7 +361,8 @@ void Comparer::nearest(Expr P, Comparison& out) {
       const auto constant = constant_ratio(p[j], f[j], points);
       const Expr factor = constant ? M_.graph().number(*constant) : tidy(p[j] / f[j]);
       if (nodes(factor) > kLongestFactor) continue;
-      if (std::none_of(factors.begin(), factors.end(), [&](Expr before) { return before == factor; })) factors.push_back(factor);
+      if (std::none_of(factors.begin(), factors.end(), [&](Expr before) { return before == factor; }))
+        factors.push_back(factor);
     }
     return factors;
   };
@@ -359,9 +372,11 @@ void Comparer::nearest(Expr P, Comparison& out) {
       // In its own leading derivatives.
       const Column symbols = leading(e, motion), q = gradient(P, symbols), f = gradient(e.residual, symbols);
       for (std::size_t j = 0; j < symbols.size(); ++j)
-        if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0]) && is_not_zero(q[j], points[0])) offer(P - tidy(q[j] / f[j]) * e.residual, name(e) + times(tidy(q[j] / f[j])), 6);
+        if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0]) && is_not_zero(q[j], points[0]))
+          offer(P - tidy(q[j] / f[j]) * e.residual, name(e) + times(tidy(q[j] / f[j])), 6);
     }
-    for (Expr factor : e.constraint ? Column{one, -one} : factors_of(e.residual)) offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : is_number(factor) ? 2 : 3);
+    for (Expr factor : e.constraint ? Column{one, -one} : factors_of(e.residual))
+      offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : is_number(factor) ? 2 : 3);
   }
   if (!elimination_.dependent.empty() && !elimination_.quasi) {
     // Along the directions that the constraints leave free.
@@ -376,7 +391,8 @@ void Comparer::nearest(Expr P, Comparison& out) {
         const Expr row = sum(parts);
         ++of;
         for (Expr factor : factors_of(row)) {
-          const std::string what = "the equation of " + M_.model->coordinates[elimination_.independent[nu]].name + " without multipliers" + times(factor);
+          const std::string what = "the equation of " + M_.model->coordinates[elimination_.independent[nu]].name +
+                                   " without multipliers" + times(factor);
           offer(P - factor * row, what, 3);
           if (const auto on = motion.reduced(P - factor * row)) offer(*on, what + ", on the constraints", 4);
         }
@@ -404,7 +420,9 @@ void Comparer::nearest(Expr P, Comparison& out) {
     seen.push_back(offers[k].of);
     const Expr difference = arranged(offers[k].difference, names_);
     const std::size_t length = offers[k].weight * print(difference, names_, Format::text).size();
-    if (length < shortest) shortest = length, out.difference = difference, out.what = offers[k].what, out.identity = offers[k].of == identity;
+    if (length < shortest)
+      shortest = length, out.difference = difference, out.what = offers[k].what,
+      out.identity = offers[k].of == identity;
     if (nodes(offers[k].difference) > kLongestCounted) break;
   }
 }
@@ -446,7 +464,8 @@ Comparison Comparer::decide(Expr P) {
   for (PointValues& at : motion.on_motion()) largest = std::max(largest, std::abs(at(P)) / (1e-6 + size_at(P, at)));
   char bound[32];
   std::snprintf(bound, sizeof bound, "%.0e", largest);
-  out.detail = std::string("zero to ") + bound + " at " + std::to_string(motion.on_motion().size()) + " points of the motion; no proof was found";
+  out.detail = std::string("zero to ") + bound + " at " + std::to_string(motion.on_motion().size()) +
+               " points of the motion; no proof was found";
   return out;
 }
 
@@ -455,8 +474,11 @@ Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& word
   Comparison c = decide(P);
   if (c.verdict != Verdict::refuted) return c;
   c.changes = repairs(equation, words, alphabet, *this);
-  const auto quantities = [&] { return speaks_of_quantities(equation.left, words) || speaks_of_quantities(equation.right, words); };
-  c.identity = c.changes.empty() ? quantities() && without_motion(P, motion(order_of_motion(P))) : c.changes[0].identity;
+  const auto quantities = [&] {
+    return speaks_of_quantities(equation.left, words) || speaks_of_quantities(equation.right, words);
+  };
+  c.identity =
+      c.changes.empty() ? quantities() && without_motion(P, motion(order_of_motion(P))) : c.changes[0].identity;
   if (c.identity) {
     c.what = kIdentity;
     c.difference = arranged(P, names_);

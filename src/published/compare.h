@@ -4,33 +4,34 @@
 //
 //   P = sum_a c_a r_a + sum_r d_r phi_r^(k),
 //
-// identically, or on the manifold of the constraints. c and d follow from dP/d(q'', lambda) = (c, d) K, where K are the same
-// derivatives of the derived equations; numbers at points of the motion say which of them are not zero, so that only a small
-// system is solved on the graph. It is false if it does not vanish at a point at which all derived equations hold.
+// identically, or on the manifold of the constraints. c and d follow from dP/d(q'', lambda) = (c, d) K, where K are the
+// same derivatives of the derived equations; numbers at points of the motion say which of them are not zero, so that
+// only a small system is solved on the graph. It is false if it does not vanish at a point at which all derived
+// equations hold.
 #pragma once
 #include <map>
 
-#include "published/edits.h"
 #include "proof/equations_of_motion.h"
 #include "proof/prove.h"
+#include "published/edits.h"
 #include "published/vocabulary.h"
 
 namespace anholon {
 
 // One place of an equation that reads otherwise.
 struct ChangedPlace {
-  int side = 0;           // 0 left, 1 right
-  std::size_t term = 0;   // of the side, from 0
-  std::string from, to;   // the smallest term around the place; where several places change, a symbol
+  int side = 0;          // 0 left, 1 right
+  std::size_t term = 0;  // of the side, from 0
+  std::string from, to;  // the smallest term around the place; where several places change, a symbol
   Span span;
 };
 
 // What a misprint has changed: one place, or several that change together, of which it is the first.
 struct Change : ChangedPlace {
   std::vector<ChangedPlace> places;
-  std::string equation;   // as it then reads
-  Expr difference;        // left - right, as it then reads
-  std::string what;       // what it then is
+  std::string equation;  // as it then reads
+  Expr difference;       // left - right, as it then reads
+  std::string what;      // what it then is
   bool proved = false;
   bool identity = false;  // it then holds whatever the motion
 };
@@ -41,10 +42,10 @@ struct Comparison {
   std::optional<Expr> difference;       // false: left - right less what it comes nearest to
   std::optional<WitnessPoint> witness;  // false
   std::string detail;
-  std::vector<Change> changes;          // each of them makes it true
-  bool identity = false;                // false: it is meant as an identity, no equation of motion
-  bool trivial = false;                 // true of every motion of every system
-  bool of_constraints = false;          // true by the constraints alone
+  std::vector<Change> changes;  // each of them makes it true
+  bool identity = false;        // false: it is meant as an identity, no equation of motion
+  bool trivial = false;         // true of every motion of every system
+  bool of_constraints = false;  // true by the constraints alone
 };
 
 class Comparer {
@@ -92,6 +93,7 @@ unsigned order_of_motion(Expr e);
 double size_at(Expr e, PointValues& at);
 
 // The changes that make a false equation true: of one place, else the fewest of up to four places.
-std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet, Comparer& comparer);
+std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet,
+                            Comparer& comparer);
 
 }  // namespace anholon

@@ -14,12 +14,14 @@ Comparison judged(Subject& subject, const std::string& text) {
   Diagnostics diagnostics;
   const SourceText source{"claim", "e: " + text + "\n"};
   const std::vector<PublishedEquation> list = subject.read(source, diagnostics);
-  if (diagnostics.has_errors()) throw Failure({}, diagnostics.list().front().message + " in: " + text, diagnostics.list().front().hint);
+  if (diagnostics.has_errors())
+    throw Failure({}, diagnostics.list().front().message + " in: " + text, diagnostics.list().front().hint);
   // Of vectors each component: one that is false decides, then one that is unknown.
   std::optional<Comparison> all;
   for (const PublishedEquation& e : list) {
     Comparison c = subject.judge(e);
-    const bool decides = !all || (all->verdict == Verdict::proved && c.verdict != Verdict::proved) || (all->verdict == Verdict::unknown && c.verdict == Verdict::refuted);
+    const bool decides = !all || (all->verdict == Verdict::proved && c.verdict != Verdict::proved) ||
+                         (all->verdict == Verdict::unknown && c.verdict == Verdict::refuted);
     if (decides) all = std::move(c);
   }
   return *all;
@@ -27,22 +29,28 @@ Comparison judged(Subject& subject, const std::string& text) {
 
 std::string said(const Comparison& c) {
   switch (c.verdict) {
-    case Verdict::proved: return c.what;
-    case Verdict::refuted: return "left - right = " + c.detail + " at a point of the motion";
-    case Verdict::unknown: break;
+  case Verdict::proved:
+    return c.what;
+  case Verdict::refuted:
+    return "left - right = " + c.detail + " at a point of the motion";
+  case Verdict::unknown:
+    break;
   }
   return c.detail;
 }
 
-// All constraints with their derivatives, and Routh's equations, up to derivatives of the order `highest`; masses put in.
+// All constraints with their derivatives, and Routh's equations, up to derivatives of the order `highest`; masses put
+// in.
 Column all_equations(const Mechanics& M, unsigned highest) {
   Column all;
   for (std::size_t r = 0; r < M.phi.size(); ++r) {
     Expr phi = put_masses(*M.model, M.phi[r]);
-    for (unsigned k = static_cast<unsigned>(M.order[r]); k <= highest; ++k, phi = total_derivative(phi)) all.push_back(phi);
+    for (unsigned k = static_cast<unsigned>(M.order[r]); k <= highest; ++k, phi = total_derivative(phi))
+      all.push_back(phi);
   }
   Column routh = put_masses(*M.model, lagrange_operator(M) - right_side(M));
-  for (unsigned k = 2; k <= highest; ++k, routh = total_derivative(routh)) all.insert(all.end(), routh.begin(), routh.end());
+  for (unsigned k = 2; k <= highest; ++k, routh = total_derivative(routh))
+    all.insert(all.end(), routh.begin(), routh.end());
   return all;
 }
 
@@ -57,7 +65,8 @@ Subject& Decider::subject(const ClaimCheck& check) {
   if (!lets.empty()) {
     Diagnostics diagnostics;
     fresh->read({"claim", lets + "e: 0 = 0\n"}, diagnostics);
-    if (diagnostics.has_errors()) throw Failure({}, diagnostics.list().front().message, diagnostics.list().front().hint);
+    if (diagnostics.has_errors())
+      throw Failure({}, diagnostics.list().front().message, diagnostics.list().front().hint);
   }
   known = std::move(fresh);
   return *known;
@@ -69,9 +78,15 @@ Decision Decider::decide(const ClaimCheck& check) {
   const auto start = std::chrono::steady_clock::now();
   try {
     switch (check.kind) {
-      case ClaimCheck::Kind::equation: equation(check, out); break;
-      case ClaimCheck::Kind::forms: forms(check, out); break;
-      case ClaimCheck::Kind::points: points(check, out); break;
+    case ClaimCheck::Kind::equation:
+      equation(check, out);
+      break;
+    case ClaimCheck::Kind::forms:
+      forms(check, out);
+      break;
+    case ClaimCheck::Kind::points:
+      points(check, out);
+      break;
     }
   } catch (const Failure& e) {
     out.verdict = Verdict::unknown;
@@ -96,15 +111,19 @@ void Decider::forms(const ClaimCheck& check, Decision& out) {
   const Mechanics& M = s.mechanics();
   std::vector<Eliminations> offered;
   for (const bool solve : {true, false})
-    offered.push_back({elimination_for(M, Unknowns::coordinates, {}, {}, solve), elimination_for(M, Unknowns::quasi_velocities, {}, {}, solve)});
+    offered.push_back({elimination_for(M, Unknowns::coordinates, {}, {}, solve),
+                       elimination_for(M, Unknowns::quasi_velocities, {}, {}, solve)});
   out.verdict = out.mutant = Verdict::proved;
   out.has_mutant = true;
-  const auto worse = [](Verdict a, Verdict b) { return a == b ? a : a == Verdict::refuted || b == Verdict::refuted ? Verdict::refuted : Verdict::unknown; };
+  const auto worse = [](Verdict a, Verdict b) {
+    return a == b ? a : a == Verdict::refuted || b == Verdict::refuted ? Verdict::refuted : Verdict::unknown;
+  };
   Verdict mutants = Verdict::refuted;
   for (const std::string& name : check.forms) {
     const Formulation* form = find_formulation(name);
     if (!form) throw Failure({}, "there is no form '" + name + "'");
-    if (const std::string why = obstacle(*form, M); !why.empty()) throw Failure({}, "the form " + name + " does not apply: " + why);
+    if (const std::string why = obstacle(*form, M); !why.empty())
+      throw Failure({}, "the form " + name + " does not apply: " + why);
     out.verdict = worse(out.verdict, prove_form(M, *form, form->equations, offered).verdict);
     const auto wrong = [&](const Mechanics& m, const Elimination& e) {
       Equations q = form->equations(m, e);
@@ -115,10 +134,13 @@ void Decider::forms(const ClaimCheck& check, Decision& out) {
     out.detail += (out.detail.empty() ? "" : ", ") + name;
   }
   out.mutant = mutants;
-  out.detail += out.verdict == Verdict::proved ? " agree with Routh's equations" : out.verdict == Verdict::refuted ? ": one differs from Routh's equations" : ": not decided";
+  out.detail += out.verdict == Verdict::proved    ? " agree with Routh's equations"
+                : out.verdict == Verdict::refuted ? ": one differs from Routh's equations"
+                                                  : ": not decided";
 }
 
-// Exactly: rational values put into every equation. The mutant is a point that is none of the motion: its first value has moved.
+// Exactly: rational values put into every equation. The mutant is a point that is none of the motion: its first value
+// has moved.
 void Decider::points(const ClaimCheck& check, Decision& out) {
   Subject& s = subject(check);
   const Mechanics& M = s.mechanics();
@@ -143,7 +165,8 @@ void Decider::points(const ClaimCheck& check, Decision& out) {
       s.words().join(syntax);
       const Expr symbol = s.words().number(syntax);
       const auto r = parse_rational(value);
-      if (!r || symbols({&symbol, 1}) != std::vector<NodeId>{symbol.id}) throw Failure({}, "a point gives a rational value to each of its symbols: " + name + " = " + value);
+      if (!r || symbols({&symbol, 1}) != std::vector<NodeId>{symbol.id})
+        throw Failure({}, "a point gives a rational value to each of its symbols: " + name + " = " + value);
       at[symbol.id] = M.graph().number(*r);
     }
     all.push_back(std::move(at));
@@ -159,7 +182,9 @@ void Decider::points(const ClaimCheck& check, Decision& out) {
     return kept;
   };
   const auto equal = [](const Values& a, const Values& b) {
-    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) { return x.first == y.first && x.second == y.second; });
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) {
+             return x.first == y.first && x.second == y.second;
+           });
   };
   bool holds = true, differ = true;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -1,4 +1,5 @@
-// Claims of papers decided by the machine: what is true is proved, what is false is refuted, and a mutant of what is true is refuted.
+// Claims of papers decided by the machine: what is true is proved, what is false is refuted, and a mutant of what is
+// true is refuted.
 #pragma once
 #include <functional>
 #include <map>
@@ -11,14 +12,17 @@ namespace anholon {
 // What came out of one check.
 struct Decision {
   const ClaimCheck* check = nullptr;
-  Verdict verdict = Verdict::unknown;          // of the statement
-  Verdict mutant = Verdict::unknown;           // of its mutant; refuted where it must be
+  Verdict verdict = Verdict::unknown;  // of the statement
+  Verdict mutant = Verdict::unknown;   // of its mutant; refuted where it must be
   bool has_mutant = false;
-  std::string detail;                          // what a true statement is; the counterexample of a false one; why nothing was decided
+  std::string detail;  // what a true statement is; the counterexample of a false one; why nothing was decided
   double seconds = 0;
 
   // As the table says, and not for a reason that lets anything pass.
-  bool as_expected() const { return verdict == (check->expected ? Verdict::proved : Verdict::refuted) && (!has_mutant || mutant == Verdict::refuted); }
+  bool as_expected() const {
+    return verdict == (check->expected ? Verdict::proved : Verdict::refuted) &&
+           (!has_mutant || mutant == Verdict::refuted);
+  }
 };
 
 class Decider {

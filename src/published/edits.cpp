@@ -32,7 +32,9 @@ bool is_one(const Syntax& s) {
   return is_whole(s, n) && n == 1;
 }
 
-Syntax whole(long n) { return n < 0 ? with(Syntax::Op::negate, {number(std::to_string(-n))}) : number(std::to_string(n)); }
+Syntax whole(long n) {
+  return n < 0 ? with(Syntax::Op::negate, {number(std::to_string(-n))}) : number(std::to_string(n));
+}
 
 // The factor in place k of a product taken out.
 Syntax without(const Syntax& s, std::size_t k) {
@@ -88,7 +90,8 @@ Syntax multiplied(const Syntax& factor, const Syntax& s) {
   if (s.op != Syntax::Op::multiply) return with(Syntax::Op::multiply, {factor, s}, {{Syntax::Op::multiply, {}}});
   Syntax out = s;
   const std::ptrdiff_t at = s.args[0].op == Syntax::Op::number ? 1 : 0;
-  if (at == 1 && s.operators[0].op == Syntax::Op::divide) return with(Syntax::Op::multiply, {factor, s}, {{Syntax::Op::multiply, {}}});
+  if (at == 1 && s.operators[0].op == Syntax::Op::divide)
+    return with(Syntax::Op::multiply, {factor, s}, {{Syntax::Op::multiply, {}}});
   out.args.insert(out.args.begin() + at, factor);
   out.operators.insert(out.operators.begin(), {Syntax::Op::multiply, {}});
   return out;
@@ -96,9 +99,12 @@ Syntax multiplied(const Syntax& factor, const Syntax& s) {
 
 Syntax after(const Syntax& s, const Edit& e) {
   switch (e.effect) {
-    case Effect::replaces: return e.with;
-    case Effect::squares: return with(Syntax::Op::power, {s, number("2")});
-    case Effect::multiplies: break;
+  case Effect::replaces:
+    return e.with;
+  case Effect::squares:
+    return with(Syntax::Op::power, {s, number("2")});
+  case Effect::multiplies:
+    break;
   }
   if (e.kind == Edit::Kind::sign) return opposite(s);
   if (e.kind == Edit::Kind::coefficient) return scaled(s, e.with.op == Syntax::Op::number);
@@ -114,11 +120,13 @@ const Words kAlike[] = {
 };
 const Words kComponents = {"x", "y", "z"};
 const Words kElementary = {"sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "asin", "acos", "atan", "sqrt"};
-const std::pair<const char*, const char*> kFunctions[] = {{"sin", "cos"}, {"sinh", "cosh"}, {"vel", "acc"}, {"D", "Dt"}, {"reduced", "star"}};
+const std::pair<const char*, const char*> kFunctions[] = {
+    {"sin", "cos"}, {"sinh", "cosh"}, {"vel", "acc"}, {"D", "Dt"}, {"reduced", "star"}};
 
 class Search {
  public:
-  Search(Vocabulary& words, const Alphabet& alphabet, unsigned most_dots) : words_(words), alphabet_(alphabet), most_dots_(most_dots) {}
+  Search(Vocabulary& words, const Alphabet& alphabet, unsigned most_dots)
+      : words_(words), alphabet_(alphabet), most_dots_(most_dots) {}
 
   std::vector<Edit> of(const Syntax& difference) {
     for (std::uint32_t side : {0U, 1U}) {
@@ -137,7 +145,9 @@ class Search {
     return is_whole(s, n) && n == 0;
   }
 
-  void add(Edit::Kind kind, Effect effect, Syntax with) { list_.push_back({path_, kind, effect, std::move(with), in_function_ > 0}); }
+  void add(Edit::Kind kind, Effect effect, Syntax with) {
+    list_.push_back({path_, kind, effect, std::move(with), in_function_ > 0});
+  }
   // At a node below the one that is visited.
   void add_at(std::initializer_list<std::size_t> below, Edit::Kind kind, Effect effect, Syntax with) {
     for (std::size_t i : below) path_.push_back(static_cast<std::uint32_t>(i));
@@ -157,7 +167,8 @@ class Search {
   void visit(const Syntax& s, bool term, bool base_of_power = false) {
     if (term && s.op != Syntax::Op::add && s.op != Syntax::Op::array) {
       add(Edit::Kind::coefficient, Effect::multiplies, number("2"));
-      add(Edit::Kind::coefficient, Effect::multiplies, with(Syntax::Op::multiply, {number("1"), number("2")}, {{Syntax::Op::divide, {}}}));
+      add(Edit::Kind::coefficient, Effect::multiplies,
+          with(Syntax::Op::multiply, {number("1"), number("2")}, {{Syntax::Op::divide, {}}}));
       for (const Words* group : {&alphabet_.coordinates, &alphabet_.others})
         for (const std::string& n : *group) add(Edit::Kind::factor, Effect::multiplies, named(n));  // a factor is lost
     }
@@ -166,44 +177,58 @@ class Search {
       if (!base_of_power) add(Edit::Kind::exponent, Effect::squares, number("2"));
     };
     switch (s.op) {
-      case Syntax::Op::number: {
+    case Syntax::Op::number: {
+      long n = 0;
+      if (!is_whole(s, n)) return;
+      for (long k : {n - 1, n + 1})
+        if (k > 0) add(Edit::Kind::coefficient, Effect::replaces, whole(k));
+      return;
+    }
+    case Syntax::Op::prime:
+    case Syntax::Op::name:
+    case Syntax::Op::member:
+      derivatives(s);
+      square();
+      undotted(s);
+      return;
+    case Syntax::Op::call:
+      square();
+      call(s);
+      return;
+    case Syntax::Op::power:
+      power(s);
+      return;
+    case Syntax::Op::add:
+      for (std::size_t i = 0; i < s.args.size(); ++i) add_at({i}, Edit::Kind::sign, Effect::multiplies, whole(-1));
+      if (!term) square();
+      below(s);
+      return;
+    case Syntax::Op::array:
+      for (std::size_t i = 0; i < s.args.size(); ++i) add_at({i}, Edit::Kind::sign, Effect::multiplies, whole(-1));
+      below(s);
+      return;
+    case Syntax::Op::multiply:
+      for (std::size_t i = 0; i < s.args.size(); ++i) {
         long n = 0;
-        if (!is_whole(s, n)) return;
-        for (long k : {n - 1, n + 1})
-          if (k > 0) add(Edit::Kind::coefficient, Effect::replaces, whole(k));
-        return;
+        if (!is_whole(s.args[i], n) && s.args[i].op != Syntax::Op::power)
+          add_at({i}, Edit::Kind::exponent, Effect::replaces, number("1"));
+        visit_at(s, i, false);
       }
-      case Syntax::Op::prime: case Syntax::Op::name: case Syntax::Op::member:
-        derivatives(s);
-        square();
-        undotted(s);
-        return;
-      case Syntax::Op::call:
-        square();
-        call(s);
-        return;
-      case Syntax::Op::power:
-        power(s);
-        return;
-      case Syntax::Op::add:
-        for (std::size_t i = 0; i < s.args.size(); ++i) add_at({i}, Edit::Kind::sign, Effect::multiplies, whole(-1));
-        if (!term) square();
-        below(s);
-        return;
-      case Syntax::Op::array:
-        for (std::size_t i = 0; i < s.args.size(); ++i) add_at({i}, Edit::Kind::sign, Effect::multiplies, whole(-1));
-        below(s);
-        return;
-      case Syntax::Op::multiply:
-        for (std::size_t i = 0; i < s.args.size(); ++i) {
-          long n = 0;
-          if (!is_whole(s.args[i], n) && s.args[i].op != Syntax::Op::power) add_at({i}, Edit::Kind::exponent, Effect::replaces, number("1"));
-          visit_at(s, i, false);
-        }
-        return;
-      case Syntax::Op::negate: visit_at(s, 0, false); return;
-      case Syntax::Op::quantity: case Syntax::Op::index: case Syntax::Op::apply: case Syntax::Op::compare: below(s); return;
-      case Syntax::Op::subtract: case Syntax::Op::divide: case Syntax::Op::dot: case Syntax::Op::cross: return;
+      return;
+    case Syntax::Op::negate:
+      visit_at(s, 0, false);
+      return;
+    case Syntax::Op::quantity:
+    case Syntax::Op::index:
+    case Syntax::Op::apply:
+    case Syntax::Op::compare:
+      below(s);
+      return;
+    case Syntax::Op::subtract:
+    case Syntax::Op::divide:
+    case Syntax::Op::dot:
+    case Syntax::Op::cross:
+      return;
     }
   }
 
@@ -261,8 +286,10 @@ class Search {
   void undotted(const Syntax& s) {
     if (s.op == Syntax::Op::prime) {
       path_.push_back(0);
-      if (s.args[0].op == Syntax::Op::prime || s.args[0].op == Syntax::Op::name || s.args[0].op == Syntax::Op::member) undotted(s.args[0]);
-      else below(s.args[0]);
+      if (s.args[0].op == Syntax::Op::prime || s.args[0].op == Syntax::Op::name || s.args[0].op == Syntax::Op::member)
+        undotted(s.args[0]);
+      else
+        below(s.args[0]);
       path_.pop_back();
     } else if (s.op == Syntax::Op::member) {
       if (has(kComponents, s.text))
@@ -286,7 +313,9 @@ class Search {
     Words out;
     if (has(alphabet_.coordinates, name) || has(alphabet_.others, name)) return out;
     for (const Words& group : kAlike)
-      if (has(group, name)) std::copy_if(group.begin(), group.end(), std::back_inserter(out), [&](const std::string& n) { return n != name; });
+      if (has(group, name))
+        std::copy_if(group.begin(), group.end(), std::back_inserter(out),
+                     [&](const std::string& n) { return n != name; });
     return out;
   }
 
@@ -299,7 +328,8 @@ class Search {
       for (const std::string& n : list)
         if (n != part) out.push_back(name.substr(0, from) + n + name.substr(from + part.size()));
     };
-    const Words* const lists[] = {&alphabet_.coordinates, &alphabet_.others, &alphabet_.constraints, &alphabet_.masses, &alphabet_.free};
+    const Words* const lists[] = {&alphabet_.coordinates, &alphabet_.others, &alphabet_.constraints, &alphabet_.masses,
+                                  &alphabet_.free};
     const std::size_t first = name.find('.');
     if (first == std::string::npos) {
       put(0, name.size(), alphabet_.coordinates);
@@ -311,7 +341,8 @@ class Search {
     // A name of the model may hold dots itself.
     for (std::size_t from = first; from != std::string::npos; from = name.find('.', from + 1)) {
       for (const Words* list : lists) put(from + 1, std::string::npos, *list);
-      for (std::size_t to = name.find('.', from + 1); to != std::string::npos; to = name.find('.', to + 1)) put(from + 1, to - from - 1, alphabet_.coordinates);
+      for (std::size_t to = name.find('.', from + 1); to != std::string::npos; to = name.find('.', to + 1))
+        put(from + 1, to - from - 1, alphabet_.coordinates);
     }
     return out;
   }
@@ -326,7 +357,9 @@ class Search {
 
 }  // namespace
 
-Syntax difference_of(const PublishedEquation& e) { return with(Syntax::Op::add, {e.left, e.right}, {{Syntax::Op::subtract, {}}}); }
+Syntax difference_of(const PublishedEquation& e) {
+  return with(Syntax::Op::add, {e.left, e.right}, {{Syntax::Op::subtract, {}}});
+}
 
 const Syntax& node_at(const Syntax& s, const Path& path, std::size_t length) {
   const Syntax* node = &s;
@@ -344,7 +377,9 @@ std::size_t innermost_term(const Syntax& difference, const Path& path) {
   return length;
 }
 
-std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet, unsigned most_dots) { return Search(words, alphabet, most_dots).of(difference); }
+std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet, unsigned most_dots) {
+  return Search(words, alphabet, most_dots).of(difference);
+}
 
 // A minus is taken from the first factor of a product.
 Syntax opposite(const Syntax& s) {
@@ -365,11 +400,15 @@ Syntax edited(const Syntax& s, std::size_t depth, const std::vector<const Edit*>
     const Edit* sign = nullptr;
     for (const Edit* e : edits) {
       if (e->path.size() <= depth || e->path[depth] != i) continue;
-      const bool operand = e->kind == Edit::Kind::sign && e->path.size() == depth + 1 && s.op == Syntax::Op::add && i > 0 && depth > 0;
-      if (operand) sign = e;
-      else below.push_back(e);
+      const bool operand =
+          e->kind == Edit::Kind::sign && e->path.size() == depth + 1 && s.op == Syntax::Op::add && i > 0 && depth > 0;
+      if (operand)
+        sign = e;
+      else
+        below.push_back(e);
     }
-    if (sign) out.operators[i - 1].op = s.operators[i - 1].op == Syntax::Op::add ? Syntax::Op::subtract : Syntax::Op::add;
+    if (sign)
+      out.operators[i - 1].op = s.operators[i - 1].op == Syntax::Op::add ? Syntax::Op::subtract : Syntax::Op::add;
     if (below.empty()) continue;
     out.args[i] = edited(s.args[i], depth + 1, below);
     ones[i] = is_one(out.args[i]);

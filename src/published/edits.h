@@ -17,7 +17,16 @@ struct Alphabet {
 using Path = std::vector<std::uint32_t>;  // of a node: its place among the arguments, from the whole down
 
 struct Edit {
-  enum class Kind : std::uint8_t { dots, sign, coefficient, exponent, function, spare_dots, name, factor };  // the likely ones first
+  enum class Kind : std::uint8_t {
+    dots,
+    sign,
+    coefficient,
+    exponent,
+    function,
+    spare_dots,
+    name,
+    factor
+  };  // the likely ones first
   enum class Effect : std::uint8_t { replaces, multiplies, squares };
   Path path;
   Kind kind;

@@ -8,8 +8,8 @@ namespace anholon {
 
 struct PublishedEquation {
   std::string label;
-  Span span;            // of the label
-  FormulaText source;   // both sides, with the place of each character
+  Span span;           // of the label
+  FormulaText source;  // both sides, with the place of each character
   Syntax left, right;
 
   std::string text() const { return print(left) + " = " + print(right); }

@@ -8,7 +8,8 @@ namespace anholon {
 
 namespace {
 
-const char* const kArithmetic[] = {"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "atan2", "D"};
+const char* const kArithmetic[] = {"sin",  "cos", "tan", "asin", "acos", "atan", "sinh",  "cosh",
+                                   "tanh", "exp", "log", "sqrt", "abs",  "sign", "atan2", "D"};
 
 bool holds(Expr e, bool (*which)(const Node&)) {
   const std::vector<NodeId> ids = symbols({&e, 1});
@@ -33,14 +34,30 @@ bool plain_name(const Syntax& s, Vocabulary& words) {
 
 bool speaks_of_quantities(const Syntax& s, Vocabulary& words) {
   switch (s.op) {
-    case Syntax::Op::name: return !plain_name(s, words);
-    case Syntax::Op::member: case Syntax::Op::array: case Syntax::Op::apply: return true;
-    case Syntax::Op::call:
-      if (std::none_of(std::begin(kArithmetic), std::end(kArithmetic), [&](const char* f) { return s.text == f; })) return true;
-      break;
-    case Syntax::Op::number: case Syntax::Op::quantity: case Syntax::Op::negate: case Syntax::Op::power: case Syntax::Op::prime: case Syntax::Op::index:
-    case Syntax::Op::add: case Syntax::Op::subtract: case Syntax::Op::multiply: case Syntax::Op::divide: case Syntax::Op::compare: case Syntax::Op::dot:
-    case Syntax::Op::cross: break;
+  case Syntax::Op::name:
+    return !plain_name(s, words);
+  case Syntax::Op::member:
+  case Syntax::Op::array:
+  case Syntax::Op::apply:
+    return true;
+  case Syntax::Op::call:
+    if (std::none_of(std::begin(kArithmetic), std::end(kArithmetic), [&](const char* f) { return s.text == f; }))
+      return true;
+    break;
+  case Syntax::Op::number:
+  case Syntax::Op::quantity:
+  case Syntax::Op::negate:
+  case Syntax::Op::power:
+  case Syntax::Op::prime:
+  case Syntax::Op::index:
+  case Syntax::Op::add:
+  case Syntax::Op::subtract:
+  case Syntax::Op::multiply:
+  case Syntax::Op::divide:
+  case Syntax::Op::compare:
+  case Syntax::Op::dot:
+  case Syntax::Op::cross:
+    break;
   }
   return std::any_of(s.args.begin(), s.args.end(), [&](const Syntax& a) { return speaks_of_quantities(a, words); });
 }

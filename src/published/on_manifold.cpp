@@ -1,6 +1,7 @@
-// Equations without multipliers on the manifold of the constraints, where these are solved: the dependent derivatives are put in, and what is left is compared
-// with the contractions B^T (E - G) = 0. That serves constraints of order 2 and more that are nonlinear in their highest derivatives: of those Routh's
-// equations are no linear equations for the accelerations and multipliers.
+// Equations without multipliers on the manifold of the constraints, where these are solved: the dependent derivatives
+// are put in, and what is left is compared with the contractions B^T (E - G) = 0. That serves constraints of order 2
+// and more that are nonlinear in their highest derivatives: of those Routh's equations are no linear equations for the
+// accelerations and multipliers.
 #include <cmath>
 
 #include "numeric/linear.h"
@@ -64,13 +65,14 @@ bool Comparer::on_manifold(Expr P, bool regular, Comparison& out) {
       if (!vanishes(rest, points)) break;
       if (!shown_zero(rest, Effort::full)) return false;
       out.verdict = Verdict::proved;
-      out.what = "the equation of " + M_.model->coordinates[E.independent[nu]].name + " without multipliers" + times(factor) + ", with the constraints put in";
+      out.what = "the equation of " + M_.model->coordinates[E.independent[nu]].name + " without multipliers" +
+                 times(factor) + ", with the constraints put in";
       return true;
     }
   }
   if (regular) return false;
-  // A point at which all contractions hold is one of a motion, if they determine the highest independent derivatives, and if every constraint is
-  // put in as it is: a lifted one holds where the constraint itself does not.
+  // A point at which all contractions hold is one of a motion, if they determine the highest independent derivatives,
+  // and if every constraint is put in as it is: a lifted one holds where the constraint itself does not.
   for (int order : M_.order)
     if (order != static_cast<int>(E.m)) return false;
   if (E.constraints.size() != M_.phi.size()) return false;

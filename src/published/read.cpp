@@ -46,15 +46,20 @@ class Lines {
     const std::size_t start = line.find_first_not_of(" \t");
     if (start == std::string_view::npos || line[start] == '#') return;
     if (start > 0) {
-      if (entries.empty()) return refuse(number, start, 1, "an indented line continues an equation, and there is none before it", "start the line with its label: 4.1: x' = y");
+      if (entries.empty())
+        return refuse(number, start, 1, "an indented line continues an equation, and there is none before it",
+                      "start the line with its label: 4.1: x' = y");
       if (!refused_) entries.back().add(line, {number, 1, 1});
       return;
     }
     if (const auto [name, equals] = definition(line); equals != std::string_view::npos) {
       refused_ = false;
-      const auto column = static_cast<std::uint32_t>(1 + utf8_length(line.substr(0, static_cast<std::size_t>(name.data() - line.data()))));
-      entries.push_back({std::string(name), {number, column, static_cast<std::uint32_t>(utf8_length(name))}, {}, {}, true});
-      entries.back().add(line.substr(equals + 1), {number, static_cast<std::uint32_t>(utf8_length(line.substr(0, equals + 1)) + 1), 1});
+      const auto column = static_cast<std::uint32_t>(
+          1 + utf8_length(line.substr(0, static_cast<std::size_t>(name.data() - line.data()))));
+      entries.push_back(
+          {std::string(name), {number, column, static_cast<std::uint32_t>(utf8_length(name))}, {}, {}, true});
+      entries.back().add(line.substr(equals + 1),
+                         {number, static_cast<std::uint32_t>(utf8_length(line.substr(0, equals + 1)) + 1), 1});
       return;
     }
     const std::size_t colon = line.find(':');
@@ -65,7 +70,9 @@ class Lines {
       return refuse(number, 0, width, "an equation starts with a label", "4.1: " + std::string(label.substr(0, 40)));
     if (label.empty()) return refuse(number, 0, 1, "the label is empty", "4.1: x' = y");
     for (const Entry& e : entries)
-      if (e.label == label && !e.definition) return refuse(number, 0, width, "the label '" + std::string(label) + "' is already used in line " + std::to_string(e.span.line));
+      if (e.label == label && !e.definition)
+        return refuse(number, 0, width,
+                      "the label '" + std::string(label) + "' is already used in line " + std::to_string(e.span.line));
     refused_ = false;
     entries.push_back({std::string(label), {number, 1, static_cast<std::uint32_t>(width)}, {}, {}, false});
     const std::size_t before = utf8_length(line.substr(0, colon + 1));
@@ -76,7 +83,9 @@ class Lines {
   static std::pair<std::string_view, std::size_t> definition(std::string_view line) {
     constexpr std::string_view kLet = "let";
     const std::size_t equals = line.find('='), colon = line.find(':');
-    if (line.substr(0, kLet.size()) != kLet || equals == std::string_view::npos || (colon != std::string_view::npos && colon < equals)) return {{}, std::string_view::npos};
+    if (line.substr(0, kLet.size()) != kLet || equals == std::string_view::npos ||
+        (colon != std::string_view::npos && colon < equals))
+      return {{}, std::string_view::npos};
     std::string_view name = line.substr(kLet.size(), equals - kLet.size());
     if (name.empty() || (name[0] != ' ' && name[0] != '\t')) return {{}, std::string_view::npos};
     while (!name.empty() && (name.front() == ' ' || name.front() == '\t')) name.remove_prefix(1);
@@ -86,7 +95,8 @@ class Lines {
 
   void refuse(std::uint32_t line, std::size_t column, std::size_t length, std::string message, std::string hint = {}) {
     refused_ = true;  // and with it the lines that continue it
-    diagnostics_.error({line, static_cast<std::uint32_t>(column + 1), static_cast<std::uint32_t>(length)}, std::move(message), std::move(hint));
+    diagnostics_.error({line, static_cast<std::uint32_t>(column + 1), static_cast<std::uint32_t>(length)},
+                       std::move(message), std::move(hint));
   }
 
   Diagnostics& diagnostics_;
@@ -114,31 +124,38 @@ void read_equation(Entry& e, Vocabulary& words, std::vector<PublishedEquation>& 
   for (const auto& [side, value] : {std::pair{&sides[0], &left}, {&sides[1], &right}})
     if (const Expr* number = std::get_if<Expr>(value); number && !is_zero(*number))
       throw Failure(side->span, "one side is a vector, this one is a number", "both are vectors, or one is 0");
-  for (int k = 0; k < 3; ++k) list.push_back({e.label + "." + static_cast<char>('x' + k), e.span, text, component(sides[0], left, k), component(sides[1], right, k)});
+  for (int k = 0; k < 3; ++k)
+    list.push_back({e.label + "." + static_cast<char>('x' + k), e.span, text, component(sides[0], left, k),
+                    component(sides[1], right, k)});
 }
 
 void read_definition(Entry& e, Vocabulary& words) {
   const FormulaText text(std::move(e.text), std::move(e.places));
   std::vector<Syntax> sides = parse_equation(text);
-  if (sides.size() != 1) throw Failure(e.span, "the definition of '" + e.label + "' has a second '='", "let NAME = formula");
+  if (sides.size() != 1)
+    throw Failure(e.span, "the definition of '" + e.label + "' has a second '='", "let NAME = formula");
   words.join(sides[0]);
   words.let(normal_name(e.label), std::move(sides[0]), e.span);
 }
 
 }  // namespace
 
-std::vector<PublishedEquation> read_equations(const SourceText& equations, Vocabulary& words, Diagnostics& diagnostics) {
+std::vector<PublishedEquation> read_equations(const SourceText& equations, Vocabulary& words,
+                                              Diagnostics& diagnostics) {
   std::vector<PublishedEquation> list;
   Lines lines(equations, diagnostics);
   for (Entry& e : lines.entries) {
     try {
-      if (e.definition) read_definition(e, words);
-      else read_equation(e, words, list);
+      if (e.definition)
+        read_definition(e, words);
+      else
+        read_equation(e, words, list);
     } catch (const Failure& f) {
       diagnostics.add(f.diagnostic);
     }
   }
-  if (list.empty() && !diagnostics.has_errors()) diagnostics.error({}, "there is no equation in this file", "4.1: x' = y");
+  if (list.empty() && !diagnostics.has_errors())
+    diagnostics.error({}, "there is no equation in this file", "4.1: x' = y");
   return list;
 }
 

@@ -1,4 +1,5 @@
-// Published equations in a file of their own, over the names of a model and of what is derived from it (published/vocabulary.h):
+// Published equations in a file of their own, over the names of a model and of what is derived from it
+// (published/vocabulary.h):
 //
 //   # comment
 //   let w = phi'                                   a definition of the file's own, for the lines after it

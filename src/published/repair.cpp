@@ -1,7 +1,7 @@
 // Misprints: changes of one place of an equation, and of several places at once, that make a false equation true.
 //
-// They are tried in numbers at points of the motion (published/trial.h, together.h); what survives there is judged like any other
-// equation. Fewer changes come first: more are looked for only where fewer do not serve.
+// They are tried in numbers at points of the motion (published/trial.h, together.h); what survives there is judged like
+// any other equation. Fewer changes come first: more are looked for only where fewer do not serve.
 #include <algorithm>
 #include <cmath>
 
@@ -43,19 +43,24 @@ class Repair {
     for (std::size_t from = 0; from < list.size() && left > 0 && changes_.empty();) {
       std::vector<Survivor> survivors;
       const int cost = list[from].cost;
-      for (; from < list.size() && list[from].cost == cost && left > survivors.size(); ++from) consider(list[from], survivors);
+      for (; from < list.size() && list[from].cost == cost && left > survivors.size(); ++from)
+        consider(list[from], survivors);
       left -= survivors.size();
       while (from < list.size() && list[from].cost == cost) ++from;
       for (Survivor& s : survivors) accept(s);
     }
     const auto keep = [&](auto which) {
-      if (std::any_of(changes_.begin(), changes_.end(), which)) std::erase_if(changes_, [&](const Change& c) { return !which(c); });
+      if (std::any_of(changes_.begin(), changes_.end(), which))
+        std::erase_if(changes_, [&](const Change& c) { return !which(c); });
     };
     // What is not proved counts only where nothing is.
     keep([](const Change& c) { return c.proved; });
-    const bool quantities = speaks_of_quantities(equation_.left, words_) || speaks_of_quantities(equation_.right, words_);
-    if (!quantities) keep([](const Change& c) { return !c.identity; });
-    else if (comparer_.without_motion(words_.number(syntax_), motion_)) keep([](const Change& c) { return c.identity; });
+    const bool quantities =
+        speaks_of_quantities(equation_.left, words_) || speaks_of_quantities(equation_.right, words_);
+    if (!quantities)
+      keep([](const Change& c) { return !c.identity; });
+    else if (comparer_.without_motion(words_.number(syntax_), motion_))
+      keep([](const Change& c) { return c.identity; });
   }
 
   void consider(const Misprint& m, std::vector<Survivor>& survivors) {
@@ -90,10 +95,13 @@ class Repair {
     changes_.push_back(std::move(s.change));
   }
 
-  // Whether `a` says the same as `b` in a better way. Of an equation with two terms either may be changed: the shorter way, else the
-  // right side. Of several terms it is the first one; of several factors the last ones have the dots, as in m*x'' and r*r'.
+  // Whether `a` says the same as `b` in a better way. Of an equation with two terms either may be changed: the shorter
+  // way, else the right side. Of several terms it is the first one; of several factors the last ones have the dots, as
+  // in m*x'' and r*r'.
   static bool better(const Change& a, const Change& b) {
-    const auto added = [](const Change& c) { return static_cast<long>(c.to.size()) - static_cast<long>(c.from.size()); };
+    const auto added = [](const Change& c) {
+      return static_cast<long>(c.to.size()) - static_cast<long>(c.from.size());
+    };
     if (added(a) != added(b)) return added(a) < added(b);
     if (a.side != b.side) return a.side > b.side;
     const auto terms = [](const Change& c) {
@@ -113,7 +121,10 @@ class Repair {
   // Equal up to a number; identities, if their left sides are.
   bool same(Expr a, Expr b, Expr left_a, Expr left_b) {
     std::vector<PointValues>& points = motion_.anywhere();
-    const auto nothing = [&](Expr e) { return std::all_of(points.begin(), points.end(), [&](PointValues& at) { return std::abs(at(e)) <= kNothing * (1e-6 + size_at(e, at)); }); };
+    const auto nothing = [&](Expr e) {
+      return std::all_of(points.begin(), points.end(),
+                         [&](PointValues& at) { return std::abs(at(e)) <= kNothing * (1e-6 + size_at(e, at)); });
+    };
     if (nothing(a) != nothing(b)) return false;
     return nothing(a) ? proportional(left_a, left_b) : proportional(a, b);
   }
@@ -122,7 +133,8 @@ class Repair {
     std::vector<PointValues>& points = motion_.anywhere();
     if (points.empty()) return false;
     const double ratio = points[0](a) / points[0](b);
-    return std::all_of(points.begin(), points.end(), [&](PointValues& at) { return std::abs(at(a) - ratio * at(b)) <= kNothing * std::abs(at(a)); });
+    return std::all_of(points.begin(), points.end(),
+                       [&](PointValues& at) { return std::abs(at(a) - ratio * at(b)) <= kNothing * std::abs(at(a)); });
   }
 
   // ---- words ---------------------------------------------------------------------------------
@@ -130,10 +142,14 @@ class Repair {
   // By the smallest term around each place; of several terms a symbol by itself.
   Change worded(const std::vector<const Edit*>& edits) {
     std::map<Path, std::vector<const Edit*>> terms;
-    for (const Edit* e : edits) terms[Path(e->path.begin(), e->path.begin() + static_cast<std::ptrdiff_t>(innermost_term(syntax_, e->path)))].push_back(e);
+    for (const Edit* e : edits)
+      terms[Path(e->path.begin(), e->path.begin() + static_cast<std::ptrdiff_t>(innermost_term(syntax_, e->path)))]
+          .push_back(e);
     Change change;
     for (const auto& [path, list] : terms) change.places.push_back(worded(path, list, terms.size() > 1));
-    std::stable_sort(change.places.begin(), change.places.end(), [](const ChangedPlace& a, const ChangedPlace& b) { return std::pair(a.span.line, a.span.column) < std::pair(b.span.line, b.span.column); });
+    std::stable_sort(change.places.begin(), change.places.end(), [](const ChangedPlace& a, const ChangedPlace& b) {
+      return std::pair(a.span.line, a.span.column) < std::pair(b.span.line, b.span.column);
+    });
     static_cast<ChangedPlace&>(change) = change.places[0];
     return change;
   }
@@ -144,7 +160,8 @@ class Repair {
     std::size_t top = 1;
     while (is_component(node_at(syntax_, term, top)) && term.size() > top) ++top;
     if (node_at(syntax_, term, top).op == Syntax::Op::add && term.size() > top) p.term = term[top];
-    if (several && edits.size() == 1 && edits[0]->effect == Edit::Effect::replaces && (edits[0]->kind == Edit::Kind::dots || edits[0]->kind == Edit::Kind::name)) {
+    if (several && edits.size() == 1 && edits[0]->effect == Edit::Effect::replaces &&
+        (edits[0]->kind == Edit::Kind::dots || edits[0]->kind == Edit::Kind::name)) {
       const Syntax& symbol = node_at(syntax_, edits[0]->path);
       return placed(p, symbol, print(symbol), print(edits[0]->with));
     }
@@ -166,7 +183,9 @@ class Repair {
   }
 
   // The component of a vector equation that stands for the side.
-  static bool is_component(const Syntax& s) { return s.op == Syntax::Op::member && s.args[0].offset == s.offset && s.args[0].end == s.end; }
+  static bool is_component(const Syntax& s) {
+    return s.op == Syntax::Op::member && s.args[0].offset == s.offset && s.args[0].end == s.end;
+  }
   static std::string text(const Syntax& s) { return is_component(s) ? print(s.args[0]) : print(s); }
 
   ChangedPlace placed(ChangedPlace p, const Syntax& s, std::string from, std::string to) const {
@@ -187,7 +206,8 @@ class Repair {
 
 }  // namespace
 
-std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet, Comparer& comparer) {
+std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet,
+                            Comparer& comparer) {
   return Repair(equation, words, alphabet, comparer).run();
 }
 

@@ -38,8 +38,8 @@ Subject::Subject(OpenModel open, StateChoice choice)
 const Elimination& Subject::elimination(bool quasi) {
   std::unique_ptr<const Elimination>& known = eliminations_[quasi];
   if (!known)
-    known = std::make_unique<const Elimination>(
-        elimination_for(mechanics_, quasi ? Unknowns::quasi_velocities : Unknowns::coordinates, choice_.overrides, choice_.eliminate));
+    known = std::make_unique<const Elimination>(elimination_for(
+        mechanics_, quasi ? Unknowns::quasi_velocities : Unknowns::coordinates, choice_.overrides, choice_.eliminate));
   return *known;
 }
 

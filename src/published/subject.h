@@ -1,4 +1,5 @@
-// A model as published equations speak about it: its derived equations, its words, and the names that a misprint may exchange.
+// A model as published equations speak about it: its derived equations, its words, and the names that a misprint may
+// exchange.
 #pragma once
 #include <memory>
 
@@ -10,7 +11,8 @@ namespace anholon {
 
 class Subject {
  public:
-  // `choice`: which coordinates are eliminated, near which state. What depends on it throws Failure if that is impossible.
+  // `choice`: which coordinates are eliminated, near which state. What depends on it throws Failure if that is
+  // impossible.
   explicit Subject(OpenModel open, StateChoice choice = {});
   Subject(const Subject&) = delete;
   Subject& operator=(const Subject&) = delete;
@@ -20,12 +22,16 @@ class Subject {
   Vocabulary& words() { return words_; }
   const SymbolNames& names() const { return comparer_.names(); }
 
-  std::vector<PublishedEquation> read(const SourceText& equations, Diagnostics& diagnostics) { return read_equations(equations, words_, diagnostics); }
+  std::vector<PublishedEquation> read(const SourceText& equations, Diagnostics& diagnostics) {
+    return read_equations(equations, words_, diagnostics);
+  }
   // Whether the equation is true; with the changes that would make it true, if it is false.
   Comparison compare(const PublishedEquation& equation) { return comparer_.compare(equation, words_, alphabet_); }
   // The same without a search for changes, and for what a false equation comes nearest to.
   Comparison judge(const PublishedEquation& equation) { return comparer_.decide(difference(equation)); }
-  Expr difference(const PublishedEquation& equation) { return words_.number(equation.left) - words_.number(equation.right); }
+  Expr difference(const PublishedEquation& equation) {
+    return words_.number(equation.left) - words_.number(equation.right);
+  }
 
  private:
   const Elimination& elimination(bool quasi);

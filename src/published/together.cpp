@@ -7,8 +7,8 @@ namespace anholon {
 
 namespace {
 
-constexpr std::size_t kMostDots = 700;        // places that may have lost dots
-constexpr std::size_t kMostTried = 60'000;    // sets that are tried as one, of each number of changes
+constexpr std::size_t kMostDots = 700;      // places that may have lost dots
+constexpr std::size_t kMostTried = 60'000;  // sets that are tried as one, of each number of changes
 constexpr std::size_t kMostLookedUp = 2'000'000;
 constexpr std::size_t kMostCompared = 4'000'000;  // pairs of which it is asked whether they add
 constexpr std::size_t kMostFound = 200;
@@ -39,7 +39,10 @@ std::optional<Raised> exponent_of(const Edit& e, const Syntax& difference) {
   Raised x;
   std::size_t length = e.path.size();
   if (e.kind != Edit::Kind::exponent || length < 2) return std::nullopt;
-  const auto whole = [](const Syntax& s) { return s.op == Syntax::Op::number && s.text.size() == 1 && s.text[0] >= '1' && s.text[0] <= '9' ? s.text[0] - '0' : 0L; };
+  const auto whole = [](const Syntax& s) {
+    return s.op == Syntax::Op::number && s.text.size() == 1 && s.text[0] >= '1' && s.text[0] <= '9' ? s.text[0] - '0'
+                                                                                                    : 0L;
+  };
   if (e.effect == Edit::Effect::squares) {
     x.to = 2;
   } else {
@@ -79,7 +82,8 @@ void Together::symbols_everywhere(const Syntax& difference) {
   std::map<std::pair<std::string, std::string>, std::vector<std::uint32_t>> places;
   for (std::uint32_t i = 0; i < trial_.size(); ++i) {
     const Edit& e = trial_.edit(i);
-    if ((e.kind == Edit::Kind::dots && !e.in_function) || e.kind == Edit::Kind::name) places[{print(node_at(difference, e.path)), print(e.with)}].push_back(i);
+    if ((e.kind == Edit::Kind::dots && !e.in_function) || e.kind == Edit::Kind::name)
+      places[{print(node_at(difference, e.path)), print(e.with)}].push_back(i);
   }
   for (const auto& [names, edits] : places) {
     if (edits.size() < 2) continue;
@@ -95,7 +99,8 @@ void Together::moved_exponents(const Syntax& difference) {
   for (const auto& [path, list] : products)
     for (const auto& [lowered, a] : list)
       for (const auto& [raised, b] : list)
-        if (a.factor != b.factor && a.to == a.from - 1 && b.to == a.from && b.from == a.to) put({lowered, raised}, kOther, false);
+        if (a.factor != b.factor && a.to == a.from - 1 && b.to == a.from && b.from == a.to)
+          put({lowered, raised}, kOther, false);
 }
 
 // ---- items and their sums ----------------------------------------------------------------------
@@ -134,7 +139,8 @@ void Together::prepare_singles() {
     singles_.push_back({Items{i}, items_[i].change, sizes(items_[i].change)});
     if (items_[i].dots) dots_.push_back(singles_.back());
   }
-  for (std::vector<Sum>* list : {&singles_, &dots_}) std::stable_sort(list->begin(), list->end(), [](const Sum& a, const Sum& b) { return before(a.change, b.change); });
+  for (std::vector<Sum>* list : {&singles_, &dots_})
+    std::stable_sort(list->begin(), list->end(), [](const Sum& a, const Sum& b) { return before(a.change, b.change); });
 }
 
 void Together::prepare_pairs() {
@@ -147,7 +153,9 @@ void Together::prepare_pairs() {
       const Relation r = relation(a, b);
       of_dots_[k * n + l] = of_dots_[l * n + k] = r;
       if (r == Relation::independent) {
-        pairs_.push_back({{a, b}, total(items_[a].change, items_[b].change), total(sizes(items_[a].change), sizes(items_[b].change))});
+        pairs_.push_back({{a, b},
+                          total(items_[a].change, items_[b].change),
+                          total(sizes(items_[a].change), sizes(items_[b].change))});
       } else if (r == Relation::bound) {
         if (auto s = joined({a, b})) pairs_.push_back(std::move(*s));
       }
@@ -155,9 +163,10 @@ void Together::prepare_pairs() {
   std::stable_sort(pairs_.begin(), pairs_.end(), [](const Sum& a, const Sum& b) { return before(a.change, b.change); });
 }
 
-// Sets of single lost dots of which none adds with all the others, each once. `set` and `open` count the lost dots; those that are open
-// come after the first of the set and may be joined.
-void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::uint32_t>& open, unsigned count, std::vector<Sum>& out) {
+// Sets of single lost dots of which none adds with all the others, each once. `set` and `open` count the lost dots;
+// those that are open come after the first of the set and may be joined.
+void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::uint32_t>& open, unsigned count,
+                       std::vector<Sum>& out) {
   const std::size_t n = dot_items_.size();
   if (set.size() == count) {
     Items items;
@@ -168,11 +177,15 @@ void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::u
   const auto bound = [&](std::uint32_t a, std::uint32_t b) { return of_dots_[a * n + b] == Relation::bound; };
   for (std::size_t k = 0; k < open.size() && tried_ <= kMostTried; ++k) {
     const std::uint32_t next = open[k];
-    if (std::any_of(set.begin(), set.end(), [&](std::uint32_t i) { return of_dots_[i * n + next] == Relation::impossible; })) continue;
+    if (std::any_of(set.begin(), set.end(),
+                    [&](std::uint32_t i) { return of_dots_[i * n + next] == Relation::impossible; }))
+      continue;
     std::vector<std::uint32_t> further(open.begin() + static_cast<std::ptrdiff_t>(k + 1), open.end());
     // Bound to the new one, and to none before it: those are open already, or have been.
     for (std::uint32_t i = set[0] + 1; i < single_dots_; ++i)
-      if (bound(next, i) && std::none_of(set.begin(), set.end(), [&](std::uint32_t j) { return j == i || bound(j, i); })) further.push_back(i);
+      if (bound(next, i) &&
+          std::none_of(set.begin(), set.end(), [&](std::uint32_t j) { return j == i || bound(j, i); }))
+        further.push_back(i);
     set.push_back(next);
     connect(set, further, count, out);
     set.pop_back();
@@ -213,7 +226,8 @@ void Together::find(const std::vector<Sum>& sums, const std::vector<Sum>& sorted
     const double wanted = -trial_.value()[0] - s.change[0];
     // The sizes of the terms of the other are not known yet: they are not much larger than itself.
     const double window = 4 * trial_.tolerance(0, s.extent[0] + std::abs(wanted));
-    auto it = std::lower_bound(sorted.begin(), sorted.end(), wanted - window, [](const Sum& a, double v) { return a.change[0] < v; });
+    auto it = std::lower_bound(sorted.begin(), sorted.end(), wanted - window,
+                               [](const Sum& a, double v) { return a.change[0] < v; });
     for (; it != sorted.end() && it->change[0] <= wanted + window; ++it) {
       const Sum both{{}, total(s.change, it->change), total(s.extent, it->extent)};
       if (!trial_.vanishes(both.change, both.extent) || !independent(s.items, it->items)) continue;
@@ -233,7 +247,9 @@ void Together::try_bound_pairs() {
   for (std::uint32_t a = 0; a < items_.size(); ++a)
     for (std::uint32_t b = a + 1; b < items_.size(); ++b) {
       const bool dots = items_[a].dots || items_[b].dots;
-      if ((items_[a].dots && items_[b].dots) || (!dots && !(plain[a] && plain[b])) || items_[a].edits.size() > 2 || items_[b].edits.size() > 2) continue;
+      if ((items_[a].dots && items_[b].dots) || (!dots && !(plain[a] && plain[b])) || items_[a].edits.size() > 2 ||
+          items_[b].edits.size() > 2)
+        continue;
       if (tried_ > kMostTried || ++compared > kMostCompared) return;
       if (relation(a, b) != Relation::bound) continue;
       if (auto s = joined({a, b})) {
@@ -275,7 +291,8 @@ std::vector<Misprint> Together::sets_of(unsigned count) {
       std::vector<Sum> with_dot;
       for (const Sum& d : dots_)
         if (relation(other.items.list[0], d.items.list[0]) == Relation::independent)
-          with_dot.push_back({{other.items.list[0], d.items.list[0]}, total(other.change, d.change), total(other.extent, d.extent)});
+          with_dot.push_back(
+              {{other.items.list[0], d.items.list[0]}, total(other.change, d.change), total(other.extent, d.extent)});
       find(with_dot, pairs_);
     }
   }

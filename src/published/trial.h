@@ -1,11 +1,11 @@
 // An equation in numbers, with changes tried in it: left - right at some points, and what becomes of it.
 //
-// Only what stands above a changed place is computed again. Sums, products, powers, elementary functions and products of vectors
-// are computed from numbers; what surrounds a place otherwise (a derivative, the velocity of a point, …) is evaluated as a formula
-// once for each set of changes in it, so many of them at most.
+// Only what stands above a changed place is computed again. Sums, products, powers, elementary functions and products
+// of vectors are computed from numbers; what surrounds a place otherwise (a derivative, the velocity of a point, …) is
+// evaluated as a formula once for each set of changes in it, so many of them at most.
 //
-// Changes add where nothing but sums lie around both: two operands of one sum, as long as all around it is linear. Others,
-// in two factors of a product, have to be tried together.
+// Changes add where nothing but sums lie around both: two operands of one sum, as long as all around it is linear.
+// Others, in two factors of a product, have to be tried together.
 #pragma once
 #include <array>
 #include <map>
@@ -62,8 +62,8 @@ class Trial {
   };
   struct Tried {
     Edit edit;
-    std::optional<Amount> amount;   // what stands there then, or the factor
-    std::size_t linear = 0;         // nodes on the path from which on its changes add with others
+    std::optional<Amount> amount;  // what stands there then, or the factor
+    std::size_t linear = 0;        // nodes on the path from which on its changes add with others
     Numbers change{};
   };
 

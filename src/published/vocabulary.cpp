@@ -12,7 +12,8 @@ namespace {
 constexpr long kHighestDerivative = 20;
 
 const char* const kNumbers[] = {"T_r", "S_r", "V_O", "V_omega", "h", "power_noncons", "power_constraint"};
-const char* const kColumns[] = {"Q", "QR", "QD", "Qomega", "minus_dVO", "minus_dVomega", "Gamma", "G", "inertia_term", "N"};
+const char* const kColumns[] = {"Q",     "QR", "QD",           "Qomega", "minus_dVO", "minus_dVomega",
+                                "Gamma", "G",  "inertia_term", "N"};
 const char* const kOfConstraints[] = {"phi", "f", "C", "g", "B", "mu", "lambda"};
 const char* const kFunctions[] = {"partial", "Dt", "frozen", "reduced", "star", "along"};
 
@@ -53,7 +54,8 @@ const Formulation* form_named(std::string name) {
 
 long whole_number(const Value& v, const Syntax& s) {
   const Expr* e = std::get_if<Expr>(&v);
-  if (!e || !is_number(*e) || number_value(*e).get_den() != 1 || number_value(*e) < 0 || number_value(*e) > kHighestDerivative)
+  if (!e || !is_number(*e) || number_value(*e).get_den() != 1 || number_value(*e) < 0 ||
+      number_value(*e) > kHighestDerivative)
     throw Failure(s.span, "a whole number between 0 and " + std::to_string(kHighestDerivative) + " is expected here");
   return number_value(*e).get_num().get_si();
 }
@@ -61,8 +63,10 @@ long whole_number(const Value& v, const Syntax& s) {
 void expect(const Syntax& call, std::size_t least, std::size_t most) {
   const std::size_t n = call.args.size();
   if (n >= least && n <= most) return;
-  throw Failure(call.span, call.text + " takes " + std::to_string(least) + (most > least ? " or " + std::to_string(most) : std::string()) + (most == 1 ? " argument, " : " arguments, ") +
-                               std::to_string(n) + (n == 1 ? " is given" : " are given"));
+  throw Failure(call.span, call.text + " takes " + std::to_string(least) +
+                               (most > least ? " or " + std::to_string(most) : std::string()) +
+                               (most == 1 ? " argument, " : " arguments, ") + std::to_string(n) +
+                               (n == 1 ? " is given" : " are given"));
 }
 
 }  // namespace
@@ -91,7 +95,9 @@ void Vocabulary::join(Syntax& s) const {
 }
 
 void Vocabulary::let(const std::string& name, Syntax value, Span span) {
-  if (!is_identifier(name)) throw Failure(span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+  if (!is_identifier(name))
+    throw Failure(span, "'" + name.substr(0, 40) + "' is not a name",
+                  "letters, digits and _, not starting with a digit");
   if (lets_.count(name)) throw Failure(span, "'" + name + "' is already defined in this file");
   if (declares(name)) throw Failure(span, "'" + name + "' is a name of the model");
   static const char* const reserved[] = {"t", "pi", "ex", "ey", "ez", "inertial", "here", "let", "derived"};
@@ -111,8 +117,11 @@ Expr Vocabulary::number(const Syntax& s) { return finished(evaluate_number(s, *t
 Value Vocabulary::value(const Syntax& s) {
   const Value v = as_point(evaluate(s, *this), *this, s.span);
   if (s.op == Syntax::Op::name && !declares(s.text) && column(s.text))
-    throw Failure(s.span, "'" + s.text + "' has an entry for each coordinate", s.text + "." + mechanics_.model->coordinates[0].name);
-  if (v.index() > 1) throw Failure(s.span, std::string("a side of an equation is a number or a vector, this is ") + type_name(v), body_hint(v, *this));
+    throw Failure(s.span, "'" + s.text + "' has an entry for each coordinate",
+                  s.text + "." + mechanics_.model->coordinates[0].name);
+  if (v.index() > 1)
+    throw Failure(s.span, std::string("a side of an equation is a number or a vector, this is ") + type_name(v),
+                  body_hint(v, *this));
   return each(v, s.span, [this](Expr e) { return finished(e); });
 }
 
@@ -130,7 +139,8 @@ Expr Vocabulary::with_frozen_masses(Expr e) const {
   std::unordered_map<NodeId, Expr> frozen;
   const std::vector<VaryingMass>& masses = mechanics_.model->masses;
   for (std::size_t i = 0; i < masses.size(); ++i)
-    if (!is_number(masses[i].value)) frozen.emplace(masses[i].value.id, mechanics_.graph().mass(static_cast<std::uint32_t>(i)));
+    if (!is_number(masses[i].value))
+      frozen.emplace(masses[i].value.id, mechanics_.graph().mass(static_cast<std::uint32_t>(i)));
   return frozen.empty() ? e : replace_nodes({&e, 1}, frozen)[0];
 }
 
@@ -178,8 +188,16 @@ const Column* Vocabulary::column(const std::string& name) {
   if (!among(kColumns, name)) return nullptr;
   if (const auto it = columns_.find(name); it != columns_.end()) return &it->second;
   const Mechanics& m = mechanics_;
-  const Column c = name == "Q" ? m.Q : name == "QR" ? m.QR : name == "QD" ? m.QD : name == "Qomega" ? m.Qomega : name == "minus_dVO" ? m.minus_dVO :
-                   name == "minus_dVomega" ? m.minus_dVomega : name == "Gamma" ? m.Gamma : name == "G" ? forces(m) : name == "N" ? m.N : lagrange_operator(m);
+  const Column c = name == "Q"               ? m.Q
+                   : name == "QR"            ? m.QR
+                   : name == "QD"            ? m.QD
+                   : name == "Qomega"        ? m.Qomega
+                   : name == "minus_dVO"     ? m.minus_dVO
+                   : name == "minus_dVomega" ? m.minus_dVomega
+                   : name == "Gamma"         ? m.Gamma
+                   : name == "G"             ? forces(m)
+                   : name == "N"             ? m.N
+                                             : lagrange_operator(m);
   return &columns_.emplace(name, c.empty() ? Column(m.q.size(), m.graph().zero()) : c).first->second;
 }
 
@@ -187,7 +205,8 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
   Graph& g = graph();
   const std::string whole = rest.empty() ? first : first + "." + joined(rest);
   const auto one_member = [&](const char* of) {
-    if (rest.empty()) throw Failure(span, "'" + first + "' is " + of, first + "." + mechanics_.model->coordinates[0].name);
+    if (rest.empty())
+      throw Failure(span, "'" + first + "' is " + of, first + "." + mechanics_.model->coordinates[0].name);
     return joined(rest);
   };
   if (among(kNumbers, first) && rest.empty()) {
@@ -204,27 +223,38 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
   }
   if (first == "phi" || first == "mu") {
     std::vector<std::string> known;
-    if (first == "phi") known = mechanics_.model->names.multipliers;
-    else for (const VaryingMass& m : mechanics_.model->masses) known.push_back(m.name);
-    if (known.empty()) throw Failure(span, first == "phi" ? "the model has no constraints" : "no mass of the model varies");
+    if (first == "phi")
+      known = mechanics_.model->names.multipliers;
+    else
+      for (const VaryingMass& m : mechanics_.model->masses) known.push_back(m.name);
+    if (known.empty())
+      throw Failure(span, first == "phi" ? "the model has no constraints" : "no mass of the model varies");
     std::size_t k = 0;
-    if (rest.empty() && known.size() > 1) throw Failure(span, "there are " + std::to_string(known.size()) + " of '" + first + "'", first + "." + known[0]);
+    if (rest.empty() && known.size() > 1)
+      throw Failure(span, "there are " + std::to_string(known.size()) + " of '" + first + "'", first + "." + known[0]);
     if (!rest.empty()) {
       const std::string wanted = joined(rest);
       k = static_cast<std::size_t>(std::find(known.begin(), known.end(), wanted) - known.begin());
       const std::string near = did_you_mean(wanted, known);
-      if (k == known.size()) throw Failure(span, "there is no '" + whole + "'" + (near.empty() ? "" : "; did you mean '" + first + "." + near + "'?"), first + "." + known[0]);
+      if (k == known.size())
+        throw Failure(
+            span, "there is no '" + whole + "'" + (near.empty() ? "" : "; did you mean '" + first + "." + near + "'?"),
+            first + "." + known[0]);
     }
     return first == "phi" ? mechanics_.phi[k] : g.mass(static_cast<std::uint32_t>(k));
   }
-  if (first == "f") return solved(one_member("the right side of a constraint solved for a coordinate's derivative"), span);
+  if (first == "f")
+    return solved(one_member("the right side of a constraint solved for a coordinate's derivative"), span);
   if (first == "g") {
     const std::size_t s = coordinate(one_member("a coordinate's derivative as a function of quasi-velocities"), span);
     used_quasi_ = true;
     return elimination_(true).g[s];
   }
   if (first == "C" || first == "B") {
-    if (rest.size() != 2) throw Failure(span, "'" + first + "' has two members", first == "C" ? "C.y.x, of the dependent y by the independent x" : "B.x.u, of the coordinate x by the quasi-velocity u");
+    if (rest.size() != 2)
+      throw Failure(span, "'" + first + "' has two members",
+                    first == "C" ? "C.y.x, of the dependent y by the independent x"
+                                 : "B.x.u, of the coordinate x by the quasi-velocity u");
     const Elimination& E = elimination_(first == "B");
     const std::size_t s = coordinate(rest[0], span);
     const auto u = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), rest[1]) - E.names.begin());
@@ -234,7 +264,9 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
       return E.g_by_u()[s][u];
     }
     const auto d = static_cast<std::size_t>(std::find(E.dependent.begin(), E.dependent.end(), s) - E.dependent.begin());
-    if (d == E.dependent.size()) throw Failure(span, "'" + rest[0] + "' is an independent coordinate here", "--eliminate names the dependent coordinates");
+    if (d == E.dependent.size())
+      throw Failure(span, "'" + rest[0] + "' is an independent coordinate here",
+                    "--eliminate names the dependent coordinates");
     return E.C()[d][u];
   }
   if (const Formulation* form = form_named(first)) return of_form(*form, rest, span);
@@ -254,7 +286,8 @@ std::optional<Expr> Vocabulary::quasi_velocity(const std::string& name) {
 }
 
 Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>& rest, Span span) {
-  if (const std::string why = obstacle(form, mechanics_); !why.empty()) throw Failure(span, std::string("the form ") + form.name + " does not apply: " + why);
+  if (const std::string why = obstacle(form, mechanics_); !why.empty())
+    throw Failure(span, std::string("the form ") + form.name + " does not apply: " + why);
   const bool quasi = form.unknowns == Unknowns::quasi_velocities;
   static const Elimination nothing;
   const Elimination& E = form.eliminates() ? elimination_(quasi) : nothing;
@@ -264,16 +297,19 @@ Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>
   std::vector<std::string> known;
   if (e.left.size() == mechanics_.q.size())
     for (const Coordinate& c : mechanics_.model->coordinates) known.push_back(c.name);
-  else known = E.names;
+  else
+    known = E.names;
   std::vector<std::string> path = rest;
-  const bool left = !path.empty() && path[0] == "left" && path.size() > 1, right = !path.empty() && path[0] == "right" && path.size() > 1;
+  const bool left = !path.empty() && path[0] == "left" && path.size() > 1,
+             right = !path.empty() && path[0] == "right" && path.size() > 1;
   if (left || right) path.erase(path.begin());
   const std::string wanted = joined(path);
   const auto k = static_cast<std::size_t>(std::find(known.begin(), known.end(), wanted) - known.begin());
   if (k == known.size()) {
     std::string list;
     for (const std::string& n : known) list += (list.empty() ? "" : ", ") + n;
-    throw Failure(span, "the form " + std::string(form.name) + " has no equation '" + wanted + "'", "its equations are " + list);
+    throw Failure(span, "the form " + std::string(form.name) + " has no equation '" + wanted + "'",
+                  "its equations are " + list);
   }
   if (quasi) used_quasi_ = true;
   return left ? e.left[k] : right ? e.right[k] : e.left[k] - e.right[k];
@@ -284,7 +320,8 @@ Expr Vocabulary::solved(const std::string& y, Span span) {
   const Elimination& E = elimination_(false);
   const std::size_t s = coordinate(y, span);
   if (std::find(E.dependent.begin(), E.dependent.end(), s) == E.dependent.end())
-    throw Failure(span, "'" + y + "' is an independent coordinate here: the constraints are not solved for it", "--eliminate names the dependent coordinates");
+    throw Failure(span, "'" + y + "' is an independent coordinate here: the constraints are not solved for it",
+                  "--eliminate names the dependent coordinates");
   return E.g[s];
 }
 
@@ -304,7 +341,8 @@ bool Vocabulary::call(const std::string& f, const std::vector<Value>& a, const S
   } else if (f == "Dt") {
     expect(s, 1, 2);
     const auto times = static_cast<unsigned>(a.size() > 1 ? whole_number(a[1], s.args[1]) : 1);
-    result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return total_derivative(with_frozen_masses(e), times); });
+    result = each(as_point(a[0], *this, s.span), s.args[0].span,
+                  [&](Expr e) { return total_derivative(with_frozen_masses(e), times); });
   } else if (f == "frozen") {
     expect(s, 1, 1);
     result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return with_frozen_masses(e); });
@@ -316,9 +354,11 @@ bool Vocabulary::call(const std::string& f, const std::vector<Value>& a, const S
     result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return E.on(e); });
   } else {
     expect(s, 2, 2);
-    const Column* c = s.args[0].op == Syntax::Op::name ? column(s.args[0].text.substr(s.args[0].text.rfind('.') + 1)) : nullptr;
+    const Column* c =
+        s.args[0].op == Syntax::Op::name ? column(s.args[0].text.substr(s.args[0].text.rfind('.') + 1)) : nullptr;
     if (!c) throw Failure(s.args[0].span, "the name of a force is expected here", "along(Q, x), along(QR, x), …");
-    if (s.args[1].op != Syntax::Op::name) throw Failure(s.args[1].span, "an independent coordinate or a quasi-velocity is expected here");
+    if (s.args[1].op != Syntax::Op::name)
+      throw Failure(s.args[1].span, "an independent coordinate or a quasi-velocity is expected here");
     result = along(*c, s.args[1].text, s.args[1].span);
   }
   return true;
@@ -329,7 +369,9 @@ Expr Vocabulary::along(const Column& c, const std::string& direction, Span span)
   const bool quasi = std::any_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == direction; });
   const Elimination& E = elimination_(quasi);
   const auto k = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), direction) - E.names.begin());
-  if (k == E.names.size()) throw Failure(span, "'" + direction + "' is not among the free quantities", "--eliminate names the dependent coordinates");
+  if (k == E.names.size())
+    throw Failure(span, "'" + direction + "' is not among the free quantities",
+                  "--eliminate names the dependent coordinates");
   if (quasi) used_quasi_ = true;
   return E.contract(c)[k];
 }
@@ -385,7 +427,9 @@ Value Vocabulary::partial_of(const Syntax& s, const Value& what) {
     const std::vector<std::string> path = split(s.args[0].op == Syntax::Op::name ? s.args[0].text : "");
     const bool one_word = path.size() > 1 && path[path[0] == "derived"] == (in_quasi ? "g" : "f");
     if (!one_word)
-      throw Failure(s.args[0].span, "the constraints are not solved as formulas here: a partial derivative is taken of what is reduced as a whole",
+      throw Failure(s.args[0].span,
+                    "the constraints are not solved as formulas here: a partial derivative is taken of what is reduced "
+                    "as a whole",
                     in_quasi ? "partial(star(…), u)" : "partial(reduced(…), x'), partial(f.y, x')");
     return each(of, s.args[0].span, [&](Expr e) { return partial_along(e, *v, in_quasi, at); });
   }
@@ -395,21 +439,30 @@ Value Vocabulary::partial_of(const Syntax& s, const Value& what) {
 Expr Vocabulary::partial_by(Expr e, Expr by, Span span) {
   const Graph& g = graph();
   switch (g.node(by.id).kind) {
-    case Kind::quasi:
-      // What is not in quasi-velocities does not hold them, and depends on them all the same.
-      if (jet_order(e) >= static_cast<int>(elimination_(true).m))
-        throw Failure(span, "what is differentiated by a quasi-velocity is not expressed in quasi-velocities", "partial(star(T_r), u), partial(g.x, u)");
-      return partial(e, by);
-    case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given: case Kind::state: case Kind::control: return partial(e, by);
-    case Kind::time: {
-      // Functions of time alone vary with it.
-      Expr rate = partial(e, by);
-      for (NodeId id : symbols({&e, 1}))
-        if (g.node(id).kind == Kind::given) rate = rate + partial(e, {e.graph, id}) * total_derivative(Expr{e.graph, id});
-      return rate;
-    }
-    default:
-      throw Failure(span, "a partial derivative is taken by a derivative of a coordinate, by t, or by another symbol", "partial(T_r, x'), partial(f.y, D(x, 2))");
+  case Kind::quasi:
+    // What is not in quasi-velocities does not hold them, and depends on them all the same.
+    if (jet_order(e) >= static_cast<int>(elimination_(true).m))
+      throw Failure(span, "what is differentiated by a quasi-velocity is not expressed in quasi-velocities",
+                    "partial(star(T_r), u), partial(g.x, u)");
+    return partial(e, by);
+  case Kind::jet:
+  case Kind::parameter:
+  case Kind::mass:
+  case Kind::multiplier:
+  case Kind::given:
+  case Kind::state:
+  case Kind::control:
+    return partial(e, by);
+  case Kind::time: {
+    // Functions of time alone vary with it.
+    Expr rate = partial(e, by);
+    for (NodeId id : symbols({&e, 1}))
+      if (g.node(id).kind == Kind::given) rate = rate + partial(e, {e.graph, id}) * total_derivative(Expr{e.graph, id});
+    return rate;
+  }
+  default:
+    throw Failure(span, "a partial derivative is taken by a derivative of a coordinate, by t, or by another symbol",
+                  "partial(T_r, x'), partial(f.y, D(x, 2))");
   }
 }
 
@@ -418,7 +471,9 @@ Expr Vocabulary::partial_along(Expr e, Expr by, bool quasi, Span span) {
   const Elimination& E = elimination_(quasi);
   if (quasi) used_quasi_ = true;
   const Node& n = graph().node(by.id);
-  const auto position = [](const auto& list, std::size_t a) { return static_cast<std::size_t>(std::find(list.begin(), list.end(), a) - list.begin()); };
+  const auto position = [](const auto& list, std::size_t a) {
+    return static_cast<std::size_t>(std::find(list.begin(), list.end(), a) - list.begin());
+  };
   if (quasi)
     for (std::size_t k = 0; k < E.u.size(); ++k) {
       if (E.u[k] == by) return E.by_u(e)[k];
@@ -431,7 +486,8 @@ Expr Vocabulary::partial_along(Expr e, Expr by, bool quasi, Span span) {
     if (!quasi && n.order == E.m) return E.by_u(e)[k];
     if (!quasi && n.order == E.m + 1) return E.by_u_rate(e)[k];
   }
-  throw Failure(span, "this derivative of what is reduced is not known where the constraints are not solved as formulas");
+  throw Failure(span,
+                "this derivative of what is reduced is not known where the constraints are not solved as formulas");
 }
 
 }  // namespace anholon

@@ -7,6 +7,6 @@ namespace anholon {
 std::string_view page_style();
 std::string_view viewer_script();  // empty where the viewer was not built
 std::string_view viewer_style();
-std::string_view literature();     // refs.bib
+std::string_view literature();  // refs.bib
 
 }  // namespace anholon

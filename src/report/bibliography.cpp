@@ -16,8 +16,9 @@ using Fields = std::map<std::string, std::string>;
 
 // {\`A}, {\"u}, {\o}, \v{s}: what occurs in refs.bib, as characters.
 std::string plain(std::string s) {
-  static const std::pair<const char*, const char*> marks[] = {{"{\\`A}", "À"}, {"{\\\"u}", "ü"}, {"{\\\"o}", "ö"}, {"{\\\"a}", "ä"}, {"{\\o}", "ø"}, {"{\\'e}", "é"},
-                                                              {"\\v{s}", "š"}, {"\\'c", "ć"}, {"\\v{c}", "č"}, {"--", "–"}};
+  static const std::pair<const char*, const char*> marks[] = {
+      {"{\\`A}", "À"}, {"{\\\"u}", "ü"}, {"{\\\"o}", "ö"}, {"{\\\"a}", "ä"}, {"{\\o}", "ø"},
+      {"{\\'e}", "é"}, {"\\v{s}", "š"},  {"\\'c", "ć"},    {"\\v{c}", "č"},  {"--", "–"}};
   for (const auto& [from, to] : marks)
     for (std::size_t at; (at = s.find(from)) != std::string::npos;) s.replace(at, std::string_view(from).size(), to);
   std::erase_if(s, [](char c) { return c == '{' || c == '}'; });

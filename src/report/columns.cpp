@@ -19,15 +19,22 @@ namespace {
 constexpr std::size_t kMostNumbers = 28000, kMostFrameNumbers = 18000, kMostColumns = 96;
 constexpr std::size_t kLeastRows = 200, kMostFrames = 2000;
 
-constexpr const char* kDerivatives[] = {"coordinates", "velocities", "accelerations", "third derivatives", "fourth derivatives"};
+constexpr const char* kDerivatives[] = {"coordinates", "velocities", "accelerations", "third derivatives",
+                                        "fourth derivatives"};
 
 const std::vector<PlotGroup>& all_groups() {
-  static const std::vector<PlotGroup> list = {{"coordinates", "Coordinates"},   {"velocities", "Velocities"},
-                                              {"accelerations", "Accelerations"}, {"third derivatives", "Third derivatives"},
-                                              {"fourth derivatives", "Fourth derivatives"}, {"states", "States"},
-                                              {"multipliers", "Multipliers"},   {"reactions", "Generalized reactions"},
-                                              {"energies", "Energies"},         {"integrals", "Integrals of the motion"},
-                                              {"monitors", "Outputs and monitors"}, {"residuals", "Residuals of the stored rows", true},
+  static const std::vector<PlotGroup> list = {{"coordinates", "Coordinates"},
+                                              {"velocities", "Velocities"},
+                                              {"accelerations", "Accelerations"},
+                                              {"third derivatives", "Third derivatives"},
+                                              {"fourth derivatives", "Fourth derivatives"},
+                                              {"states", "States"},
+                                              {"multipliers", "Multipliers"},
+                                              {"reactions", "Generalized reactions"},
+                                              {"energies", "Energies"},
+                                              {"integrals", "Integrals of the motion"},
+                                              {"monitors", "Outputs and monitors"},
+                                              {"residuals", "Residuals of the stored rows", true},
                                               {"steps", "Size of the steps", true}};
   return list;
 }
@@ -44,14 +51,16 @@ std::vector<ModeChange> mode_changes(const Model& model, const RunReport& report
   for (const RunReport::Event& e : report.events)
     for (const auto& c : e.changes)
       for (std::size_t k = 0; k < model.parameters.size(); ++k)
-        if (model.parameters[k].mode && model.parameters[k].name == c.name) list.push_back({std::strtod(e.t.c_str(), nullptr), k, std::strtod(c.after.c_str(), nullptr)});
+        if (model.parameters[k].mode && model.parameters[k].name == c.name)
+          list.push_back({std::strtod(e.t.c_str(), nullptr), k, std::strtod(c.after.c_str(), nullptr)});
   return list;
 }
 
 // Values of expressions at the rows of a table. A row at the time of an event is the one before it.
 class AtRows {
  public:
-  AtRows(const Model& model, const RunTable& table, const Column& es, std::vector<double> parameters, const std::vector<ModeChange>& modes)
+  AtRows(const Model& model, const RunTable& table, const Column& es, std::vector<double> parameters,
+         const std::vector<ModeChange>& modes)
       : tape_(compile(es)), parameters_(std::move(parameters)), modes_(modes), table_(table) {
     const ColumnOf column = column_of(model, table);
     for (const Input& in : tape_.inputs) columns_.push_back(column(model.graph->node(in.symbol)));
@@ -64,10 +73,12 @@ class AtRows {
     std::size_t next = 0;
     std::optional<Machine<double>> machine;
     for (std::size_t row = 0; row < table_.rows(); ++row) {
-      for (; next < modes_.size() && modes_[next].t < table_.values[0][row]; ++next) parameters_[modes_[next].parameter] = modes_[next].value, machine.reset();
+      for (; next < modes_.size() && modes_[next].t < table_.values[0][row]; ++next)
+        parameters_[modes_[next].parameter] = modes_[next].value, machine.reset();
       if (!machine) machine.emplace(tape_, 0, parameters_);
       for (std::size_t k = 0; k < columns_.size(); ++k)
-        machine->series(tape_.inputs[k].slot)[0] = table_.values[*columns_[k] < 0 ? 0 : static_cast<std::size_t>(*columns_[k])][row];
+        machine->series(tape_.inputs[k].slot)[0] =
+            table_.values[*columns_[k] < 0 ? 0 : static_cast<std::size_t>(*columns_[k])][row];
       machine->evaluate();
       see(row, *machine);
     }
@@ -84,7 +95,8 @@ class AtRows {
 class Plots {
  public:
   Plots(const Scenario& s, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene)
-      : s_(s), model_(*s.model), run_(run), conserved_(conserved), scene_(scene), parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, read_run_report(run.report))) {}
+      : s_(s), model_(*s.model), run_(run), conserved_(conserved), scene_(scene),
+        parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, read_run_report(run.report))) {}
 
   PlotData make() {
     data_.t = run_.table.values.empty() ? std::vector<double>{} : run_.table.values[0];
@@ -95,7 +107,8 @@ class Plots {
     steps();
     shorten();
     for (const PlotGroup& g : all_groups())
-      if (std::any_of(data_.columns.begin(), data_.columns.end(), [&](const PlotColumn& c) { return c.group == g.id; })) data_.groups.push_back(g);
+      if (std::any_of(data_.columns.begin(), data_.columns.end(), [&](const PlotColumn& c) { return c.group == g.id; }))
+        data_.groups.push_back(g);
     return std::move(data_);
   }
 
@@ -113,14 +126,18 @@ class Plots {
     std::map<std::string, std::pair<std::string, std::string>> known;  // name -> group, math
     Graph& g = *model_.graph;
     for (std::uint32_t a = 0; a < model_.coordinates.size(); ++a)
-      for (std::uint32_t k = 0; k < std::size(kDerivatives); ++k) known[derivative_name(model_.coordinates[a].name, k, Format::text)] = {kDerivatives[k], math_of(g.jet(a, k))};
+      for (std::uint32_t k = 0; k < std::size(kDerivatives); ++k)
+        known[derivative_name(model_.coordinates[a].name, k, Format::text)] = {kDerivatives[k], math_of(g.jet(a, k))};
     for (std::uint32_t r = 0; r < model_.constraints.size(); ++r)
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::optional<std::size_t> by = model_.constraints[r].by;
-        known[derivative_name(multiplier_name(model_, r), k, Format::text)] = {"multipliers", math_of(by ? g.control(static_cast<std::uint32_t>(*by), k) : g.multiplier(r, k))};
+        known[derivative_name(multiplier_name(model_, r), k, Format::text)] = {
+            "multipliers", math_of(by ? g.control(static_cast<std::uint32_t>(*by), k) : g.multiplier(r, k))};
       }
-    for (const Coordinate& c : model_.coordinates) known["N." + c.name] = {"reactions", "<msub><mi>N</mi><mrow>" + mathml_name(c.name) + "</mrow></msub>"};
-    for (std::uint32_t k = 0; k < model_.states.size(); ++k) known[model_.states[k].name] = {"states", math_of(g.state(k, 0))};
+    for (const Coordinate& c : model_.coordinates)
+      known["N." + c.name] = {"reactions", "<msub><mi>N</mi><mrow>" + mathml_name(c.name) + "</mrow></msub>"};
+    for (std::uint32_t k = 0; k < model_.states.size(); ++k)
+      known[model_.states[k].name] = {"states", math_of(g.state(k, 0))};
     for (std::size_t k = 1; k < t.columns.size(); ++k) {
       const auto it = known.find(t.columns[k]);
       PlotColumn& c = it == known.end() ? add(t.columns[k], mathml_name(t.columns[k]), "monitors", t.values[k])
@@ -134,7 +151,8 @@ class Plots {
     std::vector<std::array<std::string, 3>> what = {{"T", "<mi>T</mi>", "energies"}};
     for (const Potential& p : model_.potentials) {
       es.push_back(put_masses(model_, p.value));
-      what.push_back({"V." + p.name, "<msub><mi>V</mi><mtext>" + markup_escape(p.name) + "</mtext></msub>", "energies"});
+      what.push_back(
+          {"V." + p.name, "<msub><mi>V</mi><mtext>" + markup_escape(p.name) + "</mtext></msub>", "energies"});
     }
     for (const Conserved& c : conserved_) {
       es.push_back(c.value);
@@ -150,7 +168,8 @@ class Plots {
     for (std::size_t k = 0; k < es.size(); ++k) add(what[k][0], what[k][1], what[k][2], std::move(values[k]));
   }
 
-  // |phi^(k)| of what must vanish at every row, and how far integrals have gone from their first value in relation to their terms.
+  // |phi^(k)| of what must vanish at every row, and how far integrals have gone from their first value in relation to
+  // their terms.
   void residuals() {
     constexpr std::size_t kMost = 40;
     const Mechanics& m = *s_.mechanics;
@@ -162,7 +181,10 @@ class Plots {
         const std::string name = model_.constraints[r].name;
         es.push_back(put_masses(model_, total_derivative(m.phi[r], static_cast<unsigned>(k))));
         names.push_back({"|" + derivative_name("phi." + name, static_cast<unsigned>(k), Format::text) + "|",
-                         "<mo>|</mo>" + derivative_name("<msub><mi>φ</mi><mtext>" + markup_escape(name) + "</mtext></msub>", static_cast<unsigned>(k), Format::mathml) + "<mo>|</mo>"});
+                         "<mo>|</mo>" +
+                             derivative_name("<msub><mi>φ</mi><mtext>" + markup_escape(name) + "</mtext></msub>",
+                                             static_cast<unsigned>(k), Format::mathml) +
+                             "<mo>|</mo>"});
       }
     }
     std::vector<std::size_t> first(conserved_.size());
@@ -180,20 +202,25 @@ class Plots {
       if (!conserved_.empty()) machine.made_of(made);
       for (std::size_t c = 0; c < conserved_.size(); ++c) {
         double sum = 0, terms = 0;
-        for (std::size_t k = 0; k < conserved_[c].terms.size(); ++k) sum += machine.value(first[c] + k), terms += std::abs(machine.value(first[c] + k));
+        for (std::size_t k = 0; k < conserved_[c].terms.size(); ++k)
+          sum += machine.value(first[c] + k), terms += std::abs(machine.value(first[c] + k));
         integral[c].push_back(sum);
         size[c] = std::max(size[c], terms);
         double of_terms = 0;
-        for (std::size_t k = 0; k < conserved_[c].terms.size(); ++k) of_terms += made[machine.tape().roots[first[c] + k]];
+        for (std::size_t k = 0; k < conserved_[c].terms.size(); ++k)
+          of_terms += made[machine.tape().roots[first[c] + k]];
         made_of[c] = std::max(made_of[c], of_terms);
       }
     });
-    for (std::size_t k = 0; k < names.size(); ++k) add(names[k].first, names[k].second, "residuals", std::move(values[k]));
+    for (std::size_t k = 0; k < names.size(); ++k)
+      add(names[k].first, names[k].second, "residuals", std::move(values[k]));
     for (std::size_t c = 0; c < conserved_.size(); ++c) {
       if (!(size[c] > 0)) continue;
       std::vector<double> change;
-      for (double x : integral[c]) change.push_back(relative_miss(x - integral[c][0], size[c], [&] { return made_of[c]; }));
-      add("change of " + conserved_[c].name, "<mtext>change of " + markup_escape(conserved_[c].name) + "</mtext>", "residuals", std::move(change));
+      for (double x : integral[c])
+        change.push_back(relative_miss(x - integral[c][0], size[c], [&] { return made_of[c]; }));
+      add("change of " + conserved_[c].name, "<mtext>change of " + markup_escape(conserved_[c].name) + "</mtext>",
+          "residuals", std::move(change));
     }
   }
 
@@ -224,14 +251,17 @@ class Plots {
     std::vector<int> needed = columns_of(scene_, *model_.graph, column);
     for (int& k : needed) --k;  // t is no column of the page
     fewer_columns();
-    const auto plotted = static_cast<std::size_t>(std::count_if(data_.columns.begin(), data_.columns.end(), [](const PlotColumn& c) { return !c.group.empty(); }));
+    const auto plotted = static_cast<std::size_t>(std::count_if(data_.columns.begin(), data_.columns.end(),
+                                                                [](const PlotColumn& c) { return !c.group.empty(); }));
     const bool all_rows = data_.rows * plotted <= kMostNumbers;
     data_.shown = data_.rows;
     if (!all_rows || data_.left_out > 0) take_frames(needed);
     const std::size_t most = std::max(kLeastRows, kMostNumbers / std::max<std::size_t>(2 * plotted, 1));
     for (PlotColumn& c : data_.columns) {
-      if (c.group.empty()) c.values.clear();
-      else if (!c.t.empty() || !all_rows) keep(c, most);
+      if (c.group.empty())
+        c.values.clear();
+      else if (!c.t.empty() || !all_rows)
+        keep(c, most);
     }
     if (!all_rows) data_.t.clear(), data_.shown = most_kept_;
   }
@@ -247,7 +277,8 @@ class Plots {
   }
 
   void take_frames(const std::vector<int>& needed) {
-    const std::size_t most = std::clamp<std::size_t>(kMostFrameNumbers / std::max<std::size_t>(needed.size(), 1), 60, kMostFrames);
+    const std::size_t most =
+        std::clamp<std::size_t>(kMostFrameNumbers / std::max<std::size_t>(needed.size(), 1), 60, kMostFrames);
     const std::size_t count = std::min(most, data_.rows);
     std::vector<std::size_t> rows;
     for (std::size_t k = 0; k < count; ++k) rows.push_back(count < 2 ? 0 : k * (data_.rows - 1) / (count - 1));
@@ -275,10 +306,14 @@ ColumnOf column_of(const Model& model, const RunTable& table) {
   return [&model, places](const Node& n) -> std::optional<int> {
     if (n.kind == Kind::time) return -1;
     std::string base;
-    if (n.kind == Kind::jet) base = model.coordinates[n.index].name;
-    else if (n.kind == Kind::multiplier) base = multiplier_name(model, n.index);
-    else if (n.kind == Kind::state && n.order == 0) base = model.states[n.index].name;
-    else return std::nullopt;
+    if (n.kind == Kind::jet)
+      base = model.coordinates[n.index].name;
+    else if (n.kind == Kind::multiplier)
+      base = multiplier_name(model, n.index);
+    else if (n.kind == Kind::state && n.order == 0)
+      base = model.states[n.index].name;
+    else
+      return std::nullopt;
     const auto it = places.find(derivative_name(base, n.order, Format::text));
     return it == places.end() ? std::nullopt : std::optional<int>(it->second);
   };
@@ -292,7 +327,8 @@ bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>
   return true;
 }
 
-PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene) {
+PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
+                   const Scene& scene) {
   return Plots(scenario, conserved, run, scene).make();
 }
 

@@ -1,7 +1,7 @@
 // What a page plots: the columns of a run in groups, with what follows from them, and as few rows as show everything.
 //
-// Beside the columns of the run: kinetic energy, potentials and integrals of the motion, the constraints with their derivatives
-// that must vanish, evaluated in double at the rows as they are stored, and the size of the steps.
+// Beside the columns of the run: kinetic energy, potentials and integrals of the motion, the constraints with their
+// derivatives that must vanish, evaluated in double at the rows as they are stored, and the size of the steps.
 #pragma once
 #include <map>
 #include <string>
@@ -38,12 +38,15 @@ struct PlotData {
 // The place in the table of a symbol of the model: -1 the time, none if the run does not hold it.
 ColumnOf column_of(const Model& model, const RunTable& table);
 
-// The values of an expression at the rows of a run, with the modes that events had set; false if it needs what the run does not hold.
+// The values of an expression at the rows of a run, with the modes that events had set; false if it needs what the run
+// does not hold.
 bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>& values);
 
-PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene);
+PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
+                   const Scene& scene);
 
-// At most about `most` of the rows: of each stretch the least and the greatest, of all the first and the last, and every gap.
+// At most about `most` of the rows: of each stretch the least and the greatest, of all the first and the last, and
+// every gap.
 std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most);
 
 // The numbers as little-endian doubles, in base64.

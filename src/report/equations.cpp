@@ -12,7 +12,8 @@ namespace {
 
 class Derive {
  public:
-  Derive(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger) : m_(m), e_(e), arranger_(arranger) {
+  Derive(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger)
+      : m_(m), e_(e), arranger_(arranger) {
     d_.form = &form;
     d_.model = m.model;
     d_.m = form.highest_m ? e.asked : 0;
@@ -21,7 +22,9 @@ class Derive {
       // After the last differentiation a mass stands under its own name again, if it has one.
       const Expr value = m.model->masses[i].value;
       const auto named = d_.names.defined.find(value.id);
-      d_.names.masses[i] = named != d_.names.defined.end() ? named->second : m.graph().node(value.id).kind == Kind::given ? print(value, d_.names, Format::text) : "m_" + m.model->masses[i].name;
+      d_.names.masses[i] = named != d_.names.defined.end()                ? named->second
+                           : m.graph().node(value.id).kind == Kind::given ? print(value, d_.names, Format::text)
+                                                                          : "m_" + m.model->masses[i].name;
     }
     if (e.quasi) {
       d_.names.quasi = e.names;
@@ -40,7 +43,8 @@ class Derive {
     }
     const bool all = q.left.size() == m_.q.size();
     for (std::size_t a = 0; a < q.left.size(); ++a)
-      d_.equations.push_back({all ? d_.model->coordinates[a].name : e_.names[a], arranged(q.left[a]), arranged(q.right[a])});
+      d_.equations.push_back(
+          {all ? d_.model->coordinates[a].name : e_.names[a], arranged(q.left[a]), arranged(q.right[a])});
     for (std::size_t r = 0; r < m_.phi.size(); ++r)
       d_.constraints.push_back({d_.model->constraints[r].name, arranged(m_.phi[r]), m_.graph().zero()});
     if (of_reactions) reactions(*of_reactions);
@@ -67,7 +71,9 @@ class Derive {
   }
 
   // Zero or not.
-  void add(std::vector<Line>& lines, const Label& name, Expr e) { lines.push_back({name.text, std::nullopt, arranged(e), name.latex, name.mathml}); }
+  void add(std::vector<Line>& lines, const Label& name, Expr e) {
+    lines.push_back({name.text, std::nullopt, arranged(e), name.latex, name.mathml});
+  }
   void add(std::vector<Line>& lines, const Quantities& list) {
     for (const Quantity& q : list) add(lines, q.name, q.value);
   }
@@ -91,8 +97,10 @@ class Derive {
 
   void forces() {
     const Label Q = letter("Q");
-    const Label omega = letter("omega"), omega_rate{"", "\\dot{\\omega}", "<mover accent=\"true\"><mi>ω</mi><mo>˙</mo></mover>"};
-    const Label V_O = with_superscript("V_O", letter("V"), {"", "O'", "<mi>O</mi><mo>′</mo>"}), V_omega = with_superscript("V_omega", letter("V"), omega);
+    const Label omega = letter("omega"),
+                omega_rate{"", "\\dot{\\omega}", "<mover accent=\"true\"><mi>ω</mi><mo>˙</mo></mover>"};
+    const Label V_O = with_superscript("V_O", letter("V"), {"", "O'", "<mi>O</mi><mo>′</mo>"}),
+                V_omega = with_superscript("V_omega", letter("V"), omega);
     std::vector<Line> lines;
     add(lines, of_coordinates(Q), m_.Q);
     add(lines, of_coordinates(with_superscript("QR", Q, letter("R"))), m_.QR);
@@ -133,13 +141,17 @@ class Derive {
     }
     Rows by_u = e_.g_by_u();
     for (std::size_t s = 0; s < by_u.size(); ++s)
-      if (!e_.quasi && std::find(e_.dependent.begin(), e_.dependent.end(), s) == e_.dependent.end()) by_u[s].clear();  // trivial
+      if (!e_.quasi && std::find(e_.dependent.begin(), e_.dependent.end(), s) == e_.dependent.end())
+        by_u[s].clear();  // trivial
     add(lines, partials(top_names, free, by_u));
     std::string heading = e_.constraints.empty() ? "no constraints: nothing is eliminated" : "elimination of ";
-    for (std::size_t k = 0; k < e_.dependent.size(); ++k) heading += (k ? ", " : "") + d_.model->coordinates[e_.dependent[k]].name;
-    if (e_.m > highest_order(m_) && !e_.constraints.empty()) heading += ", constraints lifted to order " + std::to_string(e_.m);
+    for (std::size_t k = 0; k < e_.dependent.size(); ++k)
+      heading += (k ? ", " : "") + d_.model->coordinates[e_.dependent[k]].name;
+    if (e_.m > highest_order(m_) && !e_.constraints.empty())
+      heading += ", constraints lifted to order " + std::to_string(e_.m);
     if (!e_.constraints.empty() && !e_.solved)
-      heading += ": the constraints are not solved, " + std::string(e_.dependent.size() > 1 ? "these derivatives stand" : "its derivative stands") +
+      heading += ": the constraints are not solved, " +
+                 std::string(e_.dependent.size() > 1 ? "these derivatives stand" : "its derivative stands") +
                  " for the value on the manifold";
     d_.steps.push_back({heading, lines});
   }
@@ -160,7 +172,8 @@ class Derive {
         if (r.multipliers[k].graph) {
           const std::string name = multiplier_name(model, k);
           const Expr lambda = m_.lambda[k];
-          add(lines, {name, print(lambda, model.names, Format::latex), print(lambda, model.names, Format::mathml)}, r.multipliers[k]);
+          add(lines, {name, print(lambda, model.names, Format::latex), print(lambda, model.names, Format::mathml)},
+              r.multipliers[k]);
         }
       std::string heading = "multipliers";
       for (std::size_t b = 0; b < pivots.dependent.size(); ++b)
@@ -186,10 +199,12 @@ class Derive {
         }
     }
     const bool without_place = !model.potentials.empty() || !model.dissipation.empty() ||
-                               std::any_of(model.forces.begin(), model.forces.end(), [](const Force& f) { return f.kind == Force::Kind::generalized; });
-    d_.reactions.push_back({std::string("reactions on the bodies, by Newton's law: force, and torque about the mass centre") +
-                                (without_place ? "; forces that have no place (potentials, dissipation, generalized) are among them" : ""),
-                            lines});
+                               std::any_of(model.forces.begin(), model.forces.end(),
+                                           [](const Force& f) { return f.kind == Force::Kind::generalized; });
+    d_.reactions.push_back(
+        {std::string("reactions on the bodies, by Newton's law: force, and torque about the mass centre") +
+             (without_place ? "; forces that have no place (potentials, dissipation, generalized) are among them" : ""),
+         lines});
   }
 
   const Mechanics& m_;
@@ -203,7 +218,9 @@ class Derive {
 // Equations of so many coordinates nobody reads: written out they grow with the square of their number.
 constexpr std::size_t kManyCoordinates = 24;
 
-bool Arranger::in_parts(std::size_t coordinates) const { return expand_ == "parts" || (expand_ == "auto" && coordinates > kManyCoordinates); }
+bool Arranger::in_parts(std::size_t coordinates) const {
+  return expand_ == "parts" || (expand_ == "auto" && coordinates > kManyCoordinates);
+}
 
 Expr Arranger::operator()(Expr e, const SymbolNames& names) {
   if (expand_ == "none") return e;
@@ -225,7 +242,8 @@ Expr Arranger::operator()(Expr e, const SymbolNames& names) {
   return out;
 }
 
-Derivation derivation(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger, bool steps, const Elimination* of_reactions) {
+Derivation derivation(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger, bool steps,
+                      const Elimination* of_reactions) {
   return Derive(m, form, e, arranger).run(steps, of_reactions);
 }
 

@@ -1,4 +1,5 @@
-// The equations of a form as they are printed: arranged, named, with the steps that lead to them and the reactions that follow.
+// The equations of a form as they are printed: arranged, named, with the steps that lead to them and the reactions that
+// follow.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,8 +10,8 @@
 namespace anholon {
 
 struct Line {
-  std::string name;             // "x", "blade_edge", "d T/d x'"
-  std::optional<Expr> left;     // none: the name itself is the left side
+  std::string name;          // "x", "blade_edge", "d T/d x'"
+  std::optional<Expr> left;  // none: the name itself is the left side
   Expr right;
   std::string latex = {}, mathml = {};  // the name in these formats; empty: as text
 };
@@ -19,18 +20,19 @@ using Section = std::pair<std::string, std::vector<Line>>;  // heading, lines
 struct Derivation {
   const Formulation* form = nullptr;
   const Model* model = nullptr;
-  unsigned m = 0;               // the order that was asked for; 0: none was
-  SymbolNames names;            // masses, quasi-velocities under their own names
+  unsigned m = 0;     // the order that was asked for; 0: none was
+  SymbolNames names;  // masses, quasi-velocities under their own names
   std::vector<Section> steps, reactions;
   std::vector<Line> equations, constraints;
-  std::vector<Expr> parts;      // named in `names`, where the equations stand in parts
+  std::vector<Expr> parts;  // named in `names`, where the equations stand in parts
 };
 
-// Arranges expressions, each only once: many forms have equations in common, or equations that are the same written out.
+// Arranges expressions, each only once: many forms have equations in common, or equations that are the same written
+// out.
 class Arranger {
  public:
-  // auto or paper (grouped), none, full (written out), parts (as they stand, with names for what occurs more than once); auto
-  // means parts where there are many coordinates.
+  // auto or paper (grouped), none, full (written out), parts (as they stand, with names for what occurs more than
+  // once); auto means parts where there are many coordinates.
   explicit Arranger(std::string expand) : expand_(std::move(expand)) {}
   Expr operator()(Expr e, const SymbolNames& names);
   bool in_parts(std::size_t coordinates) const;
@@ -40,8 +42,8 @@ class Arranger {
   std::unordered_map<NodeId, Expr> known_, of_written_out_;
 };
 
-// `of_reactions`: an elimination of the ideal constraints by coordinates, if the reactions are wanted; for a form without
-// multipliers its own.
+// `of_reactions`: an elimination of the ideal constraints by coordinates, if the reactions are wanted; for a form
+// without multipliers its own.
 Derivation derivation(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger, bool steps,
                       const Elimination* of_reactions = nullptr);
 

@@ -38,7 +38,10 @@ std::vector<std::pair<std::string, std::string>> parts(const Derivation& d, Form
   const std::vector<std::string> texts = print_contents(d.parts, d.names, format);
   for (std::size_t i = 0; i < d.parts.size(); ++i) {
     const std::string& name = d.names.defined.at(d.parts[i].id);
-    list.push_back({format == Format::latex ? latex_name(name) : format == Format::mathml ? mathml_name(name) : name, texts[i]});
+    list.push_back({format == Format::latex    ? latex_name(name)
+                    : format == Format::mathml ? mathml_name(name)
+                                               : name,
+                    texts[i]});
   }
   return list;
 }
@@ -52,9 +55,12 @@ std::string family(const std::string& name) {
 
 std::string label(const Line& l, Format format) {
   switch (format) {
-    case Format::text: return l.name;
-    case Format::latex: return l.latex.empty() ? "\\text{" + latex_escape(l.name) + "}" : l.latex;
-    case Format::mathml: return l.mathml.empty() ? "<mtext>" + markup_escape(l.name) + "</mtext>" : l.mathml;
+  case Format::text:
+    return l.name;
+  case Format::latex:
+    return l.latex.empty() ? "\\text{" + latex_escape(l.name) + "}" : l.latex;
+  case Format::mathml:
+    return l.mathml.empty() ? "<mtext>" + markup_escape(l.name) + "</mtext>" : l.mathml;
   }
   return l.name;
 }
@@ -73,13 +79,15 @@ std::vector<std::pair<std::string, std::string>> rows(const Derivation& d, const
 std::vector<Line> joined(const std::vector<Line>& lines) {
   std::vector<Line> out;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const bool goes_on = i > 0 && is_zero(lines[i].right) && is_zero(lines[i - 1].right) && family(lines[i].name) == family(lines[i - 1].name);
+    const bool goes_on = i > 0 && is_zero(lines[i].right) && is_zero(lines[i - 1].right) &&
+                         family(lines[i].name) == family(lines[i - 1].name);
     if (!goes_on) {
       out.push_back(lines[i]);
       continue;
     }
     Line& together = out.back();
-    together = {together.name + " = " + lines[i].name, together.left, together.right, label(together, Format::latex) + " = " + label(lines[i], Format::latex),
+    together = {together.name + " = " + lines[i].name, together.left, together.right,
+                label(together, Format::latex) + " = " + label(lines[i], Format::latex),
                 label(together, Format::mathml) + "<mo>=</mo>" + label(lines[i], Format::mathml)};
   }
   return out;
@@ -88,14 +96,16 @@ std::vector<Line> joined(const std::vector<Line>& lines) {
 std::string as_text(const std::vector<Derivation>& list) {
   std::string out = shown(list[0].model->title) + "\n";
   for (const Derivation& d : list) {
-    out += (list.size() > 1 ? "\n" : "") + std::string(d.form->title) + ", " + citation(*d.form) + with_order(d) + "\n\n";
+    out +=
+        (list.size() > 1 ? "\n" : "") + std::string(d.form->title) + ", " + citation(*d.form) + with_order(d) + "\n\n";
     const auto section = [&](const Section& s) {
       out += s.first + "\n";
       for (const auto& [left, right] : rows(d, s.second, Format::text)) out += "  " + left + " = " + right + "\n";
     };
     for (const Section& s : d.steps) section(s), out += "\n";
     const Sides e = printed(d, d.equations, Format::text), c = printed(d, d.constraints, Format::text);
-    for (std::size_t i = 0; i < d.equations.size(); ++i) out += d.equations[i].name + ":  " + e.left[i] + " = " + e.right[i] + "\n";
+    for (std::size_t i = 0; i < d.equations.size(); ++i)
+      out += d.equations[i].name + ":  " + e.left[i] + " = " + e.right[i] + "\n";
     for (std::size_t i = 0; i < d.constraints.size(); ++i) out += d.constraints[i].name + ":  " + c.left[i] + " = 0\n";
     for (const Section& s : d.reactions) out += "\n", section(s);
     if (!d.parts.empty()) out += "\nwith the parts\n";
@@ -103,7 +113,8 @@ std::string as_text(const std::vector<Derivation>& list) {
   }
   std::string with;
   for (std::size_t i = 0; i < list[0].model->masses.size(); ++i)
-    if (const std::string& name = list[0].names.masses[i], text = mass_text(list[0], i, Format::text); name != text) with += "  " + name + " = " + text + "\n";
+    if (const std::string &name = list[0].names.masses[i], text = mass_text(list[0], i, Format::text); name != text)
+      with += "  " + name + " = " + text + "\n";
   if (!with.empty()) out += "\nwith\n" + with;
   for (const std::string& n : list[0].model->notes) out += "note: " + n + "\n";
   return out;
@@ -139,8 +150,10 @@ std::string as_latex(const std::vector<Derivation>& all) {
 std::string as_mathml(const std::vector<Derivation>& all) {
   std::string out;
   const auto table = [&](const std::vector<std::pair<std::string, std::string>>& lines) {
-    out += "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" columnalign=\"right center left\">\n";
-    for (const auto& [left, right] : lines) out += "<mtr><mtd>" + left + "</mtd><mtd><mo>=</mo></mtd><mtd>" + right + "</mtd></mtr>\n";
+    out += "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" "
+           "columnalign=\"right center left\">\n";
+    for (const auto& [left, right] : lines)
+      out += "<mtr><mtd>" + left + "</mtd><mtd><mo>=</mo></mtd><mtd>" + right + "</mtd></mtr>\n";
     out += "</mtable>\n</math>\n";
   };
   for (const Derivation& d : all) {
@@ -163,7 +176,13 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
   JsonWriter j;
   if (as_list) j.open_object().key("model").string(list[0].model->title).key("forms").open_array();
   for (const Derivation& d : list) {
-    j.open_object().key("model").string(d.model->title).key("form").string(d.form->name).key("title").string(d.form->title);
+    j.open_object()
+        .key("model")
+        .string(d.model->title)
+        .key("form")
+        .string(d.form->name)
+        .key("title")
+        .string(d.form->title);
     j.key("equation").string(d.form->equation).key("source").string(d.form->source);
     if (d.m) j.key("m").integer(d.m);
     const auto sections = [&](const char* key, const std::vector<Section>& list_of) {
@@ -173,7 +192,13 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
         j.open_object().key("heading").string(heading).key("lines").open_array();
         const Sides text = printed(d, lines, Format::text), latex = printed(d, lines, Format::latex);
         for (std::size_t i = 0; i < lines.size(); ++i) {
-          j.open_object().key("name").string(lines[i].name).key("text").string(text.right[i]).key("latex").string(latex.right[i]);
+          j.open_object()
+              .key("name")
+              .string(lines[i].name)
+              .key("text")
+              .string(text.right[i])
+              .key("latex")
+              .string(latex.right[i]);
           j.key("latex_name").string(label(lines[i], Format::latex)).close();
         }
         j.close().close();
@@ -185,7 +210,13 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
       j.key(key).open_array();
       const Sides text = printed(d, *lines, Format::text), latex = printed(d, *lines, Format::latex);
       for (std::size_t i = 0; i < lines->size(); ++i) {
-        j.open_object().key("name").string((*lines)[i].name).key("left").string(text.left[i]).key("right").string(text.right[i]);
+        j.open_object()
+            .key("name")
+            .string((*lines)[i].name)
+            .key("left")
+            .string(text.left[i])
+            .key("right")
+            .string(text.right[i]);
         j.key("latex").string(latex.left[i] + " = " + latex.right[i]).close();
       }
       j.close();
@@ -195,13 +226,21 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
       const auto latex = parts(d, Format::latex);
       j.key("parts").open_array();
       for (std::size_t i = 0; const auto& [name, text] : parts(d, Format::text)) {
-        j.open_object().key("name").string(name).key("text").string(text).key("latex").string(latex[i].first + " = " + latex[i].second).close();
+        j.open_object()
+            .key("name")
+            .string(name)
+            .key("text")
+            .string(text)
+            .key("latex")
+            .string(latex[i].first + " = " + latex[i].second)
+            .close();
         ++i;
       }
       j.close();
     }
     j.key("masses").open_object();
-    for (std::size_t i = 0; i < d.model->masses.size(); ++i) j.key(d.names.masses[i]).string(mass_text(d, i, Format::text));
+    for (std::size_t i = 0; i < d.model->masses.size(); ++i)
+      j.key(d.names.masses[i]).string(mass_text(d, i, Format::text));
     j.close().close();
   }
   if (as_list) j.close().close();

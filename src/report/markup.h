@@ -13,7 +13,9 @@ std::string user(const std::string& text);
 std::string attribute(const char* name, const std::string& value);
 // A row of MathML as a formula.
 std::string math(const std::string& row);
-// A table with a caption, of markup; nothing without rows. The first cell of a row is its head; no head line where `head` is empty.
-std::string table(const std::string& caption, const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows);
+// A table with a caption, of markup; nothing without rows. The first cell of a row is its head; no head line where
+// `head` is empty.
+std::string table(const std::string& caption, const std::vector<std::string>& head,
+                  const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace anholon

@@ -20,8 +20,10 @@ std::vector<std::string_view> elements(std::string_view row) {
     do {
       const std::size_t open = row.find('<', at), close = row.find('>', open);
       if (open == std::string_view::npos || close == std::string_view::npos) return {row};  // not ours
-      if (row[open + 1] == '/') --depth;
-      else if (row[close - 1] != '/') ++depth;
+      if (row[open + 1] == '/')
+        --depth;
+      else if (row[close - 1] != '/')
+        ++depth;
       at = close + 1;
     } while (depth > 0);
     list.push_back(row.substr(begin, at - begin));
@@ -49,7 +51,9 @@ constexpr std::string_view kOpen = "<mo>(</mo>", kClose = "<mo>)</mo>", kRow = "
 std::string_view bracketed(std::string_view e) {
   if (e.substr(0, kRow.size()) != kRow) return {};
   e = e.substr(kRow.size(), e.size() - kRow.size() - kRowEnd.size());
-  if (e.substr(0, kOpen.size()) != kOpen || e.size() < kOpen.size() + kClose.size() || e.substr(e.size() - kClose.size()) != kClose) return {};
+  if (e.substr(0, kOpen.size()) != kOpen || e.size() < kOpen.size() + kClose.size() ||
+      e.substr(e.size() - kClose.size()) != kClose)
+    return {};
   return e.substr(kOpen.size(), e.size() - kOpen.size() - kClose.size());
 }
 
@@ -73,7 +77,8 @@ class Breaker {
     bool first = true;
     for (std::string_view e : elements(s)) {
       if (is_sign(e)) {
-        // A leading sign belongs to what it stands before; the others stand at the head of a piece, spaced as between two terms.
+        // A leading sign belongs to what it stands before; the others stand at the head of a piece, spaced as between
+        // two terms.
         if (!first) next();
         // The blank between two pieces is the space on its left.
         piece_ += first ? "<mo form=\"prefix\">" : "<mo form=\"infix\" lspace=\"0\">";
@@ -85,7 +90,8 @@ class Breaker {
       } else if (const Fraction f = long_fraction(e); !f.top.empty()) {
         const std::vector<std::string_view> top = elements(f.top);
         const bool is_sum = std::any_of(top.begin(), top.end(), is_sign);
-        piece_ += "<mfrac><mn>1</mn>" + std::string(f.bottom) + "</mfrac>" + (is_sum ? "<mo stretchy=\"false\">(</mo>" : "<mo>&#x2062;</mo>");
+        piece_ += "<mfrac><mn>1</mn>" + std::string(f.bottom) + "</mfrac>" +
+                  (is_sum ? "<mo stretchy=\"false\">(</mo>" : "<mo>&#x2062;</mo>");
         row(f.top);
         if (is_sum) piece_ += "<mo stretchy=\"false\">)</mo>";
       } else {
@@ -110,11 +116,15 @@ class Breaker {
   std::vector<std::string> pieces_;
 };
 
-// A name of several letters keeps a distance from its neighbours in a product, which MathML Core does not give it: m sin, flow u.
+// A name of several letters keeps a distance from its neighbours in a product, which MathML Core does not give it: m
+// sin, flow u.
 std::string spaced(std::string s) {
-  constexpr std::string_view times = "<mo>&#x2062;</mo>", open = "<mi>", close = "</mi>", space = "<mspace width=\"0.1667em\"/>";
+  constexpr std::string_view times = "<mo>&#x2062;</mo>", open = "<mi>", close = "</mi>",
+                             space = "<mspace width=\"0.1667em\"/>";
   const auto is_long = [&](std::size_t begin, std::size_t end) {
-    return end - begin > 1 && std::all_of(s.begin() + static_cast<std::ptrdiff_t>(begin), s.begin() + static_cast<std::ptrdiff_t>(end), [](unsigned char c) { return c < 0x80; });
+    return end - begin > 1 &&
+           std::all_of(s.begin() + static_cast<std::ptrdiff_t>(begin), s.begin() + static_cast<std::ptrdiff_t>(end),
+                       [](unsigned char c) { return c < 0x80; });
   };
   for (std::size_t at = 0; (at = s.find(times, at)) != std::string::npos; at += times.size()) {
     const std::size_t after = at + times.size();

@@ -1,7 +1,8 @@
 // MathML that wraps: a long formula as many short ones on a line of text, between which a browser may begin a new line.
 //
-// MathML Core has no line breaking. A formula of ours is a row of elements; it may be broken before every + and − that stands free, and,
-// where what stands in brackets is long, within them. A long numerator is taken out of its fraction: a/b = (1/b)(a).
+// MathML Core has no line breaking. A formula of ours is a row of elements; it may be broken before every + and − that
+// stands free, and, where what stands in brackets is long, within them. A long numerator is taken out of its fraction:
+// a/b = (1/b)(a).
 #pragma once
 #include <string>
 #include <vector>

@@ -9,15 +9,16 @@ namespace anholon {
 
 namespace {
 
-constexpr double kAngle = 0.02;          // of a step, at most
+constexpr double kAngle = 0.02;  // of a step, at most
 constexpr int kStepsToTheStart = 1000, kStepsBetweenRows = 4;
-constexpr double kShortest = 1e-5;       // of the time between rows: a spin without bounds must not take forever
-using State = std::array<double, 10>;    // quaternion, origin, its velocity
+constexpr double kShortest = 1e-5;     // of the time between rows: a spin without bounds must not take forever
+using State = std::array<double, 10>;  // quaternion, origin, its velocity
 
 class Path {
  public:
   Path(const Model& model, const std::vector<double>& parameters)
-      : by_velocity_(model.observer.origin_velocity.has_value()), tape_(compile(expressions(model))), machine_(tape_, 0, parameters) {}
+      : by_velocity_(model.observer.origin_velocity.has_value()), tape_(compile(expressions(model))),
+        machine_(tape_, 0, parameters) {}
 
   State rate(double t, const State& x) {
     for (const Input& in : tape_.inputs) machine_.series(in.slot)[0] = t;
@@ -30,7 +31,8 @@ class Path {
     out[2] = (w * q + c * p - a * r) / 2;
     out[3] = (w * r + a * q - b * p) / 2;
     const std::array<double, 3> turned = turn(x, {given(3), given(4), given(5)});
-    for (std::size_t k = 0; k < 3; ++k) out[4 + k] = by_velocity_ ? turned[k] : x[7 + k], out[7 + k] = by_velocity_ ? 0 : turned[k];
+    for (std::size_t k = 0; k < 3; ++k)
+      out[4 + k] = by_velocity_ ? turned[k] : x[7 + k], out[7 + k] = by_velocity_ ? 0 : turned[k];
     return out;
   }
 
@@ -47,7 +49,8 @@ class Path {
         for (std::size_t i = 0; i < y.size(); ++i) y[i] += by * k[i];
         return y;
       };
-      const State k2 = rate(t + h / 2, moved(k1, h / 2)), k3 = rate(t + h / 2, moved(k2, h / 2)), k4 = rate(t + h, moved(k3, h));
+      const State k2 = rate(t + h / 2, moved(k1, h / 2)), k3 = rate(t + h / 2, moved(k2, h / 2)),
+                  k4 = rate(t + h, moved(k3, h));
       for (std::size_t i = 0; i < x.size(); ++i) x[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
       const double norm = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3]);
       for (std::size_t i = 0; i < 4; ++i) x[i] /= norm;
@@ -75,12 +78,14 @@ class Path {
 
 }  // namespace
 
-std::vector<ObserverPose> observer_path(const Model& model, const std::vector<double>& parameters, const std::vector<double>& times) {
+std::vector<ObserverPose> observer_path(const Model& model, const std::vector<double>& parameters,
+                                        const std::vector<double>& times) {
   Path path(model, parameters);
   std::vector<ObserverPose> poses;
   State x{1, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   double t = 0;
-  const double interval = times.size() > 1 ? std::abs(times.back() - times.front()) / static_cast<double>(times.size() - 1) : 1;
+  const double interval =
+      times.size() > 1 ? std::abs(times.back() - times.front()) / static_cast<double>(times.size() - 1) : 1;
   for (double end : times) {
     path.go(t, x, end, poses.empty() ? kStepsToTheStart : kStepsBetweenRows, interval * kShortest);
     poses.push_back({{x[0], x[1], x[2], x[3]}, {x[4], x[5], x[6]}});

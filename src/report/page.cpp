@@ -65,16 +65,23 @@ class Writer {
     section("literature", "Literature", literature_list());
 
     std::string out = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n";
-    out += "<meta name=\"generator\" content=\"" + markup_escape(p_.version) + "\">\n<title>" + markup_escape(title()) + "</title>\n";
+                      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
+                      "name=\"color-scheme\" content=\"light dark\">\n";
+    out += "<meta name=\"generator\" content=\"" + markup_escape(p_.version) + "\">\n<title>" + markup_escape(title()) +
+           "</title>\n";
     out += "<style>\n" + std::string(page_style()) + std::string(viewer_style()) + "</style>\n</head>\n<body>\n";
-    out += "<a class=\"skip\" href=\"#motion\">Skip to the motion</a>\n<header class=\"page\">\n<div class=\"tools\"></div>\n";
+    out += "<a class=\"skip\" href=\"#motion\">Skip to the motion</a>\n<header class=\"page\">\n<div "
+           "class=\"tools\"></div>\n";
     out += "<h1 dir=\"auto\">" + markup_escape(title()) + "</h1>\n";
     if (!model_.source.empty()) out += "<p class=\"source\" dir=\"auto\">" + markup_escape(model_.source) + "</p>\n";
-    if (const std::string words = picture_in_words(p_.source.text); !words.empty()) out += "<p class=\"lead\" dir=\"auto\">" + markup_escape(words) + "</p>\n";
-    out += "</header>\n<nav aria-label=\"Contents\"><ul>" + contents_ + "</ul></nav>\n<main>\n" + sections + "</main>\n";
+    if (const std::string words = picture_in_words(p_.source.text); !words.empty())
+      out += "<p class=\"lead\" dir=\"auto\">" + markup_escape(words) + "</p>\n";
+    out +=
+        "</header>\n<nav aria-label=\"Contents\"><ul>" + contents_ + "</ul></nav>\n<main>\n" + sections + "</main>\n";
     out += "<footer><p>Made by " + markup_escape(p_.version) + ". The page needs nothing but itself.</p></footer>\n";
-    if (!viewer_script().empty()) out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(p_) + "</script>\n<script>" + std::string(viewer_script()) + "</script>\n";
+    if (!viewer_script().empty())
+      out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(p_) + "</script>\n<script>" +
+             std::string(viewer_script()) + "</script>\n";
     return out + "</body>\n</html>\n";
   }
 
@@ -89,13 +96,18 @@ class Writer {
       const PageCase& c = p_.cases[k];
       const std::string which = " data-case=\"" + std::to_string(k) + "\"";
       out += "<article class=\"case\">\n";
-      if (p_.cases.size() > 1) out += "<h3 dir=\"auto\">" + markup_escape(c.name.empty() ? "As the file says" : c.name) + "</h3>\n";
+      if (p_.cases.size() > 1)
+        out += "<h3 dir=\"auto\">" + markup_escape(c.name.empty() ? "As the file says" : c.name) + "</h3>\n";
       out += outcome(reports_[k]);
       if (viewer_script().empty())
-        out += "<p class=\"note\">This program was built without the viewer, so the page has no animation; the numbers are below, and <code>anholon plot</code> draws the run.</p>\n" + table_of_rows(c);
+        out += "<p class=\"note\">This program was built without the viewer, so the page has no animation; the numbers "
+               "are below, and <code>anholon plot</code> draws the run.</p>\n" +
+               table_of_rows(c);
       else
-        out += "<div class=\"player\"" + which + "><p class=\"note\">The animation needs a browser that runs the scripts of this page.</p></div>\n<div class=\"plots\"" + which +
-               "><div class=\"static\">" + table_of_rows(c) + "</div></div>\n";
+        out += "<div class=\"player\"" + which +
+               "><p class=\"note\">The animation needs a browser that runs the scripts of this page.</p></div>\n<div "
+               "class=\"plots\"" +
+               which + "><div class=\"static\">" + table_of_rows(c) + "</div></div>\n";
       out += "</article>\n";
     }
     return p_.cases.size() > 1 ? "<div class=\"cases\">\n" + out + "</div>\n" : out;
@@ -106,15 +118,19 @@ class Writer {
     const RunTable& t = c.run.table;
     if (t.rows() == 0) return "";
     constexpr std::size_t kMostColumns = 64;
-    std::string out = "<div class=\"wide\"><table><thead><tr><th></th><th>first row</th><th>last row</th></tr></thead><tbody>\n";
+    std::string out =
+        "<div class=\"wide\"><table><thead><tr><th></th><th>first row</th><th>last row</th></tr></thead><tbody>\n";
     for (std::size_t k = 0; k < std::min(t.columns.size(), kMostColumns); ++k)
-      out += "<tr><th scope=\"row\">" + user(t.columns[k]) + "</th><td>" + markup_escape(t.text(0, k)) + "</td><td>" + markup_escape(t.text(t.rows() - 1, k)) + "</td></tr>\n";
+      out += "<tr><th scope=\"row\">" + user(t.columns[k]) + "</th><td>" + markup_escape(t.text(0, k)) + "</td><td>" +
+             markup_escape(t.text(t.rows() - 1, k)) + "</td></tr>\n";
     return out + "</tbody></table></div>\n";
   }
 
   static std::string outcome(const RunReport& r) {
     if (r.outcome == "finished") return "";
-    const std::string words = r.outcome.empty() ? "The run was not finished; the rows up to here are shown." : r.message.empty() ? r.outcome : r.message;
+    const std::string words = r.outcome.empty()   ? "The run was not finished; the rows up to here are shown."
+                              : r.message.empty() ? r.outcome
+                                                  : r.message;
     return warning({words, r.hint});
   }
 
@@ -128,13 +144,16 @@ class Writer {
 
   std::string name_math(const std::string& name, unsigned order = 0) const {
     const auto chosen = model_.names.notation.find(name);
-    return math(derivative_name(chosen == model_.names.notation.end() ? mathml_name(name) : chosen->second.mathml, order, Format::mathml));
+    return math(derivative_name(chosen == model_.names.notation.end() ? mathml_name(name) : chosen->second.mathml,
+                                order, Format::mathml));
   }
 
   std::string system() const {
     const Scenario& s = *p_.cases[0].scenario;
-    std::string out = "<p>" + std::to_string(s.structure.degrees_of_freedom) + (s.structure.degrees_of_freedom == 1 ? " degree" : " degrees") + " of freedom, configurations of " +
-                      std::to_string(s.structure.configuration_dimension) + (s.structure.configuration_dimension == 1 ? " dimension, " : " dimensions, ") + "a state of " +
+    std::string out = "<p>" + std::to_string(s.structure.degrees_of_freedom) +
+                      (s.structure.degrees_of_freedom == 1 ? " degree" : " degrees") +
+                      " of freedom, configurations of " + std::to_string(s.structure.configuration_dimension) +
+                      (s.structure.configuration_dimension == 1 ? " dimension, " : " dimensions, ") + "a state of " +
                       std::to_string(s.structure.state_dimension) + ".";
     for (const std::string& e : effects(model_)) out += " " + user(sentence(e));
     out += "</p>\n" + bodies() + constraints() + parameters();
@@ -152,7 +171,11 @@ class Writer {
     constexpr std::size_t kMost = 40;
     for (std::size_t k = 0; k < std::min(model_.bodies.size(), kMost); ++k) {
       const Body& b = model_.bodies[k];
-      rows.push_back({user(b.name), b.particle ? "particle" : b.shape ? markup_escape(b.shape->kind) : "body", wrapping_math(print(put_masses(model_, b.mass), model_.names, Format::mathml)),
+      rows.push_back({user(b.name),
+                      b.particle ? "particle"
+                      : b.shape  ? markup_escape(b.shape->kind)
+                                 : "body",
+                      wrapping_math(print(put_masses(model_, b.mass), model_.names, Format::mathml)),
                       b.expelled_velocity ? "expels or collects matter" : ""});
     }
     return table("Bodies", {"", "kind", "mass", ""}, rows);
@@ -167,8 +190,10 @@ class Writer {
       const Constraint& c = model_.constraints[r];
       std::string kind = description(s.classes[r], c.order);
       if (s.classes[r].redundant) kind += "; redundant here";
-      const std::string reaction = c.by ? "kept by the input " + model_.controls[*c.by].name : std::string(in_words(x.constraints[r].hypothesis));
-      rows.push_back({user(c.name), "<code>" + user(c.equation) + "</code>", markup_escape(kind), markup_escape(work(s, x, r, kLongestPower)), markup_escape(reaction)});
+      const std::string reaction = c.by ? "kept by the input " + model_.controls[*c.by].name
+                                        : std::string(in_words(x.constraints[r].hypothesis));
+      rows.push_back({user(c.name), "<code>" + user(c.equation) + "</code>", markup_escape(kind),
+                      markup_escape(work(s, x, r, kLongestPower)), markup_escape(reaction)});
     }
     return table("Constraints", {"", "as written", "kind", "its reaction", "hypothesis"}, rows);
   }
@@ -179,7 +204,8 @@ class Writer {
     constexpr std::size_t kMost = 80;
     for (std::size_t k = 0; k < std::min(values.size(), kMost); ++k) {
       const std::string unit = k < model_.parameter_units.size() ? model_.parameter_units[k] : "";
-      rows.push_back({math(print(model_.graph->parameter(static_cast<std::uint32_t>(k)), model_.names, Format::mathml)), markup_escape(number_text(values[k])), user(unit), user(model_.parameters[k].doc)});
+      rows.push_back({math(print(model_.graph->parameter(static_cast<std::uint32_t>(k)), model_.names, Format::mathml)),
+                      markup_escape(number_text(values[k])), user(unit), user(model_.parameters[k].doc)});
     }
     return table("Parameters", {"", "value", "unit", ""}, rows);
   }
@@ -189,15 +215,20 @@ class Writer {
     std::vector<std::vector<std::string>> rows;
     constexpr std::size_t kMost = 60;
     for (std::size_t a = 0; a < std::min(x.q.size(), kMost); ++a)
-      rows.push_back({name_math(model_.coordinates[a].name), markup_escape(number_text(x.q[a])), name(x.q_origin[a]), name_math(model_.coordinates[a].name, 1), markup_escape(number_text(x.qd[a])), name(x.qd_origin[a])});
-    for (const StateEntry& e : higher_state(*c.scenario)) rows.push_back({user(e.name), markup_escape(number_text(e.value)), name(e.origin), "", "", ""});
-    return table("Initial data at t = " + number_text(x.t) + (c.name.empty() ? "" : ", " + c.name), {"", "position", "", "", "velocity", ""}, rows);
+      rows.push_back({name_math(model_.coordinates[a].name), markup_escape(number_text(x.q[a])), name(x.q_origin[a]),
+                      name_math(model_.coordinates[a].name, 1), markup_escape(number_text(x.qd[a])),
+                      name(x.qd_origin[a])});
+    for (const StateEntry& e : higher_state(*c.scenario))
+      rows.push_back({user(e.name), markup_escape(number_text(e.value)), name(e.origin), "", "", ""});
+    return table("Initial data at t = " + number_text(x.t) + (c.name.empty() ? "" : ", " + c.name),
+                 {"", "position", "", "", "velocity", ""}, rows);
   }
 
   // ---- equations --------------------------------------------------------------------------------
 
   // One equation: wraps, is read out as text, copied as LaTeX.
-  static std::string equation(const std::string& label, const std::string& left, const std::string& right, const std::string& latex, const std::string& text) {
+  static std::string equation(const std::string& label, const std::string& left, const std::string& right,
+                              const std::string& latex, const std::string& text) {
     std::string out = "<div class=\"equation\"" + attribute("data-latex", latex) + ">";
     if (!label.empty()) out += "<span class=\"label\">" + label + "</span>";
     out += "<div class=\"formula\" role=\"math\"" + attribute("aria-label", text) + ">" + left;
@@ -208,7 +239,8 @@ class Writer {
   struct Prints {
     std::vector<std::string> mathml, latex, text;
     Prints(const Column& es, const SymbolNames& names)
-        : mathml(print(es, names, Format::mathml)), latex(print(es, names, Format::latex)), text(print(es, names, Format::text)) {}
+        : mathml(print(es, names, Format::mathml)), latex(print(es, names, Format::latex)),
+          text(print(es, names, Format::text)) {}
   };
 
   std::string lines(const Derivation& d, const std::vector<Line>& list, bool zero) const {
@@ -218,9 +250,15 @@ class Writer {
     const Prints a(left, d.names), b(right, d.names);
     std::string out;
     for (std::size_t k = 0; k < list.size(); ++k)
-      out += zero ? equation(user(list[k].name), wrapping_math(a.mathml[k]), math("<mn>0</mn>"), a.latex[k] + " = 0", a.text[k] + " = 0")
-             : list[k].left ? equation(user(list[k].name), wrapping_math(a.mathml[k]), wrapping_math(b.mathml[k]), a.latex[k] + " = " + b.latex[k], a.text[k] + " = " + b.text[k])
-                            : equation(user(list[k].name), math(list[k].mathml.empty() ? "<mtext>" + markup_escape(list[k].name) + "</mtext>" : list[k].mathml), wrapping_math(b.mathml[k]), b.latex[k], list[k].name + " = " + b.text[k]);
+      out += zero ? equation(user(list[k].name), wrapping_math(a.mathml[k]), math("<mn>0</mn>"), a.latex[k] + " = 0",
+                             a.text[k] + " = 0")
+             : list[k].left
+                 ? equation(user(list[k].name), wrapping_math(a.mathml[k]), wrapping_math(b.mathml[k]),
+                            a.latex[k] + " = " + b.latex[k], a.text[k] + " = " + b.text[k])
+                 : equation(user(list[k].name),
+                            math(list[k].mathml.empty() ? "<mtext>" + markup_escape(list[k].name) + "</mtext>"
+                                                        : list[k].mathml),
+                            wrapping_math(b.mathml[k]), b.latex[k], list[k].name + " = " + b.text[k]);
     return out;
   }
 
@@ -228,13 +266,17 @@ class Writer {
     constexpr std::size_t kMost = 200;
     if (d.parts.empty()) return "";
     if (d.parts.size() > kMost)
-      return "<p class=\"note\">The names stand for " + std::to_string(d.parts.size()) + " parts: <code>anholon derive " + markup_escape(p_.source.name) + " --form " + d.form->name + " --expand parts</code> prints them.</p>\n";
-    const std::vector<std::string> mathml = print_contents(d.parts, d.names, Format::mathml), latex = print_contents(d.parts, d.names, Format::latex),
+      return "<p class=\"note\">The names stand for " + std::to_string(d.parts.size()) +
+             " parts: <code>anholon derive " + markup_escape(p_.source.name) + " --form " + d.form->name +
+             " --expand parts</code> prints them.</p>\n";
+    const std::vector<std::string> mathml = print_contents(d.parts, d.names, Format::mathml),
+                                   latex = print_contents(d.parts, d.names, Format::latex),
                                    text = print_contents(d.parts, d.names, Format::text);
     std::string out = "<details><summary>" + std::to_string(d.parts.size()) + " parts, each with a name</summary>\n";
     for (std::size_t k = 0; k < d.parts.size(); ++k) {
       const std::string& name = d.names.defined.at(d.parts[k].id);
-      out += equation("", math(mathml_name(name)), wrapping_math(mathml[k]), latex_name(name) + " = " + latex[k], name + " = " + text[k]);
+      out += equation("", math(mathml_name(name)), wrapping_math(mathml[k]), latex_name(name) + " = " + latex[k],
+                      name + " = " + text[k]);
     }
     return out + "</details>\n";
   }
@@ -245,7 +287,8 @@ class Writer {
       SymbolNames plain = model_.names;
       plain.defined.erase(model_.masses[k].value.id);
       const Expr m = model_.masses[k].value;
-      out += equation("", math(mathml_name(d.names.masses[k])), wrapping_math(print(m, plain, Format::mathml)), latex_name(d.names.masses[k]) + " = " + print(m, plain, Format::latex),
+      out += equation("", math(mathml_name(d.names.masses[k])), wrapping_math(print(m, plain, Format::mathml)),
+                      latex_name(d.names.masses[k]) + " = " + print(m, plain, Format::latex),
                       d.names.masses[k] + " = " + print(m, plain, Format::text));
     }
     return out;
@@ -255,16 +298,20 @@ class Writer {
     std::string out;
     for (std::size_t k = 0; k < p_.equations.size(); ++k) {
       const Derivation& d = p_.equations[k];
-      out += "<article class=\"form\"><h3>" + markup_escape(d.form->title) + "</h3><p class=\"source\">" + markup_escape(citation(*d.form)) + "</p>\n";
+      out += "<article class=\"form\"><h3>" + markup_escape(d.form->title) + "</h3><p class=\"source\">" +
+             markup_escape(citation(*d.form)) + "</p>\n";
       if (k < p_.eliminations.size() && !p_.eliminations[k].empty()) out += "<p>" + user(p_.eliminations[k]) + "</p>\n";
       out += lines(d, d.equations, false);
       if (!d.constraints.empty()) out += "<h4>with the constraints</h4>\n" + lines(d, d.constraints, true);
       out += parts(d);
       for (const auto& [heading, list] : d.steps)
-        if (!list.empty()) out += "<details><summary>" + user(sentence(heading)) + "</summary>\n" + lines(d, joined(list), false) + "</details>\n";
+        if (!list.empty())
+          out += "<details><summary>" + user(sentence(heading)) + "</summary>\n" + lines(d, joined(list), false) +
+                 "</details>\n";
       out += "</article>\n";
     }
-    if (!p_.equations.empty() && !model_.masses.empty()) out += "<article class=\"form\"><h4>Masses</h4>\n" + masses(p_.equations[0]) + "</article>\n";
+    if (!p_.equations.empty() && !model_.masses.empty())
+      out += "<article class=\"form\"><h4>Masses</h4>\n" + masses(p_.equations[0]) + "</article>\n";
     return out;
   }
 
@@ -275,9 +322,13 @@ class Writer {
     const Structure& x = s.structure;
     constexpr std::size_t kMost = 24;
     if (x.sigma.empty()) return "";
-    if (x.sigma.size() > kMost) return "<p>" + std::to_string(x.sigma.size()) + " equations; <code>anholon check</code> prints their signature.</p>\n";
+    if (x.sigma.size() > kMost)
+      return "<p>" + std::to_string(x.sigma.size()) +
+             " equations; <code>anholon check</code> prints their signature.</p>\n";
     std::vector<std::string> head = {""};
-    const auto unknown = [&](std::size_t j) { return math(print(s.system.symbol(j, 0), model_.names, Format::mathml)); };
+    const auto unknown = [&](std::size_t j) {
+      return math(print(s.system.symbol(j, 0), model_.names, Format::mathml));
+    };
     for (std::size_t j = 0; j < x.d.size(); ++j) head.push_back(unknown(j));
     head.push_back(math("<mi>c</mi>"));
     std::vector<std::vector<std::string>> rows;
@@ -294,8 +345,10 @@ class Writer {
     for (int k : x.d) d.push_back(std::to_string(k));
     d.emplace_back("");
     rows.push_back(d);
-    return "<p>Which derivative of which unknown each equation holds (signature), and how often an equation is differentiated (<i>c</i>) and an unknown solved for (<i>d</i>). "
-           "The bold entries are the transversal of highest value.</p>\n" + table("Signature and offsets of " + std::string(s.system.form->title), head, rows);
+    return "<p>Which derivative of which unknown each equation holds (signature), and how often an equation is "
+           "differentiated (<i>c</i>) and an unknown solved for (<i>d</i>). "
+           "The bold entries are the transversal of highest value.</p>\n" +
+           table("Signature and offsets of " + std::string(s.system.form->title), head, rows);
   }
 
   // ---- proof ------------------------------------------------------------------------------------
@@ -303,15 +356,23 @@ class Writer {
   std::string proof() const {
     if (!p_.proof) return p_.no_proof.empty() ? "" : "<p>" + user(p_.no_proof) + "</p>\n";
     const Proof& proof = *p_.proof;
-    std::string out = "<p>Every form against every other, by exact algebra: <b class=\"eq\">=</b> proved equal, <b class=\"ne\">≠</b> shown different at a point, <b>?</b> not decided.</p>\n";
-    out += "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Proof matrix\"><table class=\"matrix\"><caption>Proof matrix</caption><thead><tr><th></th><th></th>";
-    for (std::size_t k = 0; k < proof.forms.size(); ++k) out += "<th scope=\"col\" title=\"" + markup_escape(proof.forms[k].form->title) + "\">" + std::to_string(k + 1) + "</th>";
+    std::string out = "<p>Every form against every other, by exact algebra: <b class=\"eq\">=</b> proved equal, <b "
+                      "class=\"ne\">≠</b> shown different at a point, <b>?</b> not decided.</p>\n";
+    out += "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Proof matrix\"><table "
+           "class=\"matrix\"><caption>Proof matrix</caption><thead><tr><th></th><th></th>";
+    for (std::size_t k = 0; k < proof.forms.size(); ++k)
+      out += "<th scope=\"col\" title=\"" + markup_escape(proof.forms[k].form->title) + "\">" + std::to_string(k + 1) +
+             "</th>";
     out += "</tr></thead><tbody>\n";
     for (std::size_t i = 0; i < proof.forms.size(); ++i) {
-      out += "<tr><th scope=\"row\">" + std::to_string(i + 1) + "</th><th scope=\"row\" class=\"form\">" + markup_escape(proof.forms[i].form->title) + "</th>";
+      out += "<tr><th scope=\"row\">" + std::to_string(i + 1) + "</th><th scope=\"row\" class=\"form\">" +
+             markup_escape(proof.forms[i].form->title) + "</th>";
       for (std::size_t j = 0; j < proof.forms.size(); ++j) {
         const Verdict v = i == j ? Verdict::proved : proof.between(i, j);
-        out += i == j ? "<td class=\"self\">·</td>" : v == Verdict::proved ? "<td class=\"eq\">=</td>" : v == Verdict::refuted ? "<td class=\"ne\">≠</td>" : "<td>?</td>";
+        out += i == j                  ? "<td class=\"self\">·</td>"
+               : v == Verdict::proved  ? "<td class=\"eq\">=</td>"
+               : v == Verdict::refuted ? "<td class=\"ne\">≠</td>"
+                                       : "<td>?</td>";
       }
       out += "</tr>\n";
     }
@@ -319,7 +380,8 @@ class Writer {
     for (const FormProof& f : proof.forms)
       for (const Difference& d : f.differences) {
         if (d.verdict == Verdict::proved) continue;
-        out += "<p>" + markup_escape(f.form->title) + (d.verdict == Verdict::refuted ? " differ" : " may differ") + " from Routh's equations in the equation of " + user(d.component) + ": " + user(d.detail) + ".</p>\n";
+        out += "<p>" + markup_escape(f.form->title) + (d.verdict == Verdict::refuted ? " differ" : " may differ") +
+               " from Routh's equations in the equation of " + user(d.component) + ": " + user(d.detail) + ".</p>\n";
         break;
       }
     if (!p_.meaning.empty()) out += "<p>" + user(p_.meaning) + "</p>\n";
@@ -335,12 +397,15 @@ class Writer {
   std::string certificate() const {
     constexpr std::size_t kMost = 240'000;
     if (p_.certificate.empty()) return "";
-    const std::string source = p_.source.name.substr(p_.source.name.rfind('/') + 1), name = source.substr(0, source.rfind('.')) + ".proof.json";
-    std::string out = "<p>The certificate holds " + std::to_string(p_.claims) + " claims, " + (p_.confirmed == p_.claims ? "all" : std::to_string(p_.confirmed)) +
-                      " confirmed when this page was made by the checker, which shares nothing with the prover. To check it again: ";
+    const std::string source = p_.source.name.substr(p_.source.name.rfind('/') + 1),
+                      name = source.substr(0, source.rfind('.')) + ".proof.json";
+    std::string out =
+        "<p>The certificate holds " + std::to_string(p_.claims) + " claims, " +
+        (p_.confirmed == p_.claims ? "all" : std::to_string(p_.confirmed)) +
+        " confirmed when this page was made by the checker, which shares nothing with the prover. To check it again: ";
     if (p_.certificate.size() <= kMost)
-      out += "<a" + attribute("download", name) + " href=\"data:application/json;base64," + to_base64(p_.certificate) + "\">save " + user(name) + "</a> (" +
-             std::to_string((p_.certificate.size() + 999) / 1000) + " kB), ";
+      out += "<a" + attribute("download", name) + " href=\"data:application/json;base64," + to_base64(p_.certificate) +
+             "\">save " + user(name) + "</a> (" + std::to_string((p_.certificate.size() + 999) / 1000) + " kB), ";
     else
       out += "<code>anholon prove " + markup_escape(p_.source.name) + " -o " + markup_escape(name) + "</code>, ";
     return out + "<code>anholon verify " + markup_escape(name) + "</code>.</p>\n";
@@ -349,32 +414,50 @@ class Writer {
   // ---- report -----------------------------------------------------------------------------------
 
   std::string trust() const {
-    std::string out = "<p>By another way than the equations that were integrated: Newton's law point by point, and the balance of power, each in relation to its largest term.</p>\n";
+    std::string out = "<p>By another way than the equations that were integrated: Newton's law point by point, and the "
+                      "balance of power, each in relation to its largest term.</p>\n";
     std::vector<std::string> head = {""};
-    std::vector<std::vector<std::string>> rows = {{"Newton's law with ideal reactions"}, {"the same without multipliers"}, {"constraints and their derivatives, at the rows"}, {"before projection"},
-                                                  {"balance of power"}, {"digits to trust, estimated"}, {"smallest scaled singular value of the system Jacobian"}, {"steps, order"}};
+    std::vector<std::vector<std::string>> rows = {{"Newton's law with ideal reactions"},
+                                                  {"the same without multipliers"},
+                                                  {"constraints and their derivatives, at the rows"},
+                                                  {"before projection"},
+                                                  {"balance of power"},
+                                                  {"digits to trust, estimated"},
+                                                  {"smallest scaled singular value of the system Jacobian"},
+                                                  {"steps, order"}};
     for (std::size_t k = 0; k < reports_.size(); ++k) {
       const RunReport& r = reports_[k];
       const std::string& name = p_.cases[k].name;
       head.push_back(name.empty() ? (reports_.size() > 1 ? "as the file says" : "") : user(name));
-      const std::vector<std::string> shown = {markup_escape(r.newton), markup_escape(r.projected), markup_escape(r.constraints), markup_escape(r.before_projection), markup_escape(r.power), user(r.digits),
-                                              markup_escape(r.smallest_sigma + " at t = " + r.smallest_sigma_t), markup_escape(r.steps + ", " + r.order)};
+      const std::vector<std::string> shown = {markup_escape(r.newton),
+                                              markup_escape(r.projected),
+                                              markup_escape(r.constraints),
+                                              markup_escape(r.before_projection),
+                                              markup_escape(r.power),
+                                              user(r.digits),
+                                              markup_escape(r.smallest_sigma + " at t = " + r.smallest_sigma_t),
+                                              markup_escape(r.steps + ", " + r.order)};
       for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(shown[i]);
     }
     out += table("Residual report", reports_.size() > 1 ? head : std::vector<std::string>{}, rows);
-    for (std::size_t k = 0; k < reports_.size(); ++k) out += watched(reports_[k], p_.cases[k].name.empty() ? "" : ", " + p_.cases[k].name);
+    for (std::size_t k = 0; k < reports_.size(); ++k)
+      out += watched(reports_[k], p_.cases[k].name.empty() ? "" : ", " + p_.cases[k].name);
     return out;
   }
 
   static std::string watched(const RunReport& r, const std::string& of) {
     constexpr std::size_t kMostEvents = 50;
     std::vector<std::vector<std::string>> rows;
-    for (const RunReport::Watched& w : r.watched) rows.push_back({user(w.name), markup_escape(w.first), markup_escape(w.last), markup_escape(w.least), markup_escape(w.greatest), markup_escape(w.change)});
-    std::string out = table("Integrals of the motion and what was watched" + of, {"", "first", "last", "least", "greatest", "largest change, relative"}, rows);
+    for (const RunReport::Watched& w : r.watched)
+      rows.push_back({user(w.name), markup_escape(w.first), markup_escape(w.last), markup_escape(w.least),
+                      markup_escape(w.greatest), markup_escape(w.change)});
+    std::string out = table("Integrals of the motion and what was watched" + of,
+                            {"", "first", "last", "least", "greatest", "largest change, relative"}, rows);
     std::vector<std::vector<std::string>> events;
     for (std::size_t k = 0; k < std::min(r.events.size(), kMostEvents); ++k) {
       std::string set;
-      for (const auto& c : r.events[k].changes) set += (set.empty() ? "" : ", ") + user(c.name) + " " + markup_escape(c.before + " → " + c.after);
+      for (const auto& c : r.events[k].changes)
+        set += (set.empty() ? "" : ", ") + user(c.name) + " " + markup_escape(c.before + " → " + c.after);
       events.push_back({user(r.events[k].name), markup_escape(r.events[k].t), set});
     }
     out += table("Events" + of, {"", "t", "what was set"}, events);
@@ -385,12 +468,15 @@ class Writer {
   // ---- the rest ---------------------------------------------------------------------------------
 
   std::string again() const {
-    std::string out = "<pre class=\"command\"><code>" + markup_escape(p_.command) + "</code></pre>\n<p>" + markup_escape(p_.version) + "; SHA-256 of the model <code class=\"hash\">" + markup_escape(p_.model_hash) +
-                      "</code>.</p>\n";
+    std::string out = "<pre class=\"command\"><code>" + markup_escape(p_.command) + "</code></pre>\n<p>" +
+                      markup_escape(p_.version) + "; SHA-256 of the model <code class=\"hash\">" +
+                      markup_escape(p_.model_hash) + "</code>.</p>\n";
     for (const PageCase& c : p_.cases)
-      if (!c.run.command.empty() && c.run.command != p_.command) out += "<p>The run: <code>" + markup_escape(c.run.command) + "</code></p>\n";
+      if (!c.run.command.empty() && c.run.command != p_.command)
+        out += "<p>The run: <code>" + markup_escape(c.run.command) + "</code></p>\n";
     const auto file = [&](const SourceText& s) {
-      out += "<details><summary>The model file " + user(s.name) + "</summary><pre dir=\"ltr\"><code>" + markup_lines(s.text) + "</code></pre></details>\n";
+      out += "<details><summary>The model file " + user(s.name) + "</summary><pre dir=\"ltr\"><code>" +
+             markup_lines(s.text) + "</code></pre></details>\n";
     };
     file(p_.source);
     for (const SourceText& s : p_.source.others) file(s);

@@ -15,13 +15,22 @@ void numbers(JsonWriter& j, const char* key, const std::vector<double>& list) { 
 void columns(JsonWriter& j, const PlotData& d) {
   j.key("columns").open_array();
   for (const PlotColumn& k : d.columns) {
-    j.open_object().key("name").string(k.name).key("html").string(math(k.math)).key("unit").string(k.unit).key("group").string(k.group);
+    j.open_object()
+        .key("name")
+        .string(k.name)
+        .key("html")
+        .string(math(k.math))
+        .key("unit")
+        .string(k.unit)
+        .key("group")
+        .string(k.group);
     numbers(j, "data", k.values);
     if (!k.t.empty()) numbers(j, "t", k.t);
     j.close();
   }
   j.close().key("groups").open_array();
-  for (const PlotGroup& k : d.groups) j.open_object().key("id").string(k.id).key("title").string(k.title).key("log").boolean(k.log).close();
+  for (const PlotGroup& k : d.groups)
+    j.open_object().key("id").string(k.id).key("title").string(k.title).key("log").boolean(k.log).close();
   j.close().key("left_out").integer(static_cast<long long>(d.left_out));
 }
 
@@ -62,7 +71,13 @@ void one_case(JsonWriter& j, const PageCase& c) {
   const Model& model = *c.scenario->model;
   const Scene picture = scene(*c.scenario->mechanics);
   const PlotData d = plot_data(*c.scenario, c.conserved, c.run, picture);
-  j.open_object().key("name").string(c.name).key("rows").integer(static_cast<long long>(d.rows)).key("shown").integer(static_cast<long long>(d.shown));
+  j.open_object()
+      .key("name")
+      .string(c.name)
+      .key("rows")
+      .integer(static_cast<long long>(d.rows))
+      .key("shown")
+      .integer(static_cast<long long>(d.shown));
   numbers(j, "t", d.t);
   j.key("unit").string(model.coordinate_units.empty() ? "" : "s");
   columns(j, d);
@@ -75,7 +90,9 @@ void one_case(JsonWriter& j, const PageCase& c) {
     const auto k = in_table(n);
     return k && *k >= 0 ? std::optional<int>(*k - 1) : k;
   };
-  write_scene(j, picture, *model.graph, column, model.observer.inertial ? std::function<void(JsonWriter&)>() : [&](JsonWriter& w) { observer(w, model, d); });
+  write_scene(
+      j, picture, *model.graph, column,
+      model.observer.inertial ? std::function<void(JsonWriter&)>() : [&](JsonWriter& w) { observer(w, model, d); });
   j.close();
 }
 
@@ -98,9 +115,12 @@ std::string page_data(const Page& page) {
 }
 
 std::string stage_html(const Page& page, bool dark, const std::string& script) {
-  std::string out = "<!doctype html>\n<html lang=\"en\" data-theme=\"" + std::string(dark ? "dark" : "light") + "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + markup_escape(page_title(page)) + "</title>\n";
-  out += "<style>\n" + std::string(page_style()) + std::string(viewer_style()) + "</style>\n</head>\n<body>\n<div class=\"player\" data-case=\"0\"></div>\n";
-  out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(page) + "</script>\n<script>" + std::string(viewer_script()) + "</script>\n<script>\n" + script + "</script>\n";
+  std::string out = "<!doctype html>\n<html lang=\"en\" data-theme=\"" + std::string(dark ? "dark" : "light") +
+                    "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + markup_escape(page_title(page)) + "</title>\n";
+  out += "<style>\n" + std::string(page_style()) + std::string(viewer_style()) +
+         "</style>\n</head>\n<body>\n<div class=\"player\" data-case=\"0\"></div>\n";
+  out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(page) + "</script>\n<script>" +
+         std::string(viewer_script()) + "</script>\n<script>\n" + script + "</script>\n";
   return out + "</body>\n</html>\n";
 }
 

@@ -20,7 +20,8 @@ class SceneMaker {
     for (const auto& [name, place] : view_.points)
       if (!hidden(name)) item("point", name).places = {roots(place)};
     for (const Force& f : model_.forces)
-      if (f.kind == Force::Kind::tension && f.from) item("line", f.name).places = {roots(f.on.point), roots(f.from->point)};
+      if (f.kind == Force::Kind::tension && f.from)
+        item("line", f.name).places = {roots(f.on.point), roots(f.from->point)};
     bool traced = false;
     for (const View::Element& e : view_.elements) {
       element(e);
@@ -32,8 +33,10 @@ class SceneMaker {
     if (view_.camera) scene_.camera = roots(*view_.camera);
     if (view_.target) scene_.target = roots(*view_.target);
     if (view_.up) up_ = roots(*view_.up);
-    if (view_.floor) floor_ = root(*view_.floor);
-    else if (!view_.no_floor && !flat() && level()) floor_ = root(model_.graph->zero());
+    if (view_.floor)
+      floor_ = root(*view_.floor);
+    else if (!view_.no_floor && !flat() && level())
+      floor_ = root(model_.graph->zero());
     scene_.follow = view_.follow;
     scene_.flat = flat();
     scene_.tape = compile(exprs_);
@@ -42,7 +45,9 @@ class SceneMaker {
   }
 
  private:
-  bool hidden(const std::string& name) const { return std::find(view_.hidden.begin(), view_.hidden.end(), name) != view_.hidden.end(); }
+  bool hidden(const std::string& name) const {
+    return std::find(view_.hidden.begin(), view_.hidden.end(), name) != view_.hidden.end();
+  }
 
   std::size_t root(Expr e) {
     exprs_.push_back(e);
@@ -74,8 +79,8 @@ class SceneMaker {
     for (const Expr& e : s.sizes) sizes_.push_back({scene_.items.size() - 1, root(e)});
   }
 
-  // A body without a shape is drawn as the homogeneous box that has its moments of inertia: along its axis k, with the second
-  // moment E_k, it is sqrt(12 E_k/m) long.
+  // A body without a shape is drawn as the homogeneous box that has its moments of inertia: along its axis k, with the
+  // second moment E_k, it is sqrt(12 E_k/m) long.
   void inertia_box(SceneItem& i, const Body& b) {
     i.shape = "point";
     Graph& g = *model_.graph;
@@ -95,20 +100,27 @@ class SceneMaker {
 
   void body(const Body& b) {
     if (hidden(b.name)) return;
-    const auto drawn = std::find_if(view_.elements.begin(), view_.elements.end(), [&](const View::Element& e) { return e.kind == View::Kind::solid && e.name == b.name; });
+    const auto drawn = std::find_if(view_.elements.begin(), view_.elements.end(), [&](const View::Element& e) {
+      return e.kind == View::Kind::solid && e.name == b.name;
+    });
     const View::Element* e = drawn == view_.elements.end() ? nullptr : &*drawn;
     SceneItem& i = item("body", b.name);
     if (e) i.color = e->color;
     const std::optional<Shape>& s = e ? e->shape : b.shape;
-    if (s) shape(i, *s);
-    else inertia_box(i, b);
+    if (s)
+      shape(i, *s);
+    else
+      inertia_box(i, b);
     i.places = {roots(e && !e->places.empty() ? e->places[0] : b.center)};
-    if (e && e->axes) i.axes = roots(*e->axes);
-    else if (b.orientation) i.axes = roots(*b.orientation);
+    if (e && e->axes)
+      i.axes = roots(*e->axes);
+    else if (b.orientation)
+      i.axes = roots(*b.orientation);
   }
 
   void element(const View::Element& e) {
-    const bool of_a_body = std::any_of(model_.bodies.begin(), model_.bodies.end(), [&](const Body& b) { return b.name == e.name; });
+    const bool of_a_body =
+        std::any_of(model_.bodies.begin(), model_.bodies.end(), [&](const Body& b) { return b.name == e.name; });
     if (e.kind == View::Kind::solid && of_a_body) return;
     static constexpr const char* kinds[] = {"body", "line", "trace", "vector"};
     SceneItem& i = item(kinds[static_cast<int>(e.kind)], e.name);
@@ -125,7 +137,8 @@ class SceneMaker {
     constexpr std::size_t kMost = 6;
     std::size_t count = 0;
     const auto trace = [&](const std::string& name, const Vector& place) {
-      if (count == kMost || hidden(name) || std::max({jet_order(place.x), jet_order(place.y), jet_order(place.z)}) < 0) return;
+      if (count == kMost || hidden(name) || std::max({jet_order(place.x), jet_order(place.y), jet_order(place.z)}) < 0)
+        return;
       SceneItem& i = item("trace", name);
       i.of = name;
       i.places = {roots(place)};
@@ -148,7 +161,9 @@ class SceneMaker {
 
   void velocities() {
     for (const Body& b : model_.bodies)
-      if (!hidden(b.name)) arrow("velocity", b, {total_derivative(b.center.x), total_derivative(b.center.y), total_derivative(b.center.z)});
+      if (!hidden(b.name))
+        arrow("velocity", b,
+              {total_derivative(b.center.x), total_derivative(b.center.y), total_derivative(b.center.z)});
   }
 
   void reactions() {
@@ -156,16 +171,20 @@ class SceneMaker {
     const std::vector<Load> loads = anholon::reactions(*m_.model);
     for (std::size_t k = 0; k < loads.size(); ++k) {
       const Vector& f = loads[k].force;
-      if (!hidden(model_.bodies[k].name) && !(is_zero(f.x) && is_zero(f.y) && is_zero(f.z))) arrow("reaction", model_.bodies[k], f);
+      if (!hidden(model_.bodies[k].name) && !(is_zero(f.x) && is_zero(f.y) && is_zero(f.z)))
+        arrow("reaction", model_.bodies[k], f);
     }
   }
 
   // Every place lies in one plane z = const of the observer.
   bool flat() const {
     const auto fixed = [&](const Vector& v) { return is_zero(v.z); };
-    return std::all_of(model_.bodies.begin(), model_.bodies.end(), [&](const Body& b) {
-             return fixed(b.center) && (!b.orientation || is_number((*b.orientation)[2].z)) && !(b.shape && b.shape->kind != "disc" && b.shape->kind != "ring" && b.shape->kind != "rod");
-           }) &&
+    return std::all_of(model_.bodies.begin(), model_.bodies.end(),
+                       [&](const Body& b) {
+                         return fixed(b.center) && (!b.orientation || is_number((*b.orientation)[2].z)) &&
+                                !(b.shape && b.shape->kind != "disc" && b.shape->kind != "ring" &&
+                                  b.shape->kind != "rod");
+                       }) &&
            std::all_of(view_.points.begin(), view_.points.end(), [&](const auto& p) { return fixed(p.second); });
   }
 
@@ -203,7 +222,8 @@ std::string number(double x) { return number_text(x); }
 
 class SceneWriter {
  public:
-  SceneWriter(JsonWriter& j, const Scene& s, const Graph& g, const ColumnOf& column) : j_(j), s_(s), g_(g), column_(column) {}
+  SceneWriter(JsonWriter& j, const Scene& s, const Graph& g, const ColumnOf& column)
+      : j_(j), s_(s), g_(g), column_(column) {}
 
   void write(const std::function<void(JsonWriter&)>& observer) {
     j_.open_object();
@@ -211,8 +231,10 @@ class SceneWriter {
     code();
     items();
     j_.key("observer");
-    if (observer) observer(j_);
-    else j_.null();
+    if (observer)
+      observer(j_);
+    else
+      j_.null();
     j_.key("camera").open_object();
     optional_place("eye", s_.camera);
     optional_place("target", s_.target);
@@ -220,12 +242,16 @@ class SceneWriter {
     for (double x : s_.up) j_.number(number(x));
     j_.close();
     j_.key("flat").boolean(s_.flat).key("follow");
-    if (s_.follow.empty()) j_.null();
-    else j_.string(s_.follow);
+    if (s_.follow.empty())
+      j_.null();
+    else
+      j_.string(s_.follow);
     j_.close();
     j_.key("floor");
-    if (s_.floor) j_.open_object().key("z").number(number(*s_.floor)).close();
-    else j_.null();
+    if (s_.floor)
+      j_.open_object().key("z").number(number(*s_.floor)).close();
+    else
+      j_.null();
     j_.close();
   }
 
@@ -240,7 +266,14 @@ class SceneWriter {
         return n.kind == Kind::time ? -1 : column_(higher).value_or(-1);
       };
       // A row without the column shows nothing that needs it.
-      j_.open_object().key("column").integer(column_(n).value_or(-2)).key("d1").integer(derivative(1)).key("d2").integer(derivative(2)).close();
+      j_.open_object()
+          .key("column")
+          .integer(column_(n).value_or(-2))
+          .key("d1")
+          .integer(derivative(1))
+          .key("d2")
+          .integer(derivative(2))
+          .close();
     }
     j_.close();
   }
@@ -256,24 +289,52 @@ class SceneWriter {
     for (std::size_t slot = 0; slot < t.code.size(); ++slot) {
       const Instruction& in = t.code[slot];
       switch (in.op) {
-        case Op::constant: operation("c"), j_.number(rational(in.index)); break;
-        case Op::pi: operation("c"), j_.number(number(3.141592653589793)); break;
-        case Op::input: operation("i"), j_.integer(input[slot]); break;
-        case Op::parameter: operation("c"), j_.number(number(s_.parameters[in.index])); break;
-        case Op::linear:
-          operation("l");
-          j_.integer(0);
-          for (std::uint32_t k = in.first; k < in.first + in.count; ++k) j_.number(rational(t.linear_terms[k].coefficient)).integer(t.linear_terms[k].slot);
-          break;
-        case Op::multiply: case Op::scale: operation("*"), j_.integer(in.a).integer(in.b); break;
-        case Op::square: operation("*"), j_.integer(in.a).integer(in.a); break;
-        case Op::divide: operation("/"), j_.integer(in.a).integer(in.b); break;
-        case Op::power: operation("^"), j_.integer(in.a).number(rational(in.index)); break;
-        case Op::function: operation("f"), j_.string(info(static_cast<Function>(in.index)).name).integer(in.a); break;
-        case Op::arctan2: operation("atan2"), j_.integer(in.a).integer(in.b); break;
-        case Op::select: operation("?"), j_.integer(in.first).integer(in.a).integer(in.b); break;
-        case Op::lookup: steps(t.step_functions[in.index], in.a); break;
-        case Op::rate: operation("c"), j_.null(); break;  // not made without rates
+      case Op::constant:
+        operation("c"), j_.number(rational(in.index));
+        break;
+      case Op::pi:
+        operation("c"), j_.number(number(3.141592653589793));
+        break;
+      case Op::input:
+        operation("i"), j_.integer(input[slot]);
+        break;
+      case Op::parameter:
+        operation("c"), j_.number(number(s_.parameters[in.index]));
+        break;
+      case Op::linear:
+        operation("l");
+        j_.integer(0);
+        for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+          j_.number(rational(t.linear_terms[k].coefficient)).integer(t.linear_terms[k].slot);
+        break;
+      case Op::multiply:
+      case Op::scale:
+        operation("*"), j_.integer(in.a).integer(in.b);
+        break;
+      case Op::square:
+        operation("*"), j_.integer(in.a).integer(in.a);
+        break;
+      case Op::divide:
+        operation("/"), j_.integer(in.a).integer(in.b);
+        break;
+      case Op::power:
+        operation("^"), j_.integer(in.a).number(rational(in.index));
+        break;
+      case Op::function:
+        operation("f"), j_.string(info(static_cast<Function>(in.index)).name).integer(in.a);
+        break;
+      case Op::arctan2:
+        operation("atan2"), j_.integer(in.a).integer(in.b);
+        break;
+      case Op::select:
+        operation("?"), j_.integer(in.first).integer(in.a).integer(in.b);
+        break;
+      case Op::lookup:
+        steps(t.step_functions[in.index], in.a);
+        break;
+      case Op::rate:
+        operation("c"), j_.null();
+        break;  // not made without rates
       }
       j_.close();
     }
@@ -298,8 +359,10 @@ class SceneWriter {
   }
   void optional_place(const char* key, const std::optional<Place>& p) {
     j_.key(key);
-    if (p) slots(*p);
-    else j_.null();
+    if (p)
+      slots(*p);
+    else
+      j_.null();
   }
 
   void items() {
@@ -309,8 +372,10 @@ class SceneWriter {
       if (!i.of.empty()) j_.key("of").string(i.of);
       if (!i.what.empty()) j_.key("what").string(i.what);
       j_.key("color");
-      if (i.color.empty()) j_.null();
-      else j_.string(i.color);
+      if (i.color.empty())
+        j_.null();
+      else
+        j_.string(i.color);
       if (i.kind == "line") {
         j_.key("points").open_array();
         for (const Place& p : i.places) slots(p);
@@ -323,8 +388,10 @@ class SceneWriter {
         j_.key("shape").string(i.shape).key("sizes").open_array();
         for (double s : i.sizes) j_.number(number(s));
         j_.close().key("axes");
-        if (i.axes) slots(*i.axes);
-        else j_.null();
+        if (i.axes)
+          slots(*i.axes);
+        else
+          j_.null();
       }
       if (i.vector) j_.key("vector"), slots(*i.vector);
       j_.close();
@@ -349,7 +416,8 @@ std::vector<int> columns_of(const Scene& scene, const Graph& graph, const Column
     for (unsigned by = 0; by < 3; ++by) {
       Node higher = n;
       higher.order = static_cast<std::uint8_t>(n.order + by);
-      if (const auto k = column(higher); k && *k >= 0 && std::find(list.begin(), list.end(), *k) == list.end()) list.push_back(*k);
+      if (const auto k = column(higher); k && *k >= 0 && std::find(list.begin(), list.end(), *k) == list.end())
+        list.push_back(*k);
       if (n.kind == Kind::time) break;
     }
   }
@@ -357,7 +425,8 @@ std::vector<int> columns_of(const Scene& scene, const Graph& graph, const Column
   return list;
 }
 
-void write_scene(JsonWriter& json, const Scene& scene, const Graph& graph, const ColumnOf& column, const std::function<void(JsonWriter&)>& observer) {
+void write_scene(JsonWriter& json, const Scene& scene, const Graph& graph, const ColumnOf& column,
+                 const std::function<void(JsonWriter&)>& observer) {
   SceneWriter(json, scene, graph, column).write(observer);
 }
 

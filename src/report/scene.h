@@ -1,7 +1,8 @@
 // The picture of a motion as data: what is drawn, and the straight-line program that places it from a row of the run.
 //
-// Positions are computed where they are shown, from coordinates that are interpolated between rows: so a rolling wheel rolls at every
-// moment, and the page carries formulas instead of poses. Lengths as in the model; vectors and axes in the observer's axes.
+// Positions are computed where they are shown, from coordinates that are interpolated between rows: so a rolling wheel
+// rolls at every moment, and the page carries formulas instead of poses. Lengths as in the model; vectors and axes in
+// the observer's axes.
 #pragma once
 #include <array>
 #include <functional>
@@ -18,7 +19,7 @@ namespace anholon {
 struct SceneItem {
   std::string kind;  // body, point, line, vector, trace
   std::string name, of, what, color;
-  std::string shape;                            // of a body
+  std::string shape;  // of a body
   std::vector<double> sizes;
   std::vector<std::array<std::size_t, 3>> places;  // roots of the tape
   std::optional<std::array<std::size_t, 9>> axes;  // x, y, z axis of the body
@@ -44,6 +45,7 @@ using ColumnOf = std::function<std::optional<int>(const Node& symbol)>;
 // The columns that the scene's inputs stand in, without the time.
 std::vector<int> columns_of(const Scene& scene, const Graph& graph, const ColumnOf& column);
 // As the viewer reads it (viewer/CONTRACT.md); `observer` is written by the caller's function, null without one.
-void write_scene(JsonWriter& json, const Scene& scene, const Graph& graph, const ColumnOf& column, const std::function<void(JsonWriter&)>& observer);
+void write_scene(JsonWriter& json, const Scene& scene, const Graph& graph, const ColumnOf& column,
+                 const std::function<void(JsonWriter&)>& observer);
 
 }  // namespace anholon

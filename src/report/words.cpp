@@ -9,13 +9,14 @@ std::vector<std::string> effects(const Model& model) {
   if (model.observer.inertial) list.push_back("the observer is inertial");
   if (!is_zero(model.observer.spin)) list.push_back("the observer turns (Coriolis, centrifugal and Euler forces)");
   if (!is_zero(model.observer.origin_acceleration)) list.push_back("the observer's origin accelerates");
-  for (const VaryingMass& m : model.masses)
-  {
+  for (const VaryingMass& m : model.masses) {
     SymbolNames names = model.names;
     names.defined.erase(m.value.id);
-    list.push_back("the " + std::string(m.weight ? "second moment" : "mass") + " of '" + m.name + "' varies: " + print(m.value, names, Format::text));
+    list.push_back("the " + std::string(m.weight ? "second moment" : "mass") + " of '" + m.name +
+                   "' varies: " + print(m.value, names, Format::text));
   }
-  for (const Dissipation& d : model.dissipation) list.push_back("dissipation '" + d.name + "': the forces -dR/dq' of R = " + d.formula);
+  for (const Dissipation& d : model.dissipation)
+    list.push_back("dissipation '" + d.name + "': the forces -dR/dq' of R = " + d.formula);
   for (const Body& b : model.bodies)
     if (!b.gravity_gradient.empty()) list.push_back("gravity turns '" + b.name + "': its field varies over the body");
   for (const Body& b : model.bodies)
@@ -39,7 +40,8 @@ std::vector<StateEntry> higher_state(const Scenario& s) {
     for (std::size_t j = 0; j < s.routh->size(); ++j) {
       if (k >= s.routh_structure.d[j] || (j < s.routh->coordinates && k < 2)) continue;
       const Node& n = g.node(s.routh->symbol(j, static_cast<unsigned>(k)).id);
-      list.push_back({derivative_name(s.routh->variable_names[j], static_cast<unsigned>(k), Format::text), *s.state.value(n), *s.state.origin(n), n.kind == Kind::multiplier});
+      list.push_back({derivative_name(s.routh->variable_names[j], static_cast<unsigned>(k), Format::text),
+                      *s.state.value(n), *s.state.origin(n), n.kind == Kind::multiplier});
     }
   // Coordinates first, by order.
   std::stable_partition(list.begin(), list.end(), [](const StateEntry& e) { return !e.multiplier; });
@@ -74,9 +76,13 @@ std::string listed(const Model& model, const std::vector<std::size_t>& constrain
 
 const char* in_words(Hypothesis hypothesis) {
   switch (hypothesis) {
-    case Hypothesis::dalembert: return "ideal, no work in virtual displacements (d'Alembert, Lagrange)";
-    case Hypothesis::chetaev: return "ideal by Chetaev's rule, along dphi/dq' (nonlinear in the velocities: a hypothesis)";
-    case Hypothesis::niu: return "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and more)";
+  case Hypothesis::dalembert:
+    return "ideal, no work in virtual displacements (d'Alembert, Lagrange)";
+  case Hypothesis::chetaev:
+    return "ideal by Chetaev's rule, along dphi/dq' (nonlinear in the velocities: a hypothesis)";
+  case Hypothesis::niu:
+    return "ideal in the sense of Chetaev and Niu, along dphi/dq^(m) (a postulate, not a theorem, for orders of 2 and "
+           "more)";
   }
   return "";
 }

@@ -16,7 +16,8 @@ class CsvReader {
   RunFile read() {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     if (text_.substr(0, kMark.size()) == kMark) text_.remove_prefix(kMark.size());
-    if (text_.empty()) throw Failure(Span{}, "the file is empty", "anholon simulate MODEL --to T -o run.csv writes one");
+    if (text_.empty())
+      throw Failure(Span{}, "the file is empty", "anholon simulate MODEL --to T -o run.csv writes one");
     header(next());
     while (!text_.empty()) {
       const std::string_view line = next();
@@ -51,7 +52,8 @@ class CsvReader {
   void header(std::string_view line) {
     std::vector<std::string> names = split_csv(line);
     double ignored = 0;
-    if (std::all_of(names.begin(), names.end(), [&](const std::string& n) { return n.empty() || parse_number(n, ignored); }))
+    if (std::all_of(names.begin(), names.end(),
+                    [&](const std::string& n) { return n.empty() || parse_number(n, ignored); }))
       fail(line, 0, "the first line has no names of columns", "a line such as t,x,y,x',y' before the numbers");
     table_.set_columns(std::move(names));
     words_.assign(table_.columns.size(), false);
@@ -72,11 +74,17 @@ class CsvReader {
     }
     if (column == columns && from > line.size()) return;
     const auto found = 1 + std::count(line.begin(), line.end(), ',');
-    fail(line, from <= line.size() ? from : line.size(), "this row has " + std::to_string(found) + (found == 1 ? " entry" : " entries") + ", the first line has " + std::to_string(columns) + " names", {});
+    fail(line, from <= line.size() ? from : line.size(),
+         "this row has " + std::to_string(found) + (found == 1 ? " entry" : " entries") + ", the first line has " +
+             std::to_string(columns) + " names",
+         {});
   }
 
-  [[noreturn]] void fail(std::string_view line, std::size_t at, const std::string& message, const std::string& hint, std::string_view marked = {}) const {
-    throw Failure(Span{number_, static_cast<std::uint32_t>(utf8_length(line.substr(0, at)) + 1), static_cast<std::uint32_t>(std::max<std::size_t>(1, utf8_length(marked)))}, message, hint);
+  [[noreturn]] void fail(std::string_view line, std::size_t at, const std::string& message, const std::string& hint,
+                         std::string_view marked = {}) const {
+    throw Failure(Span{number_, static_cast<std::uint32_t>(utf8_length(line.substr(0, at)) + 1),
+                       static_cast<std::uint32_t>(std::max<std::size_t>(1, utf8_length(marked)))},
+                  message, hint);
   }
 
   std::string_view text_;

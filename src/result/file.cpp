@@ -1,11 +1,5 @@
 #include "result/file.h"
 
-#include <fcntl.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
@@ -13,13 +7,21 @@
 #include <filesystem>
 #include <thread>
 
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include "base/hash.h"
 
 namespace anholon {
 
 namespace fs = std::filesystem;
 
-static std::string cannot_write(const std::string& path, int why) { return "cannot write " + path + ": " + std::strerror(why); }
+static std::string cannot_write(const std::string& path, int why) {
+  return "cannot write " + path + ": " + std::strerror(why);
+}
 
 static std::string part_of(const std::string& path) { return path + ".part"; }
 
@@ -32,13 +34,13 @@ std::string target_of_link(const std::string& path) {
 }
 
 static bool is_other_kind(const std::string& path) {
-  struct stat info {};
+  struct stat info{};
   return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
 // Why a file of this name cannot be replaced; 0 if it can. Whether the folder lets one in shows when the part is made.
 static int obstacle(const std::string& path) {
-  struct stat info {};
+  struct stat info{};
   if (::stat(path.c_str(), &info) != 0) return 0;
   if (S_ISDIR(info.st_mode)) return EISDIR;
   return ::access(path.c_str(), W_OK) == 0 ? 0 : errno;
@@ -48,22 +50,24 @@ static int obstacle(const std::string& path) {
 static int open_part(const std::string& target, int flags) {
   const std::string beside = part_of(target);
   const int fd = ::open(beside.c_str(), flags | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-  struct stat info {};
+  struct stat info{};
   if (fd >= 0 && ::stat(target.c_str(), &info) == 0 && ::fchmod(fd, info.st_mode & 07777) != 0) errno = 0;
   return fd;
 }
 
-// A socket in the abstract name space, named by the folder and the name: taken by one process at a time, freed by the kernel.
+// A socket in the abstract name space, named by the folder and the name: taken by one process at a time, freed by the
+// kernel.
 WritingClaim::WritingClaim(const std::string& path, double seconds) {
   if (path.empty()) return;
   std::error_code none;
   const fs::path name = target_of_link(path);
   const fs::path folder = name.has_parent_path() ? name.parent_path() : fs::path(".");
-  struct stat info {};
+  struct stat info{};
   if (::stat(folder.c_str(), &info) != 0) return;  // the part will not be made, which says why
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::string key = "anholon-" + sha256_text(std::to_string(info.st_dev) + "/" + std::to_string(info.st_ino) + "/" + name.filename().string());
+  const std::string key = "anholon-" + sha256_text(std::to_string(info.st_dev) + "/" + std::to_string(info.st_ino) +
+                                                   "/" + name.filename().string());
   std::memcpy(address.sun_path + 1, key.data(), std::min(key.size(), sizeof address.sun_path - 1));
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + key.size());
   // Where there are no sockets, nobody claims anything.
@@ -84,7 +88,8 @@ WritingClaim::~WritingClaim() {
 }
 
 GrowingFile::GrowingFile(const std::string& path)
-    : shown_(path.empty() || path == "-" ? "the output" : path), target_(target_of_link(path)), claim_(path.empty() || path == "-" || is_other_kind(path) ? std::string() : path) {
+    : shown_(path.empty() || path == "-" ? "the output" : path), target_(target_of_link(path)),
+      claim_(path.empty() || path == "-" || is_other_kind(path) ? std::string() : path) {
   if (path.empty() || path == "-") {
     file_ = stdout;
     return;
@@ -144,7 +149,8 @@ void GrowingFile::remove() {
 // Others write for a moment only.
 static constexpr double kPatience = 20;
 
-std::string write_whole_by_name(const std::string& path, const std::function<std::string(const std::string& beside)>& write) {
+std::string write_whole_by_name(const std::string& path,
+                                const std::function<std::string(const std::string& beside)>& write) {
   if (is_other_kind(path)) return write(path);
   const WritingClaim claim(path, kPatience);
   if (!claim.error().empty()) return claim.error();
@@ -164,7 +170,8 @@ std::string write_whole(const std::string& path, const std::function<bool(std::F
     std::FILE* file = std::fopen(beside.c_str(), "w");
     if (!file) return cannot_write(path, errno);
     // What is no regular file has no disk to wait for.
-    const bool written = write(file) && std::fflush(file) == 0 && (::fsync(::fileno(file)) == 0 || errno == EINVAL || errno == EROFS);
+    const bool written =
+        write(file) && std::fflush(file) == 0 && (::fsync(::fileno(file)) == 0 || errno == EINVAL || errno == EROFS);
     const int why = errno;
     if (std::fclose(file) != 0 && written) return cannot_write(path, errno);
     return written ? std::string() : cannot_write(path, why);
@@ -172,7 +179,8 @@ std::string write_whole(const std::string& path, const std::function<bool(std::F
 }
 
 std::string write_whole(const std::string& path, const std::string& text) {
-  return write_whole(path, [&](std::FILE* file) { return std::fwrite(text.data(), 1, text.size(), file) == text.size(); });
+  return write_whole(path,
+                     [&](std::FILE* file) { return std::fwrite(text.data(), 1, text.size(), file) == text.size(); });
 }
 
 std::string obstacle_to_writing(const std::string& path) {

@@ -6,8 +6,8 @@
 
 namespace anholon {
 
-// Whoever writes a file holds the claim on its name, so that no two processes of this machine write to one. It ends with its holder, killed
-// or not, and leaves nothing behind.
+// Whoever writes a file holds the claim on its name, so that no two processes of this machine write to one. It ends
+// with its holder, killed or not, and leaves nothing behind.
 class WritingClaim {
  public:
   WritingClaim() = default;
@@ -24,8 +24,9 @@ class WritingClaim {
   std::string error_;
 };
 
-// A file that is written from its first byte to its last: as NAME.part, which takes the name when it is closed. A kill leaves NAME.part,
-// and under the name what was there before. What is no regular file (a pipe, a device) is written to as it is, like the standard output.
+// A file that is written from its first byte to its last: as NAME.part, which takes the name when it is closed. A kill
+// leaves NAME.part, and under the name what was there before. What is no regular file (a pipe, a device) is written to
+// as it is, like the standard output.
 class GrowingFile {
  public:
   // An empty path or "-" is the standard output. Check `error` before use.
@@ -63,7 +64,8 @@ std::string write_whole(const std::string& path, const std::string& text);
 // The same by a function that returns false at its first failure.
 std::string write_whole(const std::string& path, const std::function<bool(std::FILE*)>& write);
 // The same by a function that is given the name to write to, and returns why it could not.
-std::string write_whole_by_name(const std::string& path, const std::function<std::string(const std::string& beside)>& write);
+std::string write_whole_by_name(const std::string& path,
+                                const std::function<std::string(const std::string& beside)>& write);
 
 // Before what takes long is computed: empty, or why no file could be written there. What is there stays as it is.
 std::string obstacle_to_writing(const std::string& path);

@@ -7,17 +7,17 @@
 #include "result/hdf5_objects.h"
 #endif
 
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace anholon {
 
@@ -52,7 +52,9 @@ void RowBlock::add(const RunTable& table, std::size_t from, std::size_t to) {
     if (table.texts[j].size() <= from && texts.count(j) == 0) continue;
     std::vector<std::string>& own = texts[j];
     own.resize(before);
-    for (std::size_t k = from; k < to; ++k) own.push_back(k < table.texts[j].size() ? table.texts[j][k] : std::string()), text_bytes += sizeof(std::string) + own.back().size();
+    for (std::size_t k = from; k < to; ++k)
+      own.push_back(k < table.texts[j].size() ? table.texts[j][k] : std::string()),
+          text_bytes += sizeof(std::string) + own.back().size();
   }
 }
 
@@ -69,7 +71,9 @@ void RowBlock::clear() {
 bool has_hdf5() { return false; }
 std::string create_hdf5(const std::string&, const RunInfo&, const std::vector<std::string>&) { return kNoHdf5; }
 std::string extend_hdf5(const std::string&, const RowBlock&) { return kNoHdf5; }
-RunFile read_hdf5(const std::string&) { throw Failure(Span{}, kNoHdf5, "a run in CSV or JSON, or build anholon where libhdf5-dev is installed"); }
+RunFile read_hdf5(const std::string&) {
+  throw Failure(Span{}, kNoHdf5, "a run in CSV or JSON, or build anholon where libhdf5-dev is installed");
+}
 
 #else
 
@@ -83,7 +87,8 @@ constexpr const char* kFormat = "anholon run";
 constexpr int kVersion = 1;
 constexpr hsize_t kChunkNumbers = 8192;  // 64 KB: what a small file is long, and a large one is read by
 
-// Texts of a column that has some: /text is as long as /rows from then on, and its attribute `columns` says which columns it holds.
+// Texts of a column that has some: /text is as long as /rows from then on, and its attribute `columns` says which
+// columns it holds.
 void extend_texts(hid_t file, hsize_t before, const RowBlock& block) {
   std::vector<std::uint32_t> held;
   if (exists(file, "text")) {
@@ -99,7 +104,8 @@ void extend_texts(hid_t file, hsize_t before, const RowBlock& block) {
   constexpr hsize_t kChunk = 1024;
   const Handle type = text_type();
   const hsize_t rows = block.rows();
-  const Handle set = known == 0 ? new_extendible(file, "text", type, {before, held.size()}, {kChunk, 1}) : open_dataset(file, "text");
+  const Handle set =
+      known == 0 ? new_extendible(file, "text", type, {before, held.size()}, {kChunk, 1}) : open_dataset(file, "text");
   const std::vector<hsize_t> size = {before + rows, held.size()};
   checked(H5Dset_extent(set, size.data()));
   if (held.size() > known) {
@@ -130,9 +136,13 @@ class Hdf5Reader {
   explicit Hdf5Reader(const std::string& path) : file_(open(path)) {}
 
   RunFile read() {
-    if (attribute("format") != kFormat) throw Failure(Span{}, "this is an HDF5 file, but not the run of anholon", "anholon simulate MODEL --to T -o run.h5 writes one");
+    if (attribute("format") != kFormat)
+      throw Failure(Span{}, "this is an HDF5 file, but not the run of anholon",
+                    "anholon simulate MODEL --to T -o run.h5 writes one");
     if (const int version = number("format_version"); version != kVersion)
-      throw Failure(Span{}, "the run has format version " + std::to_string(version) + ", known is " + std::to_string(kVersion), "a newer anholon");
+      throw Failure(Span{},
+                    "the run has format version " + std::to_string(version) + ", known is " + std::to_string(kVersion),
+                    "a newer anholon");
     run_.title = attribute("title");
     run_.command = attribute("command");
     run_.created_by = attribute("created_by");
@@ -197,7 +207,8 @@ class Hdf5Reader {
     H5G_info_t info{};
     checked(H5Gget_info(group, &info));
     for (hsize_t i = 0; i < info.nlinks; ++i) {
-      const auto length = checked(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT));
+      const auto length =
+          checked(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT));
       std::string name(static_cast<std::size_t>(length), '\0');
       checked(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size() + 1, H5P_DEFAULT));
       run_.settings[name] = texts("settings/" + name);
@@ -233,7 +244,8 @@ class Hdf5Reader {
     const std::vector<hsize_t> size = limited(size_of(set), 2);
     std::vector<std::uint32_t> held(size[1]);
     const Handle a(H5Aopen(set, "columns", H5P_DEFAULT), H5Aclose), length(H5Aget_space(a), H5Sclose);
-    if (static_cast<hsize_t>(H5Sget_simple_extent_npoints(length)) != size[1] || size[0] > rows) throw Trouble{"/text does not fit to /rows"};
+    if (static_cast<hsize_t>(H5Sget_simple_extent_npoints(length)) != size[1] || size[0] > rows)
+      throw Trouble{"/text does not fit to /rows"};
     checked(H5Aread(a, H5T_NATIVE_UINT32, held.data()));
     for (std::size_t k = 0; k < held.size(); ++k) {
       if (held[k] >= run_.table.columns.size()) throw Trouble{"/text does not fit to /columns"};
@@ -267,7 +279,8 @@ std::string create_hdf5(const std::string& path, const RunInfo& info, const std:
     }
     put_texts(file, "units", units);
     const hsize_t n = columns.size();
-    new_extendible(file, "rows", H5T_IEEE_F64LE, {0, n}, {std::max<hsize_t>(1, kChunkNumbers / std::max<hsize_t>(1, n)), std::max<hsize_t>(1, n)});
+    new_extendible(file, "rows", H5T_IEEE_F64LE, {0, n},
+                   {std::max<hsize_t>(1, kChunkNumbers / std::max<hsize_t>(1, n)), std::max<hsize_t>(1, n)});
     new_extendible(file, "steps", H5T_IEEE_F64LE, {0}, {kChunkNumbers});
     std::vector<std::string> names, texts;
     for (const RunInfo::File& f : info.model) names.push_back(f.name), texts.push_back(f.text);
@@ -298,7 +311,8 @@ std::string extend_hdf5(const std::string& path, const RowBlock& block) {
   });
 }
 
-// HDF5 follows what stands in a file, and crashes where a damaged one leads it astray. So a child goes there first; whether it comes back is all it says.
+// HDF5 follows what stands in a file, and crashes where a damaged one leads it astray. So a child goes there first;
+// whether it comes back is all it says.
 static bool is_passable(const std::string& path) {
   std::fflush(nullptr);
   const pid_t child = fork();
@@ -323,11 +337,14 @@ static bool is_passable(const std::string& path) {
 }
 
 RunFile read_hdf5(const std::string& path) {
-  if (!is_passable(path)) throw Failure(Span{}, "the file cannot be read: it is damaged", "a whole run, as `anholon simulate MODEL -o run.h5` writes it");
+  if (!is_passable(path))
+    throw Failure(Span{}, "the file cannot be read: it is damaged",
+                  "a whole run, as `anholon simulate MODEL -o run.h5` writes it");
   try {
     return Hdf5Reader(path).read();
   } catch (const Trouble& t) {
-    throw Failure(Span{}, "the file cannot be read: " + t.message, "a whole run, as `anholon simulate MODEL -o run.h5` writes it");
+    throw Failure(Span{}, "the file cannot be read: " + t.message,
+                  "a whole run, as `anholon simulate MODEL -o run.h5` writes it");
   }
 }
 

@@ -1,7 +1,7 @@
 // Runs in HDF5. The only layer of ours that knows HDF5 is behind these functions; the schema is in doc/results.md.
 //
-// HDF5 has no notion of a file that is whole at every moment, so a file that somebody may read is never changed: a copy of it is
-// extended and takes its place (Hdf5Sink). These functions work on a file that nobody else has seen yet.
+// HDF5 has no notion of a file that is whole at every moment, so a file that somebody may read is never changed: a copy
+// of it is extended and takes its place (Hdf5Sink). These functions work on a file that nobody else has seen yet.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -24,8 +24,8 @@ bool looks_like_hdf5(std::string_view beginning);
 // Rows that go to the end of a file together.
 struct RowBlock {
   std::size_t columns = 0;
-  std::vector<double> numbers;                               // row after row
-  std::map<std::size_t, std::vector<std::string>> texts;     // by column: one per row, empty where the number says it all
+  std::vector<double> numbers;                            // row after row
+  std::map<std::size_t, std::vector<std::string>> texts;  // by column: one per row, empty where the number says it all
   std::vector<double> steps;
   std::optional<std::string> report;
 

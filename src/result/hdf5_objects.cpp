@@ -16,8 +16,10 @@ std::string& lost() {
   return why;
 }
 
-// In groups that are made on the way; in chunks, if it is to grow. Without times of its own: the same run makes the same bytes.
-Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space, const std::vector<hsize_t>& chunk = {}) {
+// In groups that are made on the way; in chunks, if it is to grow. Without times of its own: the same run makes the
+// same bytes.
+Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
+                   const std::vector<hsize_t>& chunk = {}) {
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   checked(H5Pset_create_intermediate_group(links, 1));
   checked(H5Pset_obj_track_times(creation, false));
@@ -51,11 +53,14 @@ std::string done_by(void (*f)(void*), void* with) {
 
 std::string cause() {
   std::string text;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, [](unsigned, const H5E_error2_t* e, void* to) -> herr_t {
-    std::string& first = *static_cast<std::string*>(to);
-    if (first.empty() && e->desc) first = e->desc;
-    return 0;
-  }, &text);
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned, const H5E_error2_t* e, void* to) -> herr_t {
+        std::string& first = *static_cast<std::string*>(to);
+        if (first.empty() && e->desc) first = e->desc;
+        return 0;
+      },
+      &text);
   const std::string quote = "error message = '";
   if (const std::size_t at = text.find(quote); at != std::string::npos) {
     const std::size_t from = at + quote.size();
@@ -108,7 +113,8 @@ void put_attribute(hid_t object, const char* name, int number) {
   checked(H5Awrite(attribute, H5T_NATIVE_INT, &number));
 }
 
-Handle new_extendible(hid_t file, const char* name, hid_t type, std::vector<hsize_t> size, const std::vector<hsize_t>& chunk) {
+Handle new_extendible(hid_t file, const char* name, hid_t type, std::vector<hsize_t> size,
+                      const std::vector<hsize_t>& chunk) {
   const std::vector<hsize_t> most(size.size(), H5S_UNLIMITED);
   const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), most.data()), H5Sclose);
   return new_dataset(file, name, type, space, chunk);
@@ -122,12 +128,16 @@ std::vector<hsize_t> size_of(hid_t set) {
   return size;
 }
 
-void transfer(Way way, hid_t set, hid_t type, const std::vector<hsize_t>& from, const std::vector<hsize_t>& size, const void* data) {
+void transfer(Way way, hid_t set, hid_t type, const std::vector<hsize_t>& from, const std::vector<hsize_t>& size,
+              const void* data) {
   if (std::find(size.begin(), size.end(), 0) != size.end()) return;
-  const Handle in_file(H5Dget_space(set), H5Sclose), in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  const Handle in_file(H5Dget_space(set), H5Sclose),
+      in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
   checked(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr));
-  if (way == Way::write) checked(H5Dwrite(set, type, in_memory, in_file, H5P_DEFAULT, data));
-  else checked(H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, const_cast<void*>(data)));
+  if (way == Way::write)
+    checked(H5Dwrite(set, type, in_memory, in_file, H5P_DEFAULT, data));
+  else
+    checked(H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, const_cast<void*>(data)));
 }
 
 bool exists(hid_t file, const std::string& name) {
@@ -136,7 +146,9 @@ bool exists(hid_t file, const std::string& name) {
   return H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0;
 }
 
-Handle open_dataset(hid_t file, const std::string& name) { return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose}; }
+Handle open_dataset(hid_t file, const std::string& name) {
+  return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose};
+}
 
 std::vector<std::string> texts_of(hid_t set, hid_t memory, hid_t file_space, std::size_t count) {
   const Handle own(H5Dget_type(set), H5Tclose);

@@ -1,10 +1,11 @@
-// The objects of HDF5 in the words that results need: what is open closes itself, what fails says why. Included only where HDF5 is there.
+// The objects of HDF5 in the words that results need: what is open closes itself, what fails says why. Included only
+// where HDF5 is there.
 #pragma once
-#include <hdf5.h>
-
 #include <cstddef>
 #include <string>
 #include <vector>
+
+#include <hdf5.h>
 
 namespace anholon::hdf5 {
 
@@ -45,8 +46,8 @@ class Handle {
 // Called before anything else of HDF5, and by `done`: errors are for `cause`, not for the terminal.
 void quietly();
 
-// Calls f, which may throw Trouble. Returns why it failed, or why an object could not be closed (the last of what was written to it goes to the disk
-// then); an empty text if all went well.
+// Calls f, which may throw Trouble. Returns why it failed, or why an object could not be closed (the last of what was
+// written to it goes to the disk then); an empty text if all went well.
 std::string done_by(void (*f)(void*), void* with);
 
 template <class F>
@@ -58,7 +59,8 @@ Handle text_type();
 Handle space_of(std::size_t n);  // of one dimension
 Handle open_dataset(hid_t file, const std::string& name);
 // Extendible in all directions, in chunks.
-Handle new_extendible(hid_t file, const char* name, hid_t type, std::vector<hsize_t> size, const std::vector<hsize_t>& chunk);
+Handle new_extendible(hid_t file, const char* name, hid_t type, std::vector<hsize_t> size,
+                      const std::vector<hsize_t>& chunk);
 void put_texts(hid_t file, const std::string& name, const std::vector<std::string>& texts);
 void put_text(hid_t file, const std::string& name, const std::string& text);
 void put_attribute(hid_t object, const char* name, const std::string& text);
@@ -70,6 +72,7 @@ std::vector<std::string> texts_of(hid_t set, hid_t memory, hid_t file_space, std
 
 // Writes or reads the box [from, from + size).
 enum class Way { write, read };
-void transfer(Way way, hid_t set, hid_t type, const std::vector<hsize_t>& from, const std::vector<hsize_t>& size, const void* data);
+void transfer(Way way, hid_t set, hid_t type, const std::vector<hsize_t>& from, const std::vector<hsize_t>& size,
+              const void* data);
 
 }  // namespace anholon::hdf5

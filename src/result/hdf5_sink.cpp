@@ -1,13 +1,13 @@
 #include "result/hdf5_sink.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace anholon {
 
@@ -15,7 +15,8 @@ namespace anholon {
 static constexpr std::size_t kMostSteps = 5'000'000;
 
 Hdf5Sink::Hdf5Sink(std::string path, RunInfo info, Pace pace)
-    : path_(std::move(path)), target_(target_of_link(path_)), beside_(target_ + ".part"), info_(std::move(info)), pace_(pace) {
+    : path_(std::move(path)), target_(target_of_link(path_)), beside_(target_ + ".part"), info_(std::move(info)),
+      pace_(pace) {
   error_ = has_hdf5() ? obstacle_to_writing(path_) : kNoHdf5;
   if (!error_.empty()) return;
   claim_.emplace(path_);
@@ -30,7 +31,8 @@ Hdf5Sink::~Hdf5Sink() {
 void Hdf5Sink::go_on(const RunFile& before, std::size_t rows, std::size_t steps) {
   block_.add(before.table, 0, std::min(rows, before.table.rows()));
   names_before_ = before.table.columns;
-  block_.steps.assign(before.steps.begin(), before.steps.begin() + static_cast<std::ptrdiff_t>(std::min(steps, before.steps.size())));
+  block_.steps.assign(before.steps.begin(),
+                      before.steps.begin() + static_cast<std::ptrdiff_t>(std::min(steps, before.steps.size())));
   steps_ = block_.steps.size();
 }
 
@@ -76,7 +78,9 @@ bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
     ::close(out);
     return fail(std::strerror(why));
   };
-  if (::fallocate(out, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(size_ + room)) != 0 && errno != EOPNOTSUPP && errno != ENOSYS && errno != EINTR) return failed();
+  if (::fallocate(out, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(size_ + room)) != 0 && errno != EOPNOTSUPP &&
+      errno != ENOSYS && errno != EINTR)
+    return failed();
   off_t at = 0;
   bool by_kernel = true;
   std::vector<char> buffer;
@@ -115,15 +119,17 @@ void Hdf5Sink::checkpoint() {
   constexpr std::size_t kMargin = 1u << 20;
   std::size_t texts = 0;
   for (const RunInfo::File& f : info_.model) texts += f.text.size();
-  const std::size_t room = kMargin + block_.bytes() + block_.bytes() / 8 + 2 * texts + (block_.report ? block_.report->size() : 0);
+  const std::size_t room =
+      kMargin + block_.bytes() + block_.bytes() / 8 + 2 * texts + (block_.report ? block_.report->size() : 0);
   if (!copy_last(beside_, room)) return;
   if (last_ < 0)
     if (const std::string why = create_hdf5(beside_, info_, names_); !why.empty()) return static_cast<void>(fail(why));
   if (const std::string why = extend_hdf5(beside_, block_); !why.empty()) return static_cast<void>(fail(why));
   const int fd = ::open(beside_.c_str(), O_RDWR | O_CLOEXEC);
-  struct stat info {};
+  struct stat info{};
   // What was taken and not used goes back; the bytes are on disk before the name is.
-  if (fd < 0 || ::fstat(fd, &info) != 0 || ::ftruncate(fd, info.st_size) != 0 || ::fdatasync(fd) != 0 || std::rename(beside_.c_str(), target_.c_str()) != 0) {
+  if (fd < 0 || ::fstat(fd, &info) != 0 || ::ftruncate(fd, info.st_size) != 0 || ::fdatasync(fd) != 0 ||
+      std::rename(beside_.c_str(), target_.c_str()) != 0) {
     const int why = errno;
     if (fd >= 0) ::close(fd);
     return static_cast<void>(fail(std::strerror(why)));
@@ -134,8 +140,8 @@ void Hdf5Sink::checkpoint() {
   written_ += block_.rows();
   block_.clear();
   const auto end = std::chrono::steady_clock::now();
-  next_ = end + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                    std::chrono::duration<double>(std::max(pace_.seconds, pace_.share * std::chrono::duration<double>(end - start).count())));
+  next_ = end + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(
+                    std::max(pace_.seconds, pace_.share * std::chrono::duration<double>(end - start).count())));
 }
 
 }  // namespace anholon

@@ -1,10 +1,11 @@
 // Rows on their way into an HDF5 file that can be read at any moment, also after the program was killed.
 //
-// What has a name is never changed. A checkpoint copies the last complete file, extends the copy and renames it; between checkpoints
-// rows wait in memory. The first one comes before the first row, the last with `close`.
+// What has a name is never changed. A checkpoint copies the last complete file, extends the copy and renames it;
+// between checkpoints rows wait in memory. The first one comes before the first row, the last with `close`.
 //
-// Checkpoints cost a copy of the file: they wait 20 times as long as the last one took, and at least two seconds; or until the rows in
-// memory are 32 MB, and a quarter of what was written, so that all copies together stay within a few times the size of the result.
+// Checkpoints cost a copy of the file: they wait 20 times as long as the last one took, and at least two seconds; or
+// until the rows in memory are 32 MB, and a quarter of what was written, so that all copies together stay within a few
+// times the size of the result.
 #pragma once
 #include <chrono>
 #include <optional>
@@ -30,7 +31,8 @@ class Hdf5Sink final : public RowSink {
   Hdf5Sink(const Hdf5Sink&) = delete;
   Hdf5Sink& operator=(const Hdf5Sink&) = delete;
 
-  // Before `columns`: the first rows and steps of a run, which the rows to come follow; left out where that has other columns.
+  // Before `columns`: the first rows and steps of a run, which the rows to come follow; left out where that has other
+  // columns.
   void go_on(const RunFile& before, std::size_t rows, std::size_t steps);
   void columns(const std::vector<std::string>& names) override;
   void row(const std::vector<std::string>& values) override;

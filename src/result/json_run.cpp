@@ -1,5 +1,5 @@
-// Rows from the JSON of `simulate`. Numbers are taken as they are written, and what stands beside the rows stays the same text:
-// a general reader would round the numbers and arrange the rest anew.
+// Rows from the JSON of `simulate`. Numbers are taken as they are written, and what stands beside the rows stays the
+// same text: a general reader would round the numbers and arrange the rest anew.
 #include "base/diagnostic.h"
 #include "base/utf8.h"
 #include "result/run_file.h"
@@ -30,11 +30,15 @@ class JsonReader {
       space();
       if (!take(':')) fail("a colon is missing");
       space();
-      if (key == "columns") columns();
-      else if (key == "rows") rows();
+      if (key == "columns")
+        columns();
+      else if (key == "rows")
+        rows();
       else {
-        if (key == "model" && peek() == '"') run_.title = string();
-        else skip(0);
+        if (key == "model" && peek() == '"')
+          run_.title = string();
+        else
+          skip(0);
         run_.report += (kept ? "," : "") + std::string(text_.substr(begin, at_ - begin));
         kept = true;
       }
@@ -43,7 +47,8 @@ class JsonReader {
     space();
     if (at_ < text_.size()) fail("text after the end");
     if (run_.table.columns.empty())
-      throw Failure(Span{}, "this is not the JSON of a run: it has no columns", "anholon simulate MODEL --to T -o run.json writes them");
+      throw Failure(Span{}, "this is not the JSON of a run: it has no columns",
+                    "anholon simulate MODEL --to T -o run.json writes them");
     return std::move(run_);
   }
 
@@ -57,7 +62,8 @@ class JsonReader {
     return true;
   }
   void space() {
-    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\n' || text_[at_] == '\t' || text_[at_] == '\r')) ++at_;
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\n' || text_[at_] == '\t' || text_[at_] == '\r'))
+      ++at_;
   }
 
   [[noreturn]] void fail(const std::string& message, const std::string& hint = {}) const {
@@ -65,7 +71,8 @@ class JsonReader {
     std::size_t begin = 0;
     for (std::size_t i = 0; i < at_ && i < text_.size(); ++i)
       if (text_[i] == '\n') ++line, begin = i + 1;
-    throw Failure(Span{line, static_cast<std::uint32_t>(utf8_length(text_.substr(begin, at_ - begin)) + 1)}, message, hint);
+    throw Failure(Span{line, static_cast<std::uint32_t>(utf8_length(text_.substr(begin, at_ - begin)) + 1)}, message,
+                  hint);
   }
 
   std::string string() {
@@ -81,14 +88,31 @@ class JsonReader {
       const char e = peek();
       ++at_;
       switch (e) {
-        case 'n': out += '\n'; break;
-        case 't': out += '\t'; break;
-        case 'r': out += '\r'; break;
-        case 'b': out += '\b'; break;
-        case 'f': out += '\f'; break;
-        case 'u': code_point(out); break;
-        case '"': case '\\': case '/': out += e; break;
-        default: --at_, fail("an unknown escape");
+      case 'n':
+        out += '\n';
+        break;
+      case 't':
+        out += '\t';
+        break;
+      case 'r':
+        out += '\r';
+        break;
+      case 'b':
+        out += '\b';
+        break;
+      case 'f':
+        out += '\f';
+        break;
+      case 'u':
+        code_point(out);
+        break;
+      case '"':
+      case '\\':
+      case '/':
+        out += e;
+        break;
+      default:
+        --at_, fail("an unknown escape");
       }
     }
     return out;
@@ -98,7 +122,10 @@ class JsonReader {
     std::uint32_t code = 0;
     for (int k = 0; k < 4; ++k) {
       const char c = peek();
-      const int digit = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+      const int digit = c >= '0' && c <= '9'   ? c - '0'
+                        : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                        : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                               : -1;
       if (digit < 0) fail("\\u has four hexadecimal digits");
       code = 16 * code + static_cast<std::uint32_t>(digit);
       ++at_;
@@ -113,19 +140,26 @@ class JsonReader {
       c = 0x10000 + ((c - 0xD800) << 10) + ((four_digits() - 0xDC00) & 0x3FF);
     }
     const auto byte = [&](std::uint32_t b) { out += static_cast<char>(b); };
-    if (c < 0x80) byte(c);
-    else if (c < 0x800) byte(0xC0 | c >> 6), byte(0x80 | (c & 63));
-    else if (c < 0x10000) byte(0xE0 | c >> 12), byte(0x80 | (c >> 6 & 63)), byte(0x80 | (c & 63));
-    else byte(0xF0 | c >> 18), byte(0x80 | (c >> 12 & 63)), byte(0x80 | (c >> 6 & 63)), byte(0x80 | (c & 63));
+    if (c < 0x80)
+      byte(c);
+    else if (c < 0x800)
+      byte(0xC0 | c >> 6), byte(0x80 | (c & 63));
+    else if (c < 0x10000)
+      byte(0xE0 | c >> 12), byte(0x80 | (c >> 6 & 63)), byte(0x80 | (c & 63));
+    else
+      byte(0xF0 | c >> 18), byte(0x80 | (c >> 12 & 63)), byte(0x80 | (c >> 6 & 63)), byte(0x80 | (c & 63));
   }
 
   std::string_view number() {
     const std::size_t begin = at_;
-    while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != ']' && text_[at_] != '}' && static_cast<unsigned char>(text_[at_]) > ' ') ++at_;
+    while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != ']' && text_[at_] != '}' &&
+           static_cast<unsigned char>(text_[at_]) > ' ')
+      ++at_;
     std::string_view written = text_.substr(begin, at_ - begin);
     double ignored = 0;
     if (written == "null") return "nan";
-    if (written.empty() || written.find('n') != std::string_view::npos || !parse_number(written, ignored)) at_ = begin, fail("a number is missing");
+    if (written.empty() || written.find('n') != std::string_view::npos || !parse_number(written, ignored))
+      at_ = begin, fail("a number is missing");
     return written;
   }
 
@@ -151,7 +185,9 @@ class JsonReader {
     array([&] {
       std::size_t column = 0;
       array([&] {
-        if (column >= table.columns.size()) fail(table.columns.empty() ? "the columns come before the rows" : "this row is longer than the list of columns");
+        if (column >= table.columns.size())
+          fail(table.columns.empty() ? "the columns come before the rows"
+                                     : "this row is longer than the list of columns");
         table.add(column++, number());
       });
       if (column != table.columns.size()) fail("this row is shorter than the list of columns");

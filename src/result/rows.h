@@ -18,7 +18,8 @@ class RowSink {
   virtual void step(double) {}
 };
 
-// CSV with one header row. Rows go to the file whole: on a terminal one by one, else many together or those of half a second.
+// CSV with one header row. Rows go to the file whole: on a terminal one by one, else many together or those of half a
+// second.
 class CsvSink final : public RowSink {
  public:
   // An empty path or "-" is the standard output. Check `error` before use.

@@ -83,7 +83,10 @@ std::string write_hdf5(const std::string& path, const std::string& beside, const
 }  // namespace
 
 bool format_of(const std::string& path, RunFormat& format) {
-  for (const auto& [end, f] : {std::pair{".csv", RunFormat::csv}, {".json", RunFormat::json}, {".h5", RunFormat::hdf5}, {".hdf5", RunFormat::hdf5}})
+  for (const auto& [end, f] : {std::pair{".csv", RunFormat::csv},
+                               {".json", RunFormat::json},
+                               {".h5", RunFormat::hdf5},
+                               {".hdf5", RunFormat::hdf5}})
     if (path.ends_with(end)) {
       format = f;
       return true;
@@ -93,7 +96,8 @@ bool format_of(const std::string& path, RunFormat& format) {
 
 RunFile read_run(const std::string& path, SourceText* source) {
   const bool in = path == "-";
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(in ? "/dev/stdin" : path.c_str(), "rb"), std::fclose);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(in ? "/dev/stdin" : path.c_str(), "rb"),
+                                                             std::fclose);
   std::string text;
   constexpr std::size_t kPart = 1u << 20, kMost = std::size_t{16} << 30;  // beyond every run there is room for
   for (std::size_t n = 1; file && n > 0;) {
@@ -107,7 +111,8 @@ RunFile read_run(const std::string& path, SourceText* source) {
     }
     if (text.size() > kMost) throw Failure(Span{}, "the file is too large");
   }
-  if (!file || std::ferror(file.get())) throw Failure(Span{}, "the file cannot be read: " + std::string(std::strerror(errno)));
+  if (!file || std::ferror(file.get()))
+    throw Failure(Span{}, "the file cannot be read: " + std::string(std::strerror(errno)));
   try {
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     return first != std::string::npos && text[first] == '{' ? read_json_run(text) : read_csv(text);
@@ -118,8 +123,11 @@ RunFile read_run(const std::string& path, SourceText* source) {
 }
 
 std::string write_run(const std::string& path, RunFormat format, const RunFile& run) {
-  if (format == RunFormat::hdf5) return write_whole_by_name(path, [&](const std::string& beside) { return write_hdf5(path, beside, run); });
-  if (path.empty() || path == "-") return write_text(stdout, format, run) ? std::string() : "cannot write the output: " + std::string(std::strerror(errno));
+  if (format == RunFormat::hdf5)
+    return write_whole_by_name(path, [&](const std::string& beside) { return write_hdf5(path, beside, run); });
+  if (path.empty() || path == "-")
+    return write_text(stdout, format, run) ? std::string()
+                                           : "cannot write the output: " + std::string(std::strerror(errno));
   return write_whole(path, [&](std::FILE* file) { return write_text(file, format, run); });
 }
 

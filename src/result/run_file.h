@@ -1,6 +1,7 @@
 // The file of a run: its rows, and what is needed to know where they come from.
 //
-// Which format a file has is told by its content. HDF5 holds everything, JSON the rows and the report, CSV the rows.  (doc/results.md)
+// Which format a file has is told by its content. HDF5 holds everything, JSON the rows and the report, CSV the rows.
+// (doc/results.md)
 #pragma once
 #include <map>
 #include <string>
@@ -26,8 +27,8 @@ struct RunInfo {
 
 struct RunFile : RunInfo {
   RunTable table;
-  std::string report;         // the JSON of `simulate` without its columns and rows; empty while the run goes on
-  std::vector<double> steps;  // when the accepted steps end
+  std::string report;              // the JSON of `simulate` without its columns and rows; empty while the run goes on
+  std::vector<double> steps;       // when the accepted steps end
   std::vector<std::string> notes;  // what the reader had to leave out
 };
 
@@ -51,7 +52,8 @@ bool format_of(const std::string& path, RunFormat& format);
 
 // "-" is the standard input. Throws Failure; where its span is a place in the file, `source` gets the text.
 RunFile read_run(const std::string& path, SourceText* source = nullptr);
-// Empty, or why it could not be written. The file is there as a whole or stays as it was; "-" is the standard output (CSV, JSON).
+// Empty, or why it could not be written. The file is there as a whole or stays as it was; "-" is the standard output
+// (CSV, JSON).
 std::string write_run(const std::string& path, RunFormat format, const RunFile& run);
 
 // The formats one by one, from and to texts.

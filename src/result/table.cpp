@@ -67,7 +67,9 @@ std::string json_number(std::string_view written) {
     while (at < written.size() && written[at] >= '0' && written[at] <= '9') ++at;
     return at - begin;
   };
-  const auto take = [&](std::string_view any) { return at < written.size() && any.find(written[at]) != std::string_view::npos && ++at > 0; };
+  const auto take = [&](std::string_view any) {
+    return at < written.size() && any.find(written[at]) != std::string_view::npos && ++at > 0;
+  };
   take("-");
   const bool zero = at < written.size() && written[at] == '0';
   const std::size_t whole = digits();
@@ -87,9 +89,12 @@ std::vector<std::string> split_csv(std::string_view line) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
     if (quoted) {
-      if (c != '"') names.back() += c;
-      else if (i + 1 < line.size() && line[i + 1] == '"') names.back() += c, ++i;
-      else quoted = false;
+      if (c != '"')
+        names.back() += c;
+      else if (i + 1 < line.size() && line[i + 1] == '"')
+        names.back() += c, ++i;
+      else
+        quoted = false;
     } else if (c == '"' && names.back().empty()) {
       quoted = true;
     } else if (c == ',' && depth <= 0) {

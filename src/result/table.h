@@ -1,8 +1,8 @@
 // A table of numbers with names, column by column.
 //
-// A number is held as a double. Where the digits it was written with are more, or others, than the shortest ones that read back to
-// that double (30-digit runs, times printed as they were given), they are kept beside it: no table loses anything on its way
-// through formats.
+// A number is held as a double. Where the digits it was written with are more, or others, than the shortest ones that
+// read back to that double (30-digit runs, times printed as they were given), they are kept beside it: no table loses
+// anything on its way through formats.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -13,14 +13,16 @@ namespace anholon {
 
 struct RunTable {
   std::vector<std::string> columns;
-  std::vector<std::vector<double>> values;       // one vector per column
-  std::vector<std::vector<std::string>> texts;   // per column: nothing, or one per row, empty where the number says it all
+  std::vector<std::vector<double>> values;  // one vector per column
+  std::vector<std::vector<std::string>>
+      texts;  // per column: nothing, or one per row, empty where the number says it all
 
   std::size_t rows() const { return values.empty() ? 0 : values[0].size(); }
   // The number as it was written.
   std::string text(std::size_t row, std::size_t column) const;
   void set_columns(std::vector<std::string> names);
-  // Adds a number at the end of a column as it was written; false if it is none: then it is kept as a text beside a NaN.
+  // Adds a number at the end of a column as it was written; false if it is none: then it is kept as a text beside a
+  // NaN.
   bool add(std::size_t column, std::string_view written);
   // The place of a column, or columns.size().
   std::size_t find(std::string_view name) const;

@@ -20,8 +20,8 @@ std::vector<bool> turned_by(const Body& body, const Column& qd) {
   return by;
 }
 
-// Another body that turns by some of three angles only (a gimbal with an inertia, a link of an arm) has kinetic energy where the
-// three fall into a plane: nothing becomes singular there.
+// Another body that turns by some of three angles only (a gimbal with an inertia, a link of an arm) has kinetic energy
+// where the three fall into a plane: nothing becomes singular there.
 bool held_by_another(const Model& model, const std::vector<std::size_t>& angles, const Column& qd) {
   return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& other) {
     const std::vector<bool> by = turned_by(other, qd);
@@ -48,7 +48,8 @@ std::vector<AngleTriple> angle_triples(const Model& model) {
       angles.push_back(a);
       triple.angles += (triple.angles.empty() ? "" : ", ") + model.coordinates[a].name;
     }
-    const bool known = std::any_of(list.begin(), list.end(), [&](const AngleTriple& t) { return t.angles == triple.angles; });
+    const bool known =
+        std::any_of(list.begin(), list.end(), [&](const AngleTriple& t) { return t.angles == triple.angles; });
     if (angles.size() != 3 || known || held_by_another(model, angles, qd)) continue;
     // Two joints about the same axis are in a plane with any third, always: that is no singularity.
     if (!proved_zero(dot(triple.rates[0], cross(triple.rates[1], triple.rates[2])))) list.push_back(triple);

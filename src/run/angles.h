@@ -2,15 +2,16 @@
 //   omega = sum_a omega_a q_a',  a = 1, 2, 3,
 // and the three vectors omega_a fall into a plane at the singularity of the angles (theta = 0 of Euler's). Watched is
 //   |omega_1 . (omega_2 x omega_3)| / (|omega_1| |omega_2| |omega_3|).  (theory: integrals)
-// Angles of joints are none of these: neither those that lie in a plane always, nor those of which some turn another body with inertia.
+// Angles of joints are none of these: neither those that lie in a plane always, nor those of which some turn another
+// body with inertia.
 #pragma once
 #include "run/scenario.h"
 
 namespace anholon {
 
 struct AngleTriple {
-  std::string body, angles;        // "disc", "psi, theta, phi"
-  Vector rates[3];                 // omega_a, components along the body's own axes
+  std::string body, angles;  // "disc", "psi, theta, phi"
+  Vector rates[3];           // omega_a, components along the body's own axes
 };
 // Of the bodies with three angles, each set of angles once.
 std::vector<AngleTriple> angle_triples(const Model& model);

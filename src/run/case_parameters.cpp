@@ -85,7 +85,8 @@ Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
   for (const Check& c : checks_) {
     if (c.axes.empty()) {
       if (const double v = machine.value(c.root); !(v >= 0))
-        return {OutcomeKind::negative_mass, c.what + " is " + number_text(v, 6), "it is not negative: leave out such values"};
+        return {OutcomeKind::negative_mass, c.what + " is " + number_text(v, 6),
+                "it is not negative: leave out such values"};
       continue;
     }
     // E = sum w u u' has no negative eigenvalue: no principal minor of E + slack is negative.
@@ -94,14 +95,17 @@ Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
       const double w = machine.value(c.root + k);
       slack += 1e-9 * std::abs(w);
       for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) e[i][j] += w * number_value(c.axes[k][i]).get_d() * number_value(c.axes[k][j]).get_d();
+        for (std::size_t j = 0; j < 3; ++j)
+          e[i][j] += w * number_value(c.axes[k][i]).get_d() * number_value(c.axes[k][j]).get_d();
     }
     bool wrong = false;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t k = (i + 1) % 3;
-      wrong = wrong || !(e[i][i] >= -slack) || !((e[i][i] + slack) * (e[k][k] + slack) - e[i][k] * e[k][i] >= -slack * slack);
+      wrong = wrong || !(e[i][i] >= -slack) ||
+              !((e[i][i] + slack) * (e[k][k] + slack) - e[i][k] * e[k][i] >= -slack * slack);
     }
-    const double det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+    const double det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+                       e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
                        e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
     const double size = std::abs(e[0][0]) + std::abs(e[1][1]) + std::abs(e[2][2]);
     if (wrong || !(det >= -slack * size * size))

@@ -12,11 +12,11 @@ class CaseParameters {
   // Of all parameters, those that are derived from others too.
   template <Number N>
   std::vector<N> values(const std::vector<Rational>& varied) const;
-  // Not ok if no such body can be: a negative mass, a moment of inertia greater than the two others. (The reader asks the same of the
-  // file's numbers.)
+  // Not ok if no such body can be: a negative mass, a moment of inertia greater than the two others. (The reader asks
+  // the same of the file's numbers.)
   Outcome possible(const std::vector<double>& parameters) const;
-  // No derivative occurs in the equations beyond those that are solved for (sigma_ij <= d_j - c_i): where a mass or a coefficient of
-  // the file is zero, others may.
+  // No derivative occurs in the equations beyond those that are solved for (sigma_ij <= d_j - c_i): where a mass or a
+  // coefficient of the file is zero, others may.
   bool same_structure(const std::vector<double>& parameters) const;
 
  private:

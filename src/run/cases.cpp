@@ -18,10 +18,12 @@ std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const Ensemble
 
 static void put_parameters(Model& model, const EnsembleOptions& o, const EnsembleCase& numbers) {
   for (std::size_t i = 0; i < o.varied.size(); ++i)
-    if (o.varied[i].kind == Varied::Kind::parameter) model.parameters[o.varied[i].index].value = model.graph->number(numbers.values[i]);
+    if (o.varied[i].kind == Varied::Kind::parameter)
+      model.parameters[o.varied[i].index].value = model.graph->number(numbers.values[i]);
 }
 
-Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers, Scenario& scenario, std::shared_ptr<Model>& model) {
+Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers,
+                         Scenario& scenario, std::shared_ptr<Model>& model) {
   model = std::make_shared<Model>(*o.again());
   StateChoice state = o.state;
   if (numbers) put_parameters(*model, o, *numbers), state.overrides = overrides_of(o, numbers);
@@ -37,15 +39,18 @@ std::vector<std::string> ensemble_columns(const Model& model) {
   return names;
 }
 
-EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenario(s), options(o), parameters(s, o.varied) {
+EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
+    : scenario(s), options(o), parameters(s, o.varied) {
   const Model& model = *s.model;
   Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
-  plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() && s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
+  plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() &&
+          s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
-    for (int k = 0; k < s.structure.d[j]; ++k) entries.push_back(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
+    for (int k = 0; k < s.structure.d[j]; ++k)
+      entries.push_back(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
   Column masses;
   for (const VaryingMass& m : model.masses) masses.push_back(m.value);
   program = anholon::program(s.system, s.structure, masses);
@@ -55,21 +60,27 @@ EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o) : scenar
     const std::vector<double> state(at.state.begin(), at.state.end());
     const double t = static_cast<double>(at.t);
     const int order = o.order > 0 ? o.order : taylor_order(settings.log_tolerance);
-    if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state, Company::in_lanes))
-      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion)).plan;
+    if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state,
+                                              Company::in_lanes))
+      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()},
+                                        WritingEffort::long_motion))
+                   .plan;
   }
   constexpr std::size_t kMany = 32;
   if (kernel && o.cases >= kMany) lanes = tiers().back().lanes;
   Column watched;
   for (const Monitor& m : model.monitors) watched.push_back(m.value);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, watched));
-  leading = stages > 0 || std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates), [](int d) { return d < 2; });
+  leading = stages > 0 || std::any_of(s.structure.d.begin(),
+                                      s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
+                                      [](int d) { return d < 2; });
   if (watched.empty()) return;
   outputs = compile(OutputTape<Wider<double>>::put(s, watched));
   for (const Input& in : outputs->inputs) {
     const Node& n = g.node(in.symbol);
     output_inputs.push_back({in.slot, s.system.variable(in.symbol), n.kind == Kind::time ? 0 : n.order});
-    leading = leading || (output_inputs.back().variable && output_inputs.back().order >= s.structure.d[*output_inputs.back().variable]);
+    leading = leading || (output_inputs.back().variable &&
+                          output_inputs.back().order >= s.structure.d[*output_inputs.back().variable]);
   }
 }
 
@@ -154,7 +165,8 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
     if (const W at = from_rational<W>(t); forward ? at <= end_ : at >= end_) times_.push_back(at);
   if (!forward) std::reverse(times_.begin(), times_.end());
   result_ = &r;
-  if (end_ == named_.t) return stepper_->start(named_.t, state, {}, false).ok() ? after_step() : stop(CaseWay::derivation);
+  if (end_ == named_.t)
+    return stepper_->start(named_.t, state, {}, false).ok() ? after_step() : stop(CaseWay::derivation);
   stepper_->place(named_.t, state);
   return CaseWay::plain;
 }
@@ -166,18 +178,15 @@ CaseWay CaseWalk::stop(CaseWay way) {
 
 CaseWay CaseWalk::stopped(const Outcome& why) {
   const EnsembleOptions& o = plan_->options;
-  if (why.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled()) return stop(stepper_->steps() == 0 ? CaseWay::derivation : CaseWay::simulation);
+  if (why.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled())
+    return stop(stepper_->steps() == 0 ? CaseWay::derivation : CaseWay::simulation);
   result_->outcome = why;
   return stop(CaseWay::plain);
 }
 
-CaseWay CaseWalk::begin_step() {
-  return stepper_->begin_step() ? CaseWay::plain : stopped(stepper_->trouble());
-}
+CaseWay CaseWalk::begin_step() { return stepper_->begin_step() ? CaseWay::plain : stopped(stepper_->trouble()); }
 
-CaseWay CaseWalk::aim() {
-  return stepper_->aim(end_) ? CaseWay::plain : stopped(stepper_->trouble());
-}
+CaseWay CaseWalk::aim() { return stepper_->aim(end_) ? CaseWay::plain : stopped(stepper_->trouble()); }
 
 CaseWay CaseWalk::look_at_end() {
   const EndOfStep there = stepper_->look_at_end(end_);
@@ -185,9 +194,7 @@ CaseWay CaseWalk::look_at_end() {
   return there == EndOfStep::failed ? stopped(stepper_->trouble()) : CaseWay::plain;
 }
 
-CaseWay CaseWalk::finish_step() {
-  return stepper_->finish_step() ? after_step() : stopped(stepper_->trouble());
-}
+CaseWay CaseWalk::finish_step() { return stepper_->finish_step() ? after_step() : stopped(stepper_->trouble()); }
 
 CaseWay CaseWalk::step() {
   if (const Outcome o = stepper_->step(end_); !o.ok()) return stopped(o);
@@ -197,7 +204,9 @@ CaseWay CaseWalk::step() {
 // What the last step has to give, which may be the end.
 CaseWay CaseWalk::after_step() {
   for (std::size_t i = 0; i < plan_->program->quadratures; ++i)
-    if (!plan_->scenario.model->masses[i].weight && stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)) return stop(CaseWay::simulation);
+    if (!plan_->scenario.model->masses[i].weight &&
+        stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
+      return stop(CaseWay::simulation);
   if (!rows()) return stop(CaseWay::simulation);
   if (!(stepper_->time() == end_)) return CaseWay::plain;
   result_->t = to_double(end_);
@@ -224,7 +233,8 @@ bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
   for (const int k : {0, 1})
     for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
-  for (std::size_t j = system.mechanical(); j < system.size(); ++j) values.push_back(to_double(point_->derivative(j, 0)));
+  for (std::size_t j = system.mechanical(); j < system.size(); ++j)
+    values.push_back(to_double(point_->derivative(j, 0)));
   if (!outputs_) return true;
   for (const EnsemblePlan::Entry& e : plan_->output_inputs)
     outputs_->series(e.slot)[0] = e.variable ? point_->derivative(*e.variable, e.order) : point_->time();
@@ -300,7 +310,8 @@ void CaseWorker::end(CaseWay way, const EnsembleCase& numbers, CaseResult& r) {
   if (way == CaseWay::simulation) {
     by_simulation(numbers, r);
     // What fails where it begins may have another structure there, or other redundant constraints.
-    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent && r.outcome.kind != OutcomeKind::interrupted)
+    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent &&
+        r.outcome.kind != OutcomeKind::interrupted)
       way = CaseWay::derivation;
   }
   if (way == CaseWay::derivation) by_derivation(numbers, r);
@@ -311,7 +322,8 @@ namespace {
 // Rows of `simulate`, of which the columns of an ensemble are kept.
 class Kept final : public RowSink {
  public:
-  Kept(const Scenario& s, const std::vector<Rational>& times, CaseResult& result) : s_(s), times_(times), result_(result) {}
+  Kept(const Scenario& s, const std::vector<Rational>& times, CaseResult& result)
+      : s_(s), times_(times), result_(result) {}
   void columns(const std::vector<std::string>& names) override {
     const Model& model = *s_.model;
     const std::size_t n = model.coordinates.size();
@@ -369,8 +381,9 @@ void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& 
   r.t = std::strtod(report.t.c_str(), nullptr);
 }
 
-// Expressions that a case builds stand before those of later cases, and their order is that of sums. So no case may be computed
-// where another one has left some: a graph that has grown is thrown away, and a case that made it grow is computed in a new one.
+// Expressions that a case builds stand before those of later cases, and their order is that of sums. So no case may be
+// computed where another one has left some: a graph that has grown is thrown away, and a case that made it grow is
+// computed in a new one.
 void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {
   ++again_;
   for (;;) {

@@ -1,9 +1,10 @@
 // What threads do with the cases of an ensemble.
 //
-// The plain way reads tapes that were compiled before: parameters, consistent positions and velocities, the stepping program,
-// outputs. It builds no expressions, so all threads share one graph. It only finishes: what stops on the way, or needs events,
-// completed states, redundant constraints or another elimination, goes the way of `simulate` in a graph of the thread's own, so that its
-// outcome is that of `simulate`. A case with which the equations have another structure is derived anew.
+// The plain way reads tapes that were compiled before: parameters, consistent positions and velocities, the stepping
+// program, outputs. It builds no expressions, so all threads share one graph. It only finishes: what stops on the way,
+// or needs events, completed states, redundant constraints or another elimination, goes the way of `simulate` in a
+// graph of the thread's own, so that its outcome is that of `simulate`. A case with which the equations have another
+// structure is derived anew.
 #pragma once
 #include <deque>
 #include <mutex>
@@ -17,7 +18,8 @@ namespace anholon {
 // The initial values that are given or varied; without numbers only which they are.
 std::vector<StateOverride> overrides_of(const EnsembleOptions& options, const EnsembleCase* numbers);
 // With the numbers of a case, or those of the file, in a graph of its own.
-Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& options, const EnsembleCase* numbers, Scenario& scenario, std::shared_ptr<Model>& model);
+Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& options, const EnsembleCase* numbers,
+                         Scenario& scenario, std::shared_ptr<Model>& model);
 
 // Read by all threads, changed by none.
 class EnsemblePlan {
@@ -26,16 +28,17 @@ class EnsemblePlan {
 
   const Scenario& scenario;
   const EnsembleOptions& options;
-  bool plain = false;               // the plain way goes for this model
+  bool plain = false;  // the plain way goes for this model
   std::optional<StartPlan> start;
   CaseParameters parameters;
-  std::vector<Node> entries;        // of the state, in the order of an Expansion's
-  std::optional<Program> program;   // varying masses are its quadratures
-  // For the expansions of all cases, its pivots chosen at the start of the scenario; may be null. `simulate` chooses them at its own start, so the last
-  // digits may differ. Machine code, with the same bits, is made beside the cases when they have taken a while.
+  std::vector<Node> entries;       // of the state, in the order of an Expansion's
+  std::optional<Program> program;  // varying masses are its quadratures
+  // For the expansions of all cases, its pivots chosen at the start of the scenario; may be null. `simulate` chooses
+  // them at its own start, so the last digits may differ. Machine code, with the same bits, is made beside the cases
+  // when they have taken a while.
   std::shared_ptr<const KernelPlan> kernel;
   void compile_if_long() const;
-  int lanes = 1;                    // of kernels of cases: all that this machine has
+  int lanes = 1;  // of kernels of cases: all that this machine has
   std::optional<Tape> outputs;
   struct Entry {
     std::uint32_t slot;
@@ -44,7 +47,7 @@ class EnsemblePlan {
   };
   std::vector<Entry> output_inputs;
   int stages = 0;
-  bool leading = false;             // what is kept of a case needs more than its state
+  bool leading = false;  // what is kept of a case needs more than its state
   StepSettings settings;
 
  private:
@@ -52,7 +55,8 @@ class EnsemblePlan {
   mutable CodeForLongRuns code_;
 };
 
-// How a case is computed: by the tapes of the plan, or in a graph of its own, by the program of the scenario or one that is derived anew.
+// How a case is computed: by the tapes of the plan, or in a graph of its own, by the program of the scenario or one
+// that is derived anew.
 enum class CaseWay : std::uint8_t { plain, simulation, derivation };
 
 // The plain way of one case after the other, in one lane of a kernel.
@@ -66,7 +70,8 @@ class CaseWalk {
   void abandon() { result_ = nullptr, ready_ = false; }
   CaseResult& result() const { return *result_; }
   const EnsembleCase& numbers() const { return numbers_; }
-  // One step, in the parts of Stepper::step; the kernel works in between. Whoever stops walking after one of them has come to its end on the way it returns.
+  // One step, in the parts of Stepper::step; the kernel works in between. Whoever stops walking after one of them has
+  // come to its end on the way it returns.
   CaseWay begin_step();
   CaseWay aim();
   CaseWay look_at_end();

@@ -34,7 +34,9 @@ SimulationReport compared(const Formulation& form, const EnsembleOptions& o, con
   run.columns = kept_columns(s);
   run.knows_resets = false;
   const auto end = from_rational<long double>(numbers.to ? *numbers.to : o.to);
-  const auto add = [&](long double t, auto begin, auto last) { run.rows.add(t, std::vector<long double>(begin, last), 0); };
+  const auto add = [&](long double t, auto begin, auto last) {
+    run.rows.add(t, std::vector<long double>(begin, last), 0);
+  };
   for (const std::vector<double>& row : r.rows) add(row[0], row.begin() + 1, row.end());
   // Written is the double next to the time that was asked for.
   add(static_cast<double>(end) == r.t ? end : r.t, r.last.begin(), r.last.end());
@@ -52,11 +54,13 @@ std::vector<std::size_t> cases_to_compare(std::size_t cases) {
   return list;
 }
 
-CasesError cases_error(const Formulation& form, const EnsembleOptions& o, std::span<const CaseResult> results, const Each& each) {
+CasesError cases_error(const Formulation& form, const EnsembleOptions& o, std::span<const CaseResult> results,
+                       const Each& each) {
   CasesError all;
   std::vector<const CaseResult*> fit;
   for (const CaseResult& r : results)
-    if (r.outcome.ok() && r.steps > 0 && (o.estimate == ErrorEstimate::always || r.steps <= kShortRun)) fit.push_back(&r);
+    if (r.outcome.ok() && r.steps > 0 && (o.estimate == ErrorEstimate::always || r.steps <= kShortRun))
+      fit.push_back(&r);
   std::vector<SimulationReport> reports(fit.size());
   each(fit.size(), [&](std::size_t i) {
     try {
@@ -73,10 +77,15 @@ CasesError cases_error(const Formulation& form, const EnsembleOptions& o, std::s
     }
     all.cases.push_back(fit[i]->number);
     if (!all.error || r.error->worst().error > all.error->worst().error) all.worst = fit[i]->number;
-    if (!all.error) all.error = r.error;
-    else all.error->take_worse(*r.error);
+    if (!all.error)
+      all.error = r.error;
+    else
+      all.error->take_worse(*r.error);
   }
-  if (!all.error && all.none.empty()) all.none = "none of the cases looked at has finished" + std::string(o.estimate == ErrorEstimate::always ? "" : " within " + std::to_string(kShortRun) + " steps");
+  if (!all.error && all.none.empty())
+    all.none =
+        "none of the cases looked at has finished" +
+        std::string(o.estimate == ErrorEstimate::always ? "" : " within " + std::to_string(kShortRun) + " steps");
   return all;
 }
 

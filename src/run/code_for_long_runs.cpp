@@ -26,8 +26,8 @@ void wait_for_left_behind() {
   for (Left& l : list) l.thread.join();
 }
 
-// The compiler makes statics of its own as it goes, and exit() destroys the latest first: whatever waits among them comes too late for a thread that still
-// compiles. What belongs to the main thread is destroyed before all of them.
+// The compiler makes statics of its own as it goes, and exit() destroys the latest first: whatever waits among them
+// comes too late for a thread that still compiles. What belongs to the main thread is destroyed before all of them.
 struct WaitsAtTheEndOfMain {
   ~WaitsAtTheEndOfMain() { wait_for_left_behind(); }
   void arm() {}
@@ -51,7 +51,9 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, int la
   // A compilation takes 0.1 to 2 s, on another core if there is one.
   constexpr std::chrono::milliseconds kLong(400);
   constexpr std::size_t kSometimes = 64;
-  if (!plan || compilation_.plan == plan || (lanes == 1 && ++asked_ % kSometimes != 0) || (compilation_.done && !*compilation_.done)) return;
+  if (!plan || compilation_.plan == plan || (lanes == 1 && ++asked_ % kSometimes != 0) ||
+      (compilation_.done && !*compilation_.done))
+    return;
   if (std::chrono::steady_clock::now() - since_ < kLong) return;
   leave();
   const auto done = std::make_shared<std::atomic<bool>>(false);

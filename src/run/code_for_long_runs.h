@@ -33,8 +33,8 @@ class CodeForLongRuns {
   std::size_t asked_ = 0;
 };
 
-// Whether compilations are on their way that nobody asks for any more. exit() waits for them; a program that has nothing left to do may leave by
-// std::_Exit (what is kept on disk is written under another name first).
+// Whether compilations are on their way that nobody asks for any more. exit() waits for them; a program that has
+// nothing left to do may leave by std::_Exit (what is kept on disk is written under another name first).
 bool compiling_for_nobody();
 
 }  // namespace anholon

@@ -35,12 +35,14 @@ std::optional<Method> find_method(const std::string& name) {
 
 std::string only_taylor(const Model& model, const Program& program) {
   if (!model.events.empty()) return "does not look for events";
-  if (program.nonlinear) return "cannot tell solutions that meet apart: the leading derivatives enter the equations nonlinearly";
+  if (program.nonlinear)
+    return "cannot tell solutions that meet apart: the leading derivatives enter the equations nonlinearly";
   return {};
 }
 
 template <Number N>
-Course<N>::Course(const Scenario& s, const StepSettings& settings, Method asked, std::vector<Expr> quadratures, int stages)
+Course<N>::Course(const Scenario& s, const StepSettings& settings, Method asked, std::vector<Expr> quadratures,
+                  int stages)
     : s_(s), settings_(settings), motion_(s, settings, quadratures, stages), stages_(stages) {
   report_.asked = asked;
   if (!std::same_as<N, double> || asked == Method::taylor || !only_taylor(*s.model, motion_.program()).empty()) return;
@@ -49,9 +51,12 @@ Course<N>::Course(const Scenario& s, const StepSettings& settings, Method asked,
   const Model& model = *s.model;
   for (std::size_t i = 0; i < model.masses.size(); ++i)
     if (!model.masses[i].weight)
-      guards_.push_back({1 + i, {OutcomeKind::negative_mass, "the mass of '" + model.masses[i].name + "' is negative", "end the motion before"}});
+      guards_.push_back({1 + i,
+                         {OutcomeKind::negative_mass, "the mass of '" + model.masses[i].name + "' is negative",
+                          "end the motion before"}});
   for (std::size_t i = 0; i < model.bounds.size(); ++i)
-    guards_.push_back({quadratures.size() + model.events.size() + i, {OutcomeKind::not_a_number, model.bounds[i].fault, "end the motion before"}});
+    guards_.push_back({quadratures.size() + model.events.size() + i,
+                       {OutcomeKind::not_a_number, model.bounds[i].fault, "end the motion before"}});
 }
 
 template <Number N>
@@ -62,12 +67,14 @@ Outcome Course<N>::step(const W& end) {
   by_other_ = false;
   const Outcome o = motion_.step(end);
   // Steps so short that the end is out of reach may be those of a stiff motion.
-  if (o.kind == OutcomeKind::interrupted && free_ && wanted_ == Method::taylor && !(settings_.cancelled && settings_.cancelled()) && try_bdf(end))
+  if (o.kind == OutcomeKind::interrupted && free_ && wanted_ == Method::taylor &&
+      !(settings_.cancelled && settings_.cancelled()) && try_bdf(end))
     return step(end);
   if (!o.ok()) return o;
   if (taylor_for_ > 0) --taylor_for_;
   if (free_) {
-    if (times_.size() > 2 * kStretch) times_.erase(times_.begin(), times_.end() - static_cast<std::ptrdiff_t>(kStretch + 1));
+    if (times_.size() > 2 * kStretch)
+      times_.erase(times_.begin(), times_.end() - static_cast<std::ptrdiff_t>(kStretch + 1));
     times_.push_back(motion_.stepper().time());
   }
   return o;
@@ -274,7 +281,8 @@ const N& Course<N>::smallest_sigma() const {
 
 template <Number N>
 const typename Course<N>::W& Course<N>::smallest_sigma_time() const {
-  return smallest_sigma_ < motion_.stepper().smallest_sigma() ? smallest_sigma_t_ : motion_.stepper().smallest_sigma_time();
+  return smallest_sigma_ < motion_.stepper().smallest_sigma() ? smallest_sigma_t_
+                                                              : motion_.stepper().smallest_sigma_time();
 }
 
 template <Number N>

@@ -1,8 +1,9 @@
 // A motion by the method that was asked for, or by the one that takes the fewest operations (theory: methods).
 //
-// Taylor's motion (motion.h) is the main line: it starts, and it goes where another method cannot: to the end of a table, to a mass that
-// vanishes, past a singular point, to another elimination. What another method costs is found on a stretch of the motion itself and
-// counted in operations, never measured in time, so the same motion always takes the same course.
+// Taylor's motion (motion.h) is the main line: it starts, and it goes where another method cannot: to the end of a
+// table, to a mass that vanishes, past a singular point, to another elimination. What another method costs is found on
+// a stretch of the motion itself and counted in operations, never measured in time, so the same motion always takes the
+// same course.
 #pragma once
 #include "integrate/state_rate.h"
 #include "run/code_for_long_runs.h"
@@ -38,7 +39,8 @@ class Course {
  public:
   using W = Wider<N>;
 
-  Course(const Scenario& scenario, const StepSettings& settings, Method asked, std::vector<Expr> quadratures, int stages);
+  Course(const Scenario& scenario, const StepSettings& settings, Method asked, std::vector<Expr> quadratures,
+         int stages);
 
   Outcome start(const StateChoice& choice) { return motion_.start(choice); }
   Outcome step(const W& end);
@@ -91,10 +93,10 @@ class Course {
   Method wanted_ = Method::taylor;  // by which the motion goes on
   std::unique_ptr<StateStepper> other_;
   const Program* planned_ = nullptr;
-  std::shared_ptr<const KernelPlan> plan_;    // of its rates
-  double expansion_work_ = 0;                 // of Taylor's
+  std::shared_ptr<const KernelPlan> plan_;  // of its rates
+  double expansion_work_ = 0;               // of Taylor's
   CodeForLongRuns code_;
-  bool by_other_ = false;           // the last step
+  bool by_other_ = false;                     // the last step
   std::size_t rescues_ = 0, taylor_for_ = 0;  // how often Taylor had to help; the steps it still makes
   std::optional<Expansion<W>> point_, begun_;
   std::optional<Expansion<N>> look_;
@@ -107,7 +109,8 @@ class Course {
   std::vector<W> times_;
   static constexpr std::size_t kStretch = 256;  // steps that are remembered
   std::size_t next_kinks_ = 128, next_stiff_ = 2048;
-  double pace_ = 0, ratio_ = 0;     // operations for a unit of time by Taylor where it was left; what the trial took of them
+  double pace_ = 0,
+         ratio_ = 0;  // operations for a unit of time by Taylor where it was left; what the trial took of them
   double window_t_ = 0, window_spent_ = 0;
   std::size_t window_steps_ = 0;
   MethodReport report_;

@@ -12,8 +12,8 @@ namespace anholon {
 namespace {
 
 const double kLoose = std::log(1e-5), kBdf = std::log(kLeastBdfTolerance);
-// Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps: BDF by more, as its errors grow faster. Where a
-// motion is stiff it is cheaper by far.
+// Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps: BDF by more, as its
+// errors grow faster. Where a motion is stiff it is cheaper by far.
 constexpr double kCheaper = 1.3, kMuchCheaper = 4;
 constexpr std::size_t kFewSteps = 48;
 // Where there are many kinks it is asked again when they are so many times as many.
@@ -23,7 +23,8 @@ constexpr double kEarly = 0.25, kFar = 0.05;
 // The reference takes so many times the operations of a kernel.
 constexpr double kReference = 6;
 
-// Operations of an expansion by a plan. What it takes to come to a step, and to an expansion, weighs as much as so many of them.
+// Operations of an expansion by a plan. What it takes to come to a step, and to an expansion, weighs as much as so many
+// of them.
 constexpr double kExpansion = 300;
 double work(const KernelPlan& plan) {
   constexpr double kStep = 16;
@@ -35,7 +36,10 @@ double work(const KernelPlan& plan) {
 double work_of_rates(const KernelPlan& plan) {
   constexpr double kStep = 11, kEntry = 6;
   const double steps = static_cast<double>(plan.plan().point.size() + plan.plan().after.size());
-  return plan.work() + kStep * steps + kEntry * (plan.elimination().work() + static_cast<double>(plan.elimination().update_list.size() + plan.plan().entries.size())) + kExpansion;
+  return plan.work() + kStep * steps +
+         kEntry * (plan.elimination().work() +
+                   static_cast<double>(plan.elimination().update_list.size() + plan.plan().entries.size())) +
+         kExpansion;
 }
 
 std::shared_ptr<const Program> program_of(const std::shared_ptr<const KernelPlan>& plan, const Program& otherwise) {
@@ -53,7 +57,8 @@ MotionPoint Course<N>::here() const {
     p.t = taylor.time();
     p.state = taylor.state();
     p.integrals = taylor.integrals();
-    for (std::size_t j = 0; j < taylor.unknowns(); ++j) p.leading.push_back(to_double(taylor.point().derivative(j, motion_.program().d[j])));
+    for (std::size_t j = 0; j < taylor.unknowns(); ++j)
+      p.leading.push_back(to_double(taylor.point().derivative(j, motion_.program().d[j])));
   }
   return p;
 }
@@ -67,8 +72,8 @@ void Course<N>::make_plans() {
     planned_ = equations;
     const MotionPoint from = here();
     const auto plan = [&](int stages) {
-      return KernelPlan::make(program_of(motion_.unmapped_plan(), motion_.program()), stages, motion_.parameters(), static_cast<double>(from.t),
-                              {from.state.begin(), from.state.end()});
+      return KernelPlan::make(program_of(motion_.unmapped_plan(), motion_.program()), stages, motion_.parameters(),
+                              static_cast<double>(from.t), {from.state.begin(), from.state.end()});
     };
     plan_ = settings_.kernel ? plan(0) : nullptr;
     expansion_work_ = std::numeric_limits<double>::infinity();
@@ -100,11 +105,13 @@ template <Number N>
 double Course<N>::spent(StateStepper& stepper) const {
   const KernelPlan* plan = stepper.rate().plan();
   const StateRate& f = stepper.rate();
-  const double evaluations = static_cast<double>(f.evaluations()) + (kReference - 1) * static_cast<double>(f.by_reference());
+  const double evaluations =
+      static_cast<double>(f.evaluations()) + (kReference - 1) * static_cast<double>(f.by_reference());
   return plan ? evaluations * work_of_rates(*plan) + stepper.more_work() : std::numeric_limits<double>::infinity();
 }
 
-// Whether another method would come as far as Taylor's last steps did, from here on, with `factor` times fewer operations.
+// Whether another method would come as far as Taylor's last steps did, from here on, with `factor` times fewer
+// operations.
 template <Number N>
 bool Course<N>::pays(Method method, std::size_t steps, double factor, const W& end) {
   if constexpr (std::same_as<N, double>) {
@@ -115,7 +122,8 @@ bool Course<N>::pays(Method method, std::size_t steps, double factor, const W& e
     const W to = whole ? W(from.t + span) : end;
     auto trial = make(method);
     if (!plan_ || !std::isfinite(expansion_work_)) return false;
-    const double all = expansion_work_ * static_cast<double>(steps), part = whole ? 1.0 : std::abs(static_cast<double>(left / span));
+    const double all = expansion_work_ * static_cast<double>(steps),
+                 part = whole ? 1.0 : std::abs(static_cast<double>(left / span));
     const double costs = all * part, most = costs / factor;
     pace_ = all / std::abs(static_cast<double>(span));
     ++report_.trials;
@@ -151,11 +159,13 @@ void Course<N>::choose(const W& end) {
     const W pace = (taylor.time() - times_[times_.size() - 1 - stretch]) / W(static_cast<double>(stretch));
     return abs(W(end - taylor.time())) > abs(pace) * W(times * static_cast<double>(steps));
   };
-  if (settings_.log_tolerance >= kLoose && steps == kFewSteps + 1 && far(kFewSteps, 4) && pays(Method::runge_kutta, kFewSteps, kCheaper, end))
+  if (settings_.log_tolerance >= kLoose && steps == kFewSteps + 1 && far(kFewSteps, 4) &&
+      pays(Method::runge_kutta, kFewSteps, kCheaper, end))
     return turn(Method::runge_kutta, "the tolerance is loose: " + percent());
   if (taylor.kinks() >= next_kinks_ && times_.size() > kFewSteps) {
     next_kinks_ = kOftener * taylor.kinks();
-    if (pays(Method::runge_kutta, kFewSteps, kCheaper, end)) return turn(Method::runge_kutta, "the motion has met many kinks: " + percent());
+    if (pays(Method::runge_kutta, kFewSteps, kCheaper, end))
+      return turn(Method::runge_kutta, "the motion has met many kinks: " + percent());
   }
   if (steps >= next_stiff_ && far(kStretch, 1)) try_bdf(end);
 }
@@ -172,22 +182,23 @@ bool Course<N>::try_bdf(const W& end) {
 template <Number N>
 bool Course<N>::slower_than_taylor() {
   if (!free_ || other_->steps() < window_steps_ + kStretch) return false;
-  const double now = static_cast<double>(other_->now().t), work = spent(*other_), pace = (work - window_spent_) / std::abs(now - window_t_);
+  const double now = static_cast<double>(other_->now().t), work = spent(*other_),
+               pace = (work - window_spent_) / std::abs(now - window_t_);
   window_steps_ = other_->steps();
   window_t_ = now;
   window_spent_ = work;
   return pace > pace_;
 }
 
-#define INSTANTIATE(N)                                                                                                                               \
-  template MotionPoint Course<N>::here() const;                                                                                                      \
-  template void Course<N>::make_plans();                                                                                                             \
-  template std::unique_ptr<StateStepper> Course<N>::make(Method);                                                                                    \
-  template double Course<N>::spent(StateStepper&) const;                                                                                             \
-  template void Course<N>::turn(Method, std::string);                                                                                                \
-  template bool Course<N>::pays(Method, std::size_t, double, const Wider<N>&);                                                                       \
-  template void Course<N>::choose(const Wider<N>&);                                                                                                  \
-  template bool Course<N>::try_bdf(const Wider<N>&);                                                                                                 \
+#define INSTANTIATE(N)                                                                                                 \
+  template MotionPoint Course<N>::here() const;                                                                        \
+  template void Course<N>::make_plans();                                                                               \
+  template std::unique_ptr<StateStepper> Course<N>::make(Method);                                                      \
+  template double Course<N>::spent(StateStepper&) const;                                                               \
+  template void Course<N>::turn(Method, std::string);                                                                  \
+  template bool Course<N>::pays(Method, std::size_t, double, const Wider<N>&);                                         \
+  template void Course<N>::choose(const Wider<N>&);                                                                    \
+  template bool Course<N>::try_bdf(const Wider<N>&);                                                                   \
   template bool Course<N>::slower_than_taylor();
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -10,7 +10,8 @@ namespace {
 
 // A step is halved this often before a remainder that is too large is accepted as it is.
 constexpr int kMostHalvings = 7;
-// Beside a kink there is no remainder: what is left is halved until its values say no more than the other pieces do, so often and for so many pieces at most.
+// Beside a kink there is no remainder: what is left is halved until its values say no more than the other pieces do, so
+// often and for so many pieces at most.
 constexpr int kMostHalvingsAtKinks = 60, kMostPieces = 200;
 
 using Series = std::vector<std::vector<Ball>>;
@@ -77,8 +78,10 @@ void Defect::set_inputs(const Series& x, const Ball& t, int orders) {
     const auto j = s_.system.variable(in.symbol);
     for (std::size_t p = 0; p <= top; ++p) {
       const std::size_t k = p + n.order;
-      if (n.kind == Kind::time) w[p] = p == 0 ? t : Ball(p == 1 ? 1 : 0);
-      else w[p] = j && k < x[*j].size() ? x[*j][k] * rising(p, n.order) : Ball(0);
+      if (n.kind == Kind::time)
+        w[p] = p == 0 ? t : Ball(p == 1 ? 1 : 0);
+      else
+        w[p] = j && k < x[*j].size() ? x[*j][k] * rising(p, n.order) : Ball(0);
     }
   }
 }
@@ -87,8 +90,8 @@ void Defect::sweep(int orders) {
   for (int stage = -tape_.largest_lead; stage <= orders; ++stage) machine_->sweep(stage, 0, tape_.main_end);
 }
 
-// The largest of |E|, |G|, |N|, and at least 1: a number below it. What balls do not bound may be small and is left out: in relation to less, a bound is
-// a bound as well.
+// The largest of |E|, |G|, |N|, and at least 1: a number below it. What balls do not bound may be small and is left
+// out: in relation to less, a bound is a bound as well.
 Ball Defect::newton_scale() const {
   machine_->sweep(0, tape_.main_end, static_cast<std::uint32_t>(tape_.code.size()));
   Ball scale(1);
@@ -101,15 +104,16 @@ const Ball* Defect::phi(std::size_t constraint, std::size_t coordinate) const {
   return machine_->series(tape_.roots[phi_ + constraint * s_.mechanics->q.size() + coordinate]);
 }
 
-// What added to the multipliers leaves least of Newton's residual, order by order, by least squares. Nothing rests on these numbers
-// being right: balls say what is left. Empty where there are none.
+// What added to the multipliers leaves least of Newton's residual, order by order, by least squares. Nothing rests on
+// these numbers being right: balls say what is left. Empty where there are none.
 Series Defect::correction(std::size_t orders) const {
   const PrecisionScope precision(static_cast<int>(static_cast<double>(bits_) * 0.30103) + 1);
   const std::size_t n = s_.mechanics->q.size(), count = s_.system.constraints.size();
   Matrix<Multi> normal(count, count);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < count; ++j)
-      for (std::size_t a = 0; a < n; ++a) addmul(normal(i, j), phi(i, a)[0].midpoint_multi(), phi(j, a)[0].midpoint_multi());
+      for (std::size_t a = 0; a < n; ++a)
+        addmul(normal(i, j), phi(i, a)[0].midpoint_multi(), phi(j, a)[0].midpoint_multi());
   Lu<Multi> lu;
   if (count == 0 || !lu.factor(normal)) return {};
   std::vector<std::vector<Multi>> delta(count);
@@ -178,7 +182,8 @@ Defect::Bound Defect::over(const Series& centered, const Ball& center, const Bal
   for (std::size_t a = 0; a < n; ++a)
     for (const bool projected : {false, true}) parts.push_back({a, 0, projected, {}, {}, {}});
   for (std::size_t r = 0; r < hidden_.size(); ++r)
-    for (std::size_t k = 0; k <= static_cast<std::size_t>(hidden_[r]); ++k) parts.push_back({n + r, k, false, {}, {}, {}});
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(hidden_[r]); ++k)
+      parts.push_back({n + r, k, false, {}, {}, {}});
   Series delta;
   const auto coefficient = [&](const Part& p, std::size_t k) {
     if (p.projected) return abs(corrected(p.root, k, delta));
@@ -200,7 +205,8 @@ Defect::Bound Defect::over(const Series& centered, const Ball& center, const Bal
   for (const Part& p : parts) {
     Ball scale = p.root >= n ? Ball(1) : newton;
     if (p.root >= n)
-      if (const Ball terms = machine_->terms(p.root, p.derivative) * rising(0, p.derivative); terms.is_finite()) scale = max(scale, lower_end(terms));
+      if (const Ball terms = machine_->terms(p.root, p.derivative) * rising(0, p.derivative); terms.is_finite())
+        scale = max(scale, lower_end(terms));
     const Ball taylor = p.polynomial + p.remainder;
     const bool counts = reaches_beyond(p.remainder, p.polynomial) && reaches_beyond(p.remainder / scale, quiet_);
     if (!taylor.is_finite() || counts) b.sharp = false;
@@ -217,9 +223,11 @@ void Defect::piece(const DenseStep& step, const Ball& begin, const Ball& end, in
   const Bound b = over(shifted(step.coefficients, center - step.begin), center, radius);
   const bool finite = b.newton.is_finite() && b.projected.is_finite() && b.constraints.is_finite();
   const auto says_more = [&] {
-    return reaches_beyond(b.newton, max(newton_, quiet_)) || reaches_beyond(b.projected, max(projected_, quiet_)) || reaches_beyond(b.constraints, max(constraints_, quiet_));
+    return reaches_beyond(b.newton, max(newton_, quiet_)) || reaches_beyond(b.projected, max(projected_, quiet_)) ||
+           reaches_beyond(b.constraints, max(constraints_, quiet_));
   };
-  const bool beside_kink = !b.smooth && finite && halvings < kMostHalvingsAtKinks && pieces_of_step_ < kMostPieces && says_more();
+  const bool beside_kink =
+      !b.smooth && finite && halvings < kMostHalvingsAtKinks && pieces_of_step_ < kMostPieces && says_more();
   if (b.sharp || (halvings >= kMostHalvings && !beside_kink)) return keep(b);
   piece(step, begin, center, halvings + 1);
   piece(step, center, end, halvings + 1);
@@ -234,7 +242,8 @@ void Defect::keep(const Bound& b) {
 }
 
 void Defect::step(const DenseStep& step) {
-  for (std::size_t j = 0; j < step.coefficients.size(); ++j) ANHOLON_ASSERT(step.coefficients[j].size() >= static_cast<std::size_t>(s_.structure.d[j]));
+  for (std::size_t j = 0; j < step.coefficients.size(); ++j)
+    ANHOLON_ASSERT(step.coefficients[j].size() >= static_cast<std::size_t>(s_.structure.d[j]));
   const BallScope precision(bits_);
   // Where the last step ended and this one begins, the state as far as it belongs to the unknowns.
   const Series ends = shifted(step.coefficients, step.end - step.begin);
@@ -258,7 +267,9 @@ void Defect::step(const DenseStep& step) {
 std::optional<RigorousReport> Defect::report() const {
   if (pieces_ == 0) return std::nullopt;
   const auto times = times_ == 0 ? std::nullopt : std::optional(reached_);
-  return RigorousReport{times, pieces_, newton_.bound_text(), projected_.bound_text(), constraints_.bound_text(), joints_.bound_text(), bits_};
+  return RigorousReport{
+      times, pieces_, newton_.bound_text(), projected_.bound_text(), constraints_.bound_text(), joints_.bound_text(),
+      bits_};
 }
 
 }  // namespace anholon

@@ -1,18 +1,20 @@
-// The defect of the dense output, enclosed: by how much the motion that was delivered misses Newton's law and the constraints.
+// The defect of the dense output, enclosed: by how much the motion that was delivered misses Newton's law and the
+// constraints.
 //
-// On each step every unknown is a polynomial x_j(t) whose coefficients are binary numbers, so exact, and so are its derivatives; the
-// parameters are exact as the user wrote them. Put into
+// On each step every unknown is a polynomial x_j(t) whose coefficients are binary numbers, so exact, and so are its
+// derivatives; the parameters are exact as the user wrote them. Put into
 //
-//   Newton's law    E_a - G_a - N_a                       (theory: certificate, C1; N with the polynomials of the multipliers)
-//   the same without multipliers: E_a - G_a - (Phi^T lambda*)_a with any lambda*, chosen so that little is left               (C2)
-//   constraints     phi_r and its derivatives by t, as far as they are hidden constraints     (C3)
+//   Newton's law    E_a - G_a - N_a                       (theory: certificate, C1; N with the polynomials of the
+//   multipliers) the same without multipliers: E_a - G_a - (Phi^T lambda*)_a with any lambda*, chosen so that little is
+//   left               (C2) constraints     phi_r and its derivatives by t, as far as they are hidden constraints (C3)
 //
-// and evaluated in balls, these give bounds that hold for the trajectory itself, whatever rounding, step control or linear algebra
-// made it: a backward error. Where steps meet the polynomials need not: the largest jump of the state is reported beside.
+// and evaluated in balls, these give bounds that hold for the trajectory itself, whatever rounding, step control or
+// linear algebra made it: a backward error. Where steps meet the polynomials need not: the largest jump of the state is
+// reported beside.
 //
-// For one time a ball of that time is put in. For all times of an interval c + s, |s| <= r, each residual R is a Taylor polynomial
-// about c with the remainder of Lagrange,  |R| <= sum_(k<K) |R_k(c)| r^k + |R_K(c +- r)| r^K, coefficients by the machine of balls;
-// the interval is halved while the remainder is what counts (theory: defect).
+// For one time a ball of that time is put in. For all times of an interval c + s, |s| <= r, each residual R is a Taylor
+// polynomial about c with the remainder of Lagrange,  |R| <= sum_(k<K) |R_k(c)| r^k + |R_K(c +- r)| r^K, coefficients
+// by the machine of balls; the interval is halved while the remainder is what counts (theory: defect).
 //
 // All bounds are relative as those of the residual report: to the largest term, and at least to 1.
 #pragma once
@@ -43,15 +45,17 @@ struct RigorousReport {
   std::optional<std::size_t> times;  // that the motion reached, at which the bounds hold; nothing: at all
   std::size_t pieces = 0;            // in which these were found
   std::string newton, projected, constraints, joints;  // bounds, rounded upwards; "inf" where there is none
-  long bits = 0;                            // of the midpoints of balls
+  long bits = 0;                                       // of the midpoints of balls
 };
 
 class Defect {
  public:
-  // Bounds at `times` times, spread evenly from begin to end; at all times if 0. `significand`: bits of the numbers of the motion.
+  // Bounds at `times` times, spread evenly from begin to end; at all times if 0. `significand`: bits of the numbers of
+  // the motion.
   Defect(const Scenario& scenario, std::size_t times, const Ball& begin, const Ball& end, long significand);
 
-  // The steps of the motion, one after the other. REQUIRES: a coefficient at least for every derivative that belongs to the state.
+  // The steps of the motion, one after the other. REQUIRES: a coefficient at least for every derivative that belongs to
+  // the state.
   void step(const DenseStep& step);
   // Nothing where the motion reached none of the times.
   std::optional<RigorousReport> report() const;
@@ -79,10 +83,10 @@ class Defect {
   Ball begin_, end_, quiet_;
   Tape tape_;
   std::size_t phi_ = 0, scale_ = 0;  // the first root of Phi; of E, G, N
-  std::vector<int> hidden_;  // derivatives of each constraint that are to vanish
+  std::vector<int> hidden_;          // derivatives of each constraint that are to vanish
   std::vector<Ball> parameters_;
   std::unique_ptr<Machine<Ball>> machine_;
-  int orders_ = -1;          // that the machine has room for
+  int orders_ = -1;                      // that the machine has room for
   std::vector<std::vector<Ball>> last_;  // derivatives of the unknowns where the last step ended
   Ball newton_, projected_, constraints_, joints_;
 };

@@ -70,12 +70,14 @@ std::vector<std::size_t> dependent_coordinates(const Mechanics& m, const std::ve
       pivots = best_pivots(m, constraints, elsewhere);
     }
     if (pivots.size() < constraints.size())
-      throw Failure({}, "the constraints do not determine as many coordinates as there are constraints", "look for constraints that say the same");
+      throw Failure({}, "the constraints do not determine as many coordinates as there are constraints",
+                    "look for constraints that say the same");
     return pivots;
   }
   if (asked.size() != constraints.size())
-    throw Failure({}, "to eliminate: " + std::to_string(asked.size()) + " coordinates (" + list_of(model, asked) + "), but there are " +
-                          std::to_string(constraints.size()) + " independent constraints",
+    throw Failure({},
+                  "to eliminate: " + std::to_string(asked.size()) + " coordinates (" + list_of(model, asked) +
+                      "), but there are " + std::to_string(constraints.size()) + " independent constraints",
                   "as many dependent coordinates as constraints");
   Matrix<double> phi_D(constraints.size(), asked.size());
   for (std::size_t i = 0; i < phi_D.rows; ++i)
@@ -92,7 +94,9 @@ std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vecto
   const std::size_t n = m.q.size(), s = constraints.size();
   std::vector<QuasiVelocity> list = model.quasi;
   if (list.size() > n - s)
-    throw Failure(list[n - s].span, std::to_string(list.size()) + " quasi-velocities; the constraints leave room for " + std::to_string(n - s),
+    throw Failure(list[n - s].span,
+                  std::to_string(list.size()) + " quasi-velocities; the constraints leave room for " +
+                      std::to_string(n - s),
                   "leave out " + std::to_string(list.size() - (n - s)));
   // At a singular state the rows that are regular elsewhere serve for the equations themselves.
   PointValues elsewhere(arbitrary);
@@ -108,10 +112,12 @@ std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vecto
   const auto independent = [](const Matrix<double>& a) { return choose_rows(a, 1e-6).independent.size() == a.rows; };
   for (const QuasiVelocity& u : list) {
     std::vector<double> row;
-    for (Expr e : gradient(u.value, jets(model, static_cast<unsigned>(u.order)))) row.push_back((singular ? elsewhere : at)(e));
+    for (Expr e : gradient(u.value, jets(model, static_cast<unsigned>(u.order))))
+      row.push_back((singular ? elsewhere : at)(e));
     const Matrix<double> more = with(row);
     if (!independent(more))
-      throw Failure(u.span, "the quasi-velocity '" + u.name + "' depends on the constraints and the quasi-velocities before it",
+      throw Failure(u.span,
+                    "the quasi-velocity '" + u.name + "' depends on the constraints and the quasi-velocities before it",
                     "n - s quasi-velocities are independent of each other and of the constraints");
     rows = more;
   }
@@ -146,14 +152,16 @@ PointValues values_near(const Model& model, const std::vector<double>& parameter
 
 EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::size_t>& constraints, Unknowns unknowns,
                                      const std::vector<std::size_t>& wanted, PointValues& at) {
-  EliminationChoice choice{constraints, dependent_coordinates(m, constraints, wanted, at), unknowns == Unknowns::quasi_velocities, {}};
+  EliminationChoice choice{
+      constraints, dependent_coordinates(m, constraints, wanted, at), unknowns == Unknowns::quasi_velocities, {}};
   if (choice.by_quasi) choice.quasi = quasi_velocities(m, constraints, choice.dependent, at);
   return choice;
 }
 
 // Of those constraints `all` that are independent.
-static Elimination elimination_of(const Mechanics& m, const std::vector<std::size_t>& all, Unknowns unknowns, const std::vector<StateOverride>& overrides,
-                                  const std::vector<std::size_t>& wanted, bool solve, unsigned order) {
+static Elimination elimination_of(const Mechanics& m, const std::vector<std::size_t>& all, Unknowns unknowns,
+                                  const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted,
+                                  bool solve, unsigned order) {
   const Model& model = *m.model;
   Column es;
   for (const Parameter& p : model.parameters) es.push_back(p.value);
@@ -184,7 +192,8 @@ Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::ve
   return elimination_of(m, all, unknowns, overrides, wanted, solve, order);
 }
 
-Elimination elimination_of_reactions(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted) {
+Elimination elimination_of_reactions(const Mechanics& m, const std::vector<StateOverride>& overrides,
+                                     const std::vector<std::size_t>& wanted) {
   std::vector<std::size_t> ideal;
   for (std::size_t r = 0; r < m.phi.size(); ++r)
     if (!m.model->constraints[r].by) ideal.push_back(r);

@@ -1,15 +1,15 @@
 #include "run/ensemble.h"
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <mutex>
 
 #include "base/assert.h"
 #include "run/cases.h"
@@ -28,9 +28,9 @@ std::size_t together(std::size_t cases) {
 // Cases on their way for each thread, however they are grouped: room for one that takes long while the others go on.
 constexpr std::size_t kWindow = 256;
 
-// Debian's libtbb is not compiled for ThreadSanitizer, which so sees neither that what a thread is given was ready before, nor that
-// one stage ends before the next begins. `joined`, `ready` and the lock of the two stages in order say it once more; so all other
-// races are found.
+// Debian's libtbb is not compiled for ThreadSanitizer, which so sees neither that what a thread is given was ready
+// before, nor that one stage ends before the next begins. `joined`, `ready` and the lock of the two stages in order say
+// it once more; so all other races are found.
 void joined() {
   static std::mutex all;
   const std::lock_guard lock(all);
@@ -81,14 +81,16 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
     g->hand_over();
     return g;
   };
-  const std::vector<std::size_t> to_compare = o.estimate == ErrorEstimate::never ? std::vector<std::size_t>{} : cases_to_compare(o.cases);
+  const std::vector<std::size_t> to_compare =
+      o.estimate == ErrorEstimate::never ? std::vector<std::size_t>{} : cases_to_compare(o.cases);
   std::vector<CaseResult> compared;
   const auto deliver = [&](Group* g) {
     joined();
     const std::unique_ptr<Group> owned(g);
     const std::lock_guard lock(in_order);
     for (const CaseResult& r : g->take()) {
-      // What Ctrl-C cut short is no result, and neither is what comes after it: the results are the first ones, without a gap.
+      // What Ctrl-C cut short is no result, and neither is what comes after it: the results are the first ones, without
+      // a gap.
       cut = cut || (r.outcome.kind == OutcomeKind::interrupted && cancelled());
       if (cut) continue;
       sink.result(r);
@@ -104,15 +106,19 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
   tbb::task_arena arena(static_cast<int>(report.threads));
   joined();
   arena.execute([&] {
-    tbb::parallel_pipeline(kWindow / group * report.threads, tbb::make_filter<void, Group*>(tbb::filter_mode::serial_in_order, begin) &
-                                                         tbb::make_filter<Group*, Group*>(tbb::filter_mode::parallel, integrate) &
-                                                         tbb::make_filter<Group*, void>(tbb::filter_mode::serial_in_order, deliver));
+    tbb::parallel_pipeline(kWindow / group * report.threads,
+                           tbb::make_filter<void, Group*>(tbb::filter_mode::serial_in_order, begin) &
+                               tbb::make_filter<Group*, Group*>(tbb::filter_mode::parallel, integrate) &
+                               tbb::make_filter<Group*, void>(tbb::filter_mode::serial_in_order, deliver));
   });
   const std::lock_guard lock(in_order);
   for (const CaseWorker& w : workers) report.again += w.again();
-  if (report.done < o.cases) report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
+  if (report.done < o.cases)
+    report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   else if (o.estimate != ErrorEstimate::never)
-    report.error = cases_error(*s.system.form, o, compared, [&](std::size_t count, const auto& f) { arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, f); }); });
+    report.error = cases_error(*s.system.form, o, compared, [&](std::size_t count, const auto& f) {
+      arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, f); });
+    });
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

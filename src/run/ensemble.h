@@ -1,10 +1,11 @@
 // Many motions of one model, each with parameters, initial data and an end of its own.
 //
-// The model is read and put into equations once; a case has other numbers in the same program. Every case ends with an outcome of its
-// own and never stops the others. Which thread computes a case, and after which others, has no influence on its bits.
+// The model is read and put into equations once; a case has other numbers in the same program. Every case ends with an
+// outcome of its own and never stops the others. Which thread computes a case, and after which others, has no influence
+// on its bits.
 //
-// Memory is bounded by a window: results are given in the order of the cases, and no case is begun that lies further ahead of the
-// first one that is not done.
+// Memory is bounded by a window: results are given in the order of the cases, and no case is begun that lies further
+// ahead of the first one that is not done.
 #pragma once
 #include <functional>
 
@@ -26,34 +27,35 @@ struct EnsembleCase {
 };
 
 struct EnsembleOptions {
-  StateChoice state;                                // common to all cases
+  StateChoice state;  // common to all cases
   std::vector<Varied> varied;
   std::size_t cases = 0;
-  std::function<EnsembleCase(std::size_t)> numbers; // of a case, by its number alone: many threads ask at once
+  std::function<EnsembleCase(std::size_t)> numbers;  // of a case, by its number alone: many threads ask at once
   Rational to;
-  std::vector<Rational> at;                         // rows at these times, ascending; none: the final state alone is kept
+  std::vector<Rational> at;  // rows at these times, ascending; none: the final state alone is kept
   Rational tolerance{1, 1000000000000};
-  int order = 0;                                    // of the Taylor polynomials; 0: from the tolerance
-  Method method = Method::automatic;                // rk, bdf: one case after the other, as `simulate` does; else Taylor's, and `simulate` for what it cannot finish
-  std::size_t most_steps = 50'000'000;              // of a case
-  ErrorEstimate estimate = ErrorEstimate::never;    // of the cases that `cases_to_compare` names
-  bool kernel = true;                               // as in SimulationOptions; without, a case has the bits of `simulate`
-  std::size_t threads = 0;                          // 0: as many as the machine has
-  std::function<void(std::size_t done)> progress;   // by one thread at a time
-  std::function<bool()> cancelled;                  // many threads ask at once
-  // The same model again, with a graph of its own: events, completed states and what stopped on the way build expressions, which
-  // threads cannot do in one graph.
+  int order = 0;                        // of the Taylor polynomials; 0: from the tolerance
+  Method method = Method::automatic;    // rk, bdf: one case after the other, as `simulate` does; else Taylor's, and
+                                        // `simulate` for what it cannot finish
+  std::size_t most_steps = 50'000'000;  // of a case
+  ErrorEstimate estimate = ErrorEstimate::never;  // of the cases that `cases_to_compare` names
+  bool kernel = true;                             // as in SimulationOptions; without, a case has the bits of `simulate`
+  std::size_t threads = 0;                        // 0: as many as the machine has
+  std::function<void(std::size_t done)> progress;  // by one thread at a time
+  std::function<bool()> cancelled;                 // many threads ask at once
+  // The same model again, with a graph of its own: events, completed states and what stopped on the way build
+  // expressions, which threads cannot do in one graph.
   std::function<std::shared_ptr<const Model>()> again;
-  std::optional<std::size_t> like;                  // the case with whose numbers the scenario was made; none: those of the model
+  std::optional<std::size_t> like;  // the case with whose numbers the scenario was made; none: those of the model
 };
 
 struct CaseResult {
   std::size_t number = 0;
-  std::vector<double> values;             // of what is varied
+  std::vector<double> values;  // of what is varied
   Outcome outcome;
-  double t = 0;                           // reached
+  double t = 0;  // reached
   std::size_t steps = 0;
-  std::vector<double> last;               // of `ensemble_columns`, at the end or at the last good state; empty if there is none
+  std::vector<double> last;  // of `ensemble_columns`, at the end or at the last good state; empty if there is none
   std::vector<std::vector<double>> rows;  // the same at the times asked for, t first
 };
 
@@ -75,10 +77,10 @@ struct CasesError {
 std::vector<std::size_t> cases_to_compare(std::size_t cases);
 
 struct EnsembleReport {
-  Outcome outcome;               // interrupted, or finished although cases may have stopped
+  Outcome outcome;  // interrupted, or finished although cases may have stopped
   std::size_t done = 0, finished = 0;
-  std::size_t again = 0;         // cases that needed a graph of their own
-  std::size_t most_held = 0;     // results at once in memory
+  std::size_t again = 0;      // cases that needed a graph of their own
+  std::size_t most_held = 0;  // results at once in memory
   std::size_t threads = 0;
   double seconds = 0;
   CasesError error;
@@ -87,8 +89,8 @@ struct EnsembleReport {
 // What is kept of a state: coordinates, velocities, the model's states, outputs.
 std::vector<std::string> ensemble_columns(const Model& model);
 
-// Where the model's own numbers have no consistent start: the scenario of the first case that has one, which `options` remember.
-// Not ok if none of the first cases has.
+// Where the model's own numbers have no consistent start: the scenario of the first case that has one, which `options`
+// remember. Not ok if none of the first cases has.
 Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& options, Scenario& scenario);
 
 // The scenario is that of the model's own numbers, or of `options.like`; threads only read it.

@@ -23,7 +23,9 @@ class SharperRun {
   using V = Wider<N>;
 
   SharperRun(const Scenario& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<V>& run)
-      : s_(s), o_(o), motion_(s, settings, {}, orders_of_rows(s)), outputs_(s, motion_.parameters()), highest_(largest_order(s, motion_.program().d)), tolerance_(std::exp(settings.log_tolerance)), run_(run), rows_(run.rows.take()) {
+      : s_(s), o_(o), motion_(s, settings, {}, orders_of_rows(s)), outputs_(s, motion_.parameters()),
+        highest_(largest_order(s, motion_.program().d)), tolerance_(std::exp(settings.log_tolerance)), run_(run),
+        rows_(run.rows.take()) {
     for (const SampledRow<V>& r : rows_) times_.push_back(time_of(r));
     compared_.resize(rows_.size());
   }
@@ -86,7 +88,9 @@ class SharperRun {
     if (const auto t = r.label.empty() ? std::nullopt : parse_rational(r.label)) return from_rational<W>(*t);
     return convert<W>(r.t);
   }
-  std::size_t resets_before(std::size_t row) const { return run_.knows_resets ? uncounted_ + rows_[row].resets : resets_; }
+  std::size_t resets_before(std::size_t row) const {
+    return run_.knows_resets ? uncounted_ + rows_[row].resets : resets_;
+  }
 
   // Of all columns of a row those of the run.
   template <class T>
@@ -101,8 +105,8 @@ class SharperRun {
   W last_step() const { return abs(W(motion_.stepper().time() - motion_.stepper().before())); }
   W from_now(std::size_t row) const { return abs(W(times_[row] - motion_.stepper().time())); }
 
-  // What lies in the last step. Where a kink ends it, the kink of the other run may lie on the other side of a row: the row is compared with the
-  // motions before and after it, and the nearer one counts.
+  // What lies in the last step. Where a kink ends it, the kink of the other run may lie on the other side of a row: the
+  // row is compared with the motions before and after it, and the nearer one counts.
   Outcome rows_of_step() {
     constexpr double kAboutAKink = 1e-3;
     const std::size_t first = next_;
@@ -112,19 +116,24 @@ class SharperRun {
     if (was_kink_)
       for (std::size_t i = first; i-- > 0 && abs(W(times_[i] - motion_.stepper().before())) < about;) compare(i);
     if (at_kink_)
-      for (std::size_t i = next_; i < rows_.size() && resets_before(i) == resets_ && from_now(i) < about; ++i) compare(i);
+      for (std::size_t i = next_; i < rows_.size() && resets_before(i) == resets_ && from_now(i) < about; ++i)
+        compare(i);
     return {};
   }
 
-  // The other run may have met the event somewhat sooner or later: rows are compared on the side of it on which they were made.
+  // The other run may have met the event somewhat sooner or later: rows are compared on the side of it on which they
+  // were made.
   Outcome settle(bool& goes_on) {
     const W within = last_step();
     std::vector<Occurrence<W>> occurrences;
-    for (; next_ < rows_.size() && run_.knows_resets && resets_before(next_) == resets_ && sets() && from_now(next_) < within; ++next_)
+    for (; next_ < rows_.size() && run_.knows_resets && resets_before(next_) == resets_ && sets() &&
+           from_now(next_) < within;
+         ++next_)
       if (Outcome o = compare(next_); !o.ok()) return o;
     const Outcome o = motion_.settle(occurrences, goes_on);
     bool set = false;
-    const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since) : motion_.stepper().time() < convert<W>(*run_.since));
+    const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since)
+                                                  : motion_.stepper().time() < convert<W>(*run_.since));
     for (const Occurrence<W>& each : occurrences) {
       if (counted) met_.push_back({each.event, each.t});
       set = set || !each.changes.empty();
@@ -137,7 +146,9 @@ class SharperRun {
       at_kink_ = was_kink_ = false;
       for (; next_ < rows_.size() && resets_before(next_) < resets_; ++next_) lose(next_);
     }
-    for (; next_ < rows_.size() && resets_before(next_) == resets_ && (set || !goes_on) && (passed(times_[next_]) || !goes_on) && from_now(next_) < within; ++next_)
+    for (; next_ < rows_.size() && resets_before(next_) == resets_ && (set || !goes_on) &&
+           (passed(times_[next_]) || !goes_on) && from_now(next_) < within;
+         ++next_)
       if (Outcome at = compare(next_); !at.ok()) return at;
     // Events of one moment may come in another order.
     if (!goes_on && next_ < rows_.size() && from_now(next_) > later()) lose(next_);
@@ -151,11 +162,14 @@ class SharperRun {
     return false;
   }
 
-  // All rows are compared, or cannot be. A row after an event that is still to come lets the run go on a little further.
+  // All rows are compared, or cannot be. A row after an event that is still to come lets the run go on a little
+  // further.
   bool done() {
     if (lost_) return true;
     const bool at_end = motion_.stepper().time() == end_;
-    const auto before_end = [&](const EventMoment<V>& e) { return forward_ ? !(convert<W>(e.t) > times_.back()) : !(convert<W>(e.t) < times_.back()); };
+    const auto before_end = [&](const EventMoment<V>& e) {
+      return forward_ ? !(convert<W>(e.t) > times_.back()) : !(convert<W>(e.t) < times_.back());
+    };
     const auto expected = static_cast<std::size_t>(std::count_if(run_.events.begin(), run_.events.end(), before_end));
     if (!at_end || (next_ == rows_.size() && met_.size() >= expected)) return at_end;
     if (extended_) {
@@ -181,28 +195,32 @@ class SharperRun {
     std::vector<W> run;
     for (const V& v : rows_[i].values) run.push_back(convert<W>(v));
     const std::vector<double> missed = kept(missed_at(t));
-    RowComparison::Row row = difference(s_, to_double(t), run, kept(row_values(s_, highest_, motion_.point(), outputs_)), outputs_);
+    RowComparison::Row row =
+        difference(s_, to_double(t), run, kept(row_values(s_, highest_, motion_.point(), outputs_)), outputs_);
     for (std::size_t j = 0; j < row.differences.size(); ++j) row.differences[j] += missed[j];
     if (!compared_[i] || weight(row) < weight(*compared_[i])) compared_[i] = std::move(row);
     return {};
   }
 
-  // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the equations at a row, by
-  // far more than the tolerance, the state misses their difference times the step. Kinks and events make jumps at its ends.
+  // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the
+  // equations at a row, by far more than the tolerance, the state misses their difference times the step. Kinks and
+  // events make jumps at its ends.
   std::vector<double> missed_at(const W& t) {
     constexpr double kFarMore = 1e4;
     const Stepper<M>& stepper = motion_.stepper();
     const Expansion<W>& here = motion_.point();
     const std::size_t n = s_.system.coordinates;
     std::vector<double> missed(row_columns(s_, highest_).size(), 0.0);
-    const bool inside = forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
+    const bool inside =
+        forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
     if (!inside || at_kink_ || was_kink_ || motion_.fired()) return missed;
     const double h = to_double(last_step());
     for (std::size_t a = 0; a < n; ++a) {
       const int d = motion_.program().d[a];
       if (d == 0) continue;
       const W leading = here.derivative(a, d);
-      const double by = to_double(W(abs(W(leading_of_polynomial(a, t) - leading)))) * h, size = std::max(1.0, std::abs(to_double(here.derivative(a, d - 1))));
+      const double by = to_double(W(abs(W(leading_of_polynomial(a, t) - leading)))) * h,
+                   size = std::max(1.0, std::abs(to_double(here.derivative(a, d - 1))));
       if (!(by > kFarMore * tolerance_ * size)) continue;
       missed[static_cast<std::size_t>(d - 1) * n + a] = by;
       if (d > 1) missed[static_cast<std::size_t>(d - 2) * n + a] = by * h;
@@ -249,7 +267,8 @@ class SharperRun {
 };
 
 template <Number M, Number N>
-void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<Wider<N>>& run, SimulationReport& report) {
+void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<Wider<N>>& run,
+             SimulationReport& report) {
   SharperRun<M, N> sharper(s, o, settings, run);
   const Outcome outcome = sharper.go();
   const std::optional<double> until = sharper.last_compared();
@@ -270,8 +289,10 @@ void SampledRows<W>::add(const W& t, const std::vector<W>& values, std::size_t r
   if (last_ && kept_.size() > 1 && (kept_[1].row.t > kept_[0].row.t ? t < last_->t : t > last_->t)) return;
   const double pace = pace_to(t, values);
   last_ = SampledRow<W>{t, values, resets, label};
-  if (in_group_ == 0) kept_.push_back({*last_, pace});
-  else if (pace > kept_.back().pace) kept_.back() = {*last_, pace};
+  if (in_group_ == 0)
+    kept_.push_back({*last_, pace});
+  else if (pace > kept_.back().pace)
+    kept_.back() = {*last_, pace};
   in_group_ = (in_group_ + 1) % stride_;
   if (kept_.size() < kMost || in_group_ != 0) return;
   // Of each two neighbours the faster one; the first row has no pace.
@@ -308,7 +329,8 @@ std::vector<SampledRow<W>> SampledRows<W>::take() {
 }
 
 template <Number W>
-RowComparison::Row difference(const Scenario& s, double t, const std::vector<W>& run, const std::vector<W>& sharper, const RowOutputs<W>& outputs) {
+RowComparison::Row difference(const Scenario& s, double t, const std::vector<W>& run, const std::vector<W>& sharper,
+                              const RowOutputs<W>& outputs) {
   RowComparison::Row row{t, {}, {}, {}};
   const std::size_t n = sharper.size(), monitors = s.model->monitors.size();
   for (std::size_t j = 0; j < n; ++j) {
@@ -322,17 +344,22 @@ RowComparison::Row difference(const Scenario& s, double t, const std::vector<W>&
 template <Number N>
 double written_roundoff(const SimulationOptions& o) {
   const double of_text = 0.5 * std::pow(10.0, -(o.digits + 1));
-  if constexpr (std::same_as<N, Multi>) return of_text;
-  else if constexpr (std::same_as<N, Quad>) return o.digits > 16 ? std::max(of_text, to_double(unit_roundoff<N>())) : to_double(unit_roundoff<N>());
-  else return to_double(unit_roundoff<N>());
+  if constexpr (std::same_as<N, Multi>)
+    return of_text;
+  else if constexpr (std::same_as<N, Quad>)
+    return o.digits > 16 ? std::max(of_text, to_double(unit_roundoff<N>())) : to_double(unit_roundoff<N>());
+  else
+    return to_double(unit_roundoff<N>());
 }
 
 template <Number N>
-void estimate_error(const Scenario& s, const SimulationOptions& o, RunToJudge<Wider<N>>& run, SimulationReport& report) {
+void estimate_error(const Scenario& s, const SimulationOptions& o, RunToJudge<Wider<N>>& run,
+                    SimulationReport& report) {
   const Rational tolerance = o.tolerance / kSharper;
   StepSettings settings{natural_logarithm(tolerance), 0, o.most_steps, o.cancelled};
   // A stiff motion that is short by another method is long for Taylor.
-  if (o.estimate == ErrorEstimate::short_runs) settings.most_steps = std::min(settings.most_steps, kMostTimesLonger * kShortRun);
+  if (o.estimate == ErrorEstimate::short_runs)
+    settings.most_steps = std::min(settings.most_steps, kMostTimesLonger * kShortRun);
   settings.order = taylor_order(settings.log_tolerance) + 2;
   std::string numbers = "with " + std::to_string(kMoreDigits) + " digits more";
   if constexpr (std::same_as<N, Multi>) {
@@ -345,22 +372,28 @@ void estimate_error(const Scenario& s, const SimulationOptions& o, RunToJudge<Wi
     bool wide_enough = true;
     if constexpr (std::same_as<N, long double>) wide_enough = !(tolerance.get_d() < to_double(unit_roundoff<N>()));
     numbers = wide_enough ? "in long double" : "in quadruple precision";
-    if (wide_enough) compare<long double, N>(s, o, settings, run, report);
-    else if constexpr (std::same_as<N, long double>) compare<Quad, N>(s, o, settings, run, report);
+    if (wide_enough)
+      compare<long double, N>(s, o, settings, run, report);
+    else if constexpr (std::same_as<N, long double>)
+      compare<Quad, N>(s, o, settings, run, report);
   }
-  if (report.error) report.error->means = "a second run " + numbers + ", tolerance " + number_text(tolerance.get_d(), 3) + ", order " + std::to_string(settings.order);
+  if (report.error)
+    report.error->means = "a second run " + numbers + ", tolerance " + number_text(tolerance.get_d(), 3) + ", order " +
+                          std::to_string(settings.order);
 }
 
-#define INSTANTIATE(W)            \
-  template class SampledRows<W>; \
-  template RowComparison::Row difference(const Scenario&, double, const std::vector<W>&, const std::vector<W>&, const RowOutputs<W>&);
+#define INSTANTIATE(W)                                                                                                 \
+  template class SampledRows<W>;                                                                                       \
+  template RowComparison::Row difference(const Scenario&, double, const std::vector<W>&, const std::vector<W>&,        \
+                                         const RowOutputs<W>&);
 INSTANTIATE(long double)
 INSTANTIATE(Quad)
 INSTANTIATE(Multi)
 #undef INSTANTIATE
 
-#define INSTANTIATE(N)                                                                                                  \
-  template void estimate_error<N>(const Scenario&, const SimulationOptions&, RunToJudge<Wider<N>>&, SimulationReport&); \
+#define INSTANTIATE(N)                                                                                                 \
+  template void estimate_error<N>(const Scenario&, const SimulationOptions&, RunToJudge<Wider<N>>&,                    \
+                                  SimulationReport&);                                                                  \
   template double written_roundoff<N>(const SimulationOptions&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

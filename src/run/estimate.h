@@ -1,9 +1,10 @@
-// The global error of a run, by a second and sharper one: in wider numbers where there are any, at a tolerance 100 times smaller
-// and two orders higher, from a start that differs in its last digits where both would round it alike. The two are compared in every column, at
-// rows all along the run. A motion that forgets its start (a double pendulum after long) shows as digits lost.  (theory: integrals)
+// The global error of a run, by a second and sharper one: in wider numbers where there are any, at a tolerance 100
+// times smaller and two orders higher, from a start that differs in its last digits where both would round it alike.
+// The two are compared in every column, at rows all along the run. A motion that forgets its start (a double pendulum
+// after long) shows as digits lost.  (theory: integrals)
 #pragma once
-#include "run/row_comparison.h"
 #include "run/motion.h"
+#include "run/row_comparison.h"
 #include "run/simulate.h"
 
 namespace anholon {
@@ -17,7 +18,8 @@ struct SampledRow {
   std::string label;  // the time as it was asked for, where that says more
 };
 
-// Rows to be compared: all, or where there are many those between which the numbers change fastest, so that no short phase is left out.
+// Rows to be compared: all, or where there are many those between which the numbers change fastest, so that no short
+// phase is left out.
 template <Number W>
 class SampledRows {
  public:
@@ -59,7 +61,8 @@ struct RunToJudge {
 
 // N: the numbers of the run. Fills `error`, or `no_error`.
 template <Number N>
-void estimate_error(const Scenario& scenario, const SimulationOptions& options, RunToJudge<Wider<N>>& run, SimulationReport& report);
+void estimate_error(const Scenario& scenario, const SimulationOptions& options, RunToJudge<Wider<N>>& run,
+                    SimulationReport& report);
 
 // The relative round-off of the numbers that a run writes.
 template <Number N>
@@ -67,7 +70,8 @@ double written_roundoff(const SimulationOptions& options);
 
 // The differences of two rows.
 template <Number W>
-RowComparison::Row difference(const Scenario& scenario, double t, const std::vector<W>& run, const std::vector<W>& sharper, const RowOutputs<W>& outputs);
+RowComparison::Row difference(const Scenario& scenario, double t, const std::vector<W>& run,
+                              const std::vector<W>& sharper, const RowOutputs<W>& outputs);
 
 extern template class SampledRows<long double>;
 extern template class SampledRows<Quad>;

@@ -9,7 +9,7 @@ namespace anholon {
 
 template <Number N>
 NewtonResidual<N> certify(const std::vector<N>& inertia, const std::vector<N>& force, const std::vector<N>& reaction,
-                       const Matrix<N>& phi) {
+                          const Matrix<N>& phi) {
   NewtonResidual<N> c;
   const std::size_t n = inertia.size();
   std::vector<N> a(n, N(0));
@@ -45,9 +45,12 @@ namespace {
 
 template <Number N>
 std::string text(const N& x, int digits) {
-  if constexpr (std::same_as<N, Multi>) return number_text(x, digits + 2);
-  else if constexpr (std::same_as<N, Quad>) return quad_text(x, digits);
-  else return number_text(static_cast<double>(x));
+  if constexpr (std::same_as<N, Multi>)
+    return number_text(x, digits + 2);
+  else if constexpr (std::same_as<N, Quad>)
+    return quad_text(x, digits);
+  else
+    return number_text(static_cast<double>(x));
 }
 
 template <Number N>
@@ -69,18 +72,25 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
     if (Outcome o = point.extend(); !o.ok()) return o;
 
   const auto put = [&](const Column& c) { return put_masses(model, c); };
-  std::vector<std::pair<const char*, Column>> forces = {
-      {"Q", put(m.Q)}, {"QR", put(m.QR)}, {"Qomega", put(m.Qomega)}, {"minus_dVO", put(m.minus_dVO)},
-      {"minus_dVomega", put(m.minus_dVomega)}, {"Gamma", put(m.Gamma)}};
+  std::vector<std::pair<const char*, Column>> forces = {{"Q", put(m.Q)},
+                                                        {"QR", put(m.QR)},
+                                                        {"Qomega", put(m.Qomega)},
+                                                        {"minus_dVO", put(m.minus_dVO)},
+                                                        {"minus_dVomega", put(m.minus_dVomega)},
+                                                        {"Gamma", put(m.Gamma)}};
   if (!model.dissipation.empty()) forces.push_back({"QD", put(m.QD)});
   const std::size_t given = forces.size();  // before Newton's left side and the reactions
   forces.push_back({"inertia_term", newton_left_side(m)});
   forces.push_back({"N", put(m.N)});
   const Power p = power(m);
-  const std::vector<std::pair<const char*, Expr>> numbers = {
-      {"T_r", put_masses(model, m.T)}, {"S_r", put_masses(model, m.S)}, {"V_O", put_masses(model, m.V_O)},
-      {"V_omega", put_masses(model, m.V_omega)}, {"h", p.h}, {"power_noncons", p.noncons},
-      {"power_constraint", p.constraint}, {"dh_dt", p.dh_dt}};
+  const std::vector<std::pair<const char*, Expr>> numbers = {{"T_r", put_masses(model, m.T)},
+                                                             {"S_r", put_masses(model, m.S)},
+                                                             {"V_O", put_masses(model, m.V_O)},
+                                                             {"V_omega", put_masses(model, m.V_omega)},
+                                                             {"h", p.h},
+                                                             {"power_noncons", p.noncons},
+                                                             {"power_constraint", p.constraint},
+                                                             {"dh_dt", p.dh_dt}};
   const std::vector<Column> mass = mass_matrix(m);
   const std::vector<Load> loads = reactions(*m.model);
   Column es;
@@ -124,7 +134,10 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
     const auto j = s.system.variable(m.lambda[k].id);
     for (int order = 0; order <= multiplier_orders(s); ++order)
       r.lambda.push_back({derivative_name(multiplier_name(model, k), static_cast<unsigned>(order), Format::text),
-                          text(order == 0 ? multipliers[k] : j ? point.derivative(*j, order) : N(0), digits)});
+                          text(order == 0 ? multipliers[k]
+                               : j        ? point.derivative(*j, order)
+                                          : N(0),
+                               digits)});
   }
   N dh(0), rate(0);
   const std::size_t first_number = at;
@@ -160,8 +173,11 @@ Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, St
       if (const N& v = out.made_of(i); v > most) most = v;
     return most;
   };
-  const auto of_law = [&](const N& miss) { return relative_miss(miss, c.largest, [&] { return greatest_made_of(0, (given + 2) * n); }); };
-  const N power_miss = relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))), [&] { return greatest_made_of(first_number, numbers.size()); });
+  const auto of_law = [&](const N& miss) {
+    return relative_miss(miss, c.largest, [&] { return greatest_made_of(0, (given + 2) * n); });
+  };
+  const N power_miss = relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))),
+                                     [&] { return greatest_made_of(first_number, numbers.size()); });
   const auto small = [](const N& x) { return number_text(to_double(x), 3); };
   r.residuals = {{"newton", small(of_law(c.newton))},
                  {"projected", small(of_law(c.projected))},
@@ -178,17 +194,25 @@ Outcome evaluate(const Scenario& s, const StateChoice& choice, int digits, State
 
 Outcome evaluate(const Scenario& s, const StateChoice& choice, Precision precision, int digits, StateReport& report) {
   switch (precision) {
-    case Precision::real: case Precision::long_real: return evaluate_in<long double>(s, choice, digits, report);
-    case Precision::quad: return evaluate_in<Quad>(s, choice, digits, report);
-    case Precision::multi: break;
+  case Precision::real:
+  case Precision::long_real:
+    return evaluate_in<long double>(s, choice, digits, report);
+  case Precision::quad:
+    return evaluate_in<Quad>(s, choice, digits, report);
+  case Precision::multi:
+    break;
   }
   const PrecisionScope scope(digits + 12);
   return evaluate_in<Multi>(s, choice, digits, report);
 }
 
-template NewtonResidual<double> certify(const std::vector<double>&, const std::vector<double>&, const std::vector<double>&, const Matrix<double>&);
-template NewtonResidual<long double> certify(const std::vector<long double>&, const std::vector<long double>&, const std::vector<long double>&, const Matrix<long double>&);
-template NewtonResidual<Quad> certify(const std::vector<Quad>&, const std::vector<Quad>&, const std::vector<Quad>&, const Matrix<Quad>&);
-template NewtonResidual<Multi> certify(const std::vector<Multi>&, const std::vector<Multi>&, const std::vector<Multi>&, const Matrix<Multi>&);
+template NewtonResidual<double> certify(const std::vector<double>&, const std::vector<double>&,
+                                        const std::vector<double>&, const Matrix<double>&);
+template NewtonResidual<long double> certify(const std::vector<long double>&, const std::vector<long double>&,
+                                             const std::vector<long double>&, const Matrix<long double>&);
+template NewtonResidual<Quad> certify(const std::vector<Quad>&, const std::vector<Quad>&, const std::vector<Quad>&,
+                                      const Matrix<Quad>&);
+template NewtonResidual<Multi> certify(const std::vector<Multi>&, const std::vector<Multi>&, const std::vector<Multi>&,
+                                       const Matrix<Multi>&);
 
 }  // namespace anholon

@@ -10,20 +10,22 @@ struct StateReport {
   std::string t;
   Named q, qdot;
   std::vector<std::pair<std::string, std::vector<std::string>>> forces;  // Q, QR, … by coordinate
-  Named derivatives;   // "x''" …
+  Named derivatives;                                                     // "x''" …
   Named lambda;
-  Named numbers;       // T_r, S_r, V_O, …
+  Named numbers;  // T_r, S_r, V_O, …
   std::vector<std::vector<std::string>> mass_matrix;
   struct Reaction {
     std::string body;
     std::vector<std::string> force, torque;
   };
   std::vector<Reaction> reactions;
-  Named residuals;     // newton (C1), projected (C2), constraints (C3), equations, power
+  Named residuals;  // newton (C1), projected (C2), constraints (C3), equations, power
 };
 
-// real, long_real: computed in long double and rounded to double. digits: of the numbers written in the others, and of the computation in multi.
-Outcome evaluate(const Scenario& scenario, const StateChoice& choice, Precision precision, int digits, StateReport& report);
+// real, long_real: computed in long double and rounded to double. digits: of the numbers written in the others, and of
+// the computation in multi.
+Outcome evaluate(const Scenario& scenario, const StateChoice& choice, Precision precision, int digits,
+                 StateReport& report);
 // digits <= 16: long_real; else multi.
 Outcome evaluate(const Scenario& scenario, const StateChoice& choice, int digits, StateReport& report);
 
@@ -36,6 +38,6 @@ struct NewtonResidual {
 };
 template <Number N>
 NewtonResidual<N> certify(const std::vector<N>& inertia, const std::vector<N>& force, const std::vector<N>& reaction,
-                       const Matrix<N>& phi);
+                          const Matrix<N>& phi);
 
 }  // namespace anholon

@@ -16,8 +16,10 @@ template <Number N>
 std::vector<WatchedSeries> Motion<N>::watched() const {
   std::vector<WatchedSeries> list;
   const auto of_state = [&](Expr e) { return orders_needed(s_, {&e, 1}) <= 0; };
-  for (const Event& e : s_.model->events) list.push_back({quadratures_.size() + list.size(), e.direction, e.ends_step(), of_state(e.when)});
-  for (const Bound& b : s_.model->bounds) list.push_back({quadratures_.size() + list.size(), 0, true, of_state(b.inside)});
+  for (const Event& e : s_.model->events)
+    list.push_back({quadratures_.size() + list.size(), e.direction, e.ends_step(), of_state(e.when)});
+  for (const Bound& b : s_.model->bounds)
+    list.push_back({quadratures_.size() + list.size(), 0, true, of_state(b.inside)});
   return list;
 }
 
@@ -32,13 +34,15 @@ template <Number N>
 Outcome Motion<N>::within_bounds() {
   for (std::size_t i = 0; i < s_.model->bounds.size(); ++i)
     if (leg_->stepper.quadrature(quadratures_.size() + s_.model->events.size() + i, W(0)) < W(0))
-      return {OutcomeKind::not_a_number, s_.model->bounds[i].fault + " at the start", "give the table more knots, or outside = \"hold\" or \"linear\""};
+      return {OutcomeKind::not_a_number, s_.model->bounds[i].fault + " at the start",
+              "give the table more knots, or outside = \"hold\" or \"linear\""};
   return {};
 }
 
 // The values of one event by the state and the modes as they are now; then they are changed.
 template <Number N>
-Outcome Motion<N>::fire(const Event& event, std::vector<W>& state, std::vector<W>& parameters, Occurrence<W>& occurrence) {
+Outcome Motion<N>::fire(const Event& event, std::vector<W>& state, std::vector<W>& parameters,
+                        Occurrence<W>& occurrence) {
   const Graph& g = *s_.model->graph;
   Column values;
   for (const Assignment& a : event.set) values.push_back(a.value);
@@ -55,7 +59,10 @@ Outcome Motion<N>::fire(const Event& event, std::vector<W>& state, std::vector<W
     const Node& n = g.node(in.symbol);
     const W* own = n.kind == Kind::jet || n.kind == Kind::state ? entry(n) : nullptr;
     const auto j = s_.system.variable(in.symbol);
-    machine.series(in.slot)[0] = n.kind == Kind::time ? point.time() : own ? *own : j ? point.derivative(*j, static_cast<int>(n.order)) : W(0);
+    machine.series(in.slot)[0] = n.kind == Kind::time ? point.time()
+                                 : own                ? *own
+                                 : j                  ? point.derivative(*j, static_cast<int>(n.order))
+                                                      : W(0);
   }
   machine.evaluate();
   for (std::size_t i = 0; i < event.set.size(); ++i) {
@@ -63,10 +70,13 @@ Outcome Motion<N>::fire(const Event& event, std::vector<W>& state, std::vector<W
     const std::string name = print(symbol, s_.model->names, Format::text);
     W* place = entry(g.node(symbol.id));
     if (!place)
-      return {OutcomeKind::inconsistent, "the event '" + event.name + "' sets " + name + ", which is no part of the state: it follows from the constraints",
+      return {OutcomeKind::inconsistent,
+              "the event '" + event.name + "' sets " + name +
+                  ", which is no part of the state: it follows from the constraints",
               "set what it follows from"};
     if (!is_finite(machine.value(i)))
-      return {OutcomeKind::not_a_number, "the event '" + event.name + "' gives " + name + " no value", "look for roots of negative numbers and divisions by zero in 'set'"};
+      return {OutcomeKind::not_a_number, "the event '" + event.name + "' gives " + name + " no value",
+              "look for roots of negative numbers and divisions by zero in 'set'"};
     occurrence.changes.push_back({name, *place, machine.value(i)});
   }
   for (std::size_t i = 0; i < event.set.size(); ++i) *entry(g.node(event.set[i].symbol.id)) = machine.value(i);
@@ -85,7 +95,8 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   for (const Fired<N>& f : fired) {
     if (f.series >= s_.model->events.size()) {
       const Bound& b = s_.model->bounds[f.series - s_.model->events.size()];
-      return {OutcomeKind::not_a_number, b.fault + " at t = " + number_text(to_double(W(start + convert<W>(f.where))), 12),
+      return {OutcomeKind::not_a_number,
+              b.fault + " at t = " + number_text(to_double(W(start + convert<W>(f.where))), 12),
               "end the motion before, give the table more knots, or outside = \"hold\" or \"linear\""};
     }
     const Event& event = s_.model->events[f.series];
@@ -111,19 +122,21 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   }
   W correction(0);
   const std::vector<W>& consistent = leg_->stepper.state();
-  for (std::size_t i = 0; i < state.size(); ++i) correction = std::max(correction, W(abs(W(consistent[i] - state[i])) / (W(1) + abs(state[i]))));
+  for (std::size_t i = 0; i < state.size(); ++i)
+    correction = std::max(correction, W(abs(W(consistent[i] - state[i])) / (W(1) + abs(state[i]))));
   if (correction > convert<W>(unit_roundoff<N>()) * W(1000))
     for (Occurrence<W>& each : occurrences)
       if (!each.changes.empty()) each.correction = correction;
   return {};
 }
 
-#define INSTANTIATE(N)                                                                       \
-  template std::vector<Expr> Motion<N>::with_events() const;                                 \
-  template std::vector<WatchedSeries> Motion<N>::watched() const;                            \
-  template void Motion<N>::set_modes(const std::vector<Wider<N>>&);                          \
-  template Outcome Motion<N>::within_bounds();                                               \
-  template Outcome Motion<N>::fire(const Event&, std::vector<Wider<N>>&, std::vector<Wider<N>>&, Occurrence<Wider<N>>&); \
+#define INSTANTIATE(N)                                                                                                 \
+  template std::vector<Expr> Motion<N>::with_events() const;                                                           \
+  template std::vector<WatchedSeries> Motion<N>::watched() const;                                                      \
+  template void Motion<N>::set_modes(const std::vector<Wider<N>>&);                                                    \
+  template Outcome Motion<N>::within_bounds();                                                                         \
+  template Outcome Motion<N>::fire(const Event&, std::vector<Wider<N>>&, std::vector<Wider<N>>&,                       \
+                                   Occurrence<Wider<N>>&);                                                             \
   template Outcome Motion<N>::settle(std::vector<Occurrence<Wider<N>>>&, bool&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -37,9 +37,12 @@ std::vector<std::size_t> made_of(const Scenario& s, std::size_t r, PointValues& 
 
 const char* name(Hypothesis h) {
   switch (h) {
-    case Hypothesis::dalembert: return "d'Alembert-Lagrange";
-    case Hypothesis::chetaev: return "Chetaev";
-    case Hypothesis::niu: return "Chetaev-Niu";
+  case Hypothesis::dalembert:
+    return "d'Alembert-Lagrange";
+  case Hypothesis::chetaev:
+    return "Chetaev";
+  case Hypothesis::niu:
+    return "Chetaev-Niu";
   }
   return "";
 }
@@ -60,7 +63,8 @@ Explanation explain(const Scenario& s) {
     x.blocks = blocks(s.structure);
     x.hidden = hidden_constraints(s.system, s.structure);
     const bool known = x.integrability.undecided.empty() && x.integrability.proved;
-    if (known && std::all_of(x.constraints.begin(), x.constraints.end(), [](const ConstraintFacts& c) { return c.hypothesis == Hypothesis::dalembert; }))
+    if (known && std::all_of(x.constraints.begin(), x.constraints.end(),
+                             [](const ConstraintFacts& c) { return c.hypothesis == Hypothesis::dalembert; }))
       x.accessible = s.structure.configuration_dimension - x.integrability.integrable();
   }
   return x;

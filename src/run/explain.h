@@ -17,17 +17,17 @@ const char* name(Hypothesis h);
 
 struct ConstraintFacts {
   Hypothesis hypothesis = Hypothesis::dalembert;
-  Expr power_factor;  // of lambda, on the constraint; 0: does no work
+  Expr power_factor;                      // of lambda, on the constraint; 0: does no work
   std::vector<std::size_t> follows_from;  // if redundant at the initial state: the constraints that it is made of
 };
 
 struct Explanation {
   std::vector<ConstraintFacts> constraints;
   Integrability integrability;
-  // Of the positions that can be reached; nothing without a structure, or where constraints that are nonlinear in the velocities
-  // or of order 2 and more may take some away.
+  // Of the positions that can be reached; nothing without a structure, or where constraints that are nonlinear in the
+  // velocities or of order 2 and more may take some away.
   std::optional<int> accessible;
-  std::vector<Block> blocks;              // both empty without a structure
+  std::vector<Block> blocks;  // both empty without a structure
   std::vector<HiddenConstraint> hidden;
 };
 

@@ -50,7 +50,8 @@ std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::se
 OpenSystem open_inputs(const Scenario& s) {
   std::set<std::size_t> inputs;
   for (std::size_t k = 0; k < s.model->controls.size(); ++k)
-    if (const Control& u = s.model->controls[k]; u.value && !u.constraint && known_before_solving(s, *u.value)) inputs.insert(k);
+    if (const Control& u = s.model->controls[k]; u.value && !u.constraint && known_before_solving(s, *u.value))
+      inputs.insert(k);
   if (inputs.empty()) return {s.system, {}};
   System system = with_symbols(s, inputs);
   if (const auto fewer = free_ones(s, system, inputs); fewer != inputs) {

@@ -10,8 +10,9 @@ struct OpenSystem {
   std::vector<InputFormula> inputs;
 };
 
-// Not among them, and put in as formulas: inputs that hold accelerations or multipliers, that keep a constraint, that stand in an
-// equation which is differentiated (their rates would be inputs, too), or whose formula stands in a potential, mass or constraint.
+// Not among them, and put in as formulas: inputs that hold accelerations or multipliers, that keep a constraint, that
+// stand in an equation which is differentiated (their rates would be inputs, too), or whose formula stands in a
+// potential, mass or constraint.
 OpenSystem open_inputs(const Scenario& scenario);
 
 }  // namespace anholon

@@ -1,4 +1,5 @@
-// What is kept of a run for the estimate of its error: rows, and moments of events, or the comparison with the motion beside it.
+// What is kept of a run for the estimate of its error: rows, and moments of events, or the comparison with the motion
+// beside it.
 #pragma once
 #include "run/course.h"
 #include "run/estimate.h"
@@ -26,7 +27,8 @@ class Judge {
 
  private:
   bool wanted(const Course<N>& course) const {
-    return o_.estimate == ErrorEstimate::always || (o_.estimate == ErrorEstimate::short_runs && course.steps() <= kShortRun);
+    return o_.estimate == ErrorEstimate::always ||
+           (o_.estimate == ErrorEstimate::short_runs && course.steps() <= kShortRun);
   }
   int highest(const Course<N>& course) const { return largest_order(s_, course.taylor().program().d); }
 
@@ -35,7 +37,8 @@ class Judge {
   RunToJudge<W> run_;
   std::size_t resets_ = 0;  // how often events have changed the state
   struct Beside {
-    Beside(const Scenario& s, const std::vector<W>& parameters, RowComparison c) : outputs(s, parameters), comparison(std::move(c)) {}
+    Beside(const Scenario& s, const std::vector<W>& parameters, RowComparison c)
+        : outputs(s, parameters), comparison(std::move(c)) {}
     RowOutputs<W> outputs;
     RowComparison comparison;
   };

@@ -15,7 +15,8 @@ constexpr double kPreferred = 0.02;     // … and those that were asked for, or
 // 10^-(part of the working digits): what is smaller, in relation to its neighbours, is round-off.
 Multi round_off(double part) {
   Multi u(1);
-  mpfr_div_2ui(u.raw(), u.raw(), static_cast<unsigned long>(part * static_cast<double>(Multi::working_bits())), MPFR_RNDN);
+  mpfr_div_2ui(u.raw(), u.raw(), static_cast<unsigned long>(part * static_cast<double>(Multi::working_bits())),
+               MPFR_RNDN);
   return u;
 }
 constexpr double kZeroPart = 0.7;    // of a matrix made by two solutions of linear equations
@@ -33,10 +34,14 @@ Multi largest(const std::vector<Multi>& v) {
 
 const char* name(LinearModel::Motion motion) {
   switch (motion) {
-    case LinearModel::Motion::equilibrium: return "equilibrium";
-    case LinearModel::Motion::steady: return "steady";
-    case LinearModel::Motion::unsteady: return "unsteady";
-    case LinearModel::Motion::unchecked: return "unchecked";
+  case LinearModel::Motion::equilibrium:
+    return "equilibrium";
+  case LinearModel::Motion::steady:
+    return "steady";
+  case LinearModel::Motion::unsteady:
+    return "unsteady";
+  case LinearModel::Motion::unchecked:
+    return "unchecked";
   }
   return "";
 }
@@ -63,7 +68,9 @@ Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice, Sign
     for (std::size_t r = 0; r < rows_.size(); ++r)
       hidden = hidden || (rows_[r].second < s_.structure.c[rows_[r].first] && !is_zero(partial(es[r], signals_.u[u])));
     if (!hidden) continue;
-    notes_.push_back("the input '" + signals_.inputs[u] + "' stands in a constraint that holds at every time: its rate would be an input, too; it is left out");
+    notes_.push_back(
+        "the input '" + signals_.inputs[u] +
+        "' stands in a constraint that holds at every time: its rate would be an input, too; it is left out");
     signals_.u.erase(signals_.u.begin() + static_cast<std::ptrdiff_t>(u));
     signals_.inputs.erase(signals_.inputs.begin() + static_cast<std::ptrdiff_t>(u));
   }
@@ -72,7 +79,8 @@ Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice, Sign
     for (NodeId id : symbols({&signals_.y[y], 1}))
       if (const auto j = s_.system.variable(id)) beyond = beyond || g.node(id).order > s_.structure.d[*j];
     if (!beyond) continue;
-    notes_.push_back("the output '" + signals_.outputs[y] + "' holds derivatives beyond those of the equations; it is left out");
+    notes_.push_back("the output '" + signals_.outputs[y] +
+                     "' holds derivatives beyond those of the equations; it is left out");
     signals_.y.erase(signals_.y.begin() + static_cast<std::ptrdiff_t>(y));
     signals_.outputs.erase(signals_.outputs.begin() + static_cast<std::ptrdiff_t>(y));
   }
@@ -92,13 +100,15 @@ Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice, Sign
 }
 
 std::string Linearizer::entry_name(std::size_t e) const {
-  return derivative_name(s_.system.variable_names[entries_[e].variable], static_cast<unsigned>(entries_[e].order), Format::text);
+  return derivative_name(s_.system.variable_names[entries_[e].variable], static_cast<unsigned>(entries_[e].order),
+                         Format::text);
 }
 
 // One point of a motion: the entries there, and how their variations hang together.
 class LinearPoint {
  public:
-  LinearPoint(const Linearizer& l, const std::vector<Multi>& parameters) : l_(l), machine_(l.tape_, 0, parameters), x(l.entries_.size(), Multi(0)) {}
+  LinearPoint(const Linearizer& l, const std::vector<Multi>& parameters)
+      : l_(l), machine_(l.tape_, 0, parameters), x(l.entries_.size(), Multi(0)) {}
 
   // The state as it was found, with the leading derivatives where they are known.
   void load(const InitialState<Multi>& state) {
@@ -113,8 +123,10 @@ class LinearPoint {
     for (const Input& in : l_.tape_.inputs) {
       const Node& n = g.node(in.symbol);
       Multi value(0);  // multipliers of redundant constraints
-      if (n.kind == Kind::time) value = t;
-      else if (const auto j = l_.s_.system.variable(in.symbol); j && n.order <= l_.s_.structure.d[*j]) value = x[l_.entry(*j, n.order)];
+      if (n.kind == Kind::time)
+        value = t;
+      else if (const auto j = l_.s_.system.variable(in.symbol); j && n.order <= l_.s_.structure.d[*j])
+        value = x[l_.entry(*j, n.order)];
       machine_.series(in.slot)[0] = value;
     }
     machine_.evaluate();
@@ -122,18 +134,21 @@ class LinearPoint {
     const std::size_t all = l_.rows_.size() + l_.signals_.y.size();
     jacobian = Matrix<Multi>(all, x.size() + l_.signals_.u.size());
     for (std::size_t r = 0; r < l_.rows_.size(); ++r) residual.push_back(machine_.value(r));
-    for (std::size_t p = 0; p < l_.partials_.size(); ++p) jacobian(l_.partials_[p].row, l_.partials_[p].column) = machine_.value(all + p);
+    for (std::size_t p = 0; p < l_.partials_.size(); ++p)
+      jacobian(l_.partials_[p].row, l_.partials_[p].column) = machine_.value(all + p);
     const auto good = [](const Multi& v) { return v.finite(); };
-    return std::all_of(residual.begin(), residual.end(), good) && std::all_of(jacobian.data.begin(), jacobian.data.end(), good);
+    return std::all_of(residual.begin(), residual.end(), good) &&
+           std::all_of(jacobian.data.begin(), jacobian.data.end(), good);
   }
 
-  // Which entries of the state follow from the others: level by level, from positions to velocities and on, so that a velocity
-  // depends where its coordinate does. False if the hidden constraints are not independent here.
+  // Which entries of the state follow from the others: level by level, from positions to velocities and on, so that a
+  // velocity depends where its coordinate does. False if the hidden constraints are not independent here.
   bool choose() {
     const Structure& t_ = l_.s_.structure;
     follows.assign(x.size(), false);
     std::vector<bool> taken(t_.d.size(), false), wished(t_.d.size(), false);
-    const std::vector<std::size_t>& asked = l_.choice_.eliminate.empty() ? l_.s_.model->dependent : l_.choice_.eliminate;
+    const std::vector<std::size_t>& asked =
+        l_.choice_.eliminate.empty() ? l_.s_.model->dependent : l_.choice_.eliminate;
     for (std::size_t a : asked) wished[a] = true;
     for (int level = t_.largest_c(); level >= 1; --level) {
       std::vector<std::size_t> rows, columns;
@@ -163,28 +178,33 @@ class LinearPoint {
 
   // z' = A z, and z' on the motion.
   void linear(LinearModel& out) const {
-    std::vector<std::size_t> where(x.size(), x.size()), independent;  // of an entry among the dependent or independent ones
+    std::vector<std::size_t> where(x.size(), x.size()),
+        independent;  // of an entry among the dependent or independent ones
     for (std::size_t i = 0; i < dependent_.size(); ++i) where[dependent_[i]] = i;
     for (std::size_t e = 0; e < x.size(); ++e)
       if (where[e] == x.size()) independent.push_back(e);
     // Positions before velocities, as one reads them.
-    std::stable_sort(independent.begin(), independent.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+    std::stable_sort(independent.begin(), independent.end(),
+                     [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
     const std::size_t n = independent.size(), inputs = l_.signals_.u.size(), outputs = l_.signals_.y.size();
     // What follows from each independent entry, and from each input.
     Matrix<Multi> follow(dependent_.size(), n + inputs);
     std::vector<Multi> column(l_.rows_.size(), Multi(0)), solution;
     for (std::size_t c = 0; c < n + inputs; ++c) {
-      for (std::size_t r = 0; r < column.size(); ++r) column[r] = -jacobian(r, c < n ? independent[c] : x.size() + c - n);
+      for (std::size_t r = 0; r < column.size(); ++r)
+        column[r] = -jacobian(r, c < n ? independent[c] : x.size() + c - n);
       lu_.solve(column, solution);
       for (std::size_t i = 0; i < solution.size(); ++i) follow(i, c) = solution[i];
     }
-    out.A = Matrix<Multi>(n, n), out.B = Matrix<Multi>(n, inputs), out.C = Matrix<Multi>(outputs, n), out.D = Matrix<Multi>(outputs, inputs);
+    out.A = Matrix<Multi>(n, n), out.B = Matrix<Multi>(n, inputs), out.C = Matrix<Multi>(outputs, n),
+    out.D = Matrix<Multi>(outputs, inputs);
     out.states.clear(), out.dependent.clear(), out.values.clear(), out.rates.clear();
     out.inputs = l_.signals_.inputs, out.outputs = l_.signals_.outputs, out.notes = l_.notes_;
     for (std::size_t r = 0; r < n; ++r) {
       const std::size_t next = independent[r] + 1;  // entries of a variable stand side by side
       const bool free = where[next] == x.size();
-      for (std::size_t c = 0; c < n; ++c) out.A(r, c) = free ? Multi(independent[c] == next ? 1 : 0) : follow(where[next], c);
+      for (std::size_t c = 0; c < n; ++c)
+        out.A(r, c) = free ? Multi(independent[c] == next ? 1 : 0) : follow(where[next], c);
       for (std::size_t c = 0; c < inputs; ++c) out.B(r, c) = free ? Multi(0) : follow(where[next], n + c);
       out.states.push_back(l_.entry_name(independent[r]));
       out.values.push_back(x[independent[r]]);
@@ -239,11 +259,13 @@ class LinearPoint {
     return {multiplier ? 1000 + entry.order : entry.order, entry.variable};
   }
 
-  bool eliminate(const std::vector<std::size_t>& rows, const std::vector<std::size_t>& columns, int level, std::vector<bool>& taken, const std::vector<bool>& wished) {
+  bool eliminate(const std::vector<std::size_t>& rows, const std::vector<std::size_t>& columns, int level,
+                 std::vector<bool>& taken, const std::vector<bool>& wished) {
     const std::vector<int>& d = l_.s_.structure.d;
     Matrix<Multi> a(rows.size(), columns.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      for (std::size_t j = 0; j < columns.size(); ++j) a(i, j) = jacobian(rows[i], l_.entry(columns[j], d[columns[j]] - level));
+      for (std::size_t j = 0; j < columns.size(); ++j)
+        a(i, j) = jacobian(rows[i], l_.entry(columns[j], d[columns[j]] - level));
       Multi size(0);
       for (std::size_t j = 0; j < columns.size(); ++j)
         if (abs(a(i, j)) > size) size = abs(a(i, j));
@@ -257,7 +279,8 @@ class LinearPoint {
       Multi top(0);
       for (std::size_t j = 0; j < columns.size(); ++j)
         for (std::size_t i = 0; i < rows.size(); ++i)
-          if (!used[j] && !row_used[i] && abs(a(i, j)) > best[j]) best[j] = abs(a(i, j)), row[j] = i, top = std::max(top, best[j]);
+          if (!used[j] && !row_used[i] && abs(a(i, j)) > best[j])
+            best[j] = abs(a(i, j)), row[j] = i, top = std::max(top, best[j]);
       if (!(top > round_off(kZeroPart))) return false;
       const auto first = [&](const std::vector<bool>* among, double part) {
         for (std::size_t j = 0; j < columns.size(); ++j)
@@ -328,7 +351,8 @@ void tell(LinearModel& m, LinearModel::Motion motion, std::string why) {
 // Which coordinates have no influence, here and at a point where they are others; and whether all else rests.
 static void look_for_steadiness(const LinearPoint& point, bool check, LinearModel& out) {
   const std::size_t n = out.states.size();
-  const Multi zero = round_off(kZeroPart) * (Multi(1) + largest(out.A.data)), still = round_off(kZeroPart) * (Multi(1) + largest(point.x));
+  const Multi zero = round_off(kZeroPart) * (Multi(1) + largest(out.A.data)),
+              still = round_off(kZeroPart) * (Multi(1) + largest(point.x));
   std::vector<bool> kept(n, true), may(n, true);
   LinearModel other;
   bool moved = false;
@@ -339,7 +363,9 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
     LinearPoint there = point;
     there.t += Multi(0.375);
     for (std::size_t i = 0, k = 0; i < n; ++i)
-      if (!kept[i]) there.x[point.independent(i)] += Multi(0.3125) + Multi(static_cast<int>(++k)) / Multi(16) + Multi(0.375) * out.rates[i];
+      if (!kept[i])
+        there.x[point.independent(i)] +=
+            Multi(0.3125) + Multi(static_cast<int>(++k)) / Multi(16) + Multi(0.375) * out.rates[i];
     moved = there.evaluate() && there.settle();
     if (!moved) break;
     there.linear(other);
@@ -356,7 +382,8 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
   for (std::size_t i : out.core) {
     // The rate of a coordinate is a velocity, which a state names already or follows.
     if (abs(out.rates[i]) > still) {
-      tell(out, LinearModel::Motion::unsteady, "the rate of " + out.states[i] + " is " + number_text(to_double(out.rates[i]), 6));
+      tell(out, LinearModel::Motion::unsteady,
+           "the rate of " + out.states[i] + " is " + number_text(to_double(out.rates[i]), 6));
       break;
     }
     if (!moved) continue;
@@ -367,22 +394,28 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
     bool same = true;
     for (std::size_t k : out.core) same = same && !(abs(Multi(other.A(i, k) - out.A(i, k))) > zero);
     if (!same) {
-      tell(out, LinearModel::Motion::unsteady, "the coefficients in the equation of " + out.states[i] + " vary along the motion");
+      tell(out, LinearModel::Motion::unsteady,
+           "the coefficients in the equation of " + out.states[i] + " vary along the motion");
       break;
     }
   }
 }
 
 Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
-  const InitialProblem<Multi> problem{s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr, false, &s_.state};
+  const InitialProblem<Multi> problem{
+      s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr, false, &s_.state};
   InitialState<Multi> state;
   if (Outcome o = consistent_state(problem, state); !o.ok()) return o;
   if (s_.routh)
     if (Outcome o = complete_state(problem, *s_.routh, s_.routh_structure, state); !o.ok()) return o;
-  const Outcome singular{OutcomeKind::singular, "the equations do not determine the motion at this state: it has no linear model", "choose another state"};
+  const Outcome singular{OutcomeKind::singular,
+                         "the equations do not determine the motion at this state: it has no linear model",
+                         "choose another state"};
   LinearPoint point(*this, parameters);
   point.load(state);
-  if (!point.evaluate()) return {OutcomeKind::not_a_number, "a derivative of the equations has no value at this state", "choose another state"};
+  if (!point.evaluate())
+    return {OutcomeKind::not_a_number, "a derivative of the equations has no value at this state",
+            "choose another state"};
   if (!point.choose() || !point.settle()) return singular;
   point.linear(out);
 

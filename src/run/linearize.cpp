@@ -12,27 +12,33 @@ constexpr int kExactDigits = 40;  // of a parameter value between those that wer
 Rational rational_of(const Multi& x) { return *parse_rational(number_text(x, kExactDigits)); }
 
 int unstable(const LinearModel& m) {
-  return static_cast<int>(std::count_if(m.spectrum.begin(), m.spectrum.end(), [](const Eigenvalue& e) { return e.value.re > Multi(0); }));
+  return static_cast<int>(
+      std::count_if(m.spectrum.begin(), m.spectrum.end(), [](const Eigenvalue& e) { return e.value.re > Multi(0); }));
 }
 
 int zeros(const LinearModel& m) {
-  return static_cast<int>(std::count_if(m.spectrum.begin(), m.spectrum.end(),
-                                        [](const Eigenvalue& e) { return e.value.re == Multi(0) && e.value.im == Multi(0); }));
+  return static_cast<int>(std::count_if(m.spectrum.begin(), m.spectrum.end(), [](const Eigenvalue& e) {
+    return e.value.re == Multi(0) && e.value.im == Multi(0);
+  }));
 }
 
-// The m-th largest real part (m = 1, 2, …), leaving out the `always` eigenvalues nearest to 0, which are 0 all along the range.
+// The m-th largest real part (m = 1, 2, …), leaving out the `always` eigenvalues nearest to 0, which are 0 all along
+// the range.
 const Eigenvalue& ranked(const LinearModel& m, int rank, int always) {
   std::vector<const Eigenvalue*> list;
   for (const Eigenvalue& e : m.spectrum) list.push_back(&e);
-  std::stable_sort(list.begin(), list.end(), [](const Eigenvalue* a, const Eigenvalue* b) { return modulus(a->value) < modulus(b->value); });
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Eigenvalue* a, const Eigenvalue* b) { return modulus(a->value) < modulus(b->value); });
   list.erase(list.begin(), list.begin() + always);
-  std::stable_sort(list.begin(), list.end(), [](const Eigenvalue* a, const Eigenvalue* b) { return a->value.re > b->value.re; });
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Eigenvalue* a, const Eigenvalue* b) { return a->value.re > b->value.re; });
   return *list[static_cast<std::size_t>(rank) - 1];
 }
 
 class Search {
  public:
-  Search(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range, const Signals& signals)
+  Search(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range,
+         const Signals& signals)
       : s_(s), range_(range), linearizer_(s, choice, signals) {}
 
   LinearResult at(const Rational* value, bool check = true) const {
@@ -53,7 +59,8 @@ class Search {
     return r;
   }
 
-  void crossings(const LinearResult& from, const LinearResult& to, const Rational& a, const Rational& b, Linearization& out) const {
+  void crossings(const LinearResult& from, const LinearResult& to, const Rational& a, const Rational& b,
+                 Linearization& out) const {
     const int before = unstable(from.model), after = unstable(to.model);
     const int always = std::min(zeros(from.model), zeros(to.model));
     const auto kept = std::min(from.model.spectrum.size(), to.model.spectrum.size()) - static_cast<std::size_t>(always);
@@ -63,19 +70,21 @@ class Search {
       Crossing c;
       c.destabilizes = (after > before) == (a < b);
       if (!root(from.model, to.model, Multi(a), Multi(b), m, always, c)) {
-        out.notes.push_back("between " + to_string(a) + " and " + to_string(b) + " an eigenvalue crosses the imaginary axis where the motion could not be followed");
+        out.notes.push_back("between " + to_string(a) + " and " + to_string(b) +
+                            " an eigenvalue crosses the imaginary axis where the motion could not be followed");
         continue;
       }
       if (c.frequency > Multi(0)) ++m, c.eigenvalues = 2;  // the two of a pair cross at once
       out.crossings.push_back(c);
     }
-    std::stable_sort(out.crossings.begin() + static_cast<std::ptrdiff_t>(first), out.crossings.end(),
-                     [&](const Crossing& x, const Crossing& y) { return a < b ? x.value < y.value : y.value < x.value; });
+    std::stable_sort(
+        out.crossings.begin() + static_cast<std::ptrdiff_t>(first), out.crossings.end(),
+        [&](const Crossing& x, const Crossing& y) { return a < b ? x.value < y.value : y.value < x.value; });
   }
 
  private:
-  // The zero of f(p), the m-th largest real part, between a and b, by false position that halves a value which stays (Illinois);
-  // by bisection where f does not change its sign but leaves 0, as undamped systems do.
+  // The zero of f(p), the m-th largest real part, between a and b, by false position that halves a value which stays
+  // (Illinois); by bisection where f does not change its sign but leaves 0, as undamped systems do.
   bool root(const LinearModel& from, const LinearModel& to, Multi a, Multi b, int m, int always, Crossing& c) const {
     Multi fa = ranked(from, m, always).value.re, fb = ranked(to, m, always).value.re;
     const bool leaves_zero = fa == Multi(0) || fb == Multi(0);
@@ -116,7 +125,8 @@ class Search {
 
 }  // namespace
 
-Linearization linearize(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range, const Signals& signals) {
+Linearization linearize(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range,
+                        const Signals& signals) {
   const Search search(s, choice, range, signals);
   Linearization out;
   if (!range) {

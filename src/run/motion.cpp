@@ -4,17 +4,21 @@
 
 namespace anholon {
 
-// Kernels, which only doubles have, know the slots of the tape as it is derived; others share what products have in common.
+// Kernels, which only doubles have, know the slots of the tape as it is derived; others share what products have in
+// common.
 template <Number N>
 Motion<N>::Leg::Leg(const Motion& m, System of, Structure structured)
-    : system(std::move(of)), structure(std::move(structured)), program(anholon::program(system, structure, m.with_events(), !std::same_as<N, double>)),
-      stepper(program, m.narrow_parameters_, m.parameters_, m.settings_), point(program, m.parameters_, std::max(1, m.stages_)), present(program, m.parameters_, 1) {
+    : system(std::move(of)), structure(std::move(structured)),
+      program(anholon::program(system, structure, m.with_events(), !std::same_as<N, double>)),
+      stepper(program, m.narrow_parameters_, m.parameters_, m.settings_),
+      point(program, m.parameters_, std::max(1, m.stages_)), present(program, m.parameters_, 1) {
   stepper.watch(m.watched());
 }
 
 template <Number N>
 Motion<N>::Motion(const Scenario& s, const StepSettings& settings, std::vector<Expr> quadratures, int stages)
-    : s_(s), settings_(settings), quadratures_(std::move(quadratures)), stages_(stages), parameters_(parameter_values<W>(*s.model)), narrow_parameters_(parameter_values<N>(*s.model)),
+    : s_(s), settings_(settings), quadratures_(std::move(quadratures)), stages_(stages),
+      parameters_(parameter_values<W>(*s.model)), narrow_parameters_(parameter_values<N>(*s.model)),
       leg_(std::make_unique<Leg>(*this, s.system, s.structure)) {
   begun_parameters_ = parameters_;
   watch_pivots(s.elimination);
@@ -49,11 +53,13 @@ void Motion<N>::accelerate(Leg& leg) const {
     std::vector<double> state;
     for (const W& x : start_.state) state.push_back(to_double(x));
     const double t = to_double(start_.t);
-    const auto derived = KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, t, state);
+    const auto derived =
+        KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, t, state);
     leg.stepper.accelerate(derived);
     if (!leg.stepper.accelerated()) return;
     const std::vector<Expr> quadratures = with_events();
-    const std::vector<Representation> list = representations({derived, leg.structure, quadratures, parameters_, t, state, s_.mechanics.get()}, effort_);
+    const std::vector<Representation> list =
+        representations({derived, leg.structure, quadratures, parameters_, t, state, s_.mechanics.get()}, effort_);
     const Representation& best = settings_.multipliers ? cheapest_unmapped(list) : cheapest(list);
     if (best.plan != derived) leg.stepper.accelerate(best.plan);
     leg.plan = best.plan;
@@ -64,8 +70,8 @@ void Motion<N>::accelerate(Leg& leg) const {
   }
 }
 
-// The effort depends on the steps made alone, so that a run that goes on makes the same. Where coordinates are eliminated anew on the way, no writing
-// lasts long enough.
+// The effort depends on the steps made alone, so that a run that goes on makes the same. Where coordinates are
+// eliminated anew on the way, no writing lasts long enough.
 template <Number N>
 void Motion<N>::write_anew() {
   const WritingEffort effort = effort_after(leg_->stepper.steps());
@@ -114,7 +120,9 @@ void Motion<N>::watch_pivots(const Elimination& e) {
   elimination_ = e;
   pivots_.reset();
   chosen_.clear();
-  if (!e.pivots().empty()) pivots_ = std::make_unique<OutputTape<W>>(s_, put_masses(*s_.model, e.in_coordinates(e.on(e.pivots()))), parameters_);
+  if (!e.pivots().empty())
+    pivots_ =
+        std::make_unique<OutputTape<W>>(s_, put_masses(*s_.model, e.in_coordinates(e.on(e.pivots()))), parameters_);
 }
 
 template <Number N>
@@ -154,7 +162,8 @@ InitialState<double> Motion<N>::here() {
   const auto level = [&](std::size_t k) {
     std::vector<double> values;
     for (std::size_t a = 0; a < s_.system.coordinates; ++a)
-      values.push_back(static_cast<int>(k) <= leg_->program.d[a] ? to_double(point.derivative(a, static_cast<int>(k))) : 0.0);
+      values.push_back(static_cast<int>(k) <= leg_->program.d[a] ? to_double(point.derivative(a, static_cast<int>(k)))
+                                                                 : 0.0);
     return values;
   };
   here.q = level(0);
@@ -167,8 +176,8 @@ InitialState<double> Motion<N>::here() {
   return here;
 }
 
-// The equations with the dependent coordinates that are best at a point; null if they and their pivots are the present ones, or
-// the equations cannot be made.
+// The equations with the dependent coordinates that are best at a point; null if they and their pivots are the present
+// ones, or the equations cannot be made.
 template <Number N>
 std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialState<double>& here) {
   const Model& model = *s_.model;
@@ -176,7 +185,8 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialSt
     std::vector<double> now;
     for (const W& p : parameters_) now.push_back(to_double(p));
     const auto at = std::make_shared<PointValues>(values_near(model, now, here));
-    const Elimination e(*s_.mechanics, choose_elimination(*s_.mechanics, s_.independent, s_.system.form->unknowns, {}, *at), at);
+    const Elimination e(*s_.mechanics,
+                        choose_elimination(*s_.mechanics, s_.independent, s_.system.form->unknowns, {}, *at), at);
     System system = implicit_system(s_.model, *s_.mechanics, *s_.system.form, s_.independent, e);
     Structure structure;
     ProbeHints hints;
@@ -312,7 +322,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   b.careful = counts[2] != 0;
   b.direction = from.numbers<N>("direction");
   for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(static_cast<int>(to_double(side)));
-  if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns())) SavedRun::unfit("direction");
+  if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns()))
+    SavedRun::unfit("direction");
   if (!pivots_) effort_ = effort_after(b.steps);
   accelerate(*leg_);
   return leg_->stepper.resume(b);

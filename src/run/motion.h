@@ -1,7 +1,9 @@
-// One motion on its way: the steps, the events between them, and the elimination of coordinates on which its equations stand.
+// One motion on its way: the steps, the events between them, and the elimination of coordinates on which its equations
+// stand.
 //
-// A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the equations
-// are then made again with other dependent coordinates, and the motion goes on from the same state (theory: elimination).
+// A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the
+// equations are then made again with other dependent coordinates, and the motion goes on from the same state (theory:
+// elimination).
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -33,14 +35,15 @@ class Motion {
  public:
   using W = Wider<N>;
 
-  // `quadratures`: expressions to be integrated or watched along the motion. `stages`: how many orders beyond the leading
-  // derivatives the points know.
+  // `quadratures`: expressions to be integrated or watched along the motion. `stages`: how many orders beyond the
+  // leading derivatives the points know.
   Motion(const Scenario& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
 
   // From the consistent state; on request from one that differs from it by some round-offs.
   void start_in_other_digits(bool other) { other_digits_ = other; }
   Outcome start(const StateChoice& choice);
-  // What is needed to go on from where the last expansion was made, and how: with the same bits as if the run had never ended.
+  // What is needed to go on from where the last expansion was made, and how: with the same bits as if the run had never
+  // ended.
   void save(SavedRun& to) const;
   Outcome resume(const StateChoice& choice, const SavedRun& from);
   // One step towards `end`, with another elimination where this one fails or its pivots have become small.
@@ -48,21 +51,24 @@ class Motion {
   // The solution anywhere in the last step, with the orders beyond where there are any.
   Outcome at(const W& t);
   const Expansion<W>& point() const { return leg_->point; }
-  // What fired in the last step. `settle` puts in what it sets, after which the motion goes on from the end of the step; false
-  // in `goes_on` where an event ends the motion. Not ok if a table was left, or the state set has no consistent one near.
+  // What fired in the last step. `settle` puts in what it sets, after which the motion goes on from the end of the
+  // step; false in `goes_on` where an event ends the motion. Not ok if a table was left, or the state set has no
+  // consistent one near.
   bool fired() const { return !leg_->stepper.fired().empty(); }
   Outcome settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on);
   // Not ok if the argument of a table lies outside of it at the start.
   Outcome within_bounds();
   // The formula of an event at the start.
-  double at_start(std::size_t event) const { return to_double(leg_->stepper.quadrature(quadratures_.size() + event, W(0))); }
+  double at_start(std::size_t event) const {
+    return to_double(leg_->stepper.quadrature(quadratures_.size() + event, W(0)));
+  }
 
   const Stepper<N>& stepper() const { return leg_->stepper; }
   const Program& program() const { return leg_->program; }
   const std::vector<W>& parameters() const { return parameters_; }
   std::size_t eliminations() const { return eliminations_; }  // how often other coordinates were eliminated on the way
-  // For another method (run/course.h): the plan of the kernel, if there is one; whether other coordinates should be eliminated at a point; Taylor
-  // steps from where it has come to.
+  // For another method (run/course.h): the plan of the kernel, if there is one; whether other coordinates should be
+  // eliminated at a point; Taylor steps from where it has come to.
   const std::shared_ptr<const KernelPlan>& plan() const { return leg_->plan; }
   // The same in the motion's unknowns, for other methods.
   const std::shared_ptr<const KernelPlan>& unmapped_plan() const { return leg_->unmapped_plan; }
@@ -83,8 +89,8 @@ class Motion {
     Writing writing = Writing::derived;
   };
 
-  // Every choice of dependent coordinates on the way. The graph grows with each of them, and the order of its nodes decides
-  // the order of sums: whoever resumes makes them all again.
+  // Every choice of dependent coordinates on the way. The graph grows with each of them, and the order of its nodes
+  // decides the order of sums: whoever resumes makes them all again.
   struct Choice {
     InitialState<double> here;
     bool taken = false;
@@ -103,7 +109,9 @@ class Motion {
   void write_anew();
   std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
   bool eliminate_again();
-  std::size_t levels() const { return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0); }
+  std::size_t levels() const {
+    return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0);
+  }
 
   const Scenario& s_;
   StepSettings settings_;

@@ -40,9 +40,13 @@ Outcome Redundant<W>::hold(const Expansion<W>& point, bool start, double& worst)
     if (!(miss <= kMiss)) {
       const std::string name = "the constraint '" + s_.model->constraints[s_.redundant[i]].name + "' ";
       if (start)
-        return {OutcomeKind::inconsistent, name + "contradicts the others: it is missed by " + number_text(std::abs(to_double((*outputs_)[i])), 3) + " at the start",
+        return {OutcomeKind::inconsistent,
+                name + "contradicts the others: it is missed by " +
+                    number_text(std::abs(to_double((*outputs_)[i])), 3) + " at the start",
                 "leave it out, or the one that it contradicts"};
-      return {OutcomeKind::singular, name + "no longer follows from the others at t = " + number_text(to_double(point.time()), 12), "it was redundant at the start only: start elsewhere, or leave out one of the constraints"};
+      return {OutcomeKind::singular,
+              name + "no longer follows from the others at t = " + number_text(to_double(point.time()), 12),
+              "it was redundant at the start only: start elsewhere, or leave out one of the constraints"};
     }
   }
   return {};

@@ -22,7 +22,8 @@ constexpr std::size_t kMostUnknowns = 12, kMostNodes = 2000;
 constexpr std::size_t kMostRefined = 64, kMostInQuasi = 64;
 // Products of terms for one equation, a fraction of a millisecond.
 constexpr long kMostProducts = 4000;
-// Two writings of one equation agree to this, in relation to the largest coefficient of the order, or one of them loses digits.
+// Two writings of one equation agree to this, in relation to the largest coefficient of the order, or one of them loses
+// digits.
 constexpr double kAgree = 1e-11;
 
 // A program with the system it stands on, in a graph of its own.
@@ -46,7 +47,8 @@ System names_and_graph(const System& from) {
 bool same_offsets(const System& s, const Structure& structure) {
   for (std::size_t i = 0; i < s.equations.size(); ++i)
     for (NodeId id : symbols({&s.equations[i], 1}))
-      if (const auto j = s.variable(id); j && s.model->graph->node(id).order + structure.c[i] > structure.d[*j]) return false;
+      if (const auto j = s.variable(id); j && s.model->graph->node(id).order + structure.c[i] > structure.d[*j])
+        return false;
   return true;
 }
 
@@ -91,13 +93,16 @@ double value_at_start(const ToRepresent& e, const Node& n) {
 }
 
 // Largest difference of two expansions at one state, order by order.
-double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b) {
+double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>& a,
+                  const std::shared_ptr<const KernelPlan>& b) {
   Kernel one(a), other(b);
   for (Kernel* k : {&one, &other}) {
     k->set_parameters(0, e.parameters);
     std::vector<long double> state(e.state.begin(), e.state.end()), own;
-    if (k->plan().map()) k->reader(0).own(e.t, state, own);
-    else own = state;
+    if (k->plan().map())
+      k->reader(0).own(e.t, state, own);
+    else
+      own = state;
     k->load<long double>(0, e.t, own, {});
     k->expand();
     if (!k->finite(0)) return std::numeric_limits<double>::infinity();
@@ -122,13 +127,17 @@ double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>&
 std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   const Program& derived = e.derived->program();
   const System& s = *derived.system;
-  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostInQuasi) return std::nullopt;
+  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostInQuasi)
+    return std::nullopt;
   for (std::size_t j = 0; j < derived.unknowns(); ++j)
     if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return std::nullopt;
-  std::optional<QuasiVelocities> q = quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });
+  std::optional<QuasiVelocities> q =
+      quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });
   if (!q) return std::nullopt;
   Representation found{Writing::quasi, nullptr, {}};
-  for (Expr p : q->of_state) found.velocities.push_back(print(written_out(p, s.coordinates, q->system.rates), q->system.model->names, Format::text));
+  for (Expr p : q->of_state)
+    found.velocities.push_back(
+        print(written_out(p, s.coordinates, q->system.rates), q->system.model->names, Format::text));
   const bool judged = !is_number(q->determinant);
   if (judged) q->others.push_back(q->determinant);
   auto map = std::make_shared<const StateMap>(*q);
@@ -137,7 +146,8 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   first_order.c.assign(r->system.size(), 0);
   first_order.d.assign(r->system.size(), 1);
   r->program = program(r->system, first_order, q->others, true);
-  found.plan = KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t, e.state, e.derived->company());
+  found.plan = KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t,
+                                e.state, e.derived->company());
   if (!found.plan || !(difference(e, e.derived, found.plan) < kAgree)) return std::nullopt;
   return found;
 }
@@ -146,12 +156,18 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
 
 const char* name(Writing writing) {
   switch (writing) {
-    case Writing::derived: return "derived";
-    case Writing::paired: return "paired";
-    case Writing::rates: return "rates";
-    case Writing::quasi: return "quasi";
-    case Writing::expanded: return "expanded";
-    case Writing::arranged: return "arranged";
+  case Writing::derived:
+    return "derived";
+  case Writing::paired:
+    return "paired";
+  case Writing::rates:
+    return "rates";
+  case Writing::quasi:
+    return "quasi";
+  case Writing::expanded:
+    return "expanded";
+  case Writing::arranged:
+    return "arranged";
   }
   return "";
 }
@@ -162,12 +178,14 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
   const Program& derived = first->program();
   // The stepper follows such roots by the slots of the derived tape.
   if (!first->plan().roots_of_even_powers.empty()) return list;
-  // Where few unknowns ask for refined solutions, J has rounded something away, and no writing is as good as another. The condition of a long chain asks
-  // for them in any writing, sooner or later.
+  // Where few unknowns ask for refined solutions, J has rounded something away, and no writing is as good as another.
+  // The condition of a long chain asks for them in any writing, sooner or later.
   const bool large = derived.unknowns() > kMostUnknowns;
   const auto add = [&](Writing writing, std::shared_ptr<const Program> p) {
-    auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state, first->company()) : nullptr;
-    if (plan && (large || plan->tables().refine == first->tables().refine) && plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
+    auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state, first->company())
+                  : nullptr;
+    if (plan && (large || plan->tables().refine == first->tables().refine) &&
+        plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
       list.push_back({writing, std::move(plan), {}});
   };
   if (!first->tables().refine || (large && derived.unknowns() <= kMostRefined)) add(Writing::rates, left_to_series(e));
@@ -183,9 +201,12 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
 
 std::size_t steps_before(WritingEffort effort) {
   switch (effort) {
-    case WritingEffort::at_once: return 0;
-    case WritingEffort::long_motion: return 2000;
-    case WritingEffort::very_long_motion: return 200'000;
+  case WritingEffort::at_once:
+    return 0;
+  case WritingEffort::long_motion:
+    return 2000;
+  case WritingEffort::very_long_motion:
+    return 200'000;
   }
   return 0;
 }
@@ -198,22 +219,42 @@ WritingEffort effort_after(std::size_t steps) {
 }
 
 const Representation& cheapest(const std::vector<Representation>& list) {
-  return *std::min_element(list.begin(), list.end(), [](const Representation& a, const Representation& b) { return a.plan->cost() < b.plan->cost(); });
+  return *std::min_element(list.begin(), list.end(), [](const Representation& a, const Representation& b) {
+    return a.plan->cost() < b.plan->cost();
+  });
 }
 
 const Representation& cheapest_unmapped(const std::vector<Representation>& list) {
-  const auto cost = [](const Representation& r) { return r.plan->map() ? std::numeric_limits<double>::infinity() : r.plan->cost(); };
-  return *std::min_element(list.begin(), list.end(), [&](const Representation& a, const Representation& b) { return cost(a) < cost(b); });
+  const auto cost = [](const Representation& r) {
+    return r.plan->map() ? std::numeric_limits<double>::infinity() : r.plan->cost();
+  };
+  return *std::min_element(list.begin(), list.end(),
+                           [&](const Representation& a, const Representation& b) { return cost(a) < cost(b); });
 }
 
 ExpansionWork work_of(const KernelPlan& plan) {
   ExpansionWork w;
   for (const std::vector<Step>* list : {&plan.plan().stage, &plan.plan().after})
     for (const Step& s : *list) switch (s.act) {
-        case Act::linear: w.sums += s.count; break;
-        case Act::multiply: case Act::divide: case Act::function: case Act::square: case Act::square_root: case Act::power: case Act::sine_cosine:
-        case Act::arctan2: ++w.products; break;
-        case Act::input: case Act::beyond: case Act::weigh: case Act::select: case Act::lookup: break;
+      case Act::linear:
+        w.sums += s.count;
+        break;
+      case Act::multiply:
+      case Act::divide:
+      case Act::function:
+      case Act::square:
+      case Act::square_root:
+      case Act::power:
+      case Act::sine_cosine:
+      case Act::arctan2:
+        ++w.products;
+        break;
+      case Act::input:
+      case Act::beyond:
+      case Act::weigh:
+      case Act::select:
+      case Act::lookup:
+        break;
       }
   w.solve = static_cast<std::size_t>(plan.elimination().work());
   w.operations = plan.work();

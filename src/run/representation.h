@@ -1,8 +1,9 @@
 // One system of equations, written in the way that takes a kernel the fewest operations.
 //
-// Each writing is the same equations by an identity (normal.h, arrange.h, or none at all), for the same unknowns with the same offsets. What it
-// costs is counted on the kernel's plan, not measured: the choice depends on the equations and the state alone, so a run has the same bits wherever
-// it is made or goes on. Rewriting happens in a graph of its own; the graph of the model stays as it is.
+// Each writing is the same equations by an identity (normal.h, arrange.h, or none at all), for the same unknowns with
+// the same offsets. What it costs is counted on the kernel's plan, not measured: the choice depends on the equations
+// and the state alone, so a run has the same bits wherever it is made or goes on. Rewriting happens in a graph of its
+// own; the graph of the model stays as it is.
 #pragma once
 #include "kernel/kernel.h"
 
@@ -41,13 +42,15 @@ enum class WritingEffort : std::uint8_t {
   long_motion,
   very_long_motion,  // arranged
 };
-inline constexpr WritingEffort kWritingEfforts[] = {WritingEffort::at_once, WritingEffort::long_motion, WritingEffort::very_long_motion};
+inline constexpr WritingEffort kWritingEfforts[] = {WritingEffort::at_once, WritingEffort::long_motion,
+                                                    WritingEffort::very_long_motion};
 // After how many steps a motion makes it: about as long as the steps took by then.
 std::size_t steps_before(WritingEffort effort);
 WritingEffort effort_after(std::size_t steps);
 
-// All that can be had with that effort, the derived one first. Where solutions have to be refined, equations that are written out would lose the digits
-// that refinement saves: there, and where a kernel has to know the slots of the derived tape, others are left out.
+// All that can be had with that effort, the derived one first. Where solutions have to be refined, equations that are
+// written out would lose the digits that refinement saves: there, and where a kernel has to know the slots of the
+// derived tape, others are left out.
 std::vector<Representation> representations(const ToRepresent& equations, WritingEffort effort);
 // The first of the cheapest.
 const Representation& cheapest(const std::vector<Representation>& list);

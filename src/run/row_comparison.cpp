@@ -22,22 +22,28 @@ int digits_of(double error) {
 
 // Of these all are zero in a motion that has no constraints.
 bool of_constraints(ColumnKind kind) {
-  return kind == ColumnKind::multiplier || kind == ColumnKind::multiplier_rate || kind == ColumnKind::input || kind == ColumnKind::reaction;
+  return kind == ColumnKind::multiplier || kind == ColumnKind::multiplier_rate || kind == ColumnKind::input ||
+         kind == ColumnKind::reaction;
 }
 
-bool of_motion(ColumnKind kind) { return kind == ColumnKind::coordinate || kind == ColumnKind::velocity || kind == ColumnKind::state; }
+bool of_motion(ColumnKind kind) {
+  return kind == ColumnKind::coordinate || kind == ColumnKind::velocity || kind == ColumnKind::state;
+}
 
 }  // namespace
 
 const KindError& ErrorReport::worst() const {
-  return *std::max_element(kinds.begin(), kinds.end(), [](const KindError& a, const KindError& b) { return a.error < b.error; });
+  return *std::max_element(kinds.begin(), kinds.end(),
+                           [](const KindError& a, const KindError& b) { return a.error < b.error; });
 }
 
 void ErrorReport::take_worse(const ErrorReport& other) {
   for (const KindError& e : other.kinds) {
     const auto mine = std::find_if(kinds.begin(), kinds.end(), [&](const KindError& k) { return k.kind == e.kind; });
-    if (mine == kinds.end()) kinds.push_back(e);
-    else if (e.error > mine->error) *mine = e;
+    if (mine == kinds.end())
+      kinds.push_back(e);
+    else if (e.error > mine->error)
+      *mine = e;
   }
   if (other.lost && (!lost || *other.lost < *lost)) lost = other.lost, lost_of = other.lost_of;
   if (other.until && (!until || *other.until < *until)) until = other.until, stopped = other.stopped;
@@ -52,7 +58,9 @@ void RowComparison::see(Row row) {
   rows_.push_back(std::move(row));
 }
 
-void RowComparison::event(const std::string& name, double t, double difference) { events_.push_back({name, t, number(difference)}); }
+void RowComparison::event(const std::string& name, double t, double difference) {
+  events_.push_back({name, t, number(difference)});
+}
 
 void RowComparison::lose(double t) {
   constexpr double kAll = std::numeric_limits<double>::infinity();
@@ -74,9 +82,12 @@ std::vector<double> RowComparison::scales() const {
   }
   for (std::size_t j = 0; j < n; ++j) {
     const bool monitor = columns_[j].kind == ColumnKind::monitor;
-    const double like = monitor ? terms_[j] : greatest[columns_[j].kind], noise = kNoise * roundoff_ * std::max(1.0, like);
-    if (most_[j] <= noise && difference[j] <= noise) scales[j] = std::max(1.0, like);
-    else if (difference[j] >= kHardlyKnown * most_[j] && difference[j] <= kLikeOthers * others * like) scales[j] = like;
+    const double like = monitor ? terms_[j] : greatest[columns_[j].kind],
+                 noise = kNoise * roundoff_ * std::max(1.0, like);
+    if (most_[j] <= noise && difference[j] <= noise)
+      scales[j] = std::max(1.0, like);
+    else if (difference[j] >= kHardlyKnown * most_[j] && difference[j] <= kLikeOthers * others * like)
+      scales[j] = like;
   }
   return scales;
 }
@@ -93,9 +104,13 @@ ErrorReport RowComparison::report(double safety, double written) const {
   const auto worse = [](KindError& e, double error, const std::string& of, double t) {
     if (e.of.empty() || error > e.error) e.error = error, e.of = of, e.t = t;
   };
-  const auto relative = [](double difference, double by) { return difference == 0 ? 0 : by > 0 ? difference / by : std::numeric_limits<double>::infinity(); };
+  const auto relative = [](double difference, double by) {
+    return difference == 0 ? 0 : by > 0 ? difference / by : std::numeric_limits<double>::infinity();
+  };
   for (std::size_t j = 0; j < columns_.size(); ++j) {
-    if (of_constraints(columns_[j].kind) && !(terms_[j] > 0) && std::all_of(rows_.begin(), rows_.end(), [&](const Row& row) { return row.differences[j] == 0; })) continue;
+    if (of_constraints(columns_[j].kind) && !(terms_[j] > 0) &&
+        std::all_of(rows_.begin(), rows_.end(), [&](const Row& row) { return row.differences[j] == 0; }))
+      continue;
     KindError& e = kind(columns_[j].kind);
     for (const Row& row : rows_) worse(e, relative(row.differences[j], scale[j]), columns_[j].name, row.t);
   }
@@ -105,7 +120,8 @@ ErrorReport RowComparison::report(double safety, double written) const {
   for (KindError& e : r.kinds) e.error = safety * e.error + written, e.digits = digits_of(e.error);
   for (const Row& row : rows_) {
     for (std::size_t j = 0; j < columns_.size() && !r.lost; ++j)
-      if (of_motion(columns_[j].kind) && row.differences[j] > 0 && kind(columns_[j].kind).digits == 0 && safety * relative(row.differences[j], scale[j]) >= kHardlyKnown)
+      if (of_motion(columns_[j].kind) && row.differences[j] > 0 && kind(columns_[j].kind).digits == 0 &&
+          safety * relative(row.differences[j], scale[j]) >= kHardlyKnown)
         r.lost = row.t, r.lost_of = columns_[j].name;
   }
   return r;

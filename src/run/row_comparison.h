@@ -1,10 +1,12 @@
-// How far two runs of one motion are apart, column by column at the same times: an estimate of the error of the less exact one.
+// How far two runs of one motion are apart, column by column at the same times: an estimate of the error of the less
+// exact one.
 //
 // The error of a column is its largest difference in relation to its largest magnitude,
 //   e_j = max_t |x_j - y_j| / max_t |y_j|,   x the run, y the sharper one,
-// that of a kind of columns the largest of its own. A column that is zero but for round-off has no magnitude of its own: where its difference is
-// no more than what the other columns' relative errors make of the greatest column of its kind (of a monitor: of the terms it is the sum of), or
-// no more than round-off makes of 1, it is measured by that.  (theory: integrals)
+// that of a kind of columns the largest of its own. A column that is zero but for round-off has no magnitude of its
+// own: where its difference is no more than what the other columns' relative errors make of the greatest column of its
+// kind (of a monitor: of the terms it is the sum of), or no more than round-off makes of 1, it is measured by that.
+// (theory: integrals)
 #pragma once
 #include <limits>
 #include <span>
@@ -15,10 +17,10 @@ namespace anholon {
 
 struct KindError {
   ColumnKind kind = ColumnKind::coordinate;
-  double error = 0;     // of the worst column of the kind
+  double error = 0;  // of the worst column of the kind
   int digits = 0;
-  std::string of;       // that column
-  double t = 0;         // and when
+  std::string of;  // that column
+  double t = 0;    // and when
 };
 
 struct ErrorReport {
@@ -36,7 +38,9 @@ struct ErrorReport {
 class RowComparison {
  public:
   // `roundoff` and `tolerance`: of the run that is judged.
-  RowComparison(std::vector<RowColumn> columns, double roundoff, double tolerance) : columns_(std::move(columns)), roundoff_(roundoff), tolerance_(tolerance), most_(columns_.size()), terms_(columns_.size()) {}
+  RowComparison(std::vector<RowColumn> columns, double roundoff, double tolerance)
+      : columns_(std::move(columns)), roundoff_(roundoff), tolerance_(tolerance), most_(columns_.size()),
+        terms_(columns_.size()) {}
 
   // One row of both: the differences of all columns; the magnitudes of the sharper run and of the terms that make them.
   struct Row {
@@ -50,7 +54,8 @@ class RowComparison {
   void lose(double t);
   bool empty() const { return rows_.empty(); }
 
-  // With this factor for what lies between the rows and for the error of the sharper run; `written`: the relative round-off of the numbers written.
+  // With this factor for what lies between the rows and for the error of the sharper run; `written`: the relative
+  // round-off of the numbers written.
   ErrorReport report(double safety, double written) const;
 
  private:

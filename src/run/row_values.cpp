@@ -4,31 +4,46 @@ namespace anholon {
 
 const char* name(ColumnKind kind) {
   switch (kind) {
-  case ColumnKind::coordinate: return "coordinates";
-  case ColumnKind::velocity: return "velocities";
-  case ColumnKind::acceleration: return "accelerations";
-  case ColumnKind::higher_derivative: return "higher derivatives";
-  case ColumnKind::multiplier: return "multipliers";
-  case ColumnKind::multiplier_rate: return "rates of multipliers";
-  case ColumnKind::input: return "inputs";
-  case ColumnKind::state: return "states";
-  case ColumnKind::reaction: return "reactions";
-  case ColumnKind::monitor: return "monitors";
-  case ColumnKind::event_time: return "times of events";
+  case ColumnKind::coordinate:
+    return "coordinates";
+  case ColumnKind::velocity:
+    return "velocities";
+  case ColumnKind::acceleration:
+    return "accelerations";
+  case ColumnKind::higher_derivative:
+    return "higher derivatives";
+  case ColumnKind::multiplier:
+    return "multipliers";
+  case ColumnKind::multiplier_rate:
+    return "rates of multipliers";
+  case ColumnKind::input:
+    return "inputs";
+  case ColumnKind::state:
+    return "states";
+  case ColumnKind::reaction:
+    return "reactions";
+  case ColumnKind::monitor:
+    return "monitors";
+  case ColumnKind::event_time:
+    return "times of events";
   }
   return "";
 }
 
 std::vector<RowColumn> row_columns(const Scenario& s, int highest) {
   const Model& model = *s.model;
-  constexpr ColumnKind kByOrder[] = {ColumnKind::coordinate, ColumnKind::velocity, ColumnKind::acceleration, ColumnKind::higher_derivative};
+  constexpr ColumnKind kByOrder[] = {ColumnKind::coordinate, ColumnKind::velocity, ColumnKind::acceleration,
+                                     ColumnKind::higher_derivative};
   std::vector<RowColumn> columns;
   for (int k = 0; k <= highest; ++k)
-    for (const Coordinate& c : model.coordinates) columns.push_back({derivative_name(c.name, static_cast<unsigned>(k), Format::text), kByOrder[std::min(k, 3)]});
+    for (const Coordinate& c : model.coordinates)
+      columns.push_back({derivative_name(c.name, static_cast<unsigned>(k), Format::text), kByOrder[std::min(k, 3)]});
   for (int k = 0; k <= multiplier_orders(s); ++k)
     for (std::size_t r = 0; r < model.constraints.size(); ++r)
       columns.push_back({derivative_name(multiplier_name(model, r), static_cast<unsigned>(k), Format::text),
-                         k > 0 ? ColumnKind::multiplier_rate : model.constraints[r].by ? ColumnKind::input : ColumnKind::multiplier});
+                         k > 0                     ? ColumnKind::multiplier_rate
+                         : model.constraints[r].by ? ColumnKind::input
+                                                   : ColumnKind::multiplier});
   for (const StateVariable& z : model.states) columns.push_back({z.name, ColumnKind::state});
   for (const Coordinate& c : model.coordinates) columns.push_back({"N." + c.name, ColumnKind::reaction});
   for (const Monitor& m : model.monitors) columns.push_back({m.name, ColumnKind::monitor});
@@ -36,7 +51,8 @@ std::vector<RowColumn> row_columns(const Scenario& s, int highest) {
 }
 
 template <Number W>
-RowOutputs<W>::RowOutputs(const Scenario& s, const std::vector<W>& parameters) : s_(s), outputs_(s, expressions(), parameters), redundant_(s, parameters) {}
+RowOutputs<W>::RowOutputs(const Scenario& s, const std::vector<W>& parameters)
+    : s_(s), outputs_(s, expressions(), parameters), redundant_(s, parameters) {}
 
 // N, then the monitors, each followed by its terms where it is a sum.
 template <Number W>
@@ -49,7 +65,8 @@ Column RowOutputs<W>::expressions() {
     MonitorPlace place{es.size() - reactions_, {}};
     es.push_back(m.value);
     if (g.node(m.value.id).kind == Kind::sum)
-      for (const Term& t : g.summands(m.value.id)) es.push_back({&g, t.node}), place.weights.push_back(abs(from_rational<W>(g.rational(t.weight))));
+      for (const Term& t : g.summands(m.value.id))
+        es.push_back({&g, t.node}), place.weights.push_back(abs(from_rational<W>(g.rational(t.weight))));
     monitors_.push_back(std::move(place));
   }
   return es;

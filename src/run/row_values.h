@@ -5,7 +5,19 @@
 namespace anholon {
 
 // Columns of one kind are made in the same way from a state, so their errors are of one size.
-enum class ColumnKind : std::uint8_t { coordinate, velocity, acceleration, higher_derivative, multiplier, multiplier_rate, input, state, reaction, monitor, event_time };
+enum class ColumnKind : std::uint8_t {
+  coordinate,
+  velocity,
+  acceleration,
+  higher_derivative,
+  multiplier,
+  multiplier_rate,
+  input,
+  state,
+  reaction,
+  monitor,
+  event_time
+};
 const char* name(ColumnKind kind);  // "coordinates", "velocities", …
 
 struct RowColumn {
@@ -48,7 +60,8 @@ class RowOutputs {
   const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
   const W& monitor(std::size_t i) const { return outputs_[reactions_ + monitors_[i].value]; }
-  // The sum of the magnitudes of what a monitor is the sum of: a difference of large terms is known no better than they are.
+  // The sum of the magnitudes of what a monitor is the sum of: a difference of large terms is known no better than they
+  // are.
   W monitor_terms(std::size_t i) const;
 
  private:

@@ -37,9 +37,11 @@ std::string print(const SavedRun& run) {
 
 SavedRun read_saved(const SourceText& source) {
   const std::size_t hash = source.text.rfind(kHash);
-  if (hash == std::string::npos) throw Failure(Span{}, "this is not a saved run", "anholon simulate MODEL --to T --save FILE writes one");
+  if (hash == std::string::npos)
+    throw Failure(Span{}, "this is not a saved run", "anholon simulate MODEL --to T --save FILE writes one");
   if (source.text.compare(hash, std::string::npos, kHash + sha256_text(source.text.substr(0, hash)) + "\"]\n") != 0)
-    throw Failure(Span{}, "the saved run was changed after it was written, or is cut off", "start the run anew, with --save");
+    throw Failure(Span{}, "the saved run was changed after it was written, or is cut off",
+                  "start the run anew, with --save");
   SavedRun run;
   for (const Item& i : read_toml(source).items) {
     SavedRun::Texts texts;

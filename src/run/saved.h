@@ -1,4 +1,5 @@
-// A run laid down in a file, from which it goes on with the same bits: everything that steps and residuals carry, as exact text.
+// A run laid down in a file, from which it goes on with the same bits: everything that steps and residuals carry, as
+// exact text.
 //
 // The file is TOML, a list of texts for every name, and closes with the hash of all before it.  (theory: integrals)
 #pragma once
@@ -41,7 +42,9 @@ class SavedRun {
     return list;
   }
   template <Number N>
-  N number(const std::string& name) const { return numbers<N>(name, 1)[0]; }
+  N number(const std::string& name) const {
+    return numbers<N>(name, 1)[0];
+  }
 
   [[noreturn]] static void unfit(const std::string& name);
 

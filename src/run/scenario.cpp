@@ -39,7 +39,8 @@ ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
     radial += top[a] * m.Phi[r][a];
   }
   constexpr int kMost = 6;
-  const auto by_structure = homogeneous_degree(m.phi[r], [&](const Node& n) { return n.kind == Kind::jet && n.order == order; });
+  const auto by_structure =
+      homogeneous_degree(m.phi[r], [&](const Node& n) { return n.kind == Kind::jet && n.order == order; });
   c.homogeneous = by_structure && by_structure->get_den() == 1 && *by_structure >= 1 && *by_structure <= kMost;
   for (int degree = 1; degree <= (linear ? 1 : kMost) && !c.homogeneous; ++degree)
     c.homogeneous = proved_zero(radial - Rational(degree) * m.phi[r]);
@@ -57,11 +58,14 @@ std::vector<ConstraintClass> classify(const Mechanics& m) {
 
 std::optional<Diagnostic> not_integrated(const Model& model) {
   if (!model.unknown_functions.empty())
-    return Diagnostic{Severity::error, {}, "the given function '" + model.unknown_functions[0] + "' has no formula",
+    return Diagnostic{Severity::error,
+                      {},
+                      "the given function '" + model.unknown_functions[0] + "' has no formula",
                       "numbers need one: [functions] " + model.unknown_functions[0] + " = \"…\""};
   for (const Control& u : model.controls)
     if (!u.value && !u.constraint)
-      return Diagnostic{Severity::error, u.span, "the input '" + u.name + "' has no formula, and no constraint is kept by it",
+      return Diagnostic{Severity::error, u.span,
+                        "the input '" + u.name + "' has no formula, and no constraint is kept by it",
                         "[input] " + u.name + " = \"…\", or by = \"" + u.name + "\" in a constraint"};
   return std::nullopt;
 }
@@ -69,7 +73,8 @@ std::optional<Diagnostic> not_integrated(const Model& model) {
 int multiplier_orders(const Scenario& s) {
   if (!s.routh) return 0;
   int highest = 0;
-  for (std::size_t j = s.routh->coordinates; j < s.routh->mechanical(); ++j) highest = std::max(highest, s.routh_structure.d[j]);
+  for (std::size_t j = s.routh->coordinates; j < s.routh->mechanical(); ++j)
+    highest = std::max(highest, s.routh_structure.d[j]);
   return highest;
 }
 
@@ -159,11 +164,14 @@ static void choose_constraints(const Model& model, const std::vector<double>& pa
 }
 
 // No motion starts from a number beyond those of the machine, or with a negative mass.
-static Outcome admissible(const Model& model, const std::vector<double>& parameters, const InitialState<double>& state) {
+static Outcome admissible(const Model& model, const std::vector<double>& parameters,
+                          const InitialState<double>& state) {
   for (std::size_t a = 0; a < state.q.size(); ++a)
     for (const unsigned k : {0U, 1U})
       if (!is_finite(k ? state.qd[a] : state.q[a]))
-        return {OutcomeKind::not_a_number, "at the start " + derivative_name(model.coordinates[a].name, k, Format::text) + " has no value in double precision",
+        return {OutcomeKind::not_a_number,
+                "at the start " + derivative_name(model.coordinates[a].name, k, Format::text) +
+                    " has no value in double precision",
                 "give another initial value, or choose units in which it is of moderate size"};
   PointValues at = values_near(model, parameters, state);
   for (const VaryingMass& m : model.masses) {
@@ -177,7 +185,8 @@ static Outcome admissible(const Model& model, const std::vector<double>& paramet
 
 // Routh's equations know all multipliers: the state is completed with them, whatever the form.
 static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
-  auto routh = std::make_shared<System>(implicit_system(s.model, *s.mechanics, *find_formulation("routh"), s.independent, {}));
+  auto routh =
+      std::make_shared<System>(implicit_system(s.model, *s.mechanics, *find_formulation("routh"), s.independent, {}));
   Structure structure;
   if (Outcome o = analyse(*routh, problem.parameters, hints_at(s.state), structure); !o.ok()) return o;
   drop_absent(*routh, structure);
@@ -191,11 +200,14 @@ static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
 static bool may_need_completion(const Model& model) {
   const auto high = [](Expr e) {
     for (NodeId id : symbols({&e, 1}))
-      if (const Node& n = e.graph->node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1)) return true;
+      if (const Node& n = e.graph->node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1))
+        return true;
     return false;
   };
-  return std::any_of(model.constraints.begin(), model.constraints.end(), [](const Constraint& c) { return c.order >= 2; }) ||
-         std::any_of(model.initial.conditions.begin(), model.initial.conditions.end(), [&](const Condition& c) { return high(c.residual); });
+  return std::any_of(model.constraints.begin(), model.constraints.end(),
+                     [](const Constraint& c) { return c.order >= 2; }) ||
+         std::any_of(model.initial.conditions.begin(), model.initial.conditions.end(),
+                     [&](const Condition& c) { return high(c.residual); });
 }
 
 // Derivatives of a constraint that the structure asks for, and the fits of its tables do not have.
@@ -204,8 +216,12 @@ static void smooth_enough(const Scenario& s) {
     const int c = s.structure.c[s.system.coordinates + k];
     const Constraint& constraint = s.model->constraints[s.system.constraints[k]];
     if (const auto name = too_rough(put_masses(*s.model, constraint.phi), c))
-      throw Failure(constraint.span, "the constraint '" + constraint.name + "' is differentiated " + (c == 1 ? "once" : c == 2 ? "twice" : std::to_string(c) + " times") +
-                                         ", and the table '" + *name + "' in it has a fit that jumps before",
+      throw Failure(constraint.span,
+                    "the constraint '" + constraint.name + "' is differentiated " +
+                        (c == 1   ? "once"
+                         : c == 2 ? "twice"
+                                  : std::to_string(c) + " times") +
+                        ", and the table '" + *name + "' in it has a fit that jumps before",
                     "fit = \"linear\" goes into velocities, \"monotone\" and \"spline\" into positions, too");
   }
 }
@@ -220,32 +236,39 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
   s.start = numbers ? std::make_shared<const StartPlan>(*s.mechanics, std::vector<StateOverride>{}) : nullptr;
-  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t, nullptr, s.start.get(), true};
+  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t, nullptr,
+                                       s.start.get(),     true};
   Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
   if (initial.ok() && numbers) initial = admissible(*model, parameters, s.state);
   s.independent.clear();
   s.redundant.clear();
-  if (initial.ok() && numbers) choose_constraints(*model, parameters, s);
+  if (initial.ok() && numbers)
+    choose_constraints(*model, parameters, s);
   else
     for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);
   if (initial.ok() && numbers && may_need_completion(*model)) initial = complete(problem, s);
   s.elimination = Elimination();
   if (form.eliminates()) {
     const auto at = std::make_shared<PointValues>(values_near(*model, parameters, s.state));
-    s.elimination = Elimination(*s.mechanics, choose_elimination(*s.mechanics, s.independent, form.unknowns, choice.eliminate, *at), at);
+    s.elimination = Elimination(
+        *s.mechanics, choose_elimination(*s.mechanics, s.independent, form.unknowns, choice.eliminate, *at), at);
   }
   s.system = implicit_system(model, *s.mechanics, form, s.independent, s.elimination);
   if (!numbers)
     s.system.equations = substitute(s.system.equations, [&](NodeId id) {
       const Node& n = model->graph->node(id);
-      return n.kind == Kind::given ? model->graph->number(Rational(17 + 3 * static_cast<int>(n.index) + static_cast<int>(n.order), 19)) : Expr{};
+      return n.kind == Kind::given
+                 ? model->graph->number(Rational(17 + 3 * static_cast<int>(n.index) + static_cast<int>(n.order), 19))
+                 : Expr{};
     });
   const Outcome structured = analyse(s.system, parameters, hints_at(s.state), s.structure);
   if (structured.ok()) smooth_enough(s), drop_absent(s.system, s.structure);
   if (!initial.ok()) return initial;
   if (!structured.ok()) return structured;
   // Masses and forces that depend on accelerations may ask for more, too.
-  const bool beyond = std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates), [](int d) { return d > 2; });
+  const bool beyond =
+      std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
+                  [](int d) { return d > 2; });
   if (beyond && numbers && !s.routh) initial = complete(problem, s);
   s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());
   return initial;
@@ -253,7 +276,8 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
 
 template <Number N>
 Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start) {
-  const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr, s.start.get(), true};
+  const InitialProblem<N> problem{
+      s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr, s.start.get(), true};
   InitialState<N> named;
   if (Outcome o = consistent_state(problem, named); !o.ok()) return o;
   if (s.routh)

@@ -11,7 +11,7 @@
 namespace anholon {
 
 struct ConstraintClass {
-  std::string kind;      // holonomic, linear, affine, nonlinear (in its top derivative)
+  std::string kind;          // holonomic, linear, affine, nonlinear (in its top derivative)
   bool homogeneous = false;  // in the top derivative (order 1: it does no work)
   bool rheonomic = false;    // holds t explicitly
   bool redundant = false;    // follows from the others at the initial state
@@ -36,8 +36,8 @@ struct Scenario {
   Elimination elimination;  // of forms without multipliers
   System system;
   Structure structure;
-  // Routh's system, where the initial state holds more than positions and velocities, or the equations several solutions:
-  // it is completed there, whatever the form.
+  // Routh's system, where the initial state holds more than positions and velocities, or the equations several
+  // solutions: it is completed there, whatever the form.
   std::shared_ptr<const System> routh;
   Structure routh_structure;
   std::vector<std::string> notes;
@@ -54,8 +54,8 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
 // Derivatives of the multipliers that belong to the state or are solved for, in forms with multipliers.
 int multiplier_orders(const Scenario& scenario);
 
-// The highest derivative that is solved for of any coordinate, d being of the system in the scenario's form; how many more than
-// their own are to be computed of the others, and of the multipliers.
+// The highest derivative that is solved for of any coordinate, d being of the system in the scenario's form; how many
+// more than their own are to be computed of the others, and of the multipliers.
 int largest_order(const Scenario& scenario, const std::vector<int>& d);
 int orders_beyond(const Scenario& scenario, const std::vector<int>& d);
 
@@ -96,8 +96,10 @@ class OutputTape {
     for (const Input& in : tape_.inputs) {
       const Node& n = g.node(in.symbol);
       N value(0);
-      if (n.kind == Kind::time) value = point.time();
-      else if (const auto j = system_.variable(in.symbol)) value = point.derivative(*j, n.order);
+      if (n.kind == Kind::time)
+        value = point.time();
+      else if (const auto j = system_.variable(in.symbol))
+        value = point.derivative(*j, n.order);
       machine_.series(in.slot)[0] = value;
     }
     machine_.evaluate();

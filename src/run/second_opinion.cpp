@@ -7,13 +7,15 @@ namespace anholon {
 namespace {
 
 // The state and the leading derivatives that one program wants, out of those of another for the same unknowns.
-bool translate(const Program& from, const std::vector<double>& state, const std::vector<double>& leading, const Program& to,
-               std::vector<long double>& to_state, std::vector<long double>& to_leading) {
+bool translate(const Program& from, const std::vector<double>& state, const std::vector<double>& leading,
+               const Program& to, std::vector<long double>& to_state, std::vector<long double>& to_leading) {
   std::size_t offset = 0;
   for (std::size_t j = 0; j < to.unknowns(); ++j) {
     const int known = from.d[j];
     if (to.d[j] > known + 1) return false;
-    const auto value = [&](int k) -> long double { return k < known ? state[offset + static_cast<std::size_t>(k)] : k == known ? leading[j] : 0; };
+    const auto value = [&](int k) -> long double {
+      return k < known ? state[offset + static_cast<std::size_t>(k)] : k == known ? leading[j] : 0;
+    };
     for (int k = 0; k < to.d[j]; ++k) to_state.push_back(value(k));
     to_leading.push_back(value(to.d[j]));
     offset += static_cast<std::size_t>(known);
@@ -23,7 +25,8 @@ bool translate(const Program& from, const std::vector<double>& state, const std:
 
 }  // namespace
 
-SecondMotion::SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end)
+SecondMotion::SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power,
+                           const SundialsSettings& settings, long double end)
     : model_(*scenario.model) {
   report_.integrator = settings.integrator;
   report_.of = model_.coordinates[0].name;
@@ -31,7 +34,8 @@ SecondMotion::SecondMotion(const Scenario& scenario, const StateChoice& choice, 
   start_ = start(scenario, choice, power, settings, end);
 }
 
-Outcome SecondMotion::start(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end) {
+Outcome SecondMotion::start(const Scenario& scenario, const StateChoice& choice, Expr power,
+                            const SundialsSettings& settings, long double end) {
   const Scenario* s = &scenario;
   if (scenario.system.form->eliminates()) {
     routh_ = std::make_unique<Scenario>();
@@ -42,8 +46,8 @@ Outcome SecondMotion::start(const Scenario& scenario, const StateChoice& choice,
   Start<double> at;
   if (Outcome o = initial_state(*s, choice, at); !o.ok()) return o;
   program_ = std::make_unique<Program>(program(s->system, s->structure, {&power, 1}));
-  motion_ = std::make_unique<Sundials>(*program_, parameter_values<double>(model_), settings, at.t, convert<double>(end), at.state, at.leading,
-                                       std::vector<double>{});
+  motion_ = std::make_unique<Sundials>(*program_, parameter_values<double>(model_), settings, at.t,
+                                       convert<double>(end), at.state, at.leading, std::vector<double>{});
   return {};
 }
 
@@ -64,7 +68,8 @@ Outcome SecondMotion::at(long double t, const Expansion<long double>& taylor) {
 Outcome SecondMotion::put(long double t, const Expansion<long double>& taylor) {
   std::vector<long double> state, leading;
   if (!translate(*program_, motion_->state(), motion_->leading(), taylor.program(), state, leading))
-    return {OutcomeKind::inconsistent, "the form asks for derivatives that are no part of the second motion", "--form routh"};
+    return {OutcomeKind::inconsistent, "the form asks for derivatives that are no part of the second motion",
+            "--form routh"};
   point_ = taylor;  // of the form that is written, whatever its elimination is here
   point_->load(t, state, leading);
   if (Outcome o = point_->prepare(); !o.ok()) return o;

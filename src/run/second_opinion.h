@@ -1,7 +1,8 @@
-// A second opinion on Taylor's motion: the same motion from the same start by another integrator, and where the two differ most.
+// A second opinion on Taylor's motion: the same motion from the same start by another integrator, and where the two
+// differ most.
 //
-// Forms that eliminate coordinates are asked in Routh's equations: theirs hold on the constraints only, which SUNDIALS leaves
-// by its error, and where a pivot becomes small that error grows without bound (theory: second-opinion).
+// Forms that eliminate coordinates are asked in Routh's equations: theirs hold on the constraints only, which SUNDIALS
+// leaves by its error, and where a pivot becomes small that error grows without bound (theory: second-opinion).
 #pragma once
 #include "integrate/sundials.h"
 #include "run/scenario.h"
@@ -16,16 +17,17 @@ struct SecondOpinion {
   double t = 0;           // and that time
   double drift = 0;       // worst hidden constraint, in relation to its terms: nothing holds it
   std::size_t steps = 0, evaluations = 0;
-  double seconds = 0;     // of its integration alone
+  double seconds = 0;  // of its integration alone
 };
 
 class SecondMotion {
  public:
   // Towards `end`; the power is integrated along.
-  SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end);
+  SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings,
+               long double end);
 
-  // Its own point at t, given Taylor's: the state as integrated, not projected, and what the equations say there. Notes the
-  // difference of the two.
+  // Its own point at t, given Taylor's: the state as integrated, not projected, and what the equations say there. Notes
+  // the difference of the two.
   Outcome at(long double t, const Expansion<long double>& taylor);
   const Expansion<long double>& point() const { return *point_; }
   // The work done until that point.
@@ -34,7 +36,8 @@ class SecondMotion {
 
  private:
   Outcome put(long double t, const Expansion<long double>& taylor);
-  Outcome start(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings, long double end);
+  Outcome start(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings,
+                long double end);
 
   const Model& model_;
   std::unique_ptr<Scenario> routh_;  // where the form eliminates

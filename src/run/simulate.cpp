@@ -21,7 +21,9 @@ StepSettings step_settings(const SimulationOptions& o) {
 
 // What is to go on with the same bits, to be enclosed or to be compared with is Taylor's.
 Method method(const SimulationOptions& o) {
-  return o.method == Method::automatic && (o.save || o.resume || o.rigorous || o.integrator != Integrator::taylor) ? Method::taylor : o.method;
+  return o.method == Method::automatic && (o.save || o.resume || o.rigorous || o.integrator != Integrator::taylor)
+             ? Method::taylor
+             : o.method;
 }
 
 Column monitored(const Model& model) {
@@ -36,14 +38,18 @@ class Run {
   using W = Wider<N>;
   Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), power_(anholon::power(*s.mechanics)),
-        course_(s, step_settings(o), method(o), watched_quadratures(s, power_), std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
-        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()), judge_(s, o), supports_(s) {
+        course_(s, step_settings(o), method(o), watched_quadratures(s, power_),
+                std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
+        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()), judge_(s, o),
+        supports_(s) {
     report_.constraints_each = constraint_reports(s);
   }
 
   SimulationReport go() {
-    if (o_.resume) report_.outcome = resume(*o_.resume);
-    else begin();
+    if (o_.resume)
+      report_.outcome = resume(*o_.resume);
+    else
+      begin();
     if (report_.outcome.ok()) {
       ask_second();
       sink_.columns(column_names());
@@ -65,9 +71,11 @@ class Run {
     const std::size_t monitors = s_.model->monitors.size();
     for (std::size_t i = 0; i < monitors; ++i) {
       const Monitor& m = s_.model->monitors[i];
-      (declared_conserved(*s_.model, m) ? report_.conserved : report_.monitors).push_back(watched(m.name, watch_.tracks()[i]));
+      (declared_conserved(*s_.model, m) ? report_.conserved : report_.monitors)
+          .push_back(watched(m.name, watch_.tracks()[i]));
     }
-    for (std::size_t i = 0; i < o_.conserved.size(); ++i) report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
+    for (std::size_t i = 0; i < o_.conserved.size(); ++i)
+      report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
     for (const std::string& text : supports_.notes()) note(text);
     warn();
     judge_.estimate(course_, report_);
@@ -111,7 +119,8 @@ class Run {
       const Event& e = s_.model->events[i];
       const double value = e.direction * motion().at_start(i);
       if (!e.ends_step() || !(value > kPassed)) continue;
-      note("event '" + e.name + "' is past its limit at the start: its formula is " + number_text(e.direction * value, 6) + ", and it happens where that passes zero " +
+      note("event '" + e.name + "' is past its limit at the start: its formula is " +
+           number_text(e.direction * value, 6) + ", and it happens where that passes zero " +
            (e.direction > 0 ? "upwards" : "downwards") + "; until it has come back, nothing happens");
     }
   }
@@ -120,8 +129,9 @@ class Run {
   void ask_second() {
     if constexpr (std::same_as<N, double>)
       if (o_.integrator != Integrator::taylor)
-        second_ = std::make_unique<SecondMotion>(s_, o_.state, watched_quadratures(s_, power_)[0],
-                                                 SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, end_);
+        second_ = std::make_unique<SecondMotion>(
+            s_, o_.state, watched_quadratures(s_, power_)[0],
+            SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, end_);
     if (second_) judge_.look_beside(course_);
   }
 
@@ -180,7 +190,8 @@ class Run {
     to.set_numbers<W>("start", {t0_});
     to.set_numbers<W>("rows", {*done_});
     // The last step will be made again.
-    to.set_numbers<double>("given", {static_cast<double>(given_rows_), static_cast<double>(given_steps_ > 0 ? given_steps_ - 1 : 0)});
+    to.set_numbers<double>(
+        "given", {static_cast<double>(given_rows_), static_cast<double>(given_steps_ > 0 ? given_steps_ - 1 : 0)});
     std::vector<double> worst, angles;
     for (const double* x : carried()) worst.push_back(*x);
     for (const auto& least : angles_.least) angles.insert(angles.end(), {least.value, to_double(least.t)});
@@ -301,13 +312,17 @@ class Run {
     p.last = o.t;
     ++p.times;
     if (!report_.outcome.ok() || p.shrinking < kShrinking || interval > W(kNoTime) * abs(W(end_ - t0_))) return;
-    report_.outcome = {OutcomeKind::step_collapse, "events accumulate: '" + e.name + "' fired " + std::to_string(p.times) + " times, sooner and sooner, the last time after " + number_text(to_double(interval), 2),
-                       "let an event end the motion (stop = true), or change a mode, when what it resets has become small"};
+    report_.outcome = {
+        OutcomeKind::step_collapse,
+        "events accumulate: '" + e.name + "' fired " + std::to_string(p.times) +
+            " times, sooner and sooner, the last time after " + number_text(to_double(interval), 2),
+        "let an event end the motion (stop = true), or change a mode, when what it resets has become small"};
   }
 
   // What lies in the last step.
   void rows_until(const W& stop) {
-    for (; report_.outcome.ok() && next_ < times_.size() && reaches(stop, times_[next_]); ++next_) row(times_[next_], labels_[next_]);
+    for (; report_.outcome.ok() && next_ < times_.size() && reaches(stop, times_[next_]); ++next_)
+      row(times_[next_], labels_[next_]);
     if (every_step_ && report_.outcome.ok() && !reaches(*done_, stop)) row(stop, "");
     if (!reaches(*done_, stop)) done_ = stop;
   }
@@ -316,9 +331,11 @@ class Run {
     if (report_.outcome.message.find(" t = ") == std::string::npos) {
       report_.outcome.message += " at t = " + number_text(to_double(course_.time()), 12);
       // Nobody asked for an end here.
-      const bool stopped_by_itself = report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
+      const bool stopped_by_itself =
+          report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
       if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
-          report_.outcome.kind == OutcomeKind::no_convergence || report_.outcome.kind == OutcomeKind::not_a_number || stopped_by_itself)
+          report_.outcome.kind == OutcomeKind::no_convergence || report_.outcome.kind == OutcomeKind::not_a_number ||
+          stopped_by_itself)
         explain_stop(s_, motion(), report_.outcome);
     } else if (report_.outcome.kind != OutcomeKind::singular) {
       return;  // it has its row
@@ -328,8 +345,10 @@ class Run {
       const Outcome why = report_.outcome;
       report_.outcome = {};
       row(course_.before(), "");
-      // So near to where J is singular that it cannot be solved to all digits any more: the series reach as far back as forward.
-      if (!report_.outcome.ok() && course_.by_taylor()) report_.outcome = {}, row(course_.before() - (course_.time() - course_.before()), "");
+      // So near to where J is singular that it cannot be solved to all digits any more: the series reach as far back as
+      // forward.
+      if (!report_.outcome.ok() && course_.by_taylor())
+        report_.outcome = {}, row(course_.before() - (course_.time() - course_.before()), "");
       report_.outcome = why;
     }
   }
@@ -338,21 +357,29 @@ class Run {
     constexpr double kNearSingular = 1e-3;
     if (course_.smallest_sigma() < course_.first_sigma() * N(kNearSingular)) {
       const std::size_t j = course_.weakest_unknown(), n = s_.system.coordinates;
-      const std::string what = j < n ? derivative_name(s_.system.variable_names[j], static_cast<unsigned>(motion().program().d[j]), Format::text) + " is hardly determined"
+      const std::string what = j < n ? derivative_name(s_.system.variable_names[j],
+                                                       static_cast<unsigned>(motion().program().d[j]), Format::text) +
+                                           " is hardly determined"
                                      : "the constraint '" + s_.system.equation_names[j] + "' hardly holds";
-      report_.warnings.push_back({"the motion passes near a singular configuration at t = " + report_.smallest_sigma_t + ": " + what,
-                                  "trust what follows less; write the constraint or the coordinates so that they are regular there"});
+      report_.warnings.push_back(
+          {"the motion passes near a singular configuration at t = " + report_.smallest_sigma_t + ": " + what,
+           "trust what follows less; write the constraint or the coordinates so that they are regular there"});
     }
     // Far above what integration and round-off leave.
     constexpr double kConserved = 1e-6;
     for (std::size_t i = 0; i < s_.model->monitors.size(); ++i)
-      if (const double change = watch_.tracks()[i].relative_change(); declared_conserved(*s_.model, s_.model->monitors[i]) && !(change <= kConserved))
-        report_.warnings.push_back({"the output '" + s_.model->monitors[i].name + "' is not conserved: it changes by " + number_text(change, 3) + " of its size",
-                                    "look for a force, an event or an observer that changes it, or leave out conserved = true"});
+      if (const double change = watch_.tracks()[i].relative_change();
+          declared_conserved(*s_.model, s_.model->monitors[i]) && !(change <= kConserved))
+        report_.warnings.push_back(
+            {"the output '" + s_.model->monitors[i].name + "' is not conserved: it changes by " +
+                 number_text(change, 3) + " of its size",
+             "look for a force, an event or an observer that changes it, or leave out conserved = true"});
     for (std::size_t i = 0; i < angles_.triples.size(); ++i)
       if (angles_.least[i].value < kNearSingular)
-        report_.warnings.push_back({"the angles " + angles_.triples[i].angles + " come near their singularity at t = " + number_text(to_double(angles_.least[i].t), 6),
-                                    "describe the orientation of '" + angles_.triples[i].body + "' by a quaternion: quat(e0, e1, e2, e3)"});
+        report_.warnings.push_back(
+            {"the angles " + angles_.triples[i].angles +
+                 " come near their singularity at t = " + number_text(to_double(angles_.least[i].t), 6),
+             "describe the orientation of '" + angles_.triples[i].body + "' by a quaternion: quat(e0, e1, e2, e3)"});
   }
 
   // The end of the last step, or the earlier time at which a mass passes zero.
@@ -377,19 +404,24 @@ class Run {
 
   void negative_mass(const W& t) {
     report_.outcome = {OutcomeKind::negative_mass,
-                       "the mass of '" + s_.model->masses[negative_].name + "' is negative from t = " + number_text(to_double(t), 12) + " on",
+                       "the mass of '" + s_.model->masses[negative_].name +
+                           "' is negative from t = " + number_text(to_double(t), 12) + " on",
                        "end the motion before, or let the mass end at zero flow"};
     reached_ = t;
   }
 
   std::string text(const W& x) const {
-    if constexpr (std::same_as<N, Multi>) return number_text(x, o_.digits + 2);
-    else if constexpr (std::same_as<N, Quad>) return quad_text(x, o_.digits);
-    else return number_text(convert<N>(x));
+    if constexpr (std::same_as<N, Multi>)
+      return number_text(x, o_.digits + 2);
+    else if constexpr (std::same_as<N, Quad>)
+      return quad_text(x, o_.digits);
+    else
+      return number_text(convert<N>(x));
   }
 
   WatchedReport watched(const std::string& name, const Track<W>& track) const {
-    return {name, text(track.first), text(track.last), text(track.least), text(track.greatest), track.relative_change()};
+    return {
+        name, text(track.first), text(track.last), text(track.least), text(track.greatest), track.relative_change()};
   }
 
   void row(const W& t, const std::string& label) {
@@ -427,10 +459,10 @@ class Run {
     int shrinking = 0;  // how often in a row the time since the one before has become shorter
     W last{0}, interval{0};
   };
-  std::vector<Pace> paces_;  // of the events
-  std::size_t next_ = 0;    // row
+  std::vector<Pace> paces_;                       // of the events
+  std::size_t next_ = 0;                          // row
   std::size_t given_rows_ = 0, given_steps_ = 0;  // since the start of the motion
-  std::optional<W> done_;   // all rows up to here have been given
+  std::optional<W> done_;                         // all rows up to here have been given
   std::optional<W> reached_;
   std::size_t negative_ = 0;
   SimulationReport report_;
@@ -442,14 +474,20 @@ SimulationReport simulate(const Scenario& s, const SimulationOptions& o, RowSink
   const auto start = std::chrono::steady_clock::now();
   SimulationReport r;
   switch (o.precision) {
-    case Precision::real: r = Run<double>(s, o, sink).go(); break;
-    case Precision::long_real: r = Run<long double>(s, o, sink).go(); break;
-    case Precision::quad: r = Run<Quad>(s, o, sink).go(); break;
-    case Precision::multi: {
-      const PrecisionScope precision(o.digits + 12);
-      r = Run<Multi>(s, o, sink).go();
-      break;
-    }
+  case Precision::real:
+    r = Run<double>(s, o, sink).go();
+    break;
+  case Precision::long_real:
+    r = Run<long double>(s, o, sink).go();
+    break;
+  case Precision::quad:
+    r = Run<Quad>(s, o, sink).go();
+    break;
+  case Precision::multi: {
+    const PrecisionScope precision(o.digits + 12);
+    r = Run<Multi>(s, o, sink).go();
+    break;
+  }
   }
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return r;

@@ -4,9 +4,9 @@
 
 #include "mechanics/conserved.h"
 #include "result/rows.h"
-#include "run/row_comparison.h"
 #include "run/course.h"
 #include "run/defect.h"
+#include "run/row_comparison.h"
 #include "run/saved.h"
 #include "run/scenario.h"
 #include "run/second_opinion.h"
@@ -20,23 +20,24 @@ inline constexpr std::size_t kShortRun = 5000;  // steps
 struct SimulationOptions {
   StateChoice state;
   std::optional<Rational> to;
-  std::vector<Rational> at;        // exactly these rows, ascending, on one side of the start
+  std::vector<Rational> at;  // exactly these rows, ascending, on one side of the start
   std::optional<Rational> every;
   Rational tolerance{1, 1000000000000};
-  int order = 0;                   // of the Taylor polynomials; 0: from the tolerance
-  Integrator integrator = Integrator::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
-  // Whose motion it is. Where only Taylor's can give what is asked for, automatic means that; others by name compute in double, do not save,
-  // and know neither events nor enclosures.
+  int order = 0;  // of the Taylor polynomials; 0: from the tolerance
+  Integrator integrator =
+      Integrator::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
+  // Whose motion it is. Where only Taylor's can give what is asked for, automatic means that; others by name compute in
+  // double, do not save, and know neither events nor enclosures.
   Method method = Method::automatic;
   Precision precision = Precision::real;
-  int digits = 16;                 // of the numbers written, where more than 16 (multi: also of the computation)
+  int digits = 16;                      // of the numbers written, where more than 16 (multi: also of the computation)
   std::optional<std::size_t> rigorous;  // the defect of the dense output, enclosed at so many times; at all times: 0
-  std::vector<std::string> at_text;  // the times as written, to be printed as given
+  std::vector<std::string> at_text;     // the times as written, to be printed as given
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;
   std::function<void(const std::string&)> note;  // told of the notes of the report as soon as there is one
   std::size_t most_steps = 50'000'000;
-  bool kernel = true;              // where there is one: its pivots, chosen at the start, are seen in the last digits
+  bool kernel = true;  // where there is one: its pivots, chosen at the start, are seen in the last digits
   ErrorEstimate estimate = ErrorEstimate::never;
   std::vector<Conserved> conserved;  // to be watched
   // Called at the end, and every few seconds: what is needed to go on.
@@ -76,7 +77,7 @@ struct EventReport {
 
 struct SimulationReport {
   Outcome outcome;
-  std::string t;                 // reached
+  std::string t;  // reached
   std::size_t steps = 0, rows = 0;
   int order = 0;
   double seconds = 0;
@@ -90,14 +91,15 @@ struct SimulationReport {
   std::string smallest_sigma_t;  // when it was met
   std::vector<ConstraintReport> constraints_each;
   std::optional<ErrorReport> error;
-  std::string no_error;          // why there is no estimate, where one was asked for
+  std::string no_error;  // why there is no estimate, where one was asked for
   std::vector<Warning> warnings;
   std::vector<std::string> notes;  // limits that are passed at the start, floors that pull
   std::vector<EventReport> events;
   std::optional<RigorousReport> rigorous;
   std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
   MethodReport method;
-  std::optional<SecondOpinion> second;  // where another integrator was asked for; steps, order and sigma are those of the motion beside it
+  std::optional<SecondOpinion>
+      second;  // where another integrator was asked for; steps, order and sigma are those of the motion beside it
   std::vector<WatchedReport> monitors;   // of the model's [monitor]
   std::vector<WatchedReport> conserved;  // integrals of the motion
 };

@@ -35,7 +35,8 @@ static std::string unbounded(const Scenario& s, const Motion<N>& motion) {
   for (int k = 0; k < largest_order(s, motion.program().d); ++k) {
     const std::size_t level = static_cast<std::size_t>(k);
     double start = 1;
-    for (double v : level == 0 ? s.state.q : level == 1 ? s.state.qd : s.state.higher[level - 2].value) start = std::max(start, std::abs(v));
+    for (double v : level == 0 ? s.state.q : level == 1 ? s.state.qd : s.state.higher[level - 2].value)
+      start = std::max(start, std::abs(v));
     for (std::size_t a = 0; a < s.system.coordinates; ++a)
       if (k < motion.program().d[a] && std::abs(to_double(point.derivative(a, k))) > kUnbounded * start)
         return derivative_name(s.system.variable_names[a], static_cast<unsigned>(k), Format::text);
@@ -61,14 +62,16 @@ static std::string lost_hold(const Scenario& s, const Motion<N>& motion) {
   phi_tape.evaluate(motion.stepper().point());
   Matrix<double> phi(rows, n), at_start(rows, n);
   PointValues start = values_near(*s.model, parameter_values<double>(*s.model), s.state);
-  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = to_double(phi_tape[i]), at_start.data[i] = start(es[i]);
+  for (std::size_t i = 0; i < phi.data.size(); ++i)
+    phi.data[i] = to_double(phi_tape[i]), at_start.data[i] = start(es[i]);
   const auto size = [&](const Matrix<double>& of, std::size_t i) {
     double largest = 0;
     for (std::size_t a = 0; a < n; ++a) largest = std::max(largest, std::abs(of(i, a)));
     return largest;
   };
   for (std::size_t i = 0; i < rows; ++i)
-    if (size(phi, i) < kLost * size(at_start, i)) return "the partial derivatives of the constraint '" + s.model->constraints[s.independent[i]].name + "' vanish";
+    if (size(phi, i) < kLost * size(at_start, i))
+      return "the partial derivatives of the constraint '" + s.model->constraints[s.independent[i]].name + "' vanish";
   const IndependentConstraints choice = choose_independent(phi, order);
   if (choice.weakest > kLost * choose_independent(at_start, order).weakest && choice.redundant.empty()) return {};
   const std::size_t which = choice.redundant.empty() ? choice.weakest_row : choice.redundant[0];
@@ -81,7 +84,8 @@ static std::string where(const Scenario& s, const Motion<N>& motion) {
   constexpr std::size_t kMost = 6;
   std::vector<std::string> list;
   for (std::size_t a = 0; a < s.system.coordinates && s.system.coordinates <= kMost; ++a)
-    list.push_back(s.system.variable_names[a] + " = " + number_text(to_double(motion.stepper().point().derivative(a, 0)), 6));
+    list.push_back(s.system.variable_names[a] + " = " +
+                   number_text(to_double(motion.stepper().point().derivative(a, 0)), 6));
   return list.empty() ? "" : " (" + joined(list) + ")";
 }
 
@@ -109,12 +113,14 @@ void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) 
   for (std::size_t k = 0; k < s.system.constraints.size() && lost.empty(); ++k) {
     const std::size_t r = s.system.constraints[k];
     if (!may_branch(*s.mechanics, s.system, r)) continue;
-    const double now = to_double(point.derivative(s.system.coordinates + k, 0)), start = s.state.multipliers[0].value[r];
+    const double now = to_double(point.derivative(s.system.coordinates + k, 0)),
+                 start = s.state.multipliers[0].value[r];
     const bool vanishes = s.mechanics->order[r] > 2 && std::abs(now) < kFaint * std::abs(start);
     if (!vanishes && !fallen) continue;
     outcome.kind = OutcomeKind::singular;
-    message = "singular configuration: " + (vanishes ? "the multiplier of the constraint '" + s.model->constraints[r].name + "' goes to 0"
-                                                     : "two solutions for the constraint '" + s.model->constraints[r].name + "' meet") +
+    message = "singular configuration: " +
+              (vanishes ? "the multiplier of the constraint '" + s.model->constraints[r].name + "' goes to 0"
+                        : "two solutions for the constraint '" + s.model->constraints[r].name + "' meet") +
               when + ", and the equations no longer determine the motion there";
     outcome.hint = "end the motion before; the other branch, [initial] branch = {…}, may go on";
     return;
@@ -124,19 +130,26 @@ void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) 
     outcome.kind = OutcomeKind::singular;
     message = "singular configuration" + when + where(s, motion) + ": " +
               (!lost.empty() ? lost
-                             : (j < s.system.coordinates ? "the equations no longer determine the acceleration of " : "the equations no longer determine the multiplier ") +
+                             : (j < s.system.coordinates ? "the equations no longer determine the acceleration of "
+                                                         : "the equations no longer determine the multiplier ") +
                                    s.system.variable_names[j]);
-    if (outcome.hint.empty() || !lost.empty()) outcome.hint = "end the motion before; coordinates or constraints written otherwise may be regular there";
+    if (outcome.hint.empty() || !lost.empty())
+      outcome.hint = "end the motion before; coordinates or constraints written otherwise may be regular there";
   }
-  if (const std::string root = vanishing_root(motion); !root.empty() && outcome.kind != OutcomeKind::not_a_number) message += "; " + root + " is at the edge of where it has a value";
+  if (const std::string root = vanishing_root(motion); !root.empty() && outcome.kind != OutcomeKind::not_a_number)
+    message += "; " + root + " is at the edge of where it has a value";
   for (std::size_t i = 0; i < s.model->masses.size(); ++i)
     if (std::abs(to_double(stepper.quadrature(1 + i, W(0)))) < kVanished)
       message += "; the mass of '" + s.model->masses[i].name + "' vanishes there";
   std::vector<std::string> unbounded;
   for (std::size_t k = 0; k < s.system.constraints.size(); ++k)
-    if (std::abs(to_double(point.derivative(s.system.coordinates + k, 0))) > kUnbounded) unbounded.push_back("'" + s.system.equation_names[s.system.coordinates + k] + "'");
-  if (unbounded.size() == 1) message += "; the multiplier of " + unbounded[0] + " grows without bound: the constraint loses its hold there";
-  if (unbounded.size() > 1) message += "; the multipliers of " + joined(unbounded) + " grow without bound: the constraints lose their hold there";
+    if (std::abs(to_double(point.derivative(s.system.coordinates + k, 0))) > kUnbounded)
+      unbounded.push_back("'" + s.system.equation_names[s.system.coordinates + k] + "'");
+  if (unbounded.size() == 1)
+    message += "; the multiplier of " + unbounded[0] + " grows without bound: the constraint loses its hold there";
+  if (unbounded.size() > 1)
+    message +=
+        "; the multipliers of " + joined(unbounded) + " grow without bound: the constraints lose their hold there";
 }
 
 template void explain_stop(const Scenario&, const Motion<double>&, Outcome&);

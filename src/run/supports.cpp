@@ -19,10 +19,13 @@ double norm(const Direction& a) { return std::sqrt(dot(a, a)); }
 // What is a constant by its meaning comes out of Taylor arithmetic exactly, or within a few roundings.
 constexpr double kSame = 1e-12;
 
-// How the places of all bodies and the residuals of constraints change with one coordinate, by Taylor arithmetic: no expression is made.
+// How the places of all bodies and the residuals of constraints change with one coordinate, by Taylor arithmetic: no
+// expression is made.
 class Rates {
  public:
-  Rates(const Scenario& s, const std::vector<std::size_t>& constraints) : s_(s), constraints_(constraints), tape_(compile(outputs())), machine_(tape_, 1, parameter_values<double>(*s.model)) {}
+  Rates(const Scenario& s, const std::vector<std::size_t>& constraints)
+      : s_(s), constraints_(constraints), tape_(compile(outputs())),
+        machine_(tape_, 1, parameter_values<double>(*s.model)) {}
 
   // At the start, moved by this along every coordinate.
   void go(std::size_t coordinate, double away) {
@@ -31,9 +34,12 @@ class Rates {
       const Node& n = g.node(in.symbol);
       double* series = machine_.series(in.slot);
       series[1] = 0;
-      if (n.kind == Kind::jet && n.order == 0) series[0] = s_.state.q[n.index] + away * (1 + 0.37 * n.index), series[1] = n.index == coordinate ? 1 : 0;
-      else if (n.kind == Kind::time) series[0] = s_.state.t;
-      else series[0] = n.kind == Kind::state && n.index < s_.state.states.size() ? s_.state.states[n.index] : 0;
+      if (n.kind == Kind::jet && n.order == 0)
+        series[0] = s_.state.q[n.index] + away * (1 + 0.37 * n.index), series[1] = n.index == coordinate ? 1 : 0;
+      else if (n.kind == Kind::time)
+        series[0] = s_.state.t;
+      else
+        series[0] = n.kind == Kind::state && n.index < s_.state.states.size() ? s_.state.states[n.index] : 0;
     }
     for (int stage : {0, 1}) machine_.sweep(stage, 0, static_cast<std::uint32_t>(tape_.code.size()));
   }
@@ -45,7 +51,10 @@ class Rates {
     return false;
   }
   double residual(std::size_t k) const { return rate(first_ + k); }
-  Direction gravity() const { return {machine_.value(first_ + constraints_.size()), machine_.value(first_ + constraints_.size() + 1), machine_.value(first_ + constraints_.size() + 2)}; }
+  Direction gravity() const {
+    return {machine_.value(first_ + constraints_.size()), machine_.value(first_ + constraints_.size() + 1),
+            machine_.value(first_ + constraints_.size() + 2)};
+  }
 
  private:
   Column outputs() {
@@ -70,20 +79,24 @@ class Rates {
   Machine<double> machine_;
 };
 
-// What a coordinate does, if it moves all bodies as one: along what, and how the residuals change; nothing where it does something else.
+// What a coordinate does, if it moves all bodies as one: along what, and how the residuals change; nothing where it
+// does something else.
 struct Translation {
   std::size_t coordinate;
   Direction along;
   std::vector<double> residuals;
 };
 
-std::optional<Translation> translation(Rates& rates, const Scenario& s, std::size_t coordinate, std::size_t constraints) {
+std::optional<Translation> translation(Rates& rates, const Scenario& s, std::size_t coordinate,
+                                       std::size_t constraints) {
   std::optional<Translation> found;
   for (const double away : {0.0, 0.31, -0.73}) {
     rates.go(coordinate, away);
     if (rates.turns()) return std::nullopt;
     const Direction along = rates.center(0);
-    const auto same = [&](const Direction& d, const Direction& e) { return norm({d.x - e.x, d.y - e.y, d.z - e.z}) <= kSame * norm(e); };
+    const auto same = [&](const Direction& d, const Direction& e) {
+      return norm({d.x - e.x, d.y - e.y, d.z - e.z}) <= kSame * norm(e);
+    };
     if (!(norm(along) > 0)) return std::nullopt;
     for (std::size_t b = 1; b < s.model->bodies.size(); ++b)
       if (!same(rates.center(b), along)) return std::nullopt;
@@ -96,7 +109,8 @@ std::optional<Translation> translation(Rates& rates, const Scenario& s, std::siz
     if (!same(along, found->along)) return std::nullopt;
     // A rate that is not the same everywhere is marked as none of interest.
     for (std::size_t k = 0; k < constraints; ++k)
-      if (!(std::abs(residuals[k] - found->residuals[k]) <= kSame * std::abs(residuals[k]))) found->residuals[k] = std::nan("");
+      if (!(std::abs(residuals[k] - found->residuals[k]) <= kSame * std::abs(residuals[k])))
+        found->residuals[k] = std::nan("");
   }
   return found;
 }
@@ -119,9 +133,12 @@ std::vector<Support> supports(const Scenario& s) {
     const auto t = translation(rates, s, a, geometric.size());
     if (!t) continue;
     const double along = dot(t->along, gravity) / (norm(t->along) * norm(gravity));
-    if (std::abs(along) <= kSame) sideways.push_back(*t);
-    else if (std::abs(std::abs(along) - 1) <= kSame && !up) up = t;
-    else return {};  // neither upwards nor sideways
+    if (std::abs(along) <= kSame)
+      sideways.push_back(*t);
+    else if (std::abs(std::abs(along) - 1) <= kSame && !up)
+      up = t;
+    else
+      return {};  // neither upwards nor sideways
   }
   if (!up || sideways.empty()) return {};
   // What holds the system sideways makes a hinge of it.
@@ -131,7 +148,8 @@ std::vector<Support> supports(const Scenario& s) {
   std::vector<Support> list;
   for (std::size_t k = 0; k < geometric.size(); ++k) {
     const std::size_t r = geometric[k];
-    const bool single = model.constraints[r].name.find('.') == std::string::npos, holds = std::find(s.redundant.begin(), s.redundant.end(), r) == s.redundant.end();
+    const bool single = model.constraints[r].name.find('.') == std::string::npos,
+               holds = std::find(s.redundant.begin(), s.redundant.end(), r) == s.redundant.end();
     const double rate = up->residuals[k];
     if (!single || !holds || model.constraints[r].by || !std::isfinite(rate) || rate == 0) continue;
     // The power of the constraint for a velocity of one along the coordinate, against gravity.
@@ -153,8 +171,10 @@ std::vector<std::string> SupportWatch::notes() const {
   std::vector<std::string> list;
   for (const Load& l : loads_) {
     if (!l.pulls) continue;
-    list.push_back("constraint '" + s_.model->constraints[l.support.constraint].name + "' looks like a floor and pulls down from t = " + number_text(*l.pulls, 6) + " on, at most with " + number_text(-l.least, 3) +
-                   " at t = " + number_text(l.least_t, 6) + ": a body that may lift would leave it");
+    list.push_back("constraint '" + s_.model->constraints[l.support.constraint].name +
+                   "' looks like a floor and pulls down from t = " + number_text(*l.pulls, 6) + " on, at most with " +
+                   number_text(-l.least, 3) + " at t = " + number_text(l.least_t, 6) +
+                   ": a body that may lift would leave it");
   }
   return list;
 }

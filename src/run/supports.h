@@ -1,8 +1,10 @@
-// Supports that look like floors: which constraints hold the whole system up against gravity, and when one of them begins to pull.
+// Supports that look like floors: which constraints hold the whole system up against gravity, and when one of them
+// begins to pull.
 //
-// A constraint is called a support where it is geometric, of a single equation, and speaks of a height alone: a coordinate moves all bodies
-// upwards as one, another (or two) sideways, and the residual of the constraint changes with the first at a constant rate and with the others not
-// at all, here and at other places. What is held sideways as well is a hinge, which may pull. This is about notes, so what is in doubt is no support.
+// A constraint is called a support where it is geometric, of a single equation, and speaks of a height alone: a
+// coordinate moves all bodies upwards as one, another (or two) sideways, and the residual of the constraint changes
+// with the first at a constant rate and with the others not at all, here and at other places. What is held sideways as
+// well is a hinge, which may pull. This is about notes, so what is in doubt is no support.
 #pragma once
 #include <optional>
 #include <string>
@@ -39,7 +41,8 @@ class SupportWatch {
     void see(double t, double force);
     Support support;
     bool any = false;
-    double first = 0, largest = 0, least = 0, least_t = 0;  // when it pulls first; what it bears at most; the strongest pull
+    double first = 0, largest = 0, least = 0,
+           least_t = 0;  // when it pulls first; what it bears at most; the strongest pull
     std::optional<double> pulls;
   };
   const Scenario& s_;

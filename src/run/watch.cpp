@@ -14,7 +14,8 @@ static Expr balance_power(const Scenario& s, const Power& p) {
   for (std::size_t r : s.system.constraints) {
     if (s.model->constraints[r].by || (m.order[r] == 1 && s.classes[r].homogeneous)) continue;
     Expr rate = g.zero();
-    if (m.order[r] == 0) rate = -partial(m.phi[r], g.time());
+    if (m.order[r] == 0)
+      rate = -partial(m.phi[r], g.time());
     else
       for (std::size_t a = 0; a < m.q.size(); ++a) rate += m.Phi[r][a] * m.qd[a];
     total += m.lambda[r] * put_masses(*s.model, rate);
@@ -31,7 +32,8 @@ std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p) {
 std::vector<ConstraintReport> constraint_reports(const Scenario& s) {
   std::vector<ConstraintReport> list;
   for (std::size_t i = s.system.coordinates; i < s.system.mechanical(); ++i)
-    list.push_back({s.system.equation_names[i], std::vector<double>(static_cast<std::size_t>(std::max(1, s.structure.c[i])), 0.0)});
+    list.push_back({s.system.equation_names[i],
+                    std::vector<double>(static_cast<std::size_t>(std::max(1, s.structure.c[i])), 0.0)});
   return list;
 }
 
@@ -69,7 +71,8 @@ void Track<W>::see(const W& value, const W& terms, MadeOf made_of) {
 }
 
 template <Number W>
-Watch<W>::Watch(const Scenario& s, const Power& power, const std::vector<Conserved>& conserved, const std::vector<W>& parameters)
+Watch<W>::Watch(const Scenario& s, const Power& power, const std::vector<Conserved>& conserved,
+                const std::vector<W>& parameters)
     : s_(s), outputs_(s, expressions(power, conserved), parameters), redundant_(s, parameters) {}
 
 // N, then what the residual report needs: h, E, G, Phi; the terms of what is watched.
@@ -174,7 +177,8 @@ void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, Simu
 template <Number W>
 void Watch<W>::save(SavedRun& to) const {
   std::vector<W> tracks;
-  for (const Track<W>& t : tracks_) tracks.insert(tracks.end(), {W(t.any ? 1 : 0), t.first, t.last, t.least, t.greatest, t.change, t.size, t.missed});
+  for (const Track<W>& t : tracks_)
+    tracks.insert(tracks.end(), {W(t.any ? 1 : 0), t.first, t.last, t.least, t.greatest, t.change, t.size, t.missed});
   to.set_numbers("tracks", tracks);
   to.set_numbers<W>("energy", {h0_, forces_, turned_over_});
   to.set_numbers<W>("from", from_);

@@ -1,5 +1,5 @@
-// What is watched along a motion, point by point: the residual report by another way than the equations integrated, and the
-// reactions N that the rows show.
+// What is watched along a motion, point by point: the residual report by another way than the equations integrated, and
+// the reactions N that the rows show.
 //
 //   C1, C2  Newton's law by the points themselves, with and without multipliers  (theory: certificate)
 //   C3      hidden constraints
@@ -33,7 +33,8 @@ struct Track {
   bool any = false;
   W first{0}, last{0}, least{0}, greatest{0}, change{0}, size{0}, missed{0};
   void see(const W& value);
-  // What ought to be constant. `terms`: the sum of the magnitudes of its terms; `made_of`: of the numbers these are made of (numeric/relative.h).
+  // What ought to be constant. `terms`: the sum of the magnitudes of its terms; `made_of`: of the numbers these are
+  // made of (numeric/relative.h).
   template <class MadeOf>
   void see(const W& value, const W& terms, MadeOf made_of);
   // Of its size; or of its terms, if it ought to be constant.
@@ -43,9 +44,11 @@ struct Track {
 template <Number W>
 class Watch {
  public:
-  Watch(const Scenario& scenario, const Power& power, const std::vector<Conserved>& conserved, const std::vector<W>& parameters);
+  Watch(const Scenario& scenario, const Power& power, const std::vector<Conserved>& conserved,
+        const std::vector<W>& parameters);
 
-  // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows from the others.
+  // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows
+  // from the others.
   Outcome see(const Expansion<W>& point, SimulationReport& report);
   // That alone.
   Outcome still_redundant(const Expansion<W>& point, SimulationReport& report);

@@ -32,9 +32,11 @@ static std::string family_of(const std::string& message) {
 
 bool is_repeated(const Diagnostics& diagnostics, const Diagnostic& d) {
   const std::string family = family_of(d.message);
-  return !family.empty() && std::any_of(diagnostics.list().begin(), diagnostics.list().end(), [&](const Diagnostic& before) {
-    return before.span.line == d.span.line && before.span.column == d.span.column && before.span.file == d.span.file && family_of(before.message) == family;
-  });
+  return !family.empty() &&
+         std::any_of(diagnostics.list().begin(), diagnostics.list().end(), [&](const Diagnostic& before) {
+           return before.span.line == d.span.line && before.span.column == d.span.column &&
+                  before.span.file == d.span.file && family_of(before.message) == family;
+         });
 }
 
 bool collect(Diagnostics& diagnostics, const std::function<void()>& f, const Item& element) {
@@ -55,11 +57,14 @@ void for_each_table(const Item& list, const std::string& what, Diagnostics& diag
     return;
   }
   for (std::size_t k = 0; k < list.items.size(); ++k)
-    collect(diagnostics, [&] {
-      if (list.items[k].kind != Item::Kind::table)
-        throw Failure(list.items[k].span, "an element of '" + what + "' is a table", "{name = \"…\", …}");
-      f(list.items[k], k);
-    }, list.items[k]);
+    collect(
+        diagnostics,
+        [&] {
+          if (list.items[k].kind != Item::Kind::table)
+            throw Failure(list.items[k].span, "an element of '" + what + "' is a table", "{name = \"…\", …}");
+          f(list.items[k], k);
+        },
+        list.items[k]);
 }
 
 std::optional<double> constant_value(const Model& model, Expr e) {
@@ -85,9 +90,8 @@ void BodyReader::declare(const Item& root) {
   for (const char* key : {"body", "particle"}) {
     const Item* list = root.find(key);
     if (!list) continue;
-    for_each_table(*list, key, diagnostics_, [&](const Item& item, std::size_t) {
-      found.push_back({&item, std::string(key) == "particle", 0});
-    });
+    for_each_table(*list, key, diagnostics_,
+                   [&](const Item& item, std::size_t) { found.push_back({&item, std::string(key) == "particle", 0}); });
   }
   const auto place = [](const Item& i) {
     const Item* name = i.find("name");
@@ -97,27 +101,31 @@ void BodyReader::declare(const Item& root) {
   std::stable_sort(found.begin(), found.end(),
                    [&](const Entry& a, const Entry& b) { return place(*a.item) < place(*b.item); });
   for (Entry& e : found)
-    collect(diagnostics_, [&] {
-      const Item* name = e.item->find("name");
-      if (!name || name->kind != Item::Kind::string)
-        throw Failure(e.item->span, std::string("a ") + (e.particle ? "particle" : "body") + " has no name", "name = \"…\"");
-      e.index = scope_.body_names().size();
-      Scope::BodyParts parts;
-      parts.particle = e.particle;
-      parts.center = e.item->find(e.particle ? "position" : "center");
-      if (!e.particle) {
-        parts.orientation = e.item->find("orientation");
-        parts.angle = e.item->find("angle");
-      }
-      try {
-        scope_.declare_body(normal_name(name->text()), name->formula.whole());
-      } catch (...) {
-        scope_.parts(e.index) = parts;
-        throw;
-      }
-      scope_.parts(e.index) = parts;
-      entries_.push_back(e);
-    }, *e.item);
+    collect(
+        diagnostics_,
+        [&] {
+          const Item* name = e.item->find("name");
+          if (!name || name->kind != Item::Kind::string)
+            throw Failure(e.item->span, std::string("a ") + (e.particle ? "particle" : "body") + " has no name",
+                          "name = \"…\"");
+          e.index = scope_.body_names().size();
+          Scope::BodyParts parts;
+          parts.particle = e.particle;
+          parts.center = e.item->find(e.particle ? "position" : "center");
+          if (!e.particle) {
+            parts.orientation = e.item->find("orientation");
+            parts.angle = e.item->find("angle");
+          }
+          try {
+            scope_.declare_body(normal_name(name->text()), name->formula.whole());
+          } catch (...) {
+            scope_.parts(e.index) = parts;
+            throw;
+          }
+          scope_.parts(e.index) = parts;
+          entries_.push_back(e);
+        },
+        *e.item);
 }
 
 Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
@@ -148,8 +156,11 @@ void BodyReader::check_position(const Vector& place, const Item& item, const std
   const Graph& g = *model_.graph;
   for (int i = 0; i < 3; ++i) {
     if (const auto name = scope_.has_tables() ? too_rough(place[i], 2) : std::nullopt)
-      throw Failure(item.span, what + " holds the table '" + *name + "', whose fit has no continuous derivative: velocities would jump, and accelerations hold pulses",
-                    "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
+      throw Failure(
+          item.span,
+          what + " holds the table '" + *name +
+              "', whose fit has no continuous derivative: velocities would jump, and accelerations hold pulses",
+          "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
     std::vector<NodeId> open = {place[i].id}, symbols;
     while (!open.empty()) {
       const NodeId id = open.back();
@@ -166,11 +177,14 @@ void BodyReader::check_position(const Vector& place, const Item& item, const std
         throw Failure(item.span, what + why, hint);
       };
       if (n.kind == Kind::multiplier) refuse(" depends on a multiplier", "");
-      if (n.kind == Kind::control && (!model_.controls[n.index].value || jet_order(*model_.controls[n.index].value) >= 0))
-        refuse(" depends on the input '" + model_.controls[n.index].name + "', which is not a function of time and states",
+      if (n.kind == Kind::control &&
+          (!model_.controls[n.index].value || jet_order(*model_.controls[n.index].value) >= 0))
+        refuse(" depends on the input '" + model_.controls[n.index].name +
+                   "', which is not a function of time and states",
                "bind the coordinate by a constraint kept by this input");
       if (n.kind == Kind::jet && n.order > 0)
-        refuse(" depends on a velocity (" + derivative_name(model_.names.coordinates[n.index], n.order, Format::text) + ")",
+        refuse(" depends on a velocity (" + derivative_name(model_.names.coordinates[n.index], n.order, Format::text) +
+                   ")",
                "positions are formulas of coordinates and t; write velocities as constraints");
     }
   }
@@ -204,11 +218,14 @@ void BodyReader::read_body(const Entry& e) {
   const Item* inertia = item.find("inertia");
   const Item* axes = item.find("axes");
   Expr mass_value = body.mass;
-  if (const Item* mass = item.find("mass")) mass_value = scope_.number(*mass), body.mass = frozen(mass_value, body.name, mass->span);
-  else if (e.particle) throw Failure(body.span, what + " has no mass", "mass = …");
+  if (const Item* mass = item.find("mass"))
+    mass_value = scope_.number(*mass), body.mass = frozen(mass_value, body.name, mass->span);
+  else if (e.particle)
+    throw Failure(body.span, what + " has no mass", "mass = …");
 
   if (const Item* both = item.find("angle"); both && item.find("orientation"))
-    throw Failure(both->key_span, what + " has both 'angle' and 'orientation'", "angle = a is orientation = \"rotz(a)\"");
+    throw Failure(both->key_span, what + " has both 'angle' and 'orientation'",
+                  "angle = a is orientation = \"rotz(a)\"");
   if (scope_.has_orientation(e.index)) {
     const Item& source = item.find("orientation") ? *item.find("orientation") : *item.find("angle");
     body.orientation = scope_.orientation(e.index, source.span);
@@ -225,8 +242,10 @@ void BodyReader::read_body(const Entry& e) {
   if (const Item* u = item.find("expelled_velocity")) {
     body.expelled_velocity = scope_.vector(*u);
     if (const Item* p = item.find("exit_point")) {
-      if (p->kind == Item::Kind::array && body.orientation) body.exit_point = body.center + *body.orientation * scope_.vector(*p);
-      else body.exit_point = scope_.vector(*p);
+      if (p->kind == Item::Kind::array && body.orientation)
+        body.exit_point = body.center + *body.orientation * scope_.vector(*p);
+      else
+        body.exit_point = scope_.vector(*p);
       check_position(body.exit_point, *p, "the exit point of " + what);
       if (!body.orientation && !is_zero(body.exit_point - body.center))
         throw Failure(p->key_span, what + " has no orientation: matter can leave at its centre only");
@@ -260,7 +279,9 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
     for_each_table(*axes, "axes", diagnostics_, [&](const Item& a, std::size_t k) {
       check_keys(a, "an axis", "body.axes", diagnostics_);
       const Item *w = a.find("weight"), *v = a.find("vector");
-      if (!w || !v) throw Failure(a.span, "an axis has weight and vector", "{weight = \"J/2\", vector = [\"cos(th)\", \"sin(th)\", \"0\"]}");
+      if (!w || !v)
+        throw Failure(a.span, "an axis has weight and vector",
+                      "{weight = \"J/2\", vector = [\"cos(th)\", \"sin(th)\", \"0\"]}");
       Axis axis;
       axis.weight = frozen(scope_.number(*w), body.name + " weight " + std::to_string(k + 1), w->span);
       axis.vector = scope_.vector(*v);
@@ -274,11 +295,14 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
                   "give it orientation = \"…\", or angle = \"…\" in the plane");
   const Expr zero = g.zero(), half = g.number(Rational(1, 2));
   const Column unit[3] = {{g.one(), zero, zero}, {zero, g.one(), zero}, {zero, zero, g.one()}};
-  const auto add = [&](Expr weight, const Column& own, const std::string& tag) { add_axis(body, weight, own, tag, inertia->span); };
+  const auto add = [&](Expr weight, const Column& own, const std::string& tag) {
+    add_axis(body, weight, own, tag, inertia->span);
+  };
   if (inertia->kind != Item::Kind::array) {  // plane: about the z axis, e1 + e2 = J
     const Expr j = scope_.number(*inertia);
     const auto v = constant_value(model_, j);
-    if (v && *v < 0) throw Failure(inertia->span, "the moment of inertia is " + number_text(*v, 6) + ": it is not negative");
+    if (v && *v < 0)
+      throw Failure(inertia->span, "the moment of inertia is " + number_text(*v, 6) + ": it is not negative");
     add(half * j, unit[0], "x");
     add(half * j, unit[1], "y");
     return;
@@ -358,12 +382,14 @@ void BodyReader::check_inertia(const Body& body, const Expr (&moment)[3][3], Spa
     }
   for (int i = 0; i < 3; ++i)
     if (j[i][i] < 0)
-      throw Failure(span, "the moment of inertia of '" + body.name + "' about " + "xyz"[i] + " is " + number_text(j[i][i], 6) + ": it is not negative");
+      throw Failure(span, "the moment of inertia of '" + body.name + "' about " + "xyz"[i] + " is " +
+                              number_text(j[i][i], 6) + ": it is not negative");
   const double trace = j[0][0] + j[1][1] + j[2][2], slack = 1e-9 * std::abs(trace);
   double e[3][3];
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) e[i][k] = (i == k ? trace / 2 : 0) - j[i][k];
-  const double det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+  const double det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+                     e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
                      e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
   bool wrong = det < -slack * trace * trace;
   for (int i = 0; i < 3; ++i) {
@@ -387,12 +413,14 @@ Force::Place BodyReader::place(const Item& item) {
   if (item.kind != Item::Kind::table) throw Failure(item.span, "a body name or {body = \"…\", at = …} is expected");
   check_keys(item, "the place of a force", "force.on", diagnostics_);
   const Item* body = item.find("body");
-  if (!body || body->kind != Item::Kind::string) throw Failure(item.span, "the place of a force names a body", "{body = \"…\", at = …}");
+  if (!body || body->kind != Item::Kind::string)
+    throw Failure(item.span, "the place of a force names a body", "{body = \"…\", at = …}");
   p.body = scope_.body(normal_name(body->text()), body->formula.whole());
   p.point = scope_.center(p.body, item.span);
   if (const Item* at = item.find("at")) {
     const Vector a = scope_.vector(*at);
-    p.point = at->kind == Item::Kind::array ? scope_.center(p.body, at->span) + scope_.orientation(p.body, at->span) * a : a;
+    p.point =
+        at->kind == Item::Kind::array ? scope_.center(p.body, at->span) + scope_.orientation(p.body, at->span) * a : a;
     p.at_center = is_zero(p.point - scope_.center(p.body, at->span));
     if (!p.at_center) scope_.orientation(p.body, at->span);  // it must have one
   }
@@ -414,30 +442,38 @@ void BodyReader::read_force(const Item& item, std::size_t number) {
   f.vector = f.on.point = zero_vector(g);
   f.tension = g.zero();
   const Item* value = nullptr;
-  for (const auto& [key, kind] : {std::pair{"vector", Force::Kind::vector}, {"torque", Force::Kind::torque},
-                                  {"tension", Force::Kind::tension}, {"generalized", Force::Kind::generalized}}) {
+  for (const auto& [key, kind] : {std::pair{"vector", Force::Kind::vector},
+                                  {"torque", Force::Kind::torque},
+                                  {"tension", Force::Kind::tension},
+                                  {"generalized", Force::Kind::generalized}}) {
     const Item* i = item.find(key);
     if (!i) continue;
-    if (value) throw Failure(i->key_span, "a force is given by one of vector, torque, tension, generalized; here are two");
+    if (value)
+      throw Failure(i->key_span, "a force is given by one of vector, torque, tension, generalized; here are two");
     value = i;
     f.kind = kind;
   }
   if (!value) throw Failure(item.span, "a force has none of vector, torque, tension, generalized");
   if (f.kind == Force::Kind::generalized) {
-    if (value->kind != Item::Kind::table) throw Failure(value->span, "generalized forces are a table", "generalized = {theta = \"…\"}");
+    if (value->kind != Item::Kind::table)
+      throw Failure(value->span, "generalized forces are a table", "generalized = {theta = \"…\"}");
     for (const Item& component : value->items) {
       const auto it = std::find(model_.names.coordinates.begin(), model_.names.coordinates.end(), component.key);
       if (it == model_.names.coordinates.end()) {
         const std::string near = did_you_mean(component.key, model_.names.coordinates);
-        throw Failure(component.key_span, "there is no coordinate '" + component.key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+        throw Failure(component.key_span, "there is no coordinate '" + component.key + "'" +
+                                              (near.empty() ? "" : "; did you mean '" + near + "'?"));
       }
-      f.generalized.push_back({static_cast<std::size_t>(it - model_.names.coordinates.begin()), scope_.number(component)});
+      f.generalized.push_back(
+          {static_cast<std::size_t>(it - model_.names.coordinates.begin()), scope_.number(component)});
     }
     model_.forces.push_back(std::move(f));
     return;
   }
   const Item *on = item.find("on"), *from = item.find("from");
-  if (!on) throw Failure(item.span, "the force '" + f.name + "' does not say on what it acts", "on = \"…\", the name of a body or particle");
+  if (!on)
+    throw Failure(item.span, "the force '" + f.name + "' does not say on what it acts",
+                  "on = \"…\", the name of a body or particle");
   f.on = place(*on);
   if (from) f.from = place(*from);
   if (f.kind == Force::Kind::tension) {

@@ -7,12 +7,12 @@
 
 namespace anholon {
 
-// Runs f and adds what it throws to the diagnostics (a silent failure only returns false). A failure that knows no place of
-// its own is one of the element at `place`.
+// Runs f and adds what it throws to the diagnostics (a silent failure only returns false). A failure that knows no
+// place of its own is one of the element at `place`.
 bool collect(Diagnostics& diagnostics, const std::function<void()>& f, Span place = {});
 
-// The same for an element of the file; of a member of a family the message says which one it is, and one member speaks for all
-// whose failure has the same place.
+// The same for an element of the file; of a member of a family the message says which one it is, and one member speaks
+// for all whose failure has the same place.
 bool collect(Diagnostics& diagnostics, const std::function<void()>& f, const Item& element);
 // Whether a failure of another member of the family was reported at its place.
 bool is_repeated(const Diagnostics& diagnostics, const Diagnostic& d);

@@ -26,9 +26,7 @@ Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use)
 }
 
 // The inertial rate of change of a vector given by its moving components.
-Vector Scope::inertial_rate(const Vector& v) {
-  return total_derivative(v) + cross(model_.observer.spin, v);
-}
+Vector Scope::inertial_rate(const Vector& v) { return total_derivative(v) + cross(model_.observer.spin, v); }
 
 std::size_t Scope::body_argument(const Value& value, const Syntax& argument) const {
   if (const BodyName* b = std::get_if<BodyName>(&value)) return b->index;
@@ -59,10 +57,13 @@ Expr Scope::look_up(std::size_t index, Expr x, Span use) {
     const Rational bounds[] = {entry.table.x.front(), entry.table.x.back()};
     for (int side : {0, 1}) {
       const std::string end = number_text(bounds[side].get_d(), 12);
-      const std::string fault = "the argument of the table '" + entry.table.name + "' goes " + (side ? "above its last" : "below its first") + " knot " + end;
+      const std::string fault = "the argument of the table '" + entry.table.name + "' goes " +
+                                (side ? "above its last" : "below its first") + " knot " + end;
       const Expr inside = side ? g.number(bounds[1]) - x : x - g.number(bounds[0]);
       if (is_number(inside) && number_value(inside) < 0) throw Failure(use, fault);
-      if (is_number(inside) || std::any_of(model_.bounds.begin(), model_.bounds.end(), [&](const Bound& b) { return b.inside == inside; })) continue;
+      if (is_number(inside) ||
+          std::any_of(model_.bounds.begin(), model_.bounds.end(), [&](const Bound& b) { return b.inside == inside; }))
+        continue;
       model_.bounds.push_back({inside, fault, use});
     }
   }
@@ -153,7 +154,8 @@ bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax
   if (d.role == Role::table) {
     count(1, 1);
     const Expr* e = std::get_if<Expr>(&a[0]);
-    if (!e) throw Failure(s.args[0].span, std::string("the argument of a table is a number, this is ") + type_name(a[0]));
+    if (!e)
+      throw Failure(s.args[0].span, std::string("the argument of a table is a number, this is ") + type_name(a[0]));
     result = look_up(d.index, *e, s.span);
     return true;
   }

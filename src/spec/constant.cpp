@@ -13,10 +13,13 @@ class Constants final : public Names {
   Graph& graph() override { return graph_; }
   Value name(const std::string& name, Span span) override {
     if (name == "pi") return graph_.pi();
-    throw Failure(span, "'" + name.substr(0, 40) + "' is not a number", "numbers, pi, functions of these and units stand here: pi/2, 8 cm");
+    throw Failure(span, "'" + name.substr(0, 40) + "' is not a number",
+                  "numbers, pi, functions of these and units stand here: pi/2, 8 cm");
   }
   bool call(const std::string&, const std::vector<Value>&, const Syntax&, Value&) override { return false; }
-  Value member(const Value&, const Syntax& s) override { throw Failure(s.span, "a number has no member '" + s.text + "'"); }
+  Value member(const Value&, const Syntax& s) override {
+    throw Failure(s.span, "a number has no member '" + s.text + "'");
+  }
   std::vector<std::string> functions() const override { return {}; }
 
  private:
@@ -45,7 +48,8 @@ Constant read_constant(const std::string& text) {
   const Tape tape = compile({&e, 1});
   Machine<Multi> machine(tape, 0, {});
   machine.evaluate();
-  const auto value = is_finite(machine.value(0)) ? parse_rational(number_text(machine.value(0), kDigits)) : std::nullopt;
+  const auto value =
+      is_finite(machine.value(0)) ? parse_rational(number_text(machine.value(0), kDigits)) : std::nullopt;
   if (!value) throw Failure(s.span, "this has no value");
   c.value = *value;
   return c;

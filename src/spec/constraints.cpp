@@ -21,7 +21,8 @@ int ConstraintReader::true_order(Expr& phi) const {
       if (g.node(id).kind == Kind::jet && g.node(id).order == k) top.push_back({&g, id});
     const Column d = gradient(phi, top);
     const auto told = [](Expr e) { return is_number(e) && !is_zero(e); };  // without a proof
-    const bool depends = std::any_of(d.begin(), d.end(), told) || std::any_of(d.rbegin(), d.rend(), [](Expr e) { return !proved_zero(e); });
+    const bool depends = std::any_of(d.begin(), d.end(), told) ||
+                         std::any_of(d.rbegin(), d.rend(), [](Expr e) { return !proved_zero(e); });
     if (depends) return k;
     phi = substitute({&phi, 1}, [&](NodeId id) {
       const Node& n = g.node(id);
@@ -35,15 +36,16 @@ void ConstraintReader::add_constraint(const std::string& name, Expr phi, const s
   phi = with_feedback(model_, phi);
   const int order = true_order(phi);
   if (order < 0) {
-    if (proved_zero(phi))
-      throw Failure(place, "this equation always holds: it constrains nothing");
+    if (proved_zero(phi)) throw Failure(place, "this equation always holds: it constrains nothing");
     if (const auto constant = expanded(phi); constant && is_number(*constant))
-      throw Failure(place, "this equation never holds: its sides differ by " + to_string(Rational(abs(number_value(*constant)))));
+      throw Failure(place, "this equation never holds: its sides differ by " +
+                               to_string(Rational(abs(number_value(*constant)))));
     throw Failure(place, "no coordinate or derivative occurs in this equation",
                   "a constraint relates coordinates and their derivatives");
   }
   if (model_.constraints.size() + model_.coordinates.size() >= kMostUnknowns)
-    throw Failure(place, "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
+    throw Failure(place,
+                  "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
   if (!names_.insert(name).second) throw Failure(place, "there are two constraints '" + name + "'");
   model_.constraints.push_back({name, phi, order, equation, place});
   model_.names.multipliers.push_back(name);
@@ -56,7 +58,8 @@ std::vector<UnitNorm> ConstraintReader::norms_of_quaternions() {
   for (const UnitNorm& n : norms)
     collect(diagnostics_, [&] {
       add_constraint(n.name, n.phi, n.equation, n.span);
-      model_.notes.push_back("constraint '" + n.name + "' is added: " + n.equation + ", without which quat(…) in line " + std::to_string(n.span.line) + " is no rotation");
+      model_.notes.push_back("constraint '" + n.name + "' is added: " + n.equation +
+                             ", without which quat(…) in line " + std::to_string(n.span.line) + " is no rotation");
     });
   return norms;
 }
@@ -65,8 +68,9 @@ void ConstraintReader::read(const Item& root) {
   const Item* list = root.find("constraint");
   if (!list) return;
   if (list->items.size() + model_.coordinates.size() > kMostUnknowns) {
-    diagnostics_.error(list->key_span, std::to_string(list->items.size()) + " constraints on " + std::to_string(model_.coordinates.size()) +
-                                           " coordinates; at most " + std::to_string(kMostUnknowns) + " of both together are accepted");
+    diagnostics_.error(list->key_span, std::to_string(list->items.size()) + " constraints on " +
+                                           std::to_string(model_.coordinates.size()) + " coordinates; at most " +
+                                           std::to_string(kMostUnknowns) + " of both together are accepted");
     return;
   }
   for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
@@ -98,8 +102,10 @@ void ConstraintReader::read(const Item& root) {
     int index = 0;
     for (const Direction& d : directions(along, scope_)) {
       const Expr phi = component(difference, d, index++);
-      if (proved_zero(phi)) dropped += (dropped.empty() ? "" : ", ") + name + "." + d.tag;
-      else kept.push_back({name + "." + d.tag, phi});
+      if (proved_zero(phi))
+        dropped += (dropped.empty() ? "" : ", ") + name + "." + d.tag;
+      else
+        kept.push_back({name + "." + d.tag, phi});
     }
     if (kept.empty()) throw Failure(place, "this equation always holds: it constrains nothing");
     if (!dropped.empty())
@@ -114,7 +120,9 @@ Vector ConstraintReader::evaluate_vector_side(const Value& side, const Syntax& s
   if (const Vector* a = std::get_if<Vector>(&v)) return *a;
   if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
   throw Failure(s.span, std::string("one side of the equation is a vector, the other is ") + type_name(v),
-                v.index() == 3 ? body_hint(v, scope_) : v.index() == 0 ? "0 is also the zero vector" : "");
+                v.index() == 3   ? body_hint(v, scope_)
+                : v.index() == 0 ? "0 is also the zero vector"
+                                 : "");
 }
 
 }  // namespace anholon

@@ -8,13 +8,14 @@
 
 namespace anholon {
 
-// Coordinates, or coordinates and constraints, beyond these are refused: matrices of their equations would not fit in memory,
-// and their factors would take minutes.
+// Coordinates, or coordinates and constraints, beyond these are refused: matrices of their equations would not fit in
+// memory, and their factors would take minutes.
 inline constexpr std::size_t kMostCoordinates = 2000, kMostUnknowns = 2500;
 
 class ConstraintReader {
  public:
-  ConstraintReader(Scope& scope, Model& model, Diagnostics& diagnostics) : scope_(scope), model_(model), diagnostics_(diagnostics) {}
+  ConstraintReader(Scope& scope, Model& model, Diagnostics& diagnostics)
+      : scope_(scope), model_(model), diagnostics_(diagnostics) {}
 
   void read(const Item& root);
   // What quaternions need to be rotations, after all that may hold one was read.

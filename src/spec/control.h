@@ -1,8 +1,8 @@
 // [input] and [output]: what a control acts by, and what is recorded.
 //
-// An input is a formula of anything, held as a symbol of its own while the equations are derived; it is put in when the system
-// is made. An input named in `by = "u"` of a constraint keeps that constraint: it is an unknown in the place of lambda (servo
-// constraint), and any formula it has is not used.
+// An input is a formula of anything, held as a symbol of its own while the equations are derived; it is put in when the
+// system is made. An input named in `by = "u"` of a constraint keeps that constraint: it is an unknown in the place of
+// lambda (servo constraint), and any formula it has is not used.
 #pragma once
 #include "spec/names.h"
 

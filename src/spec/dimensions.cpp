@@ -1,10 +1,9 @@
 #include "spec/dimensions.h"
 
-#include <map>
-
 #include <algorithm>
 #include <cctype>
 #include <functional>
+#include <map>
 
 #include "spec/bodies.h"
 #include "spec/formula_dimensions.h"
@@ -21,7 +20,9 @@ bool may_have_units(const Item& item) {
   if (item.kind == Item::Kind::string) {
     const std::string& s = item.text();
     for (std::size_t i = 0; i + 2 < s.size(); ++i)
-      if ((std::isdigit(static_cast<unsigned char>(s[i])) || s[i] == '.') && (s[i + 1] == ' ' || static_cast<unsigned char>(s[i + 1]) >= 0x80 || s[i + 1] == '\t')) return true;
+      if ((std::isdigit(static_cast<unsigned char>(s[i])) || s[i] == '.') &&
+          (s[i + 1] == ' ' || static_cast<unsigned char>(s[i + 1]) >= 0x80 || s[i + 1] == '\t'))
+        return true;
   }
   return std::any_of(item.items.begin(), item.items.end(), may_have_units);
 }
@@ -29,15 +30,20 @@ bool may_have_units(const Item& item) {
 // What each element of a model file says about dimensions.
 class Elements {
  public:
-  Elements(const Item& root, const Scope& scope, const Model& model) : root_(root), model_(model), formulas_(scope, model) {}
+  Elements(const Item& root, const Scope& scope, const Model& model)
+      : root_(root), model_(model), formulas_(scope, model) {}
 
   bool run() {
     // A value from outside may have taken the place of the only one with a unit.
-    each("parameters", [&](const Item& i) { if (i.is_formula()) formulas_.look_for_units(parse_formula(i.formula)); });
+    each("parameters", [&](const Item& i) {
+      if (i.is_formula()) formulas_.look_for_units(parse_formula(i.formula));
+    });
     tables();  // the units of their knots are given, not found
     formulas_.declarations(found_);
     observer();
-    each("gravity", [&](const Item& i) { if (i.key == "field") formulas_.in_field = true, expect(i, "m/s^2"), formulas_.in_field = false; });
+    each("gravity", [&](const Item& i) {
+      if (i.key == "field") formulas_.in_field = true, expect(i, "m/s^2"), formulas_.in_field = false;
+    });
     bodies();
     forces();
     each("potential", [&](const Item& i) { expect(i, "J"); });
@@ -45,12 +51,17 @@ class Elements {
     states();
     events();
     each("output", [&](const Item& i) { output(i); });
-    list("constraint", [&](const Item& c) { if (const Item* e = c.find("equation")) equation(*e); });
+    list("constraint", [&](const Item& c) {
+      if (const Item* e = c.find("equation")) equation(*e);
+    });
     initial();
-    each("monitor", [&](const Item& i) { if (i.is_formula()) formulas_.of(i); });
+    each("monitor", [&](const Item& i) {
+      if (i.is_formula()) formulas_.of(i);
+    });
     each("simulate", [&](const Item& i) {
       if (i.key == "to" || i.key == "every") expect(i, "s");
-      if (i.key == "at") for (const Item& t : i.items) expect(t, "s");
+      if (i.key == "at")
+        for (const Item& t : i.items) expect(t, "s");
     });
     return formulas_.units_seen;
   }
@@ -71,27 +82,38 @@ class Elements {
   }
 
   void expect(const Item& i, const DimensionForm& wanted) {
-    guard([&] {
-      if (i.is_formula() || i.kind == Item::Kind::array) formulas_.expect(formulas_.term(i), wanted, i.is_formula() ? i.formula.whole() : i.span);
-    }, i.span);
+    guard(
+        [&] {
+          if (i.is_formula() || i.kind == Item::Kind::array)
+            formulas_.expect(formulas_.term(i), wanted, i.is_formula() ? i.formula.whole() : i.span);
+        },
+        i.span);
   }
   void expect(const Item& i, const char* unit) { expect(i, formulas_.unit(unit)); }
-  void expect(const Item* i, const char* unit) { if (i) expect(*i, unit); }
+  void expect(const Item* i, const char* unit) {
+    if (i) expect(*i, unit);
+  }
 
   void equation(const Item& i) {
     if (i.kind != Item::Kind::string) return;
     const std::vector<Syntax> sides = parse_equation(i.formula);
     const Measured left = formulas_.term(sides[0]);
-    if (sides.size() == 2) formulas_.alike(left, formulas_.term(sides[1]), i.formula.whole(), " on the left side, ", " on the right side");
+    if (sides.size() == 2)
+      formulas_.alike(left, formulas_.term(sides[1]), i.formula.whole(), " on the left side, ", " on the right side");
   }
 
   void observer() {
     each("observer", [&](const Item& i) {
-      if (i.key == "spin") expect(i, "s^-1");
-      else if (i.key == "rotation") formulas_.of(i);
-      else if (i.key == "origin_acceleration") expect(i, "m/s^2");
-      else if (i.key == "origin_velocity" || i.key == "origin_velocity_inertial") expect(i, "m/s");
-      else if (i.key == "origin_position_inertial") expect(i, "m");
+      if (i.key == "spin")
+        expect(i, "s^-1");
+      else if (i.key == "rotation")
+        formulas_.of(i);
+      else if (i.key == "origin_acceleration")
+        expect(i, "m/s^2");
+      else if (i.key == "origin_velocity" || i.key == "origin_velocity_inertial")
+        expect(i, "m/s");
+      else if (i.key == "origin_position_inertial")
+        expect(i, "m");
     });
   }
 
@@ -107,10 +129,12 @@ class Elements {
         if (const Item* o = b.find("orientation")) guard([&] { formulas_.of(*o); }, o->span);
         if (const Item* inertia = b.find("inertia")) moments(*inertia);
         if (const Item* shape = b.find("shape"))
-          guard([&] {
-            const Syntax s = parse_formula(shape->formula);
-            for (const Syntax& a : s.args) formulas_.expect(formulas_.of(a), formulas_.unit("m"), a.span);
-          }, shape->span);
+          guard(
+              [&] {
+                const Syntax s = parse_formula(shape->formula);
+                for (const Syntax& a : s.args) formulas_.expect(formulas_.of(a), formulas_.unit("m"), a.span);
+              },
+              shape->span);
         if (const Item* axes = b.find("axes"))
           for (const Item& a : axes->items)
             if (const Item *w = a.find("weight"), *v = a.find("vector"); w && v)
@@ -173,8 +197,10 @@ class Elements {
     const Item* value = i.kind == Item::Kind::table ? i.find("value") : &i;
     if (!value) return;
     const Item* unit = i.kind == Item::Kind::table ? i.find("unit") : nullptr;
-    if (unit) expect(*value, formulas_.given_unit(normal_name(unit->text())));
-    else formulas_.term(*value);
+    if (unit)
+      expect(*value, formulas_.given_unit(normal_name(unit->text())));
+    else
+      formulas_.term(*value);
   }
 
   DimensionForm named(const std::string& name) { return formulas_.named(name).dimension; }
@@ -193,12 +219,14 @@ class Elements {
       name = name.substr(2, name.find(',') - 2);
     }
     const auto& names = model_.names.coordinates;
-    if (std::find(names.begin(), names.end(), name) != names.end()) expect(i, named(name) / power(formulas_.unit("s"), order));
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      expect(i, named(name) / power(formulas_.unit("s"), order));
   }
 
   void values(const Item& table) {
     for (const Item& i : table.items) {
-      if (i.key == "t") expect(i, "s");
+      if (i.key == "t")
+        expect(i, "s");
       else if (i.key == "conditions")
         for (const Item& c : i.items) guard([&] { equation(c); }, c.span);
       else if (i.kind == Item::Kind::table)
@@ -206,7 +234,8 @@ class Elements {
           if (i.key == key)
             for (const Item& v : i.items) value(v, v.key, order);
         }
-      else value(i, i.key, 0);
+      else
+        value(i, i.key, 0);
     }
   }
 
@@ -221,7 +250,8 @@ class Elements {
 // A number without a unit among others that have one may be meant in theirs: "b = 18" beside "r = 8 cm".
 static void note_bare_numbers(const Scope& scope, Model& model) {
   const auto& names = model.names.parameters;
-  std::map<std::string, std::string> measured;  // the unit in SI: a parameter that is given with a unit, as it is written
+  std::map<std::string, std::string>
+      measured;  // the unit in SI: a parameter that is given with a unit, as it is written
   std::vector<std::pair<std::size_t, std::string>> bare;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Scope::Declaration& d = scope.declarations().at(names[i]);
@@ -229,13 +259,17 @@ static void note_bare_numbers(const Scope& scope, Model& model) {
     if (si.empty() || si == "1" || d.item) continue;
     const Syntax s = parse_formula(d.formula);
     const Syntax& number = s.op == Syntax::Op::negate ? s.args[0] : s;
-    if (number.op == Syntax::Op::quantity) measured.emplace(si, names[i] + " = " + d.formula.text());
-    else if (!d.unit.empty()) measured.emplace(si, names[i] + " = " + d.formula.text() + " " + d.unit);
-    else if (number.op == Syntax::Op::number && parse_rational(number.text).value_or(0) != 0) bare.push_back({i, d.formula.text()});
+    if (number.op == Syntax::Op::quantity)
+      measured.emplace(si, names[i] + " = " + d.formula.text());
+    else if (!d.unit.empty())
+      measured.emplace(si, names[i] + " = " + d.formula.text() + " " + d.unit);
+    else if (number.op == Syntax::Op::number && parse_rational(number.text).value_or(0) != 0)
+      bare.push_back({i, d.formula.text()});
   }
   for (const auto& [i, text] : bare)
     if (const auto other = measured.find(model.parameter_units[i]); other != measured.end())
-      model.notes.push_back("parameter " + names[i] + " = " + text + " has no unit and is " + text + " " + model.parameter_units[i] + ", beside " + other->second);
+      model.notes.push_back("parameter " + names[i] + " = " + text + " has no unit and is " + text + " " +
+                            model.parameter_units[i] + ", beside " + other->second);
 }
 
 void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagnostics& diagnostics) {

@@ -1,6 +1,6 @@
-// Do the units of a file fit together? Every name gets a dimension, known from a unit or an unknown of Q^7, and every formula
-// and element tells how they are related: what is added is alike, x' is x by a second, a position is a length, a mass a mass.
-// A bare number fits any dimension, so a file without units is always consistent, and is not looked at.
+// Do the units of a file fit together? Every name gets a dimension, known from a unit or an unknown of Q^7, and every
+// formula and element tells how they are related: what is added is alike, x' is x by a second, a position is a length,
+// a mass a mass. A bare number fits any dimension, so a file without units is always consistent, and is not looked at.
 #pragma once
 #include "spec/names.h"
 

@@ -24,10 +24,13 @@ class IndexReader {
   std::shared_ptr<const Indices> read(const Item& section, Diagnostics& diagnostics) {
     indices_ = std::make_shared<Indices>();
     indices_->room = std::make_shared<std::size_t>(kMostTerms);
-    if (section.items.size() > kMostIndices) throw Failure(section.key_span, "more than " + std::to_string(kMostIndices) + " indices");
+    if (section.items.size() > kMostIndices)
+      throw Failure(section.key_span, "more than " + std::to_string(kMostIndices) + " indices");
     for (const Item& i : section.items)
       collect(diagnostics, [&] {
-        if (!is_identifier(i.key)) throw Failure(i.key_span, "'" + i.key.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+        if (!is_identifier(i.key))
+          throw Failure(i.key_span, "'" + i.key.substr(0, 40) + "' is not a name",
+                        "letters, digits and _, not starting with a digit");
         if (is_reserved(i.key)) throw Failure(i.key_span, "the name '" + i.key + "' is reserved");
         entries_.emplace(i.key, &i);
         out_.letters.insert(i.key);
@@ -64,7 +67,8 @@ class IndexReader {
     if (const auto o = overrides_.find(i.key); o != overrides_.end()) {
       out_.used.insert(i.key);
       const std::string option = "--set " + o->first + "=" + o->second;
-      if (dots != std::string::npos) throw Failure(Span{}, option + ": '" + i.key + "' is a range; set the integers of its bounds");
+      if (dots != std::string::npos)
+        throw Failure(Span{}, option + ": '" + i.key + "' is a range; set the integers of its bounds");
       try {
         indices_->values[i.key] = integer(FormulaText(o->second, Span{}));
       } catch (const Failure& f) {
@@ -81,7 +85,8 @@ class IndexReader {
     const long first = integer(FormulaText(i.text().substr(0, dots), i.formula.span(0, 1)));
     const long last = integer(FormulaText(i.text().substr(dots + 2), i.formula.span(after, 1)));
     const IndexRange range{first, last};
-    if (range.size() > kLongestRange) throw Failure(i.formula.whole(), "a range of more than " + std::to_string(kLongestRange) + " values");
+    if (range.size() > kLongestRange)
+      throw Failure(i.formula.whole(), "a range of more than " + std::to_string(kLongestRange) + " values");
     indices_->ranges[i.key] = range;
   }
 
@@ -120,7 +125,8 @@ class Bracketed {
       at.column += static_cast<std::uint32_t>(utf8_length(text.substr(0, from)));
       at.length = 1;
       std::vector<Syntax> s = parse_plain(FormulaText(text.substr(from, close + 1 - from), at));
-      if (s.size() != 1 || s[0].op != Syntax::Op::index) throw Failure(span, "'" + text.substr(0, 40) + "' is not a name");
+      if (s.size() != 1 || s[0].op != Syntax::Op::index)
+        throw Failure(span, "'" + text.substr(0, 40) + "' is not a name");
       parts_.push_back({from, close + 1, std::move(s[0])});
       open = close;
     }
@@ -156,7 +162,8 @@ bool has_bracket(const std::string& text) { return text.find('[') != std::string
 // P[i-1] and nothing more: the whole text names one element.
 bool is_reference(const std::string& text) {
   const std::size_t open = text.find('[');
-  return open != std::string::npos && is_identifier(normal_name(text.substr(0, open))) && text.find(']') + 1 == text.size();
+  return open != std::string::npos && is_identifier(normal_name(text.substr(0, open))) &&
+         text.find(']') + 1 == text.size();
 }
 
 Span inside_quotes(Span key, const std::string& text) {
@@ -178,10 +185,14 @@ class Writer {
     std::vector<std::optional<Bracketed>> names(t.items.size());
     for (std::size_t k = 0; k < t.items.size(); ++k) {
       const Item& i = t.items[k];
-      if (has_bracket(i.key)) collect(diagnostics_, [&] {
-          names[k].emplace(i.key, inside_quotes(i.key_span, i.key));
-          if (names[k]->letters(*context).empty()) written.insert(names[k]->with(context.get()));
-        }, i.key_span);
+      if (has_bracket(i.key))
+        collect(
+            diagnostics_,
+            [&] {
+              names[k].emplace(i.key, inside_quotes(i.key_span, i.key));
+              if (names[k]->letters(*context).empty()) written.insert(names[k]->with(context.get()));
+            },
+            i.key_span);
     }
     std::vector<Item> items;
     items.reserve(t.items.size());
@@ -191,14 +202,19 @@ class Writer {
         value(i, context);
         items.push_back(std::move(i));
       } else if (names[k]) {
-        collect(diagnostics_, [&] {
-          const bool list = i.kind == Item::Kind::array && (t.key != "point" || (!i.items.empty() && i.items[0].kind == Item::Kind::array));
-          members(i, *names[k], context, written, list, [&](Item member, const std::string& name, const Context& inner) {
-            member.key = name;
-            value(member, inner);
-            items.push_back(std::move(member));
-          });
-        }, i.key_span);
+        collect(
+            diagnostics_,
+            [&] {
+              const bool list = i.kind == Item::Kind::array &&
+                                (t.key != "point" || (!i.items.empty() && i.items[0].kind == Item::Kind::array));
+              members(i, *names[k], context, written, list,
+                      [&](Item member, const std::string& name, const Context& inner) {
+                        member.key = name;
+                        value(member, inner);
+                        items.push_back(std::move(member));
+                      });
+            },
+            i.key_span);
       }
     }
     t.items = std::move(items);
@@ -207,14 +223,16 @@ class Writer {
  private:
   // Calls f(copy, name, context) for each member that is not written out; for a name without letters, once.
   template <class F>
-  void members(const Item& item, const Bracketed& name, const Context& context, const std::set<std::string>& written, bool list, F f) {
+  void members(const Item& item, const Bracketed& name, const Context& context, const std::set<std::string>& written,
+               bool list, F f) {
     const Letters letters = name.letters(*context);
     if (letters.empty()) return f(item, name.with(context.get()), context);
     std::size_t count = 1;
     for (const auto& [letter, range] : letters) count = std::min(kMostEntries + 1, count * range.size());
     if (list && item.items.size() != count)
-      throw Failure(item.span, std::to_string(item.items.size()) + (item.items.size() == 1 ? " value" : " values") + " for " + std::to_string(count) +
-                                   (count == 1 ? " member: " : " members: ") + ranges(letters),
+      throw Failure(item.span,
+                    std::to_string(item.items.size()) + (item.items.size() == 1 ? " value" : " values") + " for " +
+                        std::to_string(count) + (count == 1 ? " member: " : " members: ") + ranges(letters),
                     "one value alone, without list, is that of all members");
     each(letters, 0, *std::make_shared<Indices>(), context, [&, k = std::size_t{0}](const Context& inner) mutable {
       const std::string own = name.with(inner.get());
@@ -246,27 +264,35 @@ class Writer {
   static std::string ranges(const Letters& letters) {
     std::string text;
     for (const auto& [name, range] : letters)
-      text += (text.empty() ? "" : ", ") + name + " = " + std::to_string(range.first) + ".." + std::to_string(range.last);
+      text +=
+          (text.empty() ? "" : ", ") + name + " = " + std::to_string(range.first) + ".." + std::to_string(range.last);
     return text;
   }
 
   void spend(const Item& item) {
-    if (++entries_ > kMostEntries) throw Failure(item.span, "the families of this file have more than " + std::to_string(kMostEntries) + " entries");
+    if (++entries_ > kMostEntries)
+      throw Failure(item.span, "the families of this file have more than " + std::to_string(kMostEntries) + " entries");
     for (const Item& i : item.items) spend(i);
   }
 
   void value(Item& i, const Context& context) {
     switch (i.kind) {
-      case Item::Kind::string: case Item::Kind::number:
-        i.formula.set_indices(context);
-        for (const char* key : {"name", "on", "from", "body", "along", "by"})
-          if (i.key == key) reference(i, context);
-        return;
-      case Item::Kind::table: return table(i, context);
-      case Item::Kind::array: break;
-      case Item::Kind::boolean: case Item::Kind::other: return;
+    case Item::Kind::string:
+    case Item::Kind::number:
+      i.formula.set_indices(context);
+      for (const char* key : {"name", "on", "from", "body", "along", "by"})
+        if (i.key == key) reference(i, context);
+      return;
+    case Item::Kind::table:
+      return table(i, context);
+    case Item::Kind::array:
+      break;
+    case Item::Kind::boolean:
+    case Item::Kind::other:
+      return;
     }
-    const bool tables = std::any_of(i.items.begin(), i.items.end(), [](const Item& e) { return e.kind == Item::Kind::table; });
+    const bool tables =
+        std::any_of(i.items.begin(), i.items.end(), [](const Item& e) { return e.kind == Item::Kind::table; });
     const bool names = i.key == "coordinates" || i.key == "dependent" || i.key == "by";
     if (tables || names) return list(i, context);
     if (i.key == "conditions") return conditions(i, context);
@@ -301,11 +327,16 @@ class Writer {
     std::set<std::string> written;
     std::vector<std::optional<Bracketed>> names(l.items.size());
     for (std::size_t k = 0; k < l.items.size(); ++k)
-      if (const Item* name = naming(l.items[k]); name && has_bracket(name->text())) collect(diagnostics_, [&] {
-          names[k].emplace(name->text(), name->formula.span(0, 1));
-          const bool named = name == &l.items[k] || l.items[k].find("name") == name;  // several forces may act on one body
-          if (named && names[k]->letters(*context).empty()) written.insert(names[k]->with(context.get()));
-        }, name->span);
+      if (const Item* name = naming(l.items[k]); name && has_bracket(name->text()))
+        collect(
+            diagnostics_,
+            [&] {
+              names[k].emplace(name->text(), name->formula.span(0, 1));
+              const bool named =
+                  name == &l.items[k] || l.items[k].find("name") == name;  // several forces may act on one body
+              if (named && names[k]->letters(*context).empty()) written.insert(names[k]->with(context.get()));
+            },
+            name->span);
     std::vector<Item> items;
     items.reserve(l.items.size());
     for (std::size_t k = 0; k < l.items.size(); ++k) {
@@ -315,13 +346,17 @@ class Writer {
         items.push_back(std::move(i));
         continue;
       }
-      collect(diagnostics_, [&] {
-        members(i, *names[k], context, written, false, [&](Item member, const std::string& name, const Context& inner) {
-          if (member.kind == Item::Kind::string) rename(member, name);
-          value(member, inner);
-          items.push_back(std::move(member));
-        });
-      }, i.span);
+      collect(
+          diagnostics_,
+          [&] {
+            members(i, *names[k], context, written, false,
+                    [&](Item member, const std::string& name, const Context& inner) {
+                      if (member.kind == Item::Kind::string) rename(member, name);
+                      value(member, inner);
+                      items.push_back(std::move(member));
+                    });
+          },
+          i.span);
     }
     l.items = std::move(items);
   }
@@ -340,14 +375,17 @@ class Writer {
         for (const Syntax& side : parse_plain(i.formula)) free_letters(side, *context, letters);
       } catch (const Failure&) {  // its reader says what is wrong with it
       }
-      collect(diagnostics_, [&] {
-        each(letters, 0, Indices(), context, [&](const Context& inner) {
-          Item copy = i;
-          spend(copy);
-          copy.formula.set_indices(letters.empty() ? context : inner);
-          items.push_back(std::move(copy));
-        });
-      }, i.span);
+      collect(
+          diagnostics_,
+          [&] {
+            each(letters, 0, Indices(), context, [&](const Context& inner) {
+              Item copy = i;
+              spend(copy);
+              copy.formula.set_indices(letters.empty() ? context : inner);
+              items.push_back(std::move(copy));
+            });
+          },
+          i.span);
     }
     l.items = std::move(items);
   }
@@ -362,10 +400,13 @@ class Writer {
 Families write_out_families(Item& root, const std::map<std::string, std::string>& overrides, Diagnostics& diagnostics) {
   Families out;
   auto context = std::make_shared<const Indices>();
-  const auto section = std::find_if(root.items.begin(), root.items.end(), [](const Item& i) { return i.key == "index"; });
+  const auto section =
+      std::find_if(root.items.begin(), root.items.end(), [](const Item& i) { return i.key == "index"; });
   if (section != root.items.end()) {
-    if (section->kind != Item::Kind::table) diagnostics.error(section->span, "'index' is a section", "write [index]");
-    else collect(diagnostics, [&] { context = IndexReader(overrides, out).read(*section, diagnostics); });
+    if (section->kind != Item::Kind::table)
+      diagnostics.error(section->span, "'index' is a section", "write [index]");
+    else
+      collect(diagnostics, [&] { context = IndexReader(overrides, out).read(*section, diagnostics); });
     root.items.erase(section);
   }
   // Where an index is wrong, all that follows from it would be, too.

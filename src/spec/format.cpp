@@ -13,20 +13,20 @@ constexpr std::size_t kWidth = 120;
 // A value as written: a scalar with its text, a list or an inline table with their elements.
 struct Written {
   enum class Kind { scalar, list, table } kind = Kind::scalar;
-  std::string text;                  // of a scalar, quotes and all
-  std::string key;                   // in a table
+  std::string text;  // of a scalar, quotes and all
+  std::string key;   // in a table
   std::vector<Written> elements;
-  std::size_t blanks = 1;            // before it, after the comma of the one before
-  std::vector<std::string> above;    // comments in lines of their own; "" for an empty line
-  std::string comment;               // at the end of its line
-  std::size_t column = 0;            // where that begins
-  std::vector<std::string> below;    // before the closing bracket
-  bool broken = false;               // the author put elements on lines of their own
+  std::size_t blanks = 1;          // before it, after the comma of the one before
+  std::vector<std::string> above;  // comments in lines of their own; "" for an empty line
+  std::string comment;             // at the end of its line
+  std::size_t column = 0;          // where that begins
+  std::vector<std::string> below;  // before the closing bracket
+  bool broken = false;             // the author put elements on lines of their own
 };
 
 struct Line {
   enum class Kind { blank, comment, header, entry } kind = Kind::blank;
-  std::string text;                  // of a comment or header
+  std::string text;  // of a comment or header
   std::string key;
   Written value;
   std::string comment;
@@ -76,7 +76,8 @@ class Text {
   }
 
   std::size_t column() const {
-    const std::size_t before = at_ == 0 ? std::string::npos : s_.rfind('\n', at_ - 1), begin = before == std::string::npos ? 0 : before + 1;
+    const std::size_t before = at_ == 0 ? std::string::npos : s_.rfind('\n', at_ - 1),
+                      begin = before == std::string::npos ? 0 : before + 1;
     return utf8_length(s_.substr(begin, at_ - begin));
   }
 
@@ -90,7 +91,8 @@ class Text {
   }
 
   std::string quoted() {
-    const std::string quote = s_.compare(at_, 3, std::string(3, s_[at_])) == 0 ? std::string(3, s_[at_]) : std::string(1, s_[at_]);
+    const std::string quote =
+        s_.compare(at_, 3, std::string(3, s_[at_])) == 0 ? std::string(3, s_[at_]) : std::string(1, s_[at_]);
     const std::size_t begin = at_;
     for (at_ += quote.size(); at_ < s_.size() && s_.compare(at_, quote.size(), quote) != 0; ++at_)
       if (quote[0] == '"' && s_[at_] == '\\') ++at_;
@@ -215,7 +217,8 @@ class Text {
 };
 
 bool has_comments(const Written& v) {
-  return !v.above.empty() || !v.comment.empty() || !v.below.empty() || std::any_of(v.elements.begin(), v.elements.end(), has_comments);
+  return !v.above.empty() || !v.comment.empty() || !v.below.empty() ||
+         std::any_of(v.elements.begin(), v.elements.end(), has_comments);
 }
 
 // Is an inner list broken, or does it hold comments?
@@ -223,16 +226,22 @@ bool has_lines(const Written& v) {
   return v.broken || has_comments(v) || std::any_of(v.elements.begin(), v.elements.end(), has_lines);
 }
 
-bool is_number(const Written& v) { return v.kind == Written::Kind::scalar && !v.text.empty() && std::string("+-.0123456789").find(v.text[0]) != std::string::npos; }
+bool is_number(const Written& v) {
+  return v.kind == Written::Kind::scalar && !v.text.empty() &&
+         std::string("+-.0123456789").find(v.text[0]) != std::string::npos;
+}
 
-// Lines of code, each perhaps with a comment: those next to each other that have one have it in the same column, that of the
-// author's first one if it is wide enough.
+// Lines of code, each perhaps with a comment: those next to each other that have one have it in the same column, that
+// of the author's first one if it is wide enough.
 struct Commented {
   std::string code, comment;
   std::size_t column = 0;
 };
 void print(std::string& out, const std::vector<Commented>& lines, const std::string& indent) {
-  const auto width = [&](const Commented& l) { return utf8_length(l.code.substr(l.code.rfind('\n') + 1)) + (l.code.find('\n') == std::string::npos ? indent.size() : 0); };
+  const auto width = [&](const Commented& l) {
+    return utf8_length(l.code.substr(l.code.rfind('\n') + 1)) +
+           (l.code.find('\n') == std::string::npos ? indent.size() : 0);
+  };
   for (std::size_t i = 0; i < lines.size();) {
     std::size_t end = i, column = 0;
     for (; end < lines.size() && !lines[end].comment.empty() == !lines[i].comment.empty(); ++end)
@@ -282,7 +291,8 @@ std::string text_of(const Written& v, std::size_t indent, std::size_t column, bo
   if (!has_comments(v) && std::all_of(v.elements.begin(), v.elements.end(), is_number)) {
     std::string row;
     for (const Written& e : v.elements) {
-      if (!row.empty() && inner.size() + row.size() + e.text.size() + 2 > kWidth) out += inner + row + "\n", row.clear();
+      if (!row.empty() && inner.size() + row.size() + e.text.size() + 2 > kWidth)
+        out += inner + row + "\n", row.clear();
       row += (row.empty() ? "" : " ") + e.text + ",";
     }
     return out + inner + row + "\n" + std::string(indent, ' ') + "]";
@@ -303,7 +313,9 @@ void print_block(std::string& out, const std::vector<const Line*>& block) {
   for (const Line* l : block) column = std::max(column, utf8_length(l->key));
   std::vector<Commented> lines;
   for (const Line* l : block)
-    lines.push_back({l->key + std::string(column - utf8_length(l->key), ' ') + " = " + text_of(l->value, 0, utf8_length(l->key) + 3), l->comment, l->column});
+    lines.push_back({l->key + std::string(column - utf8_length(l->key), ' ') + " = " +
+                         text_of(l->value, 0, utf8_length(l->key) + 3),
+                     l->comment, l->column});
   print(out, lines, "");
 }
 
@@ -322,34 +334,34 @@ std::string layout(const std::vector<Line>& lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Line& l = lines[i];
     switch (l.kind) {
-      case Line::Kind::blank:
-        flush();
-        blank = true;
-        break;
-      case Line::Kind::comment: {
-        flush();
-        // Comments right above a header belong to it.
-        std::size_t next = i;
-        while (next < lines.size() && lines[next].kind == Line::Kind::comment) ++next;
-        const bool first = i == 0 || lines[i - 1].kind != Line::Kind::comment;
-        separate(first && next < lines.size() && lines[next].kind == Line::Kind::header);
-        out += l.text + '\n';
-        break;
-      }
-      case Line::Kind::header:
-        flush();
-        separate(i == 0 || lines[i - 1].kind != Line::Kind::comment);
-        print(out, {{l.text, l.comment, l.column}}, "");
-        after_header = true;
-        break;
-      case Line::Kind::entry: {
-        if (blank || after_header) separate(false);
-        const bool tall = text_of(l.value, 0, utf8_length(l.key) + 3).find('\n') != std::string::npos;
-        if (tall) flush();
-        block.push_back(&l);
-        if (tall) flush();
-        break;
-      }
+    case Line::Kind::blank:
+      flush();
+      blank = true;
+      break;
+    case Line::Kind::comment: {
+      flush();
+      // Comments right above a header belong to it.
+      std::size_t next = i;
+      while (next < lines.size() && lines[next].kind == Line::Kind::comment) ++next;
+      const bool first = i == 0 || lines[i - 1].kind != Line::Kind::comment;
+      separate(first && next < lines.size() && lines[next].kind == Line::Kind::header);
+      out += l.text + '\n';
+      break;
+    }
+    case Line::Kind::header:
+      flush();
+      separate(i == 0 || lines[i - 1].kind != Line::Kind::comment);
+      print(out, {{l.text, l.comment, l.column}}, "");
+      after_header = true;
+      break;
+    case Line::Kind::entry: {
+      if (blank || after_header) separate(false);
+      const bool tall = text_of(l.value, 0, utf8_length(l.key) + 3).find('\n') != std::string::npos;
+      if (tall) flush();
+      block.push_back(&l);
+      if (tall) flush();
+      break;
+    }
     }
   }
   flush();
@@ -359,7 +371,9 @@ std::string layout(const std::vector<Line>& lines) {
 }  // namespace
 
 bool same_content(const Item& a, const Item& b) {
-  if (a.kind != b.kind || a.key != b.key || a.truth != b.truth || a.text() != b.text() || a.items.size() != b.items.size()) return false;
+  if (a.kind != b.kind || a.key != b.key || a.truth != b.truth || a.text() != b.text() ||
+      a.items.size() != b.items.size())
+    return false;
   return std::equal(a.items.begin(), a.items.end(), b.items.begin(), same_content);
 }
 
@@ -371,7 +385,8 @@ std::string formatted(const SourceText& source) {
   Text again(result.text);
   again.lines();
   if (!same_content(before, after) || text.comments != again.comments)
-    throw Failure(Span{}, "the layout of this file cannot be set without changing what it says", "please report it with the file");
+    throw Failure(Span{}, "the layout of this file cannot be set without changing what it says",
+                  "please report it with the file");
   return result.text;
 }
 

@@ -1,8 +1,9 @@
-// The text of a model file in its usual layout. Order, comments and the text of every value stay the author's; blanks, blank
-// lines, the alignment of = and of comments, and the lines of lists are set.
+// The text of a model file in its usual layout. Order, comments and the text of every value stay the author's; blanks,
+// blank lines, the alignment of = and of comments, and the lines of lists are set.
 //
 //   key = value          consecutive lines have their = in one column, and their comments
-//   [a, b], {k = v}      on one line up to 120 characters; a list that the author broke, or that is wider, has one element on each
+//   [a, b], {k = v}      on one line up to 120 characters; a list that the author broke, or that is wider, has one
+//   element on each
 //                        line, a list of numbers as many as fit. Blanks that align tables below each other stay.
 //   [section]            with an empty line before it and none after it
 #pragma once

@@ -26,10 +26,12 @@ DimensionForm FormulaDimensions::unit(const char* text) const {
 void FormulaDimensions::expect(const Measured& m, const DimensionForm& wanted, Span place) {
   if (m.type == Type::other || dimensions_.equate(m.dimension, wanted)) return;
   const std::string here = dimensions_.text(m.dimension);
-  throw Failure(place, dimensions_.text(wanted) + " is expected here, this is " + here, here == "a pure number" ? "a bare number has any unit: 1*(…), or give it one: 1 m" : "");
+  throw Failure(place, dimensions_.text(wanted) + " is expected here, this is " + here,
+                here == "a pure number" ? "a bare number has any unit: 1*(…), or give it one: 1 m" : "");
 }
 
-void FormulaDimensions::alike(const Measured& a, const Measured& b, Span place, const char* between, const char* behind) {
+void FormulaDimensions::alike(const Measured& a, const Measured& b, Span place, const char* between,
+                              const char* behind) {
   if (a.type == Type::other || b.type == Type::other || dimensions_.equate(a.dimension, b.dimension)) return;
   throw Failure(place, dimensions_.text(a.dimension) + between + dimensions_.text(b.dimension) + behind);
 }
@@ -82,7 +84,8 @@ Measured FormulaDimensions::named(const std::string& name) {
   if (!it->second.arguments.empty() || std::find(open_.begin(), open_.end(), name) != open_.end()) return anything();
   // A definition means the same wherever it is used.
   const auto arguments = std::exchange(arguments_, {});
-  const bool in_override = std::exchange(in_override_, !it->second.override.empty()), field = std::exchange(in_field, false);
+  const bool in_override = std::exchange(in_override_, !it->second.override.empty()),
+             field = std::exchange(in_field, false);
   open_.push_back(name);
   Measured m;
   try {
@@ -103,32 +106,35 @@ Measured FormulaDimensions::named(const std::string& name) {
 Measured FormulaDimensions::declared(const std::string& name, const Scope::Declaration& d) {
   using Role = Scope::Role;
   switch (d.role) {
-    case Role::parameter: {
-      Measured m = d.item ? of(*d.item) : of(parse_formula(d.formula));
-      if (!d.unit.empty()) {
-        const DimensionForm given = unit(d.unit.c_str());
-        seen(given);
-        if (!d.override.empty() && has_unit(parse_formula(d.formula))) expect(m, given, {});
-        return {m.type, given};
-      }
-      const Measured own{m.type, dimensions_.unknown(name)};
-      alike(own, m, d.formula.whole(), " and ");
-      return own;
+  case Role::parameter: {
+    Measured m = d.item ? of(*d.item) : of(parse_formula(d.formula));
+    if (!d.unit.empty()) {
+      const DimensionForm given = unit(d.unit.c_str());
+      seen(given);
+      if (!d.override.empty() && has_unit(parse_formula(d.formula))) expect(m, given, {});
+      return {m.type, given};
     }
-    case Role::function:
-      if (d.symbolic) return number(dimensions_.unknown(name));
-      return of(parse_formula(d.formula));
-    case Role::define:
-      return d.item ? of(*d.item) : of(parse_formula(d.formula));
-    case Role::frame:
-      return of(parse_formula(d.formula));
-    case Role::point: {
-      Measured m = d.item ? of(*d.item) : term(parse_formula(d.formula));
-      expect(m, unit("m"), d.item ? d.item->span : d.formula.whole());
-      return vector(unit("m"));
-    }
-    case Role::state: case Role::control: return number(dimensions_.unknown(name));
-    default: return anything();
+    const Measured own{m.type, dimensions_.unknown(name)};
+    alike(own, m, d.formula.whole(), " and ");
+    return own;
+  }
+  case Role::function:
+    if (d.symbolic) return number(dimensions_.unknown(name));
+    return of(parse_formula(d.formula));
+  case Role::define:
+    return d.item ? of(*d.item) : of(parse_formula(d.formula));
+  case Role::frame:
+    return of(parse_formula(d.formula));
+  case Role::point: {
+    Measured m = d.item ? of(*d.item) : term(parse_formula(d.formula));
+    expect(m, unit("m"), d.item ? d.item->span : d.formula.whole());
+    return vector(unit("m"));
+  }
+  case Role::state:
+  case Role::control:
+    return number(dimensions_.unknown(name));
+  default:
+    return anything();
   }
 }
 
@@ -136,29 +142,33 @@ Measured FormulaDimensions::of(const Item& item) {
   if (item.is_formula()) return of(parse_formula(item.formula));
   if (item.kind != Item::Kind::array || item.items.size() != 3) return anything();
   Measured first = of(item.items[0]);
-  for (std::size_t k = 1; k < 3; ++k) alike(first, of(item.items[k]), item.items[k].is_formula() ? item.items[k].formula.whole() : item.items[k].span, " and ", " as components of one vector");
+  for (std::size_t k = 1; k < 3; ++k)
+    alike(first, of(item.items[k]), item.items[k].is_formula() ? item.items[k].formula.whole() : item.items[k].span,
+          " and ", " as components of one vector");
   return vector(first.dimension);
 }
 
 // The exponent as a number, where it is written out.
 static std::optional<Rational> written_number(const Syntax& s) {
   switch (s.op) {
-    case Syntax::Op::number: return parse_rational(s.text);
-    case Syntax::Op::negate: {
-      const auto r = written_number(s.args[0]);
-      return r ? std::optional<Rational>(-*r) : std::nullopt;
+  case Syntax::Op::number:
+    return parse_rational(s.text);
+  case Syntax::Op::negate: {
+    const auto r = written_number(s.args[0]);
+    return r ? std::optional<Rational>(-*r) : std::nullopt;
+  }
+  case Syntax::Op::multiply: {
+    std::optional<Rational> product = written_number(s.args[0]);
+    for (std::size_t i = 1; i < s.args.size() && product; ++i) {
+      const auto r = written_number(s.args[i]);
+      const bool divide = s.operators[i - 1].op == Syntax::Op::divide;
+      if (!r || (divide && *r == 0)) return std::nullopt;
+      product = divide ? Rational(*product / *r) : Rational(*product * *r);
     }
-    case Syntax::Op::multiply: {
-      std::optional<Rational> product = written_number(s.args[0]);
-      for (std::size_t i = 1; i < s.args.size() && product; ++i) {
-        const auto r = written_number(s.args[i]);
-        const bool divide = s.operators[i - 1].op == Syntax::Op::divide;
-        if (!r || (divide && *r == 0)) return std::nullopt;
-        product = divide ? Rational(*product / *r) : Rational(*product * *r);
-      }
-      return product;
-    }
-    default: return std::nullopt;
+    return product;
+  }
+  default:
+    return std::nullopt;
   }
 }
 
@@ -181,10 +191,14 @@ Measured FormulaDimensions::product(const Syntax& s) {
       continue;
     }
     const bool both = total.type == Type::vector && factor.type == Type::vector;
-    if (total.type == Type::rotation || total.type == Type::body) total.type = factor.type;
-    else if (both) total.type = op == Syntax::Op::dot ? Type::number : Type::vector;
-    else if (factor.type == Type::vector) total.type = Type::vector;
-    total.dimension = op == Syntax::Op::divide ? total.dimension / factor.dimension : total.dimension * factor.dimension;
+    if (total.type == Type::rotation || total.type == Type::body)
+      total.type = factor.type;
+    else if (both)
+      total.type = op == Syntax::Op::dot ? Type::number : Type::vector;
+    else if (factor.type == Type::vector)
+      total.type = Type::vector;
+    total.dimension =
+        op == Syntax::Op::divide ? total.dimension / factor.dimension : total.dimension * factor.dimension;
   }
   return total;
 }
@@ -214,46 +228,55 @@ Measured FormulaDimensions::of(const Syntax& s) {
 
 Measured FormulaDimensions::measured(const Syntax& s) {
   switch (s.op) {
-    case Syntax::Op::number: return number(dimensions_.unknown());
-    case Syntax::Op::quantity: {
-      const DimensionForm given = unit(s.text.c_str());
-      seen(given);
-      return number(given);
+  case Syntax::Op::number:
+    return number(dimensions_.unknown());
+  case Syntax::Op::quantity: {
+    const DimensionForm given = unit(s.text.c_str());
+    seen(given);
+    return number(given);
+  }
+  case Syntax::Op::name:
+    return named(s.text);
+  case Syntax::Op::negate:
+    return of(s.args[0]);
+  case Syntax::Op::prime: {
+    Measured m = of(s.args[0]);
+    m.dimension = m.dimension / unit("s");
+    return m;
+  }
+  case Syntax::Op::power:
+    return raised(s);
+  case Syntax::Op::multiply:
+    return product(s);
+  case Syntax::Op::add: {
+    Measured total = term(s.args[0]);
+    for (std::size_t i = 1; i < s.args.size(); ++i) {
+      const Measured next = term(s.args[i]);
+      alike(total, next, s.operators[i - 1].span, s.operators[i - 1].op == Syntax::Op::subtract ? " minus " : " plus ");
+      if (total.type == Type::other || next.type == Type::vector) total = next;  // 0 is also the zero vector
     }
-    case Syntax::Op::name: return named(s.text);
-    case Syntax::Op::negate: return of(s.args[0]);
-    case Syntax::Op::prime: {
-      Measured m = of(s.args[0]);
-      m.dimension = m.dimension / unit("s");
-      return m;
-    }
-    case Syntax::Op::power: return raised(s);
-    case Syntax::Op::multiply: return product(s);
-    case Syntax::Op::add: {
-      Measured total = term(s.args[0]);
-      for (std::size_t i = 1; i < s.args.size(); ++i) {
-        const Measured next = term(s.args[i]);
-        alike(total, next, s.operators[i - 1].span, s.operators[i - 1].op == Syntax::Op::subtract ? " minus " : " plus ");
-        if (total.type == Type::other || next.type == Type::vector) total = next;  // 0 is also the zero vector
-      }
-      return total;
-    }
-    case Syntax::Op::array: {
-      if (s.args.size() != 3) return anything();
-      const Measured first = of(s.args[0]);
-      for (std::size_t k = 1; k < 3; ++k) alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
-      return vector(first.dimension);
-    }
-    case Syntax::Op::member: {
-      const Measured object = of(s.args[0]);
-      const bool axis = s.text == "x" || s.text == "y" || s.text == "z";
-      if (object.type == Type::vector && axis) return number(object.dimension);
-      if ((object.type == Type::rotation || object.type == Type::body) && axis) return vector();
-      if (object.type == Type::body || (object.type == Type::vector && (s.text == "center" || s.text == "position"))) return vector(unit("m"));
-      return anything();
-    }
-    case Syntax::Op::call: return call(s);
-    default: return anything();
+    return total;
+  }
+  case Syntax::Op::array: {
+    if (s.args.size() != 3) return anything();
+    const Measured first = of(s.args[0]);
+    for (std::size_t k = 1; k < 3; ++k)
+      alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
+    return vector(first.dimension);
+  }
+  case Syntax::Op::member: {
+    const Measured object = of(s.args[0]);
+    const bool axis = s.text == "x" || s.text == "y" || s.text == "z";
+    if (object.type == Type::vector && axis) return number(object.dimension);
+    if ((object.type == Type::rotation || object.type == Type::body) && axis) return vector();
+    if (object.type == Type::body || (object.type == Type::vector && (s.text == "center" || s.text == "position")))
+      return vector(unit("m"));
+    return anything();
+  }
+  case Syntax::Op::call:
+    return call(s);
+  default:
+    return anything();
   }
 }
 
@@ -274,7 +297,8 @@ DimensionForm FormulaDimensions::given_unit(const std::string& text) {
 Measured FormulaDimensions::user_call(const Syntax& s, const Scope::Declaration& d) {
   if (d.role == Scope::Role::frame) {
     const Measured first = of(s.args[0]);
-    for (std::size_t k = 1; k < s.args.size(); ++k) alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
+    for (std::size_t k = 1; k < s.args.size(); ++k)
+      alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
     return vector(first.dimension);
   }
   if (d.role == Scope::Role::table) {
@@ -288,11 +312,14 @@ Measured FormulaDimensions::user_call(const Syntax& s, const Scope::Declaration&
     if (!s.args.empty()) expect(of(s.args[0]), unit("s"), s.args[0].span);
     return named(s.text);
   }
-  if (d.arguments.size() != s.args.size() || ++calls_ > kMostCalls || std::find(open_.begin(), open_.end(), s.text) != open_.end()) return anything();
+  if (d.arguments.size() != s.args.size() || ++calls_ > kMostCalls ||
+      std::find(open_.begin(), open_.end(), s.text) != open_.end())
+    return anything();
   std::map<std::string, Measured> bound;
   for (std::size_t i = 0; i < s.args.size(); ++i) bound[d.arguments[i]] = of(s.args[i]);
   const auto it = functions_.find(s.text);
-  const Syntax& body = it != functions_.end() ? it->second : functions_.emplace(s.text, parse_formula(d.formula)).first->second;
+  const Syntax& body =
+      it != functions_.end() ? it->second : functions_.emplace(s.text, parse_formula(d.formula)).first->second;
   arguments_.push_back(std::move(bound));
   open_.push_back(s.text);
   const auto restore = [&] { arguments_.pop_back(), open_.pop_back(); };
@@ -309,11 +336,15 @@ Measured FormulaDimensions::user_call(const Syntax& s, const Scope::Declaration&
 Measured FormulaDimensions::call(const Syntax& s) {
   const std::string& f = s.text;
   const auto argument = [&](std::size_t i) { return i < s.args.size() ? of(s.args[i]) : anything(); };
-  if (const auto it = scope_.declarations().find(f); it != scope_.declarations().end() && (it->second.role == Scope::Role::function || it->second.role == Scope::Role::frame || it->second.role == Scope::Role::table))
+  if (const auto it = scope_.declarations().find(f);
+      it != scope_.declarations().end() &&
+      (it->second.role == Scope::Role::function || it->second.role == Scope::Role::frame ||
+       it->second.role == Scope::Role::table))
     return user_call(s, it->second);
   if (is_body(f)) {
     const Measured first = argument(0);
-    for (std::size_t k = 1; k < s.args.size(); ++k) alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
+    for (std::size_t k = 1; k < s.args.size(); ++k)
+      alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
     return vector(first.dimension);
   }
   if (f == "abs") return argument(0);
@@ -325,18 +356,24 @@ Measured FormulaDimensions::call(const Syntax& s) {
   if (f == "sqrt") return number(power(argument(0).dimension, {1, 2}));
   if (f == "atan2" || f == "min" || f == "max") {
     const Measured first = argument(0);
-    for (std::size_t k = 1; k < s.args.size(); ++k) alike(first, of(s.args[k]), s.span, " and ", (" as arguments of " + f).c_str());
+    for (std::size_t k = 1; k < s.args.size(); ++k)
+      alike(first, of(s.args[k]), s.span, " and ", (" as arguments of " + f).c_str());
     return f == "atan2" ? number() : first;
   }
   if (f == "choose" || f == "piecewise") {
-    // choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values are alike, and so are the sides of a condition.
+    // choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values are alike, and so are the sides of a
+    // condition.
     std::optional<Measured> value;
     for (std::size_t k = 0; k < s.args.size(); ++k) {
       const Syntax& a = s.args[k];
-      if (a.op == Syntax::Op::compare) alike(term(a.args[0]), term(a.args[1]), a.span, " compared with ");
-      else if (f == "choose" ? k == 0 : k % 2 == 0 && k + 1 < s.args.size()) of(a);
-      else if (!value) value = term(a);
-      else alike(*value, term(a), a.span, " and ", (" as values of " + f).c_str());
+      if (a.op == Syntax::Op::compare)
+        alike(term(a.args[0]), term(a.args[1]), a.span, " compared with ");
+      else if (f == "choose" ? k == 0 : k % 2 == 0 && k + 1 < s.args.size())
+        of(a);
+      else if (!value)
+        value = term(a);
+      else
+        alike(*value, term(a), a.span, " and ", (" as values of " + f).c_str());
     }
     return value ? *value : anything();
   }

@@ -5,7 +5,8 @@
 
 namespace anholon {
 
-// What a formula is, as far as dimensions go. The components of a vector are alike; the entries of a rotation are numbers.
+// What a formula is, as far as dimensions go. The components of a vector are alike; the entries of a rotation are
+// numbers.
 struct Measured {
   enum class Type : std::uint8_t { number, vector, rotation, body, other } type = Type::other;
   DimensionForm dimension;

@@ -11,9 +11,11 @@ namespace {
 
 void declare_state(const Item& i, Scope& scope, Model& model, Diagnostics& diagnostics) {
   if (i.kind != Item::Kind::table)
-    throw Failure(i.span, "a state is a table with its rate and its initial value", i.key + " = {rate = \"-flow\", initial = 1}");
+    throw Failure(i.span, "a state is a table with its rate and its initial value",
+                  i.key + " = {rate = \"-flow\", initial = 1}");
   check_keys(i, "a state", "state", diagnostics);
-  if (!i.find("rate")) throw Failure(i.key_span, "the state '" + i.key + "' has no rate", "rate = \"…\", its derivative by time");
+  if (!i.find("rate"))
+    throw Failure(i.key_span, "the state '" + i.key + "' has no rate", "rate = \"…\", its derivative by time");
   if (!i.find("initial")) throw Failure(i.key_span, "the state '" + i.key + "' has no initial value", "initial = 0");
   Scope::Declaration d;
   d.role = Scope::Role::state;
@@ -44,7 +46,8 @@ void no_multiplier(const Model& model, Expr e, Span span, const std::string& wha
 
 class EventReader {
  public:
-  EventReader(Scope& scope, Model& model, Diagnostics& diagnostics) : scope_(scope), allowed_(scope), model_(model), diagnostics_(diagnostics) {}
+  EventReader(Scope& scope, Model& model, Diagnostics& diagnostics)
+      : scope_(scope), allowed_(scope), model_(model), diagnostics_(diagnostics) {}
 
   void read(const Item& e, std::size_t number) {
     check_keys(e, "an event", "event", diagnostics_);
@@ -56,7 +59,9 @@ class EventReader {
     if (std::any_of(model_.events.begin(), model_.events.end(), [&](const Event& o) { return o.name == event.name; }))
       throw Failure(event.span, "there are two events '" + event.name + "'");
     const Item* when = e.find("when");
-    if (!when) throw Failure(event.span, "the event '" + event.name + "' does not say when", "when = \"x - 1\": a formula that passes zero then");
+    if (!when)
+      throw Failure(event.span, "the event '" + event.name + "' does not say when",
+                    "when = \"x - 1\": a formula that passes zero then");
     if (!when->is_formula()) throw Failure(when->span, "'when' is a formula that passes zero at the event");
     event.when = put_masses(model_, evaluate_number(parse_formula(when->formula), scope_));
     const std::vector<NodeId> all = symbols({&event.when, 1});
@@ -72,7 +77,8 @@ class EventReader {
       event.stop = stop->truth;
     }
     if (const Item* set = e.find("set")) {
-      if (set->kind != Item::Kind::table) throw Failure(set->span, "'set' is a table of new values", "set = {\"x'\" = \"-0.8*x'\"}");
+      if (set->kind != Item::Kind::table)
+        throw Failure(set->span, "'set' is a table of new values", "set = {\"x'\" = \"-0.8*x'\"}");
       for (const Item& i : set->items) collect(diagnostics_, [&] { event.set.push_back(assignment(i)); });
     }
     model_.events.push_back(std::move(event));
@@ -91,7 +97,9 @@ class EventReader {
       for (const auto& [n, d] : scope_.declarations())
         if (settable(d)) known.push_back(n);
       const std::string near = did_you_mean(name, known);
-      throw Failure(i.key_span, "'" + i.key + "' is not a mode, a state or a coordinate" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+      throw Failure(i.key_span,
+                    "'" + i.key + "' is not a mode, a state or a coordinate" +
+                        (near.empty() ? "" : "; did you mean '" + near + "'?"),
                     "an event sets modes, states, coordinates and their velocities");
     };
     if (it == scope_.declarations().end() || !settable(it->second)) unknown();
@@ -99,7 +107,8 @@ class EventReader {
     const auto index = static_cast<std::uint32_t>(d.index);
     Graph& g = *model_.graph;
     if (d.role == Scope::Role::coordinate) {
-      if (order > 1) throw Failure(i.key_span, "an event sets coordinates and velocities; '" + i.key + "' follows from them");
+      if (order > 1)
+        throw Failure(i.key_span, "an event sets coordinates and velocities; '" + i.key + "' follows from them");
       return {g.jet(index, order), value, i.key_span};
     }
     if (order > 0) throw Failure(i.key_span, "the rate of '" + name + "' follows from its formula: it cannot be set");
@@ -131,7 +140,8 @@ void read_states(const Item& root, Scope& scope, Model& model, Diagnostics& diag
   if (!section || section->kind != Item::Kind::table) return;
   const Scope::Multipliers allowed(scope);
   for (const Item& i : section->items) {
-    const auto z = std::find_if(model.states.begin(), model.states.end(), [&](const StateVariable& s) { return s.name == i.key; });
+    const auto z =
+        std::find_if(model.states.begin(), model.states.end(), [&](const StateVariable& s) { return s.name == i.key; });
     if (z == model.states.end()) continue;
     collect(diagnostics, [&] {
       const Item& rate = *i.find("rate");
@@ -139,7 +149,8 @@ void read_states(const Item& root, Scope& scope, Model& model, Diagnostics& diag
       z->rate = put_masses(model, evaluate_number(parse_formula(rate.formula), scope));
       for (NodeId id : symbols({&z->rate, 1}))
         if (const Node& n = model.graph->node(id); n.kind == Kind::state && n.order > 0)
-          throw Failure(rate.span, "the rate of '" + i.key + "' holds the rate of '" + model.states[n.index].name + "'", "write out the formula of that rate");
+          throw Failure(rate.span, "the rate of '" + i.key + "' holds the rate of '" + model.states[n.index].name + "'",
+                        "write out the formula of that rate");
     });
     collect(diagnostics, [&] {
       const Item& initial = *i.find("initial");

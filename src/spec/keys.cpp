@@ -17,8 +17,10 @@ void check_keys(const Item& table, const std::string& where, const std::string& 
       hint = "known here: ";
       for (std::size_t k = 0; k < known.size(); ++k) hint += (k ? ", " : "") + known[k];
     }
-    diagnostics.error(i.key_span, "unknown key '" + i.key.substr(0, 60) + "' in " + where +
-                                      (near.empty() ? "" : "; did you mean '" + near + "'?"), hint);
+    diagnostics.error(i.key_span,
+                      "unknown key '" + i.key.substr(0, 60) + "' in " + where +
+                          (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                      hint);
   }
 }
 
@@ -34,7 +36,9 @@ std::string unit_text(const Item& item) {
   const std::string text = normal_name(item.text());
   if (read_unit(text)) return text;
   const std::string near = did_you_mean(text, unit_names());
-  throw Failure(item.formula.whole(), "'" + text.substr(0, 40) + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "unit = \"km\", \"m/s^2\", \"N*m\"");
+  throw Failure(item.formula.whole(),
+                "'" + text.substr(0, 40) + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                "unit = \"km\", \"m/s^2\", \"N*m\"");
 }
 
 }  // namespace anholon

@@ -47,13 +47,23 @@ const std::vector<ReservedName>& reserved_names() {
 const std::vector<FunctionRow>& kinematic_functions() {
   static const std::vector<FunctionRow> list = {
       {"vel", "vel(P)", "velocity of the point P relative to the observer, `P'`", "vel(P)"},
-      {"vel", "vel(B, P)", "body first: velocity of the material point of the body B that is at P now", "vel(plate, P + R*ex)"},
-      {"vel", "vel(P, B)", "point first: velocity of P as seen from the body B, `vel(P) - vel(B, P)`", "vel(P + R*ex, plate)"},
-      {"vel", "vel(P, inertial)", "velocity as seen inertially; needs the velocity of the observer's origin", "vel(P, inertial)"},
-      {"acc", "acc(P)", "acceleration relative to the observer, `P''`; `acc(P, inertial)` as seen inertially", "acc(P, inertial)"},
-      {"angvel", "angvel(B)", "angular velocity of a body or frame relative to the observer; `angvel(B, C)` as seen from C; `angvel(B, inertial)`", "angvel(B, inertial)"},
+      {"vel", "vel(B, P)", "body first: velocity of the material point of the body B that is at P now",
+       "vel(plate, P + R*ex)"},
+      {"vel", "vel(P, B)", "point first: velocity of P as seen from the body B, `vel(P) - vel(B, P)`",
+       "vel(P + R*ex, plate)"},
+      {"vel", "vel(P, inertial)", "velocity as seen inertially; needs the velocity of the observer's origin",
+       "vel(P, inertial)"},
+      {"acc", "acc(P)", "acceleration relative to the observer, `P''`; `acc(P, inertial)` as seen inertially",
+       "acc(P, inertial)"},
+      {"angvel", "angvel(B)",
+       "angular velocity of a body or frame relative to the observer; `angvel(B, C)` as seen from C; `angvel(B, "
+       "inertial)`",
+       "angvel(B, inertial)"},
       {"angacc", "angacc(B)", "its derivative", "angacc(plate)"},
-      {"reaction", "reaction(B)", "force of all constraints on the body B, m·a less the given forces, in monitors, events and what these use; `reaction_torque(B)` is its torque about the mass centre", ""},
+      {"reaction", "reaction(B)",
+       "force of all constraints on the body B, m·a less the given forces, in monitors, events and what these use; "
+       "`reaction_torque(B)` is its torque about the mass centre",
+       ""},
       {"reaction_torque", "reaction_torque(B)", "torque of all constraints on the body B about its mass centre", ""},
       {"gravity", "gravity(P)", "the field of `[gravity]` at the point P", ""},
   };

@@ -1,6 +1,6 @@
 // The language of model files as one table: its sections, their keys, what stands behind each, and what a reader of the
-// language wants to know of them. The reader takes the keys it knows from here, `anholon reference` prints it, and editors
-// get it as a JSON Schema, so that none of them can say anything else than the others.
+// language wants to know of them. The reader takes the keys it knows from here, `anholon reference` prints it, and
+// editors get it as a JSON Schema, so that none of them can say anything else than the others.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -12,17 +12,30 @@ namespace anholon {
 
 // What stands behind a key.
 enum class Content : std::uint8_t {
-  text, name, names, formula, vector, rotation, equation, equations, number, numbers, truth, choice,
-  inertia, place, columns,
-  formulas,   // a table of formulas by name
-  values,     // the same, and tables of them by name
+  text,
+  name,
+  names,
+  formula,
+  vector,
+  rotation,
+  equation,
+  equations,
+  number,
+  numbers,
+  truth,
+  choice,
+  inertia,
+  place,
+  columns,
+  formulas,  // a table of formulas by name
+  values,    // the same, and tables of them by name
   any,
 };
 
 struct LanguageKey {
   const char* name;
   Content content;
-  const char* meaning;              // in Markdown, without full stop
+  const char* meaning;                    // in Markdown, without full stop
   std::vector<std::string> choices = {};  // of a choice
 };
 
@@ -36,9 +49,9 @@ struct LanguageSection {
   };
   const char* name;
   Form form;
-  Content content;                  // of each name of a `named` section
+  Content content;  // of each name of a `named` section
   std::vector<LanguageKey> keys;
-  const char* page;                 // Markdown: examples first, then what is decided where one could doubt
+  const char* page;  // Markdown: examples first, then what is decided where one could doubt
 };
 
 // In the order of the reference page.

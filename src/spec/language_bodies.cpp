@@ -8,17 +8,24 @@ using Form = LanguageSection::Form;
 
 std::vector<LanguageSection> language_of_bodies() {
   return {
-      {"body", Form::elements, any,
+      {"body",
+       Form::elements,
+       any,
        {{"name", name, "with an orientation also the name of a frame"},
         {"mass", formula, "may depend on t, states, coordinates, velocities"},
-        {"inertia", inertia, "a number (plane, about z), three moments or a matrix, along the body axes at the mass centre"},
+        {"inertia", inertia,
+         "a number (plane, about z), three moments or a matrix, along the body axes at the mass centre"},
         {"center", vector, "the mass centre; `B.center` in formulas"},
         {"orientation", rotation, "of the body axes"},
         {"angle", formula, "the orientation `rotz(angle)`"},
         {"axes", any, "expert form instead of inertia: a list of `{weight, vector}`"},
-        {"expelled_velocity", vector, "of the matter that leaves or joins, relative to the material point at `exit_point`"},
+        {"expelled_velocity", vector,
+         "of the matter that leaves or joins, relative to the material point at `exit_point`"},
         {"exit_point", vector, "where it does; an array is along the body axes from the centre; the centre without it"},
-        {"shape", text, "a homogeneous solid: `disc(R)`, `ring(R)`, `cylinder(R, h)`, `torus(R, r)` about z, the full tube of radius r around the circle of radius R, `rod(l)` along x, `ball(R)`, `shell(R)`, `box(a, b, c)`, `ellipsoid(a, b, c)` of these half axes; beside `inertia` it is only the picture"}},
+        {"shape", text,
+         "a homogeneous solid: `disc(R)`, `ring(R)`, `cylinder(R, h)`, `torus(R, r)` about z, the full tube of radius "
+         "r around the circle of radius R, `rod(l)` along x, `ball(R)`, `shell(R)`, `box(a, b, c)`, `ellipsoid(a, b, "
+         "c)` of these half axes; beside `inertia` it is only the picture"}},
        R"md(```toml
 [[body]]
 name = "wheel"
@@ -66,7 +73,9 @@ coordinates = ["a", "b", "c", "d"]
 body = [{name = "ball", mass = 1, shape = "ball(1)", center = "0", orientation = "quat(a, b, c, d)"}]
 ```
 )md"},
-      {"body.axes", Form::part, any,
+      {"body.axes",
+       Form::part,
+       any,
        {{"weight", formula, "may vary as a mass does"},
         {"vector", vector, "a second-moment axis, in the observer's axes"}},
        R"md(```toml
@@ -79,10 +88,14 @@ axes = [{weight = "1/12", vector = ["cos(theta)", "sin(theta)", "0"]}]
 
 - The moment of second order of the body is the sum of weight · vector vectorᵀ. Such a body has no orientation.
 )md"},
-      {"particle", Form::elements, any,
+      {"particle",
+       Form::elements,
+       any,
        {{"name", name, ""},
         {"mass", formula, ""},
-        {"position", vector, "a particle is a point: `vel(p)`, `p + ex`; also `p.position`, `p.center`; its coordinates are `p.x`, `p.y`, `p.z`"},
+        {"position", vector,
+         "a particle is a point: `vel(p)`, `p + ex`; also `p.position`, `p.center`; its coordinates are `p.x`, `p.y`, "
+         "`p.z`"},
         {"expelled_velocity", vector, "of the matter that leaves or joins, relative to the particle"}},
        R"md(```toml
 functions.mr = "5 - t/10"
@@ -102,7 +115,9 @@ expelled_velocity = "-truck.x"
 exit_point = [-2, 0, 0]            # along its axes
 ```
 )md"},
-      {"force", Form::elements, any,
+      {"force",
+       Form::elements,
+       any,
        {{"name", name, "for reports"},
         {"on", place, "on what it acts: a body or particle (at its centre) or `{body, at}`"},
         {"from", place, "where the opposite force or torque acts"},
@@ -140,11 +155,15 @@ generalized = {theta = "-theta'"}
 - A force works through the velocity of the material point: at a place that moves over the body, the velocity of the body there counts.
 - Forces may depend on anything but `lambda.NAME` and `reaction(B)`, and definitions that hold them.
 )md"},
-      {"force.on", Form::part, any,
+      {"force.on",
+       Form::part,
+       any,
        {{"body", name, "a body or particle"},
         {"at", vector, "an array along its axes from the centre, or a formula of the place"}},
        ""},
-      {"gravity", Form::keys, any,
+      {"gravity",
+       Form::keys,
+       any,
        {{"field", vector, "the acceleration at the place `here`"},
         {"gradient", truth, "`true`: also the torque of a field that varies over a body"}},
        R"md(```toml
@@ -157,7 +176,10 @@ x = 7e6
 
 - The field acts on every mass with its current value, so it needs no `[[force]]` and no potential beside it.
 )md"},
-      {"potential", Form::named, formula, {},
+      {"potential",
+       Form::named,
+       formula,
+       {},
        R"md(```toml
 [potential]
 spring = "10*(x^2 + y^2)/2"
@@ -166,7 +188,10 @@ weight = "m*g*y"
 
 - Forces are −∂V/∂q. The name of a varying mass within it counts as frozen. A potential does not depend on velocities.
 )md"},
-      {"dissipation", Form::named, formula, {},
+      {"dissipation",
+       Form::named,
+       formula,
+       {},
        R"md(```toml
 [dissipation]
 damper = "0.2*x'^2/2"              # the force -0.2 x'
@@ -174,7 +199,9 @@ damper = "0.2*x'^2/2"              # the force -0.2 x'
 
 - Forces are −∂R/∂q′.
 )md"},
-      {"constraint", Form::elements, any,
+      {"constraint",
+       Form::elements,
+       any,
        {{"name", name, "its multiplier is `lambda.NAME`; where the constraint is kept by an input, that input is it"},
         {"equation", equation, "of numbers or vectors, of any order"},
         {"along", any, "a vector equation: a frame or a list of vectors, along which components are taken"},
@@ -221,7 +248,10 @@ by = "motor"
 error: there is no input 'motor'
 ```
 )md"},
-      {"quasi", Form::named, formula, {},
+      {"quasi",
+       Form::named,
+       formula,
+       {},
        R"md(```toml
 [quasi]
 forward = "x'*cos(theta) + y'*sin(theta)"
@@ -229,7 +259,9 @@ forward = "x'*cos(theta) + y'*sin(theta)"
 
 - Quasi-velocities for the forms that want them. They are completed by velocities of coordinates.
 )md"},
-      {"observer", Form::keys, any,
+      {"observer",
+       Form::keys,
+       any,
        {{"spin", vector, "the angular velocity of its axes, along its axes; these are the inertial ones at t = 0"},
         {"rotation", rotation, "instead: from its axes to the inertial ones"},
         {"origin_acceleration", vector, "inertial acceleration of its origin, along its axes"},

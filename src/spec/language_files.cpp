@@ -8,7 +8,9 @@ using Form = LanguageSection::Form;
 
 std::vector<LanguageSection> language_of_files() {
   return {
-      {"", Form::top, any,
+      {"",
+       Form::top,
+       any,
        {{"title", text, "one line for reports"},
         {"source", text, "where the system comes from"},
         {"coordinates", names, "the order is that of q everywhere"},
@@ -63,7 +65,10 @@ body.plate.inertia = "J + 1"       # of the body plate, the other keys stay
 $ anholon check heavy.toml --quiet > heavy.txt
 ```
 )md"},
-      {"index", Form::named, formula, {},
+      {"index",
+       Form::named,
+       formula,
+       {},
        R"md(```toml
 coordinates = ["s[i]"]
 particle = [{name = "bead[i]", mass = "mb[i]", position = "Q[i]"}]
@@ -104,7 +109,10 @@ index = {i = "1..2"}
 error: in bead[2]: there is no 's[3]'; s has 1..2
 ```
 )md"},
-      {"case", Form::named, any, {},
+      {"case",
+       Form::named,
+       any,
+       {},
        R"md(```toml
 [case.light]                       # --case light
 parameters.m = 1

@@ -8,7 +8,9 @@ using Form = LanguageSection::Form;
 
 std::vector<LanguageSection> language_of_motion() {
   return {
-      {"state", Form::named, any,
+      {"state",
+       Form::named,
+       any,
        {{"rate", formula, "its derivative by time, a formula of anything but rates of states"},
         {"initial", number, "a number or a formula of parameters"}},
        R"md(```toml
@@ -26,7 +28,10 @@ body.plate.mass = "m + fuel"       # the mass follows
 
 - A state may be used wherever a coordinate may; its derivative `fuel'` is its rate.
 )md"},
-      {"mode", Form::named, number, {},
+      {"mode",
+       Form::named,
+       number,
+       {},
        R"md(```toml
 mode.stage = 1
 define.thrust = "choose(stage, 10, 4, 0)"
@@ -37,7 +42,9 @@ set = {stage = "stage + 1"}
 
 - A number that only events change. `--set stage=2` is for parameters, not for modes: a case changes where a mode starts.
 )md"},
-      {"event", Form::elements, any,
+      {"event",
+       Form::elements,
+       any,
        {{"name", name, "for reports; `event1`, … without it"},
         {"when", formula, "it happens where this formula passes zero"},
         {"direction", choice, "only upwards or only downwards", {"up", "down"}},
@@ -79,7 +86,10 @@ set = {"y''" = 1}
 error: an event sets coordinates and velocities; 'y''' follows from them
 ```
 )md"},
-      {"input", Form::named, formula, {},
+      {"input",
+       Form::named,
+       formula,
+       {},
        R"md(```toml
 [input]
 u = "-2*theta - theta'"            # any formula
@@ -98,7 +108,9 @@ by = "w"
   stands in a constraint of which derivatives are needed remains a formula there.
 - Inputs may use each other, not themselves. `{}` needs a constraint that is kept by it.
 )md"},
-      {"output", Form::named, any,
+      {"output",
+       Form::named,
+       any,
        {{"value", vector, "a number or a vector, also of `lambda.NAME`"},
         {"unit", text, "shown with it"},
         {"doc", text, "what it is"},
@@ -110,7 +122,9 @@ place = {value = "P", unit = "m", doc = "of the centre"}     # columns place.x, 
 turn = {value = "theta'", conserved = true}
 ```
 )md"},
-      {"initial", Form::named, any,
+      {"initial",
+       Form::named,
+       any,
        {{"t", number, "0 without it"},
         {"conditions", equations, "solved together with the constraints"},
         {"guess", values, "values that are looked for nearby, 0 without"},
@@ -170,7 +184,10 @@ initial = {theta = "x + 1"}
 error: an initial value is a number or a formula of parameters
 ```
 )md"},
-      {"monitor", Form::named, formula, {},
+      {"monitor",
+       Form::named,
+       formula,
+       {},
        R"md(```toml
 [monitor]
 height = "P.y"
@@ -179,7 +196,9 @@ reach  = "norm(P) - 2"
 
 - Numbers to watch along the motion: columns, with their range in the report. May hold `lambda.NAME`, `reaction(B)` and derivatives of any order, also through `[define]`.
 )md"},
-      {"simulate", Form::keys, any,
+      {"simulate",
+       Form::keys,
+       any,
        {{"to", number, "end time, absolute; it may lie before the start"},
         {"tolerance", number, "of each step, relative; 1e-12 without it"},
         {"every", number, "rows at this interval; at the accepted steps without it"},
@@ -197,7 +216,9 @@ integrator = "taylor"
 
 - Options on the command line win.
 )md"},
-      {"view", Form::named, any,
+      {"view",
+       Form::named,
+       any,
        {{"camera", vector, "from where it is looked at"},
         {"target", vector, "what lies in the middle at the start"},
         {"up", vector, "the direction that is up on the page; `ez` without it"},

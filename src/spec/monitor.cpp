@@ -12,7 +12,9 @@ static constexpr int kHighestOrder = 20;
 
 static void read_one(const Item& i, Scope& scope, Model& model) {
   const std::string name = normal_name(i.key);
-  if (!is_element_name(name)) throw Failure(i.key_span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+  if (!is_element_name(name))
+    throw Failure(i.key_span, "'" + name.substr(0, 40) + "' is not a name",
+                  "letters, digits and _, not starting with a digit");
   const auto& taken = model.names.coordinates;
   if (name == "t" || std::find(taken.begin(), taken.end(), name) != taken.end())
     throw Failure(i.key_span, "a column '" + name + "' is there already", "give the monitor a name of its own");
@@ -23,7 +25,8 @@ static void read_one(const Item& i, Scope& scope, Model& model) {
   if (const Expr* e = std::get_if<Expr>(&v)) {
     const Expr value = put_masses(model, *e);
     for (NodeId id : symbols({&value, 1}))
-      if (const Node& n = model.graph->node(id); (n.kind == Kind::jet || n.kind == Kind::multiplier) && n.order > kHighestOrder)
+      if (const Node& n = model.graph->node(id);
+          (n.kind == Kind::jet || n.kind == Kind::multiplier) && n.order > kHighestOrder)
         throw Failure(i.span, "a derivative of order above " + std::to_string(kHighestOrder));
     model.monitors.push_back({name, value, i.key_span});
     return;

@@ -1,4 +1,5 @@
-// [monitor] name = "formula": numbers to be watched along the motion, over everything that formulas know and the multipliers.
+// [monitor] name = "formula": numbers to be watched along the motion, over everything that formulas know and the
+// multipliers.
 #pragma once
 #include "spec/names.h"
 

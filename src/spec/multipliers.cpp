@@ -28,7 +28,10 @@ bool is_reaction(const std::string& function) { return function == "reaction" ||
 
 // reaction(B), reaction_torque(B): by Newton's law, from the accelerations.
 Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
-  if (multipliers_ == 0) throw Failure(call.span, "a reaction has no meaning here: it follows from the equations of which this formula is a part", kWhereMultipliers);
+  if (multipliers_ == 0)
+    throw Failure(call.span,
+                  "a reaction has no meaning here: it follows from the equations of which this formula is a part",
+                  kWhereMultipliers);
   const Load r = reaction(model_, body);
   return call.text == "reaction" ? r.force : r.torque;
 }
@@ -38,7 +41,8 @@ bool Scope::speaks_of_multipliers() {
   if (!speaks_of_multipliers_)
     speaks_of_multipliers_ = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
       const std::string& text = named.second.formula.text();
-      return text.find("lambda") != std::string::npos || text.find("λ") != std::string::npos || text.find("reaction") != std::string::npos;
+      return text.find("lambda") != std::string::npos || text.find("λ") != std::string::npos ||
+             text.find("reaction") != std::string::npos;
     });
   return *speaks_of_multipliers_;
 }
@@ -71,8 +75,10 @@ bool Scope::holds_multiplier(const std::string& name) {
       trees.insert(trees.end(), s.args.begin(), s.args.end());
     }
   }
-  if (found) holds_multiplier_[name] = true;
-  else for (const std::string& n : seen) holds_multiplier_[n] = false;
+  if (found)
+    holds_multiplier_[name] = true;
+  else
+    for (const std::string& n : seen) holds_multiplier_[n] = false;
   return found;
 }
 

@@ -5,13 +5,13 @@
 
 #include "expr/habits.h"
 #include "expr/indices.h"
-
 #include "expr/units.h"
 #include "spec/language.h"
 
 namespace anholon {
 
-// Definitions within each other in one go (a matter of the stack); what is deeper waits for its parts (from_the_ground).
+// Definitions within each other in one go (a matter of the stack); what is deeper waits for its parts
+// (from_the_ground).
 static constexpr std::size_t kDeepest = 200;
 
 Failure silent_failure() { return Failure(Span{}, ""); }
@@ -24,9 +24,11 @@ bool is_reserved(const std::string& name) {
 
 void Scope::check_name(const std::string& name, Span span) const {
   if (!is_element_name(name))
-    throw Failure(span, "'" + name.substr(0, 40) + "' is not a name", "letters, digits and _, not starting with a digit");
+    throw Failure(span, "'" + name.substr(0, 40) + "' is not a name",
+                  "letters, digits and _, not starting with a digit");
   if (is_reserved(name)) throw Failure(span, "the name '" + name + "' is reserved");
-  if (letters_.count(name.substr(0, name.find('[')))) throw Failure(span, "the name '" + name + "' is reserved: it is an index");
+  if (letters_.count(name.substr(0, name.find('['))))
+    throw Failure(span, "the name '" + name + "' is reserved: it is an index");
 }
 
 void Scope::declare(const std::string& name, Declaration d) {
@@ -46,7 +48,8 @@ void Scope::declare_body(const std::string& name, Span span) {
   check_name(name, span);
   const auto [it, fresh] = bodies_.emplace(name, body_names_.size() - 1);
   if (!fresh)
-    throw Failure(span, "a body '" + name + "' is already declared in " + line_of(body_spans_[it->second], model_.source_text));
+    throw Failure(span, "a body '" + name + "' is already declared in " +
+                            line_of(body_spans_[it->second], model_.source_text));
 }
 
 std::size_t Scope::add_table(Table table) {
@@ -62,7 +65,8 @@ std::size_t Scope::body(const std::string& name, Span span) const {
   if (const std::string members = members_known(name, body_names_); !members.empty())
     throw Failure(span, "there is no body or particle '" + name + "'" + members);
   const std::string near = did_you_mean(name, body_names_);
-  throw Failure(span, "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  throw Failure(span,
+                "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
 const std::size_t* Scope::find_body(const std::string& name) const {
@@ -80,14 +84,18 @@ void Scope::unknown(const std::string& name, Span span) const {
   known.insert(known.end(), body_names_.begin(), body_names_.end());
   const bool member = name.find('[') != std::string::npos;
   if (const std::string members = members_known(member ? name : name + "[", known); !members.empty())
-    throw Failure(span, member ? "there is no '" + name + "'" + members : "'" + name + "' is a family, not a name" + members);
+    throw Failure(span,
+                  member ? "there is no '" + name + "'" + members : "'" + name + "' is a family, not a name" + members);
   const auto varies = [&](const std::string& n) {
     const auto it = declarations_.find(n);
-    return it != declarations_.end() && (it->second.role == Role::coordinate || it->second.role == Role::state || it->second.role == Role::control);
+    return it != declarations_.end() &&
+           (it->second.role == Role::coordinate || it->second.role == Role::state || it->second.role == Role::control);
   };
-  if (const std::string habit = habit_of_name(name, varies); !habit.empty()) throw Failure(span, "unknown name '" + name.substr(0, 60) + "'", habit);
+  if (const std::string habit = habit_of_name(name, varies); !habit.empty())
+    throw Failure(span, "unknown name '" + name.substr(0, 60) + "'", habit);
   const std::string near = did_you_mean(name, known);
-  throw Failure(span, "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+  throw Failure(span,
+                "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 near.empty() ? "give it a value under [parameters] or [define]" : "");
 }
 
@@ -116,14 +124,17 @@ Vector Scope::vector(const Item& item) {
 }
 
 Rotation Scope::rotation(const Item& item) {
-  if (item.kind != Item::Kind::string) throw Failure(item.span, "a rotation is expected", "a formula such as \"rotz(theta)\"");
+  if (item.kind != Item::Kind::string)
+    throw Failure(item.span, "a rotation is expected", "a formula such as \"rotz(theta)\"");
   return evaluate_rotation(parse_formula(item.formula), *this);
 }
 
 std::vector<Syntax> Scope::equation(const Item& item) {
-  if (item.kind != Item::Kind::string) throw Failure(item.span, "an equation is expected", "a string such as \"x' = 0\"");
+  if (item.kind != Item::Kind::string)
+    throw Failure(item.span, "an equation is expected", "a string such as \"x' = 0\"");
   std::vector<Syntax> sides = parse_equation(item.formula);
-  if (sides.size() != 2) throw Failure(item.formula.whole(), "an equation needs '='", "write \"" + item.text().substr(0, 60) + " = 0\"");
+  if (sides.size() != 2)
+    throw Failure(item.formula.whole(), "an equation needs '='", "write \"" + item.text().substr(0, 60) + " = 0\"");
   return sides;
 }
 
@@ -134,10 +145,12 @@ bool has_unit(const Syntax& s) {
 // {value = 2, unit = "km"} is 2 km; a bare number from outside has this unit, too, one with a unit its own.
 Value Scope::in_its_unit(Value v, const Declaration& d) {
   if (d.unit.empty()) return v;
-  const bool own = d.item ? std::any_of(d.item->items.begin(), d.item->items.end(), [](const Item& i) { return has_unit(parse_formula(i.formula)); })
+  const bool own = d.item ? std::any_of(d.item->items.begin(), d.item->items.end(),
+                                        [](const Item& i) { return has_unit(parse_formula(i.formula)); })
                           : has_unit(parse_formula(d.formula));
   if (own && !d.override.empty()) return v;
-  if (own) throw Failure(d.item ? d.item->span : d.formula.whole(), "the unit is given twice: with the value and by 'unit'");
+  if (own)
+    throw Failure(d.item ? d.item->span : d.formula.whole(), "the unit is given twice: with the value and by 'unit'");
   Graph& g = *model_.graph;
   const Unit unit = read_unit(d.unit).value_or(Unit{});
   const Expr factor = unit.factor * pow(g.pi(), unit.pi);
@@ -149,50 +162,56 @@ Value Scope::in_its_unit(Value v, const Declaration& d) {
 Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
   Graph& g = *model_.graph;
   switch (d.role) {
-    case Role::state: return g.state(static_cast<std::uint32_t>(d.index), 0);
-    case Role::control: return g.control(static_cast<std::uint32_t>(d.index), 0);
-    case Role::table: return InertialName{};  // means something with an argument only
-    case Role::coordinate: return g.jet(static_cast<std::uint32_t>(d.index), 0);
-    case Role::function:
-      if (d.symbolic) return g.given(static_cast<std::uint32_t>(d.index), 0);
-      [[fallthrough]];
-    case Role::define: case Role::parameter: {
-      Value v = in_its_unit(d.item ? Value(vector(*d.item)) : evaluate(parse_formula(d.formula), *this), d);
-      if (d.role != Role::parameter) {
-        if (Expr* e = std::get_if<Expr>(&v)) {
-          const Kind k = g.node(e->id).kind;
-          if (k == Kind::sum || k == Kind::product || k == Kind::function || k == Kind::atan2)
-            model_.names.defined.emplace(e->id, name);
-        }
-      }
-      if (d.role == Role::define) return v;
-      if (d.role == Role::function) {
-        Expr* e = std::get_if<Expr>(&v);
-        if (e && jet_order(*e) >= 0)
-          throw Failure(d.span, "the given function '" + name + "' depends on a coordinate",
-                        "functions of t stand under [functions], formulas with coordinates under [define]");
-        return v;
-      }
-      const auto check = [&](Expr e) {
-        for (NodeId id : symbols({&e, 1}))
-          if (g.node(id).kind != Kind::parameter)
-            throw Failure(d.span, "the parameter '" + name + "' is not constant",
-                          "functions of t stand under [functions], formulas with coordinates under [define]");
-      };
+  case Role::state:
+    return g.state(static_cast<std::uint32_t>(d.index), 0);
+  case Role::control:
+    return g.control(static_cast<std::uint32_t>(d.index), 0);
+  case Role::table:
+    return InertialName{};  // means something with an argument only
+  case Role::coordinate:
+    return g.jet(static_cast<std::uint32_t>(d.index), 0);
+  case Role::function:
+    if (d.symbolic) return g.given(static_cast<std::uint32_t>(d.index), 0);
+    [[fallthrough]];
+  case Role::define:
+  case Role::parameter: {
+    Value v = in_its_unit(d.item ? Value(vector(*d.item)) : evaluate(parse_formula(d.formula), *this), d);
+    if (d.role != Role::parameter) {
       if (Expr* e = std::get_if<Expr>(&v)) {
-        check(*e);
-        model_.parameters[d.index].value = *e;
-        return g.parameter(static_cast<std::uint32_t>(d.index));
+        const Kind k = g.node(e->id).kind;
+        if (k == Kind::sum || k == Kind::product || k == Kind::function || k == Kind::atan2)
+          model_.names.defined.emplace(e->id, name);
       }
-      if (Vector* a = std::get_if<Vector>(&v)) {
-        for (int i = 0; i < 3; ++i) check((*a)[i]);
-        return v;
-      }
-      throw Failure(d.span, std::string("a parameter is a number or a vector, this is ") + type_name(v));
     }
-    case Role::frame: return evaluate_rotation(parse_formula(d.formula), *this);
-    case Role::point:
-      return d.item ? vector(*d.item) : evaluate_vector(parse_formula(d.formula), *this);
+    if (d.role == Role::define) return v;
+    if (d.role == Role::function) {
+      Expr* e = std::get_if<Expr>(&v);
+      if (e && jet_order(*e) >= 0)
+        throw Failure(d.span, "the given function '" + name + "' depends on a coordinate",
+                      "functions of t stand under [functions], formulas with coordinates under [define]");
+      return v;
+    }
+    const auto check = [&](Expr e) {
+      for (NodeId id : symbols({&e, 1}))
+        if (g.node(id).kind != Kind::parameter)
+          throw Failure(d.span, "the parameter '" + name + "' is not constant",
+                        "functions of t stand under [functions], formulas with coordinates under [define]");
+    };
+    if (Expr* e = std::get_if<Expr>(&v)) {
+      check(*e);
+      model_.parameters[d.index].value = *e;
+      return g.parameter(static_cast<std::uint32_t>(d.index));
+    }
+    if (Vector* a = std::get_if<Vector>(&v)) {
+      for (int i = 0; i < 3; ++i) check((*a)[i]);
+      return v;
+    }
+    throw Failure(d.span, std::string("a parameter is a number or a vector, this is ") + type_name(v));
+  }
+  case Role::frame:
+    return evaluate_rotation(parse_formula(d.formula), *this);
+  case Role::point:
+    return d.item ? vector(*d.item) : evaluate_vector(parse_formula(d.formula), *this);
   }
   return InertialName{};
 }
@@ -220,7 +239,8 @@ void Scope::from_the_ground(const std::function<void()>& ask) {
       waiting.back().ask();
       waiting.pop_back();
     } catch (const TooDeep& deep) {
-      const auto again = std::find_if(waiting.begin(), waiting.end(), [&](const TooDeep& w) { return w.name == deep.name; });
+      const auto again =
+          std::find_if(waiting.begin(), waiting.end(), [&](const TooDeep& w) { return w.name == deep.name; });
       if (again != waiting.end()) {
         std::string path;
         for (auto it = again; it != waiting.end(); ++it) path += it->name + " -> … -> ";
@@ -241,8 +261,10 @@ void Scope::from_the_ground(const std::function<void()>& ask) {
 
 const Value& Scope::resolve(const std::string& name, Declaration& d, Span use) {
   if (d.state == Declaration::State::done) return d.value;
-  if (depth_ == 0) from_the_ground([&] { settle(name, d, use); });
-  else settle(name, d, use);
+  if (depth_ == 0)
+    from_the_ground([&] { settle(name, d, use); });
+  else
+    settle(name, d, use);
   return d.value;
 }
 
@@ -305,8 +327,10 @@ void Scope::resolve_all() {
     try {
       std::optional<Multipliers> allowed;
       if (d.role == Role::define) allowed.emplace(*this);
-      if (d.arguments.empty()) resolve(name, d, d.span);
-      else if (!d.parsed) parse_formula(d.formula);
+      if (d.arguments.empty())
+        resolve(name, d, d.span);
+      else if (!d.parsed)
+        parse_formula(d.formula);
     } catch (const Failure& f) {
       if (!is_silent(f.diagnostic)) failures.push_back(f.diagnostic);
     }
@@ -327,14 +351,20 @@ Value Scope::name(const std::string& name, Span span) {
   }
   if (name == "lambda") {
     if (multipliers_ > 0) return InertialName{};  // means something with a member only
-    throw Failure(span, "a multiplier has no meaning here: it follows from the equations of which this formula is a part", kWhereMultipliers);
+    throw Failure(span,
+                  "a multiplier has no meaning here: it follows from the equations of which this formula is a part",
+                  kWhereMultipliers);
   }
   const auto it = declarations_.find(name);
   if (it != declarations_.end()) {
     if (it->second.role == Role::table || !it->second.arguments.empty())
       throw Failure(span, "the function '" + name + "' is used without its arguments", name + "(…)");
     if (multipliers_ == 0 && holds_multiplier(name))
-      throw Failure(span, "'" + name + "' holds a multiplier or a reaction, which follow from the equations of which this formula is a part", kWhereMultipliers);
+      throw Failure(
+          span,
+          "'" + name +
+              "' holds a multiplier or a reaction, which follow from the equations of which this formula is a part",
+          kWhereMultipliers);
     const Value v = resolve(name, it->second, span);
     if (freeze_masses)
       if (const Expr* e = std::get_if<Expr>(&v))
@@ -371,11 +401,13 @@ Value Scope::member(const Value& object, const Syntax& s) {
     if (m == "center" || m == "position") return center(b->index, s.span);
     if (axis >= 0 && parts_[b->index].particle) return center(b->index, s.span)[axis];
     if (axis >= 0) return orientation(b->index, s.span)[axis];
-    throw Failure(s.span, parts_[b->index].particle ? "a particle has the members position, x, y and z" : "a body has the members center, x, y and z");
+    throw Failure(s.span, parts_[b->index].particle ? "a particle has the members position, x, y and z"
+                                                    : "a body has the members center, x, y and z");
   }
   if (multipliers_ > 0 && object.index() == 4)
     if (const std::string path = multiplier_path(s); !path.empty()) return multiplier(path, s.span);
-  throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'", object.index() == 0 ? habit_of_member(s) : "");
+  throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'",
+                object.index() == 0 ? habit_of_member(s) : "");
 }
 
 // A particle is the point where it is. (Of a body that merely has no orientation the centre is meant less surely.)
@@ -388,8 +420,10 @@ std::optional<Rotation> Scope::frame(const BodyName& body, Span use) {
 }
 
 Vector Scope::center(std::size_t body, Span use) {
-  if (depth_ == 0) from_the_ground([&] { settle_center(body, use); });
-  else settle_center(body, use);
+  if (depth_ == 0)
+    from_the_ground([&] { settle_center(body, use); });
+  else
+    settle_center(body, use);
   return *parts_[body].center_value;
 }
 
@@ -408,14 +442,17 @@ void Scope::settle_center(std::size_t body, Span use) {
   if (p.center_value) return;
   if (!p.center || p.center_failed) throw silent_failure();
   if (p.center_open) throw Failure(use, "the centre of '" + body_names_[body] + "' is defined through itself");
-  if (depth_ > kDeepest) throw TooDeep{body_names_[body] + ".center", nullptr, use, [this, body, use] { settle_center(body, use); }};
+  if (depth_ > kDeepest)
+    throw TooDeep{body_names_[body] + ".center", nullptr, use, [this, body, use] { settle_center(body, use); }};
   const Opened opened(p.center_open, depth_);
   keep_failure(p.center_failed, [&] { p.center_value = vector(*p.center); });
 }
 
 const Rotation& Scope::orientation(std::size_t body, Span use) {
-  if (depth_ == 0) from_the_ground([&] { settle_orientation(body, use); });
-  else settle_orientation(body, use);
+  if (depth_ == 0)
+    from_the_ground([&] { settle_orientation(body, use); });
+  else
+    settle_orientation(body, use);
   return *parts_[body].orientation_value;
 }
 
@@ -426,10 +463,14 @@ void Scope::settle_orientation(std::size_t body, Span use) {
   if (!has_orientation(body))
     throw Failure(use, "the body '" + body_names_[body] + "' has no orientation",
                   "give it orientation = \"…\", or angle = \"…\" in the plane");
-  if (p.orientation_open) throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
-  if (depth_ > kDeepest) throw TooDeep{body_names_[body] + ".orientation", nullptr, use, [this, body, use] { settle_orientation(body, use); }};
+  if (p.orientation_open)
+    throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
+  if (depth_ > kDeepest)
+    throw TooDeep{body_names_[body] + ".orientation", nullptr, use,
+                  [this, body, use] { settle_orientation(body, use); }};
   const Opened opened(p.orientation_open, depth_);
-  keep_failure(p.orientation_failed, [&] { p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle)); });
+  keep_failure(p.orientation_failed,
+               [&] { p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle)); });
 }
 
 Vector Scope::gravity_at(const Vector& place, Span use) {
@@ -457,7 +498,8 @@ std::vector<Vector> Scope::gravity_gradient_at(const Vector& place, Span use) {
   for (int i = 0; i < 3; ++i)
     for (NodeId id : symbols({&field[i], 1}))
       if (g.node(id).kind == Kind::quasi && g.node(id).order > 0)
-        throw Failure(gravity_->span, "the field depends on the velocity of 'here'", "a gradient is taken of a field of the place");
+        throw Failure(gravity_->span, "the field depends on the velocity of 'here'",
+                      "a gradient is taken of a field of the place");
   const Column rows[3] = {gradient(field.x, here), gradient(field.y, here), gradient(field.z, here)};
   std::vector<Vector> by;
   bool uniform = true;

@@ -21,18 +21,18 @@ class Scope final : public Names {
   enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point, state, control, table };
   struct Declaration {
     Role role = Role::define;
-    std::size_t index = 0;                // of a coordinate, parameter or unknown function
+    std::size_t index = 0;  // of a coordinate, parameter or unknown function
     FormulaText formula;
-    const Item* item = nullptr;           // an array value
-    std::vector<std::string> arguments;   // of a function with arguments
+    const Item* item = nullptr;          // an array value
+    std::vector<std::string> arguments;  // of a function with arguments
     Span span;
-    bool symbolic = false;                // stands for itself: coordinate, unknown function
-    std::string unit;                     // of a parameter {value, unit}
-    std::string override;                 // "--set m=3", where the value comes from there
+    bool symbolic = false;  // stands for itself: coordinate, unknown function
+    std::string unit;       // of a parameter {value, unit}
+    std::string override;   // "--set m=3", where the value comes from there
     enum class State : std::uint8_t { fresh, open, done, failed } state = State::fresh;
-    std::size_t place = 0;                // among all declarations
+    std::size_t place = 0;  // among all declarations
     Value value = InertialName{};
-    Syntax body{};                        // of a function with arguments
+    Syntax body{};  // of a function with arguments
     bool parsed = false;
   };
   void reserve(const std::set<std::string>& letters) { letters_ = letters; }  // of [index]
@@ -101,7 +101,9 @@ class Scope final : public Names {
   std::optional<Vector> point(const BodyName& body, Span use) override;
   std::optional<Rotation> frame(const BodyName& body, Span use) override;
   std::string body_name(const BodyName& body) const override { return body_names_[body.index]; }
-  void quaternion(const std::array<Expr, 4>& components, const Syntax& call) override { quaternions_.push_back({components, call.span}); }
+  void quaternion(const std::array<Expr, 4>& components, const Syntax& call) override {
+    quaternions_.push_back({components, call.span});
+  }
 
   // The quaternions met so far, in the order of their evaluation.
   struct Quaternion {
@@ -158,11 +160,12 @@ class Scope final : public Names {
   int multipliers_ = 0;                                  // how many allow them
   std::optional<bool> speaks_of_multipliers_;            // some definition may hold one
   std::map<std::string, bool> holds_multiplier_;
-  std::size_t calls_ = 0;                                // of given functions, over the whole file
+  std::size_t calls_ = 0;  // of given functions, over the whole file
 };
 
 // Where multipliers and reactions may stand.
-inline constexpr const char* kWhereMultipliers = "such a formula stands in conditions, monitors, outputs, rates and events, or in a [define] that these use";
+inline constexpr const char* kWhereMultipliers =
+    "such a formula stands in conditions, monitors, outputs, rates and events, or in a [define] that these use";
 bool is_reaction(const std::string& function);
 // "rolling.x" of lambda.rolling.x; empty for other members.
 std::string multiplier_path(const Syntax& member);

@@ -13,14 +13,19 @@ namespace {
 using Named = std::pair<const char*, const char*>;
 
 constexpr Named kLetters[] = {
-    {"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"epsilon", "ϵ"}, {"varepsilon", "ε"}, {"zeta", "ζ"}, {"eta", "η"}, {"theta", "θ"},
-    {"vartheta", "ϑ"}, {"iota", "ι"}, {"kappa", "κ"}, {"varkappa", "ϰ"}, {"lambda", "λ"}, {"mu", "μ"}, {"nu", "ν"}, {"xi", "ξ"}, {"pi", "π"}, {"varpi", "ϖ"},
-    {"rho", "ρ"}, {"varrho", "ϱ"}, {"sigma", "σ"}, {"varsigma", "ς"}, {"tau", "τ"}, {"upsilon", "υ"}, {"phi", "ϕ"}, {"varphi", "φ"}, {"chi", "χ"},
-    {"psi", "ψ"}, {"omega", "ω"}, {"Gamma", "Γ"}, {"Delta", "Δ"}, {"Theta", "Θ"}, {"Lambda", "Λ"}, {"Xi", "Ξ"}, {"Pi", "Π"}, {"Sigma", "Σ"},
-    {"Upsilon", "Υ"}, {"Phi", "Φ"}, {"Psi", "Ψ"}, {"Omega", "Ω"}, {"ell", "ℓ"}, {"hbar", "ℏ"}, {"partial", "∂"}, {"infty", "∞"}};
-constexpr Named kSigns[] = {{"prime", "′"}, {"ast", "∗"}, {"star", "⋆"}, {"parallel", "∥"}, {"perp", "⊥"}, {"circ", "∘"}};
+    {"alpha", "α"},    {"beta", "β"},    {"gamma", "γ"},  {"delta", "δ"},    {"epsilon", "ϵ"},  {"varepsilon", "ε"},
+    {"zeta", "ζ"},     {"eta", "η"},     {"theta", "θ"},  {"vartheta", "ϑ"}, {"iota", "ι"},     {"kappa", "κ"},
+    {"varkappa", "ϰ"}, {"lambda", "λ"},  {"mu", "μ"},     {"nu", "ν"},       {"xi", "ξ"},       {"pi", "π"},
+    {"varpi", "ϖ"},    {"rho", "ρ"},     {"varrho", "ϱ"}, {"sigma", "σ"},    {"varsigma", "ς"}, {"tau", "τ"},
+    {"upsilon", "υ"},  {"phi", "ϕ"},     {"varphi", "φ"}, {"chi", "χ"},      {"psi", "ψ"},      {"omega", "ω"},
+    {"Gamma", "Γ"},    {"Delta", "Δ"},   {"Theta", "Θ"},  {"Lambda", "Λ"},   {"Xi", "Ξ"},       {"Pi", "Π"},
+    {"Sigma", "Σ"},    {"Upsilon", "Υ"}, {"Phi", "Φ"},    {"Psi", "Ψ"},      {"Omega", "Ω"},    {"ell", "ℓ"},
+    {"hbar", "ℏ"},     {"partial", "∂"}, {"infty", "∞"}};
+constexpr Named kSigns[] = {{"prime", "′"},    {"ast", "∗"},  {"star", "⋆"},
+                            {"parallel", "∥"}, {"perp", "⊥"}, {"circ", "∘"}};
 constexpr Named kAccents[] = {{"bar", "¯"}, {"overline", "¯"}, {"hat", "^"}, {"tilde", "~"}, {"vec", "→"}};
-constexpr Named kStyles[] = {{"mathrm", "normal"}, {"text", "normal"}, {"mathbf", "bold"}, {"mathcal", "script"}, {"mathsf", "sans-serif"}};
+constexpr Named kStyles[] = {
+    {"mathrm", "normal"}, {"text", "normal"}, {"mathbf", "bold"}, {"mathcal", "script"}, {"mathsf", "sans-serif"}};
 
 template <std::size_t N>
 const char* find(const Named (&list)[N], const std::string& name) {
@@ -104,7 +109,8 @@ class Latex {
       ++at_;
       return std::string("<mo>") + (c == '-' ? "−" : std::string(1, c)) + "</mo>";
     }
-    fail("'" + text_.substr(at_, utf8_width(text_, at_)) + "' means nothing in a notation", "letters, digits, \\theta, \\mathrm{in}, \\bar{x}, _ and ^");
+    fail("'" + text_.substr(at_, utf8_width(text_, at_)) + "' means nothing in a notation",
+         "letters, digits, \\theta, \\mathrm{in}, \\bar{x}, _ and ^");
   }
 
   std::string command() {
@@ -122,7 +128,8 @@ class Latex {
       std::string word;
       for (++at_; !end() && text_[at_] != '}'; ++at_) {
         const char c = text_[at_];
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != ' ' && c != '-' && c != '.') fail(std::string("'") + c + "' means nothing in \\" + name + "{…}");
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != ' ' && c != '-' && c != '.')
+          fail(std::string("'") + c + "' means nothing in \\" + name + "{…}");
         word += c;
       }
       if (end()) fail("'}' is missing");
@@ -136,7 +143,8 @@ class Latex {
     for (const Named& n : kStyles) known.emplace_back(n.first);
     at_ = start;
     const std::string near = did_you_mean(name, known);
-    fail("\\" + name + " is not read in a notation" + (near.empty() ? "" : "; did you mean '\\" + near + "'?"), "letters of the Greek alphabet, \\bar, \\hat, \\tilde, \\vec, \\mathrm, \\mathbf, _ and ^");
+    fail("\\" + name + " is not read in a notation" + (near.empty() ? "" : "; did you mean '\\" + near + "'?"),
+         "letters of the Greek alphabet, \\bar, \\hat, \\tilde, \\vec, \\mathrm, \\mathbf, _ and ^");
   }
 
   const FormulaText& source_;
@@ -149,17 +157,21 @@ class Latex {
 
 std::string mathml_of(const FormulaText& latex) { return Latex(latex).run(); }
 
-void read_notation(const Item& section, Model& model, const std::vector<std::string>& declared, Diagnostics& diagnostics) {
+void read_notation(const Item& section, Model& model, const std::vector<std::string>& declared,
+                   Diagnostics& diagnostics) {
   std::vector<std::string> known = declared;
-  for (const auto* list : {&model.names.coordinates, &model.names.parameters, &model.names.given, &model.names.quasi, &model.names.multipliers})
+  for (const auto* list : {&model.names.coordinates, &model.names.parameters, &model.names.given, &model.names.quasi,
+                           &model.names.multipliers})
     known.insert(known.end(), list->begin(), list->end());
   for (const Item& i : section.items)
     collect(diagnostics, [&] {
       if (std::find(known.begin(), known.end(), i.key) == known.end()) {
         const std::string near = did_you_mean(i.key, known);
-        throw Failure(i.key_span, "there is no name '" + i.key.substr(0, 60) + "' to be written" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+        throw Failure(i.key_span, "there is no name '" + i.key.substr(0, 60) + "' to be written" +
+                                      (near.empty() ? "" : "; did you mean '" + near + "'?"));
       }
-      if (i.kind != Item::Kind::string) throw Failure(i.span, "a notation is a text of LaTeX", "theta = \"\\\\vartheta\", or theta = '\\vartheta'");
+      if (i.kind != Item::Kind::string)
+        throw Failure(i.span, "a notation is a text of LaTeX", "theta = \"\\\\vartheta\", or theta = '\\vartheta'");
       model.names.notation[i.key] = {i.text(), mathml_of(i.formula)};
     });
 }

@@ -21,9 +21,12 @@ static std::optional<Expr> antiderivative_of_term(Expr e) {
   if (n.kind == Kind::product) {
     for (const Term& f : g.terms(e.id)) {
       const std::pair<Expr, Rational> factor{Expr{&g, f.node}, g.rational(f.weight)};
-      if (constant_in_time(factor.first)) constants.push_back(factor);
-      else if (varying) return std::nullopt;
-      else varying = factor;
+      if (constant_in_time(factor.first))
+        constants.push_back(factor);
+      else if (varying)
+        return std::nullopt;
+      else
+        varying = factor;
     }
   } else {
     varying = {e, 1};
@@ -37,12 +40,18 @@ static std::optional<Expr> antiderivative_of_term(Expr e) {
   const Expr rate = total_derivative(u);
   if (!constant_in_time(rate) || is_zero(rate)) return std::nullopt;
   switch (static_cast<Function>(fn.index)) {
-    case Function::sin: return -(c * cos(u) / rate);
-    case Function::cos: return c * sin(u) / rate;
-    case Function::exp: return c * f / rate;
-    case Function::sinh: return c * cosh(u) / rate;
-    case Function::cosh: return c * sinh(u) / rate;
-    default: return std::nullopt;
+  case Function::sin:
+    return -(c * cos(u) / rate);
+  case Function::cos:
+    return c * sin(u) / rate;
+  case Function::exp:
+    return c * f / rate;
+  case Function::sinh:
+    return c * cosh(u) / rate;
+  case Function::cosh:
+    return c * sinh(u) / rate;
+  default:
+    return std::nullopt;
   }
 }
 
@@ -86,8 +95,12 @@ static void check_orthonormal(const Rotation& a, const Model& model, Span span) 
       const Expr miss = dot(a[i], a[j]) - (i == j ? 1 : 0);
       if (proved_zero(miss)) continue;
       for (const Rational& t : {Rational(0), Rational(3, 10), Rational(2)}) {
-        const auto value = constant_value(model, substitute({&miss, 1}, [&](NodeId id) { return g.node(id).kind == Kind::time ? g.number(t) : Expr{}; })[0]);
-        if (value && !(std::abs(*value) <= kRounded)) throw Failure(span, "the observer's axes are not of length 1 and at right angles", "spin = […] gives axes that are");
+        const auto value = constant_value(model, substitute({&miss, 1}, [&](NodeId id) {
+                                            return g.node(id).kind == Kind::time ? g.number(t) : Expr{};
+                                          })[0]);
+        if (value && !(std::abs(*value) <= kRounded))
+          throw Failure(span, "the observer's axes are not of length 1 and at right angles",
+                        "spin = […] gives axes that are");
       }
     }
 }
@@ -124,7 +137,9 @@ void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics&
   for (const char* key : kOrigins) {
     const Item* item = section.find(key);
     if (!item) continue;
-    if (origin) throw Failure(item->key_span, "the motion of the observer's origin is given twice: by '" + origin->key + "' and by '" + item->key + "'");
+    if (origin)
+      throw Failure(item->key_span, "the motion of the observer's origin is given twice: by '" + origin->key +
+                                        "' and by '" + item->key + "'");
     origin = item;
   }
   o.inertial = is_zero(o.spin) && !origin;
@@ -145,8 +160,10 @@ void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics&
     // Inertial components: a0 = A^T dv/dt, with no omega x v.
     if (!a) a = rotation_of(o.spin);
     if (!a)
-      throw Failure(origin->key_span, "inertial components need the observer's rotation, and this 'spin' cannot be integrated in closed form",
-                    "give rotation = \"…\" (observer to inertial axes) instead of spin, or origin_acceleration");
+      throw Failure(
+          origin->key_span,
+          "inertial components need the observer's rotation, and this 'spin' cannot be integrated in closed form",
+          "give rotation = \"…\" (observer to inertial axes) instead of spin, or origin_acceleration");
     const Vector velocity = key == "origin_position_inertial" ? total_derivative(v) : v;
     o.origin_velocity = transpose_times(*a, velocity);
     o.origin_acceleration = transpose_times(*a, total_derivative(velocity));

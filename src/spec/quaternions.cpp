@@ -29,14 +29,19 @@ std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model) {
     if (jet_order(phi) < 0) {
       // Given numbers, or functions of time: nothing can hold them to 1, so they must be it.
       for (const Rational& t : {Rational(0), Rational(3, 10), Rational(2)}) {
-        const Expr at = substitute({&phi, 1}, [&](NodeId id) { return g.node(id).kind == Kind::time ? g.number(t) : Expr{}; })[0];
+        const Expr at =
+            substitute({&phi, 1}, [&](NodeId id) { return g.node(id).kind == Kind::time ? g.number(t) : Expr{}; })[0];
         const auto value = constant_value(model, at);
         if (value && !(std::abs(*value) <= kRounded))
-          throw Failure(q.span, "this quaternion is no rotation: the sum of its squares is " + number_text(*value + 1, 6), "divide it by its norm, or write rot(axis, angle)");
+          throw Failure(q.span,
+                        "this quaternion is no rotation: the sum of its squares is " + number_text(*value + 1, 6),
+                        "divide it by its norm, or write rot(axis, angle)");
       }
       continue;
     }
-    if (std::any_of(model.constraints.begin(), model.constraints.end(), [&](const Constraint& c) { return c.order == 0 && same_constraint(c.phi, phi); })) continue;
+    if (std::any_of(model.constraints.begin(), model.constraints.end(),
+                    [&](const Constraint& c) { return c.order == 0 && same_constraint(c.phi, phi); }))
+      continue;
     UnitNorm n;
     n.phi = phi;
     n.span = q.span;
@@ -46,7 +51,8 @@ std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model) {
       if (node.kind == Kind::jet && node.order == 0) n.coordinates.push_back(node.index);
     }
     if (n.coordinates.size() == 4) n.scalar = n.coordinates[0];
-    n.name = "norm." + (n.coordinates.empty() ? std::to_string(list.size() + 1) : model.names.coordinates[n.coordinates[0]]);
+    n.name =
+        "norm." + (n.coordinates.empty() ? std::to_string(list.size() + 1) : model.names.coordinates[n.coordinates[0]]);
     list.push_back(n);
   }
   return list;

@@ -32,12 +32,13 @@ namespace {
 // Where something is missing that may stand anywhere.
 constexpr Span kTop{1, 1, 1};
 
-// What making the expressions of a file may cost: a formula that unfolds without end is refused where it stands. The chain of
-// a thousand links takes a tenth of this.
+// What making the expressions of a file may cost: a formula that unfolds without end is refused where it stands. The
+// chain of a thousand links takes a tenth of this.
 constexpr std::size_t kWork = 700'000, kWorkPerByte = 1000, kWorkPerMember = 1000, kWorkLater = std::size_t{1} << 48;
 class Reader {  // what it refers to is asked only while it runs
  public:
-  Reader(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides, const std::vector<std::string>& cases)
+  Reader(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides,
+         const std::vector<std::string>& cases)
       : diagnostics_(diagnostics), overrides_(overrides), cases_(cases), scope_(model_) {
     model_.graph = std::make_shared<Graph>();
     model_.source_text = source;
@@ -76,7 +77,8 @@ class Reader {  // what it refers to is asked only while it runs
     // Bodies are declared before anything is evaluated, their parts read when the masses are.
     BodyReader bodies(scope_, model_, diagnostics_);
     bodies.declare(root);
-    if (const Item* o = table(root, "observer")) guard([&] { read_observer(*o, scope_, model_, diagnostics_); }, o->span);
+    if (const Item* o = table(root, "observer"))
+      guard([&] { read_observer(*o, scope_, model_, diagnostics_); }, o->span);
     read_gravity(root, scope_, diagnostics_);
     read_controls(root, scope_, model_, diagnostics_);
     // A name that does not stand for a value is worth one report, at the place of its use.
@@ -105,13 +107,16 @@ class Reader {  // what it refers to is asked only while it runs
     guard([&] { read_simulate(root, scope_, model_, diagnostics_); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
-    diagnostics_.gather([](const std::string& message) { return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0; });
+    diagnostics_.gather([](const std::string& message) {
+      return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0;
+    });
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
     // What is made of the model from here on grows in proportion to it.
     model_.graph->allow(kWorkLater);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
-      diagnostics_.error(kTop, "the model has no body", "add [[body]] or [[particle]] with name, mass and center or position");
+      diagnostics_.error(kTop, "the model has no body",
+                         "add [[body]] or [[particle]] with name, mass and center or position");
     return !diagnostics_.has_errors();
   }
 
@@ -132,8 +137,10 @@ class Reader {  // what it refers to is asked only while it runs
     check_keys(root, "the model file", "", diagnostics_);
     for (auto [key, target] : {std::pair{"title", &model_.title}, {"source", &model_.source}})
       if (const Item* i = root.find(key)) {
-        if (i->kind == Item::Kind::string) *target = i->text();
-        else diagnostics_.error(i->span, std::string("'") + key + "' is a text");
+        if (i->kind == Item::Kind::string)
+          *target = i->text();
+        else
+          diagnostics_.error(i->span, std::string("'") + key + "' is a text");
       }
   }
 
@@ -141,8 +148,10 @@ class Reader {  // what it refers to is asked only while it runs
 
   void coordinates(const Item& root) {
     const Item* list = root.find("coordinates");
-    if (!list) throw Failure(kTop, "the model has no coordinates", "coordinates = [\"x\", \"y\"] at the top of the file");
-    if (list->kind == Item::Kind::array && list->items.empty()) throw Failure(list->span, "the list of coordinates is empty", "coordinates = [\"x\", \"y\"]");
+    if (!list)
+      throw Failure(kTop, "the model has no coordinates", "coordinates = [\"x\", \"y\"] at the top of the file");
+    if (list->kind == Item::Kind::array && list->items.empty())
+      throw Failure(list->span, "the list of coordinates is empty", "coordinates = [\"x\", \"y\"]");
     if (list->kind != Item::Kind::array)
       throw Failure(list->span, "coordinates is a list of names", "coordinates = [\"x\", \"y\"]");
     if (list->items.size() > kMostCoordinates)
@@ -166,13 +175,16 @@ class Reader {  // what it refers to is asked only while it runs
   void dependent(const Item& root) {
     const Item* list = root.find("dependent");
     if (!list) return;
-    if (list->kind != Item::Kind::array) throw Failure(list->span, "dependent is a list of coordinates", "dependent = [\"y\"]");
+    if (list->kind != Item::Kind::array)
+      throw Failure(list->span, "dependent is a list of coordinates", "dependent = [\"y\"]");
     for (const Item& i : list->items)
       guard([&] {
         const std::string name = i.kind == Item::Kind::string ? normal_name(i.text()) : std::string();
         const auto& names = model_.names.coordinates;
         const auto it = std::find(names.begin(), names.end(), name);
-        if (it == names.end()) throw Failure(i.span, "dependent is a list of coordinates, and '" + name + "' is none", did_you_mean(name, names));
+        if (it == names.end())
+          throw Failure(i.span, "dependent is a list of coordinates, and '" + name + "' is none",
+                        did_you_mean(name, names));
         const std::size_t a = static_cast<std::size_t>(it - names.begin());
         if (std::find(model_.dependent.begin(), model_.dependent.end(), a) != model_.dependent.end())
           throw Failure(i.span, "'" + name + "' is listed twice");
@@ -184,15 +196,20 @@ class Reader {  // what it refers to is asked only while it runs
     const Item* section = table(root, "quasi");
     if (!section) return;
     for (const Item& i : section->items)
-      guard([&] {
-        const Value v = scope_.name(normal_name(i.key), i.key_span);
-        if (!std::holds_alternative<Expr>(v)) throw Failure(i.span, "a quasi-velocity is a number, this is " + std::string(type_name(v)));
-        const Expr u = put_masses(model_, std::get<Expr>(v));
-        const int order = jet_order(u);
-        if (order < 1) throw Failure(i.span, "the quasi-velocity '" + i.key + "' depends on no velocity", "u = \"x'*cos(theta) + y'*sin(theta)\"");
-        model_.quasi.push_back({normal_name(i.key), u, order, i.span});
-        model_.names.quasi.push_back(normal_name(i.key));
-      }, i);
+      guard(
+          [&] {
+            const Value v = scope_.name(normal_name(i.key), i.key_span);
+            if (!std::holds_alternative<Expr>(v))
+              throw Failure(i.span, "a quasi-velocity is a number, this is " + std::string(type_name(v)));
+            const Expr u = put_masses(model_, std::get<Expr>(v));
+            const int order = jet_order(u);
+            if (order < 1)
+              throw Failure(i.span, "the quasi-velocity '" + i.key + "' depends on no velocity",
+                            "u = \"x'*cos(theta) + y'*sin(theta)\"");
+            model_.quasi.push_back({normal_name(i.key), u, order, i.span});
+            model_.names.quasi.push_back(normal_name(i.key));
+          },
+          i);
   }
 
   void parameters(const Item& root) {
@@ -200,39 +217,46 @@ class Reader {  // what it refers to is asked only while it runs
     const Item* section = table(root, "parameters");
     if (section)
       for (const Item& i : section->items)
-        guard([&] {
-          const Item* value = &i;
-          std::string doc;
-          if (i.kind == Item::Kind::table) {
-            check_keys(i, "a parameter", "parameters", diagnostics_);
-            value = i.find("value");
-            if (!value) throw Failure(i.key_span, "the parameter '" + i.key + "' has no value");
-            if (const Item* d = i.find("doc")) doc = d->text();
-          }
-          Scope::Declaration d;
-          if (const Item* u = i.kind == Item::Kind::table ? i.find("unit") : nullptr) guard([&] { d.unit = unit_text(*u); });
-          d.role = Scope::Role::parameter;
-          d.index = model_.parameters.size();
-          d.span = i.key_span;
-          if (value->kind == Item::Kind::array) d.item = value;
-          else if (value->is_formula()) d.formula = value->formula;
-          else throw Failure(value->span, "the value of a parameter is a number, a formula or a vector");
-          if (const auto o = overrides_.find(i.key); o != overrides_.end()) {
-            d.formula = FormulaText(o->second, Span{});
-            d.override = "--set " + o->first + "=" + o->second;
-            d.item = nullptr;
-            used.push_back(o->first);
-          }
-          scope_.declare(i.key, d);
-          model_.parameters.push_back({i.key, model_.graph->zero(), doc, d.span});
-          model_.names.parameters.push_back(i.key);
-        }, i);
+        guard(
+            [&] {
+              const Item* value = &i;
+              std::string doc;
+              if (i.kind == Item::Kind::table) {
+                check_keys(i, "a parameter", "parameters", diagnostics_);
+                value = i.find("value");
+                if (!value) throw Failure(i.key_span, "the parameter '" + i.key + "' has no value");
+                if (const Item* d = i.find("doc")) doc = d->text();
+              }
+              Scope::Declaration d;
+              if (const Item* u = i.kind == Item::Kind::table ? i.find("unit") : nullptr)
+                guard([&] { d.unit = unit_text(*u); });
+              d.role = Scope::Role::parameter;
+              d.index = model_.parameters.size();
+              d.span = i.key_span;
+              if (value->kind == Item::Kind::array)
+                d.item = value;
+              else if (value->is_formula())
+                d.formula = value->formula;
+              else
+                throw Failure(value->span, "the value of a parameter is a number, a formula or a vector");
+              if (const auto o = overrides_.find(i.key); o != overrides_.end()) {
+                d.formula = FormulaText(o->second, Span{});
+                d.override = "--set " + o->first + "=" + o->second;
+                d.item = nullptr;
+                used.push_back(o->first);
+              }
+              scope_.declare(i.key, d);
+              model_.parameters.push_back({i.key, model_.graph->zero(), doc, d.span});
+              model_.names.parameters.push_back(i.key);
+            },
+            i);
     for (const auto& [name, formula] : overrides_)
       if (!index_overrides_.count(name) && std::find(used.begin(), used.end(), name) == used.end()) {
         std::vector<std::string> known;
         for (const Parameter& p : model_.parameters) known.push_back(p.name);
         const std::string near = did_you_mean(name, known);
-        diagnostics_.error({}, "--set: there is no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+        diagnostics_.error({}, "--set: there is no parameter '" + name + "'" +
+                                   (near.empty() ? "" : "; did you mean '" + near + "'?"));
       }
   }
 
@@ -240,52 +264,60 @@ class Reader {  // what it refers to is asked only while it runs
     const Item* section = table(root, "functions");
     if (!section) return;
     for (const Item& i : section->items)
-      guard([&] {
-        Scope::Declaration d;
-        d.role = Scope::Role::function;
-        d.span = i.key_span;
-        std::string name = i.key;
-        if (const std::size_t open = name.find('('); open != std::string::npos && name.back() == ')') {
-          std::string list = name.substr(open + 1, name.size() - open - 2);
-          name.resize(open);
-          std::size_t from = 0;
-          while (from <= list.size()) {
-            const std::size_t comma = std::min(list.find(',', from), list.size());
-            std::string argument = list.substr(from, comma - from);
-            std::erase(argument, ' ');
-            if (!is_identifier(argument)) throw Failure(i.key_span, "'" + argument + "' is not a name of an argument");
-            d.arguments.push_back(argument);
-            from = comma + 1;
-          }
-          if (d.arguments.size() == 1 && d.arguments[0] == "t") d.arguments.clear();
-        }
-        if (i.kind == Item::Kind::table && i.items.empty()) {
-          d.symbolic = true;
-          d.index = model_.unknown_functions.size();
-          model_.unknown_functions.push_back(name);
-          model_.names.given.push_back(name);
-        } else if (i.is_formula()) {
-          d.formula = i.formula;
-        } else {
-          throw Failure(i.span, "a given function is a formula, or {} where it is not known");
-        }
-        scope_.declare(name, d);
-      }, i);
+      guard(
+          [&] {
+            Scope::Declaration d;
+            d.role = Scope::Role::function;
+            d.span = i.key_span;
+            std::string name = i.key;
+            if (const std::size_t open = name.find('('); open != std::string::npos && name.back() == ')') {
+              std::string list = name.substr(open + 1, name.size() - open - 2);
+              name.resize(open);
+              std::size_t from = 0;
+              while (from <= list.size()) {
+                const std::size_t comma = std::min(list.find(',', from), list.size());
+                std::string argument = list.substr(from, comma - from);
+                std::erase(argument, ' ');
+                if (!is_identifier(argument))
+                  throw Failure(i.key_span, "'" + argument + "' is not a name of an argument");
+                d.arguments.push_back(argument);
+                from = comma + 1;
+              }
+              if (d.arguments.size() == 1 && d.arguments[0] == "t") d.arguments.clear();
+            }
+            if (i.kind == Item::Kind::table && i.items.empty()) {
+              d.symbolic = true;
+              d.index = model_.unknown_functions.size();
+              model_.unknown_functions.push_back(name);
+              model_.names.given.push_back(name);
+            } else if (i.is_formula()) {
+              d.formula = i.formula;
+            } else {
+              throw Failure(i.span, "a given function is a formula, or {} where it is not known");
+            }
+            scope_.declare(name, d);
+          },
+          i);
   }
 
   void named(const Item& root, const char* key, Scope::Role role) {
     const Item* section = table(root, key);
     if (!section) return;
     for (const Item& i : section->items)
-      guard([&] {
-        Scope::Declaration d;
-        d.role = role;
-        d.span = i.key_span;
-        if (i.kind == Item::Kind::array && role != Scope::Role::frame) d.item = &i;
-        else if (i.is_formula()) d.formula = i.formula;
-        else throw Failure(i.span, std::string("'") + i.key + "' in [" + key + "] is not a formula");
-        scope_.declare(i.key, d);
-      }, i);
+      guard(
+          [&] {
+            Scope::Declaration d;
+            d.role = role;
+            d.span = i.key_span;
+            if (i.kind == Item::Kind::array && role != Scope::Role::frame)
+              d.item = &i;
+            else if (i.is_formula())
+              d.formula = i.formula;
+            else
+              throw Failure(i.span, std::string("'") + i.key + "' in [" + key + "] is not a formula");
+            scope_.declare(i.key, d);
+          },
+          i);
   }
 
   Diagnostics& diagnostics_;
@@ -311,7 +343,8 @@ class DerivedNames final : public Names {
         if (name == "m_" + m.name) return m.value;
     return scope_.name(name, span);
   }
-  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax, Value& result) override {
+  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax,
+            Value& result) override {
     return scope_.call(function, arguments, syntax, result);
   }
   Value member(const Value& object, const Syntax& syntax) override { return scope_.member(object, syntax); }
@@ -319,7 +352,9 @@ class DerivedNames final : public Names {
   std::optional<Vector> point(const BodyName& body, Span use) override { return scope_.point(body, use); }
   std::optional<Rotation> frame(const BodyName& body, Span use) override { return scope_.frame(body, use); }
   std::string body_name(const BodyName& body) const override { return scope_.body_name(body); }
-  bool declares(const std::string& name) const override { return scope_.declarations().count(name) > 0 || scope_.find_body(name) != nullptr; }
+  bool declares(const std::string& name) const override {
+    return scope_.declarations().count(name) > 0 || scope_.find_body(name) != nullptr;
+  }
 
  private:
   Value multiplier(const std::string& name, Span span) {
@@ -333,7 +368,9 @@ class DerivedNames final : public Names {
     for (std::size_t r = 0; r < known.size(); ++r)
       if (known[r] == wanted) return graph().multiplier(static_cast<std::uint32_t>(r), 0);
     const std::string near = did_you_mean(wanted, known);
-    throw Failure(span, "there is no constraint '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "lambda." + known[0]);
+    throw Failure(span,
+                  "there is no constraint '" + wanted + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                  "lambda." + known[0]);
   }
 
   std::shared_ptr<Reader> reader_;

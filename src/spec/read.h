@@ -11,8 +11,8 @@ namespace anholon {
 // Values of parameters and index integers given from outside (--set M=3): name -> exact formula.
 using Overrides = std::map<std::string, std::string>;
 
-// Reads the text of a model file, and the files that it builds on, with these scenarios one after the other. Nothing on errors,
-// which are then in `diagnostics`.
+// Reads the text of a model file, and the files that it builds on, with these scenarios one after the other. Nothing on
+// errors, which are then in `diagnostics`.
 std::optional<Model> read_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides = {},
                                 const std::vector<std::string>& cases = {});
 

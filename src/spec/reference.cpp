@@ -157,7 +157,8 @@ std::string rows(const std::vector<FunctionRow>& table) {
 std::string formulas() {
   std::string out = kStart;
   out += "### Functions\n\n" + rows(function_table());
-  out += "\n### Decided\n\nIn the model above with x = 3, everything at rest, at t = 1:\n\n| formula | value | |\n|---|---|---|\n";
+  out += "\n### Decided\n\nIn the model above with x = 3, everything at rest, at t = 1:\n\n| formula | value | "
+         "|\n|---|---|---|\n";
   for (const Decision& d : kDecisions) out += "| `" + cell(d.formula) + "` | " + d.value + " | " + d.why + " |\n";
   out += "\n### Kinematics\n\n" + rows(kinematic_functions());
   out += "\n### Reserved names\n\n| | |\n|---|---|\n";
@@ -167,32 +168,50 @@ std::string formulas() {
   out += "| | | |\n|---|---|---|\n";
   for (const UnitRow& u : unit_table()) {
     const std::string dimension = print(find_unit(u.name)->dimension);
-    out += std::string("| `") + u.name + "`" + (u.prefixes ? "⁺" : "") + " | " + u.meaning + " | " + u.factor + (u.pi == 1 ? "·pi" : "") +
-           (dimension == "1" ? "" : " " + dimension) + " |\n";
+    out += std::string("| `") + u.name + "`" + (u.prefixes ? "⁺" : "") + " | " + u.meaning + " | " + u.factor +
+           (u.pi == 1 ? "·pi" : "") + (dimension == "1" ? "" : " " + dimension) + " |\n";
   }
   return out;
 }
 
 const char* describe(Content c) {
   switch (c) {
-    case Content::text: return "text";
-    case Content::name: return "name";
-    case Content::names: return "list of names";
-    case Content::formula: return "formula";
-    case Content::vector: return "vector";
-    case Content::rotation: return "rotation";
-    case Content::equation: return "equation";
-    case Content::equations: return "list of equations";
-    case Content::number: return "number";
-    case Content::numbers: return "list of numbers";
-    case Content::truth: return "true or false";
-    case Content::choice: return "";
-    case Content::inertia: return "number, list or matrix";
-    case Content::place: return "name or table";
-    case Content::columns: return "two names";
-    case Content::formulas: return "table of formulas";
-    case Content::values: return "table of values";
-    case Content::any: return "";
+  case Content::text:
+    return "text";
+  case Content::name:
+    return "name";
+  case Content::names:
+    return "list of names";
+  case Content::formula:
+    return "formula";
+  case Content::vector:
+    return "vector";
+  case Content::rotation:
+    return "rotation";
+  case Content::equation:
+    return "equation";
+  case Content::equations:
+    return "list of equations";
+  case Content::number:
+    return "number";
+  case Content::numbers:
+    return "list of numbers";
+  case Content::truth:
+    return "true or false";
+  case Content::choice:
+    return "";
+  case Content::inertia:
+    return "number, list or matrix";
+  case Content::place:
+    return "name or table";
+  case Content::columns:
+    return "two names";
+  case Content::formulas:
+    return "table of formulas";
+  case Content::values:
+    return "table of values";
+  case Content::any:
+    return "";
   }
   return "";
 }
@@ -200,11 +219,16 @@ const char* describe(Content c) {
 std::string heading(const LanguageSection& s) {
   const std::string name = s.name;
   switch (s.form) {
-    case Form::top: return "The file";
-    case Form::keys: return "`[" + name + "]`";
-    case Form::elements: return "`[[" + name + "]]`";
-    case Form::named: return name == "case" ? "`[case.NAME]`" : "`[" + name + "]`";
-    case Form::part: return "`{…}` of `" + name + "`";
+  case Form::top:
+    return "The file";
+  case Form::keys:
+    return "`[" + name + "]`";
+  case Form::elements:
+    return "`[[" + name + "]]`";
+  case Form::named:
+    return name == "case" ? "`[case.NAME]`" : "`[" + name + "]`";
+  case Form::part:
+    return "`{…}` of `" + name + "`";
   }
   return name;
 }
@@ -212,7 +236,8 @@ std::string heading(const LanguageSection& s) {
 std::string part(const LanguageSection& s) {
   std::string out = std::string(s.form == Form::part ? "#### " : "## ") + heading(s) + "\n\n";
   if (s.form == Form::named && s.keys.empty() && s.content != Content::any)
-    out += std::string("Entries: `NAME` = ") + (std::string(s.name) == "index" ? "whole number or range" : describe(s.content)) + ".\n\n";
+    out += std::string("Entries: `NAME` = ") +
+           (std::string(s.name) == "index" ? "whole number or range" : describe(s.content)) + ".\n\n";
   std::string page = s.page;
   if (!s.keys.empty()) {
     if (s.form == Form::named && std::string(s.name) != "initial")
@@ -246,7 +271,10 @@ std::string reference_section(const std::string& name) {
   std::string list;
   for (const std::string& k : known) list += (list.empty() ? "there is " : ", ") + k;
   const std::string near = did_you_mean(name, known);
-  throw Failure(Span{}, "there is no section '" + name.substr(0, 40) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), near.empty() ? list : "");
+  throw Failure(Span{},
+                "there is no section '" + name.substr(0, 40) + "'" +
+                    (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                near.empty() ? list : "");
 }
 
 }  // namespace anholon

@@ -31,28 +31,44 @@ void list_of(JsonWriter& j, std::initializer_list<const char*> types) {
 // What stands behind a key; `list`: values of the members of a family may stand there.
 void content(JsonWriter& j, Content c, const std::vector<std::string>& choices = {}) {
   switch (c) {
-    case Content::text: case Content::name: case Content::rotation: case Content::equation: return type(j, {"string"});
-    case Content::names: return type(j, {"string", "array"});
-    case Content::formula: case Content::number: return type(j, {"string", "number"});
-    case Content::vector: case Content::inertia: return type(j, {"string", "number", "array"});
-    case Content::equations: return list_of(j, {"string"});
-    case Content::numbers: return list_of(j, {"string", "number"});
-    case Content::columns: return list_of(j, {"string", "number"});
-    case Content::truth: return type(j, {"boolean"});
-    case Content::choice:
-      j.key("enum").open_array();
-      for (const std::string& w : choices) j.string(w);
-      j.close();
-      return;
-    case Content::place:
-      j.key("anyOf").open_array().open_object();
-      type(j, {"string"});
-      j.close().open_object();
-      keys(j, language_section("force.on"));
-      j.close().close();
-      return;
-    case Content::formulas: case Content::values: return type(j, {"object"});
-    case Content::any: return;
+  case Content::text:
+  case Content::name:
+  case Content::rotation:
+  case Content::equation:
+    return type(j, {"string"});
+  case Content::names:
+    return type(j, {"string", "array"});
+  case Content::formula:
+  case Content::number:
+    return type(j, {"string", "number"});
+  case Content::vector:
+  case Content::inertia:
+    return type(j, {"string", "number", "array"});
+  case Content::equations:
+    return list_of(j, {"string"});
+  case Content::numbers:
+    return list_of(j, {"string", "number"});
+  case Content::columns:
+    return list_of(j, {"string", "number"});
+  case Content::truth:
+    return type(j, {"boolean"});
+  case Content::choice:
+    j.key("enum").open_array();
+    for (const std::string& w : choices) j.string(w);
+    j.close();
+    return;
+  case Content::place:
+    j.key("anyOf").open_array().open_object();
+    type(j, {"string"});
+    j.close().open_object();
+    keys(j, language_section("force.on"));
+    j.close().close();
+    return;
+  case Content::formulas:
+  case Content::values:
+    return type(j, {"object"});
+  case Content::any:
+    return;
   }
 }
 
@@ -91,37 +107,40 @@ void keys(JsonWriter& j, const LanguageSection& s, bool others) {
 
 void section(JsonWriter& j, const LanguageSection& s) {
   switch (s.form) {
-    case Form::top: case Form::part: return;
-    case Form::keys: return keys(j, s);
-    case Form::elements:
-      // A file with a base, and a case, may name elements: constraint.reel.equation = "…".
-      j.key("anyOf").open_array().open_object();
-      type(j, {"array"});
-      j.key("items").open_object();
-      keys(j, s);
-      j.close().close().open_object();
+  case Form::top:
+  case Form::part:
+    return;
+  case Form::keys:
+    return keys(j, s);
+  case Form::elements:
+    // A file with a base, and a case, may name elements: constraint.reel.equation = "…".
+    j.key("anyOf").open_array().open_object();
+    type(j, {"array"});
+    j.key("items").open_object();
+    keys(j, s);
+    j.close().close().open_object();
+    type(j, {"object"});
+    j.key("additionalProperties").open_object();
+    keys(j, s);
+    j.close().close().close();
+    return;
+  case Form::named:
+    if (std::string(s.name) == "initial" || std::string(s.name) == "view") return keys(j, s, true);
+    type(j, {"object"});
+    if (std::string(s.name) == "case") return;
+    j.key("additionalProperties").open_object().key("anyOf").open_array();
+    // The value alone, a list of those of a family, or a table of its keys.
+    j.open_object();
+    type(j, {"string", "number", "array"});
+    j.close().open_object();
+    if (s.keys.empty()) {
       type(j, {"object"});
-      j.key("additionalProperties").open_object();
+      j.key("maxProperties").integer(0);  // {}: not known
+    } else {
       keys(j, s);
-      j.close().close().close();
-      return;
-    case Form::named:
-      if (std::string(s.name) == "initial" || std::string(s.name) == "view") return keys(j, s, true);
-      type(j, {"object"});
-      if (std::string(s.name) == "case") return;
-      j.key("additionalProperties").open_object().key("anyOf").open_array();
-      // The value alone, a list of those of a family, or a table of its keys.
-      j.open_object();
-      type(j, {"string", "number", "array"});
-      j.close().open_object();
-      if (s.keys.empty()) {
-        type(j, {"object"});
-        j.key("maxProperties").integer(0);  // {}: not known
-      } else {
-        keys(j, s);
-      }
-      j.close().close().close();
-      return;
+    }
+    j.close().close().close();
+    return;
   }
 }
 

@@ -27,7 +27,11 @@ const std::vector<Solid>& solids() {
       {"shell", "shell(R)", 1, {row(third2), row(third2), row(third2)}},
       {"rod", "rod(l)", 1, {row(0), row(twelfth), row(twelfth)}},
       {"box", "box(a, b, c)", 3, {row(0, twelfth, twelfth), row(twelfth, 0, twelfth), row(twelfth, twelfth, 0)}},
-      {"ellipsoid", "ellipsoid(a, b, c)", 3, {row(0, Rational(1, 5), Rational(1, 5)), row(Rational(1, 5), 0, Rational(1, 5)), row(Rational(1, 5), Rational(1, 5), 0)}},
+      {"ellipsoid",
+       "ellipsoid(a, b, c)",
+       3,
+       {row(0, Rational(1, 5), Rational(1, 5)), row(Rational(1, 5), 0, Rational(1, 5)),
+        row(Rational(1, 5), Rational(1, 5), 0)}},
       {"torus", "torus(R, r)", 2, {row(half, Rational(5, 8)), row(half, Rational(5, 8)), row(1, Rational(3, 4))}},
       {"cylinder", "cylinder(R, h)", 2, {row(fourth, twelfth), row(fourth, twelfth), row(half, 0)}},
   };
@@ -53,26 +57,35 @@ Shape read_shape(const Item& item, Scope& scope, Model& model) {
       names.push_back(k.name);
       calls += (calls.empty() ? "" : ", ") + std::string(k.call);
     }
-    if (s.op == Syntax::Op::name && find(s.text)) throw Failure(s.span, "the shape '" + s.text + "' has no size", find(s.text)->call);
+    if (s.op == Syntax::Op::name && find(s.text))
+      throw Failure(s.span, "the shape '" + s.text + "' has no size", find(s.text)->call);
     const std::string near = did_you_mean(s.text, names);
-    throw Failure(s.span, "there is no shape '" + s.text.substr(0, 40) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), "the shapes are " + calls);
+    throw Failure(s.span,
+                  "there is no shape '" + s.text.substr(0, 40) + "'" +
+                      (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                  "the shapes are " + calls);
   }
   if (s.args.size() != solid->sizes)
-    throw Failure(s.span, s.text + " takes " + std::to_string(solid->sizes) + (solid->sizes == 1 ? " size, " : " sizes, ") + std::to_string(s.args.size()) +
-                              (s.args.size() == 1 ? " is" : " are") + " given", solid->call);
+    throw Failure(s.span,
+                  s.text + " takes " + std::to_string(solid->sizes) + (solid->sizes == 1 ? " size, " : " sizes, ") +
+                      std::to_string(s.args.size()) + (s.args.size() == 1 ? " is" : " are") + " given",
+                  solid->call);
   Shape shape{s.text, {}};
   for (const Syntax& a : s.args) {
     const Expr size = evaluate_number(a, scope);
     for (NodeId id : symbols({&size, 1}))
       if (model.graph->node(id).kind != Kind::parameter)
-        throw Failure(a.span, "a size of a shape is a number or a formula of parameters", "give the inertia of what changes its shape: inertia = …");
+        throw Failure(a.span, "a size of a shape is a number or a formula of parameters",
+                      "give the inertia of what changes its shape: inertia = …");
     const auto value = constant_value(model, size);
-    if (value && !(*value > 0)) throw Failure(a.span, "the size of the " + shape.kind + " is " + number_text(*value, 6) + ": a size is positive");
+    if (value && !(*value > 0))
+      throw Failure(a.span, "the size of the " + shape.kind + " is " + number_text(*value, 6) + ": a size is positive");
     shape.sizes.push_back(size);
   }
   if (shape.kind == "torus")
     if (const auto hole = constant_value(model, shape.sizes[0] - shape.sizes[1]); hole && *hole < 0)
-      throw Failure(s.span, "the tube of the torus is thicker than its middle circle: r is at most R", "R is the radius of the circle in the middle of the tube, r that of the tube");
+      throw Failure(s.span, "the tube of the torus is thicker than its middle circle: r is at most R",
+                    "R is the radius of the circle in the middle of the tube, r that of the tube");
   return shape;
 }
 

@@ -40,9 +40,11 @@ void read_simulate(const Item& root, Scope& scope, Model& model, Diagnostics& di
     if (i->kind != Item::Kind::array) throw Failure(i->span, "'at' is a list of times");
     for (const Item& t : i->items) out.at.push_back(rational(t, scope));
     const auto side = [&](int sign) {
-      return std::any_of(out.at.begin(), out.at.end(), [&](const Rational& t) { return sgn(Rational(t - start)) == sign; });
+      return std::any_of(out.at.begin(), out.at.end(),
+                         [&](const Rational& t) { return sgn(Rational(t - start)) == sign; });
     };
-    if (side(-1) && side(1)) throw Failure(i->span, "some of these times lie before the start, others after it", "one run goes one way");
+    if (side(-1) && side(1))
+      throw Failure(i->span, "some of these times lie before the start, others after it", "one run goes one way");
   }
   if (const Item* i = s->find("form")) {
     if (i->kind != Item::Kind::string) throw Failure(i->span, "a form is a name in quotes", "form = \"routh\"");
@@ -50,11 +52,14 @@ void read_simulate(const Item& root, Scope& scope, Model& model, Diagnostics& di
     out.form_span = i->formula.whole();
   }
   if (const Item* i = s->find("integrator")) {
-    if (i->kind != Item::Kind::string) throw Failure(i->span, "an integrator is a name in quotes", "integrator = \"taylor\"");
+    if (i->kind != Item::Kind::string)
+      throw Failure(i->span, "an integrator is a name in quotes", "integrator = \"taylor\"");
     out.integrator = find_integrator(i->text());
     if (!out.integrator) {
       const std::string near = did_you_mean(i->text(), integrator_names());
-      throw Failure(i->span, "there is no integrator '" + i->text() + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+      throw Failure(i->span,
+                    "there is no integrator '" + i->text() + "'" +
+                        (near.empty() ? "" : "; did you mean '" + near + "'?"),
                     "integrator = \"taylor\", \"cvode\" or \"ida\"");
     }
   }

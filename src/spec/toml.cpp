@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 // The parser states its own invariants on input it has not yet judged: a broken one is a syntax error.
-#define TOML_ASSERT(condition) \
-  do {                         \
-    if (!(condition)) throw std::invalid_argument("a syntax that is not TOML"); \
+#define TOML_ASSERT(condition)                                                                                         \
+  do {                                                                                                                 \
+    if (!(condition)) throw std::invalid_argument("a syntax that is not TOML");                                        \
   } while (false)
 #pragma GCC diagnostic push
 #ifndef __clang__
@@ -89,8 +89,10 @@ class Places {
         const char e = text_[i + 1];
         width = columns = e == 'u' ? 6 : e == 'U' ? 10 : 2;
       }
-      if (text_[i] == '\n') ++at.line, at.column = 1;
-      else at.column += static_cast<std::uint32_t>(columns);
+      if (text_[i] == '\n')
+        ++at.line, at.column = 1;
+      else
+        at.column += static_cast<std::uint32_t>(columns);
       i += width;
     }
     if (places.empty()) return FormulaText(value, at);
@@ -113,10 +115,14 @@ void check_depth(const SourceText& source) {
   std::uint32_t line = 1;
   for (const char c : source.text) {
     if (c == '\n') ++line;
-    const bool part = std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == ' ' || c == '"' || c == '\'';
-    if (c == '.') ++dots;
-    else if (!part) dots = 0;
-    if (dots > kDeepestKey) throw Failure(Span{line, 1, 1}, "a key of more than " + std::to_string(kDeepestKey) + " parts");
+    const bool part =
+        std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == ' ' || c == '"' || c == '\'';
+    if (c == '.')
+      ++dots;
+    else if (!part)
+      dots = 0;
+    if (dots > kDeepestKey)
+      throw Failure(Span{line, 1, 1}, "a key of more than " + std::to_string(kDeepestKey) + " parts");
   }
 }
 
@@ -135,8 +141,10 @@ void check_ascii(const SourceText& source) {
       continue;
     }
     if (!quote.empty()) {
-      if (quote[0] == '"' && s[i] == '\\' && i + 1 < s.size() && s[i + 1] != '\n') step = 2;
-      else if (s.compare(i, quote.size(), quote) == 0) step = quote.size(), quote.clear();
+      if (quote[0] == '"' && s[i] == '\\' && i + 1 < s.size() && s[i + 1] != '\n')
+        step = 2;
+      else if (s.compare(i, quote.size(), quote) == 0)
+        step = quote.size(), quote.clear();
     } else if (s[i] == '#') {
       while (i < s.size() && s[i] != '\n') ++i;
       continue;
@@ -148,7 +156,8 @@ void check_ascii(const SourceText& source) {
       const std::string c = s.substr(i, width);
       if (width == 1) throw Failure(Span{line, column, 1}, "this byte is no text");
       if (!(i == 0 && c == "\xEF\xBB\xBF"))
-        throw Failure(Span{line, column, 1}, "'" + c + "' outside quotes", "a key with letters beyond A-Z stands in quotes: \"" + c + "\" = …");
+        throw Failure(Span{line, column, 1}, "'" + c + "' outside quotes",
+                      "a key with letters beyond A-Z stands in quotes: \"" + c + "\" = …");
     }
     column += static_cast<std::uint32_t>(step == width ? 1 : step);
     i += step;
@@ -170,8 +179,11 @@ Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
   if (header && quote != std::string::npos && message.find(redefined) != std::string::npos) {
     // [body] here and [[body]] there.
     const std::string name = message.substr(quote + 1, message.find('\'', quote + 1) - quote - 1);
-    const bool of_list = std::any_of(language().begin(), language().end(), [&](const LanguageSection& s) { return s.form == LanguageSection::Form::elements && name == s.name; });
-    const bool in_line = message.find("existing array '") != std::string::npos && message.find("as array-of-tables") != std::string::npos;
+    const bool of_list = std::any_of(language().begin(), language().end(), [&](const LanguageSection& s) {
+      return s.form == LanguageSection::Form::elements && name == s.name;
+    });
+    const bool in_line = message.find("existing array '") != std::string::npos &&
+                         message.find("as array-of-tables") != std::string::npos;
     if (of_list && in_line) {
       message = "'" + name + "' is a list in one place and [[" + name + "]] in another";
       hint = "write all of them as [[" + name + "]], or all in the list " + name + " = […]";
@@ -187,12 +199,16 @@ Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
     hint = "a text ends with the quote it began with; one over several lines stands in three quotes";
   } else if (key.find('\'') != std::string::npos && key.find('"') == std::string::npos) {
     hint = "a key with ' stands in quotes: \"x'\" = …";
-  } else if (line.find('=') != std::string::npos && line.find_first_not_of(" \t", line.find('=') + 1) == std::string::npos) {
+  } else if (line.find('=') != std::string::npos &&
+             line.find_first_not_of(" \t", line.find('=') + 1) == std::string::npos) {
     message = "a value is missing after '='";
-  } else if (message.find("saw ','") != std::string::npos && std::isdigit(static_cast<unsigned char>(line.size() >= span.column && span.column > 1 ? line[span.column - 2] : ' '))) {
+  } else if (message.find("saw ','") != std::string::npos &&
+             std::isdigit(static_cast<unsigned char>(
+                 line.size() >= span.column && span.column > 1 ? line[span.column - 2] : ' '))) {
     message = "',' after a number";
     hint = "a decimal has a point: 0.5; a list stands in brackets: [1, 2]";
-  } else if (message.find("could not determine value type") != std::string::npos && line.find('"') == std::string::npos) {
+  } else if (message.find("could not determine value type") != std::string::npos &&
+             line.find('"') == std::string::npos) {
     hint = "formulas stand in quotes: name = \"a*b\"";
   }
   return Failure(span, message, hint);
@@ -207,7 +223,8 @@ Item convert(const toml::node& node, const Places& places) {
   } else if (node.is_integer() || node.is_floating_point()) {
     item.kind = Item::Kind::number;
     const std::string digits = places.number(item.span);
-    if (digits.size() > 1 && digits[0] == '0' && std::isalpha(static_cast<unsigned char>(digits[1])) && digits[1] != 'e')
+    if (digits.size() > 1 && digits[0] == '0' && std::isalpha(static_cast<unsigned char>(digits[1])) &&
+        digits[1] != 'e')
       throw Failure(item.span, "hexadecimal, octal and binary numbers are not read");
     if (digits.find("nan") != std::string::npos || digits.find("inf") != std::string::npos)
       throw Failure(item.span, "'" + digits + "' is no value");

@@ -12,12 +12,12 @@ namespace anholon {
 struct Item {
   enum class Kind : std::uint8_t { string, number, boolean, array, table, other };
   Kind kind = Kind::table;
-  std::string key;         // in a table; normal_name'd where it is one word
+  std::string key;  // in a table; normal_name'd where it is one word
   Span key_span, span;
-  FormulaText formula;     // of strings and numbers (the digits as written)
-  bool truth = false;      // of booleans
-  std::vector<Item> items; // of arrays and tables
-  std::string member;      // of a family: what it is called in messages, "P[3]"
+  FormulaText formula;      // of strings and numbers (the digits as written)
+  bool truth = false;       // of booleans
+  std::vector<Item> items;  // of arrays and tables
+  std::string member;       // of a family: what it is called in messages, "P[3]"
 
   const Item* find(const std::string& name) const;
   bool is_formula() const { return kind == Kind::string || kind == Kind::number; }

@@ -41,7 +41,8 @@ DimensionForm Dimensions::resolved(const DimensionForm& f) const {
   // A solution holds only unknowns older than its own: from the newest down, each is put in once.
   DimensionForm out = f;
   for (;;) {
-    const auto it = std::find_if(out.unknowns.rbegin(), out.unknowns.rend(), [&](const auto& u) { return solution_[u.first].has_value(); });
+    const auto it = std::find_if(out.unknowns.rbegin(), out.unknowns.rend(),
+                                 [&](const auto& u) { return solution_[u.first].has_value(); });
     if (it == out.unknowns.rend()) return out;
     const auto [x, p] = *it;
     out.unknowns.erase(x);
@@ -70,7 +71,8 @@ std::string Dimensions::text(const DimensionForm& f) const {
   if (r.unknowns.empty()) return describe(r.known);
   std::string out = pure(r.known) ? "" : print(r.known);
   for (const auto& [x, p] : r.unknowns)
-    out += (out.empty() ? "" : "*") + ("[" + (names_[x].empty() ? "?" : names_[x]) + "]") + (p == 1 ? "" : "^" + (p.get_den() == 1 && p > 0 ? p.get_str() : "(" + p.get_str() + ")"));
+    out += (out.empty() ? "" : "*") + ("[" + (names_[x].empty() ? "?" : names_[x]) + "]") +
+           (p == 1 ? "" : "^" + (p.get_den() == 1 && p > 0 ? p.get_str() : "(" + p.get_str() + ")"));
   return "a quantity in " + out;
 }
 

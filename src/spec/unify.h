@@ -21,7 +21,7 @@ DimensionForm operator/(const DimensionForm& a, const DimensionForm& b);
 
 class Dimensions {
  public:
-  DimensionForm unknown(const std::string& name = "");  // of what, for messages
+  DimensionForm unknown(const std::string& name = "");   // of what, for messages
   DimensionForm resolved(const DimensionForm& f) const;  // with all that is known put in
   // Takes a and b to be equal from here on; false, and nothing is learned, if they cannot be.
   bool equate(const DimensionForm& a, const DimensionForm& b);

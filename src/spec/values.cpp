@@ -25,7 +25,9 @@ void check_values(const Model& model, Diagnostics& diagnostics) {
   };
   for (std::size_t i = 0; i < depth.size(); ++i)
     if (deep(i) > kDeepestParameters) {
-      diagnostics.error(model.parameters[i].span, "the parameter '" + model.parameters[i].name + "' leads through more than " + std::to_string(kDeepestParameters) + " others");
+      diagnostics.error(model.parameters[i].span, "the parameter '" + model.parameters[i].name +
+                                                      "' leads through more than " +
+                                                      std::to_string(kDeepestParameters) + " others");
       return;
     }
   std::vector<std::optional<double>> known(model.parameters.size());

@@ -16,12 +16,15 @@ constexpr std::size_t kMostFiles = 20;
 
 // Sections whose names are declared: a scenario that gives another name made a slip.
 const std::vector<std::string>& declaring() {
-  static const std::vector<std::string> list = {"index", "parameters", "functions", "define", "frame", "point", "state", "mode", "input", "potential", "dissipation", "quasi"};
+  static const std::vector<std::string> list = {"index", "parameters", "functions",   "define",
+                                                "frame", "point",      "state",       "mode",
+                                                "input", "potential",  "dissipation", "quasi"};
   return list;
 }
 
 bool of_tables(const Item& i) {
-  return i.kind == Item::Kind::array && !i.items.empty() && std::all_of(i.items.begin(), i.items.end(), [](const Item& e) { return e.kind == Item::Kind::table; });
+  return i.kind == Item::Kind::array && !i.items.empty() &&
+         std::all_of(i.items.begin(), i.items.end(), [](const Item& e) { return e.kind == Item::Kind::table; });
 }
 
 std::string name_of(const Item& element) {
@@ -35,22 +38,28 @@ Item* find(std::vector<Item>& items, const std::string& key) {
 }
 
 Item* find_named(Item& list, const std::string& name) {
-  const auto it = std::find_if(list.items.begin(), list.items.end(), [&](const Item& i) { return !name.empty() && name_of(i) == name; });
+  const auto it = std::find_if(list.items.begin(), list.items.end(),
+                               [&](const Item& i) { return !name.empty() && name_of(i) == name; });
   return it == list.items.end() ? nullptr : &*it;
 }
 
 // P[2] is there if it is written out or a family P[…] is.
 bool is_declared(const std::string& name, const std::vector<std::string>& known) {
   const std::string family = name.substr(0, name.find('[') + 1);
-  return std::any_of(known.begin(), known.end(), [&](const std::string& k) { return k == name || (!family.empty() && k.rfind(family, 0) == 0); });
+  return std::any_of(known.begin(), known.end(),
+                     [&](const std::string& k) { return k == name || (!family.empty() && k.rfind(family, 0) == 0); });
 }
 
-[[noreturn]] void there_is_no(const std::string& what, const Item& at, const std::vector<std::string>& known, const std::string& hint = {}) {
+[[noreturn]] void there_is_no(const std::string& what, const Item& at, const std::vector<std::string>& known,
+                              const std::string& hint = {}) {
   const std::string near = did_you_mean(at.key, known);
   std::string list;
   for (std::size_t k = 0; k < known.size() && k < 12; ++k) list += (k ? ", " : "there is ") + known[k];
-  throw Failure(at.key_span, "there is no " + what + " '" + at.key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                !hint.empty() ? hint : near.empty() ? list : "");
+  throw Failure(at.key_span,
+                "there is no " + what + " '" + at.key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                !hint.empty()  ? hint
+                : near.empty() ? list
+                               : "");
 }
 
 class Overlay {
@@ -58,8 +67,7 @@ class Overlay {
   Overlay(Diagnostics& diagnostics, bool scenario) : diagnostics_(diagnostics), scenario_(scenario) {}
 
   void root(Item& to, const Item& from) {
-    for (const Item& i : from.items)
-      collect(diagnostics_, [&] { section(to, i); }, i.key_span);
+    for (const Item& i : from.items) collect(diagnostics_, [&] { section(to, i); }, i.key_span);
   }
 
  private:
@@ -82,10 +90,13 @@ class Overlay {
       std::vector<std::string> known;
       for (const Item& k : there->items) known.push_back(k.key);
       for (const Item& k : i.items)
-        collect(diagnostics_, [&] {
-          if (!is_declared(k.key, known)) there_is_no("name", k, known, "a case changes what the file declares");
-          put(*there, k);
-        }, k.key_span);
+        collect(
+            diagnostics_,
+            [&] {
+              if (!is_declared(k.key, known)) there_is_no("name", k, known, "a case changes what the file declares");
+              put(*there, k);
+            },
+            k.key_span);
       return;
     }
     put(to, i);
@@ -100,22 +111,33 @@ class Overlay {
       for (const Item& k : i.items) put(*there, k);
     } else if (of_tables(*there) && of_tables(i)) {
       for (const Item& e : i.items) {
-        if (Item* element = find_named(*there, name_of(e))) extend(*element, e);
-        else there->items.push_back(e);
+        if (Item* element = find_named(*there, name_of(e)))
+          extend(*element, e);
+        else
+          there->items.push_back(e);
       }
     } else if (of_tables(*there) && i.kind == Item::Kind::table) {
       for (const Item& e : i.items)
-        collect(diagnostics_, [&] {
-          Item* element = find_named(*there, e.key);
-          if (!element) {
-            std::vector<std::string> known;
-            for (const Item& k : there->items)
-              if (const std::string name = name_of(k); !name.empty()) known.push_back(name);
-            there_is_no(i.key, e, known, e.key.find('[') == std::string::npos ? "" : "of a family the element goes by the name in the file; a member of its own is written out in [[" + i.key + "]]");
-          }
-          if (e.kind != Item::Kind::table) throw Failure(e.span, "what is changed of " + i.key + " '" + e.key + "'?", i.key + "." + e.key + ".KEY = …");
-          extend(*element, e);
-        }, e.key_span);
+        collect(
+            diagnostics_,
+            [&] {
+              Item* element = find_named(*there, e.key);
+              if (!element) {
+                std::vector<std::string> known;
+                for (const Item& k : there->items)
+                  if (const std::string name = name_of(k); !name.empty()) known.push_back(name);
+                there_is_no(i.key, e, known,
+                            e.key.find('[') == std::string::npos ? ""
+                                                                 : "of a family the element goes by the name in the "
+                                                                   "file; a member of its own is written out in [[" +
+                                                                       i.key + "]]");
+              }
+              if (e.kind != Item::Kind::table)
+                throw Failure(e.span, "what is changed of " + i.key + " '" + e.key + "'?",
+                              i.key + "." + e.key + ".KEY = …");
+              extend(*element, e);
+            },
+            e.key_span);
     } else {
       const Span place = there->key_span;
       *there = i;
@@ -146,14 +168,16 @@ Item read_over(SourceText& all, std::size_t file, std::vector<fs::path>& open) {
     for (auto it = again; it != open.end(); ++it) way += it->filename().string() + " -> ";
     throw Failure(base->formula.whole(), "the file builds on itself: " + way + path.filename().string());
   }
-  if (file >= kMostFiles) throw Failure(base->formula.whole(), "more than " + std::to_string(kMostFiles) + " files that build on each other");
+  if (file >= kMostFiles)
+    throw Failure(base->formula.whole(), "more than " + std::to_string(kMostFiles) + " files that build on each other");
   SourceText below;
   below.name = (fs::path(source.name).parent_path() / base->text()).lexically_normal().string();
   below.path = path.string();
   // A text that is at hand already, as in the file of a run, is not looked for on disk.
   if (file >= all.others.size()) {
     std::string why;
-    if (!read_file(path, below.text, &why)) throw Failure(base->formula.whole(), "cannot read the base '" + below.name + "': " + why);
+    if (!read_file(path, below.text, &why))
+      throw Failure(base->formula.whole(), "cannot read the base '" + below.name + "': " + why);
     all.others.push_back(std::move(below));
   }
   Item merged = read_over(all, file + 1, open);
@@ -176,8 +200,10 @@ Item take_cases(Item& root, Diagnostics& diagnostics) {
   if (it == root.items.end()) return cases;
   const auto wrong = [](const Item& i) { return i.kind != Item::Kind::table; };
   const auto bad = wrong(*it) ? it : std::find_if(it->items.begin(), it->items.end(), wrong);
-  if (bad != it->items.end()) diagnostics.error(bad->span, "'" + bad->key + "' is a section", "[case.NAME]");
-  else cases = std::move(*it);
+  if (bad != it->items.end())
+    diagnostics.error(bad->span, "'" + bad->key + "' is a section", "[case.NAME]");
+  else
+    cases = std::move(*it);
   root.items.erase(it);
   return cases;
 }
@@ -191,8 +217,11 @@ void apply_case(Item& root, const Item& cases, const std::string& name, Diagnost
     if (i.key == name) return Overlay(diagnostics, true).root(root, i);
   }
   const std::string near = did_you_mean(name, known);
-  diagnostics.error({}, "--case: there is no case '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                    !near.empty() ? "" : list.empty() ? "a case is a section [case.NAME] of the file" : list);
+  diagnostics.error({},
+                    "--case: there is no case '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                    !near.empty()  ? ""
+                    : list.empty() ? "a case is a section [case.NAME] of the file"
+                                   : list);
 }
 
 }  // namespace anholon

@@ -23,7 +23,8 @@ std::vector<std::vector<std::size_t>> components(const std::vector<std::vector<s
       bool descends = false;
       while (next[i] < needs[i].size() && !descends) {
         const std::size_t k = needs[i][next[i]];
-        if (index[k] == kUnseen) path.push_back(k), descends = true;
+        if (index[k] == kUnseen)
+          path.push_back(k), descends = true;
         else {
           if (is_open[k]) low[i] = std::min(low[i], low[k]);
           ++next[i];
@@ -86,7 +87,8 @@ std::string print(const System& s, const Structure& t, const std::vector<Block>&
     std::string names, unknowns;
     for (std::size_t i : b.equations) names += (names.empty() ? "" : ", ") + s.equation_names[i];
     for (std::size_t j : b.unknowns)
-      unknowns += (unknowns.empty() ? "" : ", ") + derivative_name(s.variable_names[j], static_cast<unsigned>(t.d[j]), Format::text);
+      unknowns += (unknowns.empty() ? "" : ", ") +
+                  derivative_name(s.variable_names[j], static_cast<unsigned>(t.d[j]), Format::text);
     out += "  " + std::to_string(++number) + "  " + names + "  for  " + unknowns + "\n";
   }
   return out;

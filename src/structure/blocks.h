@@ -1,8 +1,8 @@
 // The block-triangular form of the system Jacobian: which unknowns are found together, and in which order.
 //
-// J_ij can be nonzero only where sigma_ij = d_j - c_i. With the transversal as matching, equation i needs the unknown of
-// equation k where J_i,T(k) can be nonzero; the strongly connected components of that graph are the irreducible blocks (fine
-// Dulmage-Mendelsohn decomposition; theory: dae-view).
+// J_ij can be nonzero only where sigma_ij = d_j - c_i. With the transversal as matching, equation i needs the unknown
+// of equation k where J_i,T(k) can be nonzero; the strongly connected components of that graph are the irreducible
+// blocks (fine Dulmage-Mendelsohn decomposition; theory: dae-view).
 #pragma once
 #include "structure/structure.h"
 

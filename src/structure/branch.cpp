@@ -9,7 +9,8 @@ bool may_branch(const Mechanics& m, const System& s, std::size_t r) {
   if (m.order[r] < 2) return false;
   for (NodeId id : symbols(m.Phi[r])) {
     const Node& n = g.node(id);
-    if (n.kind == Kind::jet && static_cast<int>(n.order) == m.order[r]) return std::find(s.constraints.begin(), s.constraints.end(), r) != s.constraints.end();
+    if (n.kind == Kind::jet && static_cast<int>(n.order) == m.order[r])
+      return std::find(s.constraints.begin(), s.constraints.end(), r) != s.constraints.end();
   }
   return false;
 }
@@ -41,9 +42,9 @@ Column leading_unknowns(const System& s, const Structure& t) {
 namespace {
 
 constexpr int kMostNewton = 60, kRandomStarts = 8;
-constexpr std::size_t kFlipsUpTo = 8;      // coordinates whose signs are flipped one by one
-constexpr double kSame = 1e-6;             // solutions nearer than this are one
-constexpr double kSingular = 1e-9;         // smallest scaled singular value
+constexpr std::size_t kFlipsUpTo = 8;  // coordinates whose signs are flipped one by one
+constexpr double kSame = 1e-6;         // solutions nearer than this are one
+constexpr double kSingular = 1e-9;     // smallest scaled singular value
 
 unsigned orders(const System& s, const Structure& t) {
   unsigned bits = 0;
@@ -59,9 +60,10 @@ std::vector<T> part(const std::vector<T>& all, std::size_t from, std::size_t to)
 template <Number N>
 class Search {
  public:
-  Search(const Mechanics& m, const System& s, const Structure& t, const std::vector<N>& parameters, InitialState<N> state)
-      : m_(m), s_(s), parameters_(parameters), n_(s.coordinates), equations_(leading_equations(s, t)), unknowns_(leading_unknowns(s, t)),
-        all_(m, equations_, unknowns_, 0, parameters), metric_(orders(s, t)),
+  Search(const Mechanics& m, const System& s, const Structure& t, const std::vector<N>& parameters,
+         InitialState<N> state)
+      : m_(m), s_(s), parameters_(parameters), n_(s.coordinates), equations_(leading_equations(s, t)),
+        unknowns_(leading_unknowns(s, t)), all_(m, equations_, unknowns_, 0, parameters), metric_(orders(s, t)),
         constraints_(m, part(equations_, n_, s.size()), part(unknowns_, 0, n_), metric_, parameters),
         motion_(m, part(equations_, 0, n_), part(unknowns_, n_, s.size()), 0, parameters), state_(std::move(state)) {}
 
@@ -85,7 +87,12 @@ class Search {
     along_the_reaction(size);
     for (int k = 0; k < kRandomStarts; ++k) {
       std::vector<N> x = guess_;
-      for (std::size_t a = 0; a < n_; ++a) x[a] += size * N(static_cast<int>((static_cast<unsigned>(k + 1) * 2654435761U + static_cast<unsigned>(a) * 40503U) % 2001U) - 1000) / N(700);
+      for (std::size_t a = 0; a < n_; ++a)
+        x[a] += size *
+                N(static_cast<int>((static_cast<unsigned>(k + 1) * 2654435761U + static_cast<unsigned>(a) * 40503U) %
+                                   2001U) -
+                  1000) /
+                N(700);
       try_from(x);
     }
     sort();
@@ -117,7 +124,8 @@ class Search {
     std::vector<StageEquation> rows = part(equations_, 0, n_);
     Column unknowns = part(unknowns_, 0, n_);
     for (std::size_t i = n_; i < s_.size(); ++i)
-      if (i >= s_.mechanical() || !may_branch(m_, s_, s_.constraints[i - n_])) rows.push_back(equations_[i]), unknowns.push_back(unknowns_[i]);
+      if (i >= s_.mechanical() || !may_branch(m_, s_, s_.constraints[i - n_]))
+        rows.push_back(equations_[i]), unknowns.push_back(unknowns_[i]);
     Stage<N> free(m_, rows, unknowns, metric_, parameters_);
     const InitialState<N> before = state_;
     std::vector<std::size_t> every;
@@ -233,12 +241,16 @@ class Search {
       for (std::size_t j = n_; j < x.size(); ++j) sum += to_double(x[j]);
       return sum;
     };
-    std::stable_sort(out_.found.begin(), out_.found.end(), [&](const std::vector<N>& x, const std::vector<N>& y) { return distance(x) < distance(y); });
+    std::stable_sort(out_.found.begin(), out_.found.end(),
+                     [&](const std::vector<N>& x, const std::vector<N>& y) { return distance(x) < distance(y); });
     // Of those equally near, the one that pushes.
     std::size_t best = 0;
-    for (std::size_t k = 1; k < out_.found.size() && distance(out_.found[k]) <= distance(out_.found[0]) * (1 + kSame); ++k)
+    for (std::size_t k = 1; k < out_.found.size() && distance(out_.found[k]) <= distance(out_.found[0]) * (1 + kSame);
+         ++k)
       if (pushes(out_.found[k]) > pushes(out_.found[best])) best = k;
-    if (best > 0) std::rotate(out_.found.begin(), out_.found.begin() + static_cast<std::ptrdiff_t>(best), out_.found.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+    if (best > 0)
+      std::rotate(out_.found.begin(), out_.found.begin() + static_cast<std::ptrdiff_t>(best),
+                  out_.found.begin() + static_cast<std::ptrdiff_t>(best) + 1);
   }
 
   const Mechanics& m_;
@@ -258,14 +270,19 @@ class Search {
 }  // namespace
 
 template <Number N>
-LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const Structure& t, const std::vector<N>& parameters,
-                                      InitialState<N> state) {
+LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const Structure& t,
+                                      const std::vector<N>& parameters, InitialState<N> state) {
   return Search<N>(m, s, t, parameters, std::move(state)).run();
 }
 
-template LeadingSolutions<double> leading_solutions<double>(const Mechanics&, const System&, const Structure&, const std::vector<double>&, InitialState<double>);
-template LeadingSolutions<long double> leading_solutions<long double>(const Mechanics&, const System&, const Structure&, const std::vector<long double>&, InitialState<long double>);
-template LeadingSolutions<Quad> leading_solutions<Quad>(const Mechanics&, const System&, const Structure&, const std::vector<Quad>&, InitialState<Quad>);
-template LeadingSolutions<Multi> leading_solutions<Multi>(const Mechanics&, const System&, const Structure&, const std::vector<Multi>&, InitialState<Multi>);
+template LeadingSolutions<double> leading_solutions<double>(const Mechanics&, const System&, const Structure&,
+                                                            const std::vector<double>&, InitialState<double>);
+template LeadingSolutions<long double> leading_solutions<long double>(const Mechanics&, const System&, const Structure&,
+                                                                      const std::vector<long double>&,
+                                                                      InitialState<long double>);
+template LeadingSolutions<Quad> leading_solutions<Quad>(const Mechanics&, const System&, const Structure&,
+                                                        const std::vector<Quad>&, InitialState<Quad>);
+template LeadingSolutions<Multi> leading_solutions<Multi>(const Mechanics&, const System&, const Structure&,
+                                                          const std::vector<Multi>&, InitialState<Multi>);
 
 }  // namespace anholon

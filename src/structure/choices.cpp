@@ -3,8 +3,8 @@
 
 namespace anholon {
 
-// Where linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the guess
-// is the acceleration without them. (A nonlinear one must have a reaction; there 0 is as good as any.)
+// Where linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the
+// guess is the acceleration without them. (A nonlinear one must have a reaction; there 0 is as good as any.)
 template <Number N>
 void StateSolver<N>::start_with_free_accelerations(const System& s) {
   StageEquations laws;
@@ -19,7 +19,9 @@ void StateSolver<N>::start_with_free_accelerations(const System& s) {
     higher = higher || m_.order[r] > 2;
     if (may_branch(m_, s, r)) return;
     if (m_.order[r] > 2) continue;
-    laws.push_back({total_derivative(s.equations[s.coordinates + k], static_cast<unsigned>(2 - m_.order[r])), "constraint '" + model_.constraints[r].name + "'", {}});
+    laws.push_back({total_derivative(s.equations[s.coordinates + k], static_cast<unsigned>(2 - m_.order[r])),
+                    "constraint '" + model_.constraints[r].name + "'",
+                    {}});
     unknowns.push_back(m_.lambda[r]);
   }
   if (!higher) return;
@@ -35,7 +37,8 @@ void StateSolver<N>::start_with_free_accelerations(const System& s) {
 template <Number N>
 void StateSolver<N>::keep_said(const InitialState<N>& before, const Column& unknowns) {
   for (Expr u : unknowns)
-    if (const Node& n = node(u); *before.origin(n) == Origin::given || *before.origin(n) == Origin::guessed) *state_.value(n) = *before.value(n);
+    if (const Node& n = node(u); *before.origin(n) == Origin::given || *before.origin(n) == Origin::guessed)
+      *state_.value(n) = *before.value(n);
 }
 
 // The same for rates of multipliers and what goes with them: the guess for the other entries is what follows from none.
@@ -59,7 +62,8 @@ template <Number N>
 void StateSolver<N>::mark_choices(const StageEquations& equations, const Column& unknowns, unsigned metric) {
   std::vector<std::size_t> free;
   for (std::size_t j = 0; j < unknowns.size(); ++j)
-    if (const Origin o = *state_.origin(node(unknowns[j])); o == Origin::derived || o == Origin::chosen) free.push_back(j);
+    if (const Origin o = *state_.origin(node(unknowns[j])); o == Origin::derived || o == Origin::chosen)
+      free.push_back(j);
   std::size_t rank = 0;
   if (!equations.empty() && !free.empty()) {
     Stage<N> stage(m_, equations, unknowns, metric, p_.parameters, p_.mass);
@@ -86,20 +90,22 @@ void StateSolver<N>::say_choices(const System& s, const Structure& t) {
     for (std::size_t j = 0; j < s.size(); ++j)
       for (int k = 0; k < t.d[j]; ++k) {
         const Node& n = node(s.symbol(j, static_cast<unsigned>(k)));
-        if (!is_higher(n) || (n.kind == Kind::multiplier) != multipliers || *state_.origin(n) != Origin::chosen) continue;
+        if (!is_higher(n) || (n.kind == Kind::multiplier) != multipliers || *state_.origin(n) != Origin::chosen)
+          continue;
         list += (list.empty() ? "" : ", ") + entry_name(n) + " = " + number_text(to_double(*state_.value(n)), 6);
       }
     if (list.empty()) continue;
     state_.notes.push_back("a choice: " + list + " at the start" +
-                           (multipliers ? ", which no equation determines: the motion starts as it would without the constraint; other values in [initial] lambda = {…}, or accelerations"
+                           (multipliers ? ", which no equation determines: the motion starts as it would without the "
+                                          "constraint; other values in [initial] lambda = {…}, or accelerations"
                                         : ", which no equation determines: other values in [initial] qddot = {…}"));
   }
 }
 
-#define INSTANTIATE(N)                                                                               \
-  template void StateSolver<N>::start_with_free_accelerations(const System&);                        \
-  template void StateSolver<N>::start_unconstrained(const StageEquations&, const Column&, unsigned); \
-  template void StateSolver<N>::mark_choices(const StageEquations&, const Column&, unsigned);        \
+#define INSTANTIATE(N)                                                                                                 \
+  template void StateSolver<N>::start_with_free_accelerations(const System&);                                          \
+  template void StateSolver<N>::start_unconstrained(const StageEquations&, const Column&, unsigned);                   \
+  template void StateSolver<N>::mark_choices(const StageEquations&, const Column&, unsigned);                          \
   template void StateSolver<N>::say_choices(const System&, const Structure&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

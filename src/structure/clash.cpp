@@ -8,7 +8,9 @@ namespace anholon {
 
 template <Number N>
 std::string StateSolver<N>::entry_name(const Node& n) const {
-  return derivative_name(n.kind == Kind::multiplier ? multiplier_name(model_, n.index) : model_.coordinates[n.index].name, n.order, Format::text);
+  return derivative_name(n.kind == Kind::multiplier ? multiplier_name(model_, n.index)
+                                                    : model_.coordinates[n.index].name,
+                         n.order, Format::text);
 }
 
 // The derivatives and multipliers of the nonlinear constraints.
@@ -18,25 +20,33 @@ std::string StateSolver<N>::solution_text(const std::vector<N>& x, const System&
   for (std::size_t j = 0; j < s.size(); ++j) {
     if (j >= s.mechanical()) continue;
     bool named = j >= s.coordinates && may_branch(m_, s, s.constraints[j - s.coordinates]);
-    for (std::size_t r : s.constraints) named = named || (j < s.coordinates && may_branch(m_, s, r) && !is_zero(m_.Phi[r][j]));
+    for (std::size_t r : s.constraints)
+      named = named || (j < s.coordinates && may_branch(m_, s, r) && !is_zero(m_.Phi[r][j]));
     if (!named) continue;
-    list += (list.empty() ? "" : ", ") + derivative_name(s.variable_names[j], static_cast<unsigned>(t.d[j]), Format::text) + " = " + number_text(to_double(x[j]), 6);
+    list += (list.empty() ? "" : ", ") +
+            derivative_name(s.variable_names[j], static_cast<unsigned>(t.d[j]), Format::text) + " = " +
+            number_text(to_double(x[j]), 6);
   }
   return list;
 }
 
 template <Number N>
-Outcome StateSolver<N>::no_leading(const System& s, const LeadingSolutions<N>& solutions, const std::string& others) const {
+Outcome StateSolver<N>::no_leading(const System& s, const LeadingSolutions<N>& solutions,
+                                   const std::string& others) const {
   std::string which;
   for (std::size_t r : s.constraints)
     if (may_branch(m_, s, r)) which += (which.empty() ? "'" : ", '") + model_.constraints[r].name + "'";
   if (!others.empty())
-    return {OutcomeKind::inconsistent, "no solution lies on the branch asked for; there is " + others, "another [initial] branch, or other initial data"};
+    return {OutcomeKind::inconsistent, "no solution lies on the branch asked for; there is " + others,
+            "another [initial] branch, or other initial data"};
   if (solutions.singular)
     return {OutcomeKind::singular,
-            "singular configuration: the multiplier of the constraint " + which + " is 0 at the start, and the equations do not determine the motion there",
+            "singular configuration: the multiplier of the constraint " + which +
+                " is 0 at the start, and the equations do not determine the motion there",
             "give initial data at which the constraint has a reaction: other accelerations, [initial] qddot = {…}"};
-  return {OutcomeKind::no_convergence, "no derivatives were found at the start that satisfy the constraint " + which + " and the equations of motion",
+  return {OutcomeKind::no_convergence,
+          "no derivatives were found at the start that satisfy the constraint " + which +
+              " and the equations of motion",
           "there may be no real solution; a guess helps where there is one: [initial] guess = {…}"};
 }
 
@@ -50,8 +60,10 @@ std::string StateSolver<N>::kind(const Stage<N>& stage) const {
 
 template <Number N>
 Outcome StateSolver<N>::no_value(const Stage<N>& stage) {
-  const std::string what = stage.undefined < stage.size() ? equation_text(stage.equation(stage.undefined)) : "the mass matrix";
-  return {OutcomeKind::inconsistent, "the " + kind(stage) + " cannot be found: " + what + " has no value at the initial data",
+  const std::string what =
+      stage.undefined < stage.size() ? equation_text(stage.equation(stage.undefined)) : "the mass matrix";
+  return {OutcomeKind::inconsistent,
+          "the " + kind(stage) + " cannot be found: " + what + " has no value at the initial data",
           "give a guess near the wanted configuration: [initial] guess = {…}"};
 }
 
@@ -63,7 +75,8 @@ std::string StateSolver<N>::equation_text(const StageEquation& e) const {
 
 // What an equation asks of the unknowns that are free or released, the values of the others put in: "x'^2 + 1 = 0".
 template <Number N>
-std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row, const std::vector<std::size_t>& released) const {
+std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row,
+                                  const std::vector<std::size_t>& released) const {
   constexpr std::size_t kMostUnknowns = 2, kLongest = 60;
   constexpr long kMostWork = 2000;
   if (p_.plan && !p_.alone) return {};  // it would take an expression
@@ -79,7 +92,8 @@ std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row, const 
   const auto free = [&](NodeId id) {
     for (std::size_t j = 0; j < stage.unknowns(); ++j)
       if (&stage.unknown(j) == &g.node(id))
-        return *state_.origin(g.node(id)) != Origin::given || std::find(released.begin(), released.end(), j) != released.end();
+        return *state_.origin(g.node(id)) != Origin::given ||
+               std::find(released.begin(), released.end(), j) != released.end();
     return false;
   };
   const Expr e = substitute({&residual, 1}, [&](NodeId id) {
@@ -106,23 +120,27 @@ static std::string listed(const std::vector<std::string>& parts, const char* las
 // Two numbers with as many digits as tell one from the other.
 static std::pair<std::string, std::string> told_apart(double a, double b) {
   for (int digits : {6, 9, 12, 17})
-    if (std::pair text(number_text(a, digits), number_text(b, digits)); text.first != text.second || digits == 17) return text;
+    if (std::pair text(number_text(a, digits), number_text(b, digits)); text.first != text.second || digits == 17)
+      return text;
   return {};
 }
 
 // The values given and the equations that cannot hold together, in words.
 template <Number N>
-Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& c, const InitialState<N>& before) const {
+Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& c,
+                                 const InitialState<N>& before) const {
   std::vector<std::string> values, names, equations, conditions;
   std::string wanted;
   for (std::size_t j : c.given) {
     const Node& n = stage.unknown(j);
     const double value = to_double(stage.x_of(before, j));
-    const auto [is, other] = c.wanted ? told_apart(value, to_double(*c.wanted)) : std::pair(number_text(value, 6), std::string());
+    const auto [is, other] =
+        c.wanted ? told_apart(value, to_double(*c.wanted)) : std::pair(number_text(value, 6), std::string());
     names.push_back(entry_name(n));
     std::string place;
     for (const GivenValue& v : model_.initial.given)
-      if (&node(v.symbol) == &n && !overridden(n) && v.span.line) place = " (" + line_of(v.span, model_.source_text) + ")";
+      if (&node(v.symbol) == &n && !overridden(n) && v.span.line)
+        place = " (" + line_of(v.span, model_.source_text) + ")";
     values.push_back(names.back() + " = " + is + place);
     if (c.wanted) wanted = names.back() + " = " + other;
   }
@@ -131,25 +149,33 @@ Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& 
   for (std::size_t i : c.equations) {
     const StageEquation& e = stage.equation(i);
     if (e.condition) conditions.push_back(e.what);
-    const std::string asks = wanted.empty() || !alone || !stage.linear() ? asked(stage, i, c.given) : "asks for " + wanted + " here";
+    const std::string asks =
+        wanted.empty() || !alone || !stage.linear() ? asked(stage, i, c.given) : "asks for " + wanted + " here";
     clauses = clauses || !asks.empty();
     equations.push_back(equation_text(e) + (asks.empty() ? "" : ", which " + asks));
   }
   const std::string guess = "where there is a solution, a guess near it helps: [initial] guess = {…}";
   if (values.empty() && alone)
     return {OutcomeKind::inconsistent, "no " + kind(stage) + " satisfy " + equations[0],
-            stage.linear() ? "start elsewhere, or change the equation" : "the equation may have no real solution; " + guess};
+            stage.linear() ? "start elsewhere, or change the equation"
+                           : "the equation may have no real solution; " + guess};
   if (values.empty())
-    return {OutcomeKind::inconsistent, listed(equations, clauses ? ", and " : " and ") + ": no " + kind(stage) + " satisfy " + (equations.size() == 2 ? "both" : "all of them"),
-            (conditions.empty() ? "one of them has to go, or the motion starts elsewhere" : "leave out " + listed(conditions, " or ")) +
+    return {OutcomeKind::inconsistent,
+            listed(equations, clauses ? ", and " : " and ") + ": no " + kind(stage) + " satisfy " +
+                (equations.size() == 2 ? "both" : "all of them"),
+            (conditions.empty() ? "one of them has to go, or the motion starts elsewhere"
+                                : "leave out " + listed(conditions, " or ")) +
                 (stage.linear() ? "" : "; " + guess)};
-  std::string message = listed(values) + (values.size() == 1 ? " clashes with " : " clash with ") + listed(equations, clauses ? ", and " : " and ");
-  if (!wanted.empty() && !stage.linear()) message += "; " + wanted + " would fit";
-  else if (!wanted.empty() && !alone) message += "; together they ask for " + wanted + " here";
+  std::string message = listed(values) + (values.size() == 1 ? " clashes with " : " clash with ") +
+                        listed(equations, clauses ? ", and " : " and ");
+  if (!wanted.empty() && !stage.linear())
+    message += "; " + wanted + " would fit";
+  else if (!wanted.empty() && !alone)
+    message += "; together they ask for " + wanted + " here";
   names.insert(names.end(), conditions.begin(), conditions.end());
   return {OutcomeKind::inconsistent, message,
-          "leave out " + std::string(names.size() == 1 ? "" : "one of ") + listed(names, ", ") + " (what is missing is found from the constraints)" +
-              (stage.linear() || c.wanted ? "" : "; " + guess)};
+          "leave out " + std::string(names.size() == 1 ? "" : "one of ") + listed(names, ", ") +
+              " (what is missing is found from the constraints)" + (stage.linear() || c.wanted ? "" : "; " + guess)};
 }
 
 template <Number N>
@@ -162,16 +188,18 @@ Outcome StateSolver<N>::clash(Stage<N>& stage, std::size_t worst, const InitialS
   const auto c = contradiction(stage, start, given, worst);
   clash_is_told_ = c.has_value();
   if (c) return clash_of(stage, *c, before);
-  return {OutcomeKind::inconsistent,
-          equation_text(stage.equation(worst)) + " is missed by " + number_text(missed, 3) + " with the initial data given" + (asks.empty() ? "" : "; it " + asks),
-          "it clashes with another constraint or condition, or has no real solution near the guess: [initial] guess = {…}"};
+  return {
+      OutcomeKind::inconsistent,
+      equation_text(stage.equation(worst)) + " is missed by " + number_text(missed, 3) +
+          " with the initial data given" + (asks.empty() ? "" : "; it " + asks),
+      "it clashes with another constraint or condition, or has no real solution near the guess: [initial] guess = {…}"};
 }
 
-#define INSTANTIATE(N)                                                                                              \
-  template std::string StateSolver<N>::entry_name(const Node&) const;                                               \
-  template std::string StateSolver<N>::solution_text(const std::vector<N>&, const System&, const Structure&) const; \
-  template Outcome StateSolver<N>::no_leading(const System&, const LeadingSolutions<N>&, const std::string&) const; \
-  template Outcome StateSolver<N>::no_value(const Stage<N>&);                                                       \
+#define INSTANTIATE(N)                                                                                                 \
+  template std::string StateSolver<N>::entry_name(const Node&) const;                                                  \
+  template std::string StateSolver<N>::solution_text(const std::vector<N>&, const System&, const Structure&) const;    \
+  template Outcome StateSolver<N>::no_leading(const System&, const LeadingSolutions<N>&, const std::string&) const;    \
+  template Outcome StateSolver<N>::no_value(const Stage<N>&);                                                          \
   template Outcome StateSolver<N>::clash(Stage<N>&, std::size_t, const InitialState<N>&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

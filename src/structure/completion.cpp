@@ -27,8 +27,11 @@ Outcome StateSolver<N>::complete(const System& s, const Structure& t) {
 template <Number N>
 void StateSolver<N>::make_room(const System& s, const Structure& t) {
   int coordinates = 2, multipliers = 0;
-  for (std::size_t j = 0; j < s.mechanical(); ++j) (j < s.coordinates ? coordinates : multipliers) = std::max(j < s.coordinates ? coordinates : multipliers, t.d[j]);
-  const auto level = [](std::size_t n) { return Level<N>{std::vector<N>(n, N(0)), std::vector<Origin>(n, Origin::chosen)}; };
+  for (std::size_t j = 0; j < s.mechanical(); ++j)
+    (j < s.coordinates ? coordinates : multipliers) = std::max(j < s.coordinates ? coordinates : multipliers, t.d[j]);
+  const auto level = [](std::size_t n) {
+    return Level<N>{std::vector<N>(n, N(0)), std::vector<Origin>(n, Origin::chosen)};
+  };
   state_.higher.assign(static_cast<std::size_t>(coordinates) - 1, level(m_.q.size()));
   state_.multipliers.assign(static_cast<std::size_t>(multipliers) + 1, level(m_.phi.size()));
 }
@@ -65,8 +68,12 @@ Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
     if (k < 0) continue;
     const Expr e = total_derivative(s.equations[i], static_cast<unsigned>(k));
     if (!holds_higher(e)) continue;  // a matter of positions and velocities
-    if (i < s.coordinates) laws.push_back({e, "the equation of motion of '" + s.equation_names[i] + "'", {}});
-    else if (i < s.mechanical()) laws.push_back({put_state_rates(model_, e, 2), (k ? "a derivative of constraint '" : "constraint '") + s.equation_names[i] + "'", model_.constraints[s.constraints[i - s.coordinates]].span});
+    if (i < s.coordinates)
+      laws.push_back({e, "the equation of motion of '" + s.equation_names[i] + "'", {}});
+    else if (i < s.mechanical())
+      laws.push_back({put_state_rates(model_, e, 2),
+                      (k ? "a derivative of constraint '" : "constraint '") + s.equation_names[i] + "'",
+                      model_.constraints[s.constraints[i - s.coordinates]].span});
   }
   StageEquations equations = laws;
   for (const StageEquation& e : conditions())
@@ -81,10 +88,11 @@ Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
   return {};
 }
 
-// A servo constraint that its actuator does not act against asks for velocities by the equations of motion. They move along with
-// what else is of this level, on all that holds them. False where there are none.
+// A servo constraint that its actuator does not act against asks for velocities by the equations of motion. They move
+// along with what else is of this level, on all that holds them. False where there are none.
 template <Number N>
-bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int level, StageEquations& equations, Column& unknowns, unsigned& metric) const {
+bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int level, StageEquations& equations,
+                                    Column& unknowns, unsigned& metric) const {
   const std::size_t higher = unknowns.size();
   for (std::size_t j = 0; j < s.coordinates; ++j)
     if (t.d[j] - level == 1) unknowns.push_back(s.symbol(j, 1)), metric |= 2U;
@@ -93,7 +101,9 @@ bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int lev
     const int k = t.c[i] - level;
     if (k < 0) continue;
     const Expr e = put_state_rates(model_, total_derivative(s.equations[i], static_cast<unsigned>(k)), 2);
-    if (!holds_higher(e)) equations.push_back({e, "a derivative of constraint '" + s.equation_names[i] + "'", model_.constraints[s.constraints[i - s.coordinates]].span});
+    if (!holds_higher(e))
+      equations.push_back({e, "a derivative of constraint '" + s.equation_names[i] + "'",
+                           model_.constraints[s.constraints[i - s.coordinates]].span});
   }
   for (const StageEquation& e : conditions())
     if (!holds_higher(e.residual) && jet_order(e.residual) == 1) equations.push_back(e);
@@ -111,7 +121,8 @@ Outcome StateSolver<N>::given_beyond_the_state(const System& s, const Structure&
   const auto add = [&](Expr x, Expr value, Span span) {
     const auto j = s.variable(x.id);
     if (static_cast<int>(node(x).order) > t.d[*j])
-      refused = {OutcomeKind::inconsistent, entry_name(node(x)) + " is given, but follows from the state", "leave it out"};
+      refused = {OutcomeKind::inconsistent, entry_name(node(x)) + " is given, but follows from the state",
+                 "leave it out"};
     late.push_back({x - value, "the value given for " + entry_name(node(x)), span, !overridden(node(x))});
   };
   for (const GivenValue& v : model_.initial.given)
@@ -136,7 +147,8 @@ bool StateSolver<N>::branch_was_named(const System& s, const Structure& t) const
     const auto j = s.variable(v.symbol.id);
     return j && is_higher(node(v.symbol)) && static_cast<int>(node(v.symbol).order) == t.d[*j];
   };
-  return !model_.initial.branches.empty() || std::any_of(model_.initial.guess.begin(), model_.initial.guess.end(), leading_guess);
+  return !model_.initial.branches.empty() ||
+         std::any_of(model_.initial.guess.begin(), model_.initial.guess.end(), leading_guess);
 }
 
 // The leading derivatives: one linear system, or the solution nearest to the guess.
@@ -154,13 +166,16 @@ Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
   const std::vector<N>* taken = nullptr;
   std::string others;
   for (const std::vector<N>& x : solutions.found) {
-    if (!taken && branch_holds(x, s)) taken = &x;
-    else others += (others.empty() ? "" : "; ") + solution_text(x, s, t);
+    if (!taken && branch_holds(x, s))
+      taken = &x;
+    else
+      others += (others.empty() ? "" : "; ") + solution_text(x, s, t);
   }
   if (!taken) return no_leading(s, solutions, others);
   for (std::size_t j = 0; j < unknowns.size(); ++j) *state_.value(node(unknowns[j])) = (*taken)[j];
   if (!others.empty() && !branch_was_named(s, t))
-    state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s, t) + " is taken, there is also " + others +
+    state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s, t) +
+                           " is taken, there is also " + others +
                            "; name one by [initial] branch = {…} or guess = {…}");
   return {};
 }
@@ -170,8 +185,7 @@ template <Number N>
 Outcome StateSolver<N>::together(const System& s, const Structure& t, const StageEquations& late) {
   StageEquations equations;
   for (std::size_t i = 0; i < s.size(); ++i)
-    for (int k = 0; k <= t.c[i]; ++k)
-      equations.push_back(law(s, i, static_cast<unsigned>(k)));
+    for (int k = 0; k <= t.c[i]; ++k) equations.push_back(law(s, i, static_cast<unsigned>(k)));
   for (const StageEquation& e : conditions())
     if (!holds_higher(e.residual) || level_of(e.residual, s, t) > 0) equations.push_back(e);
   equations.insert(equations.end(), late.begin(), late.end());
@@ -199,7 +213,8 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
     });
     if (!may_move && p_.overrides.empty()) continue;
     for (Expr u : unknowns)  // values that followed may follow anew
-      if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j]) *state_.origin(node(u)) = Origin::derived;
+      if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j])
+        *state_.origin(node(u)) = Origin::derived;
     clash_is_told_ = false;
     if (refused = solve(equations, unknowns, metric); refused.ok()) return {};
   }
@@ -211,16 +226,20 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
   said.worst(&worst);
   const StageEquation& e = said.equation(worst);
   return {OutcomeKind::inconsistent,
-          e.what + (e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "") + " does not hold: with the other initial data it is missed by " +
+          e.what + (e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "") +
+              " does not hold: with the other initial data it is missed by " +
               number_text(std::abs(to_double(said.residual[worst])), 3),
-          "leave it out, or leave out velocities and positions that it could determine; a guess near the wanted motion helps: [initial] guess = {…}"};
+          "leave it out, or leave out velocities and positions that it could determine; a guess near the wanted motion "
+          "helps: [initial] guess = {…}"};
 }
 
 template <Number N>
 bool StateSolver<N>::all_given(const System& s, const Structure& t) const {
   for (std::size_t j = 0; j < s.size(); ++j)
     for (int k = 0; k < t.d[j]; ++k)
-      if (const Origin o = *state_.origin(node(s.symbol(j, static_cast<unsigned>(k)))); o == Origin::chosen || o == Origin::guessed) return false;
+      if (const Origin o = *state_.origin(node(s.symbol(j, static_cast<unsigned>(k))));
+          o == Origin::chosen || o == Origin::guessed)
+        return false;
   return true;
 }
 
@@ -236,9 +255,13 @@ Outcome complete_state(const InitialProblem<N>& problem, const System& s, const 
   return StateSolver<N>(problem, state).complete(s, t);
 }
 
-template Outcome complete_state<double>(const InitialProblem<double>&, const System&, const Structure&, InitialState<double>&);
-template Outcome complete_state<long double>(const InitialProblem<long double>&, const System&, const Structure&, InitialState<long double>&);
-template Outcome complete_state<Quad>(const InitialProblem<Quad>&, const System&, const Structure&, InitialState<Quad>&);
-template Outcome complete_state<Multi>(const InitialProblem<Multi>&, const System&, const Structure&, InitialState<Multi>&);
+template Outcome complete_state<double>(const InitialProblem<double>&, const System&, const Structure&,
+                                        InitialState<double>&);
+template Outcome complete_state<long double>(const InitialProblem<long double>&, const System&, const Structure&,
+                                             InitialState<long double>&);
+template Outcome complete_state<Quad>(const InitialProblem<Quad>&, const System&, const Structure&,
+                                      InitialState<Quad>&);
+template Outcome complete_state<Multi>(const InitialProblem<Multi>&, const System&, const Structure&,
+                                       InitialState<Multi>&);
 
 }  // namespace anholon

@@ -6,11 +6,16 @@ namespace anholon {
 
 const char* name(Origin origin) {
   switch (origin) {
-    case Origin::given: return "given";
-    case Origin::derived: return "derived";
-    case Origin::chosen: return "chosen";
-    case Origin::guessed: return "guess";
-    case Origin::corrected: return "corrected";
+  case Origin::given:
+    return "given";
+  case Origin::derived:
+    return "derived";
+  case Origin::chosen:
+    return "chosen";
+  case Origin::guessed:
+    return "guess";
+  case Origin::corrected:
+    return "corrected";
   }
   return "";
 }
@@ -48,13 +53,15 @@ Tape values_of(const Model& model) {
 }
 
 // Of equations, those that overrides leave: all laws, and the conditions that say something about what is still open.
-StageEquations left_of(const StageEquations& equations, const Column& unknowns, const std::vector<StateOverride>& overrides, Graph& g) {
+StageEquations left_of(const StageEquations& equations, const Column& unknowns,
+                       const std::vector<StateOverride>& overrides, Graph& g) {
   StageEquations list;
   for (const StageEquation& e : equations) {
     bool open = !e.condition;
     for (NodeId id : symbols({&e.residual, 1})) {
       const Expr symbol{&g, id};
-      open = open || (std::find(unknowns.begin(), unknowns.end(), symbol) != unknowns.end() && !overridden(overrides, g.node(id)));
+      open = open || (std::find(unknowns.begin(), unknowns.end(), symbol) != unknowns.end() &&
+                      !overridden(overrides, g.node(id)));
     }
     if (open) list.push_back(e);
   }
@@ -80,7 +87,9 @@ Outcome StateSolver<N>::positions_and_velocities() {
   start_values([](const Node& s) { return !is_higher(s); });
   std::optional<StartPlan> own;
   const StartPlan& plan = p_.plan ? *p_.plan : own.emplace(m_, std::vector<StateOverride>{}, p_.mass);
-  if (Outcome o = solve(plan.positions, [&] { return plan.kept ? plan.kept_positions : kept_of(plan.positions); }); !o.ok()) return o;
+  if (Outcome o = solve(plan.positions, [&] { return plan.kept ? plan.kept_positions : kept_of(plan.positions); });
+      !o.ok())
+    return o;
   return solve(plan.velocities, [&] { return plan.kept ? plan.kept_velocities : kept_of(plan.velocities); });
 }
 
@@ -129,7 +138,8 @@ Outcome StateSolver<N>::solve(const StartPlan::Stages& stages, const std::functi
   if (o.ok() || p_.overrides.empty()) return o;
   const InitialState<N> failed = std::exchange(state_, before);
   for (Expr u : stages->unknowns)
-    if (Origin& origin = *state_.origin(node(u)); origin == Origin::given && !overridden(node(u))) origin = Origin::guessed;
+    if (Origin& origin = *state_.origin(node(u)); origin == Origin::given && !overridden(node(u)))
+      origin = Origin::guessed;
   const Outcome against_laws = attempt(without());
   if (against_laws.ok()) return {};
   state_ = failed;
@@ -179,16 +189,20 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
   return clash(stage, worst, before);
 }
 
-// What the equations hold is derived from them, and so is what they move along through the mass matrix. Round-off of that is none.
+// What the equations hold is derived from them, and so is what they move along through the mass matrix. Round-off of
+// that is none.
 template <Number N>
-void StateSolver<N>::mark_derived(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free) {
+void StateSolver<N>::mark_derived(const Stage<N>& stage, const InitialState<N>& before,
+                                  const std::vector<std::size_t>& free) {
   const auto change = [&](std::size_t j) { return N(abs(N(stage.x(state_, j) - stage.x_of(before, j)))); };
   N largest(0);
   for (std::size_t j : free)
     if (N c = change(j); c > largest) largest = c;
   for (std::size_t j : free) {
-    if (stage.moves(j) || change(j) > largest * unit_roundoff<N>() * N(64)) *state_.origin(stage.unknown(j)) = Origin::derived;
-    else stage.x(state_, j) = stage.x_of(before, j);
+    if (stage.moves(j) || change(j) > largest * unit_roundoff<N>() * N(64))
+      *state_.origin(stage.unknown(j)) = Origin::derived;
+    else
+      stage.x(state_, j) = stage.x_of(before, j);
   }
 }
 
@@ -225,8 +239,8 @@ Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& stat
   return StateSolver<N>(problem, state).positions_and_velocities();
 }
 
-#define INSTANTIATE(N)                                                                    \
-  template void StateSolver<N>::start_values(const std::function<bool(const Node&)>&);    \
+#define INSTANTIATE(N)                                                                                                 \
+  template void StateSolver<N>::start_values(const std::function<bool(const Node&)>&);                                 \
   template Outcome StateSolver<N>::solve(const StageEquations&, const Column&, unsigned);
 INSTANTIATE(double)
 INSTANTIATE(long double)

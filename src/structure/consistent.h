@@ -20,13 +20,14 @@ namespace anholon {
 // Values that override those of the model: q_a^(k), or lambda_r^(k).
 struct StateOverride {
   unsigned order;
-  std::size_t coordinate;    // or constraint
+  std::size_t coordinate;  // or constraint
   Rational value;
   bool multiplier = false;
 };
 
-// All that positions and velocities need of the expressions, made once for many states: with a plan `consistent_state` builds none, as long as the
-// overrides are those of the plan, with other values; many threads may then ask at the same time.
+// All that positions and velocities need of the expressions, made once for many states: with a plan `consistent_state`
+// builds none, as long as the overrides are those of the plan, with other values; many threads may then ask at the same
+// time.
 struct StartPlan {
   StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass = nullptr);
 
@@ -46,7 +47,8 @@ struct InitialProblem {
   const std::vector<Column>* mass = nullptr;  // the mass matrix, where the caller solves for many states
   const StartPlan* plan = nullptr;
   bool alone = false;  // nobody else has the plan: a message may make expressions
-  const InitialState<double>* near = nullptr;  // a solution of the same or of a similar problem: searches begin there, and measure changes as ever
+  const InitialState<double>* near =
+      nullptr;  // a solution of the same or of a similar problem: searches begin there, and measure changes as ever
 };
 
 // Positions and velocities, from the constraints of orders 0 and 1 and the conditions on them.
@@ -57,8 +59,8 @@ Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& stat
 // multipliers, or if the equations may have several solutions: complete_state is then needed.
 bool needs_completion(const Mechanics& m, const System& s, const Structure& t);
 
-// Completes a state of positions and velocities by all that the structure of `s`, a system with multipliers, asks for, and by
-// the leading derivatives; conditions on accelerations and multipliers are solved with the equations of motion.
+// Completes a state of positions and velocities by all that the structure of `s`, a system with multipliers, asks for,
+// and by the leading derivatives; conditions on accelerations and multipliers are solved with the equations of motion.
 template <Number N>
 Outcome complete_state(const InitialProblem<N>& problem, const System& s, const Structure& t, InitialState<N>& state);
 

@@ -11,7 +11,8 @@ namespace {
 template <Number N>
 class Circuits {
  public:
-  Circuits(Stage<N>& stage, const InitialState<N>& state, const std::vector<bool>& given) : s_(stage), state_(state), given_(given) {
+  Circuits(Stage<N>& stage, const InitialState<N>& state, const std::vector<bool>& given)
+      : s_(stage), state_(state), given_(given) {
     for (std::size_t j = 0; j < given.size(); ++j)
       if (!given[j]) free_.push_back(j);
   }
@@ -88,18 +89,20 @@ class Circuits {
 
 // ---- nonlinear equations ---------------------------------------------------------------------
 
-constexpr std::size_t kMostMembers = 40;   // each is a search for a solution
+constexpr std::size_t kMostMembers = 40;  // each is a search for a solution
 constexpr std::size_t kMostUnknowns = 60;
 
 template <Number N>
 class DeletionFilter {
  public:
   DeletionFilter(const Mechanics& m, Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given)
-      : s_(stage), state_(state), start_(state), given_(given), holds_(stage.size(), std::vector<bool>(stage.unknowns(), false)) {
+      : s_(stage), state_(state), start_(state), given_(given),
+        holds_(stage.size(), std::vector<bool>(stage.unknowns(), false)) {
     for (std::size_t i = 0; i < s_.size(); ++i) {
       const std::vector<NodeId> all = symbols({&s_.equation(i).residual, 1});
       for (std::size_t j = 0; j < s_.unknowns(); ++j)
-        holds_[i][j] = std::any_of(all.begin(), all.end(), [&](NodeId id) { return &m.graph().node(id) == &s_.unknown(j); });
+        holds_[i][j] =
+            std::any_of(all.begin(), all.end(), [&](NodeId id) { return &m.graph().node(id) == &s_.unknown(j); });
     }
   }
   ~DeletionFilter() {
@@ -180,15 +183,20 @@ class DeletionFilter {
 }  // namespace
 
 template <Number N>
-std::optional<Contradiction<N>> contradiction(Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given, std::size_t worst) {
+std::optional<Contradiction<N>> contradiction(Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given,
+                                              std::size_t worst) {
   if (!stage.linear()) return DeletionFilter<N>(stage.mechanics(), stage, state, given).run(worst);
   if (!stage.evaluate(state)) return std::nullopt;
   return Circuits<N>(stage, state, given).smallest();
 }
 
-template std::optional<Contradiction<double>> contradiction(Stage<double>&, InitialState<double>&, const std::vector<bool>&, std::size_t);
-template std::optional<Contradiction<long double>> contradiction(Stage<long double>&, InitialState<long double>&, const std::vector<bool>&, std::size_t);
-template std::optional<Contradiction<Quad>> contradiction(Stage<Quad>&, InitialState<Quad>&, const std::vector<bool>&, std::size_t);
-template std::optional<Contradiction<Multi>> contradiction(Stage<Multi>&, InitialState<Multi>&, const std::vector<bool>&, std::size_t);
+template std::optional<Contradiction<double>> contradiction(Stage<double>&, InitialState<double>&,
+                                                            const std::vector<bool>&, std::size_t);
+template std::optional<Contradiction<long double>> contradiction(Stage<long double>&, InitialState<long double>&,
+                                                                 const std::vector<bool>&, std::size_t);
+template std::optional<Contradiction<Quad>> contradiction(Stage<Quad>&, InitialState<Quad>&, const std::vector<bool>&,
+                                                          std::size_t);
+template std::optional<Contradiction<Multi>> contradiction(Stage<Multi>&, InitialState<Multi>&,
+                                                           const std::vector<bool>&, std::size_t);
 
 }  // namespace anholon

@@ -83,7 +83,8 @@ IndependentConstraints choose_independent(const Matrix<double>& phi, const std::
   return choice;
 }
 
-IndependentConstraints independent_constraints(const Mechanics& m, const std::vector<double>& parameters, const InitialState<double>& state) {
+IndependentConstraints independent_constraints(const Mechanics& m, const std::vector<double>& parameters,
+                                               const InitialState<double>& state) {
   const std::size_t s = m.phi.size(), n = m.q.size();
   if (s == 0) return {};
   Column es;
@@ -105,7 +106,8 @@ IndependentConstraints independent_constraints(const Mechanics& m, const std::ve
 }
 
 template <Number N>
-std::vector<N> least_multipliers(const Matrix<N>& phi, const std::vector<std::size_t>& independent, const std::vector<N>& multipliers) {
+std::vector<N> least_multipliers(const Matrix<N>& phi, const std::vector<std::size_t>& independent,
+                                 const std::vector<N>& multipliers) {
   const std::size_t s = phi.rows, n = phi.cols, r = independent.size();
   Matrix<N> gram(r, r), square(r, r), c(s, r);
   const auto dot = [&](std::size_t i, std::size_t j) {
@@ -133,9 +135,13 @@ std::vector<N> least_multipliers(const Matrix<N>& phi, const std::vector<std::si
   return lambda;
 }
 
-template std::vector<double> least_multipliers(const Matrix<double>&, const std::vector<std::size_t>&, const std::vector<double>&);
-template std::vector<long double> least_multipliers(const Matrix<long double>&, const std::vector<std::size_t>&, const std::vector<long double>&);
-template std::vector<Quad> least_multipliers(const Matrix<Quad>&, const std::vector<std::size_t>&, const std::vector<Quad>&);
-template std::vector<Multi> least_multipliers(const Matrix<Multi>&, const std::vector<std::size_t>&, const std::vector<Multi>&);
+template std::vector<double> least_multipliers(const Matrix<double>&, const std::vector<std::size_t>&,
+                                               const std::vector<double>&);
+template std::vector<long double> least_multipliers(const Matrix<long double>&, const std::vector<std::size_t>&,
+                                                    const std::vector<long double>&);
+template std::vector<Quad> least_multipliers(const Matrix<Quad>&, const std::vector<std::size_t>&,
+                                             const std::vector<Quad>&);
+template std::vector<Multi> least_multipliers(const Matrix<Multi>&, const std::vector<std::size_t>&,
+                                              const std::vector<Multi>&);
 
 }  // namespace anholon

@@ -19,13 +19,16 @@ static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equat
     es.insert(es.end(), d.begin(), d.end());
   }
   const std::vector<NodeId> met = symbols(std::span<const Expr>(es).subspan(equations.size()));
-  linear = std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return std::find(met.begin(), met.end(), u.id) != met.end(); });
+  linear = std::none_of(unknowns.begin(), unknowns.end(),
+                        [&](Expr u) { return std::find(met.begin(), met.end(), u.id) != met.end(); });
   for (const Column& row : mass && !mass->empty() ? *mass : mass_matrix(m)) es.insert(es.end(), row.begin(), row.end());
   return compile(es);
 }
 
-StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column in, unsigned measured, const std::vector<Column>* mass)
-    : equations(std::move(of)), unknowns(std::move(in)), metric(measured), tape(compiled(m, equations, unknowns, mass, linear)) {}
+StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column in, unsigned measured,
+                     const std::vector<Column>* mass)
+    : equations(std::move(of)), unknowns(std::move(in)), metric(measured),
+      tape(compiled(m, equations, unknowns, mass, linear)) {}
 
 template <Number N>
 Stage<N>::Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const std::vector<N>& parameters)
@@ -80,7 +83,7 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   if (!(largest > N(0))) largest = N(1);
   const auto measured = [&](const Node& u) { return u.kind == Kind::jet && (plan_->metric >> u.order & 1U) != 0; };
   for (std::size_t i = 0; i < n; ++i) {
-    const Node &a = unknown(i);
+    const Node& a = unknown(i);
     if (measured(a))
       for (std::size_t j = 0; j < n; ++j)
         if (const Node& b = unknown(j); measured(b) && a.order == b.order) metric(i, j) = mass(a.index, b.index);
@@ -106,7 +109,8 @@ namespace {
 template <Number N>
 class Iteration {
  public:
-  Iteration(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free) : s_(stage), state_(state), free_(free) {
+  Iteration(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free)
+      : s_(stage), state_(state), free_(free) {
     for (std::size_t j : free) x_.push_back(&s_.x(state, j)), guess_.push_back(*x_.back());
   }
 
@@ -127,7 +131,8 @@ class Iteration {
   N distance() const {
     N sum(0);
     for (std::size_t i = 0; i < x_.size(); ++i)
-      for (std::size_t j = 0; j < x_.size(); ++j) sum += (*x_[i] - guess_[i]) * s_.metric(free_[i], free_[j]) * (*x_[j] - guess_[j]);
+      for (std::size_t j = 0; j < x_.size(); ++j)
+        sum += (*x_[i] - guess_[i]) * s_.metric(free_[i], free_[j]) * (*x_[j] - guess_[j]);
     return sum;
   }
 
@@ -172,7 +177,8 @@ class Iteration {
 
  private:
   bool flat(const RowChoice<N>& rows) const {
-    return std::any_of(rows.dependent.begin(), rows.dependent.end(), [&](std::size_t i) { return abs(s_.residual[i]) > stage_rounding<N>() * s_.scale[i]; });
+    return std::any_of(rows.dependent.begin(), rows.dependent.end(),
+                       [&](std::size_t i) { return abs(s_.residual[i]) > stage_rounding<N>() * s_.scale[i]; });
   }
 
   bool least_step(const Matrix<N>& a, const std::vector<std::size_t>& rows, bool nearest, std::vector<N>& step) const {
@@ -236,7 +242,8 @@ std::vector<N> around(const std::vector<N>& guess, int k) {
 }  // namespace
 
 template <Number N>
-bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free, const InitialState<double>* near) {
+bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free,
+                          const InitialState<double>* near) {
   constexpr int kStarts = 12;
   Iteration<N> newton(s, state, free);
   if (near && !free.empty()) {
@@ -266,9 +273,13 @@ template class Stage<double>;
 template class Stage<long double>;
 template class Stage<Quad>;
 template class Stage<Multi>;
-template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&, const InitialState<double>*);
-template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&, const std::vector<std::size_t>&, const InitialState<double>*);
-template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&, const InitialState<double>*);
-template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&, const InitialState<double>*);
+template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&,
+                                           const InitialState<double>*);
+template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&,
+                                                const std::vector<std::size_t>&, const InitialState<double>*);
+template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&,
+                                         const InitialState<double>*);
+template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&,
+                                          const InitialState<double>*);
 
 }  // namespace anholon

@@ -25,12 +25,12 @@ struct InitialState {
   N t{0};
   std::vector<N> q, qd;
   std::vector<Origin> q_origin, qd_origin;
-  std::vector<Level<N>> higher;       // q^(k), k = 2, 3, …: the state and the leading derivatives, where they were needed
-  std::vector<Level<N>> multipliers;  // lambda^(k), k = 0, 1, … of all constraints of the model, likewise
+  std::vector<Level<N>> higher;  // q^(k), k = 2, 3, …: the state and the leading derivatives, where they were needed
+  std::vector<Level<N>> multipliers;   // lambda^(k), k = 0, 1, … of all constraints of the model, likewise
   std::vector<N> states, state_rates;  // z and z' of the model's states
   std::vector<Origin> states_origin, state_rates_origin;
-  N largest_correction{0};            // of values that were given
-  std::vector<std::string> notes;     // choices that were made
+  N largest_correction{0};         // of values that were given
+  std::vector<std::string> notes;  // choices that were made
 
   // q_a^(k) or lambda_r^(k); null where the state does not go so far, and for other symbols.
   N* value(const Node& n) { return entry(*this, n); }
@@ -39,14 +39,17 @@ struct InitialState {
     if (!entry(*this, n)) return nullptr;
     if (n.kind == Kind::state) return n.order == 0 ? &states_origin[n.index] : &state_rates_origin[n.index];
     if (n.kind == Kind::multiplier) return &multipliers[n.order].origin[n.index];
-    return n.order == 0 ? &q_origin[n.index] : n.order == 1 ? &qd_origin[n.index] : &higher[n.order - 2U].origin[n.index];
+    return n.order == 0   ? &q_origin[n.index]
+           : n.order == 1 ? &qd_origin[n.index]
+                          : &higher[n.order - 2U].origin[n.index];
   }
   const Origin* origin(const Node& n) const { return const_cast<InitialState*>(this)->origin(n); }
 
  private:
   template <class State>
   static auto entry(State& s, const Node& n) -> decltype(&s.q[0]) {
-    if (n.kind == Kind::multiplier) return n.order < s.multipliers.size() ? &s.multipliers[n.order].value[n.index] : nullptr;
+    if (n.kind == Kind::multiplier)
+      return n.order < s.multipliers.size() ? &s.multipliers[n.order].value[n.index] : nullptr;
     if (n.kind == Kind::state && n.order < 2)
       return n.index >= s.states.size() ? nullptr : n.order == 0 ? &s.states[n.index] : &s.state_rates[n.index];
     if (n.kind != Kind::jet) return nullptr;

@@ -23,7 +23,8 @@ StageEquations conditions_of(const Model& model);
 template <Number N>
 class StateSolver {
  public:
-  StateSolver(const InitialProblem<N>& p, InitialState<N>& state) : p_(p), m_(*p.mechanics), model_(*m_.model), state_(state) {}
+  StateSolver(const InitialProblem<N>& p, InitialState<N>& state)
+      : p_(p), m_(*p.mechanics), model_(*m_.model), state_(state) {}
 
   Outcome positions_and_velocities();
   Outcome complete(const System& s, const Structure& t);
@@ -52,7 +53,8 @@ class StateSolver {
   void make_room(const System& s, const Structure& t);
   int level_of(Expr e, const System& s, const Structure& t) const;
   Outcome stage(const System& s, const Structure& t, int level);
-  bool add_velocities(const System& s, const Structure& t, int level, StageEquations& equations, Column& unknowns, unsigned& metric) const;
+  bool add_velocities(const System& s, const Structure& t, int level, StageEquations& equations, Column& unknowns,
+                      unsigned& metric) const;
   Outcome given_beyond_the_state(const System& s, const Structure& t, StageEquations& late);
   bool branch_holds(const std::vector<N>& x, const System& s) const;
   bool branch_was_named(const System& s, const Structure& t) const;

@@ -32,9 +32,12 @@ class Probe {
     for (const Input& in : tape_.inputs) {
       const Node& n = g.node(in.symbol);
       double base = 0.4;
-      if (n.kind == Kind::time) base = hints.t;
-      else if (n.kind == Kind::jet && n.order < hints.derivatives.size()) base = hints.derivatives[n.order][n.index];
-      else if (n.kind == Kind::state && n.order == 0 && n.index < hints.states.size()) base = hints.states[n.index];
+      if (n.kind == Kind::time)
+        base = hints.t;
+      else if (n.kind == Kind::jet && n.order < hints.derivatives.size())
+        base = hints.derivatives[n.order][n.index];
+      else if (n.kind == Kind::state && n.order == 0 && n.index < hints.states.size())
+        base = hints.states[n.index];
       machine_.series(in.slot)[0] = base + (1 + std::abs(base)) * spread(random);
     }
     machine_.evaluate();
@@ -64,28 +67,40 @@ class Probe {
       };
       const auto& partials = partials_[s];
       switch (in.op) {
-        case Op::constant: case Op::pi: case Op::parameter: case Op::lookup: break;
-        // What occurs in either branch occurs.
-        case Op::select:
-          for (const std::uint32_t operand : {in.a, in.b}) {
-            const double* below = &tangent.data[operand * cols];
-            if (std::all_of(below, below + cols, [](double v) { return std::isfinite(v); })) add(operand, 1);
-          }
-          break;
-        case Op::input:
-          if (next_input >= from && next_input < from + cols) row[next_input - from] = row_terms[next_input - from] = 1;
-          ++next_input;
-          break;
-        case Op::linear:
-          for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
-            add(tape_.linear_terms[k].slot, machine_.rational(tape_.linear_terms[k].coefficient));
-          break;
-        case Op::multiply: case Op::scale: case Op::divide: case Op::arctan2:
-          add(in.a, partials.a);
-          add(in.b, partials.b);
-          break;
-        case Op::square: case Op::power: case Op::function: add(in.a, partials.a); break;
-        case Op::rate: break;  // systems are analysed with their derivatives written out
+      case Op::constant:
+      case Op::pi:
+      case Op::parameter:
+      case Op::lookup:
+        break;
+      // What occurs in either branch occurs.
+      case Op::select:
+        for (const std::uint32_t operand : {in.a, in.b}) {
+          const double* below = &tangent.data[operand * cols];
+          if (std::all_of(below, below + cols, [](double v) { return std::isfinite(v); })) add(operand, 1);
+        }
+        break;
+      case Op::input:
+        if (next_input >= from && next_input < from + cols) row[next_input - from] = row_terms[next_input - from] = 1;
+        ++next_input;
+        break;
+      case Op::linear:
+        for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+          add(tape_.linear_terms[k].slot, machine_.rational(tape_.linear_terms[k].coefficient));
+        break;
+      case Op::multiply:
+      case Op::scale:
+      case Op::divide:
+      case Op::arctan2:
+        add(in.a, partials.a);
+        add(in.b, partials.b);
+        break;
+      case Op::square:
+      case Op::power:
+      case Op::function:
+        add(in.a, partials.a);
+        break;
+      case Op::rate:
+        break;  // systems are analysed with their derivatives written out
       }
     }
     for (std::size_t i = 0; i < tape_.roots.size(); ++i)
@@ -130,8 +145,10 @@ std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma)
         if (least[j] < delta) delta = least[j], j1 = j;
       }
       for (std::size_t j = 0; j <= n; ++j) {
-        if (used[j]) u[row_of[j]] += delta, v[j] -= delta;
-        else least[j] -= delta;
+        if (used[j])
+          u[row_of[j]] += delta, v[j] -= delta;
+        else
+          least[j] -= delta;
       }
       j0 = j1;
     } while (row_of[j0] != 0);
@@ -172,8 +189,8 @@ std::string without_inertia(const System& s, const std::vector<std::vector<int>>
 
 }  // namespace
 
-std::optional<std::vector<std::vector<int>>> signature(const System& s, const Tape& equations, const std::vector<double>& parameters,
-                                                       const ProbeHints& hints) {
+std::optional<std::vector<std::vector<int>>> signature(const System& s, const Tape& equations,
+                                                       const std::vector<double>& parameters, const ProbeHints& hints) {
   const std::size_t n = s.size();
   const Graph& g = *s.model->graph;
   Probe probe(s, equations, parameters);
@@ -209,8 +226,9 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
               "a mass or a moment of inertia is zero, or no body moves with that coordinate"};
     const std::string name = undetermined(s, out.sigma);
     return {OutcomeKind::singular,
-            name.empty() ? "the equations do not determine the motion: there are more constraints than they leave room for"
-                         : "no equation determines '" + name + "'",
+            name.empty()
+                ? "the equations do not determine the motion: there are more constraints than they leave room for"
+                : "no equation determines '" + name + "'",
             name.empty() ? "look for constraints that say the same, or leave one out"
                          : "a coordinate needs a mass, an inertia or a constraint that it moves"};
   }
@@ -260,16 +278,19 @@ std::string entry(const Structure& t, std::size_t i, std::size_t j) {
 
 // Only what occurs: "rod1 (c 2): x1 0*, y1 0".
 std::string row_by_row(const System& s, const Structure& t) {
-  std::string out = "signature matrix (equation (c): unknowns with the highest derivative that occurs; * on the transversal)\n";
+  std::string out =
+      "signature matrix (equation (c): unknowns with the highest derivative that occurs; * on the transversal)\n";
   for (std::size_t i = 0; i < s.size(); ++i) {
     out += "  " + s.equation_names[i] + " (c " + std::to_string(t.c[i]) + "):";
     bool first = true;
     for (std::size_t j = 0; j < s.size(); ++j)
-      if (t.sigma[i][j] != kAbsent) out += (first ? " " : ", ") + s.variable_names[j] + " " + entry(t, i, j), first = false;
+      if (t.sigma[i][j] != kAbsent)
+        out += (first ? " " : ", ") + s.variable_names[j] + " " + entry(t, i, j), first = false;
     out += "\n";
   }
   out += "  d:";
-  for (std::size_t j = 0; j < s.size(); ++j) out += (j ? ", " : " ") + s.variable_names[j] + " " + std::to_string(t.d[j]);
+  for (std::size_t j = 0; j < s.size(); ++j)
+    out += (j ? ", " : " ") + s.variable_names[j] + " " + std::to_string(t.d[j]);
   return out + "\n";
 }
 
@@ -303,7 +324,8 @@ std::string print(const System& s, const Structure& t) {
     cells[i + 1][0] = s.equation_names[i];
     cells[i + 1][n + 1] = std::to_string(t.c[i]);
     for (std::size_t j = 0; j < n; ++j)
-      cells[i + 1][j + 1] = t.sigma[i][j] == kAbsent ? "- " : entry(t, i, j) + (t.transversal[i] == static_cast<int>(j) ? "" : " ");
+      cells[i + 1][j + 1] =
+          t.sigma[i][j] == kAbsent ? "- " : entry(t, i, j) + (t.transversal[i] == static_cast<int>(j) ? "" : " ");
   }
   std::string out = "signature matrix (rows: equations, columns: unknowns; * on the transversal)\n";
   if (numbered) out += numbered_columns(s);

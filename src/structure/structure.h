@@ -40,10 +40,10 @@ struct ProbeHints {
   double t = 0;
 };
 
-// Sigma by probing near the hints; nothing if the equations have no value there. `equations`: compiled from those of the system.
-// Builds no expressions, so many threads may ask at the same time.
-std::optional<std::vector<std::vector<int>>> signature(const System& system, const Tape& equations, const std::vector<double>& parameters,
-                                                       const ProbeHints& hints);
+// Sigma by probing near the hints; nothing if the equations have no value there. `equations`: compiled from those of
+// the system. Builds no expressions, so many threads may ask at the same time.
+std::optional<std::vector<std::vector<int>>> signature(const System& system, const Tape& equations,
+                                                       const std::vector<double>& parameters, const ProbeHints& hints);
 
 // Outcome `singular` if the system has no transversal (an unknown that no equation determines).
 Outcome analyse(const System& system, const std::vector<double>& parameters, const ProbeHints& hints,

@@ -34,7 +34,8 @@ bool AdmissibleVelocities::solve(Expr constraint) {
   if (cost > 0 && in.size() == 2 && is_zero(rest)) {
     // a v + b w = 0 without division: v = b u, w = -a u.
     const std::size_t v = in[0], w = in[1];
-    const Expr u = new_name(), u_by_velocity = (a[w] * free_by_velocity_[v] - a[v] * free_by_velocity_[w]) / tidy_(pow(a[v], 2) + pow(a[w], 2));
+    const Expr u = new_name(), u_by_velocity = (a[w] * free_by_velocity_[v] - a[v] * free_by_velocity_[w]) /
+                                               tidy_(pow(a[v], 2) + pow(a[w], 2));
     remove(w, -a[v] * u);
     remove(v, a[w] * u);
     free.push_back(u);
@@ -65,9 +66,12 @@ std::optional<AdmissibleVelocities::Direction> AdmissibleVelocities::direction(E
     std::vector<std::pair<Expr, Rational>> factors;
     std::optional<Expr> velocity;
     for (const Term& f : g_.terms(t.node))
-      if (const Expr e{&g_, f.node}; !contains(e, qd_)) factors.push_back({e, g_.rational(f.weight)});
-      else if (velocity || g_.node(f.node).kind != Kind::sum || g_.rational(f.weight) != 1) return std::nullopt;
-      else velocity = e;
+      if (const Expr e{&g_, f.node}; !contains(e, qd_))
+        factors.push_back({e, g_.rational(f.weight)});
+      else if (velocity || g_.node(f.node).kind != Kind::sum || g_.rational(f.weight) != 1)
+        return std::nullopt;
+      else
+        velocity = e;
     if (!velocity) return std::nullopt;
     const Rational weight = g_.rational(t.weight);
     parts.push_back({weight * g_.product(factors), *velocity});
@@ -101,8 +105,10 @@ std::optional<Expr> AdmissibleVelocities::without(NodeId whole, NodeId part) con
   std::vector<std::pair<Rational, Expr>> rest;
   std::size_t found = 0;
   for (const Term& t : terms)
-    if (found < taken.size() && t.node == taken[found].node && t.weight == taken[found].weight) ++found;
-    else rest.push_back({g_.rational(t.weight), Expr{&g_, t.node}});
+    if (found < taken.size() && t.node == taken[found].node && t.weight == taken[found].weight)
+      ++found;
+    else
+      rest.push_back({g_.rational(t.weight), Expr{&g_, t.node}});
   return found == taken.size() ? std::optional<Expr>(g_.sum(rest)) : std::nullopt;
 }
 

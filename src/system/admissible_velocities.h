@@ -1,4 +1,5 @@
-// The velocities that constraints admit: one constraint after the other, linear in the velocities, solved for one of them (theory: quasi-velocities).
+// The velocities that constraints admit: one constraint after the other, linear in the velocities, solved for one of
+// them (theory: quasi-velocities).
 #pragma once
 #include <optional>
 
@@ -10,7 +11,8 @@ namespace anholon {
 class AdmissibleVelocities {
  public:
   // Of coordinates; `at`: values near the motion, by which pivots are chosen.
-  AdmissibleVelocities(const Column& qd, PointValues& at, Tidy& t) : free(qd), qd_(qd), g_(*qd[0].graph), at_(at), tidy_(t), free_by_velocity_(qd) {}
+  AdmissibleVelocities(const Column& qd, PointValues& at, Tidy& t)
+      : free(qd), qd_(qd), g_(*qd[0].graph), at_(at), tidy_(t), free_by_velocity_(qd) {}
 
   // False where the constraints are not of the kind that this solves.
   bool solve(const Column& constraints);

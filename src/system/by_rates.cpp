@@ -21,7 +21,8 @@ bool is_symbol(Expr e) {
 
 class Writer {
  public:
-  Writer(const System& derived, const Mechanics& m, std::span<const Expr> others) : derived_(derived), m_(m), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph) {}
+  Writer(const System& derived, const Mechanics& m, std::span<const Expr> others)
+      : derived_(derived), m_(m), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph) {}
 
   ByRates run() {
     const std::size_t n = derived_.coordinates;
@@ -30,7 +31,9 @@ class Writer {
     // The same of T with V held. Momenta that depend on the place are differentiated by their series.
     Column rows = -gradient(held, q_);
     const Column momenta = gradient(held, qd_);
-    for (std::size_t a = 0; a < n; ++a) rows[a] += c_.model->masses.empty() && depends_on_place(momenta[a]) ? rate(put_masses(*c_.model, momenta[a]), 1) : total_derivative(momenta[a]);
+    for (std::size_t a = 0; a < n; ++a)
+      rows[a] += c_.model->masses.empty() && depends_on_place(momenta[a]) ? rate(put_masses(*c_.model, momenta[a]), 1)
+                                                                          : total_derivative(momenta[a]);
     rows = rows - by_rates(put_masses(*c_.model, c_.forces)) - reactions();
     rows = rows + pullback(places_, forces_at_places_, q_);
     ByRates r;
@@ -39,20 +42,22 @@ class Writer {
     r.system.equations = put_masses(*c_.model, rows);
     r.system.equations.insert(r.system.equations.end(), constraints_.begin(), constraints_.end());
     for (std::size_t i = 0; i < c_.state_rates.size(); ++i)
-      r.system.equations.push_back(g_.state(static_cast<std::uint32_t>(i), 1) - by_rates(put_masses(*c_.model, {&c_.state_rates[i], 1}))[0]);
+      r.system.equations.push_back(g_.state(static_cast<std::uint32_t>(i), 1) -
+                                   by_rates(put_masses(*c_.model, {&c_.state_rates[i], 1}))[0]);
     r.system.rates = rates_;
     r.others = c_.others;
     return r;
   }
 
  private:
-  // The derivative of this order, by the series; constant factors in front. Sums are not taken apart: of those that bodies of a chain have in common
-  // one series serves all.
+  // The derivative of this order, by the series; constant factors in front. Sums are not taken apart: of those that
+  // bodies of a chain have in common one series serves all.
   Expr rate(Expr of, unsigned order) {
     if (is_symbol(of)) return total_derivative(of, order);
     std::vector<std::pair<Expr, Rational>> constant, varying;
     if (g_.node(of.id).kind == Kind::product)
-      for (const Term& t : g_.terms(of.id)) (is_constant({&g_, t.node}) ? constant : varying).push_back({Expr{&g_, t.node}, g_.rational(t.weight)});
+      for (const Term& t : g_.terms(of.id))
+        (is_constant({&g_, t.node}) ? constant : varying).push_back({Expr{&g_, t.node}, g_.rational(t.weight)});
     if (!constant.empty()) return g_.product(constant) * rate(g_.product(varying), order);
     const auto [base, fresh] = base_.try_emplace(of.id, rates_.size());
     if (fresh) rates_.push_back(of);
@@ -96,7 +101,8 @@ class Writer {
         const auto kind = static_cast<Function>(node.index);
         if (kind != Function::sin && kind != Function::cos) continue;
         const Expr u{&g_, g_.terms(f.node)[0].node}, du = total_derivative(u);
-        const auto speed = std::find_if(factors.begin(), factors.end(), [&](const Term& t) { return t.node == du.id && g_.rational(t.weight) == 1; });
+        const auto speed = std::find_if(factors.begin(), factors.end(),
+                                        [&](const Term& t) { return t.node == du.id && g_.rational(t.weight) == 1; });
         if (speed == factors.end()) continue;
         std::vector<std::pair<Expr, Rational>> rest;
         for (const Term& t : factors)
@@ -114,12 +120,14 @@ class Writer {
     return replace_nodes(es, by_rate_);
   }
 
-  // sum lambda dphi/dq^(m). Of constraints on velocities the rates are held first, and what falls to them acts on what they are rates of.
+  // sum lambda dphi/dq^(m). Of constraints on velocities the rates are held first, and what falls to them acts on what
+  // they are rates of.
   Column reactions() {
     Column sum(q_.size(), g_.zero()), velocity_constraints, multipliers;
     for (std::size_t i = 0; i < derived_.constraints.size(); ++i) {
       const std::size_t r = derived_.constraints[i];
-      const Expr phi = put_masses(*c_.model, c_.constraints[i]), lambda = g_.multiplier(static_cast<std::uint32_t>(r), 0);
+      const Expr phi = put_masses(*c_.model, c_.constraints[i]),
+                 lambda = g_.multiplier(static_cast<std::uint32_t>(r), 0);
       const bool acts = !m_.model->constraints[r].by;
       if (m_.order[r] == 1) {
         constraints_.push_back(by_rates({phi})[0]);
@@ -136,7 +144,8 @@ class Writer {
     const Column found = pullback(velocity_constraints, multipliers, wanted);
     for (std::size_t a = 0; a < q_.size(); ++a) sum[a] += found[a];
     for (std::size_t c = 0; c < bases.size(); ++c)
-      if (const Expr& f = found[q_.size() + c]; !is_zero(f)) places_.push_back(bases[c]), forces_at_places_.push_back(-f);
+      if (const Expr& f = found[q_.size() + c]; !is_zero(f))
+        places_.push_back(bases[c]), forces_at_places_.push_back(-f);
     return sum;
   }
 

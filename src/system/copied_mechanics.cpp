@@ -19,7 +19,9 @@ CopiedMechanics copied_mechanics(const Mechanics& m, const System& derived, std:
     for (std::size_t i = 0; i < m.points.size(); ++i) {
       const WeightedPoint& p = m.points[i];
       if (c.points.size() <= i) c.points.push_back({p.weight, p.speed2, p.place, p.uniform_field});
-      for (Expr* e : {&c.points[i].weight, &c.points[i].speed2, &c.points[i].place.x, &c.points[i].place.y, &c.points[i].place.z}) each(*e);
+      for (Expr* e :
+           {&c.points[i].weight, &c.points[i].speed2, &c.points[i].place.x, &c.points[i].place.y, &c.points[i].place.z})
+        each(*e);
     }
     for (Expr& e : c.forces) each(e);
     for (Expr& e : c.constraints) each(e);

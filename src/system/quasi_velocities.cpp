@@ -15,22 +15,27 @@ constexpr std::size_t kMostVelocities = 4;
 
 class Writer {
  public:
-  Writer(const System& derived, const Mechanics& m, std::span<const Expr> others, const std::function<double(const Node&)>& symbol)
-      : derived_(derived), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph), at_([this, symbol](const Node& n) { return stands_for(n) ? value_of_[n.index - n_] : symbol(n); }),
+  Writer(const System& derived, const Mechanics& m, std::span<const Expr> others,
+         const std::function<double(const Node&)>& symbol)
+      : derived_(derived), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph),
+        at_([this, symbol](const Node& n) { return stands_for(n) ? value_of_[n.index - n_] : symbol(n); }),
         q_(jets(*c_.model, 0)), qd_(jets(*c_.model, 1)), n_(q_.size()), zero_(g_.zero()), v_(qd_, at_, tidy_) {}
 
   std::optional<QuasiVelocities> run() {
-    if (!v_.solve(put_masses(*c_.model, c_.constraints)) || v_.free.size() > kMostVelocities || !use_names()) return std::nullopt;
+    if (!v_.solve(put_masses(*c_.model, c_.constraints)) || v_.free.size() > kMostVelocities || !use_names())
+      return std::nullopt;
     for (Expr v : qd_) velocity_.push_back(tidy_(v_.solved(v)));
     read_points();
-    if (!energy_.diagonalize(mass_matrix(), v_.free, at_, tidy_, [this](Expr e) { return one_series(e); })) return std::nullopt;
+    if (!energy_.diagonalize(mass_matrix(), v_.free, at_, tidy_, [this](Expr e) { return one_series(e); }))
+      return std::nullopt;
     return equations();
   }
 
  private:
   Expr p(std::size_t i) { return g_.state(static_cast<std::uint32_t>(c_.state_rates.size() + i), 0); }
 
-  // What is used more than once gets a series of its own: otherwise products would be taken apart, and made anew each time.
+  // What is used more than once gets a series of its own: otherwise products would be taken apart, and made anew each
+  // time.
   Expr one_series(Expr e) {
     const Node& n = g_.node(e.id);
     const bool simple = n.kind != Kind::product && n.kind != Kind::sum;
@@ -79,7 +84,8 @@ class Writer {
         for (std::size_t t = s; t < n; ++t) {
           std::vector<Expr> terms;
           for (std::size_t c = first; c < end; ++c)
-            if (const auto& [weight, e] = points_[c]; !is_zero(e.by[s]) && !is_zero(e.by[t])) terms.push_back(weight * e.by[s] * e.by[t]);
+            if (const auto& [weight, e] = points_[c]; !is_zero(e.by[s]) && !is_zero(e.by[t]))
+              terms.push_back(weight * e.by[s] * e.by[t]);
           if (!terms.empty()) local[s][t] = local[s][t] + tidy_(sum(terms));
         }
       first = end;
@@ -91,7 +97,8 @@ class Writer {
         std::vector<Expr> terms{zero_};
         for (std::size_t s = 0; s < n; ++s)
           for (std::size_t t = 0; t < n; ++t)
-            if (!is_zero(local[s][t]) && !is_zero(used_by_free_[s][i]) && !is_zero(used_by_free_[t][j])) terms.push_back(local[s][t] * used_by_free_[s][i] * used_by_free_[t][j]);
+            if (!is_zero(local[s][t]) && !is_zero(used_by_free_[s][i]) && !is_zero(used_by_free_[t][j]))
+              terms.push_back(local[s][t] * used_by_free_[s][i] * used_by_free_[t][j]);
         M[i][j] = M[j][i] = v_.named.empty() ? tidy_(sum(terms)) : sum(terms);
       }
     return M;
@@ -103,7 +110,8 @@ class Writer {
     r.count = l;
     r.inertia = energy_.inertia;
     Column ps;
-    for (std::size_t i = 0; i < l; ++i) ps.push_back(p(i)), c_.model->names.states.push_back("p" + std::to_string(i + 1));
+    for (std::size_t i = 0; i < l; ++i)
+      ps.push_back(p(i)), c_.model->names.states.push_back("p" + std::to_string(i + 1));
     r.of_state = v_.in_velocities(energy_.p_by_v);
     // Short formulas alone are better taken apart.
     const bool apart = rates_.empty();
@@ -113,8 +121,11 @@ class Writer {
     r.velocities = put(velocity_, used_, values);
     on_velocities_ = {qd_, r.velocities};
     Column rates;
-    for (std::size_t i = 0; i < states; ++i) rates.push_back(put(put_masses(*c_.model, c_.state_rates[i]), qd_, r.velocities));
-    for (std::size_t i = 0; i < states; ++i) on_velocities_.first.push_back(g_.state(static_cast<std::uint32_t>(i), 1)), on_velocities_.second.push_back(rates[i]);
+    for (std::size_t i = 0; i < states; ++i)
+      rates.push_back(put(put_masses(*c_.model, c_.state_rates[i]), qd_, r.velocities));
+    for (std::size_t i = 0; i < states; ++i)
+      on_velocities_.first.push_back(g_.state(static_cast<std::uint32_t>(i), 1)),
+          on_velocities_.second.push_back(rates[i]);
     const Rows A = gyroscopic(r.velocities);
     // Forces on what is used first, where sines and cosines meet.
     Column forces = pullback(velocity_, put(put_masses(*c_.model, c_.forces), qd_, r.velocities), used_);
@@ -126,7 +137,9 @@ class Writer {
     for (Expr e : c_.others) {
       r.others.push_back(on_velocities(put(e, second, accelerations)));
       for (NodeId id : symbols({&r.others.back(), 1}))
-        if (const Node& n = g_.node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 0 && !stands_for(n))) return std::nullopt;
+        if (const Node& n = g_.node(id);
+            n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 0 && !stands_for(n)))
+          return std::nullopt;
     }
     r.determinant = determinant();
     r.system = first_order_system(r.velocities, rates);
@@ -183,7 +196,8 @@ class Writer {
         const Column gradient = anholon::gradient(of, q_);
         for (std::size_t a = 0; a < n_; ++a)
           if (!is_zero(gradient[a])) by_velocity[a] = by_velocity[a] + weight * e[i] * gradient[a];
-        if (const Expr rest = on_velocities(put(total_derivative(of), qd_, Column(n_, zero_))); !is_zero(rest)) terms.push_back(weight * e[i] * rest);
+        if (const Expr rest = on_velocities(put(total_derivative(of), qd_, Column(n_, zero_))); !is_zero(rest))
+          terms.push_back(weight * e[i] * rest);
       }
       for (std::size_t a = 0; a < n_; ++a)
         if (!is_zero(by_velocity[a])) terms.push_back(tidy_(by_velocity[a]) * velocities[a]);
@@ -221,18 +235,20 @@ class Writer {
   Column velocity_, used_;  // q' in used_: what is free, and names
   Rows used_by_free_;
   std::vector<std::pair<Expr, Linear>> points_;
-  std::vector<std::size_t> bounds_;  // of each weighted point's among them
+  std::vector<std::size_t> bounds_;          // of each weighted point's among them
   std::pair<Column, Column> on_velocities_;  // q' and z', and what they are
-  Column rates_;                     // jets of coordinates n + k stand for these
+  Column rates_;                             // jets of coordinates n + k stand for these
   std::vector<double> value_of_;
   std::unordered_map<NodeId, std::size_t> series_;
 };
 
 }  // namespace
 
-std::optional<QuasiVelocities> quasi_velocities(const System& derived, const Mechanics& m, std::span<const Expr> others, const std::function<double(const Node&)>& symbol) {
+std::optional<QuasiVelocities> quasi_velocities(const System& derived, const Mechanics& m, std::span<const Expr> others,
+                                                const std::function<double(const Node&)>& symbol) {
   const auto of_first_order = [&](std::size_t r) { return m.order[r] == 1 && !m.model->constraints[r].by; };
-  if (!m.model->masses.empty() || !std::all_of(derived.constraints.begin(), derived.constraints.end(), of_first_order)) return std::nullopt;
+  if (!m.model->masses.empty() || !std::all_of(derived.constraints.begin(), derived.constraints.end(), of_first_order))
+    return std::nullopt;
   return Writer(derived, m, others, symbol).run();
 }
 

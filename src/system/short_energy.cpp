@@ -28,15 +28,19 @@ Root root_of(Expr e) {
     for (const Term& t : g.terms(e.id)) factors.push_back({Expr{&g, t.node}, g.rational(t.weight)});
   }
   for (const auto& [base, exponent] : factors)
-    if (is_constant(base)) constant.push_back({base, exponent});
-    else if (const Rational half = exponent / 2; half.get_den() == 1) out.push_back({base, half});
-    else rest.push_back({base, exponent});
+    if (is_constant(base))
+      constant.push_back({base, exponent});
+    else if (const Rational half = exponent / 2; half.get_den() == 1)
+      out.push_back({base, half});
+    else
+      rest.push_back({base, exponent});
   return {g.product(constant), g.product(out) * sqrt(g.product(rest)), rest.empty()};
 }
 
 }  // namespace
 
-bool ShortEnergy::diagonalize(Rows M, const Column& v, PointValues& at, Tidy& tidy, const std::function<Expr(Expr)>& named) {
+bool ShortEnergy::diagonalize(Rows M, const Column& v, PointValues& at, Tidy& tidy,
+                              const std::function<Expr(Expr)>& named) {
   const std::size_t l = v.size();
   const Expr zero = v[0].graph->zero();
   std::vector<std::size_t> left(l);

@@ -1,4 +1,5 @@
-// Velocities in which a quadratic form is a sum of squares: M = L D L^T on the graph, simple pivots first (theory: quasi-velocities).
+// Velocities in which a quadratic form is a sum of squares: M = L D L^T on the graph, simple pivots first (theory:
+// quasi-velocities).
 #pragma once
 #include <functional>
 
@@ -11,13 +12,14 @@ namespace anholon {
 // T = 1/2 v^T M v = 1/2 sum inertia_i p_i^2, inertia constant, p_i = r_i (v_k + sum_j L_jk v_j), k the i-th pivot.
 class ShortEnergy {
  public:
-  // `v`: symbols. What a varying root is called from then on: `named`. False where M is not positive or its elimination does not stay short.
+  // `v`: symbols. What a varying root is called from then on: `named`. False where M is not positive or its elimination
+  // does not stay short.
   bool diagonalize(Rows M, const Column& v, PointValues& at, Tidy& tidy, const std::function<Expr(Expr)>& named);
 
-  Rows v_by_p;       // v_k = sum_i v_by_p[k][i] p_i
-  Column p_by_v;     // p in v
+  Rows v_by_p;    // v_k = sum_i v_by_p[k][i] p_i
+  Column p_by_v;  // p in v
   Column inertia;
-  Column pivots;     // D
+  Column pivots;  // D
   // v in p, one by the other; `named`: what each of them is called.
   Column v_in(const Column& p, const std::function<Expr(Expr)>& named) const;
 

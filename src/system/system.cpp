@@ -68,8 +68,8 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
   if (constraints.size() < model->constraints.size())
     s.equations = substitute(s.equations, [&](NodeId id) {
       const Node& n = g.node(id);
-      const bool out = n.kind == Kind::multiplier &&
-                       std::find(constraints.begin(), constraints.end(), n.index) == constraints.end();
+      const bool out =
+          n.kind == Kind::multiplier && std::find(constraints.begin(), constraints.end(), n.index) == constraints.end();
       return out ? g.zero() : Expr{};
     });
   return s;

@@ -1,5 +1,5 @@
-// The implicit system F(t, x, x', …) = 0: n equations of motion, s constraints and the rates of the model's states, in the
-// unknown functions q_1..q_n, lambda_1..lambda_s, z_1, …. Masses are put in; no form is ever solved symbolically.
+// The implicit system F(t, x, x', …) = 0: n equations of motion, s constraints and the rates of the model's states, in
+// the unknown functions q_1..q_n, lambda_1..lambda_s, z_1, …. Masses are put in; no form is ever solved symbolically.
 //
 // A form without multipliers gives n - s equations, which determine the motion together with the
 // constraints. Routh's equations of the dependent coordinates, Phi_D^T lambda = a_D [L 3.4], are added
@@ -14,10 +14,10 @@ namespace anholon {
 struct System {
   std::shared_ptr<const Model> model;
   const Formulation* form = nullptr;
-  std::size_t coordinates = 0;            // n
-  std::vector<std::size_t> constraints;   // indices of the model's constraints that take part
-  Column equations;                       // n of motion, then one per constraint that takes part
-  std::size_t of_motion = 0;              // how many of the n belong to the form; the others give lambda
+  std::size_t coordinates = 0;           // n
+  std::vector<std::size_t> constraints;  // indices of the model's constraints that take part
+  Column equations;                      // n of motion, then one per constraint that takes part
+  std::size_t of_motion = 0;             // how many of the n belong to the form; the others give lambda
   std::vector<std::string> equation_names;
   std::vector<std::string> variable_names;  // q_a, then lambda.NAME
   Column rates;  // jets of coordinates n + k stand for these and their derivatives (by_rates.h)

@@ -16,7 +16,8 @@ std::size_t node_count(Expr e) { return reachable({&e, 1}).size(); }
 
 std::size_t varying_nodes(Expr e) {
   const std::vector<NodeId> all = reachable({&e, 1});
-  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](NodeId id) { return !is_constant({e.graph, id}); }));
+  return static_cast<std::size_t>(
+      std::count_if(all.begin(), all.end(), [&](NodeId id) { return !is_constant({e.graph, id}); }));
 }
 
 bool is_constant(Expr e) {

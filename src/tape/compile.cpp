@@ -12,7 +12,8 @@ namespace {
 
 class Compiler {
  public:
-  Compiler(Graph& g, bool shared, std::span<const Expr> rates, std::uint32_t rates_from) : g_(g), shared_(shared), rates_(rates), rates_from_(rates_from) {}
+  Compiler(Graph& g, bool shared, std::span<const Expr> rates, std::uint32_t rates_from)
+      : g_(g), shared_(shared), rates_(rates), rates_from_(rates_from) {}
 
   Tape run(std::span<const Expr> es, std::span<const int> leads) {
     const auto part = [&](std::span<const Expr> roots) {
@@ -26,8 +27,8 @@ class Compiler {
           if (!expanded_.insert({id, true}).second) continue;
           const Node n = g_.node(id);
           if (n.kind == Kind::function) {
-            derivatives.push_back(derivative(static_cast<Function>(n.index),
-                                             Expr{&g_, g_.terms(id)[0].node}, Expr{&g_, id}));
+            derivatives.push_back(
+                derivative(static_cast<Function>(n.index), Expr{&g_, g_.terms(id)[0].node}, Expr{&g_, id}));
             derivative_[id] = {derivatives.back(), Expr{}};
           } else if (n.kind == Kind::atan2) {
             const Expr y{&g_, g_.terms(id)[0].node}, x{&g_, g_.terms(id)[1].node}, r2 = x * x + y * y;
@@ -54,8 +55,10 @@ class Compiler {
     for (const auto& [slot, id] : pending_derivatives_) {
       Instruction& in = tape_.code[slot];
       const auto& [first, second] = derivative_.at(id);
-      if (in.op == Op::function) in.index = g_.node(id).index, in.b = slot_.at(first.id);
-      else in.first = slot_.at(first.id), in.count = slot_.at(second.id);
+      if (in.op == Op::function)
+        in.index = g_.node(id).index, in.b = slot_.at(first.id);
+      else
+        in.first = slot_.at(first.id), in.count = slot_.at(second.id);
     }
     spread_leads(leads);
     return std::move(tape_);
@@ -120,7 +123,8 @@ class Compiler {
     bool v = kind == Kind::time || kind == Kind::jet || kind == Kind::multiplier || kind == Kind::state;
     if (kind == Kind::sum) {
       for (const Term& t : g_.summands(id)) v = varies(t.node) || v;
-    } else if (kind == Kind::product || kind == Kind::function || kind == Kind::atan2 || kind == Kind::select || kind == Kind::lookup) {
+    } else if (kind == Kind::product || kind == Kind::function || kind == Kind::atan2 || kind == Kind::select ||
+               kind == Kind::lookup) {
       for (const Term& t : g_.terms(id)) v = varies(t.node) || v;
     }
     return varies_[id] = v;
@@ -152,7 +156,8 @@ class Compiler {
             for (std::size_t j = i + 1; j < list.size(); ++j)
               if (seen.insert({list[i], list[j]}).second) ++count[{list[i], list[j]}];
         }
-        const auto best = std::max_element(count.begin(), count.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+        const auto best = std::max_element(count.begin(), count.end(),
+                                           [](const auto& x, const auto& y) { return x.second < y.second; });
         if (best == count.end() || best->second < 2) break;
         const Pair pair = best->first;
         const std::uint64_t made = kPair + pairs_.size();
@@ -161,9 +166,11 @@ class Compiler {
           for (;;) {
             const auto first = std::find(list.begin(), list.end(), pair.first);
             if (first == list.end()) break;
-            const auto second = std::find(pair.first == pair.second ? first + 1 : list.begin(), list.end(), pair.second);
+            const auto second =
+                std::find(pair.first == pair.second ? first + 1 : list.begin(), list.end(), pair.second);
             if (second == list.end()) break;
-            const std::size_t i = static_cast<std::size_t>(first - list.begin()), j = static_cast<std::size_t>(second - list.begin());
+            const std::size_t i = static_cast<std::size_t>(first - list.begin()),
+                              j = static_cast<std::size_t>(second - list.begin());
             list[i] = made;
             list.erase(list.begin() + static_cast<std::ptrdiff_t>(j));
           }
@@ -218,11 +225,14 @@ class Compiler {
     };
     std::vector<std::uint32_t> constant_below;
     for (std::size_t i = 0; i < below.size();) {
-      if (constant(below[i])) constant_below.push_back(below[i]), below.erase(below.begin() + static_cast<std::ptrdiff_t>(i));
-      else ++i;
+      if (constant(below[i]))
+        constant_below.push_back(below[i]), below.erase(below.begin() + static_cast<std::ptrdiff_t>(i));
+      else
+        ++i;
     }
     std::optional<std::uint32_t> front;
-    if (!constants.empty() || !constant_below.empty()) front = quotient(constants.empty() ? one() : fold(constants), constant_below);
+    if (!constants.empty() || !constant_below.empty())
+      front = quotient(constants.empty() ? one() : fold(constants), constant_below);
     if (varying.empty() && below.empty()) return *front;
     if (varying.empty()) return quotient(front ? *front : one(), below);
     const std::uint32_t r = quotient(fold(varying), below);
@@ -266,85 +276,94 @@ class Compiler {
     const Node n = g_.node(id);
     Instruction in{Op::constant};
     switch (n.kind) {
-      case Kind::number:
-        in.constant = true;
-        in.index = rational(g_.value(id));
-        break;
-      case Kind::pi: in = {Op::pi, true}; break;
-      case Kind::parameter:
-        in = {Op::parameter, true};
-        in.index = n.index;
-        break;
-      case Kind::time: case Kind::jet: case Kind::multiplier: case Kind::state: {
-        if (n.kind == Kind::jet && n.index >= rates_from_ && n.index - rates_from_ < rates_.size()) {
-          const Expr of = rates_[n.index - rates_from_];
-          for (NodeId below : reachable({&of, 1})) emit(below);
-          if (n.order == 0) {
-            slot_[id] = slot_.at(of.id);
-            return;
-          }
-          in.op = Op::rate;
-          in.a = slot_.at(of.id);
-          in.index = n.order;
-          slot_[id] = push(in);
+    case Kind::number:
+      in.constant = true;
+      in.index = rational(g_.value(id));
+      break;
+    case Kind::pi:
+      in = {Op::pi, true};
+      break;
+    case Kind::parameter:
+      in = {Op::parameter, true};
+      in.index = n.index;
+      break;
+    case Kind::time:
+    case Kind::jet:
+    case Kind::multiplier:
+    case Kind::state: {
+      if (n.kind == Kind::jet && n.index >= rates_from_ && n.index - rates_from_ < rates_.size()) {
+        const Expr of = rates_[n.index - rates_from_];
+        for (NodeId below : reachable({&of, 1})) emit(below);
+        if (n.order == 0) {
+          slot_[id] = slot_.at(of.id);
           return;
         }
-        in.op = Op::input;
-        in.index = static_cast<std::uint32_t>(tape_.inputs.size());
+        in.op = Op::rate;
+        in.a = slot_.at(of.id);
+        in.index = n.order;
         slot_[id] = push(in);
-        tape_.inputs.push_back({id, slot_[id]});
         return;
       }
-      case Kind::mass: case Kind::given: case Kind::quasi: case Kind::control:
-        ANHOLON_ASSERT(!"a frozen mass, an input or an unknown function in a tape");
-        return;
-      case Kind::sum: {
-        in.op = Op::linear;
-        in.constant = true;
-        in.first = static_cast<std::uint32_t>(tape_.linear_terms.size());
-        for (const Term& t : g_.summands(id)) {
-          const std::uint32_t x = slot_.at(t.node);
-          tape_.linear_terms.push_back({rational(g_.rational(t.weight)), x});
-          in.constant = in.constant && constant(x);
-          ++in.count;
-        }
-        break;
+      in.op = Op::input;
+      in.index = static_cast<std::uint32_t>(tape_.inputs.size());
+      slot_[id] = push(in);
+      tape_.inputs.push_back({id, slot_[id]});
+      return;
+    }
+    case Kind::mass:
+    case Kind::given:
+    case Kind::quasi:
+    case Kind::control:
+      ANHOLON_ASSERT(!"a frozen mass, an input or an unknown function in a tape");
+      return;
+    case Kind::sum: {
+      in.op = Op::linear;
+      in.constant = true;
+      in.first = static_cast<std::uint32_t>(tape_.linear_terms.size());
+      for (const Term& t : g_.summands(id)) {
+        const std::uint32_t x = slot_.at(t.node);
+        tape_.linear_terms.push_back({rational(g_.rational(t.weight)), x});
+        in.constant = in.constant && constant(x);
+        ++in.count;
       }
-      case Kind::product:
-        slot_[id] = product(id);
-        return;
-      case Kind::function:
-        in.op = Op::function;
-        in.a = slot_.at(g_.terms(id)[0].node);
-        in.index = n.index;
-        in.constant = constant(in.a);
-        slot_[id] = push(in);
-        pending_derivatives_.push_back({slot_[id], id});
-        return;
-      case Kind::atan2:
-        in.op = Op::arctan2;
-        in.a = slot_.at(g_.terms(id)[0].node);
-        in.b = slot_.at(g_.terms(id)[1].node);
-        in.constant = constant(in.a) && constant(in.b);
-        slot_[id] = push(in);
-        pending_derivatives_.push_back({slot_[id], id});
-        return;
-      case Kind::select:
-        in.op = Op::select;
-        in.first = slot_.at(g_.terms(id)[0].node);
-        in.a = slot_.at(g_.terms(id)[1].node);
-        in.b = slot_.at(g_.terms(id)[2].node);
-        in.constant = constant(in.first) && constant(in.a) && constant(in.b);
-        break;
-      case Kind::lookup: {
-        in.op = Op::lookup;
-        in.a = slot_.at(g_.terms(id)[0].node);
-        in.constant = constant(in.a);
-        const auto [it, fresh] = step_function_.try_emplace(n.index, static_cast<std::uint32_t>(tape_.step_functions.size()));
-        if (fresh) tape_.step_functions.push_back(g_.step_function(n.index));
-        in.index = it->second;
-        break;
-      }
+      break;
+    }
+    case Kind::product:
+      slot_[id] = product(id);
+      return;
+    case Kind::function:
+      in.op = Op::function;
+      in.a = slot_.at(g_.terms(id)[0].node);
+      in.index = n.index;
+      in.constant = constant(in.a);
+      slot_[id] = push(in);
+      pending_derivatives_.push_back({slot_[id], id});
+      return;
+    case Kind::atan2:
+      in.op = Op::arctan2;
+      in.a = slot_.at(g_.terms(id)[0].node);
+      in.b = slot_.at(g_.terms(id)[1].node);
+      in.constant = constant(in.a) && constant(in.b);
+      slot_[id] = push(in);
+      pending_derivatives_.push_back({slot_[id], id});
+      return;
+    case Kind::select:
+      in.op = Op::select;
+      in.first = slot_.at(g_.terms(id)[0].node);
+      in.a = slot_.at(g_.terms(id)[1].node);
+      in.b = slot_.at(g_.terms(id)[2].node);
+      in.constant = constant(in.first) && constant(in.a) && constant(in.b);
+      break;
+    case Kind::lookup: {
+      in.op = Op::lookup;
+      in.a = slot_.at(g_.terms(id)[0].node);
+      in.constant = constant(in.a);
+      const auto [it, fresh] =
+          step_function_.try_emplace(n.index, static_cast<std::uint32_t>(tape_.step_functions.size()));
+      if (fresh) tape_.step_functions.push_back(g_.step_function(n.index));
+      in.index = it->second;
+      break;
+    }
     }
     slot_[id] = push(in);
   }
@@ -365,27 +384,39 @@ class Compiler {
       for (std::uint32_t s = tape_.main_end; s-- > 0;) {
         const Instruction in = code[s];
         switch (in.op) {
-          case Op::constant: case Op::pi: case Op::input: case Op::parameter: break;
-          case Op::linear:
-            for (std::uint32_t k = in.first; k < in.first + in.count; ++k) raise(tape_.linear_terms[k].slot, in.lead);
-            break;
-          case Op::square: case Op::power: case Op::lookup: raise(in.a, in.lead); break;
-          case Op::rate: raise(in.a, static_cast<std::uint8_t>(in.lead + in.index)); break;
-          case Op::select:
-            raise(in.a, in.lead), raise(in.b, in.lead), raise(in.first, in.lead);
-            break;
-          case Op::multiply: case Op::scale: case Op::divide:
-            raise(in.a, in.lead), raise(in.b, in.lead);
-            break;
-          case Op::function:
-            raise(in.a, in.lead);
-            if (raise(in.b, in.lead)) again = true;
-            break;
-          case Op::arctan2:
-            raise(in.a, in.lead), raise(in.b, in.lead);
-            if (raise(in.first, in.lead)) again = true;
-            if (raise(in.count, in.lead)) again = true;
-            break;
+        case Op::constant:
+        case Op::pi:
+        case Op::input:
+        case Op::parameter:
+          break;
+        case Op::linear:
+          for (std::uint32_t k = in.first; k < in.first + in.count; ++k) raise(tape_.linear_terms[k].slot, in.lead);
+          break;
+        case Op::square:
+        case Op::power:
+        case Op::lookup:
+          raise(in.a, in.lead);
+          break;
+        case Op::rate:
+          raise(in.a, static_cast<std::uint8_t>(in.lead + in.index));
+          break;
+        case Op::select:
+          raise(in.a, in.lead), raise(in.b, in.lead), raise(in.first, in.lead);
+          break;
+        case Op::multiply:
+        case Op::scale:
+        case Op::divide:
+          raise(in.a, in.lead), raise(in.b, in.lead);
+          break;
+        case Op::function:
+          raise(in.a, in.lead);
+          if (raise(in.b, in.lead)) again = true;
+          break;
+        case Op::arctan2:
+          raise(in.a, in.lead), raise(in.b, in.lead);
+          if (raise(in.first, in.lead)) again = true;
+          if (raise(in.count, in.lead)) again = true;
+          break;
         }
       }
     }
@@ -415,7 +446,8 @@ class Compiler {
 
 }  // namespace
 
-Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared, std::span<const Expr> rates, std::uint32_t rates_from) {
+Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared, std::span<const Expr> rates,
+             std::uint32_t rates_from) {
   ANHOLON_ASSERT(!es.empty() && leads.size() <= es.size());
   return Compiler(*es[0].graph, shared, rates, rates_from).run(es, leads);
 }

@@ -12,8 +12,9 @@ namespace {
 template <Scalar N>
 N apply(Function f, const N& u) {
   switch (f) {
-#define ROW(name, derivative, parity, latex, domain) \
-  case Function::name: return name(u);
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
+  case Function::name:                                                                                                 \
+    return name(u);
 #include "expr/elementary.def"
 #undef ROW
   }
@@ -22,18 +23,22 @@ N apply(Function f, const N& u) {
 
 template <Scalar N>
 N constant_value(const Rational& r) {
-  if constexpr (std::same_as<N, Ball>) return Ball(r);
-  else return from_rational<N>(r);
+  if constexpr (std::same_as<N, Ball>)
+    return Ball(r);
+  else
+    return from_rational<N>(r);
 }
 
 template <Scalar N>
 N pi_value() {
-  if constexpr (std::same_as<N, Ball>) return Ball::pi();
-  else return pi<N>();
+  if constexpr (std::same_as<N, Ball>)
+    return Ball::pi();
+  else
+    return pi<N>();
 }
 
-// abs and sign are smooth beside 0 only, atan2 beside its cut: there no Taylor coefficient after the first means anything. All other
-// functions are not finite themselves where they are not smooth.
+// abs and sign are smooth beside 0 only, atan2 beside its cut: there no Taylor coefficient after the first means
+// anything. All other functions are not finite themselves where they are not smooth.
 bool smooth(Function f, const Ball& u) { return (f != Function::abs && f != Function::sign) || !u.contains_zero(); }
 bool smooth(const Ball& y, const Ball& x) { return !y.contains_zero() || x.is_positive(); }
 
@@ -43,15 +48,19 @@ N power_value(const N& u, const N& r, const Rational& exact) {
   if (exact == Rational(-1, 2)) return N(1) / sqrt(u);
   if (exact == Rational(3, 2)) return u * sqrt(u);
   if (exact == Rational(-3, 2)) return N(1) / (u * sqrt(u));
-  if constexpr (std::same_as<N, Ball>) return pow(u, exact);
-  else return pow(u, r);
+  if constexpr (std::same_as<N, Ball>)
+    return pow(u, exact);
+  else
+    return pow(u, r);
 }
 
 // The side of a choice: 1 where s >= 0, -1 where s < 0, 0 where a ball does not say.
 template <Scalar N>
 int branch(const N& s) {
-  if constexpr (std::same_as<N, Ball>) return s.contains_zero() ? 0 : s.is_positive() ? 1 : -1;
-  else return s < N(0) ? -1 : 1;
+  if constexpr (std::same_as<N, Ball>)
+    return s.contains_zero() ? 0 : s.is_positive() ? 1 : -1;
+  else
+    return s < N(0) ? -1 : 1;
 }
 
 // How many of the ascending knots lie at or below x, and whether that is sure.
@@ -62,8 +71,10 @@ std::pair<std::size_t, bool> below(const std::vector<N>& knots, const N& x) {
     const std::size_t middle = (low + high) / 2;
     const int side = branch(N(x - knots[middle]));
     if (side == 0) return {0, false};
-    if (side > 0) low = middle + 1;
-    else high = middle;
+    if (side > 0)
+      low = middle + 1;
+    else
+      high = middle;
   }
   return {low, true};
 }
@@ -71,21 +82,27 @@ std::pair<std::size_t, bool> below(const std::vector<N>& knots, const N& x) {
 // Whether the coefficients of orders 0..last are zero. A ball never says so.
 template <Scalar N>
 bool vanishes(const N* series, std::size_t last) {
-  if constexpr (std::same_as<N, Ball>) return false;
-  else return std::all_of(series, series + last + 1, [](const N& c) { return c == N(0); });
+  if constexpr (std::same_as<N, Ball>)
+    return false;
+  else
+    return std::all_of(series, series + last + 1, [](const N& c) { return c == N(0); });
 }
 
 template <Scalar N>
 N unknown() {
-  if constexpr (std::same_as<N, Ball>) return Ball::unknown();
-  else return N(0);
+  if constexpr (std::same_as<N, Ball>)
+    return Ball::unknown();
+  else
+    return N(0);
 }
 
 // What may be taken where a ball does not say which.
 template <Scalar N>
 N either(const N& a, const N& b) {
-  if constexpr (std::same_as<N, Ball>) return hull(a, b);
-  else return a;
+  if constexpr (std::same_as<N, Ball>)
+    return hull(a, b);
+  else
+    return a;
 }
 
 // All values of a step function that a ball may meet.
@@ -93,7 +110,8 @@ template <Scalar N>
 N any_value(const std::vector<N>& knots, const std::vector<N>& values, const N& x) {
   std::optional<N> all;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const bool beyond = k > 0 && branch(N(x - knots[k - 1])) < 0, before = k < knots.size() && branch(N(x - knots[k])) > 0;
+    const bool beyond = k > 0 && branch(N(x - knots[k - 1])) < 0,
+               before = k < knots.size() && branch(N(x - knots[k])) > 0;
     if (!beyond && !before) all = all ? either(*all, values[k]) : values[k];
   }
   return all ? *all : unknown<N>();
@@ -105,8 +123,7 @@ template <Scalar N>
 Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& parameters)
     : tape_(&tape),
       // An odd stride keeps histories of different slots off the same cache sets.
-      stride_((orders + static_cast<std::size_t>(tape.largest_lead) + 1) | 1),
-      data_(stride_ * tape.code.size(), N(0)) {
+      stride_((orders + static_cast<std::size_t>(tape.largest_lead) + 1) | 1), data_(stride_ * tape.code.size(), N(0)) {
   for (const Rational& r : tape.rationals) rationals_.push_back(constant_value<N>(r));
   for (const StepFunction& f : tape.step_functions) {
     Steps s;
@@ -137,130 +154,141 @@ template <Scalar N>
 void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) {
   N* w = series(slot);
   switch (in.op) {
-    case Op::constant: w[0] = rationals_[in.index]; return;
-    case Op::pi: w[0] = pi_value<N>(); return;
-    case Op::input: case Op::parameter: return;
-    case Op::linear: {
-      N s(0);
-      for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
-        const LinearTerm& t = tape_->linear_terms[k];
-        if (p > 0 && tape_->code[t.slot].constant) continue;
-        addmul(s, rationals_[t.coefficient], series(t.slot)[p]);
-      }
-      w[p] = s;
+  case Op::constant:
+    w[0] = rationals_[in.index];
+    return;
+  case Op::pi:
+    w[0] = pi_value<N>();
+    return;
+  case Op::input:
+  case Op::parameter:
+    return;
+  case Op::linear: {
+    N s(0);
+    for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
+      const LinearTerm& t = tape_->linear_terms[k];
+      if (p > 0 && tape_->code[t.slot].constant) continue;
+      addmul(s, rationals_[t.coefficient], series(t.slot)[p]);
+    }
+    w[p] = s;
+    return;
+  }
+  case Op::scale:
+    w[p] = series(in.a)[0] * series(in.b)[p];
+    return;
+  case Op::multiply: {
+    const N *a = series(in.a), *b = series(in.b);
+    N s(0);
+    for (std::size_t j = 0; j <= p; ++j) addmul(s, a[j], b[p - j]);
+    w[p] = s;
+    return;
+  }
+  case Op::square: {
+    const N* a = series(in.a);
+    N s(0);
+    for (std::size_t j = 0; 2 * j < p; ++j) addmul(s, a[j], a[p - j]);
+    s = s + s;
+    if (p % 2 == 0) addmul(s, a[p / 2], a[p / 2]);
+    w[p] = s;
+    return;
+  }
+  case Op::divide: {
+    const N *a = series(in.a), *b = series(in.b);
+    N s = p == 0 || !tape_->code[in.a].constant ? a[p] : N(0);
+    if (!tape_->code[in.b].constant)
+      for (std::size_t j = 1; j <= p; ++j) addmul(s, N(-b[j]), w[p - j]);
+    w[p] = s / b[0];
+    return;
+  }
+  case Op::power: {
+    const N* u = series(in.a);
+    const N& r = rationals_[in.index];
+    if (p == 0) {
+      w[0] = power_value(u[0], r, tape_->rationals[in.index]);
       return;
     }
-    case Op::scale: w[p] = series(in.a)[0] * series(in.b)[p]; return;
-    case Op::multiply: {
-      const N *a = series(in.a), *b = series(in.b);
-      N s(0);
-      for (std::size_t j = 0; j <= p; ++j) addmul(s, a[j], b[p - j]);
-      w[p] = s;
+    if (sgn(tape_->rationals[in.index]) > 0 && vanishes(u, p)) {
+      // A positive power of a series that is zero as far as it is known is zero as far.
+      w[p] = N(0);
       return;
     }
-    case Op::square: {
-      const N* a = series(in.a);
-      N s(0);
-      for (std::size_t j = 0; 2 * j < p; ++j) addmul(s, a[j], a[p - j]);
-      s = s + s;
-      if (p % 2 == 0) addmul(s, a[p / 2], a[p / 2]);
-      w[p] = s;
+    // u w' = r w u'. Multiples of r = 1/3, say, would be rounded in the same way at every step.
+    N rates_of_u(0), rates_of_w(0);
+    for (std::size_t j = 0; j < p; ++j) {
+      const N product = u[p - j] * w[j];
+      addmul(rates_of_u, N(static_cast<int>(p - j)), product);
+      addmul(rates_of_w, N(static_cast<int>(j)), product);
+    }
+    w[p] = (r * rates_of_u - rates_of_w) / (N(static_cast<int>(p)) * u[0]);
+    return;
+  }
+  case Op::function: {
+    const N* u = series(in.a);
+    if (p == 0) {
+      w[0] = apply(static_cast<Function>(in.index), u[0]);
       return;
     }
-    case Op::divide: {
-      const N *a = series(in.a), *b = series(in.b);
-      N s = p == 0 || !tape_->code[in.a].constant ? a[p] : N(0);
-      if (!tape_->code[in.b].constant)
-        for (std::size_t j = 1; j <= p; ++j) addmul(s, N(-b[j]), w[p - j]);
-      w[p] = s / b[0];
-      return;
-    }
-    case Op::power: {
-      const N* u = series(in.a);
-      const N& r = rationals_[in.index];
-      if (p == 0) {
-        w[0] = power_value(u[0], r, tape_->rationals[in.index]);
+    if constexpr (std::same_as<N, Ball>)
+      if (!smooth(static_cast<Function>(in.index), u[0])) {
+        w[p] = Ball::unknown();
         return;
       }
-      if (sgn(tape_->rationals[in.index]) > 0 && vanishes(u, p)) {
-        // A positive power of a series that is zero as far as it is known is zero as far.
-        w[p] = N(0);
+    // w' = f'(u) u'
+    const N* g = series(in.b);
+    if (tape_->code[in.b].constant) {
+      w[p] = g[0] * u[p];
+      return;
+    }
+    N s(0);
+    for (std::size_t j = 1; j <= p; ++j) addmul(s, N(N(static_cast<int>(j)) * u[j]), g[p - j]);
+    w[p] = s / N(static_cast<int>(p));
+    return;
+  }
+  case Op::arctan2: {
+    const N *y = series(in.a), *x = series(in.b), *gy = series(in.first), *gx = series(in.count);
+    if (p == 0) {
+      w[0] = atan2(y[0], x[0]);
+      return;
+    }
+    if constexpr (std::same_as<N, Ball>)
+      if (!smooth(y[0], x[0])) {
+        w[p] = Ball::unknown();
         return;
       }
-      // u w' = r w u'. Multiples of r = 1/3, say, would be rounded in the same way at every step.
-      N rates_of_u(0), rates_of_w(0);
-      for (std::size_t j = 0; j < p; ++j) {
-        const N product = u[p - j] * w[j];
-        addmul(rates_of_u, N(static_cast<int>(p - j)), product);
-        addmul(rates_of_w, N(static_cast<int>(j)), product);
-      }
-      w[p] = (r * rates_of_u - rates_of_w) / (N(static_cast<int>(p)) * u[0]);
+    N s(0);
+    for (std::size_t j = 1; j <= p; ++j) {
+      const N k(static_cast<int>(j));
+      if (!tape_->code[in.a].constant) addmul(s, N(k * y[j]), gy[p - j]);
+      if (!tape_->code[in.b].constant) addmul(s, N(k * x[j]), gx[p - j]);
+    }
+    w[p] = s / N(static_cast<int>(p));
+    return;
+  }
+  case Op::select: {
+    const int side = branch(series(in.first)[0]);
+    const std::uint32_t from = side > 0 ? in.a : in.b;
+    if (side == 0)
+      w[p] = p == 0 ? either(series(in.a)[0], series(in.b)[0]) : unknown<N>();
+    else
+      w[p] = p > 0 && tape_->code[from].constant ? N(0) : series(from)[p];
+    return;
+  }
+  case Op::lookup: {
+    if (p > 0) {
+      w[p] = N(0);
       return;
     }
-    case Op::function: {
-      const N* u = series(in.a);
-      if (p == 0) {
-        w[0] = apply(static_cast<Function>(in.index), u[0]);
-        return;
-      }
-      if constexpr (std::same_as<N, Ball>)
-        if (!smooth(static_cast<Function>(in.index), u[0])) {
-          w[p] = Ball::unknown();
-          return;
-        }
-      // w' = f'(u) u'
-      const N* g = series(in.b);
-      if (tape_->code[in.b].constant) {
-        w[p] = g[0] * u[p];
-        return;
-      }
-      N s(0);
-      for (std::size_t j = 1; j <= p; ++j) addmul(s, N(N(static_cast<int>(j)) * u[j]), g[p - j]);
-      w[p] = s / N(static_cast<int>(p));
-      return;
-    }
-    case Op::arctan2: {
-      const N *y = series(in.a), *x = series(in.b), *gy = series(in.first), *gx = series(in.count);
-      if (p == 0) {
-        w[0] = atan2(y[0], x[0]);
-        return;
-      }
-      if constexpr (std::same_as<N, Ball>)
-        if (!smooth(y[0], x[0])) {
-          w[p] = Ball::unknown();
-          return;
-        }
-      N s(0);
-      for (std::size_t j = 1; j <= p; ++j) {
-        const N k(static_cast<int>(j));
-        if (!tape_->code[in.a].constant) addmul(s, N(k * y[j]), gy[p - j]);
-        if (!tape_->code[in.b].constant) addmul(s, N(k * x[j]), gx[p - j]);
-      }
-      w[p] = s / N(static_cast<int>(p));
-      return;
-    }
-    case Op::select: {
-      const int side = branch(series(in.first)[0]);
-      const std::uint32_t from = side > 0 ? in.a : in.b;
-      if (side == 0) w[p] = p == 0 ? either(series(in.a)[0], series(in.b)[0]) : unknown<N>();
-      else w[p] = p > 0 && tape_->code[from].constant ? N(0) : series(from)[p];
-      return;
-    }
-    case Op::lookup: {
-      if (p > 0) {
-        w[p] = N(0);
-        return;
-      }
-      const auto [k, sure] = below(steps_[in.index].knots, series(in.a)[0]);
-      w[0] = sure ? steps_[in.index].values[k] : any_value(steps_[in.index].knots, steps_[in.index].values, series(in.a)[0]);
-      return;
-    }
-    case Op::rate: {
-      N s = series(in.a)[p + in.index];
-      for (std::uint32_t k = 1; k <= in.index; ++k) s = s * N(static_cast<int>(p + k));
-      w[p] = s;
-      return;
-    }
+    const auto [k, sure] = below(steps_[in.index].knots, series(in.a)[0]);
+    w[0] =
+        sure ? steps_[in.index].values[k] : any_value(steps_[in.index].knots, steps_[in.index].values, series(in.a)[0]);
+    return;
+  }
+  case Op::rate: {
+    N s = series(in.a)[p + in.index];
+    for (std::uint32_t k = 1; k <= in.index; ++k) s = s * N(static_cast<int>(p + k));
+    w[p] = s;
+    return;
+  }
   }
 }
 
@@ -277,27 +305,39 @@ typename Machine<N>::Partials Machine<N>::partials(std::uint32_t slot) const {
   const Instruction& in = tape_->code[slot];
   const N* w = series(slot);
   switch (in.op) {
-    case Op::constant: case Op::pi: case Op::input: case Op::parameter: case Op::linear: break;
-    case Op::scale: return {N(0), series(in.a)[0]};
-    case Op::multiply: return {series(in.b)[0], series(in.a)[0]};
-    case Op::square: return {N(2) * series(in.a)[0], N(0)};
-    case Op::divide: {
-      const N& b = series(in.b)[0];
-      return {N(1) / b, -(w[0] / b)};
-    }
-    case Op::power: {
-      const N &r = rationals_[in.index], &u = series(in.a)[0];
-      if (tape_->rationals[in.index] > 1 && vanishes(&u, 0)) return {N(0), N(0)};
-      return {r * w[0] / u, N(0)};
-    }
-    case Op::function: return {series(in.b)[0], N(0)};
-    case Op::arctan2: return {series(in.first)[0], series(in.count)[0]};
-    case Op::select: {
-      const bool first = branch(series(in.first)[0]) > 0;
-      return {N(first ? 1 : 0), N(first ? 0 : 1)};
-    }
-    case Op::lookup: break;
-    case Op::rate: return {N(1), N(0)};
+  case Op::constant:
+  case Op::pi:
+  case Op::input:
+  case Op::parameter:
+  case Op::linear:
+    break;
+  case Op::scale:
+    return {N(0), series(in.a)[0]};
+  case Op::multiply:
+    return {series(in.b)[0], series(in.a)[0]};
+  case Op::square:
+    return {N(2) * series(in.a)[0], N(0)};
+  case Op::divide: {
+    const N& b = series(in.b)[0];
+    return {N(1) / b, -(w[0] / b)};
+  }
+  case Op::power: {
+    const N &r = rationals_[in.index], &u = series(in.a)[0];
+    if (tape_->rationals[in.index] > 1 && vanishes(&u, 0)) return {N(0), N(0)};
+    return {r * w[0] / u, N(0)};
+  }
+  case Op::function:
+    return {series(in.b)[0], N(0)};
+  case Op::arctan2:
+    return {series(in.first)[0], series(in.count)[0]};
+  case Op::select: {
+    const bool first = branch(series(in.first)[0]) > 0;
+    return {N(first ? 1 : 0), N(first ? 0 : 1)};
+  }
+  case Op::lookup:
+    break;
+  case Op::rate:
+    return {N(1), N(0)};
   }
   return {N(0), N(0)};
 }
@@ -318,19 +358,34 @@ void Machine<N>::made_of(std::vector<N>& sizes) const {
   for (std::uint32_t s = 0; s < sizes.size(); ++s) {
     const Instruction& in = tape_->code[s];
     switch (in.op) {
-      case Op::linear:
-        for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
-          addmul(sizes[s], N(abs(rationals_[tape_->linear_terms[k].coefficient])), sizes[tape_->linear_terms[k].slot]);
-        break;
-      case Op::multiply: case Op::scale: sizes[s] = sizes[in.a] * sizes[in.b]; break;
-      case Op::square: sizes[s] = sizes[in.a] * sizes[in.a]; break;
-      case Op::divide: {
-        const N& b = series(in.b)[0];
-        sizes[s] = sizes[in.a] * sizes[in.b] / (b * b);
-        break;
-      }
-      case Op::constant: case Op::pi: case Op::input: case Op::parameter: case Op::power: case Op::function: case Op::arctan2: case Op::select:
-      case Op::lookup: case Op::rate: sizes[s] = abs(series(s)[0]); break;
+    case Op::linear:
+      for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
+        addmul(sizes[s], N(abs(rationals_[tape_->linear_terms[k].coefficient])), sizes[tape_->linear_terms[k].slot]);
+      break;
+    case Op::multiply:
+    case Op::scale:
+      sizes[s] = sizes[in.a] * sizes[in.b];
+      break;
+    case Op::square:
+      sizes[s] = sizes[in.a] * sizes[in.a];
+      break;
+    case Op::divide: {
+      const N& b = series(in.b)[0];
+      sizes[s] = sizes[in.a] * sizes[in.b] / (b * b);
+      break;
+    }
+    case Op::constant:
+    case Op::pi:
+    case Op::input:
+    case Op::parameter:
+    case Op::power:
+    case Op::function:
+    case Op::arctan2:
+    case Op::select:
+    case Op::lookup:
+    case Op::rate:
+      sizes[s] = abs(series(s)[0]);
+      break;
     }
   }
 }
@@ -350,8 +405,10 @@ N Machine<N>::terms(std::size_t root, std::size_t order) const {
     const LinearTerm& t = tape_->linear_terms[k];
     const Instruction& term = tape_->code[t.slot];
     if (order > 0 && term.constant) continue;
-    if (order > 0 && (term.op == Op::multiply)) add_product(term.a, term.b);
-    else s += abs(N(rational(t.coefficient) * series(t.slot)[order]));
+    if (order > 0 && (term.op == Op::multiply))
+      add_product(term.a, term.b);
+    else
+      s += abs(N(rational(t.coefficient) * series(t.slot)[order]));
   }
   return s;
 }

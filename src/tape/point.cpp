@@ -10,8 +10,9 @@ namespace {
 template <Number N>
 N apply(Function f, const N& u) {
   switch (f) {
-#define ROW(name, derivative, parity, latex, domain) \
-  case Function::name: return name(u);
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
+  case Function::name:                                                                                                 \
+    return name(u);
 #include "expr/elementary.def"
 #undef ROW
   }
@@ -31,34 +32,46 @@ template <Number N>
 N ValuesAt<N>::evaluate(const Graph& g, NodeId id) const {
   const Node& n = g.node(id);
   switch (n.kind) {
-    case Kind::number: return number_of<N>(g.value(id));
-    case Kind::pi: return pi<N>();
-    case Kind::sum: {
-      N s(0);
-      for (const Term& t : g.summands(id)) s += number_of<N>(g.rational(t.weight)) * known(t.node);
-      return s;
+  case Kind::number:
+    return number_of<N>(g.value(id));
+  case Kind::pi:
+    return pi<N>();
+  case Kind::sum: {
+    N s(0);
+    for (const Term& t : g.summands(id)) s += number_of<N>(g.rational(t.weight)) * known(t.node);
+    return s;
+  }
+  case Kind::product: {
+    N p(1);
+    for (const Term& t : g.terms(id)) {
+      const Rational& e = g.rational(t.weight);
+      p *= e == 1 ? known(t.node) : pow(known(t.node), number_of<N>(e));
     }
-    case Kind::product: {
-      N p(1);
-      for (const Term& t : g.terms(id)) {
-        const Rational& e = g.rational(t.weight);
-        p *= e == 1 ? known(t.node) : pow(known(t.node), number_of<N>(e));
-      }
-      return p;
-    }
-    case Kind::function: return apply(static_cast<Function>(n.index), known(g.terms(id)[0].node));
-    case Kind::atan2: return atan2(known(g.terms(id)[0].node), known(g.terms(id)[1].node));
-    case Kind::time: case Kind::jet: case Kind::parameter: case Kind::mass: case Kind::multiplier: case Kind::given:
-    case Kind::quasi: case Kind::state: case Kind::control:
-      return symbol_(n);
-    case Kind::select: return known(g.terms(id)[!(known(g.terms(id)[0].node) < N(0)) ? 1 : 2].node);
-    case Kind::lookup: {
-      const StepFunction& f = g.step_function(n.index);
-      const N& x = known(g.terms(id)[0].node);
-      std::size_t k = 0;
-      while (k < f.knots.size() && !(x < from_rational<N>(f.knots[k]))) ++k;
-      return from_rational<N>(f.values[k]);
-    }
+    return p;
+  }
+  case Kind::function:
+    return apply(static_cast<Function>(n.index), known(g.terms(id)[0].node));
+  case Kind::atan2:
+    return atan2(known(g.terms(id)[0].node), known(g.terms(id)[1].node));
+  case Kind::time:
+  case Kind::jet:
+  case Kind::parameter:
+  case Kind::mass:
+  case Kind::multiplier:
+  case Kind::given:
+  case Kind::quasi:
+  case Kind::state:
+  case Kind::control:
+    return symbol_(n);
+  case Kind::select:
+    return known(g.terms(id)[!(known(g.terms(id)[0].node) < N(0)) ? 1 : 2].node);
+  case Kind::lookup: {
+    const StepFunction& f = g.step_function(n.index);
+    const N& x = known(g.terms(id)[0].node);
+    std::size_t k = 0;
+    while (k < f.knots.size() && !(x < from_rational<N>(f.knots[k]))) ++k;
+    return from_rational<N>(f.values[k]);
+  }
   }
   return N(0);
 }

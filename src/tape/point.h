@@ -1,5 +1,5 @@
-// Values of expressions at one point, node by node and remembered: for choices (which pivot, which coordinate), never for
-// results.
+// Values of expressions at one point, node by node and remembered: for choices (which pivot, which coordinate), never
+// for results.
 #pragma once
 #include <functional>
 #include <vector>

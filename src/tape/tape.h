@@ -25,7 +25,7 @@ namespace anholon {
 class Ball;
 
 enum class Op : std::uint8_t {
-  constant,   // rational `index`
+  constant,  // rational `index`
   pi,
   input,      // input `index`
   parameter,  // parameter `index`
@@ -78,16 +78,18 @@ struct Tape {
 // Compiles the expressions. The first `leads.size()` of them are the main roots, with these leads;
 // those that follow have lead 0 and do not influence the slots of the main part.
 // REQUIRES: no frozen mass and no unknown given function occurs.
-// `shared`: products of factors that vary in time are made of pairs that several of them have in common, and what is constant in time comes
-// last. Fewer products, and another order of rounding.
+// `shared`: products of factors that vary in time are made of pairs that several of them have in common, and what is
+// constant in time comes last. Fewer products, and another order of rounding.
 //
-// `rates`: the jets of coordinates from `rates_from` on stand for these expressions and their derivatives, which the tape takes from their series.
-Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared = false, std::span<const Expr> rates = {}, std::uint32_t rates_from = 0);
+// `rates`: the jets of coordinates from `rates_from` on stand for these expressions and their derivatives, which the
+// tape takes from their series.
+Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared = false,
+             std::span<const Expr> rates = {}, std::uint32_t rates_from = 0);
 Tape compile(std::span<const Expr> es);
 
-// What a tape is computed in: numbers; or balls, of which no comparison is asked. Whatever lies in the input series of a machine of
-// balls, the Taylor coefficients of every slot lie in the slot's, where the slot is smooth on all of the balls, else they are not
-// finite.
+// What a tape is computed in: numbers; or balls, of which no comparison is asked. Whatever lies in the input series of
+// a machine of balls, the Taylor coefficients of every slot lie in the slot's, where the slot is smooth on all of the
+// balls, else they are not finite.
 template <class N>
 concept Scalar = Number<N> || std::same_as<N, Ball>;
 
@@ -113,8 +115,8 @@ class Machine {
   Partials partials(std::uint32_t slot) const;
   // The sum of the absolute values of what a slot is the sum of, at order 0.
   N magnitude(std::uint32_t slot) const;
-  // Of every slot, at order 0, what it is made of: the sum of the absolute values of the terms that it has with its products multiplied out. Round-off of
-  // that is what the slot may be where it ought to vanish.
+  // Of every slot, at order 0, what it is made of: the sum of the absolute values of the terms that it has with its
+  // products multiplied out. Round-off of that is what the slot may be where it ought to vanish.
   void made_of(std::vector<N>& sizes) const;
   // The sum of the absolute values of the terms of a main root, in its Taylor coefficient of this order.
   N terms(std::size_t root, std::size_t order) const;

@@ -1,6 +1,4 @@
 // Compiled code on disk: whatever happens to the folder, the code is right, and nobody is told of trouble.
-#include <gtest/gtest.h>
-
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -8,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -29,7 +28,8 @@ using namespace std::chrono_literals;
 
 struct Subject {
   explicit Subject(const std::string& name) {
-    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, scenario).ok()) throw std::runtime_error(name);
+    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, scenario).ok())
+      throw std::runtime_error(name);
     stepping = std::make_shared<const Program>(program(scenario.system, scenario.structure));
     parameters = parameter_values<long double>(*scenario.model);
     Start<long double> start;
@@ -37,7 +37,9 @@ struct Subject {
     state.assign(start.state.begin(), start.state.end());
     leading.assign(start.leading.begin(), start.leading.end());
   }
-  std::shared_ptr<const KernelPlan> plan(int stages = 6) const { return KernelPlan::make(stepping, stages, parameters, 0, state); }
+  std::shared_ptr<const KernelPlan> plan(int stages = 6) const {
+    return KernelPlan::make(stepping, stages, parameters, 0, state);
+  }
 
   // Compiled with this folder, the coefficients are those of the tables. Empty, or what is wrong.
   std::string check(const std::string& cache, int stages = 6) const {
@@ -99,7 +101,7 @@ fs::file_time_type ago(std::chrono::hours t) { return fs::file_time_type::clock:
 TEST_P(Cache, IsUsed) {
   const fs::path file = entry();
   const auto inode = [&] {
-    struct stat about {};
+    struct stat about{};
     stat(file.c_str(), &about);
     return about.st_ino;
   };
@@ -114,8 +116,15 @@ TEST_P(Cache, IsUsed) {
 TEST_P(Cache, TakesNoFileThatIsNotWhole) {
   const fs::path file = entry();
   const std::string good = test::file_text(file);
-  std::vector<std::string> bad{"", "x", std::string(good.size(), '\0'), good.substr(0, good.size() / 2), good.substr(0, good.size() - 1), good + "x", "x" + good};
-  for (const std::size_t at : {std::size_t{0}, good.size() / 3, good.size() - 20, good.size() - 1}) bad.push_back(good), bad.back()[at] ^= 1;
+  std::vector<std::string> bad{"",
+                               "x",
+                               std::string(good.size(), '\0'),
+                               good.substr(0, good.size() / 2),
+                               good.substr(0, good.size() - 1),
+                               good + "x",
+                               "x" + good};
+  for (const std::size_t at : {std::size_t{0}, good.size() / 3, good.size() - 20, good.size() - 1})
+    bad.push_back(good), bad.back()[at] ^= 1;
   for (const std::string& bytes : bad) {
     put(file, bytes);
     EXPECT_EQ(sleigh().check(folder_), "");
@@ -152,7 +161,7 @@ TEST_P(Cache, FollowsNoLink) {
 
 TEST(Trust, IsInFilesOfTheUserAndOfRoot) {
   const auto trusted = [](uid_t owner, mode_t mode, uid_t user) {
-    struct stat about {};
+    struct stat about{};
     about.st_uid = owner;
     about.st_mode = mode;
     return jit::trusted(about, user);
@@ -162,7 +171,8 @@ TEST(Trust, IsInFilesOfTheUserAndOfRoot) {
     EXPECT_TRUE(trusted(owner, S_IFREG | 0644, kUser));
     EXPECT_FALSE(trusted(owner, S_IFREG | 0664, kUser)) << "its group may write";
     EXPECT_FALSE(trusted(owner, S_IFREG | 0646, kUser)) << "all may write";
-    for (const mode_t kind : {S_IFLNK, S_IFIFO, S_IFDIR, S_IFSOCK, S_IFCHR}) EXPECT_FALSE(trusted(owner, kind | 0600, kUser));
+    for (const mode_t kind : {S_IFLNK, S_IFIFO, S_IFDIR, S_IFSOCK, S_IFCHR})
+      EXPECT_FALSE(trusted(owner, kind | 0600, kUser));
   }
   EXPECT_FALSE(trusted(kOther, S_IFREG | 0600, kUser));
   EXPECT_FALSE(trusted(kOther, S_IFREG | 0600, 0)) << "root runs its own code only";
@@ -175,7 +185,7 @@ TEST_P(Cache, TakesNoCodeOfAnotherOwner) {
   const bool given = chown(file.c_str(), 65534, 65534) == 0;
   EXPECT_EQ(given, geteuid() == 0) << "errno " << errno;
   EXPECT_EQ(sleigh().check(folder_), "");
-  struct stat about {};
+  struct stat about{};
   ASSERT_EQ(stat(file.c_str(), &about), 0);
   EXPECT_EQ(about.st_uid, geteuid()) << "not made anew";
   EXPECT_EQ(test::file_text(file), good);
@@ -183,7 +193,8 @@ TEST_P(Cache, TakesNoCodeOfAnotherOwner) {
 
 TEST_P(Cache, DoesWithoutAFolder) {
   put(folder_ + "/file", "x");
-  for (const std::string& place : {folder_ + "/file", folder_ + "/file/below", std::string("/dev/full"), std::string("/proc/none"), folder_ + "/" + std::string(5000, 'x')})
+  for (const std::string& place : {folder_ + "/file", folder_ + "/file/below", std::string("/dev/full"),
+                                   std::string("/proc/none"), folder_ + "/" + std::string(5000, 'x')})
     EXPECT_EQ(sleigh().check(place), "") << place;
   EXPECT_EQ(sleigh().check(folder_ + "/made/when/needed"), "");
   EXPECT_TRUE(fs::is_directory(folder_ + "/made/when/needed"));
@@ -215,7 +226,8 @@ TEST_P(Cache, LeavesNothingOnAFullDisk) {
   EXPECT_TRUE(files().empty());
 }
 
-// Some write and read the same entry for a while, some of them are killed at any moment, and somebody spoils the file in between.
+// Some write and read the same entry for a while, some of them are killed at any moment, and somebody spoils the file
+// in between.
 TEST_P(Cache, SurvivesWritersAndKills) {
   const fs::path file = entry();
   std::vector<pid_t> children;
@@ -225,14 +237,17 @@ TEST_P(Cache, SurvivesWritersAndKills) {
       std::error_code none;
       for (int k = 0; k < 3; ++k) {
         if (!sleigh().check(folder_).empty()) _exit(1);
-        if (i % 2 == 0) fs::resize_file(file, 100 + 1000 * static_cast<unsigned>(k), none);
-        else unlink(file.c_str());
+        if (i % 2 == 0)
+          fs::resize_file(file, 100 + 1000 * static_cast<unsigned>(k), none);
+        else
+          unlink(file.c_str());
       }
       _exit(0);
     }
     children.push_back(child);
   }
-  for (int i = 0; i < 2; ++i) usleep(static_cast<useconds_t>(40000 + 70000 * i)), kill(children[static_cast<std::size_t>(i)], SIGKILL);
+  for (int i = 0; i < 2; ++i)
+    usleep(static_cast<useconds_t>(40000 + 70000 * i)), kill(children[static_cast<std::size_t>(i)], SIGKILL);
   for (std::size_t i = 0; i < children.size(); ++i) {
     int status = 0;
     ASSERT_EQ(waitpid(children[i], &status, 0), children[i]);
@@ -251,8 +266,10 @@ TEST_P(Cache, IsBounded) {
     fs::last_write_time(file, ago(age));
     return file;
   };
-  const fs::path oldest = make("kernel-1.o", 100 << 20, 30h), old = make("kernel-2.o", 100 << 20, 20h), recent = make("kernel-3.o", 100 << 20, 10h);
-  const fs::path foreign = make("thesis.tex", 300 << 20, 1000h), part = make("kernel-4.o.abcdef", 10, 5h), fresh = make("kernel-5.o.abcdef", 10, 0h);
+  const fs::path oldest = make("kernel-1.o", 100 << 20, 30h), old = make("kernel-2.o", 100 << 20, 20h),
+                 recent = make("kernel-3.o", 100 << 20, 10h);
+  const fs::path foreign = make("thesis.tex", 300 << 20, 1000h), part = make("kernel-4.o.abcdef", 10, 5h),
+                 fresh = make("kernel-5.o.abcdef", 10, 0h);
   EXPECT_EQ(sleigh().check(folder_), "");
   EXPECT_FALSE(fs::exists(oldest));
   EXPECT_FALSE(fs::exists(old)) << "a quarter is left free";

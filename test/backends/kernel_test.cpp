@@ -1,12 +1,12 @@
-// One body, all backends: the Taylor coefficients of every shipped model at its start and on its way, by the interpreted tape (the reference), by the kernel
-// in every tier of this machine, in lanes, and compiled.
-#include <gtest/gtest.h>
-
+// One body, all backends: the Taylor coefficients of every shipped model at its start and on its way, by the
+// interpreted tape (the reference), by the kernel in every tier of this machine, in lanes, and compiled.
 #include <cmath>
 #include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
+
+#include <gtest/gtest.h>
 
 #include "kernel/kernel.h"
 #include "run/representation.h"
@@ -23,25 +23,31 @@ constexpr int kStages = 12;
 using Reasons = std::map<std::string, std::string>;
 constexpr const char *kNonlinear = "the leading derivatives enter nonlinearly", *kLooked = "tables are looked up",
                      *kLarge = "it is too large to be compiled in a short time";
-const Reasons kWithoutKernel{{"zoo/constant-acceleration", kNonlinear}, {"zoo/constant-jerk", kNonlinear}, {"zoo/constant-jerk-central", kNonlinear},
-                             {"zoo/rheonomic-order-2", kNonlinear}, {"zoo/rheonomic-order-3", kNonlinear}};
+const Reasons kWithoutKernel{{"zoo/constant-acceleration", kNonlinear},
+                             {"zoo/constant-jerk", kNonlinear},
+                             {"zoo/constant-jerk-central", kNonlinear},
+                             {"zoo/rheonomic-order-2", kNonlinear},
+                             {"zoo/rheonomic-order-3", kNonlinear}};
 const Reasons kNotCompiled{{"zoo/launcher", kLooked}, {"zoo/whipple", kLarge}};
 
 // Models with a kernel in quasi-velocities, which is compared as another motion, that of its own unknowns.
 const std::string kInQuasi = "in quasi-velocities: ";
-const std::vector<std::string> kQuasi{kInQuasi + "zoo/disc", kInQuasi + "zoo/chaplygin-sleigh", kInQuasi + "zoo/trailers", kInQuasi + "zoo/snakeboard",
-                                      kInQuasi + "zoo/ball-on-turntable", kInQuasi + "zoo/vertical-disc"};
+const std::vector<std::string> kQuasi{
+    kInQuasi + "zoo/disc",       kInQuasi + "zoo/chaplygin-sleigh",  kInQuasi + "zoo/trailers",
+    kInQuasi + "zoo/snakeboard", kInQuasi + "zoo/ball-on-turntable", kInQuasi + "zoo/vertical-disc"};
 
 std::vector<std::string> shipped_except(const std::vector<Reasons>& lists) {
   std::vector<std::string> names;
   for (const std::string& name : test::moving_models())
-    if (std::none_of(lists.begin(), lists.end(), [&](const Reasons& list) { return list.count(name) > 0; })) names.push_back(name);
+    if (std::none_of(lists.begin(), lists.end(), [&](const Reasons& list) { return list.count(name) > 0; }))
+      names.push_back(name);
   return names;
 }
 
 struct Reference {
   explicit Reference(const std::shared_ptr<const Model>& model) : quasi(false), why(set_up(model)) {}
-  explicit Reference(const std::string& name) : quasi(name.starts_with(kInQuasi)), why(set_up(test::shipped(quasi ? name.substr(kInQuasi.size()) : name))) {}
+  explicit Reference(const std::string& name)
+      : quasi(name.starts_with(kInQuasi)), why(set_up(test::shipped(quasi ? name.substr(kInQuasi.size()) : name))) {}
   std::string set_up(const std::shared_ptr<const Model>& model) {
     if (const auto diagnostic = not_integrated(*model)) return diagnostic->message;
     Outcome o = make_scenario(model, *find_formulation("routh"), {}, scenario);
@@ -64,13 +70,16 @@ struct Reference {
   std::shared_ptr<const KernelPlan> plan() const {
     const double t = static_cast<double>(start.t);
     if (!quasi) return KernelPlan::make(stepping, kStages, parameters, t, narrow(start.state));
-    for (const Representation& r : representations(KernelPlan::make(derived, kStages, parameters, t, narrow(motion_start.state)), WritingEffort::at_once))
+    for (const Representation& r : representations(
+             KernelPlan::make(derived, kStages, parameters, t, narrow(motion_start.state)), WritingEffort::at_once))
       if (r.writing == Writing::quasi) return r.plan;
     return nullptr;
   }
   std::vector<Representation> representations(const std::shared_ptr<const KernelPlan>& of, WritingEffort effort) const {
     const std::vector<double> state = narrow(quasi ? motion_start.state : start.state);
-    return anholon::representations({of, scenario.structure, {}, parameters, static_cast<double>(start.t), state, scenario.mechanics.get()}, effort);
+    return anholon::representations(
+        {of, scenario.structure, {}, parameters, static_cast<double>(start.t), state, scenario.mechanics.get()},
+        effort);
   }
   static std::vector<double> narrow(const std::vector<long double>& v) { return {v.begin(), v.end()}; }
 
@@ -82,7 +91,8 @@ struct Reference {
   std::string why;  // there is no kernel
 };
 
-// All coefficients, order by order in relation to the largest of that order (of the terms they are made of there is no word).
+// All coefficients, order by order in relation to the largest of that order (of the terms they are made of there is no
+// word).
 template <class Coefficient>
 double difference(const KernelPlan& plan, const Expansion<long double>& reference, const Coefficient& coefficient) {
   const Plan& p = plan.plan();
@@ -92,8 +102,10 @@ double difference(const KernelPlan& plan, const Expansion<long double>& referenc
     for (std::size_t j = 0; j < p.x.size(); ++j) {
       const int order = k + p.d[j];
       const double want = static_cast<double>(reference.coefficient(j, order)), have = coefficient(j, order);
-      size = std::max(size, std::abs(want) * plan.tables().factorial[static_cast<std::size_t>(order)] / plan.tables().factorial[static_cast<std::size_t>(k)]);
-      off = std::max(off, std::abs(have - want) * plan.tables().factorial[static_cast<std::size_t>(order)] / plan.tables().factorial[static_cast<std::size_t>(k)]);
+      size = std::max(size, std::abs(want) * plan.tables().factorial[static_cast<std::size_t>(order)] /
+                                plan.tables().factorial[static_cast<std::size_t>(k)]);
+      off = std::max(off, std::abs(have - want) * plan.tables().factorial[static_cast<std::size_t>(order)] /
+                              plan.tables().factorial[static_cast<std::size_t>(k)]);
       if (!(off == off)) return 1e300;
     }
     if (size > 1e-9) worst = std::max(worst, off / size);
@@ -113,7 +125,8 @@ std::string difference_of_motions(const Kernel& a, int lane_a, const Kernel& b, 
   if (a.reaches(lane_a) && a.reach(lane_a) != b.reach(lane_b)) return "reach";
   if (!same(a.largest(lane_a), b.largest(lane_b))) return "largest";
   const auto equal = [](const std::vector<long double>& x, const std::vector<long double>& y) {
-    return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](long double p, long double q) { return p == q || (p != p && q != q); });
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                      [](long double p, long double q) { return p == q || (p != p && q != q); });
   };
   std::vector<long double> x, y, lead_x, lead_y;
   for (const Kernel::Moment m : {Kernel::Moment::now, Kernel::Moment::begun, Kernel::Moment::before}) {
@@ -129,9 +142,12 @@ std::string difference_of_motions(const Kernel& a, int lane_a, const Kernel& b, 
 // Where a lane's motion starts: at the start, without a value, far from the constraints, a little off.
 std::vector<long double> start_of_lane(const Reference& r, int lane) {
   std::vector<long double> state = r.start.state;
-  if (lane == 1) state[0] = std::numeric_limits<long double>::quiet_NaN();
-  else if (lane == 2) state.back() += 0.1L;
-  else state[0] += 1e-18L * lane;
+  if (lane == 1)
+    state[0] = std::numeric_limits<long double>::quiet_NaN();
+  else if (lane == 2)
+    state.back() += 0.1L;
+  else
+    state[0] += 1e-18L * lane;
   return state;
 }
 
@@ -186,13 +202,16 @@ TEST_P(KernelOf, EqualsTheInterpretedTape) {
   ASSERT_TRUE(plain.prepare().ok());
   ASSERT_TRUE(plain.solve().ok());
   ASSERT_TRUE(plain.extend().ok());
-  const double unavoidable = difference(*plan, reference, [&](std::size_t j, int order) { return plain.coefficient(j, order); });
+  const double unavoidable =
+      difference(*plan, reference, [&](std::size_t j, int order) { return plain.coefficient(j, order); });
   for (const Tier& tier : tiers()) {
     Kernel kernel(plan, 1, &tier);
     kernel.set_parameters(0, r.parameters);
-    kernel.load(0, static_cast<double>(r.start.t), Reference::narrow(r.start.state), Reference::narrow(r.start.leading));
+    kernel.load(0, static_cast<double>(r.start.t), Reference::narrow(r.start.state),
+                Reference::narrow(r.start.leading));
     kernel.expand();
-    const double off = difference(*plan, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); });
+    const double off =
+        difference(*plan, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); });
     EXPECT_LT(off, 1e-13 + 10 * unavoidable) << tier.name;
   }
 }
@@ -230,10 +249,12 @@ TEST_P(WritingsOf, EqualTheInterpretedTape) {
     });
   };
   const double derived = off_by(plan);
-  for (const Representation& w : r.representations(plan, WritingEffort::long_motion)) EXPECT_LT(off_by(w.plan), 1e-12 + 10 * derived) << name(w.writing);
+  for (const Representation& w : r.representations(plan, WritingEffort::long_motion))
+    EXPECT_LT(off_by(w.plan), 1e-12 + 10 * derived) << name(w.writing);
 }
 
-// Every lane has the bits of a kernel of one lane, whatever its neighbours do: other states, one of them without a value, one far from the constraints.
+// Every lane has the bits of a kernel of one lane, whatever its neighbours do: other states, one of them without a
+// value, one far from the constraints.
 TEST_P(KernelOf, LanesHaveTheSameBits) {
   const Reference r(GetParam());
   ASSERT_EQ(r.why, "");
@@ -246,14 +267,18 @@ TEST_P(KernelOf, LanesHaveTheSameBits) {
     one.set_parameters(0, r.parameters);
     const auto state_of = [&](int lane) {
       std::vector<double> state = Reference::narrow(r.start.state);
-      if (lane == 1) state[0] = std::numeric_limits<double>::quiet_NaN();
-      else if (lane == 2) state[0] += 0.1;
-      else state[0] += 1e-16 * lane;
+      if (lane == 1)
+        state[0] = std::numeric_limits<double>::quiet_NaN();
+      else if (lane == 2)
+        state[0] += 0.1;
+      else
+        state[0] += 1e-16 * lane;
       return state;
     };
     for (int lane = 0; lane < tier.lanes; ++lane) {
       lanes.set_parameters(lane, r.parameters);
-      lanes.load(lane, static_cast<double>(r.start.t) + 0.01 * lane, state_of(lane), Reference::narrow(r.start.leading));
+      lanes.load(lane, static_cast<double>(r.start.t) + 0.01 * lane, state_of(lane),
+                 Reference::narrow(r.start.leading));
     }
     lanes.expand();
     for (int lane = 0; lane < tier.lanes; ++lane) {
@@ -270,7 +295,8 @@ TEST_P(KernelOf, LanesHaveTheSameBits) {
   }
 }
 
-// Machine code against the table-driven arithmetic: the same bits, from the same numbers, also where the arena holds another expansion's.
+// Machine code against the table-driven arithmetic: the same bits, from the same numbers, also where the arena holds
+// another expansion's.
 TEST_P(CompiledKernelOf, HasTheSameBits) {
   const Reference r(GetParam());
   ASSERT_EQ(r.why, "");
@@ -292,7 +318,8 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
     EXPECT_EQ(a.pivots(0).determinant, b.pivots(0).determinant);
     const Plan& p = plain->plan();
     for (std::size_t j = 0; j < p.x.size(); ++j)
-      for (int k = 0; k <= p.stages + p.d[j]; ++k) EXPECT_EQ(a.coefficient(j, k), b.coefficient(j, k)) << r.scenario.system.variable_names[j] << " order " << k;
+      for (int k = 0; k <= p.stages + p.d[j]; ++k)
+        EXPECT_EQ(a.coefficient(j, k), b.coefficient(j, k)) << r.scenario.system.variable_names[j] << " order " << k;
   }
 }
 
@@ -308,7 +335,9 @@ TEST_P(CompiledKernelOf, MovesWithTheSameBits) {
     int comparison = 0;
     walk(r, {&a, &b}, [&] {
       ++comparison;
-      for (int lane = 0; lane < lanes; ++lane) EXPECT_EQ(difference_of_motions(a, lane, b, lane), "") << "lane " << lane << " of " << lanes << ", " << comparison;
+      for (int lane = 0; lane < lanes; ++lane)
+        EXPECT_EQ(difference_of_motions(a, lane, b, lane), "")
+            << "lane " << lane << " of " << lanes << ", " << comparison;
     });
   }
 }
@@ -352,14 +381,19 @@ TEST_P(KernelOf, LanesMoveWithTheSameBits) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Model, KernelOf, testing::ValuesIn(shipped_except({kWithoutKernel})), [](const auto& p) { return test::test_name(p.param); });
-INSTANTIATE_TEST_SUITE_P(Model, WritingsOf, testing::ValuesIn(shipped_except({kWithoutKernel})), [](const auto& p) { return test::test_name(p.param); });
-INSTANTIATE_TEST_SUITE_P(Quasi, KernelOf, testing::ValuesIn(kQuasi), [](const auto& p) { return test::test_name(p.param.substr(kInQuasi.size())); });
-INSTANTIATE_TEST_SUITE_P(Quasi, CompiledKernelOf, testing::ValuesIn(kQuasi), [](const auto& p) { return test::test_name(p.param.substr(kInQuasi.size())); });
+INSTANTIATE_TEST_SUITE_P(Model, KernelOf, testing::ValuesIn(shipped_except({kWithoutKernel})),
+                         [](const auto& p) { return test::test_name(p.param); });
+INSTANTIATE_TEST_SUITE_P(Model, WritingsOf, testing::ValuesIn(shipped_except({kWithoutKernel})),
+                         [](const auto& p) { return test::test_name(p.param); });
+INSTANTIATE_TEST_SUITE_P(Quasi, KernelOf, testing::ValuesIn(kQuasi),
+                         [](const auto& p) { return test::test_name(p.param.substr(kInQuasi.size())); });
+INSTANTIATE_TEST_SUITE_P(Quasi, CompiledKernelOf, testing::ValuesIn(kQuasi),
+                         [](const auto& p) { return test::test_name(p.param.substr(kInQuasi.size())); });
 INSTANTIATE_TEST_SUITE_P(Model, CompiledKernelOf, testing::ValuesIn(shipped_except({kWithoutKernel, kNotCompiled})),
                          [](const auto& p) { return test::test_name(p.param); });
 
-// The start of the present expansion and of the one before are kept, whether the kernel went on from there or was told where to.
+// The start of the present expansion and of the one before are kept, whether the kernel went on from there or was told
+// where to.
 TEST(Kernels, KeepTheirLastTwoStarts) {
   const Reference r("zoo/chaplygin-sleigh");
   ASSERT_EQ(r.why, "");
@@ -429,7 +463,8 @@ field = "-g*ey"
 [initial]
 a = 1
 b = 0.5
-)toml"));;
+)toml"));
+  ;
   ASSERT_EQ(r.why, "");
   const auto plan = r.plan();
   ASSERT_TRUE(plan);
@@ -444,15 +479,23 @@ b = 0.5
     kernel.set_time(0, 0);
     kernel.begin();
     // As doubles the angles are off by 5e-13.
-    EXPECT_LT(difference(*plan, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); }), 2e-14) << tier.name;
+    EXPECT_LT(difference(*plan, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); }),
+              2e-14)
+        << tier.name;
   }
 }
 
-// The inverse for the unknowns alone, all that depends on them by its own row: of so many links, alone and in lanes, to the same bits.
+// The inverse for the unknowns alone, all that depends on them by its own row: of so many links, alone and in lanes, to
+// the same bits.
 TEST(Kernels, InvertForManyUnknowns) {
   const std::string chain = test::shipped_text("zoo/chain");
-  for (const auto& [links, company, inverted] : {std::tuple(6, Company::alone, true), {6, Company::in_lanes, true}, {9, Company::alone, true}, {10, Company::in_lanes, true},
-                                                 {11, Company::in_lanes, false}, {18, Company::alone, true}, {24, Company::alone, true}}) {
+  for (const auto& [links, company, inverted] : {std::tuple(6, Company::alone, true),
+                                                 {6, Company::in_lanes, true},
+                                                 {9, Company::alone, true},
+                                                 {10, Company::in_lanes, true},
+                                                 {11, Company::in_lanes, false},
+                                                 {18, Company::alone, true},
+                                                 {24, Company::alone, true}}) {
     const Reference r(test::model_of(test::replaced(chain, "n = 4", "n = " + std::to_string(links))));
     ASSERT_EQ(r.why, "");
     const auto plan = KernelPlan::make(r.stepping, kStages, r.parameters, 0, Reference::narrow(r.start.state), company);
@@ -472,11 +515,13 @@ TEST(Kernels, InvertForManyUnknowns) {
         ASSERT_EQ(plan->compile({}), "");
       }
       k->begin();
-      EXPECT_LT(difference(*plan, reference, [&](std::size_t j, int order) { return k->coefficient(j, order); }), 1e-12) << links;
+      EXPECT_LT(difference(*plan, reference, [&](std::size_t j, int order) { return k->coefficient(j, order); }), 1e-12)
+          << links;
     }
     EXPECT_EQ(difference_of_motions(tables, 0, compiled, 0), "") << links;
     for (std::size_t j = 0; j < r.stepping->unknowns(); ++j)
-      for (int order = 0; order <= kStages + 2; ++order) EXPECT_EQ(tables.coefficient(j, order), compiled.coefficient(j, order)) << links;
+      for (int order = 0; order <= kStages + 2; ++order)
+        EXPECT_EQ(tables.coefficient(j, order), compiled.coefficient(j, order)) << links;
   }
 }
 

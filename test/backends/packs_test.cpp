@@ -1,13 +1,12 @@
 // Isomorphic steps of one motion in lanes: who shares a vector with whom, and the same bits as one by one.
-#include "jit/packs.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <set>
 
+#include <gtest/gtest.h>
+
 #include "jit/packed_memory.h"
+#include "jit/packs.h"
 #include "kernel/kernel.h"
 #include "run/representation.h"
 #include "run/simulate.h"
@@ -26,8 +25,8 @@ struct Motion {
     if (o.ok()) o = initial_state(scenario, {}, start);
     if (!o.ok()) return;
     parameters = parameter_values<long double>(*scenario.model);
-    plan = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), stages, parameters, static_cast<double>(start.t),
-                            {start.state.begin(), start.state.end()});
+    plan = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), stages,
+                            parameters, static_cast<double>(start.t), {start.state.begin(), start.state.end()});
   }
   void begin(Kernel& k) const {
     k.set_parameters(0, parameters);
@@ -41,7 +40,9 @@ struct Motion {
   std::shared_ptr<const KernelPlan> plan;
 };
 
-std::shared_ptr<const Model> chain(int links) { return test::model_of(test::replaced(test::shipped_text("zoo/chain"), "n = 4", "n = " + std::to_string(links))); }
+std::shared_ptr<const Model> chain(int links) {
+  return test::model_of(test::replaced(test::shipped_text("zoo/chain"), "n = 4", "n = " + std::to_string(links)));
+}
 
 // Of every shipped model: what lies side by side is what the lanes need.
 TEST(Packs, HoldEachSumOnceInTheLanesOfItsSeries) {
@@ -83,28 +84,34 @@ TEST(Packs, HoldEachSumOnceInTheLanesOfItsSeries) {
     std::set<std::uint32_t> taken;
     for (const jit::Convolution& c : all) {
       const jit::PackedMemory::Sums& s = memory.sums(c);
-      for (std::uint32_t i = 0; i < 2 * kBlock; ++i) EXPECT_TRUE(taken.insert(s.at + s.step * i).second && s.at + s.step * i < memory.size()) << name;
+      for (std::uint32_t i = 0; i < 2 * kBlock; ++i)
+        EXPECT_TRUE(taken.insert(s.at + s.step * i).second && s.at + s.step * i < memory.size()) << name;
     }
   }
   EXPECT_GT(packed, 500U);
 }
 
-// Eight links: two packs of sines and two of cosines, and as many of their products with the tensions. Sines and cosines of four links share their angles,
-// their products share them.
+// Eight links: two packs of sines and two of cosines, and as many of their products with the tensions. Sines and
+// cosines of four links share their angles, their products share them.
 TEST(Packs, FollowTheLinksOfAChain) {
   Motion m(chain(8));
   ASSERT_TRUE(m.plan);
   const std::vector<double> state(m.start.state.begin(), m.start.state.end());
-  m.plan = cheapest(representations({m.plan, m.scenario.structure, {}, m.parameters, 0, state, m.scenario.mechanics.get()}, WritingEffort::very_long_motion)).plan;
+  m.plan =
+      cheapest(representations({m.plan, m.scenario.structure, {}, m.parameters, 0, state, m.scenario.mechanics.get()},
+                               WritingEffort::very_long_motion))
+          .plan;
   const jit::Packs packs = jit::choose_packs(m.plan->plan(), kWidth);
   std::size_t sums = 0;
   for (const Step& s : m.plan->plan().stage) sums += jit::convolutions(s).size();
   std::size_t full = 0, shared = 0;
-  for (const jit::Packs::Pack& p : packs.packs) full += std::count_if(p.lanes.begin(), p.lanes.end(), [](const auto& c) { return c.has_value(); }) == kWidth;
+  for (const jit::Packs::Pack& p : packs.packs)
+    full += std::count_if(p.lanes.begin(), p.lanes.end(), [](const auto& c) { return c.has_value(); }) == kWidth;
   EXPECT_EQ(packs.packs.size(), sums / kWidth);
   EXPECT_EQ(full, packs.packs.size());
   for (std::size_t i = 0; i < packs.packs.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) shared += packs.packs[i].a == packs.packs[j].a || packs.packs[i].a == packs.packs[j].b;
+    for (std::size_t j = 0; j < i; ++j)
+      shared += packs.packs[i].a == packs.packs[j].a || packs.packs[i].a == packs.packs[j].b;
   EXPECT_EQ(shared, 6U);
 }
 
@@ -120,11 +127,13 @@ void expect_same_bits(const Motion& m, const std::string& what) {
   for (std::size_t j = 0; j < plan.x.size(); ++j)
     for (int order = 0; order <= plan.stages + plan.d[j]; ++order) {
       const double x = tables.coefficient(j, order), y = compiled.coefficient(j, order);
-      EXPECT_TRUE(x == y || (std::isnan(x) && std::isnan(y))) << what << " " << j << " " << order << ": " << x << " " << y;
+      EXPECT_TRUE(x == y || (std::isnan(x) && std::isnan(y)))
+          << what << " " << j << " " << order << ": " << x << " " << y;
     }
 }
 
-// Numbers of links that fill no vector, orders that fill no block, chains with lengths of their own: nothing changes but the time.
+// Numbers of links that fill no vector, orders that fill no block, chains with lengths of their own: nothing changes
+// but the time.
 TEST(Packs, ChangeNoBit) {
   const std::string text = test::shipped_text("zoo/chain");
   std::string uneven = test::replaced(text, "l = 0.2", "\"l[i]\" = 0.2");

@@ -1,10 +1,10 @@
 // Sines and cosines of the kernels: against long double, in every tier, and the same bits in all lanes.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "kernel/arithmetic.h"
 
@@ -18,7 +18,8 @@ std::vector<double> angles() {
   std::vector<double> list{0.0, -0.0, 1e-300, 1e-20, 1e-8, 0.5, 0x1p27, -0x1p27, 0x1.fffffffffffffp26, 1e10, 1e22};
   constexpr long double kHalfPi = 1.57079632679489661923132169163975144L;
   for (long k = 1; k < 90'000'000; k = k * 5 / 4 + 1)
-    for (const double off : {0.0, 1e-16, 1e-9, 0.3, 0.785, 0.7854, 1.2}) list.push_back(static_cast<double>(k * kHalfPi + off));
+    for (const double off : {0.0, 1e-16, 1e-9, 0.3, 0.785, 0.7854, 1.2})
+      list.push_back(static_cast<double>(k * kHalfPi + off));
   for (int i = 0; i < 20'000; ++i) list.push_back(std::ldexp(std::fmod(0.618033988749895 * i, 1.0) - 0.5, i % 27));
   const std::size_t n = list.size();
   for (std::size_t i = 0; i < n; ++i) list.push_back(-list[i]);
@@ -26,9 +27,11 @@ std::vector<double> angles() {
   return list;
 }
 
-// Below 1e-8, near multiples of a quarter turn, pi/2 in two doubles is not enough for all places: for an absolute error of 1e-24 it is.
+// Below 1e-8, near multiples of a quarter turn, pi/2 in two doubles is not enough for all places: for an absolute error
+// of 1e-24 it is.
 double units(double have, long double want) {
-  const double size = std::max(std::abs(static_cast<double>(want)), 1e-8), ulp = std::nextafter(size, 2 * size + 1) - size;
+  const double size = std::max(std::abs(static_cast<double>(want)), 1e-8),
+               ulp = std::nextafter(size, 2 * size + 1) - size;
   return static_cast<double>(std::abs(have - want)) / ulp;
 }
 
@@ -46,7 +49,8 @@ TEST(Sines, AreRightToTheLastPlace) {
     double s, c;
     tier.sines_of_one(&zero, nullptr, &s, &c);
     EXPECT_TRUE(s == 0 && c == 1);
-    for (const double none : {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    for (const double none : {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN()}) {
       tier.sines_of_one(&none, nullptr, &s, &c);
       EXPECT_TRUE(s != s && c != c) << tier.name << ' ' << none;
     }
@@ -61,8 +65,10 @@ TEST(Sines, KnowWhatAnAngleIsBeyondItsDouble) {
       const double beyond = x * 0x1.3p-55;
       double s, c;
       tier.sines_of_one(&x, &beyond, &s, &c);
-      EXPECT_LT(units(s, sinl(x) + beyond * cosl(x) - beyond * beyond / 2 * sinl(x)), fused(tier) ? 0.8 : 1.2) << tier.name << ' ' << x;
-      EXPECT_LT(units(c, cosl(x) - beyond * sinl(x) - beyond * beyond / 2 * cosl(x)), fused(tier) ? 0.8 : 1.2) << tier.name << ' ' << x;
+      EXPECT_LT(units(s, sinl(x) + beyond * cosl(x) - beyond * beyond / 2 * sinl(x)), fused(tier) ? 0.8 : 1.2)
+          << tier.name << ' ' << x;
+      EXPECT_LT(units(c, cosl(x) - beyond * sinl(x) - beyond * beyond / 2 * cosl(x)), fused(tier) ? 0.8 : 1.2)
+          << tier.name << ' ' << x;
     }
 }
 

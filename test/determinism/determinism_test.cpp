@@ -7,7 +7,8 @@
 namespace anholon {
 namespace {
 
-std::vector<std::vector<std::string>> rows(const std::shared_ptr<const Model>& model, const Rational& to, Precision precision = Precision::real) {
+std::vector<std::vector<std::string>> rows(const std::shared_ptr<const Model>& model, const Rational& to,
+                                           Precision precision = Precision::real) {
   Scenario s;
   const Outcome o = make_scenario(model, *find_formulation("routh"), {}, s);
   if (!o.ok()) throw std::runtime_error(o.message);
@@ -46,7 +47,8 @@ TEST(DeterminismOf, MultiprecisionAndAfterAnotherPrecision) {
 
 TEST(DeterminismOf, ADifferentParameterIsSeen) {
   const std::string text = test::shipped_text("zoo/rocket");
-  EXPECT_NE(rows(test::model_of(text), Rational(1)), rows(test::model_of(text, {{"ue", "3 + 1e-15"}}), Rational(1))) << "the mutant";
+  EXPECT_NE(rows(test::model_of(text), Rational(1)), rows(test::model_of(text, {{"ue", "3 + 1e-15"}}), Rational(1)))
+      << "the mutant";
 }
 
 }  // namespace

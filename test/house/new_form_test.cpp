@@ -1,4 +1,5 @@
-// A formulation is added by one file and nothing else: this program is the house with one more file in its list of forms.
+// A formulation is added by one file and nothing else: this program is the house with one more file in its list of
+// forms.
 #include <gtest/gtest.h>
 
 #include "run/eliminate.h"

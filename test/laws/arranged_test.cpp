@@ -54,7 +54,8 @@ TEST_P(Arranged, AMutantIsRefuted) {
   const std::shared_ptr<const Model> model = test::shipped(GetParam());
   for (Expr e : routh(*model))
     if (!proved_zero(e)) {
-      EXPECT_EQ(compare(*model, arranged(-e, model->names), e), Verdict::different) << print(e, model->names, Format::text);
+      EXPECT_EQ(compare(*model, arranged(-e, model->names), e), Verdict::different)
+          << print(e, model->names, Format::text);
     }
 }
 

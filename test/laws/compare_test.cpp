@@ -1,8 +1,8 @@
-// Published equations: the gallery of papers, derived equations as they are printed, multiples and combinations of them, and
-// misprints of each kind, which must be named; dots that are lost at up to four places, too.
-#include <gtest/gtest.h>
-
+// Published equations: the gallery of papers, derived equations as they are printed, multiples and combinations of
+// them, and misprints of each kind, which must be named; dots that are lost at up to four places, too.
 #include <cstdlib>
+
+#include <gtest/gtest.h>
 
 #include "expr/arrange.h"
 #include "formulation/formulation.h"
@@ -35,11 +35,13 @@ struct Shipped {
   // Routh's equations as `derive` prints them.
   std::vector<std::string> derived() {
     const Mechanics& m = subject->mechanics();
-    const Column left = put_masses(subject->model(), lagrange_operator(m)), right = put_masses(subject->model(), right_side(m));
+    const Column left = put_masses(subject->model(), lagrange_operator(m)),
+                 right = put_masses(subject->model(), right_side(m));
     const SymbolNames& names = subject->names();
     std::vector<std::string> list;
     for (std::size_t a = 0; a < left.size(); ++a)
-      list.push_back(print(arranged(left[a], names), names, Format::text) + " = " + print(arranged(right[a], names), names, Format::text));
+      list.push_back(print(arranged(left[a], names), names, Format::text) + " = " +
+                     print(arranged(right[a], names), names, Format::text));
     return list;
   }
 };
@@ -50,8 +52,9 @@ struct Misprint {
   const char *right, *wrong;
 };
 constexpr Misprint kMisprints[] = {
-    {"sign", " + ", " - "}, {"sign", " - ", " + "},    {"prime", "''", "'"},   {"prime", "'*", "''*"}, {"exponent", "^2", "^3"},
-    {"exponent", "^2", ""}, {"function", "sin(", "cos("}, {"function", "cos(", "sin("}, {"coefficient", "2*", ""}, {"coefficient", "/2", ""},
+    {"sign", " + ", " - "},    {"sign", " - ", " + "},    {"prime", "''", "'"},         {"prime", "'*", "''*"},
+    {"exponent", "^2", "^3"},  {"exponent", "^2", ""},    {"function", "sin(", "cos("}, {"function", "cos(", "sin("},
+    {"coefficient", "2*", ""}, {"coefficient", "/2", ""},
 };
 
 // The first place where it can happen: not inside a name, a number or an exponent.
@@ -88,7 +91,8 @@ TEST_P(Gallery, WhatIsReadOtherwiseIsFalse) {
     EXPECT_EQ(s.judged(e).verdict, restored[e.label] == e.text() ? Verdict::proved : Verdict::refuted) << e.label;
 }
 
-INSTANTIATE_TEST_SUITE_P(Papers, Gallery, testing::Values("luo-zhao-example-1", "luo-zhao-example-2"), [](const auto& p) { return test_name(p.param); });
+INSTANTIATE_TEST_SUITE_P(Papers, Gallery, testing::Values("luo-zhao-example-1", "luo-zhao-example-2"),
+                         [](const auto& p) { return test_name(p.param); });
 
 TEST(GalleryMisprints, AreNamed) {
   Shipped one("papers/luo-zhao-example-1-symbolic");
@@ -96,14 +100,17 @@ TEST(GalleryMisprints, AreNamed) {
   for (const PublishedEquation& e : one.read(file_text(source_dir() / "models/papers/luo-zhao-example-1.as-read.eq"))) {
     if (e.label[0] != '4') continue;
     const Comparison c = one.compared(e);
-    right[e.label] = c.verdict == Verdict::proved ? "true" : c.changes.size() == 1 ? c.changes[0].from + " -> " + c.changes[0].to : "?";
+    right[e.label] = c.verdict == Verdict::proved ? "true"
+                     : c.changes.size() == 1      ? c.changes[0].from + " -> " + c.changes[0].to
+                                                  : "?";
   }
   EXPECT_EQ(right["4.1"], "r^2*c^2*phi'^2 -> r^2*cos(psi)^2*phi'^2");
   EXPECT_EQ(right["4.3.r"], "m*ur -> m'*ur");
   EXPECT_EQ(right["4.3.phi"], "m*r*uf*cos(psi) -> m'*r*uf*cos(psi)");
   EXPECT_EQ(right["4.4.psi"], "m*r*up -> m'*r*up");
   // Of the two differences of (4.3.psi) one alone.
-  const auto psi = one.read("e: m*D(r^2*psi', 1) + m*r^2*phi'^2*sin(psi)*cos(psi) = m'*r*up + 2*r*psi'^2*lambda - 2*m*w*r^2*phi'*sin(psi)*cos(psi) - m*r^2*w^2*sin(psi)*cos(psi)\n");
+  const auto psi = one.read("e: m*D(r^2*psi', 1) + m*r^2*phi'^2*sin(psi)*cos(psi) = m'*r*up + 2*r*psi'^2*lambda - "
+                            "2*m*w*r^2*phi'*sin(psi)*cos(psi) - m*r^2*w^2*sin(psi)*cos(psi)\n");
   const Comparison c = one.compared(psi[0]);
   ASSERT_EQ(c.changes.size(), 1U);
   EXPECT_EQ(c.changes[0].from + " -> " + c.changes[0].to, "2*r*psi'^2*lambda -> 2*r^2*psi'*lambda");
@@ -116,12 +123,15 @@ TEST_P(Derived, TrueAsPrintedScaledAndCombined) {
   const std::vector<std::string> derived = s.derived();
   std::string text;
   for (std::size_t a = 0; a < derived.size(); ++a) {
-    const std::string label = "e" + std::to_string(a), side = derived[a].substr(0, derived[a].find(" = ")), other = derived[a].substr(derived[a].find(" = ") + 3);
+    const std::string label = "e" + std::to_string(a), side = derived[a].substr(0, derived[a].find(" = ")),
+                      other = derived[a].substr(derived[a].find(" = ") + 3);
     text += label + ": " + derived[a] + "\n";
     text += label + ".scaled: -3*(" + side + ")/(2 + sin(t)) = -3*(" + other + ")/(2 + sin(t))\n";
     if (a > 0) {
-      const std::string before = derived[a - 1].substr(0, derived[a - 1].find(" = ")), before_other = derived[a - 1].substr(derived[a - 1].find(" = ") + 3);
-      text += label + ".combined: sin(t)*(" + side + ") - (" + before + ") = sin(t)*(" + other + ") - (" + before_other + ")\n";
+      const std::string before = derived[a - 1].substr(0, derived[a - 1].find(" = ")),
+                        before_other = derived[a - 1].substr(derived[a - 1].find(" = ") + 3);
+      text += label + ".combined: sin(t)*(" + side + ") - (" + before + ") = sin(t)*(" + other + ") - (" +
+              before_other + ")\n";
     }
   }
   for (const PublishedEquation& e : s.read(text)) {
@@ -170,7 +180,9 @@ struct Symbol {
 
 std::vector<Symbol> symbols_of(const std::string& text) {
   std::vector<Symbol> list;
-  const auto letter = [&](std::size_t i) { return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_' || text[i] == '.'); };
+  const auto letter = [&](std::size_t i) {
+    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_' || text[i] == '.');
+  };
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (!letter(i) || std::isdigit(static_cast<unsigned char>(text[i])) || (i > 0 && letter(i - 1))) continue;
     Symbol s{i, 0, 0};
@@ -198,7 +210,8 @@ std::string without_dots(const std::string& text, std::size_t count, Dice& dice)
   if (dotted.size() < count) return {};
   while (dotted.size() > count) dotted.erase(dotted.begin() + static_cast<std::ptrdiff_t>(dice.roll(dotted.size())));
   std::string wrong = text;
-  for (std::size_t k = dotted.size(); k-- > 0;) wrong.erase(dotted[k].at + dotted[k].length, 1 + dice.roll(dotted[k].dots));
+  for (std::size_t k = dotted.size(); k-- > 0;)
+    wrong.erase(dotted[k].at + dotted[k].length, 1 + dice.roll(dotted[k].dots));
   return wrong;
 }
 
@@ -216,7 +229,8 @@ std::string with_other_sign(const std::string& text, Dice& dice) {
 std::string with_other_index(const std::string& text, const std::vector<std::string>& coordinates, Dice& dice) {
   std::vector<Symbol> places;
   for (const Symbol& s : symbols_of(text))
-    if (std::find(coordinates.begin(), coordinates.end(), text.substr(s.at, s.length)) != coordinates.end()) places.push_back(s);
+    if (std::find(coordinates.begin(), coordinates.end(), text.substr(s.at, s.length)) != coordinates.end())
+      places.push_back(s);
   if (places.empty() || coordinates.size() < 2) return {};
   const Symbol s = places[dice.roll(places.size())];
   std::string other = text.substr(s.at, s.length);
@@ -245,10 +259,12 @@ TEST_P(Derived, LostDotsWrongSignsAndOtherIndicesAreNamed) {
       EXPECT_EQ(c.what.find("times 0"), std::string::npos) << c.what;
       ++tried;
       const bool found = std::any_of(c.changes.begin(), c.changes.end(), [&](const Change& change) {
-        return change.places.size() <= places && proved_zero(s.subject->difference(s.read("e: " + change.equation)[0]) - meant);
+        return change.places.size() <= places &&
+               proved_zero(s.subject->difference(s.read("e: " + change.equation)[0]) - meant);
       });
       named += found;
-      EXPECT_TRUE(found) << "meant: " << right << "\nread: " << wrong << "\nnamed: " << (c.changes.empty() ? "nothing" : c.changes[0].equation);
+      EXPECT_TRUE(found) << "meant: " << right << "\nread: " << wrong
+                         << "\nnamed: " << (c.changes.empty() ? "nothing" : c.changes[0].equation);
     };
     for (std::size_t count = 1; count <= 4; ++count)
       for (int k = 0; k < rounds; ++k) check(without_dots(original.text(), count, dice), count);
@@ -262,8 +278,9 @@ TEST_P(Derived, LostDotsWrongSignsAndOtherIndicesAreNamed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Derived,
-                         testing::Values("papers/luo-zhao-example-1", "papers/luo-zhao-example-2", "zoo/appell-hamel", "zoo/chaplygin-sleigh",
-                                         "zoo/double-pendulum-cartesian", "zoo/vertical-disc", "zoo/variable-mass-pendulum", "zoo/second-order-linear"),
+                         testing::Values("papers/luo-zhao-example-1", "papers/luo-zhao-example-2", "zoo/appell-hamel",
+                                         "zoo/chaplygin-sleigh", "zoo/double-pendulum-cartesian", "zoo/vertical-disc",
+                                         "zoo/variable-mass-pendulum", "zoo/second-order-linear"),
                          [](const auto& p) { return test_name(p.param); });
 
 }  // namespace

@@ -1,8 +1,8 @@
-// The ten examples of the DAE view (theory: dae-view), each with its numbers: structure, state dimension, what is free at the
-// start, and where a motion ends.
-#include <gtest/gtest.h>
-
+// The ten examples of the DAE view (theory: dae-view), each with its numbers: structure, state dimension, what is free
+// at the start, and where a motion ends.
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "run/evaluate.h"
 #include "run/simulate.h"
@@ -25,7 +25,8 @@ struct Motion {
   MemorySink rows;
   double last(const std::string& column) const {
     const auto& names = rows.names();
-    return std::stod(rows.rows().back()[static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin())]);
+    return std::stod(
+        rows.rows().back()[static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin())]);
   }
 };
 
@@ -55,7 +56,8 @@ std::map<std::string, double> at_the_start(const std::shared_ptr<const Model>& m
 }
 
 TEST(DaeExamples, One_TheSleighHasTheSameStateInEveryForm) {
-  for (const char* form : {"routh", "chaplygin", "maggi", "kane"}) EXPECT_EQ(scenario(test::shipped("zoo/chaplygin-sleigh"), form).structure.state_dimension, 5) << form;
+  for (const char* form : {"routh", "chaplygin", "maggi", "kane"})
+    EXPECT_EQ(scenario(test::shipped("zoo/chaplygin-sleigh"), form).structure.state_dimension, 5) << form;
 }
 
 // (m - 2 lambda) r'' = F, r'' = +- A F/|F|, lambda = m/2 (1 -+ |F|/(m A)).
@@ -72,7 +74,9 @@ TEST(DaeExamples, Three_TheOffsetsOfTheThirdOrderConstraintAreCanonical) {
   EXPECT_EQ(s.structure.state_dimension, 7);
 }
 
-TEST(DaeExamples, Four_AccelerationsAreFreeUnderAConstantJerk) { EXPECT_EQ(scenario(test::shipped("zoo/constant-jerk")).structure.state_dimension, 9); }
+TEST(DaeExamples, Four_AccelerationsAreFreeUnderAConstantJerk) {
+  EXPECT_EQ(scenario(test::shipped("zoo/constant-jerk")).structure.state_dimension, 9);
+}
 
 TEST(DaeExamples, Five_HolonomicConstraintsHaveIndexThree) {
   const Scenario s = scenario(test::shipped("zoo/double-pendulum-cartesian"));
@@ -81,7 +85,8 @@ TEST(DaeExamples, Five_HolonomicConstraintsHaveIndexThree) {
 }
 
 TEST(DaeExamples, Six_TheAppellHamelMachineStopsAtItsApex) {
-  const auto up = test::model_of(test::replaced(test::shipped_text("zoo/appell-hamel"), "\"-sqrt(5)/3\"", "\"sqrt(5)/3\""));
+  const auto up =
+      test::model_of(test::replaced(test::shipped_text("zoo/appell-hamel"), "\"-sqrt(5)/3\"", "\"sqrt(5)/3\""));
   EXPECT_EQ(scenario(up).structure.state_dimension, 5);
   for (const char* form : {"routh", "maggi"}) {
     const Motion m = run(up, Rational(2), form);
@@ -95,11 +100,14 @@ TEST(DaeExamples, Six_TheAppellHamelMachineStopsAtItsApex) {
 // A combination of the two constraints of the disc: q'' and N are those of two constraints, lambda is the least one.
 TEST(DaeExamples, Seven_ARedundantConstraintChangesNothing) {
   const std::string disc =
-      "coordinates = [\"x\", \"y\", \"th\", \"ph\"]\n[[body]]\nname = \"disc\"\nmass = 2\ninertia = [\"1/5\", \"2/5\", \"1/5\"]\ncenter = [\"x\", \"y\", \"0\"]\n"
+      "coordinates = [\"x\", \"y\", \"th\", \"ph\"]\n[[body]]\nname = \"disc\"\nmass = 2\ninertia = [\"1/5\", \"2/5\", "
+      "\"1/5\"]\ncenter = [\"x\", \"y\", \"0\"]\n"
       "orientation = \"rotz(th)*roty(ph)\"\n[[force]]\nname = \"f\"\non = \"disc\"\nvector = [\"1\", \"x/3\", \"0\"]\n"
-      "[[constraint]]\nname = \"a\"\nequation = \"x' = cos(th)*ph'/2\"\n[[constraint]]\nname = \"b\"\nequation = \"y' = sin(th)*ph'/2\"\n";
+      "[[constraint]]\nname = \"a\"\nequation = \"x' = cos(th)*ph'/2\"\n[[constraint]]\nname = \"b\"\nequation = \"y' "
+      "= sin(th)*ph'/2\"\n";
   const std::string start = "[initial]\nth = 0.4\n\"th'\" = 0.7\n\"ph'\" = 3\n";
-  const std::string both = "[[constraint]]\nname = \"both\"\nequation = \"2*x' - 3*y' = cos(th)*ph' - 3/2*sin(th)*ph'\"\n";
+  const std::string both =
+      "[[constraint]]\nname = \"both\"\nequation = \"2*x' - 3*y' = cos(th)*ph' - 3/2*sin(th)*ph'\"\n";
   const auto two = test::model_of(disc + start), three = test::model_of(disc + both + start);
   const Scenario s = scenario(three);
   EXPECT_EQ(s.redundant.size(), 1U);
@@ -107,7 +115,8 @@ TEST(DaeExamples, Seven_ARedundantConstraintChangesNothing) {
   const auto x = at_the_start(two), y = at_the_start(three);
   double squares = 0;
   for (const auto& [name, value] : x) {
-    if (name.rfind("lambda", 0) == 0) squares += value * value;
+    if (name.rfind("lambda", 0) == 0)
+      squares += value * value;
     else {
       EXPECT_NEAR(y.at(name), value, 4e-16 * std::max(1.0, std::abs(value))) << name;
     }
@@ -121,8 +130,10 @@ TEST(DaeExamples, Seven_ARedundantConstraintChangesNothing) {
 
 TEST(DaeExamples, Eight_AMassThatDependsOnTheAccelerationAsksForOneMoreNumber) {
   EXPECT_EQ(scenario(test::shipped("zoo/mass-depends-on-velocity")).structure.state_dimension, 2) << "one coordinate";
-  const std::string text = "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = \"2 + x''/10\"\nposition = [\"x\", \"y\", \"z\"]\n"
-                           "expelled_velocity = [\"1\", \"0\", \"0\"]\n[gravity]\nfield = \"-9*ez\"\n[initial]\n\"x'\" = 1\nqddot = {x = 0.3}\n";
+  const std::string text = "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = \"2 + "
+                           "x''/10\"\nposition = [\"x\", \"y\", \"z\"]\n"
+                           "expelled_velocity = [\"1\", \"0\", \"0\"]\n[gravity]\nfield = \"-9*ez\"\n[initial]\n\"x'\" "
+                           "= 1\nqddot = {x = 0.3}\n";
   const Scenario s = scenario(test::model_of(text));
   EXPECT_EQ(s.structure.state_dimension, 7);
   const Motion m = run(test::model_of(text), Rational(1, 10));
@@ -150,8 +161,12 @@ TEST(DaeExamples, Ten_ALiftedConstraintIsAnotherSystem) {
 class ItsOwnAcceleration : public testing::Test {
  protected:
   static std::string text(const std::string& force, const std::string& lambda) {
-    return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", \"0\"]\n[[force]]\nname = \"f\"\non = \"p\"\nvector = [\"" +
-           force + "\", \"0\", \"0\"]\n[[constraint]]\nname = \"c\"\nequation = \"x''*x''' + y''' = 0\"\n[initial]\nt = 0.1\nlambda = {c = " + lambda + "}\n";
+    return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", "
+           "\"0\"]\n[[force]]\nname = \"f\"\non = \"p\"\nvector = [\"" +
+           force +
+           "\", \"0\", \"0\"]\n[[constraint]]\nname = \"c\"\nequation = \"x''*x''' + y''' = 0\"\n[initial]\nt = "
+           "0.1\nlambda = {c = " +
+           lambda + "}\n";
   }
 };
 
@@ -178,11 +193,13 @@ TEST_F(ItsOwnAcceleration, GoesOnWhereItIsRegular) {
 
 // A parallelogram of bars passes the flat configuration, where its constraints are dependent.
 TEST(BetweenTwoSteps, AFoldedLinkageIsNoticed) {
-  const std::string text =
-      "coordinates = [\"a\", \"b\", \"c\"]\n[point]\nP = \"cos(a)*ex + sin(a)*ey + 2*cos(b)*ex + 2*sin(b)*ey\"\nQ = \"2*ex + cos(c)*ex + sin(c)*ey\"\n"
-      "[[particle]]\nname = \"A\"\nmass = 1\nposition = [\"cos(a)\", \"sin(a)\", \"0\"]\n[[particle]]\nname = \"B\"\nmass = 1\nposition = \"P\"\n"
-      "[[particle]]\nname = \"C\"\nmass = 1\nposition = \"Q\"\n[gravity]\nfield = \"-1*ey\"\n[[constraint]]\nname = \"closing\"\nequation = \"P = Q\"\n"
-      "[initial]\na = 1\n\"a'\" = -2\nguess = {b = 0, c = 1}\n";
+  const std::string text = "coordinates = [\"a\", \"b\", \"c\"]\n[point]\nP = \"cos(a)*ex + sin(a)*ey + 2*cos(b)*ex + "
+                           "2*sin(b)*ey\"\nQ = \"2*ex + cos(c)*ex + sin(c)*ey\"\n"
+                           "[[particle]]\nname = \"A\"\nmass = 1\nposition = [\"cos(a)\", \"sin(a)\", "
+                           "\"0\"]\n[[particle]]\nname = \"B\"\nmass = 1\nposition = \"P\"\n"
+                           "[[particle]]\nname = \"C\"\nmass = 1\nposition = \"Q\"\n[gravity]\nfield = "
+                           "\"-1*ey\"\n[[constraint]]\nname = \"closing\"\nequation = \"P = Q\"\n"
+                           "[initial]\na = 1\n\"a'\" = -2\nguess = {b = 0, c = 1}\n";
   const Motion routh = run(test::model_of(text), Rational(5)), maggi = run(test::model_of(text), Rational(5), "maggi");
   EXPECT_EQ(routh.report.outcome.kind, OutcomeKind::singular) << routh.report.outcome.message;
   // Maggi's equations lose their pivots a little before.

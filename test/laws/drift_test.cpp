@@ -1,9 +1,9 @@
 // Over many steps the constraints stay at round-off and the rolling coin keeps its energy.
 // `./dev test` runs 10^4 steps, `./dev long` (ANHOLON_LONG=1) all 10^6.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdlib>
+
+#include <gtest/gtest.h>
 
 #include "run/simulate.h"
 #include "support/models.h"
@@ -11,8 +11,8 @@
 namespace anholon::test {
 namespace {
 
-// What one step loses, relative to the state; what is left after projection, relative to the terms of the constraint: round-off of
-// the wider numbers the state is kept in.
+// What one step loses, relative to the state; what is left after projection, relative to the terms of the constraint:
+// round-off of the wider numbers the state is kept in.
 constexpr double kConstraintBound = 1e-13, kProjectedBound = 1e-18;
 constexpr double kEnergyBound = 1e-12;
 
@@ -70,7 +70,8 @@ TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
     for (const Input& in : tape.inputs) {
       const Node& node = model.graph->node(in.symbol);
       machine.series(in.slot)[0] = column(1 + node.order * n + node.index);
-      // The heading has turned so often that its 17 digits tell where x' and y' point to 1e-11 only: along it, as the coin rolls (R = 1/2).
+      // The heading has turned so often that its 17 digits tell where x' and y' point to 1e-11 only: along it, as the
+      // coin rolls (R = 1/2).
       if (const long double heading = column(1 + 2), rate = -column(1 + n + 4) / 2; node.order == 1 && node.index < 2)
         machine.series(in.slot)[0] = rate * (node.index == 0 ? std::cos(heading) : std::sin(heading));
     }
@@ -78,7 +79,8 @@ TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
     return machine.value(0) + 9.81L / 2 * std::sin(column(1 + 3));  // m = 1, R = 1/2, g = 9.81
   };
   const long double first = energy(m.rows.rows().front());
-  for (std::size_t i = 0; i < m.rows.rows().size(); ++i) EXPECT_LT(std::abs(static_cast<double>(energy(m.rows.rows()[i]) / first - 1)), kEnergyBound) << "row " << i;
+  for (std::size_t i = 0; i < m.rows.rows().size(); ++i)
+    EXPECT_LT(std::abs(static_cast<double>(energy(m.rows.rows()[i]) / first - 1)), kEnergyBound) << "row " << i;
 }
 
 }  // namespace

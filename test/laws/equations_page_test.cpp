@@ -46,7 +46,9 @@ TEST(EquationsPage, ExamplesAreWhatItSays) {
       const bool false_one = e.label.ends_with(".wrong");
       ++(false_one ? wrong : right);
       const Comparison c = subject.judge(e);
-      EXPECT_EQ(c.verdict, false_one ? Verdict::refuted : Verdict::proved) << example.model << ", " << e.label << ": " << e.text() << "\n" << c.detail;
+      EXPECT_EQ(c.verdict, false_one ? Verdict::refuted : Verdict::proved)
+          << example.model << ", " << e.label << ": " << e.text() << "\n"
+          << c.detail;
     }
   }
   EXPECT_GE(right, 20U);

@@ -1,9 +1,9 @@
-// Every form is proved to be Routh's equations, and with one sign of it changed it is refuted, by a witness that is judged by
-// other arithmetic. Changed are summands of the two sides of an equation, and of sums inside them. Under ANHOLON_LONG=1 all
-// of them, otherwise one each of every side of every equation.
-#include <gtest/gtest.h>
-
+// Every form is proved to be Routh's equations, and with one sign of it changed it is refuted, by a witness that is
+// judged by other arithmetic. Changed are summands of the two sides of an equation, and of sums inside them. Under
+// ANHOLON_LONG=1 all of them, otherwise one each of every side of every equation.
 #include <cstdlib>
+
+#include <gtest/gtest.h>
 
 #include "proof/prove.h"
 #include "proof/verify.h"
@@ -14,8 +14,8 @@
 namespace anholon {
 namespace {
 
-constexpr double kZero = 1e-30;      // 60 digits, in units of the terms
-constexpr double kAgreement = 1e-25; // of the difference at a witness with the change that was made
+constexpr double kZero = 1e-30;       // 60 digits, in units of the terms
+constexpr double kAgreement = 1e-25;  // of the difference at a witness with the change that was made
 
 bool at_length() { return std::getenv("ANHOLON_LONG") != nullptr; }
 
@@ -25,7 +25,8 @@ struct System {
   std::vector<Eliminations> eliminations;  // constraints solved, and not
   explicit System(const std::string& name) : model(test::shipped(name)), m(mechanics(*model)) {
     for (const bool solve : {true, false})
-      eliminations.push_back({elimination_for(m, Unknowns::coordinates, {}, {}, solve), elimination_for(m, Unknowns::quasi_velocities, {}, {}, solve)});
+      eliminations.push_back({elimination_for(m, Unknowns::coordinates, {}, {}, solve),
+                              elimination_for(m, Unknowns::quasi_velocities, {}, {}, solve)});
   }
   Graph& g() const { return *model->graph; }
 };
@@ -41,13 +42,14 @@ const System& system_of(const std::string& name) {
 struct Mutant {
   bool left = true, inside = false;
   std::size_t equation = 0;
-  NodeId sum = 0;          // the sum whose summand it is
+  NodeId sum = 0;  // the sum whose summand it is
   std::size_t summand = 0;
 
   Expr changed(Expr e) const {
     Graph& g = *e.graph;
     const Term t = g.terms(sum)[summand];
-    const Expr term = g.is_number(t.node) ? g.number(g.rational(t.weight) * g.value(t.node)) : g.rational(t.weight) * Expr{&g, t.node};
+    const Expr term = g.is_number(t.node) ? g.number(g.rational(t.weight) * g.value(t.node))
+                                          : g.rational(t.weight) * Expr{&g, t.node};
     const Expr whole{&g, sum};
     return replace_nodes({&e, 1}, {{sum, whole - 2 * term}})[0];
   }
@@ -73,7 +75,8 @@ std::vector<Mutant> mutants_of(const Equations& q, std::size_t most) {
       std::vector<Mutant> top, inside;
       for (NodeId id : reachable({&e, 1})) {
         if (g.node(id).kind != Kind::sum) continue;
-        for (std::size_t k = 0; k < g.terms(id).size(); ++k) (id == e.id ? top : inside).push_back({left, id != e.id, i, id, k});
+        for (std::size_t k = 0; k < g.terms(id).size(); ++k)
+          (id == e.id ? top : inside).push_back({left, id != e.id, i, id, k});
       }
       some(top);
       some(inside);
@@ -82,7 +85,8 @@ std::vector<Mutant> mutants_of(const Equations& q, std::size_t most) {
 }
 
 // What the change adds to the equations that are compared with Routh's.
-Column expected(const System& s, const Formulation& form, const Elimination& e, const Equations& right, const Equations& wrong) {
+Column expected(const System& s, const Formulation& form, const Elimination& e, const Equations& right,
+                const Equations& wrong) {
   const Column delta = (wrong.left - wrong.right) - (right.left - right.right);
   const bool along = form.unknowns != Unknowns::multipliers && delta.size() == s.m.q.size() && !e.constraints.empty();
   return along ? e.contract(delta) : delta;
@@ -137,13 +141,15 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.model << ", " << c.fo
 
 std::vector<Case> cases() {
   std::vector<Case> list;
-  const char* const with_ideal_reactions[] = {"papers/luo-zhao-example-2", "zoo/rheonomic-order-1",     "zoo/second-order-linear",
-                                              "zoo/rheonomic-order-2",     "zoo/third-order-linear",    "zoo/rheonomic-order-3"};
+  const char* const with_ideal_reactions[] = {"papers/luo-zhao-example-2", "zoo/rheonomic-order-1",
+                                              "zoo/second-order-linear",   "zoo/rheonomic-order-2",
+                                              "zoo/third-order-linear",    "zoo/rheonomic-order-3"};
   // The other mechanics agrees where the constraints are holonomic.
   const char* const holonomic[] = {"zoo/double-pendulum-cartesian", "zoo/fourbar"};
   for (const Formulation* form : formulations()) {
     const bool variational = form->unknowns == Unknowns::variational;
-    for (const std::string name : variational ? std::span<const char* const>(holonomic) : std::span<const char* const>(with_ideal_reactions)) {
+    for (const std::string name :
+         variational ? std::span<const char* const>(holonomic) : std::span<const char* const>(with_ideal_reactions)) {
       // The inverses of this one, written out, take seconds.
       if (!at_length() && form->name == std::string("udwadia-kalaba") && name == "zoo/rheonomic-order-1") continue;
       if (form->obstacle(system_of(name).m).empty()) list.push_back({name, form->name});
@@ -167,8 +173,10 @@ TEST_P(FormMutants, AreRefutedAndTheFormIsProved) {
   int refuted = 0, neutral = 0;
   for (const Mutant& mutant : mutants_of(right, most)) {
     const Equations wrong = mutant.of(right);
-    const std::string what = std::string(mutant.left ? "left" : "right") + " side of equation " + std::to_string(mutant.equation) +
-                             (mutant.inside ? ", inside, node " + std::to_string(mutant.sum) : "") + ", summand " + std::to_string(mutant.summand);
+    const std::string what = std::string(mutant.left ? "left" : "right") + " side of equation " +
+                             std::to_string(mutant.equation) +
+                             (mutant.inside ? ", inside, node " + std::to_string(mutant.sum) : "") + ", summand " +
+                             std::to_string(mutant.summand);
     const Column change = expected(s, form, e, right, wrong);
     const bool zero = vanishes(s, e, change);
     const FormProof p = prove_form(s.m, form, [&](const Mechanics&, const Elimination&) { return wrong; }, {used});
@@ -188,10 +196,12 @@ TEST_P(FormMutants, AreRefutedAndTheFormIsProved) {
   RecordProperty("neutral", neutral);
 }
 
-INSTANTIATE_TEST_SUITE_P(Form, FormMutants, testing::ValuesIn(cases()),
-                         [](const auto& p) { return test::test_name(p.param.form + "_" + p.param.model.substr(p.param.model.find('/') + 1)); });
+INSTANTIATE_TEST_SUITE_P(Form, FormMutants, testing::ValuesIn(cases()), [](const auto& p) {
+  return test::test_name(p.param.form + "_" + p.param.model.substr(p.param.model.find('/') + 1));
+});
 
-// ---- certificates -------------------------------------------------------------------------------------------------------------
+// ---- certificates
+// -------------------------------------------------------------------------------------------------------------
 
 class Certificates : public testing::TestWithParam<const char*> {};
 
@@ -255,9 +265,12 @@ TEST_P(Certificates, VerifyAndTamperedOnesDoNot) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Model, Certificates,
-                         testing::Values("papers/luo-zhao-example-2", "zoo/rheonomic-order-1", "zoo/second-order-linear", "zoo/rheonomic-order-2",
-                                         "zoo/third-order-linear", "zoo/rheonomic-order-3"),
-                         [](const auto& p) { return test::test_name(std::string(p.param).substr(std::string(p.param).find('/') + 1)); });
+                         testing::Values("papers/luo-zhao-example-2", "zoo/rheonomic-order-1",
+                                         "zoo/second-order-linear", "zoo/rheonomic-order-2", "zoo/third-order-linear",
+                                         "zoo/rheonomic-order-3"),
+                         [](const auto& p) {
+                           return test::test_name(std::string(p.param).substr(std::string(p.param).find('/') + 1));
+                         });
 
 }  // namespace
 }  // namespace anholon

@@ -1,5 +1,5 @@
-// Laws that hold at every point of the jet space, for every shipped model and every formulation: no equation of motion is
-// solved here. Values by the reference evaluator, 40 digits.
+// Laws that hold at every point of the jet space, for every shipped model and every formulation: no equation of motion
+// is solved here. Values by the reference evaluator, 40 digits.
 #include <gtest/gtest.h>
 
 #include "formulation/formulation.h"
@@ -30,7 +30,9 @@ std::vector<std::shared_ptr<System>> all_systems() {
   return systems;
 }
 
-Column given_forces(const Mechanics& m) { return m.Q + m.QR + m.QD + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma; }
+Column given_forces(const Mechanics& m) {
+  return m.Q + m.QR + m.QD + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma;
+}
 
 // The largest |value| of the column at some random points, in units of the largest value of `scale` there.
 double size_of(const System& s, const Column& column, const Column& scale) {
@@ -87,7 +89,8 @@ TEST_P(Forms, EnergyIdentity) {
 INSTANTIATE_TEST_SUITE_P(Model, Forms, testing::ValuesIn(test::shipped_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
-// ---- mutants: the same checks must refute the mistakes of theory.md section 9 -----------------------------------------------
+// ---- mutants: the same checks must refute the mistakes of theory.md section 9
+// -----------------------------------------------
 
 // How many shipped models refute Routh's equations with a mistake in them.
 int refuted_by(const std::function<Equations(const System&)>& mutant) {
@@ -111,7 +114,10 @@ TEST(Mutants, DifferentiatingTheMassInsideT) {
 }
 
 TEST(Mutants, CountingTheCentrifugalForceTwice) {
-  EXPECT_GE(refuted_by([](const System& s) { return Equations{routh_left(s.m), given_forces(s.m) + s.m.minus_dVomega + s.m.N}; }), 4);
+  EXPECT_GE(refuted_by([](const System& s) {
+              return Equations{routh_left(s.m), given_forces(s.m) + s.m.minus_dVomega + s.m.N};
+            }),
+            4);
 }
 
 TEST(Mutants, LosingTheDotOfTheReactiveForce) {
@@ -120,7 +126,8 @@ TEST(Mutants, LosingTheDotOfTheReactiveForce) {
               for (const Body& b : s.model->bodies) {
                 if (!b.expelled_velocity) continue;
                 const Vector thrust = b.mass * *b.expelled_velocity;  // as printed: m u
-                const Expr outputs[] = {b.exit_point.x, b.exit_point.y, b.exit_point.z}, seeds[] = {thrust.x, thrust.y, thrust.z};
+                const Expr outputs[] = {b.exit_point.x, b.exit_point.y, b.exit_point.z},
+                           seeds[] = {thrust.x, thrust.y, thrust.z};
                 right = right + pullback(outputs, seeds, s.m.q);
               }
               return Equations{routh_left(s.m), right};
@@ -129,7 +136,8 @@ TEST(Mutants, LosingTheDotOfTheReactiveForce) {
 }
 
 TEST(Mutants, LeavingOutCoriolis) {
-  EXPECT_GE(refuted_by([](const System& s) { return Equations{routh_left(s.m), given_forces(s.m) - s.m.Gamma + s.m.N}; }), 4);
+  EXPECT_GE(
+      refuted_by([](const System& s) { return Equations{routh_left(s.m), given_forces(s.m) - s.m.Gamma + s.m.N}; }), 4);
 }
 
 TEST(Mutants, LettingTheAccelerationOfTheOriginPullOnTheAxes) {

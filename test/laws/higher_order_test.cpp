@@ -1,8 +1,8 @@
-// Systems with constraints of order 3 and more, and nonlinear ones of order 2: every form gives the same motion, the energy
-// balance closes, the hidden constraints hold, and a branch that ends stops the run.
-#include <gtest/gtest.h>
-
+// Systems with constraints of order 3 and more, and nonlinear ones of order 2: every form gives the same motion, the
+// energy balance closes, the hidden constraints hold, and a branch that ends stops the run.
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "run/simulate.h"
 #include "support/models.h"
@@ -32,15 +32,19 @@ Motion run(const std::shared_ptr<const Model>& model, const Formulation& form, c
 }
 
 std::string with_order_four() {
-  return "title = \"t\"\ncoordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n"
-         "[gravity]\nfield = \"-9.81*ez + x*ey/3\"\n[[constraint]]\nname = \"snap\"\nequation = \"D(x,4) + (1 + x'/3)*D(y,4) - D(z,4)/2 = y + x' + x''*z'''\"\n"
-         "[[constraint]]\nname = \"knife\"\nequation = \"z' = x*x'/3 + 0.2\"\n[initial]\nx = 1\n\"x'\" = 1\n\"y'\" = 0.1\nlambda = {snap = 0.3}\n"
+  return "title = \"t\"\ncoordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", "
+         "\"y\", \"z\"]\n"
+         "[gravity]\nfield = \"-9.81*ez + x*ey/3\"\n[[constraint]]\nname = \"snap\"\nequation = \"D(x,4) + (1 + "
+         "x'/3)*D(y,4) - D(z,4)/2 = y + x' + x''*z'''\"\n"
+         "[[constraint]]\nname = \"knife\"\nequation = \"z' = x*x'/3 + 0.2\"\n[initial]\nx = 1\n\"x'\" = 1\n\"y'\" = "
+         "0.1\nlambda = {snap = 0.3}\n"
          "lambdadot = {snap = -0.2}\n";
 }
 
 class HigherOrder : public testing::TestWithParam<std::string> {
  protected:
-  std::shared_ptr<const Model> model = GetParam() == "order four" ? test::model_of(with_order_four()) : test::shipped("zoo/" + GetParam());
+  std::shared_ptr<const Model> model =
+      GetParam() == "order four" ? test::model_of(with_order_four()) : test::shipped("zoo/" + GetParam());
 };
 
 TEST_P(HigherOrder, EveryFormGivesTheSameMotion) {
@@ -58,7 +62,8 @@ TEST_P(HigherOrder, EveryFormGivesTheSameMotion) {
     for (std::size_t i = 0; i < routh.rows.rows().size(); ++i)
       for (std::size_t k = 0; k < routh.rows.names().size(); ++k) {
         const double a = std::stod(routh.rows.rows()[i][k]), b = std::stod(other.rows.rows()[i][k]);
-        EXPECT_NEAR(a, b, kSame * std::max(1.0, std::abs(a))) << form->name << ", " << routh.rows.names()[k] << ", row " << i;
+        EXPECT_NEAR(a, b, kSame * std::max(1.0, std::abs(a)))
+            << form->name << ", " << routh.rows.names()[k] << ", row " << i;
       }
   }
   EXPECT_GE(forms, 15);
@@ -73,8 +78,9 @@ TEST_P(HigherOrder, TheEnergyBalanceCloses) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Model, HigherOrder,
-                         testing::Values("third-order-linear", "constant-jerk", "constant-jerk-central", "constant-acceleration", "rheonomic-order-2",
-                                         "rheonomic-order-3", "order four"),
+                         testing::Values("third-order-linear", "constant-jerk", "constant-jerk-central",
+                                         "constant-acceleration", "rheonomic-order-2", "rheonomic-order-3",
+                                         "order four"),
                          [](const auto& p) { return test::test_name(p.param); });
 
 std::string on_the_other_branch(const std::string& name) {
@@ -97,7 +103,8 @@ TEST(BranchThatEnds, StopsTheRunInEveryForm) {
 }
 
 TEST(BranchThatEnds, AlsoWhereTheReactionTurns) {
-  const Motion m = run(test::model_of(on_the_other_branch("constant-jerk-central")), *find_formulation("routh"), Rational(20));
+  const Motion m =
+      run(test::model_of(on_the_other_branch("constant-jerk-central")), *find_formulation("routh"), Rational(20));
   EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular) << m.report.outcome.message;
   EXPECT_NEAR(std::stod(m.report.t), 1.730232088, 1e-8);
 }

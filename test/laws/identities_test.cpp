@@ -1,9 +1,9 @@
-// The identities on which the forms rest, each at random points in 40 digits and, where that is cheap, by exact algebra. Points
-// are anywhere among the jets for identities of T, on the manifold of the constraints (found by numbers) for those that
-// eliminate. The operators of an Elimination are judged by differences along the manifold.
-#include <gtest/gtest.h>
-
+// The identities on which the forms rest, each at random points in 40 digits and, where that is cheap, by exact
+// algebra. Points are anywhere among the jets for identities of T, on the manifold of the constraints (found by
+// numbers) for those that eliminate. The operators of an Elimination are judged by differences along the manifold.
 #include <map>
+
+#include <gtest/gtest.h>
 
 #include "expr/normal.h"
 #include "run/eliminate.h"
@@ -12,8 +12,8 @@
 namespace anholon {
 namespace {
 
-constexpr double kExact = 1e-28;    // 40 digits, terms up to 1e4 in units of their largest
-constexpr double kRefuted = 1e-6;   // a mutant misses by much more
+constexpr double kExact = 1e-28;   // 40 digits, terms up to 1e4 in units of their largest
+constexpr double kRefuted = 1e-6;  // a mutant misses by much more
 
 using test::Shape;
 using test::Speeds;
@@ -37,11 +37,14 @@ Column derivative(Column c, int times) {
   return c;
 }
 
-// ---- identities of T and of places, in all jets -----------------------------------------------------------------------------
+// ---- identities of T and of places, in all jets
+// -----------------------------------------------------------------------------
 
-// d F^(k)/dq^(j) = C(k, j) (dF/dq)^(k-j) + C(k, j-1) (dF/dq')^(k-j+1)  (theory: derivatives); `other` replaces C(k, j-1).
+// d F^(k)/dq^(j) = C(k, j) (dF/dq)^(k-j) + C(k, j-1) (dF/dq')^(k-j+1)  (theory: derivatives); `other` replaces C(k,
+// j-1).
 Terms commutation(const System& s, Expr F, unsigned k, unsigned j, std::optional<Rational> other = {}) {
-  const Rational first = binomial(k, static_cast<int>(j)), second = other.value_or(binomial(k, static_cast<int>(j) - 1));
+  const Rational first = binomial(k, static_cast<int>(j)),
+                 second = other.value_or(binomial(k, static_cast<int>(j) - 1));
   return {s.by(j, total_derivative(F, k)), -(first * derivative(s.by(0, F), static_cast<int>(k) - static_cast<int>(j))),
           -(second * derivative(s.by(1, F), static_cast<int>(k) - static_cast<int>(j) + 1))};
 }
@@ -49,7 +52,8 @@ Terms commutation(const System& s, Expr F, unsigned k, unsigned j, std::optional
 // m D/Dt dT^(m-1)/dq^(m) - dT^(m-1)/dq^(m-1) = D/Dt dT/dq' - dT/dq  [L 3.10]; `factor` stands for m.
 Terms nielsen(const System& s, unsigned m, const Rational& factor) {
   const Expr before = total_derivative(s.m.T, m - 1);
-  return {factor * total_derivative(s.by(m, before)), -s.by(m - 1, before), -total_derivative(s.by(1, s.m.T)), s.by(0, s.m.T)};
+  return {factor * total_derivative(s.by(m, before)), -s.by(m - 1, before), -total_derivative(s.by(1, s.m.T)),
+          s.by(0, s.m.T)};
 }
 
 // dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq = D/Dt dT/dq' - dT/dq  [N 2.10]; `factor` before dT/dq on the left.
@@ -85,8 +89,8 @@ std::pair<Terms, Terms> places(const System& s, unsigned k, const Rational& fact
   return all;
 }
 
-// -2 sum m (omega x v) . dr/dq_a = -2 omega . {sum_k (sum m dr/dq_k x dr/dq_a) q_k' + sum m dr/dt x dr/dq_a}  [L 2.1], the
-// generalized Coriolis force; `with_time` keeps the last sum, `sign` turns the cross products.
+// -2 sum m (omega x v) . dr/dq_a = -2 omega . {sum_k (sum m dr/dq_k x dr/dq_a) q_k' + sum m dr/dt x dr/dq_a}  [L 2.1],
+// the generalized Coriolis force; `with_time` keeps the last sum, `sign` turns the cross products.
 Terms coriolis(const System& s, bool with_time = true, int sign = 1) {
   const Vector& omega = s.model->observer.spin;
   Column bilinear(s.m.q.size(), s.g().zero());
@@ -99,7 +103,8 @@ Terms coriolis(const System& s, bool with_time = true, int sign = 1) {
       by_t[i] = partial(p.place[i], s.g().time());
     }
     for (std::size_t a = 0; a < bilinear.size(); ++a) {
-      for (std::size_t k = 0; k < bilinear.size(); ++k) bilinear[a] += p.weight * dot(omega, cross(by_q[k], by_q[a])) * s.m.qd[k];
+      for (std::size_t k = 0; k < bilinear.size(); ++k)
+        bilinear[a] += p.weight * dot(omega, cross(by_q[k], by_q[a])) * s.m.qd[k];
       if (with_time) bilinear[a] += p.weight * dot(omega, cross(by_t, by_q[a]));
     }
   }
@@ -118,12 +123,14 @@ class Jets : public testing::TestWithParam<unsigned> {  // m
 
 TEST_P(Jets, CommutationRule) {
   for (const auto& s : {rheonomic()[0], generic(1, Shape::linear)})
-    for (unsigned j = 0; j <= m + 2; ++j) EXPECT_LE(miss(*s, commutation(*s, s->m.T, m, j)), kExact) << "k = " << m << ", j = " << j;
+    for (unsigned j = 0; j <= m + 2; ++j)
+      EXPECT_LE(miss(*s, commutation(*s, s->m.T, m, j)), kExact) << "k = " << m << ", j = " << j;
   const System& s = *generic(1, Shape::linear);
   for (unsigned j = 0; j <= m + 1; ++j) {
     EXPECT_TRUE(proved(commutation(s, s.m.T, m, j))) << "k = " << m << ", j = " << j;
     if (j == m + 1 || j == 0) continue;  // only one of the two kinds is left
-    EXPECT_GT(miss(s, commutation(s, s.m.T, m, j, binomial(m + 1, static_cast<int>(j)))), kRefuted) << "k = " << m << ", j = " << j;
+    EXPECT_GT(miss(s, commutation(s, s.m.T, m, j, binomial(m + 1, static_cast<int>(j)))), kRefuted)
+        << "k = " << m << ", j = " << j;
   }
 }
 
@@ -173,7 +180,8 @@ TEST(CoriolisForce, IsBilinearInVelocities) {
   int turning = 0, moving = 0;
   for (const std::string& name : test::shipped_models()) {
     const System s(test::shipped(name));
-    if (is_zero(s.model->observer.spin.x) && is_zero(s.model->observer.spin.y) && is_zero(s.model->observer.spin.z)) continue;
+    if (is_zero(s.model->observer.spin.x) && is_zero(s.model->observer.spin.y) && is_zero(s.model->observer.spin.z))
+      continue;
     EXPECT_LE(miss(s, coriolis(s)), kExact) << name;
     turning += miss(s, coriolis(s, true, -1)) > kRefuted;
     moving += miss(s, coriolis(s, false)) > kRefuted;
@@ -182,9 +190,11 @@ TEST(CoriolisForce, IsBilinearInVelocities) {
   EXPECT_GE(moving, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Order, Jets, testing::Values(1U, 2U, 3U), [](const auto& p) { return "m" + std::to_string(p.param); });
+INSTANTIATE_TEST_SUITE_P(Order, Jets, testing::Values(1U, 2U, 3U),
+                         [](const auto& p) { return "m" + std::to_string(p.param); });
 
-// ---- identities of eliminated energies, on the manifold ---------------------------------------------------------------------
+// ---- identities of eliminated energies, on the manifold
+// ---------------------------------------------------------------------
 
 struct Case {
   unsigned m;
@@ -195,8 +205,14 @@ struct Case {
 
 std::string case_name(const testing::TestParamInfo<Case>& p) {
   const Case& c = p.param;
-  return "m" + std::to_string(c.m) + (c.shipped ? "Rheonomic" : c.shape == Shape::affine ? "Affine" : c.shape == Shape::linear ? "Linear" : "Nonlinear") +
-         (c.speeds == Speeds::none ? "" : c.speeds == Speeds::linear ? "WithQuasiVelocities" : "WithNonlinearQuasiVelocities") +
+  return "m" + std::to_string(c.m) +
+         (c.shipped                  ? "Rheonomic"
+          : c.shape == Shape::affine ? "Affine"
+          : c.shape == Shape::linear ? "Linear"
+                                     : "Nonlinear") +
+         (c.speeds == Speeds::none     ? ""
+          : c.speeds == Speeds::linear ? "WithQuasiVelocities"
+                                       : "WithNonlinearQuasiVelocities") +
          (c.solve ? "Solved" : "Unsolved");
 }
 
@@ -215,10 +231,11 @@ std::vector<Case> cases(bool quasi) {
 
 class Manifold : public testing::TestWithParam<Case> {
  protected:
-  std::shared_ptr<const System> system = GetParam().shipped ? rheonomic()[GetParam().m - 1] : generic(GetParam().m, GetParam().shape, GetParam().speeds);
+  std::shared_ptr<const System> system =
+      GetParam().shipped ? rheonomic()[GetParam().m - 1] : generic(GetParam().m, GetParam().shape, GetParam().speeds);
   const System& s = *system;
   Elimination e;
-  Expr before, T_m;          // T^(m-1), T^(m)
+  Expr before, T_m;  // T^(m-1), T^(m)
   void eliminate(Unknowns unknowns) {
     const Case& c = GetParam();
     static std::map<std::tuple<Unknowns, unsigned, Shape, Speeds, bool, bool>, Elimination> known;
@@ -235,8 +252,12 @@ class Manifold : public testing::TestWithParam<Case> {
     for (std::size_t b : e.dependent) out.push_back(e.D(e.g_by(e.m - 1)[b]));
     return out;
   }
-  static void expect(const System& s, const Elimination& e, const Terms& right, const char* what) { EXPECT_LE(miss(s, e, right), kExact) << what; }
-  static void refute(const System& s, const Elimination& e, const Terms& wrong, const char* what) { EXPECT_GT(miss(s, e, wrong), kRefuted) << what; }
+  static void expect(const System& s, const Elimination& e, const Terms& right, const char* what) {
+    EXPECT_LE(miss(s, e, right), kExact) << what;
+  }
+  static void refute(const System& s, const Elimination& e, const Terms& wrong, const char* what) {
+    EXPECT_GT(miss(s, e, wrong), kRefuted) << what;
+  }
 };
 
 class Reduced : public Manifold {
@@ -292,14 +313,17 @@ TEST_P(Reduced, RateOfTheSolvedConstraints) {
 
 INSTANTIATE_TEST_SUITE_P(Case, Reduced, testing::ValuesIn(cases(false)), case_name);
 
-// Appell's equations in the reduced energy of accelerations, and their print, which has S~ itself for every m  [L 3.20, 3.21]
+// Appell's equations in the reduced energy of accelerations, and their print, which has S~ itself for every m
+// [L 3.20, 3.21]
 TEST_P(Reduced, EnergyOfAccelerations) {
   const Column E = lagrange_operator(s.m), contracted = e.contract(E);
   expect(s, e, {find_formulation("appell-reduced")->equations(s.m, e).left, -contracted}, "[L 3.21]");
   // S with q_D^(m) = f alone: q'' holds no f for m = 1, S no q^(m) for m = 3.
   const Column literal = e.m == 1 ? e.on(e.I(gradient(s.m.S, s.m.qdd))) : e.by_u(s.m.S);
-  if (e.m == 2) expect(s, e, {literal, -contracted}, "as printed, m = 2");
-  else refute(s, e, {literal, -contracted}, "as printed, m = 1 and 3");
+  if (e.m == 2)
+    expect(s, e, {literal, -contracted}, "as printed, m = 2");
+  else
+    refute(s, e, {literal, -contracted}, "as printed, m = 1 and 3");
 }
 
 class Quasi : public Manifold {
@@ -343,17 +367,21 @@ TEST_P(Quasi, RateOfTheTangents) {
 
 INSTANTIATE_TEST_SUITE_P(Case, Quasi, testing::ValuesIn(cases(true)), case_name);
 
-// ---- what the operators mean: differences along the manifold ----------------------------------------------------------------
+// ---- what the operators mean: differences along the manifold
+// ----------------------------------------------------------------
 
-// The point where the free quantities and lower derivatives are those of `at` but for `changed`, and q^(m), q^(m+1) follow.
+// The point where the free quantities and lower derivatives are those of `at` but for `changed`, and q^(m), q^(m+1)
+// follow.
 struct Along {
   const System& s;
   const Elimination& e;
   Column w, w_rate;  // u and phi, and their rates
   Column top, next;
 
-  Along(const System& system, const Elimination& elimination) : s(system), e(elimination), top(jets(*s.model, e.m)), next(jets(*s.model, e.m + 1)) {
-    w = e.in_coordinates(e.quasi ? Column(e.w.begin(), e.w.end() - static_cast<std::ptrdiff_t>(e.phi.size())) : e.I(top));
+  Along(const System& system, const Elimination& elimination)
+      : s(system), e(elimination), top(jets(*s.model, e.m)), next(jets(*s.model, e.m + 1)) {
+    w = e.in_coordinates(e.quasi ? Column(e.w.begin(), e.w.end() - static_cast<std::ptrdiff_t>(e.phi.size()))
+                                 : e.I(top));
     w.insert(w.end(), e.phi.begin(), e.phi.end());
     w_rate = total_derivative(w);
   }
@@ -374,7 +402,8 @@ struct Along {
   }
 };
 
-// by_u and by_u_rate (or by(k), where k is given) against central differences of X itself between points of the manifold.
+// by_u and by_u_rate (or by(k), where k is given) against central differences of X itself between points of the
+// manifold.
 double operator_error(const System& s, const Elimination& e, Expr X, std::optional<unsigned> k = {}) {
   const PrecisionScope precision(60);
   const Multi h = test::raise(Multi(10), Rational(-15));
@@ -382,7 +411,8 @@ double operator_error(const System& s, const Elimination& e, Expr X, std::option
   const std::optional<test::Point> found = test::manifold_point(*s.model, e, 5);
   if (!found) return 1e300;
   test::Point at = *found;
-  for (std::uint32_t i = 0; i < s.model->masses.size(); ++i) at.set(s.g().mass(i), test::value(s.model->masses[i].value, at));  // frozen
+  for (std::uint32_t i = 0; i < s.model->masses.size(); ++i)
+    at.set(s.g().mass(i), test::value(s.model->masses[i].value, at));  // frozen
   const std::vector<Multi> value = test::values(along.w, at), rate = test::values(along.w_rate, at);
   double worst = 0;
   const auto compare = [&](Expr symbolic, const test::Point& plus, const test::Point& minus) {

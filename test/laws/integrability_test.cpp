@@ -1,12 +1,11 @@
-// Frobenius's theorem: the derived flag sees through every mixing of the constraints, what it calls an integral is constant
-// along every admissible motion, and a set that is integrable but for one coefficient is not called so.
-#include "mechanics/integrability.h"
+// Frobenius's theorem: the derived flag sees through every mixing of the constraints, what it calls an integral is
+// constant along every admissible motion, and a set that is integrable but for one coefficient is not called so.
+#include <random>
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "mechanics/elimination.h"
+#include "mechanics/integrability.h"
 #include "numeric/linear.h"
 #include "support/models.h"
 #include "support/value.h"
@@ -15,8 +14,10 @@ namespace anholon {
 namespace {
 
 std::shared_ptr<const Model> particle(const std::vector<std::string>& equations, const std::string& more = {}) {
-  std::string text = "coordinates = [\"x\", \"y\", \"z\", \"u\", \"v\"]\n[parameters]\nr = 2\nk = 3\none = 1\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n"
-                     "[[particle]]\nname = \"q\"\nmass = 1\nposition = [\"u\", \"v\", \"0\"]\n" + more;
+  std::string text = "coordinates = [\"x\", \"y\", \"z\", \"u\", \"v\"]\n[parameters]\nr = 2\nk = 3\none = "
+                     "1\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n"
+                     "[[particle]]\nname = \"q\"\nmass = 1\nposition = [\"u\", \"v\", \"0\"]\n" +
+                     more;
   for (std::size_t i = 0; i < equations.size(); ++i)
     text += "[[constraint]]\nname = \"c" + std::to_string(i) + "\"\nequation = \"" + equations[i] + "\"\n";
   return test::model_of(text);
@@ -38,18 +39,21 @@ Found found(const std::shared_ptr<const Model>& model) {
   EXPECT_EQ(f.i.undecided, "");
   return f;
 }
-Found found(const std::vector<std::string>& equations, const std::string& more = {}) { return found(particle(equations, more)); }
+Found found(const std::vector<std::string>& equations, const std::string& more = {}) {
+  return found(particle(equations, more));
+}
 
 using Ints = std::vector<int>;
 
 std::vector<std::string> integrals(const Found& f) {
   std::vector<std::string> out;
-  for (const IntegrableCombination& c : f.i.combinations) out.push_back(c.integral ? print(*c.integral, f.model->names, Format::text) : "");
+  for (const IntegrableCombination& c : f.i.combinations)
+    out.push_back(c.integral ? print(*c.integral, f.model->names, Format::text) : "");
   return out;
 }
 
-// df/dt along a motion that obeys all constraints vanishes: (df/dz) lies in the rows of all of them, by numbers that share
-// nothing with the search.
+// df/dt along a motion that obeys all constraints vanishes: (df/dz) lies in the rows of all of them, by numbers that
+// share nothing with the search.
 void expect_constant(const Found& f) {
   const PrecisionScope precision(50);
   Graph& g = f.m.graph();
@@ -62,7 +66,8 @@ void expect_constant(const Found& f) {
       for (Expr v : f.m.qd) at.set(v, Multi(0));
       Rows rows;
       for (std::size_t r = 0; r < f.m.phi.size(); ++r) {
-        if (f.m.order[r] == 0) rows.push_back(gradient(f.m.phi[r], z));
+        if (f.m.order[r] == 0)
+          rows.push_back(gradient(f.m.phi[r], z));
         else if (f.m.order[r] == 1) {
           rows.push_back(f.m.Phi[r]);
           rows.back().push_back(f.m.phi[r]);
@@ -111,7 +116,8 @@ TEST(Integrability, TwoTogetherAndNeitherAlone) {
 
 TEST(Integrability, OneCombinationOfThree) {
   // A cart on two wheels: the wheels' angles and the heading are bound, the rest is not.
-  const Found f = found({"x'*sin(z) - y'*cos(z) = 0", "x'*cos(z) + y'*sin(z) + k*z' = r*u'", "x'*cos(z) + y'*sin(z) - k*z' = r*v'"});
+  const Found f = found(
+      {"x'*sin(z) - y'*cos(z) = 0", "x'*cos(z) + y'*sin(z) + k*z' = r*u'", "x'*cos(z) + y'*sin(z) - k*z' = r*v'"});
   EXPECT_EQ(f.i.flag, (Ints{3, 2, 1}));
   ASSERT_EQ(f.i.combinations.size(), 1U);
   ASSERT_TRUE(f.i.combinations[0].integral);
@@ -154,8 +160,8 @@ TEST(Integrability, OfClassicalSystems) {
   EXPECT_EQ(flag("zoo/car-three-trailers"), (Ints{5, 4, 3, 2, 1, 0}));
 }
 
-// Functions f_1, f_2 with random coefficients; the rows are a random mixture of their differentials, and one coefficient is
-// changed in the mutant.
+// Functions f_1, f_2 with random coefficients; the rows are a random mixture of their differentials, and one
+// coefficient is changed in the mutant.
 struct Mixture {
   std::vector<std::string> rows, mutant;
 };
@@ -168,7 +174,8 @@ Mixture mixture(std::uint64_t seed) {
   const std::string m1 = "(1 + z^2)", m2 = "(" + c + "*u)", m3 = "x", m4 = "(" + d + " + u)";
   const std::string broken = "(y' + " + b + "*(cos(u)*z*u' + 2*sin(u)*z'))";
   const auto mixed = [&](const std::string& second) {
-    return std::vector<std::string>{m1 + "*" + df1 + " + " + m2 + "*" + second + " = 0", m3 + "*" + df1 + " + " + m4 + "*" + second + " = 0"};
+    return std::vector<std::string>{m1 + "*" + df1 + " + " + m2 + "*" + second + " = 0",
+                                    m3 + "*" + df1 + " + " + m4 + "*" + second + " = 0"};
   };
   return {mixed(df2), mixed(broken)};
 }

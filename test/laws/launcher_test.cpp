@@ -1,9 +1,10 @@
-// The launcher of the zoo: budgets of mass, momentum and energy over the whole flight, kept at rest while the motion is computed in
-// axes that turn; the times of its events at any tolerance; the same flight integrated here from Newton's law in axes at rest.
-#include <gtest/gtest.h>
-
+// The launcher of the zoo: budgets of mass, momentum and energy over the whole flight, kept at rest while the motion is
+// computed in axes that turn; the times of its events at any tolerance; the same flight integrated here from Newton's
+// law in axes at rest.
 #include <array>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "run/simulate.h"
 #include "support/models.h"
@@ -34,8 +35,8 @@ Flight flight(const std::string& text, const char* tolerance = "1e-13") {
 
 std::string launcher() { return test::shipped_text("zoo/launcher"); }
 
-// States that add up what flows and acts, and monitors of what they lack. Each in units in which it has the size of the positions,
-// for which the tolerance is meant. What is dropped takes its momentum and energy along.
+// States that add up what flows and acts, and monitors of what they lack. Each in units in which it has the size of the
+// positions, for which the tolerance is meant. What is dropped takes its momentum and energy along.
 std::string with_budgets(std::string text) {
   text = test::replaced(text, "state.fuel = {rate = \"-flow\", initial = \"mp1\"}", R"toml(
 [state]
@@ -64,7 +65,9 @@ push = "drag + mass*gravity(P) - flow*(w + u)"
 specific = "norm2(w)/2 - mu/norm(P)"
 dropped = "choose(stage, ms1, 0, 0)"
 )toml");
-  text = test::replaced(text, "mp2, 0)\"}}", R"toml(mp2, 0)", mx = "mx - dropped*dot(w, rest.x)/kp", my = "my - dropped*dot(w, rest.y)/kp", work = "work - dropped*specific/ke"}})toml");
+  text = test::replaced(
+      text, "mp2, 0)\"}}",
+      R"toml(mp2, 0)", mx = "mx - dropped*dot(w, rest.x)/kp", my = "my - dropped*dot(w, rest.y)/kp", work = "work - dropped*specific/ke"}})toml");
   return test::replaced(text, "[output]\n", R"toml([monitor]
 mass_given_out = "(mass + burnt + choose(stage, 0, ms1, ms1) - ms1 - ms2 - mp1 - mp2)/mp1"
 momentum_x = "(mass*dot(w, rest.x)/kp - mx)/1e6"
@@ -78,7 +81,8 @@ TEST(Launcher, ItsBudgetsClose) {
   const std::string text = with_budgets(launcher());
   constexpr double kClosed = 1e-12;  // of the momentum of the first stage, of the energy on the pad
   const Flight f = flight(text);
-  for (const char* each : {"mass_given_out", "momentum_x", "momentum_y", "energy"}) EXPECT_LT(std::abs(f.end.at(each)), kClosed) << each;
+  for (const char* each : {"mass_given_out", "momentum_x", "momentum_y", "energy"})
+    EXPECT_LT(std::abs(f.end.at(each)), kClosed) << each;
   // Mutants: another sense of the turning, thrust that is not that of what flows.
   const Flight turned = flight(test::replaced(text, "observer.spin = \"wE*ez\"", "observer.spin = \"-wE*ez\""));
   EXPECT_GT(std::abs(turned.end.at("momentum_x")), 1e-3);
@@ -121,12 +125,17 @@ Air air(const Row& s, double wE) {
 Row rate(double t, const Row& s, int stage, double wE) {
   const double mu = 3.986004418e14, r = std::hypot(s[0], s[1]);
   const double flow = stage == 1 ? 2500 : stage == 2 ? 270 : 0, out = stage == 1 ? 2800 : 3400;
-  const double mass = stage == 1 ? 37e3 + 20e3 + 90e3 + 400e3 - 2500 * t : stage == 2 ? 20e3 + 90e3 - 270 * (t - 160) : 20e3;
+  const double mass = stage == 1   ? 37e3 + 20e3 + 90e3 + 400e3 - 2500 * t
+                      : stage == 2 ? 20e3 + 90e3 - 270 * (t - 160)
+                                   : 20e3;
   const Air a = air(s, wE);
-  const double Cd = between(a.speed / std::max(295.0, 340.3 - 0.0041 * a.height), {0, 0.8, 1.05, 1.5, 3, 10}, {0.30, 0.32, 0.55, 0.45, 0.30, 0.25});
+  const double Cd = between(a.speed / std::max(295.0, 340.3 - 0.0041 * a.height), {0, 0.8, 1.05, 1.5, 3, 10},
+                            {0.30, 0.32, 0.55, 0.45, 0.30, 0.25});
   const double drag = a.density * a.speed * Cd * 10 / 2, pitch = between(t, {0, 10, 160, 500}, {0, 0, 0.95, 1.5});
-  const double ux = (std::cos(pitch) * s[0] - std::sin(pitch) * s[1]) / r, uy = (std::cos(pitch) * s[1] + std::sin(pitch) * s[0]) / r;
-  return {s[2], s[3], (flow * out * ux - drag * a.vx) / mass - mu * s[0] / (r * r * r), (flow * out * uy - drag * a.vy) / mass - mu * s[1] / (r * r * r)};
+  const double ux = (std::cos(pitch) * s[0] - std::sin(pitch) * s[1]) / r,
+               uy = (std::cos(pitch) * s[1] + std::sin(pitch) * s[0]) / r;
+  return {s[2], s[3], (flow * out * ux - drag * a.vx) / mass - mu * s[0] / (r * r * r),
+          (flow * out * uy - drag * a.vy) / mass - mu * s[1] / (r * r * r)};
 }
 
 // Where it is in axes at rest after 600 s, and when the dynamic pressure was greatest.
@@ -143,10 +152,12 @@ std::pair<Row, double> at_rest(double wE) {
     for (const double from = t, to = burnt[stage - 1]; t < to;) {
       const double steps = std::ceil((to - from) / kStep), h = (to - from) / steps;
       const double n = std::round((t - from) / h);
-      const Row a = rate(t, s, stage, wE), b = rate(t + h / 2, ahead(s, h / 2, a), stage, wE), c = rate(t + h / 2, ahead(s, h / 2, b), stage, wE), d = rate(t + h, ahead(s, h, c), stage, wE);
+      const Row a = rate(t, s, stage, wE), b = rate(t + h / 2, ahead(s, h / 2, a), stage, wE),
+                c = rate(t + h / 2, ahead(s, h / 2, b), stage, wE), d = rate(t + h, ahead(s, h, c), stage, wE);
       // q'/q = -h'/8500 + 2 v.v'/v^2, v of the air
       const Air v = air(s, wE);
-      const double growth = -(s[0] * s[2] + s[1] * s[3]) / std::hypot(s[0], s[1]) / 8500 + 2 * (v.vx * (a[2] + wE * s[3]) + v.vy * (a[3] - wE * s[2])) / (v.speed * v.speed);
+      const double growth = -(s[0] * s[2] + s[1] * s[3]) / std::hypot(s[0], s[1]) / 8500 +
+                            2 * (v.vx * (a[2] + wE * s[3]) + v.vy * (a[3] - wE * s[2])) / (v.speed * v.speed);
       if (growth < 0 && before > 0) greatest = t - h * growth / (growth - before);
       before = growth;
       for (std::size_t i = 0; i < 4; ++i) s[i] += h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);

@@ -1,8 +1,7 @@
 // Linear models against derivations by hand, published numbers, and each other.
-#include "run/linearize.h"
-
 #include <gtest/gtest.h>
 
+#include "run/linearize.h"
 #include "support/models.h"
 
 namespace anholon::test {
@@ -11,8 +10,8 @@ namespace {
 constexpr int kDigits = 40;
 constexpr double kExact = 1e-28;  // two solutions of linear equations in 40 digits
 
-
-std::unique_ptr<Scenario> scenario(std::shared_ptr<const Model> model, const StateChoice& choice = {}, const char* form = "routh") {
+std::unique_ptr<Scenario> scenario(std::shared_ptr<const Model> model, const StateChoice& choice = {},
+                                   const char* form = "routh") {
   auto s = std::make_unique<Scenario>();
   const Outcome o = make_scenario(std::move(model), *find_formulation(form), choice, *s);
   EXPECT_TRUE(o.ok()) << o.message;
@@ -71,7 +70,8 @@ TEST(LinearModels, WithoutThatStiffnessItDoesNot) {
   Graph& g = *s->model->graph;
   const Expr lambda = g.multiplier(0, 0);
   const Column at_rest{g.zero(), g.number(-6)};  // Phi = 2 (x, y)
-  for (std::size_t a = 0; a < 2; ++a) s->system.equations[a] = s->system.equations[a] + lambda * (s->mechanics->Phi[0][a] - at_rest[a]);
+  for (std::size_t a = 0; a < 2; ++a)
+    s->system.equations[a] = s->system.equations[a] + lambda * (s->mechanics->Phi[0][a] - at_rest[a]);
   const LinearModel m = linear(*s, choice);
   EXPECT_GT(miss(m, Multi(0), sqrt(Multi(10) / Multi(3))), 0.1);
 }
@@ -91,22 +91,25 @@ coordinates = ["a", "b"]
 particle = [{name = "p", mass = 3, position = "2*sin(a)*ex - 2*cos(a)*ey"}, {name = "q", mass = 3, position = "2*(sin(a) + sin(b))*ex - 2*(cos(a) + cos(b))*ey"}]
 gravity.field = "-10*ey"
 )");
-  for (int sign : {1, -1}) EXPECT_LT(miss(m, Multi(0), sqrt(Multi(5) * (Multi(2) + Multi(sign) * sqrt(Multi(2))))), kExact);
+  for (int sign : {1, -1})
+    EXPECT_LT(miss(m, Multi(0), sqrt(Multi(5) * (Multi(2) + Multi(sign) * sqrt(Multi(2))))), kExact);
 }
 
 // Constraints of order 2 and 3 prescribe what x does; y is free of them.
 TEST(LinearModels, OrdersTwoAndThree) {
   const PrecisionScope scope(kDigits);
   const auto text = [](const std::string& constraint) {
-    return "title = \"t\"\ncoordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 2, position = \"x*ex + y*ey\"}]\npotential.spring = \"7*(x^2 + y^2)\"\n"
-           "constraint = [{name = \"law\", equation = \"" + constraint + "\"}]\n";
+    return "title = \"t\"\ncoordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 2, position = \"x*ex + "
+           "y*ey\"}]\npotential.spring = \"7*(x^2 + y^2)\"\n"
+           "constraint = [{name = \"law\", equation = \"" +
+           constraint + "\"}]\n";
   };
   const LinearModel two = linear(text("x'' + 2*x' + 5*x = 0"));
   EXPECT_EQ(two.states.size(), 4U);
   EXPECT_LT(miss(two, Multi(-1), Multi(2)), kExact);
   EXPECT_LT(miss(two, Multi(0), sqrt(Multi(7))), kExact);
   const LinearModel three = linear(text("D(x,3) + 3*x'' + 4*x' + 2*x = 0"));  // (s + 1)(s^2 + 2s + 2)
-  EXPECT_EQ(three.states.size(), 5U);  // x, y, x', y' and the multiplier or x''
+  EXPECT_EQ(three.states.size(), 5U);                                         // x, y, x', y' and the multiplier or x''
   EXPECT_LT(miss(three, Multi(-1), Multi(0)), kExact);
   EXPECT_LT(miss(three, Multi(-1), Multi(1)), kExact);
   EXPECT_LT(miss(three, Multi(0), sqrt(Multi(7))), kExact);
@@ -122,7 +125,8 @@ std::string disc(const std::string& parameters, const std::string& initial) {
 TEST(LinearModels, UprightDiscAtItsCriticalSpeed) {
   const PrecisionScope scope(2 * kDigits);
   for (const int spin : {1, 2}) {
-    const LinearModel m = linear(disc("R = 1, g = 3", "theta = \"pi/2\"\n\"psi'\" = 0\n\"theta'\" = 0\n\"phi'\" = " + std::to_string(spin) + "\n"));
+    const LinearModel m = linear(disc(
+        "R = 1, g = 3", "theta = \"pi/2\"\n\"psi'\" = 0\n\"theta'\" = 0\n\"phi'\" = " + std::to_string(spin) + "\n"));
     EXPECT_EQ(m.motion, LinearModel::Motion::steady);
     EXPECT_EQ(m.states.size(), 8U);
     EXPECT_EQ(m.cyclic.size(), 4U);  // x, y, psi, phi
@@ -134,20 +138,27 @@ TEST(LinearModels, UprightDiscAtItsCriticalSpeed) {
   }
 }
 
-// A disc that rolls in a circle, leaning. With w = psi' sin theta, n = phi' + psi' cos theta, from Euler's equations about the centre:
+// A disc that rolls in a circle, leaning. With w = psi' sin theta, n = phi' + psi' cos theta, from Euler's equations
+// about the centre:
 //   (A + m R^2) theta'' + (C + m R^2) n w - A w^2 cot theta + m g R cos theta = 0
 //   A w' + (A w cot theta - C n) theta' = 0,   (C + m R^2) n' = m R^2 w theta'.
 Multi turning_disc(const Multi& theta, const Multi& turn, const Multi& spin) {
-  const Multi R = Multi(1) / Multi(2), g = Multi(Rational(981, 100)), A = R * R / Multi(4), C = R * R / Multi(2), mR2 = R * R;
+  const Multi R = Multi(1) / Multi(2), g = Multi(Rational(981, 100)), A = R * R / Multi(4), C = R * R / Multi(2),
+              mR2 = R * R;
   const Multi cot = cos(theta) / sin(theta), w = turn * sin(theta), n = spin + turn * cos(theta);
-  return -(A * w * w / (sin(theta) * sin(theta)) - g * R * sin(theta) + ((C + mR2) * n - Multi(2) * A * w * cot) * (C * n / A - w * cot) + mR2 * w * w) / (A + mR2);
+  return -(A * w * w / (sin(theta) * sin(theta)) - g * R * sin(theta) +
+           ((C + mR2) * n - Multi(2) * A * w * cot) * (C * n / A - w * cot) + mR2 * w * w) /
+         (A + mR2);
 }
 
 TEST(LinearModels, DiscThatTurnsSteadily) {
   const PrecisionScope scope(kDigits);
   const std::string text = shipped_text("zoo/disc");
   const StateChoice choice;
-  const auto s = scenario(model_of(text.substr(0, text.find("[initial]")) + "[initial]\ntheta = 1.3\n\"psi'\" = 0.8\n\"theta'\" = 0\nconditions = [\"theta'' = 0\"]\nguess = {\"phi'\" = -6}\n"), choice);
+  const auto s = scenario(
+      model_of(text.substr(0, text.find("[initial]")) + "[initial]\ntheta = 1.3\n\"psi'\" = 0.8\n\"theta'\" = "
+                                                        "0\nconditions = [\"theta'' = 0\"]\nguess = {\"phi'\" = -6}\n"),
+      choice);
   const LinearModel m = linear(*s, choice);
   EXPECT_EQ(m.motion, LinearModel::Motion::steady) << m.why;
   const Multi spin = [&] {
@@ -160,7 +171,10 @@ TEST(LinearModels, DiscThatTurnsSteadily) {
   EXPECT_LT(miss(m, Multi(0), sqrt(-square)), 1e-25);
   EXPECT_EQ(zeros(m), 2);
   // The mutant: gravity's share with the other sign.
-  EXPECT_GT(miss(m, Multi(0), sqrt(abs(Multi(square - Multi(2) * Multi(Rational(981, 100)) / Multi(2) * sin(Multi(Rational(13, 10))) / (Multi(5) / Multi(16)))))), 0.1);
+  EXPECT_GT(miss(m, Multi(0),
+                 sqrt(abs(Multi(square - Multi(2) * Multi(Rational(981, 100)) / Multi(2) *
+                                             sin(Multi(Rational(13, 10))) / (Multi(5) / Multi(16)))))),
+            0.1);
 }
 
 // One mechanics, whatever the equations.
@@ -173,12 +187,15 @@ TEST(LinearModels, FormsAgree) {
   for (const char* form : {"maggi", "chaplygin", "appell", "kane", "udwadia-kalaba"}) {
     const LinearModel other = linear(*scenario(model, choice, form), choice);
     ASSERT_EQ(other.states, routh.states) << form;
-    for (std::size_t i = 0; i < routh.A.data.size(); ++i) EXPECT_LT(std::abs(to_double(routh.A.data[i] - other.A.data[i])), 1e-24) << form;
+    for (std::size_t i = 0; i < routh.A.data.size(); ++i)
+      EXPECT_LT(std::abs(to_double(routh.A.data[i] - other.A.data[i])), 1e-24) << form;
   }
 }
 
-// A cart with a pendulum, pushed by u, its rod a holonomic constraint: the textbook's A, B, C, D. With M, m, l, g and the rod downwards
-//   x'' = (u + m g th)/M,  th'' = -((M + m) g th + u)/(M l),  rod's pull (lambda in the direction of the rod) = m g to first order.
+// A cart with a pendulum, pushed by u, its rod a holonomic constraint: the textbook's A, B, C, D. With M, m, l, g and
+// the rod downwards
+//   x'' = (u + m g th)/M,  th'' = -((M + m) g th + u)/(M l),  rod's pull (lambda in the direction of the rod) = m g to
+//   first order.
 TEST(LinearModels, InputsAndOutputs) {
   const PrecisionScope scope(kDigits);
   const auto model = model_of(R"(title = "cart"
@@ -196,7 +213,8 @@ guess = {b = -2}
   const StateChoice choice;
   const auto s = scenario(model, choice);
   const Expr x2 = g.jet(0, 2), b = g.jet(2, 0);
-  const Signals signals{{"push"}, {"acceleration", "height", "pull", "jerk"}, {g.parameter(0)}, {x2, b, g.multiplier(0, 0), g.jet(0, 3)}};
+  const Signals signals{
+      {"push"}, {"acceleration", "height", "pull", "jerk"}, {g.parameter(0)}, {x2, b, g.multiplier(0, 0), g.jet(0, 3)}};
   const Linearization l = linearize(*s, choice, std::nullopt, signals);
   ASSERT_TRUE(l.results[0].outcome.ok());
   const LinearModel& m = l.results[0].model;
@@ -221,8 +239,9 @@ guess = {b = -2}
 // An input that moves a constraint comes with its rate, which no B shows.
 TEST(LinearModels, InputsInConstraintsAreLeftOut) {
   const PrecisionScope scope(kDigits);
-  const auto model = model_of("title = \"t\"\ncoordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + y*ey\"}]\n"
-                              "constraint = [{name = \"c\", equation = \"y' = u*x\"}]\nparameters.u = 2\n");
+  const auto model = model_of(
+      "title = \"t\"\ncoordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + y*ey\"}]\n"
+      "constraint = [{name = \"c\", equation = \"y' = u*x\"}]\nparameters.u = 2\n");
   const StateChoice choice;
   const auto s = scenario(model, choice);
   const Linearization l = linearize(*s, choice, std::nullopt, {{"u"}, {}, {model->graph->parameter(0)}, {}});
@@ -251,7 +270,8 @@ potential.pull = "(2 + STEEP*sin(x))*y^2"
 // What depends on time is not steady, even where nothing moves.
 TEST(LinearModels, StiffnessThatSwings) {
   const PrecisionScope scope(kDigits);
-  const LinearModel m = linear("title = \"t\"\ncoordinates = [\"x\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex\"}]\npotential.pull = \"(2 + cos(t))*x^2\"\n");
+  const LinearModel m = linear("title = \"t\"\ncoordinates = [\"x\"]\nparticle = [{name = \"p\", mass = 1, position = "
+                               "\"x*ex\"}]\npotential.pull = \"(2 + cos(t))*x^2\"\n");
   EXPECT_EQ(m.motion, LinearModel::Motion::unsteady);
 }
 
@@ -307,10 +327,13 @@ TEST(LinearModels, WhippleBicycleAsPublished) {
     EXPECT_EQ(r.model.motion, v == 0 ? LinearModel::Motion::equilibrium : LinearModel::Motion::steady);
     EXPECT_EQ(r.model.spectrum.size(), 5U);  // the fifth is 0: of the speed
     EXPECT_EQ(zeros(r.model), 1);
-    for (const Eigenvalue& e : published(Multi(v))) EXPECT_LT(miss(r.model, e.value.re, e.value.im), 1e-12 * std::max(1.0, to_double(modulus(e.value)))) << "v = " << v;
+    for (const Eigenvalue& e : published(Multi(v)))
+      EXPECT_LT(miss(r.model, e.value.re, e.value.im), 1e-12 * std::max(1.0, to_double(modulus(e.value))))
+          << "v = " << v;
   }
   // Table 2 itself, at 5 m/s.
-  for (const auto& [re, im] : {std::pair{"-0.77534188219585", "4.46486771378823"}, {"-0.32286642900409", "0"}, {"-14.0783896927982", "0"}})
+  for (const auto& [re, im] :
+       {std::pair{"-0.77534188219585", "4.46486771378823"}, {"-0.32286642900409", "0"}, {"-14.0783896927982", "0"}})
     EXPECT_LT(miss(l.results[5].model, Multi(*parse_rational(re)), Multi(*parse_rational(im))), 1e-12);
   ASSERT_EQ(l.crossings.size(), 2U);
   EXPECT_LT(std::abs(to_double(l.crossings[0].value - Multi(*parse_rational("4.29238253634111")))), 1e-13);

@@ -1,4 +1,5 @@
-// What the Mac-Millan equations rest on [Q 7, 13] (theory: classics), and where the paper's "holonomic, hence the bracket vanishes" ends.
+// What the Mac-Millan equations rest on [Q 7, 13] (theory: classics), and where the paper's "holonomic, hence the
+// bracket vanishes" ends.
 #include <gtest/gtest.h>
 
 #include "mechanics/integrability.h"
@@ -34,9 +35,11 @@ TEST(MacMillan, DerivativesOfTheReducedVelocities) {
 
 // Two coordinates of one particle of mass 2 in a turning frame, with a constraint that is integrable: q2 = C exp(q1).
 System bound_by(const std::string& equation) {
-  return System(test::model_of("coordinates = [\"q1\", \"q2\"]\nparameters = {m = 2}\n[functions]\nw = {}\n[observer]\nspin = \"w*ez\"\n"
-                               "[[particle]]\nname = \"p\"\nmass = \"m\"\nposition = [\"q1\", \"q2\", 0]\n[[constraint]]\nname = \"c\"\nequation = \"" +
-                               equation + "\"\n[initial]\nq2 = 1\n\"q1'\" = 1\n"));
+  return System(test::model_of(
+      "coordinates = [\"q1\", \"q2\"]\nparameters = {m = 2}\n[functions]\nw = {}\n[observer]\nspin = \"w*ez\"\n"
+      "[[particle]]\nname = \"p\"\nmass = \"m\"\nposition = [\"q1\", \"q2\", 0]\n[[constraint]]\nname = "
+      "\"c\"\nequation = \"" +
+      equation + "\"\n[initial]\nq2 = 1\n\"q1'\" = 1\n"));
 }
 
 Expr bracket(const System& s, const Elimination& e) {
@@ -55,7 +58,8 @@ TEST(MacMillan, TheBracketOfAnIntegrableConstraintInVelocityFormStays) {
   PointValues near([](const Node&) { return 0.7; });
   EXPECT_EQ(integrability(s.m, {0}, near).integrable(), 1);
   // With the bracket the equations are those of Maggi, without it they are not.
-  const Equations with = find_formulation("mac-millan")->equations(s.m, e), maggi = find_formulation("maggi")->equations(s.m, e);
+  const Equations with = find_formulation("mac-millan")->equations(s.m, e),
+                  maggi = find_formulation("maggi")->equations(s.m, e);
   EXPECT_TRUE(test::proved({with.left, -with.right, -maggi.left, maggi.right}));
   EXPECT_FALSE(test::proved({with.left, -with.right, {bracket(s, e)}, -maggi.left, maggi.right}));
   EXPECT_GT(test::miss(s, e, {with.left, -with.right, {bracket(s, e)}, -maggi.left, maggi.right}), kRefuted);

@@ -30,14 +30,17 @@ Rows motion(const std::string& text) {
   return rows;
 }
 
-// Largest difference of X, Y, TH after the change of frame: turn = w0 t + w1 (1 - cos t), origin A1 (1 - cos t), A2/2 (t - sin 2t/2).
+// Largest difference of X, Y, TH after the change of frame: turn = w0 t + w1 (1 - cos t), origin A1 (1 - cos t), A2/2
+// (t - sin 2t/2).
 double gap(const Rows& plane, const Rows& inertial) {
   long double worst = 0;
   for (std::size_t k = 0; k < plane.size(); ++k) {
     const long double t = plane[k][0], x = plane[k][1], y = plane[k][2], th = plane[k][3];
     const long double turn = 0.3L * t + 0.2L * (1 - std::cos(t)), c = std::cos(turn), s = std::sin(turn);
-    const long double X = 0.5L * (1 - std::cos(t)) + c * x - s * y, Y = -0.2L * (t - std::sin(2 * t) / 2) + s * x + c * y;
-    worst = std::max({worst, std::abs(X - inertial[k][1]), std::abs(Y - inertial[k][2]), std::abs(th + turn - inertial[k][3])});
+    const long double X = 0.5L * (1 - std::cos(t)) + c * x - s * y,
+                      Y = -0.2L * (t - std::sin(2 * t) / 2) + s * x + c * y;
+    worst = std::max(
+        {worst, std::abs(X - inertial[k][1]), std::abs(Y - inertial[k][2]), std::abs(th + turn - inertial[k][3])});
   }
   return static_cast<double>(worst);
 }

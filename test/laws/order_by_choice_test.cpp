@@ -1,6 +1,6 @@
-// The order m of a form by choice: constraints of lower order, and none, are lifted to m, and the equations of order m say what
-// they said. Forms with multipliers are E - G - N in all jets for every m; the others are B^T (E - G) on the manifold of the lifted
-// constraints, B the tangents found there by numbers.
+// The order m of a form by choice: constraints of lower order, and none, are lifted to m, and the equations of order m
+// say what they said. Forms with multipliers are E - G - N in all jets for every m; the others are B^T (E - G) on the
+// manifold of the lifted constraints, B the tangents found there by numbers.
 #include <gtest/gtest.h>
 
 #include "run/eliminate.h"
@@ -22,7 +22,8 @@ struct Case {
 
 std::vector<Case> cases() {
   static const auto random = [](unsigned order, std::size_t constraints) {
-    return std::make_shared<const test::System>(test::model_of(test::ParticleSystem({3, 1, order, constraints, order != 2}, 5 + order).text()));
+    return std::make_shared<const test::System>(
+        test::model_of(test::ParticleSystem({3, 1, order, constraints, order != 2}, 5 + order).text()));
   };
   static const std::vector<Case> list{{"Free", random(0, 0)},
                                       {"Holonomic", random(0, 1)},
@@ -80,7 +81,8 @@ TEST_P(OrderByChoice, FormsWithoutMultipliersAreTheSameContraction) {
         EXPECT_EQ(e.m, m);
         EXPECT_TRUE(m == lowest || e.solved == solve) << "what is lifted is affine in its highest derivatives";
         const Equations q = form->equations(s.m, e);
-        EXPECT_LE(test::miss_along_constraints(s.m, e, q.left - q.right, 1), kExact) << form->name << ", m = " << m << (solve ? ", solved" : "");
+        EXPECT_LE(test::miss_along_constraints(s.m, e, q.left - q.right, 1), kExact)
+            << form->name << ", m = " << m << (solve ? ", solved" : "");
       }
     }
   }
@@ -97,7 +99,8 @@ TEST_P(LiftedConstraints, EnergiesOfAnotherOrderAreRefuted) {
   const Rational factor(m), next(m + 1);
   const auto turned = factor * e.f_rate_by_u(), f_by = next * e.f_by(m - 1), f_by_u = e.f_by_u();
   const auto nielsen = [&](Expr below, Expr T_m) {
-    const Column first = factor * e.by_u(T_m), second = next * e.I(e.by(m - 1, below)), third = next * (r * f_by_u), fourth = p * (turned - f_by);
+    const Column first = factor * e.by_u(T_m), second = next * e.I(e.by(m - 1, below)), third = next * (r * f_by_u),
+                 fourth = p * (turned - f_by);
     return first - second - third - fourth - e.contract(forces(s.m));
   };
   EXPECT_LE(test::miss_along_constraints(s.m, e, nielsen(T_before, T(s.m, m)), 1), kExact);
@@ -106,12 +109,14 @@ TEST_P(LiftedConstraints, EnergiesOfAnotherOrderAreRefuted) {
 
 std::string case_name(const testing::TestParamInfo<std::size_t>& p) { return cases()[p.param].name; }
 INSTANTIATE_TEST_SUITE_P(System, OrderByChoice, testing::Range<std::size_t>(0, 5), case_name);
-INSTANTIATE_TEST_SUITE_P(System, LiftedConstraints, testing::Range<std::size_t>(1, 5), case_name);  // those that have any
+INSTANTIATE_TEST_SUITE_P(System, LiftedConstraints, testing::Range<std::size_t>(1, 5),
+                         case_name);  // those that have any
 
 // Quasi-velocities are lifted with the constraints, and keep their own names.
 TEST(OrderOfQuasiVelocities, TheirDerivativesStayFree) {
-  const auto model = test::model_of("coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n"
-                                    "[[constraint]]\nname = \"c\"\nequation = \"z'' = y*x'' + x'*y''\"\n[quasi]\nu1 = \"x'\"\n");
+  const auto model = test::model_of(
+      "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n"
+      "[[constraint]]\nname = \"c\"\nequation = \"z'' = y*x'' + x'*y''\"\n[quasi]\nu1 = \"x'\"\n");
   const Mechanics M = mechanics(*model);
   for (const unsigned asked : {0U, 3U}) {
     const Elimination e = elimination_for(M, Unknowns::quasi_velocities, {}, {}, true, asked);
@@ -120,7 +125,8 @@ TEST(OrderOfQuasiVelocities, TheirDerivativesStayFree) {
     Labels free = free_labels(M, e);
     EXPECT_EQ(free[0].text, asked ? "u1''" : "u1'");
     EXPECT_EQ(free[1].text, asked ? "u_y''" : "u_y'");
-    for (std::size_t a = 0; a < 2; ++a) EXPECT_EQ(e.w[a].id, model->graph->jet(static_cast<std::uint32_t>(a), e.m).id) << "u' = x''";
+    for (std::size_t a = 0; a < 2; ++a)
+      EXPECT_EQ(e.w[a].id, model->graph->jet(static_cast<std::uint32_t>(a), e.m).id) << "u' = x''";
   }
 }
 

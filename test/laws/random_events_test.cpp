@@ -1,9 +1,9 @@
-// Ten thousand random systems with events against closed forms: the right events, in the right order, at the right times, and the
-// right end; or an honest outcome. 300 of them in the fast suite.
-#include <gtest/gtest.h>
-
+// Ten thousand random systems with events against closed forms: the right events, in the right order, at the right
+// times, and the right end; or an honest outcome. 300 of them in the fast suite.
 #include <cstdio>
 #include <cstdlib>
+
+#include <gtest/gtest.h>
 
 #include "run/simulate.h"
 #include "support/models.h"
@@ -13,8 +13,9 @@ namespace anholon {
 namespace {
 
 constexpr std::size_t kFew = 300, kAll = 10'000;
-constexpr long double kTime = 1e-10L, kGrazing = 1e-13L, kSpeed = 10;  // of an event; of its formula, over the slope there
-constexpr long double kEnd = 1e-8L;                       // state at the end: what events and waves have made of round-off
+constexpr long double kTime = 1e-10L, kGrazing = 1e-13L,
+                      kSpeed = 10;   // of an event; of its formula, over the slope there
+constexpr long double kEnd = 1e-8L;  // state at the end: what events and waves have made of round-off
 
 struct Verdict {
   bool decided = false, honest = false;
@@ -42,7 +43,8 @@ Verdict judge(std::uint64_t seed) {
   const SimulationReport r = run(m, m.text(), rows);
   std::string found, wanted;
   for (const EventReport& e : r.events) found += " " + e.name + "@" + e.t;
-  for (const auto& e : expected.events) wanted += " " + m.event_name(e.event) + "@" + number_text(static_cast<double>(e.t));
+  for (const auto& e : expected.events)
+    wanted += " " + m.event_name(e.event) + "@" + number_text(static_cast<double>(e.t));
   const std::string both = "\nfound:  " + found + "\nwanted: " + wanted + "\n" + m.text();
   if (!r.outcome.ok()) {
     if (r.outcome.message.find("accumulate") == std::string::npos) v.fault = r.outcome.message + both;
@@ -68,7 +70,8 @@ Verdict judge(std::uint64_t seed) {
     const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), m.name(i)) - names.begin());
     const long double x = std::strtold(rows.rows().back()[at].c_str(), nullptr);
     // Where an event ends the motion the last row is that before it.
-    if (!expected.stopped && std::abs(x - expected.x[i]) > (kEnd + kSpeed * carried) * (1 + std::abs(expected.x[i]))) v.fault = m.name(i) + " ends elsewhere" + both;
+    if (!expected.stopped && std::abs(x - expected.x[i]) > (kEnd + kSpeed * carried) * (1 + std::abs(expected.x[i])))
+      v.fault = m.name(i) + " ends elsewhere" + both;
   }
   return v;
 }

@@ -1,9 +1,9 @@
-// 200 random systems, each over a second of motion: Newton's law on dense output, a second form of the equations, and every
-// motion that does not reach its end in a named outcome that the second form or 30 digits confirm.
-#include <gtest/gtest.h>
-
+// 200 random systems, each over a second of motion: Newton's law on dense output, a second form of the equations, and
+// every motion that does not reach its end in a named outcome that the second form or 30 digits confirm.
 #include <cmath>
 #include <cstdio>
+
+#include <gtest/gtest.h>
 
 #include "run/simulate.h"
 #include "support/models.h"
@@ -12,9 +12,9 @@
 namespace anholon {
 namespace {
 
-constexpr double kNewton = 1e-11;    // C1, C2, C3 in relation to the terms
-constexpr double kSameMotion = 1e-9; // of two forms, in relation to the size of a column, where tolerances are 1e-13
-constexpr double kSameEnd = 1e-6;    // times at which two runs stop
+constexpr double kNewton = 1e-11;     // C1, C2, C3 in relation to the terms
+constexpr double kSameMotion = 1e-9;  // of two forms, in relation to the size of a column, where tolerances are 1e-13
+constexpr double kSameEnd = 1e-6;     // times at which two runs stop
 constexpr int kShards = 8, kEach = 25, kFinish = 20;
 
 struct Motion {
@@ -48,7 +48,8 @@ const Formulation* second_form(const Model& model, std::uint64_t seed) {
   return list.empty() ? nullptr : list[seed % list.size()];
 }
 
-// The largest difference of two motions, each column in relation to its size; the last row of a motion that stops is its own.
+// The largest difference of two motions, each column in relation to its size; the last row of a motion that stops is
+// its own.
 double difference(const Motion& a, const Motion& b) {
   double worst = 0;
   const std::size_t rows = std::min(a.rows.rows().size(), b.rows.rows().size()) - (a.report.outcome.ok() ? 0 : 1);
@@ -94,8 +95,9 @@ TEST_P(RandomSystems, AreSolvedOrStopForAReason) {
       EXPECT_NE(first.report.outcome.kind, OutcomeKind::interrupted) << first.report.outcome.message;
       if (!same_end(first, second)) {
         const Motion precise = run(model, *find_formulation("routh"), 30);
-        EXPECT_TRUE(same_end(first, precise)) << first.report.outcome.message << "\n" << form->name << ": " << second.report.outcome.message
-                                              << "\n30 digits: " << precise.report.outcome.message;
+        EXPECT_TRUE(same_end(first, precise))
+            << first.report.outcome.message << "\n"
+            << form->name << ": " << second.report.outcome.message << "\n30 digits: " << precise.report.outcome.message;
       }
     }
     if (first.rows.rows().size() > 1) {
@@ -113,7 +115,9 @@ TEST(RandomSystemsMutant, AnotherForceIsAnotherMotion) {
   int seen = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const std::string text = test::RandomSystem(seed).text();
-    const auto model = test::model_of(text), mutant = test::model_of(test::replaced(text, "[gravity]\nfield = \"-", "[gravity]\nfield = \"-1.000001*"));
+    const auto model = test::model_of(text),
+               mutant =
+                   test::model_of(test::replaced(text, "[gravity]\nfield = \"-", "[gravity]\nfield = \"-1.000001*"));
     const Motion a = run(model, *find_formulation("routh"), 16), b = run(mutant, *second_form(*mutant, seed), 16);
     if (!a.report.outcome.ok() || !b.report.outcome.ok()) continue;
     ++seen;

@@ -1,5 +1,5 @@
-// The reactions as formulas (theory: elimination): on a motion, found by numbers, they are the multipliers and reactions of that motion;
-// so they are where a form without multipliers has put in the dependent accelerations.
+// The reactions as formulas (theory: elimination): on a motion, found by numbers, they are the multipliers and
+// reactions of that motion; so they are where a form without multipliers has put in the dependent accelerations.
 #include <gtest/gtest.h>
 
 #include "formulation/reactions.h"
@@ -18,7 +18,8 @@ constexpr double kRefuted = 1e-6;
 class ReactionFormulas : public testing::TestWithParam<unsigned> {
  protected:
   PrecisionScope precision{40};
-  std::shared_ptr<const Model> model = test::model_of(test::ParticleSystem({4, 2, GetParam(), 2, true}, 40 + GetParam()).text());
+  std::shared_ptr<const Model> model =
+      test::model_of(test::ParticleSystem({4, 2, GetParam(), 2, true}, 40 + GetParam()).text());
   Mechanics m = mechanics(*model);
   std::vector<test::Point> points;
 
@@ -31,7 +32,8 @@ class ReactionFormulas : public testing::TestWithParam<unsigned> {
   // By how much formulas miss the values of others.
   double apart(const Column& formulas, const Column& others, const test::Point& at) const {
     const std::vector<Multi> want = test::values(put_masses(*model, others), at);
-    return test::largest(test::plus(test::values(put_masses(*model, formulas), at), want, -1)) / (1 + test::largest(want));
+    return test::largest(test::plus(test::values(put_masses(*model, formulas), at), want, -1)) /
+           (1 + test::largest(want));
   }
   static Column flat(const std::vector<Load>& loads) {
     Column out;
@@ -44,7 +46,8 @@ class ReactionFormulas : public testing::TestWithParam<unsigned> {
 TEST_P(ReactionFormulas, AreTheReactionsOfTheMotion) {
   for (const Formulation* form : formulations()) {
     if (form->unknowns == Unknowns::variational || !obstacle(*form, m).empty()) continue;
-    const Elimination e = form->eliminates() ? elimination_for(m, form->unknowns, {}, {}) : elimination_of_reactions(m, {}, {});
+    const Elimination e =
+        form->eliminates() ? elimination_for(m, form->unknowns, {}, {}) : elimination_of_reactions(m, {}, {});
     const anholon::ReactionFormulas r = reaction_formulas(m, *form, e);
     ASSERT_EQ(r.multipliers.size(), 2U);
     for (const test::Point& at : points) {
@@ -76,19 +79,26 @@ TEST_P(ReactionFormulas, SolveTheEquationsOfTheDependentCoordinates) {
   EXPECT_GT(apart(wrong, m.lambda, points[0]), kRefuted);
 }
 
-INSTANTIATE_TEST_SUITE_P(Order, ReactionFormulas, testing::Values(0U, 1U, 2U, 3U), [](const auto& p) { return "m" + std::to_string(p.param); });
+INSTANTIATE_TEST_SUITE_P(Order, ReactionFormulas, testing::Values(0U, 1U, 2U, 3U),
+                         [](const auto& p) { return "m" + std::to_string(p.param); });
 
 // Constraints that say the same have one multiplier, and a reaction that an input keeps has none.
 TEST(ReactionFormulasOf, RedundantAndServoConstraints) {
-  const std::string head = "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", 0]\n";
-  const auto twice = test::model_of(head + "[[constraint]]\nname = \"c\"\nequation = \"y' = x\"\n[[constraint]]\nname = \"d\"\nequation = \"2*y' = 2*x\"\n");
+  const std::string head =
+      "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", 0]\n";
+  const auto twice = test::model_of(
+      head +
+      "[[constraint]]\nname = \"c\"\nequation = \"y' = x\"\n[[constraint]]\nname = \"d\"\nequation = \"2*y' = 2*x\"\n");
   const Mechanics m = mechanics(*twice);
-  const anholon::ReactionFormulas r = reaction_formulas(m, *find_formulation("routh"), elimination_of_reactions(m, {}, {}));
+  const anholon::ReactionFormulas r =
+      reaction_formulas(m, *find_formulation("routh"), elimination_of_reactions(m, {}, {}));
   EXPECT_EQ(is_zero(r.multipliers[0]) + is_zero(r.multipliers[1]), 1);
   const auto servo = test::model_of(head + "[input]\nf = {}\n[[force]]\non = \"p\"\nvector = [\"f\", \"0\", \"0\"]\n"
-                                           "[[constraint]]\nname = \"c\"\nequation = \"y' = x\"\n[[constraint]]\nname = \"kept\"\nequation = \"x' = 1\"\nby = \"f\"\n");
+                                           "[[constraint]]\nname = \"c\"\nequation = \"y' = x\"\n[[constraint]]\nname "
+                                           "= \"kept\"\nequation = \"x' = 1\"\nby = \"f\"\n");
   const Mechanics k = mechanics(*servo);
-  const anholon::ReactionFormulas s = reaction_formulas(k, *find_formulation("routh"), elimination_of_reactions(k, {}, {}));
+  const anholon::ReactionFormulas s =
+      reaction_formulas(k, *find_formulation("routh"), elimination_of_reactions(k, {}, {}));
   EXPECT_TRUE(s.multipliers[0].graph);
   EXPECT_FALSE(s.multipliers[1].graph);
   EXPECT_TRUE(is_zero(s.by_motion[0])) << "no ideal reaction along x";

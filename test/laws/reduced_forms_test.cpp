@@ -1,9 +1,9 @@
-// Every form without multipliers is B^T (E - G) = 0 on the manifold of the constraints, B the tangents found there by numbers;
-// at random free higher derivatives, so that those that must cancel do. For every shipped model.
-#include <gtest/gtest.h>
-
+// Every form without multipliers is B^T (E - G) = 0 on the manifold of the constraints, B the tangents found there by
+// numbers; at random free higher derivatives, so that those that must cancel do. For every shipped model.
 #include <cstdlib>
 #include <set>
+
+#include <gtest/gtest.h>
 
 #include "run/eliminate.h"
 #include "support/contraction.h"
@@ -12,7 +12,7 @@
 namespace anholon {
 namespace {
 
-constexpr double kExact = 1e-26;   // 40 digits, less what a nearly singular point of the manifold takes
+constexpr double kExact = 1e-26;  // 40 digits, less what a nearly singular point of the manifold takes
 constexpr int kPoints = 2;
 
 struct System {
@@ -39,12 +39,13 @@ TEST_P(ReducedForms, AreTheContractionOfNewtonsLaw) {
 INSTANTIATE_TEST_SUITE_P(Model, ReducedForms, testing::ValuesIn(test::shipped_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
-// As many constraints as coordinates: nothing is left to be said, by no equations. Ends in a crash as long as the product of a
-// column and a matrix without columns reads an entry of it (Boltzmann-Hamel's: in an internal fault).
+// As many constraints as coordinates: nothing is left to be said, by no equations. Ends in a crash as long as the
+// product of a column and a matrix without columns reads an entry of it (Boltzmann-Hamel's: in an internal fault).
 TEST(FullyConstrained, LeavesNoEquations) {
-  const System s(test::model_of("coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = \"2\"\nposition = [\"x\", \"y\", \"0\"]\n"
-                                "[[constraint]]\nname = \"drive\"\nequation = \"x' = 1\"\n"
-                                "[[constraint]]\nname = \"follow\"\nequation = \"y' = x\"\n"));
+  const System s(test::model_of(
+      "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = \"2\"\nposition = [\"x\", \"y\", \"0\"]\n"
+      "[[constraint]]\nname = \"drive\"\nequation = \"x' = 1\"\n"
+      "[[constraint]]\nname = \"follow\"\nequation = \"y' = x\"\n"));
   for (const Formulation* form : formulations()) {
     if (!form->eliminates() || std::string(form->name) == "udwadia-kalaba") continue;
     for (const bool solve : {true, false}) {

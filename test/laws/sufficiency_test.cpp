@@ -1,9 +1,10 @@
-// The sufficiency of Routh's equations as a theorem that runs [L 2.8-2.13] (theory: certificate). Of a motion that satisfies [L 2.7],
-// reactions of the holonomic and of the nonholonomic constraints are taken as the paper allows: any ideal R^H, any R^N with the
-// generalized reactions of [L 2.6]. What Newton's law then misses on each particle, f_i, does no work in any virtual displacement,
-// R^N - f is ideal again, and with it Newton's law holds for each particle.
+// The sufficiency of Routh's equations as a theorem that runs [L 2.8-2.13] (theory: certificate). Of a motion that
+// satisfies [L 2.7], reactions of the holonomic and of the nonholonomic constraints are taken as the paper allows: any
+// ideal R^H, any R^N with the generalized reactions of [L 2.6]. What Newton's law then misses on each particle, f_i,
+// does no work in any virtual displacement, R^N - f is ideal again, and with it Newton's law holds for each particle.
 //
-// Reactions on particles are of random systems with g = 3N - n > 0 holonomic constraints in their coordinates, and with g = 0.
+// Reactions on particles are of random systems with g = 3N - n > 0 holonomic constraints in their coordinates, and with
+// g = 0.
 #include <gtest/gtest.h>
 
 #include "model/loads.h"
@@ -16,8 +17,8 @@
 namespace anholon {
 namespace {
 
-constexpr double kExact = 1e-26;    // 40 digits, a few systems of equations after each other
-constexpr double kRefuted = 1e-6;   // a mutant misses by much more
+constexpr double kExact = 1e-26;   // 40 digits, a few systems of equations after each other
+constexpr double kRefuted = 1e-6;  // a mutant misses by much more
 
 using Vectors = std::vector<Multi>;  // three components for each particle
 
@@ -52,12 +53,13 @@ struct Particles {
 struct State {
   const Particles& p;
   test::Point at;
-  Matrix<Multi> by_q;    // dr/dq, transposed: n x 3N
-  Matrix<Multi> phi;     // dphi/dq^(m)
+  Matrix<Multi> by_q;  // dr/dq, transposed: n x 3N
+  Matrix<Multi> phi;   // dphi/dq^(m)
   Vectors law, N;
   std::uint64_t draws;
 
-  State(const Particles& particles, test::Point point, std::uint64_t seed) : p(particles), at(std::move(point)), draws(seed * 1000) {
+  State(const Particles& particles, test::Point point, std::uint64_t seed)
+      : p(particles), at(std::move(point)), draws(seed * 1000) {
     Rows rows, constraints;
     for (Expr x : p.places) rows.push_back(gradient(x, p.m.q));
     for (const Column& row : p.m.Phi) constraints.push_back(put_masses(*p.model, row));
@@ -70,7 +72,8 @@ struct State {
   Vectors any(std::size_t size) {
     Vectors out;
     const test::Point random(++draws);
-    for (std::size_t i = 0; i < size; ++i) out.push_back(random(*p.model->graph, p.model->graph->given(static_cast<std::uint32_t>(i), 0).id));
+    for (std::size_t i = 0; i < size; ++i)
+      out.push_back(random(*p.model->graph, p.model->graph->given(static_cast<std::uint32_t>(i), 0).id));
     return out;
   }
   // sum R . dr/dq = 0
@@ -87,16 +90,21 @@ struct State {
   }
   // In units of what is multiplied.
   double work(const Vectors& forces, const Vectors& displacement) const {
-    return std::abs(to_double(test::product(forces, displacement))) / (1 + test::largest(forces)) / (1e-3 + test::largest(displacement));
+    return std::abs(to_double(test::product(forces, displacement))) / (1 + test::largest(forces)) /
+           (1e-3 + test::largest(displacement));
   }
-  double generalized(const Vectors& forces) const { return test::largest(test::times(by_q, forces)) / (1 + test::largest(forces)); }
+  double generalized(const Vectors& forces) const {
+    return test::largest(test::times(by_q, forces)) / (1 + test::largest(forces));
+  }
 };
 
 struct Choice {
   std::size_t coordinates, particles;
   unsigned order;
 };
-void PrintTo(const Choice& c, std::ostream* out) { *out << c.coordinates << " coordinates, " << c.particles << " particles, order " << c.order; }
+void PrintTo(const Choice& c, std::ostream* out) {
+  *out << c.coordinates << " coordinates, " << c.particles << " particles, order " << c.order;
+}
 
 class Sufficiency : public testing::TestWithParam<Choice> {
  protected:
@@ -111,7 +119,8 @@ class Sufficiency : public testing::TestWithParam<Choice> {
     SCOPED_TRACE(system.text());
     particles = std::make_unique<Particles>(system.text());
     for (std::uint64_t seed = 1; seed <= 3; ++seed)
-      if (const auto at = test::motion_point(particles->m, particles->dependent, order, seed)) states.emplace_back(*particles, *at, seed);
+      if (const auto at = test::motion_point(particles->m, particles->dependent, order, seed))
+        states.emplace_back(*particles, *at, seed);
     ASSERT_GE(states.size(), 2U) << system.text();
   }
 };
@@ -135,21 +144,24 @@ TEST_P(Sufficiency, WhatNewtonsLawMissesDoesNoWork) {
     const Expr acceleration = s.p.m.qdd[0];
     moved.set(acceleration, test::value(acceleration, s.at) + Multi(1));
     const State wrong(s.p, moved, 1);
-    EXPECT_GT(s.generalized(test::plus(test::plus(wrong.law, s.ideal_holonomic()), s.with_generalized(wrong.N))), kRefuted);
+    EXPECT_GT(s.generalized(test::plus(test::plus(wrong.law, s.ideal_holonomic()), s.with_generalized(wrong.N))),
+              kRefuted);
   }
 }
 
 // [L 2.11, 2.12]
 TEST_P(Sufficiency, TheReactionsLessThatAreIdealAgain) {
   for (State& s : states) {
-    const Vectors R_N = s.with_generalized(s.N), f = test::plus(test::plus(s.law, s.ideal_holonomic()), R_N), R = test::plus(R_N, f, -1);
+    const Vectors R_N = s.with_generalized(s.N), f = test::plus(test::plus(s.law, s.ideal_holonomic()), R_N),
+                  R = test::plus(R_N, f, -1);
     for (int k = 0; k < 3; ++k) {
       const Vectors delta = s.displacement();
       EXPECT_LE(s.work(R_N, delta), kExact);
       EXPECT_LE(s.work(R, delta), kExact);
     }
     // Mutants: a defect that is not ideal, and a displacement that the constraints do not allow.
-    const Vectors not_ideal = test::plus(f, s.any(f.size())), free = test::times(test::transposed(s.by_q), s.any(s.p.n()));
+    const Vectors not_ideal = test::plus(f, s.any(f.size())),
+                  free = test::times(test::transposed(s.by_q), s.any(s.p.n()));
     EXPECT_GT(s.work(test::plus(R_N, not_ideal, -1), s.displacement()), kRefuted);
     EXPECT_GT(s.work(R, free), kRefuted);
   }
@@ -177,7 +189,8 @@ TEST_P(Sufficiency, OnlyTheTotalReactionIsUnique) {
   for (State& s : states) {
     Vectors R_N[2], total[2];
     for (int k = 0; k < 2; ++k) {
-      const Vectors R_H = s.ideal_holonomic(), first = s.with_generalized(s.N), f = test::plus(test::plus(s.law, R_H), first);
+      const Vectors R_H = s.ideal_holonomic(), first = s.with_generalized(s.N),
+                    f = test::plus(test::plus(s.law, R_H), first);
       R_N[k] = test::plus(first, f, -1);
       total[k] = test::plus(R_H, R_N[k]);
     }
@@ -193,9 +206,13 @@ TEST_P(Sufficiency, OnlyTheTotalReactionIsUnique) {
 }
 
 INSTANTIATE_TEST_SUITE_P(System, Sufficiency,
-                         testing::Values(Choice{4, 2, 1}, Choice{3, 2, 1}, Choice{5, 3, 2}, Choice{2, 1, 2}, Choice{4, 2, 3}, Choice{4, 2, 0}, Choice{3, 1, 1},
-                                         Choice{3, 1, 2}, Choice{6, 2, 1}, Choice{3, 1, 3}),
-                         [](const auto& p) { return "n" + std::to_string(p.param.coordinates) + "N" + std::to_string(p.param.particles) + "m" + std::to_string(p.param.order); });
+                         testing::Values(Choice{4, 2, 1}, Choice{3, 2, 1}, Choice{5, 3, 2}, Choice{2, 1, 2},
+                                         Choice{4, 2, 3}, Choice{4, 2, 0}, Choice{3, 1, 1}, Choice{3, 1, 2},
+                                         Choice{6, 2, 1}, Choice{3, 1, 3}),
+                         [](const auto& p) {
+                           return "n" + std::to_string(p.param.coordinates) + "N" + std::to_string(p.param.particles) +
+                                  "m" + std::to_string(p.param.order);
+                         });
 
 }  // namespace
 }  // namespace anholon

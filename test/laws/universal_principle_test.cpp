@@ -2,8 +2,9 @@
 //
 //   sum_i (F_i - m_i a_i) . delta r_i^(m) = 0,   delta r_i = … = delta r_i^(m-1) = delta t = 0
 //
-// with delta q^(m) in the kernel of dphi/dq^(m). delta r^(m) is taken by differences of r^(m), which is a function of all jets. F holds
-// the reactive forces and those of the moving observer. And what becomes of the reduced equations where [N 5.2] is put in [N 5.3].
+// with delta q^(m) in the kernel of dphi/dq^(m). delta r^(m) is taken by differences of r^(m), which is a function of
+// all jets. F holds the reactive forces and those of the moving observer. And what becomes of the reduced equations
+// where [N 5.2] is put in [N 5.3].
 #include <gtest/gtest.h>
 
 #include "support/identity.h"
@@ -55,7 +56,8 @@ class UniversalPrinciple : public testing::TestWithParam<Choice> {
   // delta q^(m) that the constraints allow, or any.
   Vectors displacement(const test::Point& at, std::uint64_t seed, bool allowed = true) const {
     Vectors any;
-    for (std::size_t a = 0; a < mech.q.size(); ++a) any.push_back(test::Point(seed)(*model->graph, model->graph->given(static_cast<std::uint32_t>(a), 9).id));
+    for (std::size_t a = 0; a < mech.q.size(); ++a)
+      any.push_back(test::Point(seed)(*model->graph, model->graph->given(static_cast<std::uint32_t>(a), 9).id));
     Rows rows;
     for (Expr phi : phi_m) rows.push_back(gradient(phi, jets(*model, m)));
     return allowed ? test::in_kernel(test::values_of(rows, at), any) : any;
@@ -98,7 +100,8 @@ TEST_P(UniversalPrinciple, NeedsTheKernelAndTheLowerVariationsZero) {
     EXPECT_GT(work(at, variation(places_m, at, m, displacement(at, 1, false))), kRefuted) << "any delta q^(m)";
     if (m == 0) continue;
     const Vectors delta = displacement(at, 1);
-    const Vectors both = test::plus(variation(places_m, at, m, delta), variation(places_m, at, m - 1, displacement(at, 2)));
+    const Vectors both =
+        test::plus(variation(places_m, at, m, delta), variation(places_m, at, m - 1, displacement(at, 2)));
     EXPECT_GT(work(at, both), kRefuted) << "delta r^(m-1) is not zero";
   }
 }
@@ -107,7 +110,8 @@ TEST_P(UniversalPrinciple, NeedsTheKernelAndTheLowerVariationsZero) {
 class PrincipleOfGauss : public UniversalPrinciple {};
 TEST_P(PrincipleOfGauss, SaysThatTheCompulsionIsStationary) {
   Expr Z = model->graph->zero();
-  for (std::size_t i = 0; i < miss.size(); ++i) Z += pow(miss[i], Rational(2)) / (2 * put_masses(*model, model->bodies[i / 3].mass));
+  for (std::size_t i = 0; i < miss.size(); ++i)
+    Z += pow(miss[i], Rational(2)) / (2 * put_masses(*model, model->bodies[i / 3].mass));
   for (const test::Point& at : points) {
     const double size = 1 + std::abs(to_double(test::value(Z, at)));
     EXPECT_LE(test::largest(variation({Z}, at, 2, displacement(at, 1))) / size, kDifferences);
@@ -122,7 +126,8 @@ TEST_P(RelationOnAMotion, TheForcesDoNotReplaceTheInertiaCoordinateByCoordinate)
   const Rational part = Rational(static_cast<int>(m) - 1) / Rational(static_cast<int>(m));
   const Column below = gradient(T(mech, m - 1), jets(*model, m - 1));
   const Column of_T = gradient(mech.T, mech.q) - Rational(1, m) * below;
-  const Column with_forces = put(of_T + part * forces(mech)), with_inertia = put(of_T + part * lagrange_operator(mech)), N = put(part * mech.N);
+  const Column with_forces = put(of_T + part * forces(mech)), with_inertia = put(of_T + part * lagrange_operator(mech)),
+               N = put(part * mech.N);
   for (const test::Point& at : points) {
     const double size = 1 + test::largest(test::values(put(below), at));
     EXPECT_LE(test::largest(test::values(with_inertia, at)) / size, kExact);
@@ -133,16 +138,19 @@ TEST_P(RelationOnAMotion, TheForcesDoNotReplaceTheInertiaCoordinateByCoordinate)
   }
 }
 
-std::string case_name(const testing::TestParamInfo<Choice>& p) { return "Constraints" + std::to_string(p.param.order) + "Principle" + std::to_string(p.param.m); }
+std::string case_name(const testing::TestParamInfo<Choice>& p) {
+  return "Constraints" + std::to_string(p.param.order) + "Principle" + std::to_string(p.param.m);
+}
 const auto of_order_zero = testing::Values(Choice{0, 0});
-const auto of_higher_order =
-    testing::Values(Choice{0, 1}, Choice{0, 2}, Choice{1, 1}, Choice{1, 2}, Choice{1, 3}, Choice{2, 2}, Choice{2, 3}, Choice{3, 3}, Choice{3, 4});
+const auto of_higher_order = testing::Values(Choice{0, 1}, Choice{0, 2}, Choice{1, 1}, Choice{1, 2}, Choice{1, 3},
+                                             Choice{2, 2}, Choice{2, 3}, Choice{3, 3}, Choice{3, 4});
 INSTANTIATE_TEST_SUITE_P(OrderZero, UniversalPrinciple, of_order_zero, case_name);
 INSTANTIATE_TEST_SUITE_P(Order, UniversalPrinciple, of_higher_order, case_name);
 INSTANTIATE_TEST_SUITE_P(Order, PrincipleOfGauss, testing::Values(Choice{0, 2}, Choice{1, 2}, Choice{2, 2}), case_name);
 INSTANTIATE_TEST_SUITE_P(Order, RelationOnAMotion, of_higher_order, case_name);
 
-// ---- [N 5.3] ------------------------------------------------------------------------------------------------------------------
+// ---- [N 5.3]
+// ------------------------------------------------------------------------------------------------------------------
 
 class PutIntoTheReducedEquations : public testing::TestWithParam<unsigned> {
  protected:
@@ -150,9 +158,11 @@ class PutIntoTheReducedEquations : public testing::TestWithParam<unsigned> {
   static test::Terms left(const test::System& s, const Elimination& e, const Column& X) {
     const Rational part = Rational(static_cast<int>(e.m) - 1) / Rational(static_cast<int>(e.m));
     const Expr before = T(s.m, e.m - 1);
-    const Column p = e.on(e.D(s.by(e.m, before))), r = e.on(s.by(e.m - 1, before)), by_5_2 = Rational(1, e.m) * r - part * e.on(X);
+    const Column p = e.on(e.D(s.by(e.m, before))), r = e.on(s.by(e.m - 1, before)),
+                 by_5_2 = Rational(1, e.m) * r - part * e.on(X);
     const auto turned = e.f_rate_by_u(), f_by = e.f_by(e.m - 1), f_by_u = e.f_by_u();
-    return {e.by_u(T(s.m, e.m)), -e.I(e.by(e.m - 1, before)), -e.I(by_5_2), -(p * (turned - f_by)), -((e.D(r) + e.D(by_5_2)) * f_by_u)};
+    return {e.by_u(T(s.m, e.m)), -e.I(e.by(e.m - 1, before)), -e.I(by_5_2), -(p * (turned - f_by)),
+            -((e.D(r) + e.D(by_5_2)) * f_by_u)};
   }
   static Column residual(const char* form, const test::System& s, const Elimination& e) {
     const Equations q = find_formulation(form)->equations(s.m, e);
@@ -170,7 +180,8 @@ TEST_P(PutIntoTheReducedEquations, SaysTheSameWithTheForcesContracted) {  // [N 
     test::Terms with_E = left(s, e, lagrange_operator(s.m));
     with_E.push_back(-reduced);
     EXPECT_LE(test::miss(s, e, with_E), kExact);
-    // With the forces it is an equation of motion: a m-th part of [N 3.16], and m times it are the generalized Nielsen equations.
+    // With the forces it is an equation of motion: a m-th part of [N 3.16], and m times it are the generalized Nielsen
+    // equations.
     test::Terms with_G = left(s, e, G);
     with_G.push_back(-e.contract(G));
     test::Terms part = with_G, nielsen = with_G;
@@ -191,7 +202,8 @@ TEST_P(PutIntoTheReducedEquations, SaysTheSameWithTheForcesContracted) {  // [N 
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Order, PutIntoTheReducedEquations, testing::Values(1U, 2U, 3U), [](const auto& p) { return "m" + std::to_string(p.param); });
+INSTANTIATE_TEST_SUITE_P(Order, PutIntoTheReducedEquations, testing::Values(1U, 2U, 3U),
+                         [](const auto& p) { return "m" + std::to_string(p.param); });
 
 }  // namespace
 }  // namespace anholon

@@ -1,10 +1,11 @@
-// Models of the zoo against numbers from elsewhere: closed solutions, and equations reduced by hand and integrated here.
-#include <gtest/gtest.h>
-
+// Models of the zoo against numbers from elsewhere: closed solutions, and equations reduced by hand and integrated
+// here.
 #include <array>
 #include <cmath>
 #include <complex>
 #include <functional>
+
+#include <gtest/gtest.h>
 
 #include "run/simulate.h"
 #include "support/models.h"
@@ -43,7 +44,8 @@ std::array<double, N> runge_kutta(const Rate<N>& f, std::array<double, N> x, dou
   };
   for (int k = 0; k < steps; ++k) {
     const double t = k * h;
-    const auto a = f(t, x), b = f(t + h / 2, ahead(x, h / 2, a)), c = f(t + h / 2, ahead(x, h / 2, b)), d = f(t + h, ahead(x, h, c));
+    const auto a = f(t, x), b = f(t + h / 2, ahead(x, h / 2, a)), c = f(t + h / 2, ahead(x, h / 2, b)),
+               d = f(t + h, ahead(x, h, c));
     for (std::size_t i = 0; i < N; ++i) x[i] += h / 6 * (a[i] + 2 * b[i] + 2 * c[i] + d[i]);
   }
   return x;
@@ -65,23 +67,28 @@ TEST(Zoo, TheBallOnATiltedTurntableDriftsAcrossTheSlope) {
   EXPECT_NEAR(norm, 1, 1e-14);
 }
 
-// The wheels leave one velocity V along the seat: th' = (V sin ph - d2 ph')/(d1 cos ph + d2), and Kane's equation of V is
-// m V' + (J1 th'' + J2 (th'' + ph'')) sin ph/(d1 cos ph + d2) = 0.
+// The wheels leave one velocity V along the seat: th' = (V sin ph - d2 ph')/(d1 cos ph + d2), and Kane's equation of V
+// is m V' + (J1 th'' + J2 (th'' + ph'')) sin ph/(d1 cos ph + d2) = 0.
 TEST(Zoo, TheRollerRacerFollowsItsReducedEquation) {
   const double pi = std::acos(-1.0);
   const auto reduced = [&](double d2) {
-    return runge_kutta<4>([=](double t, const std::array<double, 4>& x) {
-      const double m = 60, J1 = 4, J2 = 0.3, d1 = 0.4, A = 40 * pi / 180, w = 4;
-      const double V = x[0], th = x[1], ph = A * std::sin(w * t), ph1 = A * w * std::cos(w * t), ph2 = -w * w * ph;
-      const double D = d1 * std::cos(ph) + d2, D1 = -d1 * std::sin(ph) * ph1, th1 = (V * std::sin(ph) - d2 * ph1) / D, p = std::sin(ph) / D;
-      // th'' = p V' + rest
-      const double rest = (V * std::cos(ph) * ph1 - d2 * ph2 - th1 * D1) / D;
-      const double V1 = -((J1 + J2) * rest + J2 * ph2) * p / (m + (J1 + J2) * p * p);
-      return std::array<double, 4>{V1, th1, V * std::cos(th), V * std::sin(th)};
-    }, {0.5, 0, 0, 0}, 6);
+    return runge_kutta<4>(
+        [=](double t, const std::array<double, 4>& x) {
+          const double m = 60, J1 = 4, J2 = 0.3, d1 = 0.4, A = 40 * pi / 180, w = 4;
+          const double V = x[0], th = x[1], ph = A * std::sin(w * t), ph1 = A * w * std::cos(w * t), ph2 = -w * w * ph;
+          const double D = d1 * std::cos(ph) + d2, D1 = -d1 * std::sin(ph) * ph1,
+                       th1 = (V * std::sin(ph) - d2 * ph1) / D, p = std::sin(ph) / D;
+          // th'' = p V' + rest
+          const double rest = (V * std::cos(ph) * ph1 - d2 * ph2 - th1 * D1) / D;
+          const double V1 = -((J1 + J2) * rest + J2 * ph2) * p / (m + (J1 + J2) * p * p);
+          return std::array<double, 4>{V1, th1, V * std::cos(th), V * std::sin(th)};
+        },
+        {0.5, 0, 0, 0}, 6);
   };
   const std::map<std::string, double> end = end_of(test::shipped_text("zoo/roller-racer"), 6);
-  const auto miss = [&](const std::array<double, 4>& x) { return std::abs(end.at("th") - x[1]) + std::abs(end.at("x") - x[2]) + std::abs(end.at("y") - x[3]); };
+  const auto miss = [&](const std::array<double, 4>& x) {
+    return std::abs(end.at("th") - x[1]) + std::abs(end.at("x") - x[2]) + std::abs(end.at("y") - x[3]);
+  };
   EXPECT_LT(miss(reduced(0.15)), kAgreement);
   EXPECT_GT(miss(reduced(0.151)), 1e-4) << "mutant: a longer handlebar";
 }
@@ -90,15 +97,22 @@ TEST(Zoo, TheRollerRacerFollowsItsReducedEquation) {
 TEST(Zoo, TheTwoWheeledPendulumIsAPendulumOnACart) {
   const double pi = std::acos(-1.0);
   const auto reduced = [&](double wheel) {
-    return runge_kutta<4>([=](double, const std::array<double, 4>& s) {
-      const double M = 30, mw = 2, R = 0.2, b = 0.25, h = 0.5, g = 9.81, al = s[1], v = s[2], w = s[3], torque = 400 * al + 60 * w;
-      const double I = M / 12 * (b * b + 4 * h * h), a11 = M + 2 * mw + 2 * wheel * mw, a12 = M * h * std::cos(al), a22 = I + M * h * h;
-      const double f1 = M * h * std::sin(al) * w * w + 2 * torque / R, f2 = M * g * h * std::sin(al) - 2 * torque, det = a11 * a22 - a12 * a12;
-      return std::array<double, 4>{v, w, (f1 * a22 - f2 * a12) / det, (f2 * a11 - f1 * a12) / det};
-    }, {0, 10 * pi / 180, 0, 0}, 3);
+    return runge_kutta<4>(
+        [=](double, const std::array<double, 4>& s) {
+          const double M = 30, mw = 2, R = 0.2, b = 0.25, h = 0.5, g = 9.81, al = s[1], v = s[2], w = s[3],
+                       torque = 400 * al + 60 * w;
+          const double I = M / 12 * (b * b + 4 * h * h), a11 = M + 2 * mw + 2 * wheel * mw, a12 = M * h * std::cos(al),
+                       a22 = I + M * h * h;
+          const double f1 = M * h * std::sin(al) * w * w + 2 * torque / R, f2 = M * g * h * std::sin(al) - 2 * torque,
+                       det = a11 * a22 - a12 * a12;
+          return std::array<double, 4>{v, w, (f1 * a22 - f2 * a12) / det, (f2 * a11 - f1 * a12) / det};
+        },
+        {0, 10 * pi / 180, 0, 0}, 3);
   };
   const std::map<std::string, double> end = end_of(test::shipped_text("zoo/two-wheeled-pendulum"), 3);
-  const auto miss = [&](const std::array<double, 4>& x) { return std::abs(end.at("x") - x[0]) + std::abs(end.at("al") - x[1]); };
+  const auto miss = [&](const std::array<double, 4>& x) {
+    return std::abs(end.at("x") - x[0]) + std::abs(end.at("al") - x[1]);
+  };
   EXPECT_LT(miss(reduced(0.5)), kAgreement);
   EXPECT_GT(miss(reduced(0.55)), 1e-4) << "mutant: heavier rims";
   EXPECT_LT(std::abs(end.at("al")), 0.1 * pi / 18) << "and its motors hold it";
@@ -109,17 +123,23 @@ TEST(Zoo, TheTwoWheeledPendulumIsAPendulumOnACart) {
 // V' - om' q - 2 om q' - om^2 p along and om' p + q'' + om V - om^2 q across it.
 TEST(Zoo, TheSleighWithAMovingMassFollowsItsReducedEquations) {
   const auto reduced = [&](double d) {
-    return runge_kutta<5>([=](double t, const std::array<double, 5>& x) {
-      const double M = 5, J = 0.4, a = 0.2, m = 1, b = 0.3, w = 3, V = x[0], om = x[1];
-      const double q = b * std::sin(w * t), q1 = b * w * std::cos(w * t), q2 = -w * w * q;
-      const double along = 2 * om * q1 + om * om * d, across = q2 + om * V - om * om * q;
-      const double a11 = M + m, a12 = -m * q, a22 = J + M * a * a + m * (q * q + d * d);
-      const double f1 = M * a * om * om + m * along, f2 = -M * a * om * V - m * (q * along + d * across), det = a11 * a22 - a12 * a12;
-      return std::array<double, 5>{(f1 * a22 - f2 * a12) / det, (f2 * a11 - f1 * a12) / det, om, V * std::cos(x[2]), V * std::sin(x[2])};
-    }, {1, 0.1, 0, 0, 0}, 10);
+    return runge_kutta<5>(
+        [=](double t, const std::array<double, 5>& x) {
+          const double M = 5, J = 0.4, a = 0.2, m = 1, b = 0.3, w = 3, V = x[0], om = x[1];
+          const double q = b * std::sin(w * t), q1 = b * w * std::cos(w * t), q2 = -w * w * q;
+          const double along = 2 * om * q1 + om * om * d, across = q2 + om * V - om * om * q;
+          const double a11 = M + m, a12 = -m * q, a22 = J + M * a * a + m * (q * q + d * d);
+          const double f1 = M * a * om * om + m * along, f2 = -M * a * om * V - m * (q * along + d * across),
+                       det = a11 * a22 - a12 * a12;
+          return std::array<double, 5>{(f1 * a22 - f2 * a12) / det, (f2 * a11 - f1 * a12) / det, om, V * std::cos(x[2]),
+                                       V * std::sin(x[2])};
+        },
+        {1, 0.1, 0, 0, 0}, 10);
   };
   const std::map<std::string, double> end = end_of(test::shipped_text("zoo/sleigh-with-moving-mass"), 10);
-  const auto miss = [&](const std::array<double, 5>& x) { return std::abs(end.at("th") - x[2]) + std::abs(end.at("x") - x[3]) + std::abs(end.at("y") - x[4]); };
+  const auto miss = [&](const std::array<double, 5>& x) {
+    return std::abs(end.at("th") - x[2]) + std::abs(end.at("x") - x[3]) + std::abs(end.at("y") - x[4]);
+  };
   EXPECT_LT(miss(reduced(0.4)), kAgreement);
   EXPECT_GT(miss(reduced(0.401)), 1e-4) << "mutant: the weight a little ahead";
 }
@@ -127,15 +147,20 @@ TEST(Zoo, TheSleighWithAMovingMassFollowsItsReducedEquations) {
 // Straight ahead the robot is a rolling hoop of mass 5/3 M with a pendulum: angles phi of the shell, th of the arm.
 TEST(Zoo, TheSphericalRobotGoesStraightAsAHoopWithAPendulum) {
   const auto reduced = [&](double shell) {
-    return runge_kutta<4>([=](double t, const std::array<double, 4>& s) {
-      const double M = 3, R = 0.2, m = 4, l = 0.12, g = 9.81, torque = 1.5 * std::sin(2 * t), th = s[1], w = s[3];
-      const double a11 = ((1 + shell) * M + m) * R * R, a12 = -m * R * l * std::cos(th), a22 = m * l * l;
-      const double f1 = torque - m * R * l * std::sin(th) * w * w, f2 = -torque - m * g * l * std::sin(th), det = a11 * a22 - a12 * a12;
-      return std::array<double, 4>{s[2], w, (f1 * a22 - f2 * a12) / det, (f2 * a11 - f1 * a12) / det};
-    }, {0, 0, 2, 0}, 2);
+    return runge_kutta<4>(
+        [=](double t, const std::array<double, 4>& s) {
+          const double M = 3, R = 0.2, m = 4, l = 0.12, g = 9.81, torque = 1.5 * std::sin(2 * t), th = s[1], w = s[3];
+          const double a11 = ((1 + shell) * M + m) * R * R, a12 = -m * R * l * std::cos(th), a22 = m * l * l;
+          const double f1 = torque - m * R * l * std::sin(th) * w * w, f2 = -torque - m * g * l * std::sin(th),
+                       det = a11 * a22 - a12 * a12;
+          return std::array<double, 4>{s[2], w, (f1 * a22 - f2 * a12) / det, (f2 * a11 - f1 * a12) / det};
+        },
+        {0, 0, 2, 0}, 2);
   };
   const std::map<std::string, double> end = end_of(test::shipped_text("zoo/spherical-robot"), 2);
-  const auto miss = [&](const std::array<double, 4>& x) { return std::abs(end.at("x") - 0.2 * x[0]) + std::abs(end.at("al") - (x[1] - x[0])); };
+  const auto miss = [&](const std::array<double, 4>& x) {
+    return std::abs(end.at("x") - 0.2 * x[0]) + std::abs(end.at("al") - (x[1] - x[0]));
+  };
   EXPECT_LT(miss(reduced(2.0 / 3)), kAgreement);
   EXPECT_GT(miss(reduced(0.4)), 1e-4) << "mutant: a solid ball";
   EXPECT_NEAR(end.at("y"), 0, 1e-12);
@@ -170,16 +195,19 @@ struct Orbit {
 TEST(Zoo, TheTetherTurnsByItsEquationAndHangsStill) {
   const Orbit o;
   const auto reduced = [&](double c) {
-    return runge_kutta<2>([=](double t, const std::array<double, 2>& x) {
-      const double l = 50 * std::exp(c * t);
-      return std::array<double, 2>{x[1], (o.across(l, x[0]) - 2 * c * l * (x[1] + o.n)) / l};
-    }, {-std::asin(4 * 3e-4 / (3 * o.n)) / 2, 0}, 9000);
+    return runge_kutta<2>(
+        [=](double t, const std::array<double, 2>& x) {
+          const double l = 50 * std::exp(c * t);
+          return std::array<double, 2>{x[1], (o.across(l, x[0]) - 2 * c * l * (x[1] + o.n)) / l};
+        },
+        {-std::asin(4 * 3e-4 / (3 * o.n)) / 2, 0}, 9000);
   };
   const std::map<std::string, double> end = end_of(test::shipped_text("zoo/tether"), 9000);
   EXPECT_NEAR(end.at("l"), 50 * std::exp(2.7), 1e-9);
   EXPECT_NEAR(end.at("angle"), reduced(3e-4)[0], kAgreement);
   EXPECT_GT(std::abs(end.at("angle") - reduced(3.001e-4)[0]), 1e-6) << "mutant: a faster reel";
-  EXPECT_NEAR(end.at("angle"), -std::asin(4 * 3e-4 / (3 * o.n)) / 2, 2 * end.at("l") / o.R) << "the angle at which a short one hangs";
+  EXPECT_NEAR(end.at("angle"), -std::asin(4 * 3e-4 / (3 * o.n)) / 2, 2 * end.at("l") / o.R)
+      << "the angle at which a short one hangs";
 }
 
 // The angle held, the law across says how the tether grows; the law along, what the reel has to do.
@@ -187,16 +215,20 @@ TEST(Zoo, TheTetherKeptAtAnAngleGrowsAsItsServoWants) {
   const Orbit o;
   const double angle = -10 * std::acos(-1.0) / 180;
   const auto grown = [&](double at) {
-    return runge_kutta<1>([=](double, const std::array<double, 1>& x) { return std::array<double, 1>{o.across(x[0], at) / (2 * o.n)}; }, {50}, 9000)[0];
+    return runge_kutta<1>(
+        [=](double, const std::array<double, 1>& x) { return std::array<double, 1>{o.across(x[0], at) / (2 * o.n)}; },
+        {50}, 9000)[0];
   };
   const std::map<std::string, double> end = end_of(test::shipped_text("zoo/tether-by-servo"), 9000);
   const double l = end.at("l");
   EXPECT_NEAR(l, grown(angle), 1e-9 * l);
   EXPECT_GT(std::abs(l - grown(1.001 * angle)), 1e-4 * l) << "mutant: another angle";
-  EXPECT_NEAR(std::log(l / 50), -0.75 * o.n * std::sin(2 * angle) * 9000, 4 * l / o.R) << "exponentially, as long as it is short";
+  EXPECT_NEAR(std::log(l / 50), -0.75 * o.n * std::sin(2 * angle) * 9000, 4 * l / o.R)
+      << "exponentially, as long as it is short";
   EXPECT_NEAR(end.at("angle"), angle, 1e-12);
   const double r2 = o.R * o.R + 2 * o.R * l * std::cos(angle) + l * l;
-  const double along = -o.mu / (r2 * std::sqrt(r2)) * (l + o.R * std::cos(angle)) + o.n * o.n * (l + o.R * std::cos(angle)) - end.at("l''");
+  const double along = -o.mu / (r2 * std::sqrt(r2)) * (l + o.R * std::cos(angle)) +
+                       o.n * o.n * (l + o.R * std::cos(angle)) - end.at("l''");
   EXPECT_NEAR(end.at("pull"), 100 * along, 1e-9);
   EXPECT_NEAR(end.at("tension"), end.at("pull"), 1e-12);
 }

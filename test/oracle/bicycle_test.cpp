@@ -1,7 +1,7 @@
-// The bicycle at a state of no symmetry: lean, steer, and all rates. Table 1 of Basu-Mandal, Chatterjee, Papadopoulos: Hands-free
-// circular motions of a benchmark bicycle, Proc. R. Soc. A 463 (2007) 1983-2003, whose accelerations two independent derivations
-// gave. Their x points back and z up: x, z, heading, pitch, steer and wheel angles have the other sign here, lean is counted from
-// the vertical, and (x, y, z) is the centre of the rear wheel.
+// The bicycle at a state of no symmetry: lean, steer, and all rates. Table 1 of Basu-Mandal, Chatterjee, Papadopoulos:
+// Hands-free circular motions of a benchmark bicycle, Proc. R. Soc. A 463 (2007) 1983-2003, whose accelerations two
+// independent derivations gave. Their x points back and z up: x, z, heading, pitch, steer and wheel angles have the
+// other sign here, lean is counted from the vertical, and (x, y, z) is the centre of the rear wheel.
 #include <gtest/gtest.h>
 
 #include "run/evaluate.h"
@@ -35,8 +35,9 @@ double number(const StateReport::Named& list, const std::string& name) {
 // What the constraints make of lean, steer and their rates.
 const std::pair<const char*, double> kVelocities[] = {
     {"psi", -0.7830033527065}, {"pitch", 0.0119185528069}, {"front", -8.0133620584155}};
-const std::pair<const char*, double> kAccelerations[] = {{"psi''", -0.8353281706379}, {"phi''", 7.8555281128244},    {"pitch''", -0.1205543897884},
-                                                         {"delta''", 4.6198904039403}, {"rear''", -1.8472554144217}, {"front''", -2.4548072904550}};
+const std::pair<const char*, double> kAccelerations[] = {{"psi''", -0.8353281706379},   {"phi''", 7.8555281128244},
+                                                         {"pitch''", -0.1205543897884}, {"delta''", 4.6198904039403},
+                                                         {"rear''", -1.8472554144217},  {"front''", -2.4548072904550}};
 
 TEST(Bicycle, BasuMandalsAccelerations) {
   const auto model = shipped("zoo/whipple");
@@ -48,8 +49,10 @@ TEST(Bicycle, BasuMandalsAccelerations) {
   const Outcome done = evaluate(s, choice, 16, r);
   ASSERT_TRUE(done.ok()) << done.message;
   EXPECT_NEAR(number(r.q, "pitch"), 3.14159265358979323846 - 3.1257073014894, kPrinted);
-  for (const auto& [name, value] : kVelocities) EXPECT_NEAR(number(r.qdot, name), value, kPrinted * std::max(1.0, std::abs(value))) << name;
-  for (const auto& [name, value] : kAccelerations) EXPECT_NEAR(number(r.derivatives, name), value, 3 * kPrinted * std::max(1.0, std::abs(value))) << name;
+  for (const auto& [name, value] : kVelocities)
+    EXPECT_NEAR(number(r.qdot, name), value, kPrinted * std::max(1.0, std::abs(value))) << name;
+  for (const auto& [name, value] : kAccelerations)
+    EXPECT_NEAR(number(r.derivatives, name), value, 3 * kPrinted * std::max(1.0, std::abs(value))) << name;
 }
 
 // The centre of the rear wheel, whose acceleration the table gives in its axes.

@@ -1,11 +1,12 @@
-// Every form at every stored state of every reference system. The stored coordinates, derivatives, accelerations and multipliers
-// are put into its equations; what the state does not say of higher derivatives is pseudo-random where it is free and follows
-// from the constraints where it is not. Each system at the order of its constraints and with its constraints differentiated:
-// their reactions are the same. With the constraints solved where that is possible, and not. In 50 digits and in double.
-#include <gtest/gtest.h>
-
+// Every form at every stored state of every reference system. The stored coordinates, derivatives, accelerations and
+// multipliers are put into its equations; what the state does not say of higher derivatives is pseudo-random where it
+// is free and follows from the constraints where it is not. Each system at the order of its constraints and with its
+// constraints differentiated: their reactions are the same. With the constraints solved where that is possible, and
+// not. In 50 digits and in double.
 #include <cstdlib>
 #include <set>
+
+#include <gtest/gtest.h>
 
 #include "run/eliminate.h"
 #include "support/manifold.h"
@@ -18,12 +19,13 @@ using nlohmann::json;
 
 constexpr double kManyDigits = 1e-25;  // the states are stored with 32 digits and more, and polished
 constexpr double kDouble = 1e-12;
-constexpr double kRefuted = 1e-6;      // a mutant misses by much more
+constexpr double kRefuted = 1e-6;  // a mutant misses by much more
 constexpr int kDigits = 50;
 
 Multi number(const json& digits) {
   Multi x;
-  if (mpfr_set_str(x.raw(), digits.get<std::string>().c_str(), 10, MPFR_RNDN) != 0) throw std::runtime_error(digits.dump() + " is no number");
+  if (mpfr_set_str(x.raw(), digits.get<std::string>().c_str(), 10, MPFR_RNDN) != 0)
+    throw std::runtime_error(digits.dump() + " is no number");
   return x;
 }
 
@@ -64,7 +66,8 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
   // x_2 -> x'', lam1_1 -> the rate of the first multiplier.
   Expr symbol(const std::string& name) const {
     const auto [base, order] = test::split_order(name);
-    if (const std::size_t a = coordinate(base); a < m.q.size()) return m.graph().jet(static_cast<std::uint32_t>(a), order);
+    if (const std::size_t a = coordinate(base); a < m.q.size())
+      return m.graph().jet(static_cast<std::uint32_t>(a), order);
     if (const std::size_t a = coordinate(name); a < m.q.size()) return m.graph().jet(static_cast<std::uint32_t>(a), 0);
     if (base.rfind("lam", 0) != 0) throw std::runtime_error("unknown symbol " + name);
     return m.graph().multiplier(static_cast<std::uint32_t>(std::stoul(base.substr(3)) - 1), order);
@@ -81,8 +84,8 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
     return out;
   }
 
-  // A stored state: first on the constraints, then on the equations of motion, by small corrections; beyond what is stored the
-  // independent derivatives are pseudo-random, up to order `highest`.
+  // A stored state: first on the constraints, then on the equations of motion, by small corrections; beyond what is
+  // stored the independent derivatives are pseudo-random, up to order `highest`.
   test::Point point(const json& stored, const std::vector<std::size_t>& D, unsigned highest) const {
     Graph& g = m.graph();
     test::Point at = test::random_point(*model, 1);
@@ -102,7 +105,8 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
       if (!test::solve_for(at, equations, unknowns)) throw std::runtime_error(std::string("no solution for ") + what);
       const std::vector<Multi> after = test::values(unknowns, at);
       for (std::size_t i = 0; i < after.size(); ++i)
-        if (known.count(unknowns[i].id) && test::distance(before[i], after[i]) > 1e-26) throw std::runtime_error(std::string("the stored state does not satisfy ") + what);
+        if (known.count(unknowns[i].id) && test::distance(before[i], after[i]) > 1e-26)
+          throw std::runtime_error(std::string("the stored state does not satisfy ") + what);
     };
     const int order = m.order.empty() ? 0 : *std::max_element(m.order.begin(), m.order.end());
     for (int r : m.order)
@@ -148,10 +152,12 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
       p.first.push_back(p.parts.size());
       for (Expr side : {left[i], right[i]}) {
         Graph& g = *side.graph;
-        if (g.node(side.id).kind != Kind::sum) p.parts.push_back(side);
+        if (g.node(side.id).kind != Kind::sum)
+          p.parts.push_back(side);
         else
           for (const Term& t : g.summands(side.id))
-            p.parts.push_back(g.is_number(t.node) ? g.number(g.rational(t.weight) * g.value(t.node)) : g.rational(t.weight) * Expr{&g, t.node});
+            p.parts.push_back(g.is_number(t.node) ? g.number(g.rational(t.weight) * g.value(t.node))
+                                                  : g.rational(t.weight) * Expr{&g, t.node});
       }
     }
     p.first.push_back(p.parts.size());
@@ -169,14 +175,17 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
     Machine<N> machine(p.tape, 0, evaluate_parameters<N>(m.graph(), es));
     for (const Input& in : p.tape.inputs) {
       const Multi v = at(m.graph(), in.symbol);
-      if constexpr (std::same_as<N, Multi>) machine.series(in.slot)[0] = v;
-      else machine.series(in.slot)[0] = to_double(v);
+      if constexpr (std::same_as<N, Multi>)
+        machine.series(in.slot)[0] = v;
+      else
+        machine.series(in.slot)[0] = to_double(v);
     }
     machine.evaluate();
     double worst = 0;
     for (std::size_t i = 0; i < p.residual.size(); ++i) {
       double scale = 1;
-      for (std::size_t k = p.first[i]; k < p.first[i + 1]; ++k) scale = std::max(scale, std::abs(to_double(machine.value(p.residual.size() + k))));
+      for (std::size_t k = p.first[i]; k < p.first[i + 1]; ++k)
+        scale = std::max(scale, std::abs(to_double(machine.value(p.residual.size() + k))));
       const double off = std::abs(to_double(machine.value(i))) / scale;
       if (!(off <= worst)) worst = off == off ? off : 1e300;
     }
@@ -198,9 +207,10 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
     return std::all_of(of.order.begin(), of.order.end(), [](int r) { return r == 0; });
   }
 
-  // All forms that apply, with the constraints differentiated so often. Of those that solve for the accelerations nothing new
-  // comes by that; the other mechanics has these reactions only where the constraints are holonomic.
-  void judge(unsigned times, bool solved, Worst& multi, Worst& real, const std::function<Equations(const Formulation&, Equations)>& mutant = {}) {
+  // All forms that apply, with the constraints differentiated so often. Of those that solve for the accelerations
+  // nothing new comes by that; the other mechanics has these reactions only where the constraints are holonomic.
+  void judge(unsigned times, bool solved, Worst& multi, Worst& real,
+             const std::function<Equations(const Formulation&, Equations)>& mutant = {}) {
     const std::shared_ptr<const Model> at_order = lifted(model, times);
     const Mechanics here = mechanics(*at_order);
     unsigned highest = 2;
@@ -215,7 +225,8 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
       const Equations q = form->equations(here, e);
       const Prepared p = prepare(*at_order, e, mutant ? mutant(*form, q) : q);
       for (std::size_t k = 0; k < points.size(); ++k) {
-        const std::string where = std::string(form->name) + ", lifted " + std::to_string(times) + " times, state " + std::to_string(k);
+        const std::string where =
+            std::string(form->name) + ", lifted " + std::to_string(times) + " times, state " + std::to_string(k);
         multi.take(miss<Multi>(p, points[k]), where);
         real.take(miss<double>(p, points[k]), where);
       }
@@ -239,7 +250,8 @@ class FormsOracleAtOrder : public FormsOracle {
 
 TEST_P(FormsOracleAtOrder, OfTheConstraints) { expect_at(native(), true); }
 
-INSTANTIATE_TEST_SUITE_P(Model, FormsOracleAtOrder, testing::ValuesIn(test::oracle_pairs()), [](const auto& p) { return test::test_name(p.param.model); });
+INSTANTIATE_TEST_SUITE_P(Model, FormsOracleAtOrder, testing::ValuesIn(test::oracle_pairs()),
+                         [](const auto& p) { return test::test_name(p.param.model); });
 
 // The systems that have constraints, of an order of at most `highest`.
 std::vector<test::OraclePair> with_constraints(int highest) {
@@ -257,14 +269,17 @@ class FormsOracleOneHigher : public FormsOracleAtOrder {};
 
 TEST_P(FormsOracleOneHigher, Holds) { expect_at(native() + 1, false); }
 
-INSTANTIATE_TEST_SUITE_P(Model, FormsOracleOneHigher, testing::ValuesIn(with_constraints(99)), [](const auto& p) { return test::test_name(p.param.model); });
+INSTANTIATE_TEST_SUITE_P(Model, FormsOracleOneHigher, testing::ValuesIn(with_constraints(99)),
+                         [](const auto& p) { return test::test_name(p.param.model); });
 
 // Order 2 was lifted to 3 above. With ANHOLON_LONG=1 all systems, else some that are quick.
 std::vector<test::OraclePair> lifted_to_three() {
-  const std::set<std::string> quick = {"zoo/chaplygin-sleigh", "zoo/rheonomic-order-1", "zoo/double-pendulum-cartesian", "zoo/appell-hamel",
-                                       "zoo/vertical-disc", "zoo/isokinetic", "papers/luo-zhao-example-1"};
+  const std::set<std::string> quick = {
+      "zoo/chaplygin-sleigh", "zoo/rheonomic-order-1", "zoo/double-pendulum-cartesian", "zoo/appell-hamel",
+      "zoo/vertical-disc",    "zoo/isokinetic",        "papers/luo-zhao-example-1"};
   std::vector<test::OraclePair> pairs = with_constraints(1);
-  if (!std::getenv("ANHOLON_LONG")) std::erase_if(pairs, [&](const test::OraclePair& p) { return !quick.count(p.model); });
+  if (!std::getenv("ANHOLON_LONG"))
+    std::erase_if(pairs, [&](const test::OraclePair& p) { return !quick.count(p.model); });
   return pairs;
 }
 
@@ -272,7 +287,8 @@ class FormsOracleAtThree : public FormsOracleAtOrder {};
 
 TEST_P(FormsOracleAtThree, Holds) { expect_at(3, true); }
 
-INSTANTIATE_TEST_SUITE_P(Model, FormsOracleAtThree, testing::ValuesIn(lifted_to_three()), [](const auto& p) { return test::test_name(p.param.model); });
+INSTANTIATE_TEST_SUITE_P(Model, FormsOracleAtThree, testing::ValuesIn(lifted_to_three()),
+                         [](const auto& p) { return test::test_name(p.param.model); });
 
 // Mutants: an equation that is not the form's; a system that is not the stored one.
 class FormsOracleMutant : public FormsOracle {};

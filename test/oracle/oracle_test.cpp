@@ -1,8 +1,8 @@
-// Every shipped model with a line `# oracle: NAME` against data/NAME.json: each term at each stored state, each sample of the
-// stored trajectory. The numbers there were computed by other methods in 230-bit arithmetic (data/README.md).
-#include <gtest/gtest.h>
-
+// Every shipped model with a line `# oracle: NAME` against data/NAME.json: each term at each stored state, each sample
+// of the stored trajectory. The numbers there were computed by other methods in 230-bit arithmetic (data/README.md).
 #include <map>
+
+#include <gtest/gtest.h>
 
 #include "run/evaluate.h"
 #include "run/simulate.h"
@@ -14,11 +14,11 @@ namespace {
 using nlohmann::json;
 
 // Largest error allowed, in units of the scale of the quantity.
-constexpr double kEvaluate = 1e-13;      // long double, printed as double
-constexpr double kSimulate = 1e-12;      // double, tolerance 1e-15
-constexpr double kManyDigits = 1e-25;    // 30 digits
-constexpr double kQuad = 1e-28;          // quad
-constexpr double kUnstable = 1e-9;       // in double, where errors grow fast along the trajectory
+constexpr double kEvaluate = 1e-13;    // long double, printed as double
+constexpr double kSimulate = 1e-12;    // double, tolerance 1e-15
+constexpr double kManyDigits = 1e-25;  // 30 digits
+constexpr double kQuad = 1e-28;        // quad
+constexpr double kUnstable = 1e-9;     // in double, where errors grow fast along the trajectory
 const char* const kUnstableSystem = "s07_rattleback";
 
 using Pair = test::OraclePair;
@@ -29,7 +29,8 @@ class Worst {
   void compare(const std::string& value, const std::string& reference, double scale, const std::string& where) {
     Multi a, b;
     ++count_;
-    if (mpfr_set_str(a.raw(), value.c_str(), 10, MPFR_RNDN) != 0 || mpfr_set_str(b.raw(), reference.c_str(), 10, MPFR_RNDN) != 0) {
+    if (mpfr_set_str(a.raw(), value.c_str(), 10, MPFR_RNDN) != 0 ||
+        mpfr_set_str(b.raw(), reference.c_str(), 10, MPFR_RNDN) != 0) {
       error_ = std::numeric_limits<double>::infinity();
       where_ = where + ": '" + value + "'";
       return;
@@ -39,7 +40,8 @@ class Worst {
   }
   testing::AssertionResult within(double tolerance) const {
     if (count_ > 0 && error_ <= tolerance) return testing::AssertionSuccess();
-    return testing::AssertionFailure() << where_ << ": error " << error_ << ", allowed " << tolerance << " (" << count_ << " compared)";
+    return testing::AssertionFailure() << where_ << ": error " << error_ << ", allowed " << tolerance << " (" << count_
+                                       << " compared)";
   }
 
  private:
@@ -68,16 +70,22 @@ class Oracle : public testing::TestWithParam<Pair> {
   // x_2 of the data -> x''; lam2 -> the second multiplier.
   std::string jet_name(const std::string& symbol) const {
     const std::size_t at = symbol.rfind('_');
-    if (at != std::string::npos && std::find(coordinates.begin(), coordinates.end(), symbol.substr(0, at)) != coordinates.end())
-      return derivative_name(symbol.substr(0, at), static_cast<unsigned>(std::stoul(symbol.substr(at + 1))), Format::text);
+    if (at != std::string::npos &&
+        std::find(coordinates.begin(), coordinates.end(), symbol.substr(0, at)) != coordinates.end())
+      return derivative_name(symbol.substr(0, at), static_cast<unsigned>(std::stoul(symbol.substr(at + 1))),
+                             Format::text);
     return symbol;
   }
   bool is_multiplier(const std::string& symbol) const {
-    return symbol.rfind("lam", 0) == 0 && std::find(coordinates.begin(), coordinates.end(), test::split_order(symbol).first) == coordinates.end();
+    return symbol.rfind("lam", 0) == 0 &&
+           std::find(coordinates.begin(), coordinates.end(), test::split_order(symbol).first) == coordinates.end();
   }
-  std::size_t multiplier_index(const std::string& symbol) const { return std::stoul(test::split_order(symbol).first.substr(3)) - 1; }
+  std::size_t multiplier_index(const std::string& symbol) const {
+    return std::stoul(test::split_order(symbol).first.substr(3)) - 1;
+  }
   std::string multiplier(const std::string& symbol) const {
-    return derivative_name(model->constraints.at(multiplier_index(symbol)).name, test::split_order(symbol).second, Format::text);
+    return derivative_name(model->constraints.at(multiplier_index(symbol)).name, test::split_order(symbol).second,
+                           Format::text);
   }
 
   StateChoice choice(const json& state) const {
@@ -116,7 +124,8 @@ class Oracle : public testing::TestWithParam<Pair> {
     std::size_t k = 0;
     for (std::size_t i = 0; i < coordinates.size(); ++i)
       for (std::size_t j = i; j < coordinates.size(); ++j, ++k)
-        worst.compare(r.mass_matrix[i][j], text(values["M_upper"].at(k)), mass, "mass matrix " + std::to_string(i) + std::to_string(j) + at);
+        worst.compare(r.mass_matrix[i][j], text(values["M_upper"].at(k)), mass,
+                      "mass matrix " + std::to_string(i) + std::to_string(j) + at);
     compare_reactions(worst, r, values, force, at);
     for (const auto& [symbol, v] : stored["solution"].items()) {
       const bool lambda = is_multiplier(symbol);
@@ -125,18 +134,22 @@ class Oracle : public testing::TestWithParam<Pair> {
     }
   }
 
-  void compare_reactions(Worst& worst, const StateReport& r, const json& values, double scale, const std::string& at) const {
+  void compare_reactions(Worst& worst, const StateReport& r, const json& values, double scale,
+                         const std::string& at) const {
     std::vector<std::size_t> bodies;  // those with a mass or an inertia, in the order of the file
     for (std::size_t b = 0; b < model->bodies.size(); ++b)
       if (!is_zero(model->bodies[b].mass) || !model->bodies[b].axes.empty()) bodies.push_back(b);
     for (const auto& [key, vector] : values.items()) {
       if (key.rfind("R_total_body", 0) != 0) continue;
       const StateReport::Reaction& reaction = r.reactions.at(bodies.at(std::stoul(key.substr(12))));
-      for (std::size_t i = 0; i < 3; ++i) worst.compare(reaction.force[i], text(vector[i]), scale, "reaction of " + reaction.body + at);
+      for (std::size_t i = 0; i < 3; ++i)
+        worst.compare(reaction.force[i], text(vector[i]), scale, "reaction of " + reaction.body + at);
     }
   }
 
-  Worst evaluate_all(int digits) const { return evaluate_all(digits <= 16 ? Precision::long_real : Precision::multi, digits); }
+  Worst evaluate_all(int digits) const {
+    return evaluate_all(digits <= 16 ? Precision::long_real : Precision::multi, digits);
+  }
   Worst evaluate_all(Precision numbers, int digits) const {
     Worst worst;
     int index = 0;
@@ -167,7 +180,8 @@ class Oracle : public testing::TestWithParam<Pair> {
     MemorySink sink;
     const SimulationReport report = simulate(s, options, sink);
     EXPECT_EQ(report.outcome.kind, OutcomeKind::finished) << report.outcome.message;
-    if (sink.rows().size() != path["times"].size()) throw std::runtime_error("rows are missing: " + report.outcome.message);
+    if (sink.rows().size() != path["times"].size())
+      throw std::runtime_error("rows are missing: " + report.outcome.message);
     std::map<std::string, std::size_t> column;
     for (std::size_t i = 0; i < sink.names().size(); ++i) column[sink.names()[i]] = i;
     for (std::size_t k = 0; k < sink.rows().size(); ++k) {
@@ -189,7 +203,8 @@ TEST_P(Oracle, TermsAtStates) {
 }
 
 TEST_P(Oracle, TrajectoryInDouble) {
-  EXPECT_TRUE(simulate_all(Precision::real, 1e-15, 16).within(GetParam().oracle == kUnstableSystem ? kUnstable : kSimulate));
+  EXPECT_TRUE(
+      simulate_all(Precision::real, 1e-15, 16).within(GetParam().oracle == kUnstableSystem ? kUnstable : kSimulate));
 }
 
 INSTANTIATE_TEST_SUITE_P(Model, Oracle, testing::ValuesIn(test::oracle_pairs()),
@@ -207,13 +222,16 @@ class OracleByMethod : public Oracle {};
 TEST_P(OracleByMethod, Trajectory) {
   for (const double tolerance : {1e-6, 1e-9}) {
     EXPECT_TRUE(simulate_all(Precision::real, tolerance, 16, Method::runge_kutta).within(30 * tolerance)) << tolerance;
-    EXPECT_FALSE(simulate_all(Precision::real, tolerance, 16, Method::runge_kutta).within(1e-6 * tolerance)) << "that is another method";
+    EXPECT_FALSE(simulate_all(Precision::real, tolerance, 16, Method::runge_kutta).within(1e-6 * tolerance))
+        << "that is another method";
     EXPECT_TRUE(simulate_all(Precision::real, tolerance, 16, Method::bdf).within(1000 * tolerance)) << tolerance;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Model, OracleByMethod,
-                         testing::Values(Pair{"zoo/chaplygin-sleigh", "s03_chaplygin_sleigh"}, Pair{"zoo/double-pendulum-cartesian", "s15_double_pendulum_cartesian"},
-                                         Pair{"zoo/second-order-linear", "s12b_second_order_linear"}, Pair{"zoo/rocket", "s14_rocket"}),
+                         testing::Values(Pair{"zoo/chaplygin-sleigh", "s03_chaplygin_sleigh"},
+                                         Pair{"zoo/double-pendulum-cartesian", "s15_double_pendulum_cartesian"},
+                                         Pair{"zoo/second-order-linear", "s12b_second_order_linear"},
+                                         Pair{"zoo/rocket", "s14_rocket"}),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
 // The quick systems in multiprecision; all of them under ANHOLON_LONG=1.
@@ -221,9 +239,10 @@ std::vector<Pair> quick_models() {
   if (std::getenv("ANHOLON_LONG")) return test::oracle_pairs();
   std::vector<Pair> quick;
   for (const Pair& p : test::oracle_pairs())
-    for (const char* name : {"zoo/chaplygin-sleigh", "zoo/appell-hamel", "zoo/rocket", "zoo/falling-chain", "zoo/vertical-disc",
-                             "papers/luo-zhao-example-1", "papers/luo-zhao-example-2-plane-frame", "zoo/second-order-linear",
-                             "zoo/constant-acceleration", "zoo/third-order-linear", "zoo/constant-jerk-central"})
+    for (const char* name :
+         {"zoo/chaplygin-sleigh", "zoo/appell-hamel", "zoo/rocket", "zoo/falling-chain", "zoo/vertical-disc",
+          "papers/luo-zhao-example-1", "papers/luo-zhao-example-2-plane-frame", "zoo/second-order-linear",
+          "zoo/constant-acceleration", "zoo/third-order-linear", "zoo/constant-jerk-central"})
       if (p.model == name) quick.push_back(p);
   return quick;
 }
@@ -249,7 +268,8 @@ TEST_P(OracleMutant, IsRefuted) {
   EXPECT_FALSE(evaluate_all(16).within(kEvaluate));
   EXPECT_FALSE(simulate_all(Precision::real, 1e-15, 16).within(kSimulate));
 }
-INSTANTIATE_TEST_SUITE_P(Model, OracleMutant, testing::Values(Pair{"zoo/second-order-linear", "s12b_second_order_linear"}),
+INSTANTIATE_TEST_SUITE_P(Model, OracleMutant,
+                         testing::Values(Pair{"zoo/second-order-linear", "s12b_second_order_linear"}),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
 }  // namespace

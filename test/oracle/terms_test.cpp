@@ -33,12 +33,10 @@ class OracleTerms : public testing::TestWithParam<test::OraclePair> {
   Expr symbol(const std::string& name) const {
     const auto [base, order] = test::split_order(name);
     const std::vector<std::string>& coordinates = model->names.coordinates;
-    if (const auto it = std::find(coordinates.begin(), coordinates.end(), base);
-        it != coordinates.end())
+    if (const auto it = std::find(coordinates.begin(), coordinates.end(), base); it != coordinates.end())
       return m.graph().jet(static_cast<std::uint32_t>(it - coordinates.begin()), order);
     const auto whole = std::find(coordinates.begin(), coordinates.end(), name);
-    if (whole != coordinates.end())
-      return m.graph().jet(static_cast<std::uint32_t>(whole - coordinates.begin()), 0);
+    if (whole != coordinates.end()) return m.graph().jet(static_cast<std::uint32_t>(whole - coordinates.begin()), 0);
     if (base.rfind("lam", 0) != 0) throw std::runtime_error("unknown symbol " + name);
     Expr e = m.lambda.at(std::stoul(base.substr(3)) - 1);
     for (unsigned k = 0; k < order; ++k) e = total_derivative(e);
@@ -58,13 +56,13 @@ class OracleTerms : public testing::TestWithParam<test::OraclePair> {
     double error = 0;
     std::string what;
   };
-  static void compare(Worst& worst, const std::string& what, const Column& column,
-                      const json& stored, const Multi& scale, const test::Point& at) {
+  static void compare(Worst& worst, const std::string& what, const Column& column, const json& stored,
+                      const Multi& scale, const test::Point& at) {
     const std::vector<Multi> values = test::values(column, at);
     EXPECT_EQ(values.size(), stored.size()) << what;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const double miss = to_double(
-          Multi(abs(Multi(values[i] - number(stored[i]))) / (scale > Multi(1) ? scale : Multi(1))));
+      const double miss =
+          to_double(Multi(abs(Multi(values[i] - number(stored[i]))) / (scale > Multi(1) ? scale : Multi(1))));
       if (!(miss <= worst.error)) worst = {miss == miss ? miss : 1e300, what};
     }
   }
@@ -72,15 +70,14 @@ class OracleTerms : public testing::TestWithParam<test::OraclePair> {
   Column put(const Column& c) const { return put_masses(*model, c); }
 
   void compare_terms(Worst& worst, const test::Point& at, const json& values) const {
-    const std::vector<std::pair<const char*, Column>> forces = {
-        {"Q", put(m.Q)},
-        {"QR", put(m.QR)},
-        {"Qomega", put(m.Qomega)},
-        {"minus_dVO", put(m.minus_dVO)},
-        {"minus_dVomega", put(m.minus_dVomega)},
-        {"Gamma", put(m.Gamma)},
-        {"inertia_term", newton_left_side(m)},
-        {"N", put(m.N)}};
+    const std::vector<std::pair<const char*, Column>> forces = {{"Q", put(m.Q)},
+                                                                {"QR", put(m.QR)},
+                                                                {"Qomega", put(m.Qomega)},
+                                                                {"minus_dVO", put(m.minus_dVO)},
+                                                                {"minus_dVomega", put(m.minus_dVomega)},
+                                                                {"Gamma", put(m.Gamma)},
+                                                                {"inertia_term", newton_left_side(m)},
+                                                                {"N", put(m.N)}};
     Multi force(1), speed(1);
     for (const auto& [name, column] : forces)
       for (const json& v : values[name])
@@ -156,14 +153,12 @@ TEST_P(OracleTermsMutant, IsRefuted) {
   EXPECT_GT(worst.error, 100 * kTerms);
 }
 INSTANTIATE_TEST_SUITE_P(Model, OracleTermsMutant,
-                         testing::Values(test::OraclePair{"zoo/constant-jerk",
-                                                          "s16_const_jerk_uniform"}),
+                         testing::Values(test::OraclePair{"zoo/constant-jerk", "s16_const_jerk_uniform"}),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
 TEST(OracleData, EverySystemHasAModel) {
   std::vector<std::string> systems, paired;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(test::source_dir() / "test/oracle/data"))
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "test/oracle/data"))
     if (entry.path().extension() == ".json") systems.push_back(entry.path().stem().string());
   for (const test::OraclePair& p : test::oracle_pairs()) paired.push_back(p.oracle);
   std::sort(systems.begin(), systems.end());

@@ -1,17 +1,18 @@
-// Equations without multipliers against Newton's law: both along the tangents of the constraints, which are found by numbers, at
-// random free higher derivatives, so that those that must cancel do.
+// Equations without multipliers against Newton's law: both along the tangents of the constraints, which are found by
+// numbers, at random free higher derivatives, so that those that must cancel do.
 #pragma once
 #include "formulation/formulation.h"
 #include "support/manifold.h"
 
 namespace anholon::test {
 
-// |residual - B^T (E - G)| in units of the terms, the largest of `points` points, huge where none is found; for n equations without
-// multipliers |B^T residual - …|.
+// |residual - B^T (E - G)| in units of the terms, the largest of `points` points, huge where none is found; for n
+// equations without multipliers |B^T residual - …|.
 inline double miss_along_constraints(const Mechanics& M, const Elimination& e, const Column& residual, int points) {
   const PrecisionScope precision(40);
   const Model& model = *M.model;
-  const Column a = newton_left_side(M) - put_masses(model, forces(M)), r = put_masses(model, e.in_coordinates(residual));
+  const Column a = newton_left_side(M) - put_masses(model, forces(M)),
+               r = put_masses(model, e.in_coordinates(residual));
   double worst = 0;
   int found = 0;
   for (int seed = 1; seed <= points; ++seed) {

@@ -1,12 +1,14 @@
-// A small system that has everything the equations of order m speak of: moving guides, a varying mass, two constraints whose
-// right sides hold time, lower derivatives of dependent coordinates, and powers of the independent highest derivatives.
-// Polynomials only, so that identities can be proved by exact algebra.
+// A small system that has everything the equations of order m speak of: moving guides, a varying mass, two constraints
+// whose right sides hold time, lower derivatives of dependent coordinates, and powers of the independent highest
+// derivatives. Polynomials only, so that identities can be proved by exact algebra.
 #pragma once
 #include <string>
 
 namespace anholon::test {
 
-inline std::string primes(const std::string& name, int order) { return name + std::string(static_cast<std::size_t>(order), '\''); }
+inline std::string primes(const std::string& name, int order) {
+  return name + std::string(static_cast<std::size_t>(order), '\'');
+}
 
 enum class Shape {
   affine,     // in all highest derivatives: quasi-velocities can be solved too
@@ -23,19 +25,25 @@ inline std::string generic_system(int m, Shape shape, Speeds speeds = Speeds::no
   const bool affine = shape == Shape::affine;
   const std::string cubic = shape == Shape::nonlinear ? " + " + top("z") + "^3/5" : "";
   std::string text = "coordinates = [\"x\", \"y\", \"z\", \"w\"]\ndependent = [\"z\", \"w\"]\n"
-      "[functions]\nmu = \"2 + t/5\"\n"
-      "[[particle]]\nname = \"first\"\nmass = \"mu\"\nposition = [\"x + y*z/3\", \"y + t*x/2\", \"w\"]\n"
-      "expelled_velocity = [\"x'\", \"1/2\", \"t\"]\n"
-      "[[particle]]\nname = \"second\"\nmass = \"3/2\"\nposition = [\"z + t*w\", \"w*x/2\", \"t*y\"]\n"
-      "[[force]]\nname = \"pull\"\non = \"second\"\nvector = [\"-x\", \"2 - y*w'\", \"z\"]\n"
-      "[[constraint]]\nname = \"one\"\nequation = \"" + top("z") + cubic + " = " + below("w") + "*" + top("x") + " + t*" + below("z") +
-      "*" + top("y") + (affine ? "" : "^2") + "/2 + x*" + below("y") + "\"\n"
-      "[[constraint]]\nname = \"two\"\nequation = \"" + top("w") + " + " + top("z") + "*y/4 = " + below("z") + "*" + top("x") + "*" +
-      (affine ? "x" : top("y")) + "/3 + " + below("w") + "*" + below("x") + "^2 - t\"\n";
+                     "[functions]\nmu = \"2 + t/5\"\n"
+                     "[[particle]]\nname = \"first\"\nmass = \"mu\"\nposition = [\"x + y*z/3\", \"y + t*x/2\", \"w\"]\n"
+                     "expelled_velocity = [\"x'\", \"1/2\", \"t\"]\n"
+                     "[[particle]]\nname = \"second\"\nmass = \"3/2\"\nposition = [\"z + t*w\", \"w*x/2\", \"t*y\"]\n"
+                     "[[force]]\nname = \"pull\"\non = \"second\"\nvector = [\"-x\", \"2 - y*w'\", \"z\"]\n"
+                     "[[constraint]]\nname = \"one\"\nequation = \"" +
+                     top("z") + cubic + " = " + below("w") + "*" + top("x") + " + t*" + below("z") + "*" + top("y") +
+                     (affine ? "" : "^2") + "/2 + x*" + below("y") +
+                     "\"\n"
+                     "[[constraint]]\nname = \"two\"\nequation = \"" +
+                     top("w") + " + " + top("z") + "*y/4 = " + below("z") + "*" + top("x") + "*" +
+                     (affine ? "x" : top("y")) + "/3 + " + below("w") + "*" + below("x") + "^2 - t\"\n";
   const std::string product = speeds == Speeds::nonlinear ? " + " + top("x") + "*" + top("z") + "/3" : "";
   if (speeds != Speeds::none)
-    text += "[quasi]\nu = \"" + top("x") + "*(2 + " + below("z") + ") - " + below("y") + "*" + top("w") + "/3 + t" + product + "\"\n"
-            "v = \"" + top("y") + " + " + below("x") + "*" + top("x") + "/4\"\n";
+    text += "[quasi]\nu = \"" + top("x") + "*(2 + " + below("z") + ") - " + below("y") + "*" + top("w") + "/3 + t" +
+            product +
+            "\"\n"
+            "v = \"" +
+            top("y") + " + " + below("x") + "*" + top("x") + "/4\"\n";
   return text;
 }
 

@@ -1,5 +1,5 @@
-// Identities at points: systems that have everything the equations of order m speak of, and by how much a sum of terms misses
-// zero there, anywhere among the jets or on the manifold of the constraints.
+// Identities at points: systems that have everything the equations of order m speak of, and by how much a sum of terms
+// misses zero there, anywhere among the jets or on the manifold of the constraints.
 #pragma once
 #include <map>
 
@@ -24,7 +24,8 @@ struct System {
 inline std::vector<std::shared_ptr<const System>> rheonomic() {
   static std::vector<std::shared_ptr<const System>> systems;
   if (systems.empty())
-    for (const char* order : {"1", "2", "3"}) systems.push_back(std::make_shared<System>(shipped(std::string("zoo/rheonomic-order-") + order)));
+    for (const char* order : {"1", "2", "3"})
+      systems.push_back(std::make_shared<System>(shipped(std::string("zoo/rheonomic-order-") + order)));
   return systems;
 }
 
@@ -66,7 +67,8 @@ inline double miss_at(const System& s, const Terms& terms, const Point& at) {
 inline double miss(const System& s, const Terms& terms) {
   const PrecisionScope precision(40);
   double worst = 0;
-  for (std::uint64_t seed = 1; seed <= kIdentityPoints; ++seed) worst = std::max(worst, miss_at(s, terms, random_point(*s.model, seed)));
+  for (std::uint64_t seed = 1; seed <= kIdentityPoints; ++seed)
+    worst = std::max(worst, miss_at(s, terms, random_point(*s.model, seed)));
   return worst;
 }
 

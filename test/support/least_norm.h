@@ -39,7 +39,9 @@ inline std::vector<Multi> plus(std::vector<Multi> a, const std::vector<Multi>& b
 }
 
 // The part of z in the kernel of A.
-inline std::vector<Multi> in_kernel(const Matrix<Multi>& A, const std::vector<Multi>& z) { return plus(z, least_norm(A, times(A, z)), -1); }
+inline std::vector<Multi> in_kernel(const Matrix<Multi>& A, const std::vector<Multi>& z) {
+  return plus(z, least_norm(A, times(A, z)), -1);
+}
 
 inline double largest(const std::vector<Multi>& x) {
   double l = 0;

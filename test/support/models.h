@@ -1,12 +1,12 @@
 // Models for tests: the shipped files, and texts.
 #pragma once
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
+
+#include <gtest/gtest.h>
 
 #include "spec/read.h"
 
@@ -21,7 +21,8 @@ inline std::string file_text(const std::filesystem::path& path) {
 
 inline std::filesystem::path source_dir() { return ANHOLON_SOURCE_DIR; }
 
-// "zoo/rocket" for models/zoo/rocket.toml, sorted. Templates of new models are no systems of their own (tools/reference.py runs them).
+// "zoo/rocket" for models/zoo/rocket.toml, sorted. Templates of new models are no systems of their own
+// (tools/reference.py runs them).
 inline std::vector<std::string> shipped_models() {
   std::vector<std::string> names;
   const std::filesystem::path folder = source_dir() / "models";
@@ -32,14 +33,17 @@ inline std::vector<std::string> shipped_models() {
   return names;
 }
 
-// Those with a formula for every function. The others, models/papers/*-symbolic.toml, derive, prove and compare; nothing moves.
+// Those with a formula for every function. The others, models/papers/*-symbolic.toml, derive, prove and compare;
+// nothing moves.
 inline std::vector<std::string> moving_models() {
   std::vector<std::string> names = shipped_models();
   std::erase_if(names, [](const std::string& name) { return name.ends_with("-symbolic"); });
   return names;
 }
 
-inline std::string shipped_text(const std::string& name) { return file_text(source_dir() / "models" / (name + ".toml")); }
+inline std::string shipped_text(const std::string& name) {
+  return file_text(source_dir() / "models" / (name + ".toml"));
+}
 
 // The model, or a test failure that shows what the reader had to say.
 inline std::shared_ptr<const Model> model_of(const std::string& text, const Overrides& overrides = {}) {

@@ -1,6 +1,6 @@
-// Points of a motion: the constraints hold with those of their derivatives that speak of accelerations or of their own order, and
-// Routh's equations [L 2.7]. Everything else is pseudo-random: what may be prescribed at a start, and derivatives that follow only
-// from derivatives of the equations of motion.
+// Points of a motion: the constraints hold with those of their derivatives that speak of accelerations or of their own
+// order, and Routh's equations [L 2.7]. Everything else is pseudo-random: what may be prescribed at a start, and
+// derivatives that follow only from derivatives of the equations of motion.
 #pragma once
 #include "formulation/formulation.h"
 #include "support/manifold.h"
@@ -8,7 +8,8 @@
 namespace anholon::test {
 
 // For constraints of one order, as many as `dependent` coordinates; lifted to order m where that is higher.
-inline std::optional<Point> motion_point(const Mechanics& M, const std::vector<std::size_t>& dependent, unsigned m, std::uint64_t seed) {
+inline std::optional<Point> motion_point(const Mechanics& M, const std::vector<std::size_t>& dependent, unsigned m,
+                                         std::uint64_t seed) {
   const Model& model = *M.model;
   const unsigned order = M.order.empty() ? 0 : static_cast<unsigned>(M.order[0]), top = std::max({m, order, 2U});
   Column lower, lower_unknown, equations, unknowns;

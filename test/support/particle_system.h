@@ -1,6 +1,6 @@
-// Random systems of particles whose places are functions of fewer coordinates, g = 3N - n > 0 holonomic constraints in them, or of
-// as many, g = 0: varying masses, an observer that turns and accelerates, moving guides, and constraints of one order. Every force
-// has a place, so that Newton's law gives the reaction on each particle.
+// Random systems of particles whose places are functions of fewer coordinates, g = 3N - n > 0 holonomic constraints in
+// them, or of as many, g = 0: varying masses, an observer that turns and accelerates, moving guides, and constraints of
+// one order. Every force has a place, so that Newton's law gives the reaction on each particle.
 //
 // The same seed gives the same text everywhere: nothing but the raw numbers of the generator is used.
 #pragma once
@@ -11,9 +11,9 @@ namespace anholon::test {
 
 struct ParticleChoice {
   std::size_t coordinates = 4, particles = 2;
-  unsigned order = 1;        // of the constraints
+  unsigned order = 1;  // of the constraints
   std::size_t constraints = 1;
-  bool linear = false;       // in the highest derivatives
+  bool linear = false;  // in the highest derivatives
 };
 
 class ParticleSystem {
@@ -21,7 +21,8 @@ class ParticleSystem {
   ParticleSystem(const ParticleChoice& choice, std::uint64_t seed) : choice_(choice), random_(seed) {
     text_ = "coordinates = [";
     for (std::size_t a = 0; a < choice.coordinates; ++a) text_ += (a ? ", \"" : "\"") + q(a) + "\"";
-    text_ += "]\n[observer]\nspin = [\"" + number() + "\", \"t/3\", \"cos(t)/2\"]\norigin_acceleration = [\"sin(2*t)\", \"" + number() + "\", \"t\"]\n";
+    text_ += "]\n[observer]\nspin = [\"" + number() +
+             "\", \"t/3\", \"cos(t)/2\"]\norigin_acceleration = [\"sin(2*t)\", \"" + number() + "\", \"t\"]\n";
     for (std::size_t p = 0; p < choice.particles; ++p) particle(p);
     for (std::size_t k = 0; k < choice.constraints; ++k) constraint(k);
   }
@@ -38,31 +39,37 @@ class ParticleSystem {
   std::string any(unsigned order = 0) { return q(random_() % choice_.coordinates, order); }
   std::string function() {
     switch (random_() % 4) {
-      case 0: return "sin(" + any() + ")";
-      case 1: return "cos(" + any() + " - " + any() + ")";
-      case 2: return any() + "*" + any();
-      default: return "sin(t + " + any() + ")";
+    case 0:
+      return "sin(" + any() + ")";
+    case 1:
+      return "cos(" + any() + " - " + any() + ")";
+    case 2:
+      return any() + "*" + any();
+    default:
+      return "sin(t + " + any() + ")";
     }
   }
 
   void particle(std::size_t p) {
     const std::string name = "p" + std::to_string(p);
-    text_ += "[[particle]]\nname = \"" + name + "\"\nmass = \"1 + " + number() + (p == 0 ? "*exp(-t/4) + " + q(0) + "^2/8" : "") + "\"\nposition = [";
+    text_ += "[[particle]]\nname = \"" + name + "\"\nmass = \"1 + " + number() +
+             (p == 0 ? "*exp(-t/4) + " + q(0) + "^2/8" : "") + "\"\nposition = [";
     for (std::size_t i = 0; i < 3; ++i) {
       const std::string own = q((3 * p + i) % choice_.coordinates);
       text_ += (i ? ", \"" : "\"") + own + "*(1 + " + number() + "*t) + " + signed_number() + "*" + function() + "\"";
     }
     text_ += "]\n";
     if (p == 0) text_ += "expelled_velocity = [\"" + signed_number() + "\", \"" + any(1) + "/5\", \"t/3\"]\n";
-    text_ += "[[force]]\nname = \"f" + std::to_string(p) + "\"\non = \"" + name + "\"\nvector = [\"" + signed_number() + "*" + any(1) + "\", \"cos(t)\", \"" +
-             any() + "*" + any() + "\"]\n";
+    text_ += "[[force]]\nname = \"f" + std::to_string(p) + "\"\non = \"" + name + "\"\nvector = [\"" + signed_number() +
+             "*" + any(1) + "\", \"cos(t)\", \"" + any() + "*" + any() + "\"]\n";
   }
 
   void constraint(std::size_t k) {
     const unsigned m = choice_.order;
     const std::size_t other = (k + 1) % choice_.coordinates, third = (k + 2) % choice_.coordinates;
     std::string e = "(1 + " + number() + "*t^2)*" + q(k, m) + " + " + signed_number() + "*" + q(other, m);
-    e += choice_.linear && m > 0 ? " + " + function() + "*" + q(third, m) : " + " + number() + "*" + q(third, m) + "^2/4";
+    e += choice_.linear && m > 0 ? " + " + function() + "*" + q(third, m)
+                                 : " + " + number() + "*" + q(third, m) + "^2/4";
     e += " = " + signed_number() + "*" + function();
     if (m > 0) e += " + " + any(m - 1) + "/3";
     text_ += "[[constraint]]\nname = \"c" + std::to_string(k) + "\"\nequation = \"" + e + "\"\n";

@@ -1,5 +1,5 @@
-// Names for formulas without a model: numbers x, y (coordinates 0, 1), z (2), a, b (parameters 0, 1), m (mass 0), f (given 0),
-// lambda.c (multiplier 0), vectors u and v, a rotation R, t and pi.
+// Names for formulas without a model: numbers x, y (coordinates 0, 1), z (2), a, b (parameters 0, 1), m (mass 0), f
+// (given 0), lambda.c (multiplier 0), vectors u and v, a rotation R, t and pi.
 #pragma once
 #include "expr/formula.h"
 #include "expr/print.h"
@@ -13,7 +13,8 @@ struct PlainNames final : Names {
   Value name(const std::string& name, Span span) override {
     if (name == "t") return g.time();
     if (name == "pi") return g.pi();
-    if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') return g.jet(static_cast<std::uint32_t>(name[0] - 'x'), 0);
+    if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z')
+      return g.jet(static_cast<std::uint32_t>(name[0] - 'x'), 0);
     if (name == "a" || name == "b") return g.parameter(static_cast<std::uint32_t>(name[0] - 'a'));
     if (name == "m") return g.mass(0);
     if (name == "f") return g.given(0, 0);
@@ -33,7 +34,9 @@ struct PlainNames final : Names {
   std::vector<std::string> functions() const override { return {}; }
 
   Value value(const std::string& text) { return evaluate(parse_formula(FormulaText(text, Span{1, 1, 1})), *this); }
-  Expr number(const std::string& text) { return evaluate_number(parse_formula(FormulaText(text, Span{1, 1, 1})), *this); }
+  Expr number(const std::string& text) {
+    return evaluate_number(parse_formula(FormulaText(text, Span{1, 1, 1})), *this);
+  }
   Failure failure(const std::string& text) {
     try {
       value(text);

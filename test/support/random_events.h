@@ -1,6 +1,6 @@
-// Random systems whose motion between events is known in closed form, and their events by another way: every zero is bracketed by
-// bounds of the second derivative and bisected in long double, on the exact pieces. A formula may be written as another one with the
-// same zeros, that saturates, has a kink, or is steep.
+// Random systems whose motion between events is known in closed form, and their events by another way: every zero is
+// bracketed by bounds of the second derivative and bisected in long double, on the exact pieces. A formula may be
+// written as another one with the same zeros, that saturates, has a kink, or is steep.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,9 @@ class EventModel {
   }
 
   std::size_t bodies() const { return bodies_.size(); }
-  std::string name(std::size_t body) const { return (bodies_[body].law == Law::filling ? "z" : "x") + std::to_string(body); }
+  std::string name(std::size_t body) const {
+    return (bodies_[body].law == Law::filling ? "z" : "x") + std::to_string(body);
+  }
   bool moves(std::size_t body) const { return bodies_[body].law != Law::filling; }
   std::string event_name(std::size_t e) const { return "e" + std::to_string(e); }
   int end_hundredths() const { return end_; }
@@ -76,7 +78,8 @@ class EventModel {
   static Real real(int hundredths) { return static_cast<Real>(hundredths) / 100; }
   static std::string text(int hundredths) {
     const int a = std::abs(hundredths);
-    return std::string(hundredths < 0 ? "-" : "") + std::to_string(a / 100) + "." + (a % 100 < 10 ? "0" : "") + std::to_string(a % 100);
+    return std::string(hundredths < 0 ? "-" : "") + std::to_string(a / 100) + "." + (a % 100 < 10 ? "0" : "") +
+           std::to_string(a % 100);
   }
   std::uint64_t draw(std::uint64_t n) {
     seed_ ^= seed_ << 13;
@@ -108,7 +111,8 @@ inline void EventModel::make_bodies() {
     }
     Body b{i == 0 || draw(4) > 0 ? (draw(3) == 0 ? Law::spring : Law::falling) : Law::filling, 0, {0, 0}, 0, 0};
     b.w = decimal(50, 300);
-    for (int& c : b.constant) c = b.law == Law::falling ? -decimal(0, 1) * decimal(100, 1000) - decimal(0, 100) : decimal(-200, 200);
+    for (int& c : b.constant)
+      c = b.law == Law::falling ? -decimal(0, 1) * decimal(100, 1000) - decimal(0, 100) : decimal(-200, 200);
     b.x = decimal(50, 300);
     b.v = decimal(-200, 300);
     bodies_.push_back(b);
@@ -123,11 +127,20 @@ inline void EventModel::make_events() {
     const bool moving = moves(e.i), both = moving && e.i != e.j && moves(e.j);
     int level = decimal(-100, 100);
     switch (draw(8)) {
-      case 0: if (both) e.when = When::gap; break;
-      case 1: if (moving) e.when = When::velocity; break;
-      case 2: e.when = When::time, level = decimal(1, 5) * 50; break;
-      case 3: e.when = When::square, level = std::abs(level) + 20; break;
-      default: level = draw(2) == 0 ? 0 : level;  // a floor, mostly
+    case 0:
+      if (both) e.when = When::gap;
+      break;
+    case 1:
+      if (moving) e.when = When::velocity;
+      break;
+    case 2:
+      e.when = When::time, level = decimal(1, 5) * 50;
+      break;
+    case 3:
+      e.when = When::square, level = std::abs(level) + 20;
+      break;
+    default:
+      level = draw(2) == 0 ? 0 : level;  // a floor, mostly
     }
     e.level = real(level);
     e.level_text = text(level);
@@ -142,15 +155,27 @@ inline void EventModel::make_events() {
       e.direction = static_cast<int>(draw(2));
     }
     switch (draw(7)) {
-      case 0: break;
-      case 1: e.set = Set::mode; break;
-      case 2: e.set = moving ? Set::kick : Set::move; break;
-      case 3: e.set = draw(3) == 0 ? Set::stop : Set::nothing; break;
-      case 4: e.set = Set::move; break;
-      default:
-        if (e.when == When::gap) e.set = Set::collide;
-        else if (moving && (e.when == When::level || e.when == When::square)) e.set = Set::bounce;
-        else if (e.when == When::level) e.set = Set::move;
+    case 0:
+      break;
+    case 1:
+      e.set = Set::mode;
+      break;
+    case 2:
+      e.set = moving ? Set::kick : Set::move;
+      break;
+    case 3:
+      e.set = draw(3) == 0 ? Set::stop : Set::nothing;
+      break;
+    case 4:
+      e.set = Set::move;
+      break;
+    default:
+      if (e.when == When::gap)
+        e.set = Set::collide;
+      else if (moving && (e.when == When::level || e.when == When::square))
+        e.set = Set::bounce;
+      else if (e.when == When::level)
+        e.set = Set::move;
     }
     // A bounce that fires on both ways is none.
     if ((e.set == Set::bounce || e.set == Set::collide) && e.direction == 0) e.direction = draw(2) == 0 ? -1 : 1;
@@ -179,40 +204,69 @@ inline std::string EventModel::text() const {
     const std::string i = name(e.i), j = name(e.j);
     list += "[[event]]\nname = \"" + event_name(k) + "\"\nwhen = \"";
     switch (e.when) {
-      case When::level: {
-        const std::string u = i + " - " + e.level_text;
-        switch (e.writing) {
-          case 0: list += "tanh((" + u + ")/0.01)"; break;
-          case 1: list += "1/(1 + exp(-(" + u + ")/0.02)) - 1/2"; break;
-          case 2: list += "atan((" + u + ")/0.001)"; break;
-          default: list += u;
-        }
+    case When::level: {
+      const std::string u = i + " - " + e.level_text;
+      switch (e.writing) {
+      case 0:
+        list += "tanh((" + u + ")/0.01)";
         break;
-      }
-      case When::gap: list += i + " - " + j; break;
-      case When::velocity: list += i + "'"; break;
-      case When::time: list += "t - " + e.level_text; break;
-      case When::square: {
-        const std::string n = e.writing == 0 ? "8" : e.writing == 1 ? "20" : "2";
-        if (e.writing == 2) list += "abs(" + i + ") - " + e.level_text;
-        else list += i + "^" + n + " - " + e.level_text + "^" + n;
+      case 1:
+        list += "1/(1 + exp(-(" + u + ")/0.02)) - 1/2";
         break;
+      case 2:
+        list += "atan((" + u + ")/0.001)";
+        break;
+      default:
+        list += u;
       }
+      break;
+    }
+    case When::gap:
+      list += i + " - " + j;
+      break;
+    case When::velocity:
+      list += i + "'";
+      break;
+    case When::time:
+      list += "t - " + e.level_text;
+      break;
+    case When::square: {
+      const std::string n = e.writing == 0 ? "8" : e.writing == 1 ? "20" : "2";
+      if (e.writing == 2)
+        list += "abs(" + i + ") - " + e.level_text;
+      else
+        list += i + "^" + n + " - " + e.level_text + "^" + n;
+      break;
+    }
     }
     list += "\"\n";
     if (e.direction != 0) list += std::string("direction = \"") + (e.direction > 0 ? "up" : "down") + "\"\n";
     const std::string f = text(e.factor);
     switch (e.set) {
-      case Set::nothing: break;
-      case Set::bounce: list += "set = {\"" + i + "'\" = \"-" + f + "*" + i + "'\"}\n"; break;
-      case Set::collide: list += "set = {\"" + i + "'\" = \"" + j + "'\", \"" + j + "'\" = \"" + i + "'\"}\n"; break;
-      case Set::mode: list += "set = {k = \"3 - k\"}\n"; break;
-      case Set::kick: list += "set = {\"" + i + "'\" = \"" + i + "' + " + f + "\"}\n"; break;
-      case Set::move: list += "set = {" + i + " = \"" + i + " + " + f + "\"}\n"; break;
-      case Set::stop: list += "stop = true\n"; break;
+    case Set::nothing:
+      break;
+    case Set::bounce:
+      list += "set = {\"" + i + "'\" = \"-" + f + "*" + i + "'\"}\n";
+      break;
+    case Set::collide:
+      list += "set = {\"" + i + "'\" = \"" + j + "'\", \"" + j + "'\" = \"" + i + "'\"}\n";
+      break;
+    case Set::mode:
+      list += "set = {k = \"3 - k\"}\n";
+      break;
+    case Set::kick:
+      list += "set = {\"" + i + "'\" = \"" + i + "' + " + f + "\"}\n";
+      break;
+    case Set::move:
+      list += "set = {" + i + " = \"" + i + " + " + f + "\"}\n";
+      break;
+    case Set::stop:
+      list += "stop = true\n";
+      break;
     }
   }
-  return "coordinates = [" + coordinates + "]\n" + particles + forces + list + (states.empty() ? "" : "[state]\n" + states) + "[mode]\nk = 1\n[initial]\n" + initial;
+  return "coordinates = [" + coordinates + "]\n" + particles + forces + list +
+         (states.empty() ? "" : "[state]\n" + states) + "[mode]\nk = 1\n[initial]\n" + initial;
 }
 
 inline Real EventModel::acceleration(const State& s, std::size_t i) const {
@@ -228,20 +282,20 @@ inline EventModel::State EventModel::after(const State& s, Real dt) const {
     const Body& b = bodies_[i];
     const Real c = real(b.constant[s.mode - 1]), w = real(b.w);
     switch (b.law) {
-      case Law::falling:
-        n.x[i] += dt * (s.v[i] + dt * c / 2);
-        n.v[i] += dt * c;
-        break;
-      case Law::spring: {
-        const Real cos = std::cos(w * dt), sin = std::sin(w * dt), u = s.x[i] - c;
-        n.x[i] = c + u * cos + s.v[i] / w * sin;
-        n.v[i] = s.v[i] * cos - u * w * sin;
-        break;
-      }
-      case Law::filling:
-        n.x[i] += dt * c;
-        n.v[i] = c;
-        break;
+    case Law::falling:
+      n.x[i] += dt * (s.v[i] + dt * c / 2);
+      n.v[i] += dt * c;
+      break;
+    case Law::spring: {
+      const Real cos = std::cos(w * dt), sin = std::sin(w * dt), u = s.x[i] - c;
+      n.x[i] = c + u * cos + s.v[i] / w * sin;
+      n.v[i] = s.v[i] * cos - u * w * sin;
+      break;
+    }
+    case Law::filling:
+      n.x[i] += dt * c;
+      n.v[i] = c;
+      break;
     }
   }
   return n;
@@ -254,12 +308,15 @@ inline EventModel::Function EventModel::function(const State& s, const Event& e,
   const auto bounds = [&](std::size_t i) {
     const Body& b = bodies_[i];
     const Real c = real(b.constant[s.mode - 1]), w = real(b.w);
-    struct { Real x, v, a, jerk; } r{};
+    struct {
+      Real x, v, a, jerk;
+    } r{};
     if (b.law == Law::spring) {
       const Real amplitude = std::hypot(s.x[i] - c, s.v[i] / w);
       r = {std::abs(c) + amplitude, w * amplitude, w * w * amplitude, w * w * w * amplitude};
     } else {
-      const Real a = b.law == Law::falling ? std::abs(c) : 0, v0 = b.law == Law::falling ? std::abs(s.v[i]) : std::abs(c);
+      const Real a = b.law == Law::falling ? std::abs(c) : 0,
+                 v0 = b.law == Law::falling ? std::abs(s.v[i]) : std::abs(c);
       r = {std::abs(s.x[i]) + within * (v0 + within * a / 2), v0 + within * a, a, 0};
     }
     return r;
@@ -268,19 +325,28 @@ inline EventModel::Function EventModel::function(const State& s, const Event& e,
   const std::function<Real(Real)> xi = x(e.i), vi = v(e.i), xj = x(e.j), vj = v(e.j);
   const auto bi = bounds(e.i), bj = bounds(e.j);
   switch (e.when) {
-    case When::level: return {[=](Real d) { return xi(d) - level; }, vi, bi.a};
-    case When::gap: return {[=](Real d) { return xi(d) - xj(d); }, [=](Real d) { return vi(d) - vj(d); }, bi.a + bj.a};
-    case When::velocity: return {vi, [this, s, i = e.i](Real d) { return acceleration(after(s, d), i); }, bi.jerk};
-    case When::time: return {[t = s.t, level](Real d) { return t + d - level; }, [](Real) { return Real(1); }, 0};
-    case When::square: return {[=](Real d) { return xi(d) * xi(d) - level * level; }, [=](Real d) { return 2 * xi(d) * vi(d); }, 2 * (bi.v * bi.v + bi.x * bi.a)};
+  case When::level:
+    return {[=](Real d) { return xi(d) - level; }, vi, bi.a};
+  case When::gap:
+    return {[=](Real d) { return xi(d) - xj(d); }, [=](Real d) { return vi(d) - vj(d); }, bi.a + bj.a};
+  case When::velocity:
+    return {vi, [this, s, i = e.i](Real d) { return acceleration(after(s, d), i); }, bi.jerk};
+  case When::time:
+    return {[t = s.t, level](Real d) { return t + d - level; }, [](Real) { return Real(1); }, 0};
+  case When::square:
+    return {[=](Real d) { return xi(d) * xi(d) - level * level; }, [=](Real d) { return 2 * xi(d) * vi(d); },
+            2 * (bi.v * bi.v + bi.x * bi.a)};
   }
   return {};
 }
 
 // The first d in (from, to] from where on f has the sign -side; f + shift in its place.
-inline std::optional<Real> first_change(const std::function<Real(Real)>& value, const std::function<Real(Real)>& slope, Real bend, Real shift, int side, Real from, Real to) {
-  const Real middle = (from + to) / 2, half = (to - from) / 2, f = side * (value(middle) + shift), d = side * slope(middle);
-  if (std::abs(f) > std::abs(d) * half + bend * half * half / 2) return f < 0 ? std::optional<Real>(from) : std::nullopt;
+inline std::optional<Real> first_change(const std::function<Real(Real)>& value, const std::function<Real(Real)>& slope,
+                                        Real bend, Real shift, int side, Real from, Real to) {
+  const Real middle = (from + to) / 2, half = (to - from) / 2, f = side * (value(middle) + shift),
+             d = side * slope(middle);
+  if (std::abs(f) > std::abs(d) * half + bend * half * half / 2)
+    return f < 0 ? std::optional<Real>(from) : std::nullopt;
   if (std::abs(d) > bend * half) {
     const auto at = [&](Real x) { return side * (value(x) + shift); };
     constexpr Real kRoundoff = 1e-15L;  // where the last event was
@@ -303,13 +369,26 @@ inline std::optional<Real> first_change(const std::function<Real(Real)>& value, 
 inline void EventModel::set(const Event& e, State& s, bool& stopped) const {
   const Real f = real(e.factor);
   switch (e.set) {
-    case Set::nothing: break;
-    case Set::bounce: s.v[e.i] = -f * s.v[e.i]; break;
-    case Set::collide: std::swap(s.v[e.i], s.v[e.j]); break;
-    case Set::mode: s.mode = 3 - s.mode; break;
-    case Set::kick: s.v[e.i] += f; break;
-    case Set::move: s.x[e.i] += f; break;
-    case Set::stop: stopped = true; break;
+  case Set::nothing:
+    break;
+  case Set::bounce:
+    s.v[e.i] = -f * s.v[e.i];
+    break;
+  case Set::collide:
+    std::swap(s.v[e.i], s.v[e.j]);
+    break;
+  case Set::mode:
+    s.mode = 3 - s.mode;
+    break;
+  case Set::kick:
+    s.v[e.i] += f;
+    break;
+  case Set::move:
+    s.x[e.i] += f;
+    break;
+  case Set::stop:
+    stopped = true;
+    break;
   }
 }
 
@@ -318,7 +397,8 @@ inline EventModel::Course EventModel::course() const {
   constexpr std::size_t kMany = 60;
   Course out;
   State s{0, 1, {}, {}};
-  for (const Body& b : bodies_) s.x.push_back(real(b.x)), s.v.push_back(b.law == Law::filling ? real(b.constant[0]) : real(b.v));
+  for (const Body& b : bodies_)
+    s.x.push_back(real(b.x)), s.v.push_back(b.law == Law::filling ? real(b.constant[0]) : real(b.v));
   const Real end = real(end_);
   std::vector<int> sides(events_.size(), 0);
   const auto find_sides = [&](const State& at, const std::vector<bool>& fired) {
@@ -326,8 +406,13 @@ inline EventModel::Course EventModel::course() const {
       const Function f = function(at, events_[k], 1);
       const Real value = f.value(0), slope = f.slope(0), bend = f.slope(1e-6L) - slope;
       // Nearly zero without having fired: who is to say.
-      if (!fired[k] && out.events.size() > 0 && std::abs(value) < kDoubt && !(std::abs(value) < kZero && std::abs(slope) < kZero)) out.decided = false;
-      const Real what = std::abs(value) > kZero ? value : std::abs(slope) > kZero ? slope : std::abs(bend) > kZero ? bend : 0;
+      if (!fired[k] && out.events.size() > 0 && std::abs(value) < kDoubt &&
+          !(std::abs(value) < kZero && std::abs(slope) < kZero))
+        out.decided = false;
+      const Real what = std::abs(value) > kZero   ? value
+                        : std::abs(slope) > kZero ? slope
+                        : std::abs(bend) > kZero  ? bend
+                                                  : 0;
       if (std::abs(what) < kDoubt && what != 0 && what != bend && out.events.size() > 0) out.decided = false;
       sides[k] = what > 0 ? 1 : what < 0 ? -1 : 0;
     }
@@ -336,12 +421,17 @@ inline EventModel::Course EventModel::course() const {
   Real since = 0;  // events recorded in this piece, up to here
   while (out.decided) {
     const Real within = end - s.t;
-    struct Next { std::size_t event; Real dt, slope; };
+    struct Next {
+      std::size_t event;
+      Real dt, slope;
+    };
     std::vector<Next> next;
     for (std::size_t k = 0; k < events_.size(); ++k) {
       if (sides[k] == 0) continue;
       const Function f = function(s, events_[k], within);
-      const auto change = [&](Real shift) { return first_change(f.value, f.slope, f.bend, shift, sides[k], since, within); };
+      const auto change = [&](Real shift) {
+        return first_change(f.value, f.slope, f.bend, shift, sides[k], since, within);
+      };
       const auto dt = change(0);
       const Real doubt = s.t == 0 ? kFirst : kDoubt;
       for (Real shift : {doubt, -doubt}) {

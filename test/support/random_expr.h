@@ -22,40 +22,65 @@ class RandomExpr {
   Expr make(int depth) {
     if (depth <= 0) return atom();
     switch (below(8)) {
-      case 0: case 1: case 2: {
-        std::vector<std::pair<Rational, Expr>> terms;
-        for (int k = 2 + below(3); k > 0; --k) terms.push_back({coefficient(), make(depth - 1)});
-        if (below(2)) terms.push_back({coefficient(), g_.one()});
-        return g_.sum(terms);
+    case 0:
+    case 1:
+    case 2: {
+      std::vector<std::pair<Rational, Expr>> terms;
+      for (int k = 2 + below(3); k > 0; --k) terms.push_back({coefficient(), make(depth - 1)});
+      if (below(2)) terms.push_back({coefficient(), g_.one()});
+      return g_.sum(terms);
+    }
+    case 3:
+    case 4:
+      return make(depth - 1) * make(depth - 1);
+    case 5: {
+      const Expr u = make(depth - 1), positive = 1 + u * u;
+      switch (below(4)) {
+      case 0:
+        return sqrt(positive);
+      case 1:
+        return pow(positive, {-1 - 2 * below(2), 2});
+      case 2:
+        return pow(sin(u), 2 + below(2));
+      default:
+        return make(depth - 1) / positive;
       }
-      case 3: case 4: return make(depth - 1) * make(depth - 1);
-      case 5: {
-        const Expr u = make(depth - 1), positive = 1 + u * u;
-        switch (below(4)) {
-          case 0: return sqrt(positive);
-          case 1: return pow(positive, {-1 - 2 * below(2), 2});
-          case 2: return pow(sin(u), 2 + below(2));
-          default: return make(depth - 1) / positive;
-        }
-      }
-      case 6: return function(below(static_cast<int>(kFunctions)), make(depth - 1));
-      default: {
-        const Expr v = make(depth - 1);
-        return atan2(make(depth - 1), 2 + v * v);
-      }
+    }
+    case 6:
+      return function(below(static_cast<int>(kFunctions)), make(depth - 1));
+    default: {
+      const Expr v = make(depth - 1);
+      return atan2(make(depth - 1), 2 + v * v);
+    }
     }
   }
 
-  // The elementary function number k of an argument made fit for its domain; abs and sign, which have a corner, are kept away
-  // from it.
+  // The elementary function number k of an argument made fit for its domain; abs and sign, which have a corner, are
+  // kept away from it.
   Expr function(int k, Expr u) {
     const Function f = static_cast<Function>(k);
     switch (f) {
-      case Function::sin: case Function::cos: case Function::atan: case Function::tanh: case Function::asinh: return g_.apply(f, u);
-      case Function::sinh: case Function::cosh: case Function::exp: case Function::tan: return g_.apply(f, sin(u));
-      case Function::asin: case Function::acos: case Function::atanh: return g_.apply(f, u / (1 + u * u));
-      case Function::acosh: case Function::abs: case Function::sign: return g_.apply(f, 2 + sin(u));
-      case Function::log: return g_.apply(f, 1 + u * u);
+    case Function::sin:
+    case Function::cos:
+    case Function::atan:
+    case Function::tanh:
+    case Function::asinh:
+      return g_.apply(f, u);
+    case Function::sinh:
+    case Function::cosh:
+    case Function::exp:
+    case Function::tan:
+      return g_.apply(f, sin(u));
+    case Function::asin:
+    case Function::acos:
+    case Function::atanh:
+      return g_.apply(f, u / (1 + u * u));
+    case Function::acosh:
+    case Function::abs:
+    case Function::sign:
+      return g_.apply(f, 2 + sin(u));
+    case Function::log:
+      return g_.apply(f, 1 + u * u);
     }
     return u;
   }

@@ -1,5 +1,6 @@
-// Random mechanical systems as model files: moving guides, varying masses, an observer that turns and accelerates, rigid bodies,
-// springs, and constraints of orders 0 to 4, linear and nonlinear in their highest derivatives, alone, mixed and redundant.
+// Random mechanical systems as model files: moving guides, varying masses, an observer that turns and accelerates,
+// rigid bodies, springs, and constraints of orders 0 to 4, linear and nonlinear in their highest derivatives, alone,
+// mixed and redundant.
 //
 // The same seed gives the same text everywhere: nothing but the raw numbers of the generator is used.
 #pragma once
@@ -43,11 +44,16 @@ class RandomSystem {
   // A bounded function of the coordinates and, where wanted, of time.
   std::string function(bool time) {
     switch (below(time ? 5 : 4)) {
-      case 0: return "sin(" + any() + ")";
-      case 1: return "cos(" + any() + " - " + any() + ")";
-      case 2: return any() + "*" + any();
-      case 3: return "exp(-" + any() + "^2)";
-      default: return "sin(t + " + any() + ")";
+    case 0:
+      return "sin(" + any() + ")";
+    case 1:
+      return "cos(" + any() + " - " + any() + ")";
+    case 2:
+      return any() + "*" + any();
+    case 3:
+      return "exp(-" + any() + "^2)";
+    default:
+      return "sin(t + " + any() + ")";
     }
   }
 
@@ -56,9 +62,11 @@ class RandomSystem {
     for (std::size_t a = 0; a < n_; ++a) text_ += (a ? ", \"" : "\"") + q(a) + "\"";
     text_ += "]\n";
     const bool moving = one_in(3), turning = one_in(3), losing = one_in(3);
-    what_ = "n = " + std::to_string(n_) + (moving ? ", moving guides" : "") + (turning ? ", turning observer" : "") + (losing ? ", losing mass" : "");
+    what_ = "n = " + std::to_string(n_) + (moving ? ", moving guides" : "") + (turning ? ", turning observer" : "") +
+            (losing ? ", losing mass" : "");
     if (turning)
-      text_ += "[observer]\nspin = [\"" + number(10, 60) + "\", \"t/3\", \"cos(t)/2\"]\norigin_acceleration = [\"sin(2*t)\", \"" + number(10, 90) + "\", \"t\"]\n";
+      text_ += "[observer]\nspin = [\"" + number(10, 60) +
+               "\", \"t/3\", \"cos(t)/2\"]\norigin_acceleration = [\"sin(2*t)\", \"" + number(10, 90) + "\", \"t\"]\n";
     const std::size_t particles = (n_ + 2) / 3;
     for (std::size_t p = 0; p < particles; ++p) {
       text_ += "[[particle]]\nname = \"p" + std::to_string(p) + "\"\nmass = \"" + number(80, 300);
@@ -76,12 +84,16 @@ class RandomSystem {
     }
     if (one_in(3)) {
       const std::size_t a = below(n_), b = below(n_);
-      text_ += "[[body]]\nname = \"b\"\nmass = \"" + number(50, 150) + "\"\ninertia = [\"3/10\", \"2/5\", \"1/2\"]\ncenter = [\"" + q(a) + "\", \"" +
-               function(false) + "\", \"0\"]\norientation = \"rotz(" + q(b) + ")*rotx(" + any() + "/2)\"\n";
+      text_ += "[[body]]\nname = \"b\"\nmass = \"" + number(50, 150) +
+               "\"\ninertia = [\"3/10\", \"2/5\", \"1/2\"]\ncenter = [\"" + q(a) + "\", \"" + function(false) +
+               "\", \"0\"]\norientation = \"rotz(" + q(b) + ")*rotx(" + any() + "/2)\"\n";
       what_ += ", body";
     }
-    text_ += "[gravity]\nfield = \"-" + number(100, 981) + "*ez\"\n[potential]\nspring = \"" + number(50, 400) + "*" + any() + "^2 + " + function(false) + "\"\n";
-    if (one_in(2)) text_ += "[[force]]\nname = \"drag\"\non = \"p0\"\nvector = [\"-" + number(10, 50) + "*" + any(1) + "\", \"cos(t)\", \"" + any(1) + "*" + any() + "/4\"]\n";
+    text_ += "[gravity]\nfield = \"-" + number(100, 981) + "*ez\"\n[potential]\nspring = \"" + number(50, 400) + "*" +
+             any() + "^2 + " + function(false) + "\"\n";
+    if (one_in(2))
+      text_ += "[[force]]\nname = \"drag\"\non = \"p0\"\nvector = [\"-" + number(10, 50) + "*" + any(1) +
+               "\", \"cos(t)\", \"" + any(1) + "*" + any() + "/4\"]\n";
   }
 
   // Terms of lower order, bounded in the coordinates.
@@ -99,22 +111,39 @@ class RandomSystem {
     std::string e, kind;
     if (m == 0) {
       switch (below(3)) {
-        case 0: e = q(own) + " + " + signed_number(10, 50) + "*sin(" + q(other) + ") = " + signed_number(10, 40) + "*" + q(third) + "^2 + t/7"; break;
-        case 1: e = "(" + q(own) + " + 1)^2 + " + q(other) + "^2 = 2 + " + signed_number(10, 30) + "*sin(t)"; break;
-        default: e = q(own) + "*cos(" + q(other) + ") + " + signed_number(20, 60) + "*" + q(other) + " = 1/4"; break;
+      case 0:
+        e = q(own) + " + " + signed_number(10, 50) + "*sin(" + q(other) + ") = " + signed_number(10, 40) + "*" +
+            q(third) + "^2 + t/7";
+        break;
+      case 1:
+        e = "(" + q(own) + " + 1)^2 + " + q(other) + "^2 = 2 + " + signed_number(10, 30) + "*sin(t)";
+        break;
+      default:
+        e = q(own) + "*cos(" + q(other) + ") + " + signed_number(20, 60) + "*" + q(other) + " = 1/4";
+        break;
       }
       kind = "holonomic";
     } else if (!one_in(3)) {
-      e = "(1 + " + number(10, 40) + "*" + function(false) + ")*" + q(own, m) + " + " + signed_number(20, 90) + "*" + q(other, m);
-      if (third != own && third != other) e += " + " + signed_number(5, 30) + "*" + function(one_in(3)) + "*" + q(third, m);
+      e = "(1 + " + number(10, 40) + "*" + function(false) + ")*" + q(own, m) + " + " + signed_number(20, 90) + "*" +
+          q(other, m);
+      if (third != own && third != other)
+        e += " + " + signed_number(5, 30) + "*" + function(one_in(3)) + "*" + q(third, m);
       e += " = " + (one_in(4) ? "0" : lower(m));
       kind = "linear";
     } else {
       switch (below(4)) {
-        case 0: e = q(own, m) + "^2 + " + q(other, m) + "^2 = " + number(100, 400); break;
-        case 1: e = q(own, m) + " + " + signed_number(10, 30) + "*" + q(other, m) + "^2 = " + lower(m); break;
-        case 2: e = q(own, m) + " = " + signed_number(20, 60) + "*" + q(own, m) + "*" + q(other, m) + " + " + lower(m); break;
-        default: e = q(own, m) + "*" + q(other, m) + " = " + number(30, 120) + " + " + function(true) + "/5"; break;
+      case 0:
+        e = q(own, m) + "^2 + " + q(other, m) + "^2 = " + number(100, 400);
+        break;
+      case 1:
+        e = q(own, m) + " + " + signed_number(10, 30) + "*" + q(other, m) + "^2 = " + lower(m);
+        break;
+      case 2:
+        e = q(own, m) + " = " + signed_number(20, 60) + "*" + q(own, m) + "*" + q(other, m) + " + " + lower(m);
+        break;
+      default:
+        e = q(own, m) + "*" + q(other, m) + " = " + number(30, 120) + " + " + function(true) + "/5";
+        break;
       }
       kind = "nonlinear";
     }

@@ -8,16 +8,18 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M, const Elimination&) {
-  return {gradient(M.S, M.qdd), right_side(M)};
-}
+static Equations equations(const Mechanics& M, const Elimination&) { return {gradient(M.S, M.qdd), right_side(M)}; }
 
-static Quantities quantities(const Mechanics& M, const Elimination&) {
-  return of_appell(M);
-}
+static Quantities quantities(const Mechanics& M, const Elimination&) { return of_appell(M); }
 
 extern const Formulation appell;
-const Formulation appell{"appell", "Appell's equations with multipliers", "(3.18')",
-                         kLuoZhao, Unknowns::multipliers, no_obstacle, equations, quantities};
+const Formulation appell{"appell",
+                         "Appell's equations with multipliers",
+                         "(3.18')",
+                         kLuoZhao,
+                         Unknowns::multipliers,
+                         no_obstacle,
+                         equations,
+                         quantities};
 
 }  // namespace anholon::forms

@@ -17,14 +17,20 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
   const unsigned k = E.m == 1 ? 0 : E.m - 2;
   const Expr S = total_derivative(M.S, k);
   const Label tilde = energy("S", k, Over::tilde);
-  return listed({
-      reduced(E, tilde, S),
-      named(partial(tilde, free_labels(M, E, E.m == 1 ? 1 : 0)), E.m == 1 ? E.by_u_rate(S) : E.by_u(S)),
-      forces_along(M, E)});
+  return listed({reduced(E, tilde, S),
+                 named(partial(tilde, free_labels(M, E, E.m == 1 ? 1 : 0)), E.m == 1 ? E.by_u_rate(S) : E.by_u(S)),
+                 forces_along(M, E)});
 }
 
 extern const Formulation appell_reduced;
-const Formulation appell_reduced{"appell-reduced", "Appell's equations in the reduced energy of accelerations", "(3.21), corrected",
-                                 kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
+const Formulation appell_reduced{"appell-reduced",
+                                 "Appell's equations in the reduced energy of accelerations",
+                                 "(3.21), corrected",
+                                 kLuoZhao,
+                                 Unknowns::coordinates,
+                                 no_obstacle,
+                                 equations,
+                                 quantities,
+                                 kHighestM};
 
 }  // namespace anholon::forms

@@ -1,9 +1,10 @@
-// Gauss' principle of least compulsion (theory: classics): among the accelerations that the constraints allow, the true ones make
+// Gauss' principle of least compulsion (theory: classics): among the accelerations that the constraints allow, the true
+// ones make
 //
 //   Z = S - sum_a G_a q_a''     (the compulsion sum 1/2 m |a - F/m|^2 up to terms without q'')
 //
-// stationary: dZ/dq''_nu along the constraints is zero. They are taken at the level of accelerations: order 1 once, order 0
-// twice differentiated, order 2 as it is. Of order 3 and more the principle would be another mechanics.
+// stationary: dZ/dq''_nu along the constraints is zero. They are taken at the level of accelerations: order 1 once,
+// order 0 twice differentiated, order 2 as it is. Of order 3 and more the principle would be another mechanics.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {
@@ -24,14 +25,20 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 
 static Quantities quantities(const Mechanics& M, const Elimination& E) {
   const Label tilde = energy("S", 0, Over::tilde);
-  return listed({
-      reduced(E, tilde, M.S),
-      named(partial(tilde, free_labels(M, E, E.m == 1 ? 1 : 0)), E.m == 1 ? E.by_u_rate(M.S) : E.by_u(M.S)),
-      forces_along(M, E)});
+  return listed({reduced(E, tilde, M.S),
+                 named(partial(tilde, free_labels(M, E, E.m == 1 ? 1 : 0)), E.m == 1 ? E.by_u_rate(M.S) : E.by_u(M.S)),
+                 forces_along(M, E)});
 }
 
 extern const Formulation gauss;
-const Formulation gauss{"gauss", "Gauss' principle of least compulsion", "",
-                        "Gauss 1829", Unknowns::coordinates, up_to_accelerations, equations, quantities, 2};
+const Formulation gauss{"gauss",
+                        "Gauss' principle of least compulsion",
+                        "",
+                        "Gauss 1829",
+                        Unknowns::coordinates,
+                        up_to_accelerations,
+                        equations,
+                        quantities,
+                        2};
 
 }  // namespace anholon::forms

@@ -2,7 +2,8 @@
 //
 //   sum_i (F_i - m_i a_i) . dv_i/du_a = 0,   dv_i/du_a = sum_s dv_i/dq_s' B_sa
 //
-// F_i holds the given, reactive and fictitious forces; forces without a place (potentials, generalized) enter through G.
+// F_i holds the given, reactive and fictitious forces; forces without a place (potentials, generalized) enter through
+// G.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {
@@ -26,15 +27,13 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
   const Labels of_v = point_labels(M, letter("v"));
   Rows by_u;  // partial velocities
   for (Expr e : v) by_u.push_back(E.contract(gradient(e, M.qd)));
-  return listed({
-      named(of_v, v),
-      partials(of_v, free_labels(M, E), by_u),
-      named(point_labels(M, letter("a")), total_derivative(v)),
-      forces_along(M, E)});
+  return listed({named(of_v, v), partials(of_v, free_labels(M, E), by_u),
+                 named(point_labels(M, letter("a")), total_derivative(v)), forces_along(M, E)});
 }
 
 extern const Formulation kane;
-const Formulation kane{"kane", "Kane's equations", "",
-                       "Kane & Levinson 1985", Unknowns::quasi_velocities, no_obstacle, equations, quantities, kHighestM};
+const Formulation kane{
+    "kane",    "Kane's equations", "",       "Kane & Levinson 1985", Unknowns::quasi_velocities, no_obstacle,
+    equations, quantities,         kHighestM};
 
 }  // namespace anholon::forms

@@ -2,8 +2,9 @@
 //
 //   a_nu + sum_b C_b,nu a_b = 0,   a = D/Dt dT/dq' - dT/dq - G,   C = -Phi_D^-1 Phi_I
 //
-// Phi = dphi/dq^(m); D are the dependent, I the independent coordinates nu. G = Q + QR + Qomega - d(V_O + V_omega)/dq + Gamma.
-// With B = (1, C) this is B^T a = 0 [L 3.2, 3.3, 3.4, 3.5, 3.6]; printed, (3.7) has the sum on the right with a minus.
+// Phi = dphi/dq^(m); D are the dependent, I the independent coordinates nu. G = Q + QR + Qomega - d(V_O + V_omega)/dq +
+// Gamma. With B = (1, C) this is B^T a = 0 [L 3.2, 3.3, 3.4, 3.5, 3.6]; printed, (3.7) has the sum on the right with a
+// minus.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {
@@ -19,7 +20,14 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation lagrange_type;
-const Formulation lagrange_type{"lagrange-type", "Lagrange's equations, multipliers eliminated", "(3.7)",
-                                kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
+const Formulation lagrange_type{"lagrange-type",
+                                "Lagrange's equations, multipliers eliminated",
+                                "(3.7)",
+                                kLuoZhao,
+                                Unknowns::coordinates,
+                                no_obstacle,
+                                equations,
+                                quantities,
+                                kHighestM};
 
 }  // namespace anholon::forms

@@ -2,10 +2,10 @@
 //
 //   D/Dt dT_/dq_nu' - dT_/dq_nu = Q_nu + (Q_nu)_t + (Q_nu)_c + sum_i m_i (v_i) . (d/dt d(v_i)/dq_nu' - d(v_i)/dq_nu)
 //
-// (v_i) is the relative velocity of point i with q_D' = f put in, T_ = sum 1/2 m |(v)|^2; every force is Q_nu + sum_b Q_b df_b/dq_nu',
-// (Q)_t = Qomega - d(V_O + V_omega)/dq the transport, (Q)_c = Gamma the Coriolis force. Beyond the paper: variable masses
-// (frozen derivatives, QR among the forces) and bodies (their axes are points of the sum). Without nonholonomic constraints
-// the sum vanishes; with an observer at rest it is the equation in an inertial frame.
+// (v_i) is the relative velocity of point i with q_D' = f put in, T_ = sum 1/2 m |(v)|^2; every force is Q_nu + sum_b
+// Q_b df_b/dq_nu', (Q)_t = Qomega - d(V_O + V_omega)/dq the transport, (Q)_c = Gamma the Coriolis force. Beyond the
+// paper: variable masses (frozen derivatives, QR among the forces) and bodies (their axes are points of the sum).
+// Without nonholonomic constraints the sum vanishes; with an observer at rest it is the equation in an inertial frame.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {
@@ -43,24 +43,27 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
   for (const WeightedPoint& point : M.points)
     for (int i = 0; i < 3; ++i) v.push_back(total_derivative(point.place[i]));
   Labels brackets;
-  for (const std::string& u : E.names) brackets.push_back(indexed({"bracket", "\\mathrm{bracket}", "<mi>bracket</mi>"}, u, {name_of(*M.model, u)}));
-  Quantities list = listed({
-      named(bar, T_bar),
-      momenta,
-      frozen_rates(momenta, E.rate(p)),
-      named(partial(bar, pick(jet_labels(M, 0), E.independent)), E.I(E.by(0, T_bar))),
-      named(point_labels(M, {"(v)", "(v)", "<mo>(</mo><mi>v</mi><mo>)</mo>"}), E.on(v)),
-      named(brackets, bracket_of(M, E)),
-      along(M, E, Q_bar, M.Q + M.QD)});
+  for (const std::string& u : E.names)
+    brackets.push_back(indexed({"bracket", "\\mathrm{bracket}", "<mi>bracket</mi>"}, u, {name_of(*M.model, u)}));
+  Quantities list = listed({named(bar, T_bar), momenta, frozen_rates(momenta, E.rate(p)),
+                            named(partial(bar, pick(jet_labels(M, 0), E.independent)), E.I(E.by(0, T_bar))),
+                            named(point_labels(M, {"(v)", "(v)", "<mo>(</mo><mi>v</mi><mo>)</mo>"}), E.on(v)),
+                            named(brackets, bracket_of(M, E)), along(M, E, Q_bar, M.Q + M.QD)});
   if (!M.model->masses.empty()) list = listed({list, along(M, E, with_superscript("QbarR", Q_bar, letter("R")), M.QR)});
-  return listed({
-      list,
-      along(M, E, with_superscript("Qbar_t", Q_bar, letter("t")), M.Qomega + M.minus_dVO + M.minus_dVomega),
-      along(M, E, with_superscript("Qbar_c", Q_bar, letter("c")), M.Gamma)});
+  return listed({list,
+                 along(M, E, with_superscript("Qbar_t", Q_bar, letter("t")), M.Qomega + M.minus_dVO + M.minus_dVomega),
+                 along(M, E, with_superscript("Qbar_c", Q_bar, letter("c")), M.Gamma)});
 }
 
 extern const Formulation mac_millan;
-const Formulation mac_millan{"mac-millan", "Mac-Millan equations in a noninertial frame", "(13)",
-                             kQiu, Unknowns::coordinates, first_order_only, equations, quantities, 1};
+const Formulation mac_millan{"mac-millan",
+                             "Mac-Millan equations in a noninertial frame",
+                             "(13)",
+                             kQiu,
+                             Unknowns::coordinates,
+                             first_order_only,
+                             equations,
+                             quantities,
+                             1};
 
 }  // namespace anholon::forms

@@ -16,7 +16,7 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation maggi;
-const Formulation maggi{"maggi", "Maggi's equations", "(3.9)",
-                        kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
+const Formulation maggi{"maggi",     "Maggi's equations", "(3.9)",    kLuoZhao, Unknowns::coordinates,
+                        no_obstacle, equations,           quantities, kHighestM};
 
 }  // namespace anholon::forms

@@ -16,7 +16,14 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation mangeron_deleanu;
-const Formulation mangeron_deleanu{"mangeron-deleanu", "Mangeron–Deleanu equations with multipliers", "(5.1)",
-                                   kMicevicRusov, Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
+const Formulation mangeron_deleanu{"mangeron-deleanu",
+                                   "Mangeron–Deleanu equations with multipliers",
+                                   "(5.1)",
+                                   kMicevicRusov,
+                                   Unknowns::multipliers,
+                                   no_obstacle,
+                                   equations,
+                                   quantities,
+                                   kHighestM};
 
 }  // namespace anholon::forms

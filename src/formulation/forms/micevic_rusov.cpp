@@ -12,12 +12,17 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {micevic_rusov_operator(M, order_of(M, E)), right_side(M)};
 }
 
-static Quantities quantities(const Mechanics& M, const Elimination& E) {
-  return of_micevic_rusov(M, order_of(M, E));
-}
+static Quantities quantities(const Mechanics& M, const Elimination& E) { return of_micevic_rusov(M, order_of(M, E)); }
 
 extern const Formulation micevic_rusov;
-const Formulation micevic_rusov{"micevic-rusov", "Mićević–Rusov equations with multipliers", "(3.1), (3.4)",
-                                kMicevicRusov, Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
+const Formulation micevic_rusov{"micevic-rusov",
+                                "Mićević–Rusov equations with multipliers",
+                                "(3.1), (3.4)",
+                                kMicevicRusov,
+                                Unknowns::multipliers,
+                                no_obstacle,
+                                equations,
+                                quantities,
+                                kHighestM};
 
 }  // namespace anholon::forms

@@ -15,7 +15,14 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation micevic_rusov_maggi;
-const Formulation micevic_rusov_maggi{"micevic-rusov-maggi", "Mićević–Rusov equations of Maggi's type", "(3.7)",
-                                      kMicevicRusov, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
+const Formulation micevic_rusov_maggi{"micevic-rusov-maggi",
+                                      "Mićević–Rusov equations of Maggi's type",
+                                      "(3.7)",
+                                      kMicevicRusov,
+                                      Unknowns::coordinates,
+                                      no_obstacle,
+                                      equations,
+                                      quantities,
+                                      kHighestM};
 
 }  // namespace anholon::forms

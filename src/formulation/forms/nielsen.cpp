@@ -11,12 +11,17 @@ static Equations equations(const Mechanics& M, const Elimination&) {
   return {gradient(T(M, 1), M.qd) - Rational(2) * gradient(M.T, M.q), right_side(M)};
 }
 
-static Quantities quantities(const Mechanics& M, const Elimination&) {
-  return of_mangeron_deleanu(M, 1);
-}
+static Quantities quantities(const Mechanics& M, const Elimination&) { return of_mangeron_deleanu(M, 1); }
 
 extern const Formulation nielsen;
-const Formulation nielsen{"nielsen", "Nielsen's equations with multipliers", "(5.1), m = 1",
-                          "Nielsen; a paper on equations of Mićević–Rusov type for nonholonomic systems of higher order", Unknowns::multipliers, no_obstacle, equations, quantities};
+const Formulation nielsen{
+    "nielsen",
+    "Nielsen's equations with multipliers",
+    "(5.1), m = 1",
+    "Nielsen; a paper on equations of Mićević–Rusov type for nonholonomic systems of higher order",
+    Unknowns::multipliers,
+    no_obstacle,
+    equations,
+    quantities};
 
 }  // namespace anholon::forms

@@ -12,12 +12,17 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   return {nielsen_operator(M, order_of(M, E)), right_side(M)};
 }
 
-static Quantities quantities(const Mechanics& M, const Elimination& E) {
-  return of_nielsen(M, order_of(M, E));
-}
+static Quantities quantities(const Mechanics& M, const Elimination& E) { return of_nielsen(M, order_of(M, E)); }
 
 extern const Formulation nielsen_order_m;
-const Formulation nielsen_order_m{"nielsen-order-m", "Nielsen's equations of order m with multipliers", "from (3.10)",
-                                  kLuoZhao, Unknowns::multipliers, no_obstacle, equations, quantities, kHighestM};
+const Formulation nielsen_order_m{"nielsen-order-m",
+                                  "Nielsen's equations of order m with multipliers",
+                                  "from (3.10)",
+                                  kLuoZhao,
+                                  Unknowns::multipliers,
+                                  no_obstacle,
+                                  equations,
+                                  quantities,
+                                  kHighestM};
 
 }  // namespace anholon::forms

@@ -17,7 +17,14 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
 }
 
 extern const Formulation nielsen_type;
-const Formulation nielsen_type{"nielsen-type", "Nielsen's equations of order m without multipliers", "(3.11)",
-                               kLuoZhao, Unknowns::coordinates, no_obstacle, equations, quantities, kHighestM};
+const Formulation nielsen_type{"nielsen-type",
+                               "Nielsen's equations of order m without multipliers",
+                               "(3.11)",
+                               kLuoZhao,
+                               Unknowns::coordinates,
+                               no_obstacle,
+                               equations,
+                               quantities,
+                               kHighestM};
 
 }  // namespace anholon::forms

@@ -8,16 +8,13 @@
 
 namespace anholon::forms {
 
-static Equations equations(const Mechanics& M, const Elimination&) {
-  return {lagrange_operator(M), right_side(M)};
-}
+static Equations equations(const Mechanics& M, const Elimination&) { return {lagrange_operator(M), right_side(M)}; }
 
-static Quantities quantities(const Mechanics& M, const Elimination&) {
-  return of_lagrange(M);
-}
+static Quantities quantities(const Mechanics& M, const Elimination&) { return of_lagrange(M); }
 
 extern const Formulation routh;
-const Formulation routh{"routh", "Routh's equations with multipliers", "(2.7)",
-                        kLuoZhao, Unknowns::multipliers, no_obstacle, equations, quantities};
+const Formulation routh{
+    "routh",   "Routh's equations with multipliers", "(2.7)", kLuoZhao, Unknowns::multipliers, no_obstacle, equations,
+    quantities};
 
 }  // namespace anholon::forms

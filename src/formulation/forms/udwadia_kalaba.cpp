@@ -1,5 +1,5 @@
-// The Udwadia-Kalaba equations (theory: classics): the reactions as an explicit function of the state. With the constraints at
-// the level of accelerations, A q'' = b, and E - G = M q'' + h:
+// The Udwadia-Kalaba equations (theory: classics): the reactions as an explicit function of the state. With the
+// constraints at the level of accelerations, A q'' = b, and E - G = M q'' + h:
 //
 //   E = G + A^T (A M^-1 A^T)^-1 (b + A M^-1 h)
 //
@@ -25,7 +25,8 @@ static Expr inner(const Column& a, const Column& b) {
 static std::string linear_accelerations(const Mechanics& M) {
   for (std::size_t r = 0; r < M.order.size(); ++r) {
     const std::string& name = M.model->constraints[r].name;
-    if (M.order[r] > 2) return "the constraint '" + name + "' is of order " + std::to_string(M.order[r]) + ", not on accelerations";
+    if (M.order[r] > 2)
+      return "the constraint '" + name + "' is of order " + std::to_string(M.order[r]) + ", not on accelerations";
     if (M.order[r] < 2) continue;
     for (Expr e : M.Phi[r])
       if (jet_order(e) > 1) return "the constraint '" + name + "' is not linear in the accelerations";
@@ -64,7 +65,8 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 }
 
 static Label differentiated(const Label& of, unsigned k) {
-  return {derivative_name(of.text, k, Format::text), derivative_name(of.latex, k, Format::latex), derivative_name(of.mathml, k, Format::mathml)};
+  return {derivative_name(of.text, k, Format::text), derivative_name(of.latex, k, Format::latex),
+          derivative_name(of.mathml, k, Format::mathml)};
 }
 
 static Quantities quantities(const Mechanics& M, const Elimination& E) {
@@ -74,14 +76,15 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
   for (std::size_t k = 0; k < level.size(); ++k) {
     const std::size_t r = E.constraints[k];
     const std::string& name = M.model->constraints[r].name;
-    names.push_back(differentiated(indexed(letter("phi"), name, {name_of(*M.model, name)}), 2 - static_cast<unsigned>(M.order[r])));
+    names.push_back(
+        differentiated(indexed(letter("phi"), name, {name_of(*M.model, name)}), 2 - static_cast<unsigned>(M.order[r])));
     A.push_back(gradient(level[k], M.qdd));
   }
   return listed({of_lagrange(M), named(names, level), partials(names, jet_labels(M, 2), A)});
 }
 
 extern const Formulation udwadia_kalaba;
-const Formulation udwadia_kalaba{"udwadia-kalaba", "Udwadia–Kalaba equations", "",
-                                 "Udwadia & Kalaba 1992", Unknowns::coordinates, linear_accelerations, equations, quantities};
+const Formulation udwadia_kalaba{"udwadia-kalaba",      "Udwadia–Kalaba equations", "",        "Udwadia & Kalaba 1992",
+                                 Unknowns::coordinates, linear_accelerations,       equations, quantities};
 
 }  // namespace anholon::forms

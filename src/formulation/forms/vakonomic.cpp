@@ -1,5 +1,5 @@
-// The vakonomic equations (theory: vakonomic), another mechanics: the action is stationary among the motions that satisfy the
-// constraints,
+// The vakonomic equations (theory: vakonomic), another mechanics: the action is stationary among the motions that
+// satisfy the constraints,
 //
 //   D/Dt dT/dq' - dT/dq = G + sum_r sum_k (-1)^k d^k/dt^k (mu_r dphi_r/dq^(k)),   k = 0 .. m
 //
@@ -23,12 +23,16 @@ static Equations equations(const Mechanics& M, const Elimination&) {
   return {lagrange_operator(M), forces(M) + reaction};
 }
 
-static Quantities quantities(const Mechanics& M, const Elimination&) {
-  return of_lagrange(M);
-}
+static Quantities quantities(const Mechanics& M, const Elimination&) { return of_lagrange(M); }
 
 extern const Formulation vakonomic;
-const Formulation vakonomic{"vakonomic", "vakonomic equations (another mechanics)", "",
-                            "Kozlov 1983", Unknowns::variational, no_obstacle, equations, quantities};
+const Formulation vakonomic{"vakonomic",
+                            "vakonomic equations (another mechanics)",
+                            "",
+                            "Kozlov 1983",
+                            Unknowns::variational,
+                            no_obstacle,
+                            equations,
+                            quantities};
 
 }  // namespace anholon::forms

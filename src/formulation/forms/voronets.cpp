@@ -1,5 +1,5 @@
-// Voronets' equations (theory: classics), for constraints of order 1, q_D' = f(q, q_I', t) of any shape. With Theta = T where
-// q_D' = f is put in, theta_b = dT/dq_b':
+// Voronets' equations (theory: classics), for constraints of order 1, q_D' = f(q, q_I', t) of any shape. With Theta = T
+// where q_D' = f is put in, theta_b = dT/dq_b':
 //
 //   D/Dt dTheta/dq_nu' - dTheta/dq_nu - sum_b dTheta/dq_b df_b/dq_nu'
 //     - sum_b theta_b (d/dt df_b/dq_nu' - df_b/dq_nu - sum_c df_b/dq_c df_c/dq_nu')  =  G_nu + sum_b G_b df_b/dq_nu'
@@ -27,20 +27,21 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
   const Quantities momenta = named(partial(name, free_labels(M, E)), p);
   Rows f_by_q;
   for (std::size_t b : E.dependent) f_by_q.push_back(E.g_by(0)[b]);
-  return listed({
-      named(energy("T"), M.T),
-      named(name, Theta),
-      momenta,
-      frozen_rates(momenta, E.rate(p)),
-      named(partial(name, jet_labels(M, 0)), E.by(0, Theta)),
-      dependent_partials(M, E, energy("T"), M.T, 1),
-      rates_of_f_by_u(M, E),
-      partials(pick(jet_labels(M, 1), E.dependent), jet_labels(M, 0), f_by_q),
-      forces_along(M, E)});
+  return listed({named(energy("T"), M.T), named(name, Theta), momenta, frozen_rates(momenta, E.rate(p)),
+                 named(partial(name, jet_labels(M, 0)), E.by(0, Theta)), dependent_partials(M, E, energy("T"), M.T, 1),
+                 rates_of_f_by_u(M, E), partials(pick(jet_labels(M, 1), E.dependent), jet_labels(M, 0), f_by_q),
+                 forces_along(M, E)});
 }
 
 extern const Formulation voronets;
-const Formulation voronets{"voronets", "Voronets' equations", "",
-                           "Voronets 1901", Unknowns::coordinates, first_order_only, equations, quantities, 1};
+const Formulation voronets{"voronets",
+                           "Voronets' equations",
+                           "",
+                           "Voronets 1901",
+                           Unknowns::coordinates,
+                           first_order_only,
+                           equations,
+                           quantities,
+                           1};
 
 }  // namespace anholon::forms

@@ -8,6 +8,7 @@ static Equations equations(const Mechanics& M, const Elimination&) {
 }
 
 extern const Formulation twice_routh;
-const Formulation twice_routh{"twice-routh", "Routh's equations, doubled", "", "a test", Unknowns::multipliers, no_obstacle, equations};
+const Formulation twice_routh{
+    "twice-routh", "Routh's equations, doubled", "", "a test", Unknowns::multipliers, no_obstacle, equations};
 
 }  // namespace anholon::forms

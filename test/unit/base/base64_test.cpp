@@ -1,14 +1,20 @@
 // Bytes as text and back.
-#include "base/base64.h"
-
 #include <gtest/gtest.h>
+
+#include "base/base64.h"
 
 namespace anholon {
 namespace {
 
 // RFC 4648, section 10, and bytes that are no text.
 TEST(Base64, KnownTexts) {
-  for (const auto& [bytes, text] : {std::pair{"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}, {"\xfb\xff\xbf", "+/+/"}}) {
+  for (const auto& [bytes, text] : {std::pair{"f", "Zg=="},
+                                    {"fo", "Zm8="},
+                                    {"foo", "Zm9v"},
+                                    {"foob", "Zm9vYg=="},
+                                    {"fooba", "Zm9vYmE="},
+                                    {"foobar", "Zm9vYmFy"},
+                                    {"\xfb\xff\xbf", "+/+/"}}) {
     EXPECT_EQ(to_base64(bytes), text);
     EXPECT_EQ(from_base64(text), bytes);
   }

@@ -1,26 +1,37 @@
-#include "base/escape.h"
+#include <algorithm>
 
 #include <gtest/gtest.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostic.h"
+#include "base/escape.h"
 #include "base/utf8.h"
 
 namespace anholon {
 namespace {
 
-const std::string kTexts[] = {
-    "", "plain", "θ̇ = 3 mm² 中 😀", "a\x1b[31mred\x1b[0m", "bell\a back\b tab\t nul" + std::string(1, '\0') + "end", "two\nlines\r\n", "\x7f\xc2\x85\xc2\x9b",
-    "\u202eleft\u2066\u200b\ufeff\u2028\u061c", "\xff\xfe\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80\xe2\x80", "</script><b a='1' b=\"2\">&amp;]]>", "*/ /* // \\ \"\"\" ''' ?\?/", "\\input{x} $_^~%#&{}",
-    "a,b\"c", "\U000E0041\U0001FFFE", "Persian \u0645\u06cc\u200c\u062e\u0648\u0627\u0647\u0645"};
+const std::string kTexts[] = {"",
+                              "plain",
+                              "θ̇ = 3 mm² 中 😀",
+                              "a\x1b[31mred\x1b[0m",
+                              "bell\a back\b tab\t nul" + std::string(1, '\0') + "end",
+                              "two\nlines\r\n",
+                              "\x7f\xc2\x85\xc2\x9b",
+                              "\u202eleft\u2066\u200b\ufeff\u2028\u061c",
+                              "\xff\xfe\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80\xe2\x80",
+                              "</script><b a='1' b=\"2\">&amp;]]>",
+                              "*/ /* // \\ \"\"\" ''' ?\?/",
+                              "\\input{x} $_^~%#&{}",
+                              "a,b\"c",
+                              "\U000E0041\U0001FFFE",
+                              "Persian \u0645\u06cc\u200c\u062e\u0648\u0627\u0647\u0645"};
 
 bool steers(const std::string& text, const std::string& but = "") {
   for (std::size_t i = 0; i < text.size(); i += utf8_width(text, i)) {
     const std::string c = text.substr(i, utf8_width(text, i));
     if (but.find(c) != std::string::npos) continue;
-    if (c.size() == 1 && (static_cast<unsigned char>(c[0]) < 0x20 || static_cast<unsigned char>(c[0]) >= 0x7f)) return true;
+    if (c.size() == 1 && (static_cast<unsigned char>(c[0]) < 0x20 || static_cast<unsigned char>(c[0]) >= 0x7f))
+      return true;
     if (c.size() == 2 && c[0] == '\xc2' && static_cast<unsigned char>(c[1]) < 0xa0) return true;
     for (const char* hidden : {"\u202e", "\u2066", "\u200b", "\u2028", "\ufeff", "\u061c", "\U000E0041"})
       if (c == hidden) return true;
@@ -40,7 +51,9 @@ TEST(Escape, ShowsEachCharacterAsOne) {
 
 TEST(Escape, LetsNothingThroughThatSteers) {
   for (const std::string& t : kTexts) {
-    for (const auto f : {shown, markup_escape, latex_escape, comment_line, code_string, csv_cell, json_escape, toml_escape}) EXPECT_FALSE(steers(f(t))) << t;
+    for (const auto f :
+         {shown, markup_escape, latex_escape, comment_line, code_string, csv_cell, json_escape, toml_escape})
+      EXPECT_FALSE(steers(f(t))) << t;
     EXPECT_FALSE(steers(shown_lines(t), "\n")) << t;
     EXPECT_FALSE(steers(markup_lines(t), "\n\t")) << t;
     EXPECT_EQ(utf8_length(shown(t)), utf8_length(shown(shown(t)))) << "shown twice";
@@ -87,7 +100,8 @@ TEST(Escape, FormatsKeepTheirOwnSigns) {
 
 TEST(Escape, MessagesAreLinesOfOurs) {
   const SourceText source{"a\x1b.toml", "title = 1\n"};
-  const std::string said = print(Diagnostic{Severity::error, Span{1, 1, 5}, "no 'x\nerror: y'", "write\x1b[2J"}, source);
+  const std::string said =
+      print(Diagnostic{Severity::error, Span{1, 1, 5}, "no 'x\nerror: y'", "write\x1b[2J"}, source);
   EXPECT_EQ(said, "a␛.toml:1:1: error: no 'x␊error: y'\n  1 | title = 1\n    | ^~~~~\nhint: write␛[2J\n");
 }
 

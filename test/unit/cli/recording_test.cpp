@@ -1,15 +1,15 @@
-#include "cli/recording.h"
-
 #include <gtest/gtest.h>
 
 #include "cli/child.h"
 #include "cli/input.h"
+#include "cli/recording.h"
 
 namespace anholon::cli {
 namespace {
 
 // One pixel, 1x1; as a browser's toDataURL gives it.
-constexpr const char* kPixel = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
+constexpr const char* kPixel =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
 
 Options asked(const std::string& output) {
   Options o;
@@ -29,7 +29,8 @@ std::string refused(const Options& o) {
 
 TEST(Pictures, OutOfAPage) {
   const std::string png = "data:image/png;base64," + std::string(kPixel);
-  const std::string page = "<html><pre data-frame=\"7\">" + png + "</pre><pre data-frame=\"8\">" + png + "</pre></html>";
+  const std::string page =
+      "<html><pre data-frame=\"7\">" + png + "</pre><pre data-frame=\"8\">" + png + "</pre></html>";
   const Pictures p = pictures(page, 7, 9, 1, 1);
   ASSERT_EQ(p.error, "");
   ASSERT_EQ(p.png.size(), 2U);
@@ -71,7 +72,8 @@ TEST(Recording, SizesAndRates) {
   EXPECT_EQ(recording(sized("7680x7680")).height, 7680);
   EXPECT_EQ(recording(sized("161x91", "a.mp4")).width, 162);  // films have even sides
   EXPECT_EQ(recording(sized("161x91", "a.mp4")).height, 92);
-  for (const char* wrong : {"160", "x", "160x", "63x90", "160x7681", "160x90x3", "-160x90", "1e3x900", "99999999999999999999x90", "160 x 90"})
+  for (const char* wrong : {"160", "x", "160x", "63x90", "160x7681", "160x90x3", "-160x90", "1e3x900",
+                            "99999999999999999999x90", "160 x 90"})
     EXPECT_NE(refused(sized(wrong)).find("--size"), std::string::npos) << wrong;
   for (const char* wrong : {"0", "-1", "121", "1e9"}) {
     Options o = asked("a.mp4");
@@ -104,13 +106,13 @@ TEST(Recording, MomentsOfAMotion) {
   EXPECT_EQ(m.count, 60U);
   EXPECT_EQ(m.first, 1);
   EXPECT_EQ(m.last, 3);
-  EXPECT_EQ(moments(r, 0, 2).last, 2);          // a motion that stopped early
-  EXPECT_THROW(moments(r, 5, 9), UsageError);   // --from before it
-  EXPECT_THROW(moments(r, 0, 1), UsageError);   // nothing of it
+  EXPECT_EQ(moments(r, 0, 2).last, 2);         // a motion that stopped early
+  EXPECT_THROW(moments(r, 5, 9), UsageError);  // --from before it
+  EXPECT_THROW(moments(r, 0, 1), UsageError);  // nothing of it
   r.seconds = 1e6, r.to.reset();
   EXPECT_THROW(moments(r, 0, 4), UsageError);
   r.seconds.reset(), r.from.reset();
-  EXPECT_EQ(moments(r, 3, -1).first, 3);        // backwards
+  EXPECT_EQ(moments(r, 3, -1).first, 3);  // backwards
   EXPECT_EQ(moments(r, 3, -1).last, -1);
   r.kind = Record::picture;
   EXPECT_EQ(moments(r, 1, 4).first, 1);

@@ -1,12 +1,14 @@
-#include "cli/say.h"
-
 #include <gtest/gtest.h>
+
+#include "cli/say.h"
 
 namespace anholon::cli {
 namespace {
 
 TEST(Say, IsPrintfForWhatIsOurs) {
-  EXPECT_EQ(said("%d of %zu, %5.2f|%-6s|%6s|%3u|%llu|%lld|%%", -3, std::size_t{7}, 1.005, "ab", "cd", 5U, 1ULL << 40, -2LL), "-3 of 7,  1.00|ab    |    cd|  5|1099511627776|-2|%");
+  EXPECT_EQ(
+      said("%d of %zu, %5.2f|%-6s|%6s|%3u|%llu|%lld|%%", -3, std::size_t{7}, 1.005, "ab", "cd", 5U, 1ULL << 40, -2LL),
+      "-3 of 7,  1.00|ab    |    cd|  5|1099511627776|-2|%");
   EXPECT_EQ(said("%-*s|%*s|%.2s", 4, "x", -4, "y", "αβγ"), "x   |y   |αβ");
   EXPECT_EQ(said("%.3g %e %04d", 1234.5, 1.0, 7), "1.23e+03 1.000000e+00 0007");
 }

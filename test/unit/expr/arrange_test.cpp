@@ -1,7 +1,6 @@
-#include "expr/arrange.h"
-
 #include <gtest/gtest.h>
 
+#include "expr/arrange.h"
 #include "expr/normal.h"
 #include "support/plain_names.h"
 #include "support/random_expr.h"
@@ -58,17 +57,27 @@ TEST(Arranged, KeepsTheNamesOfTheUser) {
   EXPECT_EQ(printed("a*x/sqrt(x^2 + y^2) + b*x/sqrt(x^2 + y^2)"), "(a + b)*x/r");
 }
 
-// Theorem. An arrangement is equal to the expression (by proof where there is one, else by its values), and no longer than
-// it and than its expansion.
+// Theorem. An arrangement is equal to the expression (by proof where there is one, else by its values), and no longer
+// than it and than its expansion.
 TEST(Arranged, IsEqualAndNoLonger) {
   const PrecisionScope precision(60);
   const double tolerance = 1e-35;  // 60 digits, and cancellation between monomials of moderate size
   PlainNames n;
   const SymbolNames names = test::plain_symbol_names();
   const auto length = [&](Expr e) { return print(e, names, Format::text).size(); };
-  const std::vector<Expr> atoms = {n.number("x"), n.number("y"), n.number("a"), n.number("b"), n.number("x''"), n.number("y'"),
-                                   sin(n.number("x")), cos(n.number("x")), sin(n.number("y + b")), cos(n.number("y")), sin(n.number("y")),
-                                   sqrt(n.number("1 + y^2")), pow(n.number("2 + a^2"), -1)};
+  const std::vector<Expr> atoms = {n.number("x"),
+                                   n.number("y"),
+                                   n.number("a"),
+                                   n.number("b"),
+                                   n.number("x''"),
+                                   n.number("y'"),
+                                   sin(n.number("x")),
+                                   cos(n.number("x")),
+                                   sin(n.number("y + b")),
+                                   cos(n.number("y")),
+                                   sin(n.number("y")),
+                                   sqrt(n.number("1 + y^2")),
+                                   pow(n.number("2 + a^2"), -1)};
   int proofs = 0, shorter = 0;
   for (std::uint32_t k = 1; k <= 200; ++k) {
     test::RandomExpr make(n.g, 7000 + k, atoms);
@@ -85,7 +94,8 @@ TEST(Arranged, IsEqualAndNoLonger) {
       continue;
     }
     ASSERT_LE(test::distance(test::value(a, test::Point(k)), test::value(e, test::Point(k))), tolerance)
-        << print(e, names, Format::text) << "\n" << print(a, names, Format::text);
+        << print(e, names, Format::text) << "\n"
+        << print(a, names, Format::text);
   }
   EXPECT_GT(proofs, 190);
   EXPECT_GT(shorter, 50);

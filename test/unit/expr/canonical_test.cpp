@@ -1,8 +1,8 @@
 // Equal expressions built in any order have the same id.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "base/diagnostic.h"
 #include "expr/diff.h"
@@ -35,7 +35,8 @@ Expr multiply(Expr a, Expr b) { return a * b; }
 TEST(Canonical, SumsOfUpToFortyTermsDoNotDependOnOrderAndBrackets) {
   Symbols s;
   std::vector<Expr> atoms = {s.x, s.y, s.xd, s.a, s.t, s.g.one()};
-  for (std::uint32_t k = 2; k < 14; ++k) atoms.push_back(s.g.jet(k, 0)), atoms.push_back(sin(s.g.jet(k, 0)) * s.g.jet(k, 1));
+  for (std::uint32_t k = 2; k < 14; ++k)
+    atoms.push_back(s.g.jet(k, 0)), atoms.push_back(sin(s.g.jet(k, 0)) * s.g.jet(k, 1));
   std::mt19937 random(1);
   for (int round = 0; round < 60; ++round) {
     RandomExpr make(s.g, 100 + static_cast<std::uint32_t>(round), atoms);
@@ -50,7 +51,8 @@ TEST(Canonical, SumsOfUpToFortyTermsDoNotDependOnOrderAndBrackets) {
 
 TEST(Canonical, ProductsOfUpToTwentyFactorsDoNotDependOnOrderAndBrackets) {
   Symbols s;
-  const std::vector<Expr> atoms = {s.x, s.y, s.a, s.t, 1 + s.x, 2 * s.x + 4 * s.y, s.g.number(Rational(-3, 2)), -s.xd, sin(s.x), s.x * s.y};
+  const std::vector<Expr> atoms = {
+      s.x, s.y, s.a, s.t, 1 + s.x, 2 * s.x + 4 * s.y, s.g.number(Rational(-3, 2)), -s.xd, sin(s.x), s.x * s.y};
   std::mt19937 random(2);
   for (int round = 0; round < 60; ++round) {
     RandomExpr make(s.g, 200 + static_cast<std::uint32_t>(round), atoms);
@@ -70,7 +72,8 @@ TEST(Canonical, ProductsOfUpToTwentyFactorsDoNotDependOnOrderAndBrackets) {
 
 TEST(Canonical, ProductsOfRootsDoNotDependOnOrderAndBrackets) {
   Symbols s;
-  const std::vector<Expr> atoms = {sqrt(s.x), sqrt(s.y), sqrt(1 + s.x), pow(s.x, {1, 3}), sqrt(s.x * s.y), sqrt(1 + s.x * s.x)};
+  const std::vector<Expr> atoms = {sqrt(s.x),        sqrt(s.y),       sqrt(1 + s.x),
+                                   pow(s.x, {1, 3}), sqrt(s.x * s.y), sqrt(1 + s.x * s.x)};
   std::mt19937 random(3);
   for (int round = 0; round < 60; ++round) {
     RandomExpr make(s.g, 300 + static_cast<std::uint32_t>(round), atoms);
@@ -162,9 +165,11 @@ std::size_t operations_of_a_chain(std::uint32_t links) {
 }
 
 TEST(Summands, PositionsOfAChainCostLinearWork) {
-  const std::size_t at100 = operations_of_a_chain(100), at200 = operations_of_a_chain(200), at400 = operations_of_a_chain(400);
+  const std::size_t at100 = operations_of_a_chain(100), at200 = operations_of_a_chain(200),
+                    at400 = operations_of_a_chain(400);
   const double first = static_cast<double>(at200 - at100), second = static_cast<double>(at400 - at200);
-  EXPECT_NEAR(second / first, 2, 0.1) << "linear beyond the first few links: " << at100 << ", " << at200 << ", " << at400;
+  EXPECT_NEAR(second / first, 2, 0.1) << "linear beyond the first few links: " << at100 << ", " << at200 << ", "
+                                      << at400;
   EXPECT_LE(at200, 200U * 8) << "a cosine, a product and two terms per link, not 200 terms";
 }
 
@@ -181,7 +186,8 @@ TEST(Summands, TheShortWayHasTheValueOfTheFlatTerms) {
     const test::Point at(7);
     const Multi flat = test::value(e, at);
     Multi by_short_way(0);
-    for (const Term& t : g.summands(e.id)) by_short_way += Multi(g.rational(t.weight)) * test::value(Expr{&g, t.node}, at);
+    for (const Term& t : g.summands(e.id))
+      by_short_way += Multi(g.rational(t.weight)) * test::value(Expr{&g, t.node}, at);
     if (g.summands(e.id).size() < g.terms(e.id).size()) ++short_ways;
     ASSERT_LE(test::distance(flat, by_short_way), 1e-35);
   }
@@ -204,8 +210,7 @@ TEST(Budget, StopsWhatUnfoldsWithoutEnd) {
   Graph g;
   g.allow(10'000);
   Expr e = g.jet(0, 0) + g.jet(1, 0);
-  EXPECT_NO_THROW(
-      for (int k = 0; k < 10; ++k) e = 1 + e * sin(e););
+  EXPECT_NO_THROW(for (int k = 0; k < 10; ++k) e = 1 + e * sin(e););
   EXPECT_THROW(e = total_derivative(e * exp(e), 20), Failure);
   // Whoever may spend more goes on where it ended.
   g.allow(1'000'000);
@@ -216,8 +221,7 @@ TEST(Budget, LongNumbersCostMore) {
   Graph g;
   g.allow(100'000);
   Expr e = g.number(Rational(3, 7));
-  EXPECT_THROW(
-      for (int k = 0; k < 60; ++k) e = e * e + g.number(Rational(1, 3)), Failure);
+  EXPECT_THROW(for (int k = 0; k < 60; ++k) e = e * e + g.number(Rational(1, 3)), Failure);
   EXPECT_LT(mpz_sizeinbase(number_value(e).get_den_mpz_t(), 2), 1'000'000U);
 }
 

@@ -1,10 +1,8 @@
-#include "expr/diff.h"
-
 #include <gtest/gtest.h>
-
 #include <malloc.h>
 #include <sys/resource.h>
 
+#include "expr/diff.h"
 #include "expr/print.h"
 #include "support/random_expr.h"
 #include "support/value.h"
@@ -33,7 +31,8 @@ Multi central_difference(Expr e, Expr symbol, const Point& at, const Multi& h) {
 TEST(Gradient, IsTheLimitOfDifferences) {
   const PrecisionScope precision(70);
   const Multi h = test::raise(Multi(10), Rational(-20));
-  const double tolerance = 1e-30;  // h^2 times third derivatives of moderate size; 50 digits are left in the differences
+  const double tolerance =
+      1e-30;  // h^2 times third derivatives of moderate size; 50 digits are left in the differences
   Symbols s;
   for (std::uint32_t k = 1; k <= kRandomExpressions; ++k) {
     const Expr e = RandomExpr(s.g, k, s.atoms).make(4);
@@ -82,7 +81,8 @@ TEST(Pullback, IsTheGradientOfTheSumWithSeedsHeld) {
   Symbols s;
   for (std::uint32_t k = 1; k <= 20; ++k) {
     RandomExpr make(s.g, 2000 + k, s.atoms);
-    const Column outputs = {make.make(3), make.make(3), make.make(2)}, seeds = {make.make(2), make.make(1), make.atom()};
+    const Column outputs = {make.make(3), make.make(3), make.make(2)},
+                 seeds = {make.make(2), make.make(1), make.atom()};
     const Column pulled = pullback(outputs, seeds, s.atoms);
     for (std::size_t i = 0; i < s.atoms.size(); ++i) {
       Multi expected(0);
@@ -99,7 +99,8 @@ TEST(TotalDerivative, IsTheChainRule) {
   const PrecisionScope precision(60);
   for (std::uint32_t k = 1; k <= 25; ++k) {
     Graph g;
-    const Expr x = g.jet(0, 0), y = g.jet(1, 0), xd = g.jet(0, 1), t = g.time(), mu = g.mass(0), f = g.given(0, 0), lambda = g.multiplier(0, 0);
+    const Expr x = g.jet(0, 0), y = g.jet(1, 0), xd = g.jet(0, 1), t = g.time(), mu = g.mass(0), f = g.given(0, 0),
+               lambda = g.multiplier(0, 0);
     const std::vector<Expr> atoms = {x, y, xd, t, mu, f, lambda, g.parameter(0)};
     const Expr e = RandomExpr(g, 3000 + k, atoms).make(3);
     const Point start(k);
@@ -127,7 +128,8 @@ TEST(TotalDerivative, IsTheChainRule) {
     for (int order = 1; order <= kOrders; ++order) {
       factorial *= Multi(order);
       const Multi d = value(total_derivative(e, static_cast<unsigned>(order)), start);
-      ASSERT_LE(distance(d, Multi(series[static_cast<std::size_t>(order)] * factorial)), 1e-28) << k << ", order " << order;
+      ASSERT_LE(distance(d, Multi(series[static_cast<std::size_t>(order)] * factorial)), 1e-28)
+          << k << ", order " << order;
     }
   }
 }

@@ -1,7 +1,6 @@
-#include "expr/normal.h"
-
 #include <gtest/gtest.h>
 
+#include "expr/normal.h"
 #include "expr/print.h"
 #include "support/plain_names.h"
 #include "support/random_expr.h"
@@ -34,9 +33,10 @@ TEST(ProvedZero, KnowsTheIdentitiesOfItsPurpose) {
 
 TEST(ProvedZero, ClaimsNothingFalse) {
   PlainNames n;
-  for (const char* text : {"sin(x)^2 + cos(x)^2 - 2", "sin(2*x) - 2*sin(x)", "sqrt(x^2) - x", "abs(x) - x", "sqrt(x^2*y^2) - x*y",
-                           "sin(x + y) - sin(x) - sin(y)", "sqrt(x + y) - sqrt(x) - sqrt(y)", "x - y", "exp(x*y) - exp(x)*exp(y)",
-                           "atan2(y, x) - atan(y/x)", "acos(cos(x)) - x", "sign(x) - 1", "log(x^2) - 2*log(x)", "x'' - x'", "1"})
+  for (const char* text :
+       {"sin(x)^2 + cos(x)^2 - 2", "sin(2*x) - 2*sin(x)", "sqrt(x^2) - x", "abs(x) - x", "sqrt(x^2*y^2) - x*y",
+        "sin(x + y) - sin(x) - sin(y)", "sqrt(x + y) - sqrt(x) - sqrt(y)", "x - y", "exp(x*y) - exp(x)*exp(y)",
+        "atan2(y, x) - atan(y/x)", "acos(cos(x)) - x", "sign(x) - 1", "log(x^2) - 2*log(x)", "x'' - x'", "1"})
     EXPECT_FALSE(proved_zero(n.number(text))) << text;
 }
 
@@ -49,7 +49,8 @@ TEST(ProvedZero, SeesEveryRandomPerturbation) {
   for (std::uint32_t k = 1; k <= 150; ++k) {
     test::RandomExpr make(n.g, k, atoms);
     const Expr u = make.make(2), v = make.make(2), w = make.make(1);
-    const Expr same[] = {(u + v) * w - u * w - v * w, (u + v) * (u - v) - u * u + v * v, sin(u + w) - sin(u) * cos(w) - cos(u) * sin(w)};
+    const Expr same[] = {(u + v) * w - u * w - v * w, (u + v) * (u - v) - u * u + v * v,
+                         sin(u + w) - sin(u) * cos(w) - cos(u) * sin(w)};
     for (Expr zero : same) {
       const Expr perturbed = zero + make.coefficient() * make.atom();
       const Multi size = abs(test::value(perturbed, test::Point(k)));
@@ -78,14 +79,16 @@ TEST(Expanded, HasTheSameValue) {
   const PrecisionScope precision(60);
   const double tolerance = 1e-35;  // 60 digits, and cancellation between monomials of moderate size
   PlainNames n;
-  const std::vector<Expr> atoms = {n.number("x"), n.number("y"), n.number("a"), n.number("x'"), sin(n.number("x")), sqrt(n.number("1 + y^2"))};
+  const std::vector<Expr> atoms = {n.number("x"),  n.number("y"),      n.number("a"),
+                                   n.number("x'"), sin(n.number("x")), sqrt(n.number("1 + y^2"))};
   int written_out = 0;
   for (std::uint32_t k = 1; k <= 150; ++k) {
     const Expr e = test::RandomExpr(n.g, 900 + k, atoms).make(3);
     const std::optional<Expr> f = expanded(e);
     if (!f) continue;
     ++written_out;
-    ASSERT_LE(test::distance(test::value(e, test::Point(k)), test::value(*f, test::Point(k))), tolerance) << print(e, {}, Format::text);
+    ASSERT_LE(test::distance(test::value(e, test::Point(k)), test::value(*f, test::Point(k))), tolerance)
+        << print(e, {}, Format::text);
   }
   EXPECT_GT(written_out, 100);
 }

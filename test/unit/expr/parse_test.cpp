@@ -142,19 +142,21 @@ TEST(Rotations, HaveOrthonormalAxesAndTheirAngularVelocity) {
   PlainNames n;
   const PrecisionScope precision(40);
   const test::Point at(3);
-  for (const char* text : {"rotx(x)", "roty(2*y)*rotz(x)", "rotz(x)*rotx(y)*rotz(z)", "euler(zxz, x, y, z)", "rot([3/5, 0, 4/5], x*y)",
-                           "euler(\"xyz\", x, y, z)"}) {
+  for (const char* text : {"rotx(x)", "roty(2*y)*rotz(x)", "rotz(x)*rotx(y)*rotz(z)", "euler(zxz, x, y, z)",
+                           "rot([3/5, 0, 4/5], x*y)", "euler(\"xyz\", x, y, z)"}) {
     const Rotation r = std::get<Rotation>(n.value(text));
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j)
         EXPECT_LE(test::distance(test::value(dot(r[i], r[j]), at), Multi(i == j ? 1 : 0)), 1e-38) << text;
       // u' = w x u defines the angular velocity.
       const Vector rate = total_derivative(r[i]), turned = cross(r.rate, r[i]);
-      for (int k = 0; k < 3; ++k) EXPECT_LE(test::distance(test::value(rate[k], at), test::value(turned[k], at)), 1e-38) << text;
+      for (int k = 0; k < 3; ++k)
+        EXPECT_LE(test::distance(test::value(rate[k], at), test::value(turned[k], at)), 1e-38) << text;
       EXPECT_LE(test::distance(test::value(dot(r.rate, r[i]), at), test::value(r.own_rate[i], at)), 1e-38) << text;
     }
     const Vector z = cross(r[0], r[1]);
-    for (int k = 0; k < 3; ++k) EXPECT_LE(test::distance(test::value(z[k], at), test::value(r[2][k], at)), 1e-38) << "right-handed";
+    for (int k = 0; k < 3; ++k)
+      EXPECT_LE(test::distance(test::value(z[k], at), test::value(r[2][k], at)), 1e-38) << "right-handed";
   }
 }
 
@@ -166,9 +168,10 @@ std::string repeated(const std::string& s, int times) {
 
 TEST(Size, DeepNestingIsRefusedNotCrashed) {
   PlainNames n;
-  for (const std::string& bomb : {repeated("(", 100000) + "x" + repeated(")", 100000), repeated("-", 100000) + "x", repeated("+", 100000) + "x",
-                                  repeated("sin(", 100000) + "x" + repeated(")", 100000), "x" + repeated("^x", 100000), repeated("[", 100000),
-                                  "x" + repeated("'", 100000), "u" + repeated(".x", 100000), repeated("2^-", 100000) + "x"}) {
+  for (const std::string& bomb :
+       {repeated("(", 100000) + "x" + repeated(")", 100000), repeated("-", 100000) + "x", repeated("+", 100000) + "x",
+        repeated("sin(", 100000) + "x" + repeated(")", 100000), "x" + repeated("^x", 100000), repeated("[", 100000),
+        "x" + repeated("'", 100000), "u" + repeated(".x", 100000), repeated("2^-", 100000) + "x"}) {
     const Failure f = n.failure(bomb);
     EXPECT_NE(f.diagnostic.message, "no failure") << bomb.substr(0, 12);
     EXPECT_LE(f.diagnostic.message.size(), 200U);

@@ -1,7 +1,7 @@
 // The remainder by relations that may divide is the remainder by all of them.
-#include "expr/polynomial.h"
-
 #include <gtest/gtest.h>
+
+#include "expr/polynomial.h"
 
 namespace anholon {
 namespace {

@@ -1,7 +1,6 @@
-#include "expr/print.h"
-
 #include <gtest/gtest.h>
 
+#include "expr/print.h"
 #include "support/plain_names.h"
 #include "support/random_expr.h"
 
@@ -14,10 +13,26 @@ using test::PlainNames;
 TEST(RoundTrip, PrintedTextParsesToTheSameExpression) {
   PlainNames n;
   const SymbolNames names = test::plain_symbol_names();
-  const std::vector<Expr> atoms = {n.number("x"), n.number("y'"), n.number("z''"), n.number("D(x,5)"), n.number("a"), n.number("b"),
-                                   n.number("m"), n.number("t"), n.number("pi"), n.number("f"), n.number("f'"), n.g.multiplier(0, 0),
-                                   n.g.number(2), n.g.number(Rational(-3, 4)), sqrt(n.g.number(2)), pow(n.number("x"), {-3, 2}),
-                                   pow(n.g.number(Rational(2, 3)), {1, 3}), pow(n.number("y"), -2), -n.number("x"), n.number("x - y")};
+  const std::vector<Expr> atoms = {n.number("x"),
+                                   n.number("y'"),
+                                   n.number("z''"),
+                                   n.number("D(x,5)"),
+                                   n.number("a"),
+                                   n.number("b"),
+                                   n.number("m"),
+                                   n.number("t"),
+                                   n.number("pi"),
+                                   n.number("f"),
+                                   n.number("f'"),
+                                   n.g.multiplier(0, 0),
+                                   n.g.number(2),
+                                   n.g.number(Rational(-3, 4)),
+                                   sqrt(n.g.number(2)),
+                                   pow(n.number("x"), {-3, 2}),
+                                   pow(n.g.number(Rational(2, 3)), {1, 3}),
+                                   pow(n.number("y"), -2),
+                                   -n.number("x"),
+                                   n.number("x - y")};
   for (std::uint32_t k = 1; k <= 2000; ++k) {
     const Expr e = test::RandomExpr(n.g, k, atoms).make(1 + static_cast<int>(k % 4));
     const std::string text = print(e, names, Format::text);
@@ -43,9 +58,17 @@ TEST(RoundTrip, DefinedNamesStandForTheirExpressions) {
 TEST(Text, LooksAsAPersonWouldWriteIt) {
   PlainNames n;
   const SymbolNames names = test::plain_symbol_names();
-  const std::pair<const char*, const char*> samples[] = {
-      {"a*x''", "a*x''"}, {"x*a/b", "a*x/b"}, {"-x", "-x"}, {"x^2/2", "x^2/2"}, {"1/x", "1/x"}, {"sqrt(x)", "sqrt(x)"},
-      {"(x+y)^3", "(x + y)^3"}, {"sin(x)*cos(x)", "sin(x)*cos(x)"}, {"1/(a*b)", "1/(a*b)"}, {"D(x,4)", "D(x,4)"}, {"x - 3/4", "x - 3/4"}};
+  const std::pair<const char*, const char*> samples[] = {{"a*x''", "a*x''"},
+                                                         {"x*a/b", "a*x/b"},
+                                                         {"-x", "-x"},
+                                                         {"x^2/2", "x^2/2"},
+                                                         {"1/x", "1/x"},
+                                                         {"sqrt(x)", "sqrt(x)"},
+                                                         {"(x+y)^3", "(x + y)^3"},
+                                                         {"sin(x)*cos(x)", "sin(x)*cos(x)"},
+                                                         {"1/(a*b)", "1/(a*b)"},
+                                                         {"D(x,4)", "D(x,4)"},
+                                                         {"x - 3/4", "x - 3/4"}};
   for (const auto& [text, expected] : samples) EXPECT_EQ(print(n.number(text), names, Format::text), expected);
 }
 
@@ -84,10 +107,11 @@ TEST(Text, GivesTheMinusOfBracketsToTheirProduct) {
   PlainNames n;
   const SymbolNames names = test::plain_symbol_names();
   const std::pair<const char*, const char*> samples[] = {
-      {"a*(y'' - x'')", "a*(y'' - x'')"},        {"a - b*(-x''*y - z'')", "b*(y*x'' + z'') + a"}, {"-a*(-x'' - y)", "a*(x'' + y)"},
-      {"a*(-x'' - y)^2", "a*(x'' + y)^2"},       {"a/(-x'' - y)", "-a/(x'' + y)"},               {"-x + y", "y - x"},
-      {"(a + m)*x''", "(a + m)*x''"},            {"1/(1 + a*t)", "1/(1 + a*t)"},                 {"a/(b*(1 + t))", "a/(b*(1 + t))"},
-      {"-x''*sin(y) + y''*cos(y)", "y''*cos(y) - x''*sin(y)"}};
+      {"a*(y'' - x'')", "a*(y'' - x'')"}, {"a - b*(-x''*y - z'')", "b*(y*x'' + z'') + a"},
+      {"-a*(-x'' - y)", "a*(x'' + y)"},   {"a*(-x'' - y)^2", "a*(x'' + y)^2"},
+      {"a/(-x'' - y)", "-a/(x'' + y)"},   {"-x + y", "y - x"},
+      {"(a + m)*x''", "(a + m)*x''"},     {"1/(1 + a*t)", "1/(1 + a*t)"},
+      {"a/(b*(1 + t))", "a/(b*(1 + t))"}, {"-x''*sin(y) + y''*cos(y)", "y''*cos(y) - x''*sin(y)"}};
   for (const auto& [text, expected] : samples) EXPECT_EQ(print(n.number(text), names, Format::text), expected) << text;
 }
 
@@ -97,7 +121,8 @@ TEST(Mathml, Samples) {
   EXPECT_EQ(mathml_name("phi_a"), "<msub><mi>φ</mi><mi>a</mi></msub>");
   EXPECT_EQ(mathml_name("theta[3]"), "<msub><mi>θ</mi><mn>3</mn></msub>");
   EXPECT_EQ(mathml_name("x1[3]"), "<msub><mi>x</mi><mrow><mn>1</mn><mo>,</mo><mn>3</mn></mrow></msub>");
-  EXPECT_EQ(mathml_name("phi_a[1,2]"), "<msub><mi>φ</mi><mrow><mi>a</mi><mo>,</mo><mn>1</mn><mo>,</mo><mn>2</mn></mrow></msub>");
+  EXPECT_EQ(mathml_name("phi_a[1,2]"),
+            "<msub><mi>φ</mi><mrow><mi>a</mi><mo>,</mo><mn>1</mn><mo>,</mo><mn>2</mn></mrow></msub>");
   EXPECT_EQ(mathml_name("mass"), "<mi mathvariant=\"normal\">mass</mi>");
   EXPECT_EQ(mathml_name("a<b&c"), "<mi mathvariant=\"normal\">a&lt;b&amp;c</mi>");
   EXPECT_EQ(derivative_name("<mi>x</mi>", 2, Format::mathml), "<mover accent=\"true\"><mi>x</mi><mo>¨</mo></mover>");
@@ -108,8 +133,8 @@ TEST(Mathml, Samples) {
   EXPECT_EQ(mathml("a*y"), "<mi>a</mi><mo>&#x2062;</mo><mi>y</mi>");
   EXPECT_EQ(mathml("y - 3/4"), "<mi>y</mi><mo>−</mo><mfrac><mrow><mn>3</mn></mrow><mrow><mn>4</mn></mrow></mfrac>");
   EXPECT_EQ(mathml("sqrt(x)/b"), "<mfrac><mrow><msqrt><mi>θ</mi></msqrt></mrow><mrow><mi>b</mi></mrow></mfrac>");
-  EXPECT_EQ(mathml("sin(y)^2"),
-            "<msup><mrow><mi>sin</mi><mo>&#x2061;</mo><mrow><mo>(</mo><mi>y</mi><mo>)</mo></mrow></mrow><mrow><mn>2</mn></mrow></msup>");
+  EXPECT_EQ(mathml("sin(y)^2"), "<msup><mrow><mi>sin</mi><mo>&#x2061;</mo><mrow><mo>(</mo><mi>y</mi><mo>)</mo></mrow></"
+                                "mrow><mrow><mn>2</mn></mrow></msup>");
   EXPECT_EQ(mathml("sign(y)").substr(0, 12), "<mi>sgn</mi>");
 }
 
@@ -121,7 +146,8 @@ TEST(Latex, IsBalancedOnRandomExpressions) {
     for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
     return count;
   };
-  const std::vector<Expr> atoms = {n.number("x"), n.number("y'"), n.number("a"), n.g.number(Rational(-3, 4)), n.g.multiplier(0, 0)};
+  const std::vector<Expr> atoms = {n.number("x"), n.number("y'"), n.number("a"), n.g.number(Rational(-3, 4)),
+                                   n.g.multiplier(0, 0)};
   for (std::uint32_t k = 1; k <= 200; ++k) {
     const std::string text = print(test::RandomExpr(n.g, k, atoms).make(3), test::plain_symbol_names(), Format::latex);
     ASSERT_EQ(occurrences(text, "{"), occurrences(text, "}")) << text;

@@ -1,9 +1,9 @@
-// Tables against their definition: values at knots, derivatives by differences, the smoothness of each fit, monotone stays monotone.
-#include "expr/table.h"
-
+// Tables against their definition: values at knots, derivatives by differences, the smoothness of each fit, monotone
+// stays monotone.
 #include <gtest/gtest.h>
 
 #include "expr/diff.h"
+#include "expr/table.h"
 #include "support/value.h"
 
 namespace anholon {
@@ -34,7 +34,8 @@ struct Function {
 TEST(Tables, GoThroughTheirKnots) {
   for (Fit fit : {Fit::hold, Fit::linear, Fit::monotone, Fit::spline}) {
     const Function f(with(fit));
-    for (std::size_t k = 0; k < kTable.x.size(); ++k) EXPECT_NEAR(f(kTable.x[k].get_d()), kTable.y[k].get_d(), 1e-14) << smoothness(fit);
+    for (std::size_t k = 0; k < kTable.x.size(); ++k)
+      EXPECT_NEAR(f(kTable.x[k].get_d()), kTable.y[k].get_d(), 1e-14) << smoothness(fit);
   }
   EXPECT_EQ(Function(with(Fit::hold))(2.4), 2);
   EXPECT_EQ(Function(with(Fit::hold))(-1), 0);
@@ -46,7 +47,9 @@ TEST(Tables, HaveTheDerivativesOfDifferences) {
   for (Fit fit : {Fit::hold, Fit::linear, Fit::monotone, Fit::spline}) {
     const Function f(with(fit));
     for (double x : {-0.5, 0.3, 1.7, 2.7, 4.2, 6.0})
-      for (int k : {1, 2, 3}) EXPECT_NEAR(f(x, k), (f(x + kStep, k - 1) - f(x - kStep, k - 1)) / (2 * kStep), 1e-7) << smoothness(fit) << " " << x << " " << k;
+      for (int k : {1, 2, 3})
+        EXPECT_NEAR(f(x, k), (f(x + kStep, k - 1) - f(x - kStep, k - 1)) / (2 * kStep), 1e-7)
+            << smoothness(fit) << " " << x << " " << k;
   }
 }
 
@@ -56,7 +59,8 @@ TEST(Tables, AreAsSmoothAsTheirFitSays) {
     const Function f(with(fit));
     double jump[4] = {0, 0, 0, 0};
     for (std::size_t i = 1; i + 1 < kTable.x.size(); ++i)
-      for (int k = 0; k < 4; ++k) jump[k] = std::max(jump[k], std::abs(f(kTable.x[i].get_d() + kNear, k) - f(kTable.x[i].get_d() - kNear, k)));
+      for (int k = 0; k < 4; ++k)
+        jump[k] = std::max(jump[k], std::abs(f(kTable.x[i].get_d() + kNear, k) - f(kTable.x[i].get_d() - kNear, k)));
     for (int k = 0; k < 4; ++k) {
       if (k <= smoothness(fit)) {
         EXPECT_LT(jump[k], 1e-6) << "derivative " << k << " of fit " << smoothness(fit);
@@ -91,8 +95,10 @@ TEST(Tables, MonotoneStaysMonotone) {
 TEST(Tables, SayWhenTheyAreTooRough) {
   for (Fit fit : {Fit::hold, Fit::linear, Fit::monotone, Fit::spline}) {
     const Function f(with(fit));
-    for (int k = 0; k <= 4; ++k) EXPECT_EQ(too_rough(f.f, k).has_value(), k > smoothness(fit) + 1) << smoothness(fit) << " " << k;
-    EXPECT_EQ(too_rough(total_derivative(f.f), 1).has_value(), 2 > smoothness(fit) + 1 && fit != Fit::hold) << smoothness(fit);
+    for (int k = 0; k <= 4; ++k)
+      EXPECT_EQ(too_rough(f.f, k).has_value(), k > smoothness(fit) + 1) << smoothness(fit) << " " << k;
+    EXPECT_EQ(too_rough(total_derivative(f.f), 1).has_value(), 2 > smoothness(fit) + 1 && fit != Fit::hold)
+        << smoothness(fit);
   }
 }
 

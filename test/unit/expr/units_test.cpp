@@ -1,9 +1,8 @@
 // Units: exact factors, prefixes, and how a number with a unit is read.
-#include "expr/units.h"
-
 #include <gtest/gtest.h>
 
 #include "expr/formula.h"
+#include "expr/units.h"
 #include "support/plain_names.h"
 
 namespace anholon {
@@ -37,7 +36,8 @@ TEST(Units, AreExact) {
   EXPECT_EQ(read_unit("deg")->pi, 1);
   EXPECT_EQ(factor("deg"), Rational(1, 180));
   EXPECT_EQ(read_unit("rpm")->pi, 1);
-  for (const char* none : {"", "kmin", "kkg", "m/", "m^", "m^x", "foo", "m^21", "ktt", "1/s"}) EXPECT_FALSE(read_unit(none)) << none;
+  for (const char* none : {"", "kmin", "kkg", "m/", "m^", "m^x", "foo", "m^21", "ktt", "1/s"})
+    EXPECT_FALSE(read_unit(none)) << none;
 }
 
 // Every row is its own unit and no row is hidden by a prefix and another.

@@ -1,11 +1,10 @@
 // The first crossing of a polynomial against one that is looked for by brute force in many digits.
-#include "integrate/crossing.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <random>
 
+#include <gtest/gtest.h>
+
+#include "integrate/crossing.h"
 #include "numeric/multi.h"
 
 namespace anholon {
@@ -67,7 +66,8 @@ TEST(FirstBelow, AgreesWithBruteForce) {
       const PrecisionScope precision(40);
       const std::vector<Multi> wide(c.begin(), c.end());
       bool dips = false;
-      for (int k = 1; k <= 100'000 && !dips; ++k) dips = at(wide, Multi(Multi(*fast) + Multi(h) * Multi(k) / Multi(100'000'000))) < Multi(-kFloor);
+      for (int k = 1; k <= 100'000 && !dips; ++k)
+        dips = at(wide, Multi(Multi(*fast) + Multi(h) * Multi(k) / Multi(100'000'000))) < Multi(-kFloor);
       EXPECT_TRUE(dips) << "no dip behind " << *fast;
       continue;
     }

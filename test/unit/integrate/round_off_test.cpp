@@ -1,8 +1,8 @@
-// Errors of long motions grow as the root of their number of steps. Whole numbers by which a Taylor recurrence divides are the same at every step: were
-// their reciprocals rounded, errors would grow in proportion to the number of steps.
-#include <gtest/gtest.h>
-
+// Errors of long motions grow as the root of their number of steps. Whole numbers by which a Taylor recurrence divides
+// are the same at every step: were their reciprocals rounded, errors would grow in proportion to the number of steps.
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "integrate/taylor.h"
 #include "kernel/kernel.h"
@@ -17,14 +17,16 @@ using State = std::vector<long double>;  // x, x', y, y'
 // A particle of mass 1 in the plane.
 struct Conservative {
   const char *name, *potential;
-  State (*start)(long double);  // of one of many motions, 0..1
+  State (*start)(long double);                         // of one of many motions, 0..1
   long double (*value)(long double x, long double y);  // of the potential
-  double bound;  // of the error of one step
+  double bound;                                        // of the error of one step
 };
 
-// A function of each kind whose coefficients are divided by their order: powers, sines, functions by their derivative, angles.
+// A function of each kind whose coefficients are divided by their order: powers, sines, functions by their derivative,
+// angles.
 const Conservative kSystems[] = {
-    {"kepler", "-(x^2 + y^2)^(-1/2)", [](long double u) { return State{1 - u / 2, 0, 0, std::sqrt((1 + u / 2) / (1 - u / 2))}; },
+    {"kepler", "-(x^2 + y^2)^(-1/2)",
+     [](long double u) { return State{1 - u / 2, 0, 0, std::sqrt((1 + u / 2) / (1 - u / 2))}; },
      [](long double x, long double y) { return -1 / std::sqrt(x * x + y * y); }, 0.4},
     {"cube roots", "(1 + x^2 + 2*y^2)^(1/3)", [](long double u) { return State{1 + u, 0, 0.5L, 1}; },
      [](long double x, long double y) { return std::cbrt(1 + x * x + 2 * y * y); }, 0.07},
@@ -36,7 +38,9 @@ const Conservative kSystems[] = {
      [](long double x, long double y) { return (x * x + 2 * y * y) / 2 + std::pow(std::atan2(y, 4 + x), 2.0L); }, 0.4},
 };
 
-long double energy(const Conservative& system, const State& s) { return (s[1] * s[1] + s[3] * s[3]) / 2 + system.value(s[0], s[2]); }
+long double energy(const Conservative& system, const State& s) {
+  return (s[1] * s[1] + s[3] * s[3]) / 2 + system.value(s[0], s[2]);
+}
 
 struct Motion {
   std::shared_ptr<const Model> model;
@@ -46,7 +50,9 @@ struct Motion {
   std::shared_ptr<const Program> stepping;
 
   explicit Motion(const Conservative& c)
-      : model(test::model_of("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + y*ey\"}]\npotential.V = \"" + std::string(c.potential) + "\"\n")),
+      : model(test::model_of("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + "
+                             "y*ey\"}]\npotential.V = \"" +
+                             std::string(c.potential) + "\"\n")),
         m(mechanics(*model)), system(implicit_system(model, m, *find_formulation("routh"), {})) {
     const Outcome o = analyse(system, {}, {}, structure);
     if (!o.ok()) throw std::runtime_error(o.message);
@@ -54,7 +60,8 @@ struct Motion {
   }
 };
 
-// The root of the mean square of the changes of the energy over some motions of so many steps, in round-offs (2^-53) of what the energy is made of.
+// The root of the mean square of the changes of the energy over some motions of so many steps, in round-offs (2^-53) of
+// what the energy is made of.
 double change(const Conservative& c, std::size_t steps) {
   constexpr int kMotions = 6;
   const Motion motion(c);
@@ -64,7 +71,8 @@ double change(const Conservative& c, std::size_t steps) {
   for (int k = 0; k < kMotions; ++k) {
     const State start = c.start((static_cast<long double>(k) + 0.5L) / kMotions);
     Stepper<double> stepper(*motion.stepping, {}, {}, settings);
-    const auto plan = KernelPlan::make(motion.stepping, taylor_order(settings.log_tolerance) - 1, {}, 0, {start.begin(), start.end()});
+    const auto plan = KernelPlan::make(motion.stepping, taylor_order(settings.log_tolerance) - 1, {}, 0,
+                                       {start.begin(), start.end()});
     if (!plan) throw std::runtime_error("no kernel");
     stepper.accelerate(plan);
     if (const Outcome o = stepper.start(0, start); !o.ok()) throw std::runtime_error(o.message);
@@ -78,14 +86,16 @@ double change(const Conservative& c, std::size_t steps) {
 
 class RoundOff : public testing::TestWithParam<int> {};
 
-// Were reciprocals of whole numbers rounded, the errors would be 4 to 18 times the bounds, for the cube roots 1.6 times; they are a third of them.
+// Were reciprocals of whole numbers rounded, the errors would be 4 to 18 times the bounds, for the cube roots 1.6
+// times; they are a third of them.
 TEST_P(RoundOff, OfTheEnergyGrowsAsTheRootOfTheSteps) {
   const Conservative& c = kSystems[GetParam()];
   constexpr std::size_t kSteps = 16000;
   EXPECT_LT(change(c, kSteps), c.bound * std::sqrt(static_cast<double>(kSteps)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Functions, RoundOff, testing::Range(0, static_cast<int>(std::size(kSystems))), [](const auto& of) { return test::test_name(kSystems[of.param].name); });
+INSTANTIATE_TEST_SUITE_P(Functions, RoundOff, testing::Range(0, static_cast<int>(std::size(kSystems))),
+                         [](const auto& of) { return test::test_name(kSystems[of.param].name); });
 
 }  // namespace
 }  // namespace anholon

@@ -1,11 +1,11 @@
-// The coefficients against the order conditions: sum_i b_i Phi_i(t) = 1 / gamma(t) for every rooted tree t with up to 8 nodes
-// (Butcher; Hairer, Nørsett & Wanner 1993, II.2).
-#include <gtest/gtest.h>
-
+// The coefficients against the order conditions: sum_i b_i Phi_i(t) = 1 / gamma(t) for every rooted tree t with up to 8
+// nodes (Butcher; Hairer, Nørsett & Wanner 1993, II.2).
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "integrate/dormand_prince.h"
 

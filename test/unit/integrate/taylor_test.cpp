@@ -1,9 +1,8 @@
-#include "integrate/taylor.h"
+#include <numbers>
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "integrate/taylor.h"
 #include "kernel/kernel.h"
 #include "structure/consistent.h"
 #include "support/models.h"
@@ -46,8 +45,9 @@ struct Motion {
 };
 
 std::string line(const std::string& force, const std::string& initial) {
-  return "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"(" + force +
-         ")*ex\"\n[initial]\n" + initial;
+  return "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = "
+         "\"f\"\non = \"p\"\nvector = \"(" +
+         force + ")*ex\"\n[initial]\n" + initial;
 }
 
 template <class N>
@@ -127,8 +127,8 @@ TEST(Stepper, KeepsItsToleranceOnAPendulumOfKnownEnergy) {
   }
 }
 
-// x'' = 0, x' = 1/3: after 10^5 steps the position is the exact one to a round-off. Plain summation misses by many. In long
-// double, where the state is kept in the type of the coefficients.
+// x'' = 0, x' = 1/3: after 10^5 steps the position is the exact one to a round-off. Plain summation misses by many. In
+// long double, where the state is kept in the type of the coefficients.
 TEST(Stepper, CompensatedSumsDoNotGatherRoundOffs) {
   const int steps = 100000;
   const Motion motion(line("0", "x = 0\n\"x'\" = \"1/3\"\n"));
@@ -142,14 +142,17 @@ TEST(Stepper, CompensatedSumsDoNotGatherRoundOffs) {
     before = t;
   }
   const PrecisionScope precision(40);
-  const long double exact = (Multi(before) * Multi(1.0L / 3)).to_long_double(), ulp = std::nextafter(exact, 1e9L) - exact;
+  const long double exact = (Multi(before) * Multi(1.0L / 3)).to_long_double(),
+                    ulp = std::nextafter(exact, 1e9L) - exact;
   EXPECT_LE(std::abs(state_at(motion, s, before)[0] - exact), 2 * ulp);
   EXPECT_GT(std::abs(plain - exact), 10 * ulp) << "the mutant";
 }
 
-const char* const kModels[] = {"zoo/chaplygin-sleigh", "zoo/fourbar", "zoo/rolling-coin", "papers/luo-zhao-example-2-plane-frame"};
+const char* const kModels[] = {"zoo/chaplygin-sleigh", "zoo/fourbar", "zoo/rolling-coin",
+                               "papers/luo-zhao-example-2-plane-frame"};
 
-// d = 2 for coordinates and 0 for multipliers in these models: the state of the expansion is (q, q') one after the other.
+// d = 2 for coordinates and 0 for multipliers in these models: the state of the expansion is (q, q') one after the
+// other.
 TEST(Stepper, DenseOutputIsTheMotionThere) {
   for (const char* name : kModels) {
     const Motion motion(test::shipped_text(name));
@@ -202,13 +205,16 @@ TEST(Stepper, ConstraintsHoldToRoundOffAlongTheWay) {
   EXPECT_LE(s.point().constraint_residual(), 1e-17L) << "a few round-offs of the wider numbers";
 }
 
-// ---- by a kernel ------------------------------------------------------------------------------------------------------------
+// ---- by a kernel
+// ------------------------------------------------------------------------------------------------------------
 
 // Where a kernel makes all expansions that it can.
 struct Accelerated {
   explicit Accelerated(const Motion& motion, int order = 0)
-      : start(motion.start<long double>()), steps(motion.stepping, motion.parameters_in<double>(), motion.parameters_in<long double>(), settings(order)) {
-    steps.accelerate(KernelPlan::make(std::make_shared<const Program>(motion.stepping), steps.order() - 1, motion.parameters_in<long double>(), 0, {start.begin(), start.end()}));
+      : start(motion.start<long double>()),
+        steps(motion.stepping, motion.parameters_in<double>(), motion.parameters_in<long double>(), settings(order)) {
+    steps.accelerate(KernelPlan::make(std::make_shared<const Program>(motion.stepping), steps.order() - 1,
+                                      motion.parameters_in<long double>(), 0, {start.begin(), start.end()}));
   }
   static StepSettings settings(int order) {
     StepSettings s;
@@ -227,8 +233,10 @@ struct Accelerated {
 
 // x = -cos t; (x + away) y' = 0 loses its hold where x + away = 0, and no multiplier has a pole there.
 std::string loses_hold(const std::string& away) {
-  return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"-x*ex\"\n"
-         "[[constraint]]\nname = \"hold\"\nequation = \"(x + " + away + ")*y' = 0\"\n[initial]\nx = -1\ny = 0\n\"x'\" = 0\n\"y'\" = 0\n";
+  return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + "
+         "y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"-x*ex\"\n"
+         "[[constraint]]\nname = \"hold\"\nequation = \"(x + " +
+         away + ")*y' = 0\"\n[initial]\nx = -1\ny = 0\n\"x'\" = 0\n\"y'\" = 0\n";
 }
 
 TEST(ByKernel, ASingularPointWithinAStepIsSeen) {
@@ -260,7 +268,8 @@ TEST(ByKernel, PivotsMayChangeTheirSigns) {
   ASSERT_TRUE(a.go(6).ok());
   EXPECT_GE(a.steps.expansions_by_kernel() + 1, a.steps.expansions());
   const State by_reference = moved(motion, 0, a.start, 6), by_kernel = state_at(motion, a.steps, 6.0L);
-  for (std::size_t i = 0; i < by_kernel.size(); ++i) EXPECT_NEAR(static_cast<double>(by_kernel[i]), static_cast<double>(by_reference[i]), 1e-10) << i;
+  for (std::size_t i = 0; i < by_kernel.size(); ++i)
+    EXPECT_NEAR(static_cast<double>(by_kernel[i]), static_cast<double>(by_reference[i]), 1e-10) << i;
 }
 
 TEST(ByKernel, AStepperStartsAnewWithoutATrace) {
@@ -276,9 +285,11 @@ TEST(ByKernel, AStepperStartsAnewWithoutATrace) {
   }
 }
 
-// ---- what cannot be integrated has a name -----------------------------------------------------------------------------------
+// ---- what cannot be integrated has a name
+// -----------------------------------------------------------------------------------
 
-Outcome fate(const Motion& motion, double end, double& reached, std::size_t most_steps = 20000, bool cancelled = false) {
+Outcome fate(const Motion& motion, double end, double& reached, std::size_t most_steps = 20000,
+             bool cancelled = false) {
   StepSettings settings;
   settings.most_steps = most_steps;
   settings.cancelled = [=] { return cancelled; };
@@ -368,12 +379,14 @@ TEST(Outcome, ExponentialGrowthIsABlowUp) {
   EXPECT_NEAR(reached, 230.26, 3);  // exp(t) = 1e100
 }
 
-// A weight thrown upward reaches the apex z' = 0, where the constraint says nothing, after t = z'(0)(1 + k^2)/g = 0.2469.
+// A weight thrown upward reaches the apex z' = 0, where the constraint says nothing, after t = z'(0)(1 + k^2)/g =
+// 0.2469.
 TEST(Outcome, TheApexOfTheAppellHamelMachine) {
   std::string text = test::replaced(test::shipped_text("zoo/appell-hamel"), "\"-sqrt(5)/3\"", "\"sqrt(5)/3\"");
   double reached = 0;
   const Outcome o = fate(Motion(text), 2, reached);
-  EXPECT_TRUE(o.kind == OutcomeKind::singular || o.kind == OutcomeKind::step_collapse) << name(o.kind) << ": " << o.message << " at " << reached;
+  EXPECT_TRUE(o.kind == OutcomeKind::singular || o.kind == OutcomeKind::step_collapse)
+      << name(o.kind) << ": " << o.message << " at " << reached;
   EXPECT_NEAR(reached, std::sqrt(5.0) / 3 * 3.25 / 9.81, 1e-6);
 }
 
@@ -394,8 +407,9 @@ TEST(Outcome, StepsCanBeLimitedAndCancelled) {
 
 TEST(Outcome, EveryKindHasANameOfItsOwn) {
   std::vector<std::string> names;
-  for (OutcomeKind k : {OutcomeKind::finished, OutcomeKind::singular, OutcomeKind::step_collapse, OutcomeKind::blow_up, OutcomeKind::not_a_number,
-                        OutcomeKind::no_convergence, OutcomeKind::inconsistent, OutcomeKind::interrupted, OutcomeKind::negative_mass, OutcomeKind::too_large})
+  for (OutcomeKind k : {OutcomeKind::finished, OutcomeKind::singular, OutcomeKind::step_collapse, OutcomeKind::blow_up,
+                        OutcomeKind::not_a_number, OutcomeKind::no_convergence, OutcomeKind::inconsistent,
+                        OutcomeKind::interrupted, OutcomeKind::negative_mass, OutcomeKind::too_large})
     names.push_back(name(k));
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::unique(names.begin(), names.end()), names.end());

@@ -43,10 +43,15 @@ TEST(Conserved, NotWhereTheForceTurnsTheMutantAway) {
   EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "k/2*(x^2 + y^2)", "sin(t)*x"))), Names{"momentum of y"});
   // A mass that varies: what leaves takes its momentum with it. At rest where it joins, it brings none.
   EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"", "mass = \"m + t\""))), Names{});
-  EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"", "mass = \"m + t\"\nexpelled_velocity = \"-vel(P.center)\""))).size(), 1U);
+  EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"",
+                                                   "mass = \"m + t\"\nexpelled_velocity = \"-vel(P.center)\"")))
+                .size(),
+            1U);
   // A constraint that rolls in time does work; one that touches both coordinates keeps the energy alone.
-  EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"drive\"\nequation = \"y' = x + t\"\n")), Names{});
-  EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"blade\"\nequation = \"y' = x*x'\"\n")), Names{"energy"});
+  EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"drive\"\nequation = \"y' = x + t\"\n")),
+            Names{});
+  EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"blade\"\nequation = \"y' = x*x'\"\n")),
+            Names{"energy"});
 }
 
 TEST(Conserved, AConstraintOnACyclicCoordinateEndsItsMomentum) {
@@ -62,10 +67,15 @@ center = ["x", "y", "0"]
 angle = "th"
 )toml";
   const Names all = names_of(test::model_of(free));
-  for (const char* name : {"energy", "momentum of x", "momentum of y", "momentum of th"}) EXPECT_NE(std::find(all.begin(), all.end(), name), all.end()) << name;
-  EXPECT_EQ(names_of(test::model_of(free + "[[constraint]]\nname = \"blade\"\nequation = \"y'*cos(th) = x'*sin(th)\"\n")), (Names{"energy", "momentum of th"}));
+  for (const char* name : {"energy", "momentum of x", "momentum of y", "momentum of th"})
+    EXPECT_NE(std::find(all.begin(), all.end(), name), all.end()) << name;
+  EXPECT_EQ(
+      names_of(test::model_of(free + "[[constraint]]\nname = \"blade\"\nequation = \"y'*cos(th) = x'*sin(th)\"\n")),
+      (Names{"energy", "momentum of th"}));
   // The blade away from the mass centre: the plane may turn as a whole, but the blade does not let it.
-  EXPECT_EQ(names_of(test::model_of(free + "[[constraint]]\nname = \"blade\"\nequation = \"y'*cos(th) = x'*sin(th) + th'\"\n")), Names{"energy"});
+  EXPECT_EQ(names_of(test::model_of(
+                free + "[[constraint]]\nname = \"blade\"\nequation = \"y'*cos(th) = x'*sin(th) + th'\"\n")),
+            Names{"energy"});
 }
 
 TEST(Conserved, TwoBodiesKeepWhatTheyShare) {
@@ -86,7 +96,8 @@ position = ["x2", "0", "0"]
 spring = "k/2*(x1 - x2)^2"
 )toml";
   EXPECT_EQ(names_of(test::model_of(two)), (Names{"energy", "momentum along d/dx1 + d/dx2"}));
-  EXPECT_EQ(names_of(test::model_of(test::replaced(two, "(x1 - x2)^2", "(x1 - 2*x2)^2"))), (Names{"energy", "momentum along d/dx1 + 1/2*d/dx2"}));
+  EXPECT_EQ(names_of(test::model_of(test::replaced(two, "(x1 - x2)^2", "(x1 - 2*x2)^2"))),
+            (Names{"energy", "momentum along d/dx1 + 1/2*d/dx2"}));
   EXPECT_EQ(names_of(test::model_of(two + "[[force]]\non = \"A\"\nvector = [\"x1*x2\", \"0\", \"0\"]\n")), Names{});
 }
 
@@ -107,8 +118,10 @@ field = "-mu/norm(here)^3*here"
   const Names newton = names_of(test::model_of(fall));
   ASSERT_EQ(newton.size(), 4U) << "energy and three angular momenta";
   EXPECT_EQ(newton[0], "energy");
-  EXPECT_EQ(names_of(test::model_of(test::replaced(fall, "norm(here)^3", "norm(here)^4"))).size(), 3U) << "no potential of that power is tried";
-  // Seen from a turning frame: the Jacobi integral, and the angular momentum about its axis; with omega(t) the latter alone.
+  EXPECT_EQ(names_of(test::model_of(test::replaced(fall, "norm(here)^3", "norm(here)^4"))).size(), 3U)
+      << "no potential of that power is tried";
+  // Seen from a turning frame: the Jacobi integral, and the angular momentum about its axis; with omega(t) the latter
+  // alone.
   const Names turning = names_of(test::model_of(fall + "[observer]\nspin = \"w*ez\"\n"));
   ASSERT_EQ(turning.size(), 2U);
   EXPECT_EQ(turning[0], "Jacobi integral");
@@ -154,7 +167,8 @@ TEST_P(OfShipped, HasAnEnergyOnlyWhereThePowerIdentitySaysSo) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, OfShipped, testing::ValuesIn(test::shipped_models()), [](const auto& p) { return test::test_name(p.param); });
+INSTANTIATE_TEST_SUITE_P(Models, OfShipped, testing::ValuesIn(test::shipped_models()),
+                         [](const auto& p) { return test::test_name(p.param); });
 
 }  // namespace
 }  // namespace anholon

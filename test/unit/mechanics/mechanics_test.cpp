@@ -1,9 +1,9 @@
-// A rigid body is the same as its particles: T, S and every generalized force of a body given by mass and inertia against
-// the particles that make it up, at random points of the jet space, with a tumbling and shaking observer and guides that move.
-#include "mechanics/mechanics.h"
-
+// A rigid body is the same as its particles: T, S and every generalized force of a body given by mass and inertia
+// against the particles that make it up, at random points of the jet space, with a tumbling and shaking observer and
+// guides that move.
 #include <gtest/gtest.h>
 
+#include "mechanics/mechanics.h"
 #include "support/model_point.h"
 #include "support/models.h"
 
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kRounding = 1e-33;  // 40 digits, hundreds of operations
 
-// A body of four particles, of masses 1/2, 1, 3/2, 2 at (1, 0, 0), (0, 1, 1/2), (-1, 1/3, 0), (0, 0, -1) of a turned frame; all
-// its products of inertia are different from zero.
+// A body of four particles, of masses 1/2, 1, 3/2, 2 at (1, 0, 0), (0, 1, 1/2), (-1, 1/3, 0), (0, 0, -1) of a turned
+// frame; all its products of inertia are different from zero.
 const int kParticles = 4;
 const Rational kMass[] = {Rational(1, 2), 1, Rational(3, 2), 2};
 const Rational kPlace[][3] = {{1, 0, 0}, {0, 1, Rational(1, 2)}, {-1, Rational(1, 3), 0}, {0, 0, -1}};
@@ -37,8 +37,9 @@ std::string text(const Rational& r) { return r.get_str(); }
 std::string particles() {
   std::string out = kHead;
   for (int i = 0; i < kParticles; ++i)
-    out += "[[particle]]\nname = \"p" + std::to_string(i) + "\"\nmass = \"" + text(kMass[i]) + "\"\nposition = \"O + stone(" + text(kPlace[i][0]) + ", " +
-           text(kPlace[i][1]) + ", " + text(kPlace[i][2]) + ")\"\n";
+    out += "[[particle]]\nname = \"p" + std::to_string(i) + "\"\nmass = \"" + text(kMass[i]) +
+           "\"\nposition = \"O + stone(" + text(kPlace[i][0]) + ", " + text(kPlace[i][1]) + ", " + text(kPlace[i][2]) +
+           ")\"\n";
   return out;
 }
 
@@ -56,15 +57,17 @@ Moments moments() {
   for (int k = 0; k < 3; ++k)
     for (int l = 0; l < 3; ++l) {
       m.second[k][l] = 0;
-      for (int i = 0; i < kParticles; ++i) m.second[k][l] += kMass[i] * (kPlace[i][k] - m.center[k]) * (kPlace[i][l] - m.center[l]);
+      for (int i = 0; i < kParticles; ++i)
+        m.second[k][l] += kMass[i] * (kPlace[i][k] - m.center[k]) * (kPlace[i][l] - m.center[l]);
     }
   return m;
 }
 
 std::string body(const std::string& inertia_or_axes) {
   const Moments m = moments();
-  return kHead + "[[body]]\nname = \"stone\"\nmass = \"" + text(m.mass) + "\"\ncenter = \"O + stone(" + text(m.center[0]) + ", " + text(m.center[1]) + ", " +
-         text(m.center[2]) + ")\"\norientation = \"stone\"\n" + inertia_or_axes;
+  return kHead + "[[body]]\nname = \"stone\"\nmass = \"" + text(m.mass) + "\"\ncenter = \"O + stone(" +
+         text(m.center[0]) + ", " + text(m.center[1]) + ", " + text(m.center[2]) + ")\"\norientation = \"stone\"\n" +
+         inertia_or_axes;
 }
 
 std::string matrix(const Rational& mistake) {
@@ -93,7 +96,8 @@ std::string axes() {
   for (int p = 0; p < 3; ++p) {
     Rational v[3];
     for (int k = 0; k < 3; ++k) v[k] = e[k][p] / e[p][p];
-    list += std::string(p ? ", " : "") + "{weight = \"" + text(e[p][p]) + "\", vector = \"stone(" + text(v[0]) + ", " + text(v[1]) + ", " + text(v[2]) + ")\"}";
+    list += std::string(p ? ", " : "") + "{weight = \"" + text(e[p][p]) + "\", vector = \"stone(" + text(v[0]) + ", " +
+            text(v[1]) + ", " + text(v[2]) + ")\"}";
     const Rational pivot = e[p][p];
     for (int k = 0; k < 3; ++k)
       for (int l = 0; l < 3; ++l) e[k][l] -= pivot * v[k] * v[l];
@@ -106,7 +110,8 @@ std::vector<Multi> quantities(const std::string& model_text, std::uint64_t seed)
   const auto model = test::model_of(model_text);
   const Mechanics m = mechanics(*model);
   Column all = {m.T, m.S, m.V_O, m.V_omega, power(m).h, power(m).dh_dt};
-  for (const Column* c : {&m.Q, &m.Qomega, &m.minus_dVO, &m.minus_dVomega, &m.Gamma}) all.insert(all.end(), c->begin(), c->end());
+  for (const Column* c : {&m.Q, &m.Qomega, &m.minus_dVO, &m.minus_dVomega, &m.Gamma})
+    all.insert(all.end(), c->begin(), c->end());
   const Column e = newton_left_side(m);
   all.insert(all.end(), e.begin(), e.end());
   for (const Column& row : mass_matrix(m)) all.insert(all.end(), row.begin(), row.end());
@@ -136,28 +141,36 @@ TEST_F(BodyGiven, ByAxesIsTheSame) { EXPECT_LE(gap(body(axes()), body(matrix(0))
 
 TEST_F(BodyGiven, ThreeMomentsAreTheDiagonalMatrix) {
   EXPECT_LE(gap(body("inertia = [2, 3, 4]\n"), body("inertia = [[2, 0, 0], [0, 3, 0], [0, 0, 4]]\n")), kRounding);
-  EXPECT_LE(gap(body("inertia = [2, 3, 4]\n"), body("axes = [{weight = \"5/2\", vector = \"stone.x\"}, {weight = \"3/2\", vector = \"stone.y\"}, "
-                                                    "{weight = \"1/2\", vector = \"stone.z\"}]\n")),
+  EXPECT_LE(gap(body("inertia = [2, 3, 4]\n"),
+                body("axes = [{weight = \"5/2\", vector = \"stone.x\"}, {weight = \"3/2\", vector = \"stone.y\"}, "
+                     "{weight = \"1/2\", vector = \"stone.z\"}]\n")),
             kRounding);
   EXPECT_GT(gap(body("inertia = [2, 3, 4]\n"), body("inertia = [3, 2, 4]\n")), 1e-3);
 }
 
 TEST_F(BodyGiven, InThePlaneOneNumberIsTheMomentAboutTheNormal) {
   const auto plane = [](const std::string& inertia) {
-    return "coordinates = [\"x\", \"y\", \"th\"]\n[observer]\nspin = \"t*ez\"\norigin_acceleration = [\"1\", \"t\", \"0\"]\n[[body]]\nname = \"b\"\nmass = 2\ncenter = "
-           "\"x*ex + y*ey\"\nangle = \"th\"\n" + inertia;
+    return "coordinates = [\"x\", \"y\", \"th\"]\n[observer]\nspin = \"t*ez\"\norigin_acceleration = [\"1\", \"t\", "
+           "\"0\"]\n[[body]]\nname = \"b\"\nmass = 2\ncenter = "
+           "\"x*ex + y*ey\"\nangle = \"th\"\n" +
+           inertia;
   };
   EXPECT_LE(gap(plane("inertia = 3\n"), plane("inertia = [\"3/2\", \"3/2\", 3]\n")), kRounding);
   EXPECT_LE(gap(plane("inertia = 3\n"), plane("inertia = [1, 2, 3]\n")), kRounding) << "a lamina: only the sum matters";
   EXPECT_GT(gap(plane("inertia = 3\n"), plane("inertia = 2\n")), 1e-3);
 }
 
-// ---- generalized forces against their definitions, with derivatives by differences -----------------------------------------
+// ---- generalized forces against their definitions, with derivatives by differences
+// -----------------------------------------
 
 using V3 = std::vector<Multi>;
-V3 cross3(const V3& a, const V3& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+V3 cross3(const V3& a, const V3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 Multi dot3(const V3& a, const V3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-V3 difference3(const V3& a, const V3& b, const Multi& h) { return {(a[0] - b[0]) / h, (a[1] - b[1]) / h, (a[2] - b[2]) / h}; }
+V3 difference3(const V3& a, const V3& b, const Multi& h) {
+  return {(a[0] - b[0]) / h, (a[1] - b[1]) / h, (a[2] - b[2]) / h};
+}
 
 const std::string kSwarm = kHead + R"toml([define]
 mass1 = "2*exp(-t/4)*(1 + x^2/5) + ps'^2/10"
@@ -185,9 +198,12 @@ TEST(GeneralizedForces, AreTheirDefinitions) {
   Graph& g = *model->graph;
   const test::Point at = test::random_point(*model, 5);
   const auto put = [&](const Column& c) { return test::values(put_masses(*model, c), at); };
-  const auto three = [](const Vector& v, const test::Point& p) { return test::values(std::vector<Expr>{v.x, v.y, v.z}, p); };
+  const auto three = [](const Vector& v, const test::Point& p) {
+    return test::values(std::vector<Expr>{v.x, v.y, v.z}, p);
+  };
   const V3 omega = three(model->observer.spin, at), a0 = three(model->observer.origin_acceleration, at);
-  const V3 omega_dot = difference3(three(model->observer.spin, test::moved(*model, at, h, 2)), three(model->observer.spin, test::moved(*model, at, -h, 2)), two_h);
+  const V3 omega_dot = difference3(three(model->observer.spin, test::moved(*model, at, h, 2)),
+                                   three(model->observer.spin, test::moved(*model, at, -h, 2)), two_h);
   std::vector<V3> expected(7, V3(m.q.size(), Multi(0)));
   Multi V_omega(0);
   for (const Body& b : model->bodies) {
@@ -197,7 +213,8 @@ TEST(GeneralizedForces, AreTheirDefinitions) {
     const V3 rho = place(at), v = difference3(place(later), place(earlier), two_h);
     const Multi mu = mass(at), mdot = (mass(later) - mass(earlier)) / two_h;
     V3 acceleration(3, Multi(0));
-    for (std::size_t i = 0; i < 3; ++i) acceleration[i] = (place(later)[i] + place(earlier)[i] - Multi(2) * rho[i]) / (h * h);
+    for (std::size_t i = 0; i < 3; ++i)
+      acceleration[i] = (place(later)[i] + place(earlier)[i] - Multi(2) * rho[i]) / (h * h);
     const V3 turned = cross3(omega, rho);
     V_omega -= mu * dot3(turned, turned) / Multi(2);
     V3 force = three(b.gravity, at);
@@ -222,8 +239,13 @@ TEST(GeneralizedForces, AreTheirDefinitions) {
     }
   }
   const std::vector<std::pair<const char*, std::vector<Multi>>> found = {
-      {"Q", put(m.Q)}, {"QR", put(m.QR)}, {"Qomega", put(m.Qomega)}, {"minus_dVO", put(m.minus_dVO)},
-      {"minus_dVomega", put(m.minus_dVomega)}, {"Gamma", put(m.Gamma)}, {"newton_left_side", test::values(newton_left_side(m), at)}};
+      {"Q", put(m.Q)},
+      {"QR", put(m.QR)},
+      {"Qomega", put(m.Qomega)},
+      {"minus_dVO", put(m.minus_dVO)},
+      {"minus_dVomega", put(m.minus_dVomega)},
+      {"Gamma", put(m.Gamma)},
+      {"newton_left_side", test::values(newton_left_side(m), at)}};
   for (std::size_t f = 0; f < found.size(); ++f)
     for (std::size_t k = 0; k < m.q.size(); ++k) {
       const double rounding = f == 6 ? 1e-28 : tolerance;  // second differences cancel 40 of 80 digits
@@ -239,9 +261,11 @@ TEST(GeneralizedForces, AreTheirDefinitions) {
 TEST(GeneralizedForces, ATorqueDoesItsWorkThroughTheAngularVelocity) {
   const PrecisionScope precision(40);
   const std::string stone = body("inertia = [2, 3, 4]\n");
-  const auto torque = test::model_of(stone + "[[force]]\nname = \"tau\"\non = \"stone\"\ntorque = [\"1\", \"x\", \"t\"]\n");
-  const auto couple = test::model_of(stone + "[[force]]\nname = \"up\"\non = {body = \"stone\", at = [1, 0, 0]}\nvector = \"3*stone.y\"\n" +
-                                     "[[force]]\nname = \"down\"\non = {body = \"stone\", at = [0, 0, 0]}\nvector = \"-3*stone.y\"\n");
+  const auto torque =
+      test::model_of(stone + "[[force]]\nname = \"tau\"\non = \"stone\"\ntorque = [\"1\", \"x\", \"t\"]\n");
+  const auto couple = test::model_of(
+      stone + "[[force]]\nname = \"up\"\non = {body = \"stone\", at = [1, 0, 0]}\nvector = \"3*stone.y\"\n" +
+      "[[force]]\nname = \"down\"\non = {body = \"stone\", at = [0, 0, 0]}\nvector = \"-3*stone.y\"\n");
   const auto as_torque = test::model_of(stone + "[[force]]\nname = \"tau\"\non = \"stone\"\ntorque = \"3*stone.z\"\n");
   const auto Q = [](const Model& m) { return test::values(mechanics(m).Q, test::random_point(m, 4)); };
   const std::vector<Multi> a = Q(*couple), b = Q(*as_torque), c = Q(*torque);
@@ -255,7 +279,8 @@ TEST(GeneralizedForces, ATorqueDoesItsWorkThroughTheAngularVelocity) {
 
 TEST(GeneralizedForces, ATensionPullsBothEndsTogether) {
   const PrecisionScope precision(40);
-  const std::string two = "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"a\"\nmass = 1\nposition = \"x*ex\"\n[[particle]]\nname = \"b\"\nmass = 1\nposition = \"y*ex + 3*ey\"\n";
+  const std::string two = "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"a\"\nmass = 1\nposition = "
+                          "\"x*ex\"\n[[particle]]\nname = \"b\"\nmass = 1\nposition = \"y*ex + 3*ey\"\n";
   const auto pull = test::model_of(two + "[[force]]\nname = \"s\"\non = \"a\"\nfrom = \"b\"\ntension = 5\n");
   Graph& g = *pull->graph;
   test::Point p(1);
@@ -265,18 +290,21 @@ TEST(GeneralizedForces, ATensionPullsBothEndsTogether) {
   EXPECT_LE(test::distance(Q[1], Multi(-4)), kRounding);
 }
 
-// dh/dt at jets off the motion differs from the power by q'.(E - G): the rheonomic, variable-mass swarm in a moving frame.
+// dh/dt at jets off the motion differs from the power by q'.(E - G): the rheonomic, variable-mass swarm in a moving
+// frame.
 TEST(Power, IsTheRateOfTheEnergy) {
   const PrecisionScope precision(40);
   const auto model = test::model_of(kSwarm);
   const Mechanics m = mechanics(*model);
   const Power p = power(m);
-  const Column miss = newton_left_side(m) - put_masses(*model, m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma);
+  const Column miss =
+      newton_left_side(m) - put_masses(*model, m.Q + m.QR + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma);
   Expr virtual_power = m.graph().zero();
   for (std::size_t a = 0; a < miss.size(); ++a) virtual_power += m.qd[a] * miss[a];
   const test::Point at = test::random_point(*model, 9);
   EXPECT_LE(test::distance(test::value(p.dh_dt, at), test::value(p.noncons + virtual_power, at)), kRounding);
-  EXPECT_GT(test::distance(test::value(p.dh_dt, at), test::value(p.noncons, at)), 1e-3) << "off the motion both must differ";
+  EXPECT_GT(test::distance(test::value(p.dh_dt, at), test::value(p.noncons, at)), 1e-3)
+      << "off the motion both must differ";
 }
 
 }  // namespace

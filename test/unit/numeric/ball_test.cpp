@@ -1,11 +1,10 @@
-#include "numeric/ball.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <map>
 #include <string>
 
+#include <gtest/gtest.h>
+
+#include "numeric/ball.h"
 #include "numeric/number.h"
 
 namespace anholon {
@@ -27,8 +26,8 @@ double middle(const Ball& b) { return b.midpoint_multi().to_double(); }
 
 TEST(Ball, HoldsTheFunctionsOfElementaryDefAndTheRoot) {
   std::size_t rows = 0;
-#define ROW(name, derivative, parity, latex, domain) \
-  ++rows;                                            \
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
+  ++rows;                                                                                                              \
   EXPECT_TRUE(functions().contains(#name) || std::string(#name) == "sign") << #name;
 #include "expr/elementary.def"
 #undef ROW
@@ -160,7 +159,8 @@ TEST(Ball, HasAMaximumOnlyOfWhatIsKnown) {
 
 TEST(Ball, HasAHullAndALowerEnd) {
   const Ball h = hull(Ball(Rational(1), Rational(1, 2)), Ball(Rational(-3), Rational(1, 4)));
-  EXPECT_TRUE(h.contains(Rational(3, 2)) && h.contains(Rational(-13, 4)) && !h.contains(Rational(2)) && !h.contains(Rational(-4)));
+  EXPECT_TRUE(h.contains(Rational(3, 2)) && h.contains(Rational(-13, 4)) && !h.contains(Rational(2)) &&
+              !h.contains(Rational(-4)));
   EXPECT_FALSE(hull(Ball(1), Ball::unknown()).is_finite() || lower_end(Ball::unknown()).is_finite());
   // The largest of 1 and a wide ball is written as one that reaches below 1: its lower end stays beside it.
   const Ball end = lower_end(Ball(Rational(5), Rational(4)));

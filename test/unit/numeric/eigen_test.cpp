@@ -1,6 +1,6 @@
-#include "numeric/eigen.h"
-
 #include <gtest/gtest.h>
+
+#include "numeric/eigen.h"
 
 namespace anholon {
 namespace {
@@ -14,7 +14,9 @@ Matrix<Multi> matrix(std::size_t n, const std::vector<int>& entries) {
   return a;
 }
 
-double distance(const Eigenvalue& e, const Multi& re, const Multi& im) { return to_double(modulus({e.value.re - re, e.value.im - im})); }
+double distance(const Eigenvalue& e, const Multi& re, const Multi& im) {
+  return to_double(modulus({e.value.re - re, e.value.im - im}));
+}
 
 TEST(Eigenvalues, DistinctOnesInOrder) {
   const PrecisionScope scope(kDigits);
@@ -37,7 +39,8 @@ TEST(Eigenvalues, VectorsBelongToThem) {
   for (const Eigenvalue& e : list) {
     Multi largest(0);
     for (std::size_t i = 0; i < 4; ++i) {
-      Multi re = -(e.value.re * e.vector[i].re - e.value.im * e.vector[i].im), im = -(e.value.re * e.vector[i].im + e.value.im * e.vector[i].re);
+      Multi re = -(e.value.re * e.vector[i].re - e.value.im * e.vector[i].im),
+            im = -(e.value.re * e.vector[i].im + e.value.im * e.vector[i].re);
       for (std::size_t j = 0; j < 4; ++j) re += a(i, j) * e.vector[j].re, im += a(i, j) * e.vector[j].im;
       EXPECT_LT(to_double(modulus({re, im})), kExact);
       largest = std::max(largest, modulus(e.vector[i]));
@@ -84,7 +87,8 @@ TEST(Eigenvalues, NearIsNotEqual) {
 TEST(Eigenvalues, PureFrequenciesHaveNoRealPart) {
   const PrecisionScope scope(kDigits);
   std::vector<Eigenvalue> e;
-  ASSERT_TRUE(eigenvalues(matrix(4, {0, 0, 1, 0, 0, 0, 0, 1, -5, 2, 0, 0, 2, -2, 0, 0}), e));  // frequencies 1 and sqrt 6
+  ASSERT_TRUE(
+      eigenvalues(matrix(4, {0, 0, 1, 0, 0, 0, 0, 1, -5, 2, 0, 0, 2, -2, 0, 0}), e));  // frequencies 1 and sqrt 6
   for (const Eigenvalue& x : e) EXPECT_TRUE(x.value.re == Multi(0));
   EXPECT_LT(distance(e[0], Multi(0), Multi(1)), kExact);
   EXPECT_LT(distance(e[2], Multi(0), sqrt(Multi(6))), kExact);

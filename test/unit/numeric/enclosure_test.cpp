@@ -1,6 +1,6 @@
-#include "numeric/enclosure.h"
-
 #include <gtest/gtest.h>
+
+#include "numeric/enclosure.h"
 
 namespace anholon {
 namespace {
@@ -33,7 +33,8 @@ SquareSystem ring(std::size_t n) {
   SquareSystem f{n, {}, {}};
   f.value = [n](const Box& x) {
     std::vector<Ball> v;
-    for (std::size_t i = 0; i < n; ++i) v.push_back(x[i] + x[(i + 1) % n] * x[(i + 1) % n] * Ball(Rational(1, 10)) - Ball(Rational(11, 10)));
+    for (std::size_t i = 0; i < n; ++i)
+      v.push_back(x[i] + x[(i + 1) % n] * x[(i + 1) % n] * Ball(Rational(1, 10)) - Ball(Rational(11, 10)));
     return v;
   };
   f.jacobian = [n](const Box& x) {
@@ -75,7 +76,8 @@ TEST(Enclosure, ADoubleRootIsNeverProved) {
 }
 
 TEST(Enclosure, NoRootIsNeverProved) {
-  for (long double start : {0.0L, 0.3L, -2.0L}) EXPECT_FALSE(enclose_root(polynomial({1, 0, 1}), std::vector<long double>{start}));
+  for (long double start : {0.0L, 0.3L, -2.0L})
+    EXPECT_FALSE(enclose_root(polynomial({1, 0, 1}), std::vector<long double>{start}));
 }
 
 TEST(Enclosure, AGivenBoxMustHoldTheRoot) {

@@ -1,8 +1,8 @@
-#include "numeric/linear.h"
+#include <random>
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include "numeric/linear.h"
 
 namespace anholon {
 namespace {
@@ -158,7 +158,8 @@ TEST(SmallestSingularValue, SeesANearlySingularMatrixWhateverItsKernel) {
     ASSERT_TRUE(lu.factor(a));
     std::vector<double> direction;
     const double sigma = lu.smallest_singular_value(direction);
-    EXPECT_TRUE(sigma > e / 2 && sigma < 2 * e) << "an estimate within a factor of two; sigma_min = " << e << ", estimated " << sigma;
+    EXPECT_TRUE(sigma > e / 2 && sigma < 2 * e)
+        << "an estimate within a factor of two; sigma_min = " << e << ", estimated " << sigma;
   }
 }
 
@@ -196,7 +197,8 @@ TEST(LeastChange, IsTheSmallestInTheMetric) {
   const double tolerance = 1e-35;  // 40 digits, condition of the random matrices below 1e4
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const std::size_t n = 5, s = 2;
-    const Matrix<Multi> root = random_matrix<Multi>(n, n, seed), m = transposed(root) * root, a = random_matrix<Multi>(s, n, seed + 50);
+    const Matrix<Multi> root = random_matrix<Multi>(n, n, seed), m = transposed(root) * root,
+                        a = random_matrix<Multi>(s, n, seed + 50);
     const std::vector<Multi> b = random_matrix<Multi>(s, 1, seed + 70).data;
     std::vector<Multi> x;
     ASSERT_TRUE(least_change(m, a, b, x));

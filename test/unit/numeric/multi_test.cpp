@@ -1,9 +1,8 @@
-#include "numeric/multi.h"
+#include <thread>
 
 #include <gtest/gtest.h>
 
-#include <thread>
-
+#include "numeric/multi.h"
 #include "numeric/number.h"
 
 namespace anholon {
@@ -72,8 +71,7 @@ TEST(UnitRoundoff, IsTheLargestThatOneDoesNotNotice) {
 TEST(NumberText, ReadsBackToTheSameNumber) {
   for (double x : {0.1, 1.0 / 3, 1e300, 5e-324, -0.0, 123456789.0})
     EXPECT_EQ(std::strtod(number_text(x).c_str(), nullptr), x);
-  for (long double x : {0.1L, 1.0L / 3, 1e-4000L})
-    EXPECT_EQ(std::strtold(number_text(x).c_str(), nullptr), x);
+  for (long double x : {0.1L, 1.0L / 3, 1e-4000L}) EXPECT_EQ(std::strtold(number_text(x).c_str(), nullptr), x);
   EXPECT_EQ(number_text(0.1), "0.1");
   EXPECT_EQ(number_text(1.0 / 0.0), "inf");
   EXPECT_EQ(number_text(std::nan("")), "nan");

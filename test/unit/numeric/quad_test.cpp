@@ -1,13 +1,12 @@
-#include "numeric/quad.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include <gtest/gtest.h>
+
 #include "numeric/ball.h"
 #include "numeric/number.h"
+#include "numeric/quad.h"
 
 namespace anholon {
 namespace {
@@ -19,7 +18,9 @@ Multi multi(Quad x) {
 }
 
 // The error in round-offs of the exact value.
-double roundoffs(Quad x, const Multi& exact) { return to_double(Multi(abs(Multi(multi(x) - exact)) / abs(exact))) / to_double(unit_roundoff<Quad>()); }
+double roundoffs(Quad x, const Multi& exact) {
+  return to_double(Multi(abs(Multi(multi(x) - exact)) / abs(exact))) / to_double(unit_roundoff<Quad>());
+}
 
 class Quads : public testing::Test {
  protected:
@@ -35,18 +36,21 @@ TEST_F(Quads, HaveTheDigitsOfPiAndOfAThird) {
 
 TEST_F(Quads, RoundAllFunctionsCorrectly) {
   using Pair = std::pair<Quad (*)(Quad), Multi (*)(const Multi&)>;
-  const Pair functions[] = {{sin, sin}, {cos, cos}, {tan, tan}, {asin, asin}, {acos, acos}, {atan, atan}, {sinh, sinh}, {cosh, cosh}, {tanh, tanh},
-                            {asinh, asinh}, {atanh, atanh}, {exp, exp}, {log, log}, {sqrt, sqrt}};
+  const Pair functions[] = {{sin, sin},     {cos, cos},   {tan, tan},   {asin, asin}, {acos, acos},
+                            {atan, atan},   {sinh, sinh}, {cosh, cosh}, {tanh, tanh}, {asinh, asinh},
+                            {atanh, atanh}, {exp, exp},   {log, log},   {sqrt, sqrt}};
   for (std::size_t i = 0; i < std::size(functions); ++i)
     for (const Rational& r : {Rational(1, 7), Rational(3, 4), Rational(99, 100)}) {
       const Quad x = from_rational<Quad>(r);
-      EXPECT_LE(roundoffs(functions[i].first(x), functions[i].second(multi(x))), 1) << "function " << i << " of " << to_string(r);
+      EXPECT_LE(roundoffs(functions[i].first(x), functions[i].second(multi(x))), 1)
+          << "function " << i << " of " << to_string(r);
     }
   const Quad two(2), x = from_rational<Quad>(Rational(5, 7));
   EXPECT_LE(roundoffs(acosh(two), acosh(Multi(2))), 1);
   EXPECT_LE(roundoffs(pow(two, x), pow(Multi(2), multi(x))), 1);
   EXPECT_LE(roundoffs(atan2(-x, -two), atan2(-multi(x), Multi(-2))), 1);
-  EXPECT_GT(roundoffs(std::sin(static_cast<long double>(x)), sin(multi(x))), 100) << "a function of long double would be seen";
+  EXPECT_GT(roundoffs(std::sin(static_cast<long double>(x)), sin(multi(x))), 100)
+      << "a function of long double would be seen";
 }
 
 TEST_F(Quads, PassThroughMpfrAndTextUnchanged) {

@@ -1,11 +1,10 @@
-#include "numeric/rational.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 
+#include <gtest/gtest.h>
+
 #include "numeric/number.h"
+#include "numeric/rational.h"
 
 namespace anholon {
 namespace {
@@ -24,8 +23,8 @@ TEST(ParseRational, DecimalsAreExact) {
 }
 
 TEST(ParseRational, RefusesWhatIsNoNumber) {
-  for (const char* text : {"", "-", "+", ".", "e5", "1e", "1e+", "1.2.3", "0x10", "1/0", "1/", "/2", "1/2/3", "--1", "+-1",
-                           " 1", "1 ", "1,5", "inf", "nan", "1e5x", "1e 5", "1e+-5"})
+  for (const char* text : {"",      "-",   "+",   ".",  "e5", "1e",  "1e+", "1.2.3", "0x10", "1/0",  "1/",   "/2",
+                           "1/2/3", "--1", "+-1", " 1", "1 ", "1,5", "inf", "nan",   "1e5x", "1e 5", "1e+-5"})
     EXPECT_FALSE(parse_rational(text)) << "'" << text << "'";
 }
 
@@ -70,7 +69,8 @@ bool is_nearest(N x, const Rational& r) {
   };
   const Rational miss = ::abs(exact(x) - r);
   const N infinity = std::numeric_limits<N>::infinity();
-  return miss <= ::abs(exact(std::nextafter(x, infinity)) - r) && miss <= ::abs(exact(std::nextafter(x, -infinity)) - r);
+  return miss <= ::abs(exact(std::nextafter(x, infinity)) - r) &&
+         miss <= ::abs(exact(std::nextafter(x, -infinity)) - r);
 }
 
 TEST(FromRational, IsCorrectlyRounded) {

@@ -1,8 +1,7 @@
-#include "numeric/relative.h"
-
 #include <gtest/gtest.h>
 
 #include "numeric/balance.h"
+#include "numeric/relative.h"
 
 namespace anholon {
 namespace {
@@ -19,7 +18,8 @@ TEST(RelativeMiss, IsOfTheTermsWhereTheyAreNumbers) {
 TEST(RelativeMiss, RoundoffIsOfWhatTheTermsAreMadeOf) {
   EXPECT_EQ(relative_miss(kEps, kEps, [] { return 1.0; }), kEps);
   EXPECT_EQ(relative_miss(kEps * 300, kEps * 300, [] { return 1.0; }), 1) << "more than round-off of 1";
-  EXPECT_EQ(relative_miss(kEps, kEps, [] { return std::numeric_limits<double>::infinity(); }), 1) << "nothing is known of it";
+  EXPECT_EQ(relative_miss(kEps, kEps, [] { return std::numeric_limits<double>::infinity(); }), 1)
+      << "nothing is known of it";
   EXPECT_EQ(relative_miss(kEps, 1.0, []() -> double { throw std::logic_error("not asked"); }), kEps);
 }
 

@@ -1,14 +1,14 @@
-#include "plot/figure.h"
-
 #include <gtest/gtest.h>
+
+#include "plot/figure.h"
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
 #endif
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include <unistd.h>
 
 #include "base/diagnostic.h"
 #include "plot/drawing.h"
@@ -32,7 +32,9 @@ std::vector<std::string> names(const Figure& f) {
 }
 
 const RunFile& disc() {
-  static const RunFile r = run({"t", "x", "theta", "x'", "theta'", "x''", "lambda.a", "lambda.b"}, {{0, 1, 2}, {1, 2, 3}, {3, 2, 5}, {0, 0, 0}, {1, 1, 2}, {0, 1, 2}, {7, 8, 9}, {-1, 0, 1}});
+  static const RunFile r =
+      run({"t", "x", "theta", "x'", "theta'", "x''", "lambda.a", "lambda.b"},
+          {{0, 1, 2}, {1, 2, 3}, {3, 2, 5}, {0, 0, 0}, {1, 1, 2}, {0, 1, 2}, {7, 8, 9}, {-1, 0, 1}});
   return r;
 }
 
@@ -67,7 +69,8 @@ TEST(Ticks, LateDigits) {
   ASSERT_EQ(t.note.substr(0, 7), "×10⁻");
   const std::size_t plus = t.note.find("+ ");
   ASSERT_NE(plus, std::string::npos);
-  const double base = std::stod(t.note.substr(plus + 2)), factor = t.note.find("⁻¹⁰") != std::string::npos ? 1e-10 : 1e-9;
+  const double base = std::stod(t.note.substr(plus + 2)),
+               factor = t.note.find("⁻¹⁰") != std::string::npos ? 1e-10 : 1e-9;
   for (std::size_t k = 0; k < t.at.size(); ++k) EXPECT_NEAR(base + factor * std::stod(t.labels[k]), t.at[k], 1e-14);
 }
 
@@ -163,11 +166,13 @@ TEST(Curve, AFewRowsStayAsTheyAre) {
   EXPECT_EQ(pieces[0].size(), 3u);
 }
 
-// Sparse rows of a sine with its derivative: what is drawn between them is the sine, not the polygon. Where a value jumps, nothing
-// swings over.
+// Sparse rows of a sine with its derivative: what is drawn between them is the sine, not the polygon. Where a value
+// jumps, nothing swings over.
 TEST(Curve, IsSmoothBetweenTheRows) {
   std::vector<double> t, y, dy, ddy;
-  for (int i = 0; i <= 20; ++i) t.push_back(0.5 * i), y.push_back(std::sin(t.back())), dy.push_back(std::cos(t.back())), ddy.push_back(i < 10 ? 1 : 5);
+  for (int i = 0; i <= 20; ++i)
+    t.push_back(0.5 * i), y.push_back(std::sin(t.back())), dy.push_back(std::cos(t.back())),
+        ddy.push_back(i < 10 ? 1 : 5);
   FigureOptions o = of({"y", "y'", "y''"});
   o.smooth = true;
   const Figure f = make_figure(run({"t", "y", "y'", "y''"}, {t, y, dy, ddy}), o);
@@ -180,7 +185,12 @@ TEST(Curve, IsSmoothBetweenTheRows) {
   }
   for (std::size_t i = 0; i < t.size(); ++i) EXPECT_NE(std::find(f.x.begin(), f.x.end(), t[i]), f.x.end());
   // A velocity that is turned round between two rows, under the same acceleration before and after.
-  const Figure jump = make_figure(run({"t", "v", "v'"}, {{0, 1, 2, 3}, {0, -10, 10, 0}, {-10, -10, -10, -10}}), o = [] { FigureOptions p = of({"v"}); p.smooth = true; return p; }());
+  const Figure jump = make_figure(
+      run({"t", "v", "v'"}, {{0, 1, 2, 3}, {0, -10, 10, 0}, {-10, -10, -10, -10}}), o = [] {
+        FigureOptions p = of({"v"});
+        p.smooth = true;
+        return p;
+      }());
   const std::vector<double>& v = jump.panels[0].series[0].y;
   EXPECT_EQ(*std::max_element(v.begin(), v.end()), 10);
   EXPECT_EQ(*std::min_element(v.begin(), v.end()), -10);
@@ -211,7 +221,8 @@ TEST(Curve, GapsAndPaths) {
     double nearest = 1e9;
     for (std::size_t k = 1; k < circle[0].size(); ++k) {
       const Point a = circle[0][k - 1], b = circle[0][k];
-      const double dx = b.x - a.x, dy = b.y - a.y, u = std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+      const double dx = b.x - a.x, dy = b.y - a.y,
+                   u = std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
       nearest = std::min(nearest, std::hypot(p.x - a.x - u * dx, p.y - a.y - u * dy));
     }
     ASSERT_LT(nearest, 0.7) << i;
@@ -227,15 +238,14 @@ TEST(Curve, GapsAndPaths) {
 TEST(Terminal, DrawsEveryDotOfALine) {
   FigureOptions o = of({"y"});
   const std::string text = draw_terminal(make_figure(run({"t", "y"}, {{0, 1}, {0, 1}}), o), {24, 4, false});
-  EXPECT_EQ(text,
-            "     y\n"
-            "1.0 ┤               ⣀⡠⠔\n"
-            "0.5 ┤         ⢀⣀⠤⠔⠊⠉\n"
-            "    │    ⢀⡠⠤⠒⠊⠁\n"
-            "0.0 ┤⠤⠔⠒⠉⠁\n"
-            "    └┬────────┬───────┬\n"
-            "    0.0      0.5     1.0\n"
-            "             t\n");
+  EXPECT_EQ(text, "     y\n"
+                  "1.0 ┤               ⣀⡠⠔\n"
+                  "0.5 ┤         ⢀⣀⠤⠔⠊⠉\n"
+                  "    │    ⢀⡠⠤⠒⠊⠁\n"
+                  "0.0 ┤⠤⠔⠒⠉⠁\n"
+                  "    └┬────────┬───────┬\n"
+                  "    0.0      0.5     1.0\n"
+                  "             t\n");
 }
 
 TEST(Terminal, ColoursOnlyWhereAskedFor) {
@@ -269,7 +279,9 @@ TEST(Svg, EscapesAndNamesItsClasses) {
   const std::string svg = draw_svg(make_figure(disc(), o));
   EXPECT_NE(svg.find("<title>a &lt; b &amp; &quot;c&quot;</title>"), std::string::npos);
   EXPECT_EQ(svg.find("a < b"), std::string::npos);
-  for (const char* part : {"class=\"s s0\"", "class=\"s s1\"", "class=\"axis\"", "class=\"grid\"", "var(--s0,", "viewBox=\"0 0 "}) EXPECT_NE(svg.find(part), std::string::npos) << part;
+  for (const char* part :
+       {"class=\"s s0\"", "class=\"s s1\"", "class=\"axis\"", "class=\"grid\"", "var(--s0,", "viewBox=\"0 0 "})
+    EXPECT_NE(svg.find(part), std::string::npos) << part;
   EXPECT_EQ(svg.substr(svg.size() - 7), "</svg>\n");
 }
 
@@ -291,7 +303,8 @@ TEST(Figure, EqualAxesAreAsLongAsWhatTheyShow) {
 // A circle is one: as wide as it is high, on paper and in the dots of a terminal.
 TEST(Figure, ACircleIsRound) {
   std::vector<double> t, x, y;
-  for (int k = 0; k <= 200; ++k) t.push_back(k), x.push_back(3 * std::cos(k * 0.0314159265)), y.push_back(3 * std::sin(k * 0.0314159265));
+  for (int k = 0; k <= 200; ++k)
+    t.push_back(k), x.push_back(3 * std::cos(k * 0.0314159265)), y.push_back(3 * std::sin(k * 0.0314159265));
   const RunFile circle = run({"t", "x", "y"}, {t, x, y});
   FigureOptions o = of({"y"});
   o.x = "x";
@@ -300,11 +313,15 @@ TEST(Figure, ACircleIsRound) {
     double least_x = 1e9, most_x = -1e9, least_y = 1e9, most_y = -1e9;
     for (const Stroke& s : lay_out(make_figure(circle, o)).strokes) {
       if (s.role != Role::series) continue;
-      for (const Point& p : s.points) least_x = std::min(least_x, p.x), most_x = std::max(most_x, p.x), least_y = std::min(least_y, p.y), most_y = std::max(most_y, p.y);
+      for (const Point& p : s.points)
+        least_x = std::min(least_x, p.x), most_x = std::max(most_x, p.x), least_y = std::min(least_y, p.y),
+        most_y = std::max(most_y, p.y);
     }
     const double ratio = (most_x - least_x) / (most_y - least_y);
-    if (equal) EXPECT_NEAR(ratio, 1, 0.01);
-    else EXPECT_GT(ratio, 1.3);
+    if (equal)
+      EXPECT_NEAR(ratio, 1, 0.01);
+    else
+      EXPECT_GT(ratio, 1.3);
   }
 }
 
@@ -312,7 +329,8 @@ TEST(Tex, NamesAreLatex) {
   FigureOptions o = of({"x", "theta'"});
   o.title = "50%";
   const std::string tex = draw_tex(make_figure(disc(), o));
-  for (const char* part : {"\\addlegendentry{$\\dot{\\theta}$}", "xlabel={$t$}", "title={50\\%}", "\\begin{groupplot}", "\\addplot[color=anholon1] coordinates {\n(0,1)(1,1)(2,2)\n};"})
+  for (const char* part : {"\\addlegendentry{$\\dot{\\theta}$}", "xlabel={$t$}", "title={50\\%}", "\\begin{groupplot}",
+                           "\\addplot[color=anholon1] coordinates {\n(0,1)(1,1)(2,2)\n};"})
     EXPECT_NE(tex.find(part), std::string::npos) << part << "\n" << tex;
 }
 

@@ -1,11 +1,13 @@
-#include "plot/labels.h"
-
 #include <gtest/gtest.h>
+
+#include "plot/labels.h"
 
 namespace anholon::plot {
 namespace {
 
-std::string unicode(const std::string& column, const std::string& unit = "") { return text_label(column, unit, LabelStyle::unicode); }
+std::string unicode(const std::string& column, const std::string& unit = "") {
+  return text_label(column, unit, LabelStyle::unicode);
+}
 
 TEST(Labels, InUnicode) {
   EXPECT_EQ(unicode("x"), "x");

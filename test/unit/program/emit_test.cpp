@@ -29,8 +29,10 @@ Made made(const std::string& text) {
 }
 
 std::string bead(const std::string& force, const std::string& more = "") {
-  return "coordinates = [\"x\"]\n" + more + "[[particle]]\nname = \"a\"\nmass = \"2\"\nposition = [\"x\", \"0\", \"0\"]\n"
-         "[[force]]\nname = \"f\"\non = \"a\"\nvector = [\"" + force + "\", \"0\", \"0\"]\n";
+  return "coordinates = [\"x\"]\n" + more +
+         "[[particle]]\nname = \"a\"\nmass = \"2\"\nposition = [\"x\", \"0\", \"0\"]\n"
+         "[[force]]\nname = \"f\"\non = \"a\"\nvector = [\"" +
+         force + "\", \"0\", \"0\"]\n";
 }
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -39,7 +41,8 @@ std::size_t statements_of_residual(int n) {
   const Made m = made(test::chain_text(n));
   const std::string text = emit_c(m.system, m.structure, {});
   const std::size_t from = text.rfind("motion_residual(double t"), to = text.find("\n}\n", from);
-  return static_cast<std::size_t>(std::count(text.begin() + static_cast<std::ptrdiff_t>(from), text.begin() + static_cast<std::ptrdiff_t>(to), ';'));
+  return static_cast<std::size_t>(std::count(text.begin() + static_cast<std::ptrdiff_t>(from),
+                                             text.begin() + static_cast<std::ptrdiff_t>(to), ';'));
 }
 
 TEST(EmitNumber, IsExactOrRoundedOnce) {
@@ -57,10 +60,12 @@ TEST(EmitNumber, IsExactOrRoundedOnce) {
   EXPECT_EQ(text("5.9722e24"), "5.9722e24");
   EXPECT_EQ(text("123456789.5"), "123456789.5");
   EXPECT_EQ(text("1000000000"), "1e9");
-  for (const char* r : {"1/3", "100000000000000000000/3", "9007199254740993", "0.1234567890123456789012345678901234567890", "1e300/7", "7/3e300", "123456789/1000000007"}) {
+  for (const char* r : {"1/3", "100000000000000000000/3", "9007199254740993",
+                        "0.1234567890123456789012345678901234567890", "1e300/7", "7/3e300", "123456789/1000000007"}) {
     const std::string t = text(r);
     const std::size_t slash = t.find('/');
-    const double value = slash == std::string::npos ? std::stod(t) : std::stod(t.substr(0, slash)) / std::stod(t.substr(slash + 1));
+    const double value =
+        slash == std::string::npos ? std::stod(t) : std::stod(t.substr(0, slash)) / std::stod(t.substr(slash + 1));
     EXPECT_EQ(value, from_rational<double>(*parse_rational(r))) << t;
   }
   EXPECT_THROW(text("1e400"), Failure);
@@ -129,7 +134,8 @@ TEST(Emit, KeepsATitleInItsComment) {
 }
 
 TEST(Emit, OfAChainIsLinearInItsLinks) {
-  const std::size_t at16 = statements_of_residual(16), at32 = statements_of_residual(32), at64 = statements_of_residual(64);
+  const std::size_t at16 = statements_of_residual(16), at32 = statements_of_residual(32),
+                    at64 = statements_of_residual(64);
   EXPECT_GT(at32, at16);
   EXPECT_LE(at64, at32 + 2 * (at32 - at16) + 64) << at16 << ", " << at32 << ", " << at64;
 }

@@ -1,5 +1,5 @@
-// Equations and stepping program of an n-link chain grow linearly: common parts exist once, and no matrix is ever inverted
-// symbolically.
+// Equations and stepping program of an n-link chain grow linearly: common parts exist once, and no matrix is ever
+// inverted symbolically.
 #include <gtest/gtest.h>
 
 #include "program/program.h"
@@ -23,13 +23,14 @@ ProgramSize size_of_chain(int n) {
 }
 
 TEST(ProgramSize, OfAChainIsLinearInItsLinks) {
-  // The line through 64 and 128 links must hold at 256: below, sums are so short that they are written out. Beyond, they are made
-  // of blocks, which do not end where the chain does.
+  // The line through 64 and 128 links must hold at 256: below, sums are so short that they are written out. Beyond,
+  // they are made of blocks, which do not end where the chain does.
   constexpr double kBlocks = 1.02;
   const ProgramSize at64 = size_of_chain(64), at128 = size_of_chain(128), at256 = size_of_chain(256);
   const auto expect_line = [](const char* what, std::size_t a, std::size_t b, std::size_t c) {
     EXPECT_GT(b, a) << what;
-    EXPECT_LE(static_cast<double>(c), kBlocks * static_cast<double>(b + 2 * (b - a))) << what << ": " << a << ", " << b << ", " << c;
+    EXPECT_LE(static_cast<double>(c), kBlocks * static_cast<double>(b + 2 * (b - a)))
+        << what << ": " << a << ", " << b << ", " << c;
   };
   expect_line("slots", at64.slots, at128.slots, at256.slots);
   expect_line("products", at64.products, at128.products, at256.products);
@@ -47,9 +48,11 @@ std::size_t nodes_of_chain(int n) {
 }
 
 TEST(EquationSize, OfAChainIsLinearInItsLinks) {
-  const std::size_t at64 = nodes_of_chain(64), at128 = nodes_of_chain(128), at256 = nodes_of_chain(256), at512 = nodes_of_chain(512);
+  const std::size_t at64 = nodes_of_chain(64), at128 = nodes_of_chain(128), at256 = nodes_of_chain(256),
+                    at512 = nodes_of_chain(512);
   // Sums of few links are written out, those of many are made of blocks: the line begins beyond.
-  const double first = static_cast<double>(at128 - at64), second = static_cast<double>(at256 - at128), third = static_cast<double>(at512 - at256);
+  const double first = static_cast<double>(at128 - at64), second = static_cast<double>(at256 - at128),
+               third = static_cast<double>(at512 - at256);
   EXPECT_NEAR(second / first, 2, 0.1) << at64 << ", " << at128 << ", " << at256;
   EXPECT_NEAR(third / second, 2, 0.05) << at128 << ", " << at256 << ", " << at512;
   EXPECT_LE(at512, 512U * 32) << "some thirty nodes per link and its equation are plenty";

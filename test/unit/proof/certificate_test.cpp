@@ -1,11 +1,10 @@
-#include "proof/certificate.h"
-
-#include <gtest/gtest.h>
-
 #include <random>
 #include <string>
 
+#include <gtest/gtest.h>
+
 #include "base/diagnostic.h"
+#include "proof/certificate.h"
 
 namespace anholon {
 namespace {
@@ -106,8 +105,10 @@ TEST(CertificateFormat, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(bad("\"kind\": \"differ\"", "\"kind\": \"agree\""), "claims[1]: a claim of kind 'agree' has no witness");
   EXPECT_EQ(bad("\"left\": 7", "\"left\": 9"), "claims[0].left: a node 9 is not below 9");
   EXPECT_EQ(bad("\"equations\": [7]", "\"equations\": []"), "claims[1].witness: 0 equations for 1 enclosed symbols");
-  EXPECT_EQ(bad("[1, \"1/2\", \"1/1000\"]", "[0, \"1/2\", \"1/1000\"]"), "claims[1].witness.enclosed[0]: the symbol 'x' has two values");
-  EXPECT_EQ(bad("[1, \"1/2\", \"1/1000\"]", "[1, \"1/2\", \"0\"]"), "claims[1].witness.enclosed[0]: the radius is not positive");
+  EXPECT_EQ(bad("[1, \"1/2\", \"1/1000\"]", "[0, \"1/2\", \"1/1000\"]"),
+            "claims[1].witness.enclosed[0]: the symbol 'x' has two values");
+  EXPECT_EQ(bad("[1, \"1/2\", \"1/1000\"]", "[1, \"1/2\", \"0\"]"),
+            "claims[1].witness.enclosed[0]: the radius is not positive");
   EXPECT_EQ(bad("\"meaning\"", "\"model\""), "the key 'model' occurs twice in one object");
   EXPECT_EQ(bad("\"meaning\"", "\"meanings\""), "the key 'meanings' is not known");
   EXPECT_EQ(bad("\"x\", \"y'\"", "\"x\", \"x\""), "symbols: a name occurs twice");
@@ -123,11 +124,13 @@ TEST(CertificateFormat, DepthAndSizeAreLimited) {
   for (int i = 0; i < 200'000; ++i) deep += "{\"a\":";
   EXPECT_EQ(refusal(deep), "brackets are nested deeper than 8");
   EXPECT_EQ(refusal(std::string((std::size_t{64} << 20) + 1, ' ')), "the certificate is longer than 64 MiB");
-  EXPECT_EQ(refusal(replaced(to_json(sample()), "ideal reactions", std::string(10'001, 'x'))), "hypotheses[0]: a text longer than 10000 bytes");
+  EXPECT_EQ(refusal(replaced(to_json(sample()), "ideal reactions", std::string(10'001, 'x'))),
+            "hypotheses[0]: a text longer than 10000 bytes");
   // A short text of huge numbers.
   std::string numbers;
   for (int i = 0; i < 20'000; ++i) numbers += (i ? ",[" : "[") + std::to_string(i) + ",\"number\",\"1e5000\"]";
-  const std::string head = R"({"format":"anholon-certificate","version":1,"program":"","model":"","source_hash":"","hypotheses":[],"meaning":"","symbols":[],"nodes":[)";
+  const std::string head =
+      R"({"format":"anholon-certificate","version":1,"program":"","model":"","source_hash":"","hypotheses":[],"meaning":"","symbols":[],"nodes":[)";
   EXPECT_NE(refusal(head + numbers + R"(],"claims":[]})").find("too many digits"), std::string::npos);
 }
 
@@ -143,10 +146,17 @@ TEST(CertificateFormat, SurvivesMutatedBytes) {
     for (std::size_t k = 0, n = 1 + below(4); k < n; ++k) {
       const std::size_t at = below(text.size());
       switch (below(4)) {
-        case 0: text[at] = letters[below(letters.size())]; break;
-        case 1: text.erase(at, 1 + below(6)); break;
-        case 2: text.insert(at, 1, letters[below(letters.size())]); break;
-        default: text.insert(at, text.substr(below(text.size()), below(30)));
+      case 0:
+        text[at] = letters[below(letters.size())];
+        break;
+      case 1:
+        text.erase(at, 1 + below(6));
+        break;
+      case 2:
+        text.insert(at, 1, letters[below(letters.size())]);
+        break;
+      default:
+        text.insert(at, text.substr(below(text.size()), below(30)));
       }
     }
     try {

@@ -1,13 +1,12 @@
-#include "proof/verify.h"
-
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <set>
 
+#include <gtest/gtest.h>
+
 #include "numeric/ball.h"
+#include "proof/verify.h"
 #include "proof/verify_modular.h"
 #include "proof/verify_real.h"
 
@@ -54,7 +53,7 @@ Expr operator*(Expr a, Expr b) { return a.b->add({Operation::product, 0, 0, "", 
 Expr operator/(Expr a, Expr b) { return a.b->add({Operation::product, 0, 0, "", {{1, a.node}, {-1, b.node}}}); }
 Expr pow(Expr a, const Rational& k) { return a.b->add({Operation::product, 0, 0, "", {{k, a.node}}}); }
 Expr sqrt(Expr a) { return pow(a, Rational(1, 2)); }
-#define ROW(name, derivative, parity, latex, domain) \
+#define ROW(name, derivative, parity, latex, domain)                                                                   \
   [[maybe_unused]] Expr name(Expr u) { return u.b->function(#name, u); }
 #include "expr/elementary.def"
 #undef ROW
@@ -79,37 +78,31 @@ const std::vector<Law>& laws() {
   static const Rational half(1, 2), third(1, 3);
   static const std::vector<Law> all{
       {"a number", [](Expr x, Expr, Expr) { return x - x + 0; }, [](Expr x, Expr, Expr) { return x - x + 1; }},
-      {"(x+y)^2",
-       [](Expr x, Expr y, Expr) { return pow(x + y, 2) - (pow(x, 2) + Rational(2) * (x * y) + pow(y, 2)); },
+      {"(x+y)^2", [](Expr x, Expr y, Expr) { return pow(x + y, 2) - (pow(x, 2) + Rational(2) * (x * y) + pow(y, 2)); },
        [](Expr x, Expr y, Expr) { return pow(x + y, 2) - (pow(x, 2) + Rational(2) * (x * y) - pow(y, 2)); }},
       {"partial fractions",
        [](Expr x, Expr y, Expr) { return pow(x, -1) / (x + y) - pow(y, -1) * (pow(x, -1) - pow(x + y, -1)); },
        [](Expr x, Expr y, Expr) { return pow(x, -1) / (x + y) - pow(y, -1) * (pow(x, -1) - pow(x - y, -1)); }},
-      {"Pythagoras",
-       [](Expr x, Expr, Expr) { return pow(sin(x), 2) + pow(cos(x), 2) - 1; },
+      {"Pythagoras", [](Expr x, Expr, Expr) { return pow(sin(x), 2) + pow(cos(x), 2) - 1; },
        [](Expr x, Expr, Expr) { return pow(sin(x), 2) - pow(cos(x), 2) - 1; }},
-      {"sin(x+y)",
-       [](Expr x, Expr y, Expr) { return sin(x + y) - (sin(x) * cos(y) + cos(x) * sin(y)); },
+      {"sin(x+y)", [](Expr x, Expr y, Expr) { return sin(x + y) - (sin(x) * cos(y) + cos(x) * sin(y)); },
        [](Expr x, Expr y, Expr) { return sin(x + y) - (sin(x) * cos(y) - cos(x) * sin(y)); }},
-      {"half angles",
-       [](Expr x, Expr, Expr) { return cos(x) - (pow(cos(half * x), 2) - pow(sin(half * x), 2)); },
+      {"half angles", [](Expr x, Expr, Expr) { return cos(x) - (pow(cos(half * x), 2) - pow(sin(half * x), 2)); },
        [](Expr x, Expr, Expr) { return cos(x) - (pow(cos(third * x), 2) - pow(sin(third * x), 2)); }},
       {"cos 3x",
        [](Expr x, Expr, Expr) { return cos(Rational(3) * x) - (Rational(4) * pow(cos(x), 3) - Rational(3) * cos(x)); },
        [](Expr x, Expr, Expr) { return cos(Rational(3) * x) - (Rational(4) * pow(cos(x), 3) - Rational(2) * cos(x)); }},
-      {"tan",
-       [](Expr x, Expr, Expr) { return Rational(1) * tan(x) - sin(x) / cos(x); },
+      {"tan", [](Expr x, Expr, Expr) { return Rational(1) * tan(x) - sin(x) / cos(x); },
        [](Expr x, Expr, Expr) { return tan(x) - cos(x) / sin(x); }},
-      {"tan(x-y)",
-       [](Expr x, Expr y, Expr) { return tan(x - y) * (tan(x) * tan(y) + 1) - (tan(x) - tan(y)); },
+      {"tan(x-y)", [](Expr x, Expr y, Expr) { return tan(x - y) * (tan(x) * tan(y) + 1) - (tan(x) - tan(y)); },
        [](Expr x, Expr y, Expr) { return tan(x - y) * (tan(x) * tan(y) - 1) - (tan(x) - tan(y)); }},
-      {"quarter turns",
-       [](Expr x, Expr, Expr) { return sin(x + half * x.b->pi()) - cos(x); },
+      {"quarter turns", [](Expr x, Expr, Expr) { return sin(x + half * x.b->pi()) - cos(x); },
        [](Expr x, Expr, Expr) { return sin(x - half * x.b->pi()) - cos(x); }},
       {"cos(pi/4), cos(pi/12)",
        [](Expr x, Expr, Expr) {
          const Expr pi = x.b->pi(), two = x.b->number(2), six = x.b->number(6);
-         return (cos(Rational(1, 4) * pi) - pow(two, Rational(-1, 2))) + (cos(Rational(1, 12) * pi) - Rational(1, 4) * (sqrt(six) + sqrt(two)));
+         return (cos(Rational(1, 4) * pi) - pow(two, Rational(-1, 2))) +
+                (cos(Rational(1, 12) * pi) - Rational(1, 4) * (sqrt(six) + sqrt(two)));
        },
        [](Expr x, Expr, Expr) { return cos(Rational(1, 4) * x.b->pi()) + pow(x.b->number(2), Rational(-1, 2)); }},
       {"a tenth of pi and a rest",
@@ -123,9 +116,10 @@ const std::vector<Law>& laws() {
        [](Expr x, Expr y, Expr) { return cos(x.b->number(2) * (x * y)) - (Rational(2) * pow(cos(x * x), 2) - 1); }},
       {"a function inside an angle",
        [](Expr x, Expr y, Expr) { return sin(sin(x + y) + x) - (sin(sin(y + x)) * cos(x) + sin(x) * cos(sin(y + x))); },
-       [](Expr x, Expr y, Expr) { return sin(sin(x + y) + x) - (sin(sin(y - x)) * cos(x) + sin(x) * cos(sin(y - x))); }},
-      {"roots of products",
-       [](Expr x, Expr y, Expr) { return sqrt(x) * sqrt(y) - sqrt(x * y); },
+       [](Expr x, Expr y, Expr) {
+         return sin(sin(x + y) + x) - (sin(sin(y - x)) * cos(x) + sin(x) * cos(sin(y - x)));
+       }},
+      {"roots of products", [](Expr x, Expr y, Expr) { return sqrt(x) * sqrt(y) - sqrt(x * y); },
        [](Expr x, Expr y, Expr) { return sqrt(x) * sqrt(y) - sqrt(x + y); }},
       {"a speed",
        [](Expr x, Expr y, Expr) {
@@ -136,35 +130,31 @@ const std::vector<Law>& laws() {
          const Expr v2 = pow(x, 2) + pow(y, 2);
          return sqrt(v2) - v2 * pow(v2, Rational(-3, 2));
        }},
-      {"roots of numbers",
-       [](Expr x, Expr, Expr) { return sqrt(x.b->number(2)) * sqrt(x.b->number(18)) - 6; },
+      {"roots of numbers", [](Expr x, Expr, Expr) { return sqrt(x.b->number(2)) * sqrt(x.b->number(18)) - 6; },
        [](Expr x, Expr, Expr) { return sqrt(x.b->number(2)) * sqrt(x.b->number(18)) + 6; }},
-      {"a root that few primes have",
-       [](Expr x, Expr, Expr) { return pow(sqrt(x.b->number(53 * 59)), 2) - 53 * 59; },
+      {"a root that few primes have", [](Expr x, Expr, Expr) { return pow(sqrt(x.b->number(53 * 59)), 2) - 53 * 59; },
        [](Expr x, Expr, Expr) { return pow(sqrt(x.b->number(53 * 59)), 2) - 53 * 61; }},
       {"cube roots",
        [](Expr x, Expr y, Expr) { return pow(pow(x, third), 2) * pow(y, third) - pow(pow(x, 2) * y, third); },
        [](Expr x, Expr y, Expr) { return pow(pow(x, third), 2) * pow(y, third) - pow(x * y, third); }},
       {"a quarter power and a nested root",
-       [](Expr x, Expr, Expr) { return pow(x, Rational(1, 4)) - sqrt(sqrt(x)) + (pow(sqrt(sqrt(x) + 1), 2) - (sqrt(x) + 1)); },
-       [](Expr x, Expr, Expr) { return pow(x, Rational(1, 4)) - sqrt(sqrt(x)) + (pow(sqrt(sqrt(x) + 1), 2) - (sqrt(x) - 1)); }},
-      {"x where its root exists",
-       [](Expr x, Expr, Expr) { return sqrt(pow(x, 2)) * sqrt(x) - x * sqrt(x); },
+       [](Expr x, Expr, Expr) {
+         return pow(x, Rational(1, 4)) - sqrt(sqrt(x)) + (pow(sqrt(sqrt(x) + 1), 2) - (sqrt(x) + 1));
+       },
+       [](Expr x, Expr, Expr) {
+         return pow(x, Rational(1, 4)) - sqrt(sqrt(x)) + (pow(sqrt(sqrt(x) + 1), 2) - (sqrt(x) - 1));
+       }},
+      {"x where its root exists", [](Expr x, Expr, Expr) { return sqrt(pow(x, 2)) * sqrt(x) - x * sqrt(x); },
        [](Expr x, Expr, Expr) { return sqrt(pow(x, 2)) - x; }},
-      {"absolute values",
-       [](Expr x, Expr y, Expr) { return abs(x * y) - abs(x) * (y * sign(y)); },
+      {"absolute values", [](Expr x, Expr y, Expr) { return abs(x * y) - abs(x) * (y * sign(y)); },
        [](Expr x, Expr y, Expr) { return abs(x * y) - x * y; }},
-      {"the absolute value as a root",
-       [](Expr x, Expr, Expr) { return abs(x) - sqrt(pow(x, 2)); },
+      {"the absolute value as a root", [](Expr x, Expr, Expr) { return abs(x) - sqrt(pow(x, 2)); },
        [](Expr x, Expr, Expr) { return abs(x) + sqrt(pow(x, 2)); }},
-      {"exp of sums",
-       [](Expr x, Expr y, Expr) { return exp(x + half * y) - exp(x) * exp(half * y); },
+      {"exp of sums", [](Expr x, Expr y, Expr) { return exp(x + half * y) - exp(x) * exp(half * y); },
        [](Expr x, Expr y, Expr) { return exp(x + half * y) - exp(x) * exp(third * y); }},
-      {"roots of exp",
-       [](Expr x, Expr y, Expr) { return sqrt(exp(x)) * exp(-1 * y) - exp(half * x - y); },
+      {"roots of exp", [](Expr x, Expr y, Expr) { return sqrt(exp(x)) * exp(-1 * y) - exp(half * x - y); },
        [](Expr x, Expr y, Expr) { return sqrt(exp(x)) * exp(-1 * y) - exp(half * x + y); }},
-      {"cosh^2 - sinh^2",
-       [](Expr x, Expr, Expr) { return pow(cosh(x), 2) - pow(sinh(x), 2) - 1; },
+      {"cosh^2 - sinh^2", [](Expr x, Expr, Expr) { return pow(cosh(x), 2) - pow(sinh(x), 2) - 1; },
        [](Expr x, Expr, Expr) { return pow(cosh(x), 2) + pow(sinh(x), 2) - 1; }},
       {"tanh of exp",
        [](Expr x, Expr, Expr) { return tanh(x) - (exp(Rational(2) * x) - 1) / (exp(Rational(2) * x) + 1); },
@@ -175,11 +165,9 @@ const std::vector<Law>& laws() {
       {"functions of equal arguments",
        [](Expr x, Expr y, Expr) { return log(pow(x + y, 2)) - log(pow(x, 2) + pow(y, 2) + Rational(2) * (x * y)); },
        [](Expr x, Expr y, Expr) { return log(pow(x + y, 2)) - log(pow(x, 2) + pow(y, 2) + x * y); }},
-      {"odd functions",
-       [](Expr x, Expr y, Expr) { return atan(x - y) + atan(y - x) + asinh(x) + asinh(-1 * x); },
+      {"odd functions", [](Expr x, Expr y, Expr) { return atan(x - y) + atan(y - x) + asinh(x) + asinh(-1 * x); },
        [](Expr x, Expr y, Expr) { return atan(x - y) - atan(y - x); }},
-      {"acos and asin",
-       [](Expr x, Expr, Expr) { return acos(x) + asin(x) - half * x.b->pi(); },
+      {"acos and asin", [](Expr x, Expr, Expr) { return acos(x) + asin(x) - half * x.b->pi(); },
        [](Expr x, Expr, Expr) { return acos(x) - asin(x) - half * x.b->pi(); }},
       {"an angle of two arguments",
        [](Expr x, Expr y, Expr z) { return pow(sin(atan2(y, x) + z), 2) + pow(cos(z + atan2(y + x - x, x)), 2) - 1; },
@@ -223,15 +211,16 @@ TEST(VerifyZero, TheTestModuloPrimesStandsAlone) {
 
 // What has no rule is not confirmed, and as no real point shows a difference it is not contradicted.
 TEST(VerifyZero, WhatHasNoRuleIsLeftOpen) {
-  for (const Formula& f : std::vector<Formula>{
-           [](Expr x, Expr y, Expr) { return log(x * y) - log(x) - log(y); },
-           [](Expr x, Expr, Expr) { return sin(asin(x)) - x; },
-           [](Expr x, Expr, Expr) { return sqrt(pow(pow(x, 2) + 1, 2)) - (pow(x, 2) + 1); }}) {
+  for (const Formula& f :
+       std::vector<Formula>{[](Expr x, Expr y, Expr) { return log(x * y) - log(x) - log(y); },
+                            [](Expr x, Expr, Expr) { return sin(asin(x)) - x; },
+                            [](Expr x, Expr, Expr) { return sqrt(pow(pow(x, 2) + 1, 2)) - (pow(x, 2) + 1); }}) {
     const ClaimFinding found = check(f);
     EXPECT_EQ(found.finding, Finding::unchecked);
     EXPECT_NE(found.detail.find("not zero by the rules"), std::string::npos) << found.detail;
   }
-  EXPECT_EQ(check([](Expr x, Expr, Expr) { return (x - x) / (x - x); }).detail, "no point was found where it is defined");
+  EXPECT_EQ(check([](Expr x, Expr, Expr) { return (x - x) / (x - x); }).detail,
+            "no point was found where it is defined");
   EXPECT_EQ(check([](Expr x, Expr, Expr) { return sqrt(x) + sqrt(-1 * x) - sqrt(x) - sqrt(-1 * x); }).detail,
             "no point was found where it is defined and its roots exist");
 }
@@ -246,14 +235,13 @@ TEST(VerifyZero, NumbersMadeForThePrimesAreContradicted) {
 
 // The choice of signs at a prime that has no small non-residue must be the one of real numbers.
 TEST(VerifyZero, SignsThatOnlyAPrimeChoosesAreContradicted) {
-  const ClaimFinding f = check([](Expr x, Expr, Expr) { return sqrt(pow(x, 2)) / x + sqrt(pow(Rational(53) * x, 2)) / (Rational(53) * x); });
+  const ClaimFinding f = check(
+      [](Expr x, Expr, Expr) { return sqrt(pow(x, 2)) / x + sqrt(pow(Rational(53) * x, 2)) / (Rational(53) * x); });
   EXPECT_EQ(f.finding, Finding::contradicted);
 }
 
 TEST(VerifyZero, TheBoundFollowsTheDegree) {
-  const auto power = [](int n) {
-    return [n](Expr x, Expr y, Expr) { return pow(x + y, n) * pow(x + y, -n) - 1; };
-  };
+  const auto power = [](int n) { return [n](Expr x, Expr y, Expr) { return pow(x + y, n) * pow(x + y, -n) - 1; }; };
   const double low = check(power(2)).log2_chance, high = check(power(1000)).log2_chance;
   EXPECT_LT(low, high);
   EXPECT_LE(high, -40);
@@ -305,7 +293,8 @@ TEST(VerifyZero, ClaimsDoNotHelpEachOther) {
 TEST(VerifyZero, TamperedNodesAreNoticed) {
   Builder b;
   const Expr x = b.symbol("x"), y = b.symbol("y");
-  b.zero((sin(x + y) - (sin(x) * cos(y) + cos(x) * sin(y))) * pow(x, 2) + pow(x + y, 2) - (pow(x, 2) + Rational(2) * (x * y) + pow(y, 2)));
+  b.zero((sin(x + y) - (sin(x) * cos(y) + cos(x) * sin(y))) * pow(x, 2) + pow(x + y, 2) -
+         (pow(x, 2) + Rational(2) * (x * y) + pow(y, 2)));
   ASSERT_TRUE(verify(b.c).all_confirmed());
   int noticed = 0;
   for (std::size_t i = 0; i < b.c.nodes.size(); ++i)
@@ -384,7 +373,8 @@ TEST(VerifyNonzero, WithAsManyDigitsAsItTakes) {
   Witnessed w;
   mpz_class huge;
   mpz_ui_pow_ui(huge.get_mpz_t(), 10, 400);
-  w.b.nonzero(pow(sin(w.x), 2) + pow(cos(w.x), 2) - w.b.number(Rational(huge + 1, huge)), {{{0, Rational(1, 2)}}, {}, {}});
+  w.b.nonzero(pow(sin(w.x), 2) + pow(cos(w.x), 2) - w.b.number(Rational(huge + 1, huge)),
+              {{{0, Rational(1, 2)}}, {}, {}});
   VerifyOptions options;
   EXPECT_EQ(verify(w.b.c, options).claims[0].finding, Finding::unchecked);
   options.digits = 500;
@@ -394,7 +384,8 @@ TEST(VerifyNonzero, WithAsManyDigitsAsItTakes) {
 // x² + y² = 2, x = y·tan(π/4 …) at (1, 1): the constraint, moved off, must not be believed.
 TEST(VerifyNonzero, AtARootOfConstraints) {
   Witnessed w;
-  const Expr circle = pow(w.x, 2) + pow(w.y, 2) - 2, line = exp(w.x - w.y) - 1, tiny = w.x - sqrt(w.x.b->number(Rational(1000001, 1000000)));
+  const Expr circle = pow(w.x, 2) + pow(w.y, 2) - 2, line = exp(w.x - w.y) - 1,
+             tiny = w.x - sqrt(w.x.b->number(Rational(1000001, 1000000)));
   const auto at = [&](const Rational& x, const Rational& y, const Rational& radius) {
     return Certificate::Witness{{}, {{0, x, radius}, {1, y, radius}}, {circle.node, line.node}};
   };
@@ -438,7 +429,8 @@ TEST(RealProgram, DerivativesAreThoseOfTheValues) {
       return program.value(f.node);
     };
     const Rational h(1, mpz_class(1) << 60);
-    const Ball by_x = (value(h, 0) - value(-h, 0)) * Ball(Rational(1 / (2 * h))), by_y = (value(0, h) - value(0, -h)) * Ball(Rational(1 / (2 * h)));
+    const Ball by_x = (value(h, 0) - value(-h, 0)) * Ball(Rational(1 / (2 * h))),
+               by_y = (value(0, h) - value(0, -h)) * Ball(Rational(1 / (2 * h)));
     value(0, 0);
     const std::vector<Ball> gradient = program.jacobian({f.node}, {0, 1});
     const Ball allowance(Rational(0), Rational(1, mpz_class(1) << 80));
@@ -458,7 +450,8 @@ TEST(VerifyModular, ThePrimesAreSafeAndSmallPrimesAreSquares) {
     EXPECT_GT(mpz_probab_prime_p(r.get_mpz_t(), 40), 0) << p;
     EXPECT_LT(prime, mpz_class(1) << 61);
     EXPECT_GT(prime, (mpz_class(1) << 61) - (mpz_class(1) << 30)) << "what Field::multiply needs";
-    for (const int small : {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47}) EXPECT_TRUE(verification::Field(p).is_square(small)) << small;
+    for (const int small : {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47})
+      EXPECT_TRUE(verification::Field(p).is_square(small)) << small;
     EXPECT_FALSE(verification::Field(p).is_square(p - 1));
     distinct.insert(p);
   }
@@ -472,7 +465,8 @@ TEST(VerifyModular, MultiplicationIsThatOfIntegers) {
     for (std::uint64_t i = 0; i < 200; ++i) {
       const std::array<std::uint64_t, 1> one{2 * i}, two{2 * i + 1};
       const std::uint64_t a = i < 3 ? p - 1 - i : siphash(key, one) % p, b = i < 2 ? p - 1 : siphash(key, two) % p;
-      const mpz_class exact = mpz_class(std::to_string(a)) * mpz_class(std::to_string(b)) % mpz_class(std::to_string(p));
+      const mpz_class exact =
+          mpz_class(std::to_string(a)) * mpz_class(std::to_string(b)) % mpz_class(std::to_string(p));
       EXPECT_EQ(std::to_string(f.multiply(a, b)), exact.get_str());
       EXPECT_EQ(f.multiply(a, f.inverse(a)), a == 0 ? 0u : 1u);
     }

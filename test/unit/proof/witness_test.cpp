@@ -1,15 +1,16 @@
-#include "proof/witness.h"
-
 #include <gtest/gtest.h>
 
+#include "proof/witness.h"
 #include "support/models.h"
 
 namespace anholon {
 namespace {
 
-// exp x - cosh x - sinh x is zero, which nothing but algebra can say: 1e-400 beside it takes that many digits to be seen.
+// exp x - cosh x - sinh x is zero, which nothing but algebra can say: 1e-400 beside it takes that many digits to be
+// seen.
 TEST(Witness, TellsFromZeroWhatTheDigitsResolve) {
-  const auto model = test::model_of("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n");
+  const auto model =
+      test::model_of("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n");
   Graph& g = *model->graph;
   const Expr x = g.jet(0, 0), zero = exp(x) - cosh(x) - sinh(x);
   Difference d;

@@ -1,4 +1,5 @@
-// The examples of Luo and Zhao with functions of time left open: what a machine has read of each equation, and what it has to read.
+// The examples of Luo and Zhao with functions of time left open: what a machine has read of each equation, and what it
+// has to read.
 #include <gtest/gtest.h>
 
 #include "support/models.h"
@@ -34,7 +35,8 @@ TEST_P(AsRead, EachLossIsNamed) {
   EXPECT_EQ(lost, 12U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, AsRead, testing::Values("luo-zhao-example-1", "luo-zhao-example-2"), [](const auto& p) { return test::test_name(p.param); });
+INSTANTIATE_TEST_SUITE_P(Of, AsRead, testing::Values("luo-zhao-example-1", "luo-zhao-example-2"),
+                         [](const auto& p) { return test::test_name(p.param); });
 
 }  // namespace
 }  // namespace anholon

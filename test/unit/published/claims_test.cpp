@@ -83,7 +83,8 @@ TEST(Claims, ATagInAnySpelling) {
   other.key = "Q";
   other.claims[0].tag = "13";
   const std::vector<Paper> papers = {table(), other};
-  for (const char* spelling : {"L2.6", "l2.6", "L 2.6", "[L 2.6]", "L(2.6)", "Luo-Zhao 2.6", "Luo & Zhao (2.6)", "luo_zhao-2.6", "2.6", "(2.6)"}) {
+  for (const char* spelling : {"L2.6", "l2.6", "L 2.6", "[L 2.6]", "L(2.6)", "Luo-Zhao 2.6", "Luo & Zhao (2.6)",
+                               "luo_zhao-2.6", "2.6", "(2.6)"}) {
     const auto found = find_claims(papers, spelling);
     ASSERT_EQ(found.size(), 1U) << spelling;
     EXPECT_EQ(found[0].claim->tag, "2.6") << spelling;
@@ -109,7 +110,8 @@ TEST(Claims, ErrorsOfATable) {
   EXPECT_EQ(error(kTable, "class = \"reading\"", "class = \"typo\""), "unknown class 'typo'");
   EXPECT_EQ(error(kTable, "class = \"reading\"\n", ""), "'difference' and 'class' stand together");
   EXPECT_EQ(error(kTable, "is = \"true\"", "is = \"yes\""), "'is' is \"true\" or \"false\"");
-  EXPECT_EQ(error(kTable, "  mutant = \"N.x = lambda*partial(phi, y')\"\n", ""), "'mutant' is missing: a change of the equation that must be false");
+  EXPECT_EQ(error(kTable, "  mutant = \"N.x = lambda*partial(phi, y')\"\n", ""),
+            "'mutant' is missing: a change of the equation that must be false");
   EXPECT_EQ(error(kTable, "tag = \"3.18'\"", "tag = \"2.6\""), "the tag '2.6' is used twice");
 }
 

@@ -34,9 +34,11 @@ TEST(Compare, SaysWhatATrueEquationIs) {
   EXPECT_EQ(s.what("lambda*sin(th)/m = -x''"), "the equation of x, times 1/m");
   EXPECT_EQ(s.what("J*th'' = 0"), "the equation of th");
   EXPECT_EQ(s.what("y'*cos(th) - x'*sin(th) = 0"), "the constraint blade");
-  EXPECT_EQ(s.what("y''*cos(th) - y'*th'*sin(th) = x''*sin(th) + x'*th'*cos(th)"), "the constraint blade, differentiated once");
+  EXPECT_EQ(s.what("y''*cos(th) - y'*th'*sin(th) = x''*sin(th) + x'*th'*cos(th)"),
+            "the constraint blade, differentiated once");
   EXPECT_EQ(s.what("y' = x'*tan(th)"), "the constraint blade, times 1/cos(th)");
-  EXPECT_EQ(s.what("x''*cos(th) + y''*sin(th) = 0"), "a combination without multipliers: cos(th)/m times the equation of x + sin(th)/m times the equation of y");
+  EXPECT_EQ(s.what("x''*cos(th) + y''*sin(th) = 0"),
+            "a combination without multipliers: cos(th)/m times the equation of x + sin(th)/m times the equation of y");
   EXPECT_EQ(s.what("lambda = m*th'*(x'*cos(th) + y'*sin(th))").find("a combination: "), 0U);
   EXPECT_EQ(s.what("x'' = -y'*th'").find("a combination without multipliers: "), 0U);
   EXPECT_NE(s.what("x'' = -y'*th'").find("with blade put in"), std::string::npos);
@@ -55,7 +57,8 @@ TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
 
 TEST(Compare, NamesTheMisprint) {
   Compared s(test::kSleigh);
-  EXPECT_EQ(s.change("m*x'' = lambda*sin(th)"), "lambda*sin(th) -> -lambda*sin(th)");  // and not the left side, which is the same
+  EXPECT_EQ(s.change("m*x'' = lambda*sin(th)"),
+            "lambda*sin(th) -> -lambda*sin(th)");  // and not the left side, which is the same
   EXPECT_EQ(s.change("m*x'' = -lambda*cos(th)"), "-lambda*cos(th) -> -lambda*sin(th)");
   Compared p(kPendulum);
   EXPECT_EQ(p.change("m*y'' = 2*lambda*y + m*g"), "+ m*g -> - m*g");
@@ -88,7 +91,8 @@ particle = [{name = "p", mass = "m", position = ["x", "y", "z"]}]
 potential.V = "k*y + x*z"
 [[constraint]]
 name = "c"
-equation = "D(z,)toml" + order + ") = D(x," + order + ")^2 + y*D(y," + order + ")^2\"\n");
+equation = "D(z,)toml" +
+               order + ") = D(x," + order + ")^2 + y*D(y," + order + ")^2\"\n");
     const std::string slope = "2*D(x," + order + ")";
     EXPECT_EQ(s.compare("m*x'' + m*z''*" + slope + " = -z - x*" + slope).verdict, Verdict::proved) << m;
     EXPECT_EQ(s.compare("maggi.y = 0").verdict, Verdict::proved) << m;
@@ -100,7 +104,8 @@ equation = "D(z,)toml" + order + ") = D(x," + order + ")^2 + y*D(y," + order + "
   }
 }
 
-// A constraint of lower order is lifted for the elimination, and holds itself on the motion: what is true by it is not refuted.
+// A constraint of lower order is lifted for the elimination, and holds itself on the motion: what is true by it is not
+// refuted.
 TEST(Compare, ALowerConstraintBesideANonlinearOneHolds) {
   Compared s(R"toml(coordinates = ["x", "y", "z", "w"]
 parameters = {m = 2, k = 3}

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "proof/equations_of_motion.h"
 #include "published/trial.h"
@@ -93,7 +93,10 @@ TEST(Repair, EachPlaceOfAChange) {
   ASSERT_EQ(c.changes.size(), 1U);
   const std::vector<ChangedPlace>& places = c.changes[0].places;
   ASSERT_EQ(places.size(), 3U);
-  const auto at = [](const ChangedPlace& p) { return std::vector<std::size_t>{p.span.line, p.span.column, p.span.length, static_cast<std::size_t>(p.side), p.term}; };
+  const auto at = [](const ChangedPlace& p) {
+    return std::vector<std::size_t>{p.span.line, p.span.column, p.span.length, static_cast<std::size_t>(p.side),
+                                    p.term};
+  };
   EXPECT_EQ(at(places[0]), (std::vector<std::size_t>{1, 6, 1, 0, 0}));
   EXPECT_EQ(at(places[1]), (std::vector<std::size_t>{1, 10, 1, 1, 0}));
   EXPECT_EQ(at(places[2]), (std::vector<std::size_t>{2, 11, 1, 1, 3}));
@@ -110,7 +113,8 @@ TEST(Repair, LostDotsInFactorsOfOneProduct) {
   Repaired p(kPolar);
   ASSERT_EQ(p.compare("m*(r^2*psi'' + 2*r*r'*psi') = 2*lambda*r^2*psi'").verdict, Verdict::proved);
   EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r*psi) = 2*lambda*r^2*psi'"), "2*r*r*psi -> 2*r*r'*psi'");
-  EXPECT_EQ(p.change("m*(r^2*psi + 2*r*r*psi) = 2*lambda*r^2*psi"), "psi -> psi'', 2*r*r*psi -> 2*r*r'*psi', psi -> psi'");
+  EXPECT_EQ(p.change("m*(r^2*psi + 2*r*r*psi) = 2*lambda*r^2*psi"),
+            "psi -> psi'', 2*r*r*psi -> 2*r*r'*psi', psi -> psi'");
   Repaired r(kRocket);
   const std::string derived = "m*(m*x'')*(w + w') = m*(p' - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x))*(w + w')";
   ASSERT_EQ(r.compare(derived).verdict, Verdict::proved);
@@ -119,8 +123,9 @@ TEST(Repair, LostDotsInFactorsOfOneProduct) {
 
 TEST(Repair, ASymbolThatLostItsDotsEverywhere) {
   Repaired r(kRocket);
-  const std::string wrong = "m*x'' = p*cos(x)^2 + p*sin(x)^2*cos(y)^2 + p*sin(x)^2*sin(y)^2*cos(w)^2 + p*sin(x)^2*sin(y)^2*sin(w)^2*sin(k)^2"
-                            " + p*sin(x)^2*sin(y)^2*sin(w)^2*cos(k)^2 - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x)";
+  const std::string wrong =
+      "m*x'' = p*cos(x)^2 + p*sin(x)^2*cos(y)^2 + p*sin(x)^2*sin(y)^2*cos(w)^2 + p*sin(x)^2*sin(y)^2*sin(w)^2*sin(k)^2"
+      " + p*sin(x)^2*sin(y)^2*sin(w)^2*cos(k)^2 - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x)";
   const Comparison c = r.compare(wrong);
   ASSERT_EQ(c.changes.size(), 1U);
   ASSERT_EQ(c.changes[0].places.size(), 5U);
@@ -134,13 +139,15 @@ TEST(Repair, ASymbolThatLostItsDotsEverywhere) {
 
 TEST(Repair, LostDotsBesideAnotherMisprint) {
   Repaired r(kRocket);
-  EXPECT_EQ(r.change("m*x'' = p - k*x - m*u - m*(2*w*y' + w'*y + w^2*x)"), "p -> p', m -> m', - m*(2*w*y' + w'*y + w^2*x) -> + m*(2*w*y' + w'*y + w^2*x)");
+  EXPECT_EQ(r.change("m*x'' = p - k*x - m*u - m*(2*w*y' + w'*y + w^2*x)"),
+            "p -> p', m -> m', - m*(2*w*y' + w'*y + w^2*x) -> + m*(2*w*y' + w'*y + w^2*x)");
   EXPECT_EQ(r.change("m*x = p' - k*x - m*u + m*(w*y' + w'*y + w^2*x)"), "x -> x'', m -> m', w*y' -> 2*w*y'");
   EXPECT_EQ(r.change("m*x'' = p - k*y - m'*u + m*(2*w*y' + w'*y + w^2*x)"), "p -> p', y -> x");
   // An exponent that stands on the neighbour.
   Repaired p(kPolar);
   EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r'*psi') = 2*lambda*r*psi'^2"), "2*lambda*r*psi'^2 -> 2*lambda*r^2*psi'");
-  EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r*psi') = 2*lambda*r*psi'^2"), "r -> r', 2*lambda*r*psi'^2 -> 2*lambda*r^2*psi'");
+  EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r*psi') = 2*lambda*r*psi'^2"),
+            "r -> r', 2*lambda*r*psi'^2 -> 2*lambda*r^2*psi'");
 }
 
 TEST(Repair, OneIndexOneSignOneDot) {
@@ -157,10 +164,13 @@ TEST(Repair, OneIndexOneSignOneDot) {
 TEST(Repair, IndicesInDerivedWords) {
   Repaired r(kRocket);
   EXPECT_EQ(r.change("inertia_term.y = G.x"), "2");  // either
-  EXPECT_EQ(r.change("inertia_term.x = Q.x + QR.x + Qomega.x + minus_dVomega.y + Gamma.x"), "minus_dVomega.y -> minus_dVomega.x");
+  EXPECT_EQ(r.change("inertia_term.x = Q.x + QR.x + Qomega.x + minus_dVomega.y + Gamma.x"),
+            "minus_dVomega.y -> minus_dVomega.x");
   EXPECT_EQ(r.change("inertia_term.x = Q.x + QR.x + QR.x + minus_dVomega.x + Gamma.x"), "QR.x -> Qomega.x");
-  EXPECT_EQ(r.change("Dt(partial(T_r, y')) = QR.x + Q.x + Qomega.x + minus_dVomega.x + Gamma.x"), "Dt(partial(T_r, y')) -> Dt(partial(T_r, x'))");
-  EXPECT_EQ(r.readings("Dt(partial(T_r, y')) = G.x"), (Texts{"Dt(partial(T_r, x')) = G.x", "Dt(partial(T_r, y')) = G.y"}));
+  EXPECT_EQ(r.change("Dt(partial(T_r, y')) = QR.x + Q.x + Qomega.x + minus_dVomega.x + Gamma.x"),
+            "Dt(partial(T_r, y')) -> Dt(partial(T_r, x'))");
+  EXPECT_EQ(r.readings("Dt(partial(T_r, y')) = G.x"),
+            (Texts{"Dt(partial(T_r, x')) = G.x", "Dt(partial(T_r, y')) = G.y"}));
   EXPECT_EQ(r.change("Dt(partial(T_r, x)) = G.x"), "Dt(partial(T_r, x)) -> Dt(partial(T_r, x'))");
   EXPECT_EQ(r.change("Dt(partial(T_r, x')) + partial(V_O, x) = -G.x"), "-G.x -> G.x");
   Repaired p(kPolar);
@@ -208,14 +218,17 @@ TEST(Repair, NothingIsMadeTrivial) {
 
 // The derivative by psi vanishes by sin^2 + cos^2 = 1, and so does that by psi'': nothing is said if both stand there.
 TEST(Repair, SidesThatVanishAreNoIdentity) {
-  Repaired r("coordinates = [\"r\", \"psi\"]\nparticle = [{name = \"p\", mass = 2, position = [\"r*cos(psi)\", \"r*sin(psi)\", \"0\"]}]\n");
+  Repaired r("coordinates = [\"r\", \"psi\"]\nparticle = [{name = \"p\", mass = 2, position = [\"r*cos(psi)\", "
+             "\"r*sin(psi)\", \"0\"]}]\n");
   ASSERT_EQ(r.compare("partial(T_r, psi) = 0").verdict, Verdict::proved);
-  for (const std::string& reading : r.readings("partial(T_r, psi') = partial(T_r, psi)")) EXPECT_EQ(reading.find("psi''"), std::string::npos) << reading;
+  for (const std::string& reading : r.readings("partial(T_r, psi') = partial(T_r, psi)"))
+    EXPECT_EQ(reading.find("psi''"), std::string::npos) << reading;
 }
 
 TEST(Repair, NoFactorIsZero) {
   Repaired p(kPolar);
-  for (const char* wrong : {"m/2*norm2(vel(bob.center)) = m/2*(r'^2 + r^2*psi^2)*k*psi", "r = k*psi", "T_r = k*psi*r", "r' = psi*sin(k)", "lambda = k*psi"}) {
+  for (const char* wrong : {"m/2*norm2(vel(bob.center)) = m/2*(r'^2 + r^2*psi^2)*k*psi", "r = k*psi", "T_r = k*psi*r",
+                            "r' = psi*sin(k)", "lambda = k*psi"}) {
     const Comparison c = p.compare(wrong);
     ASSERT_EQ(c.verdict, Verdict::refuted) << wrong;
     EXPECT_EQ(c.what.find("times 0"), std::string::npos) << wrong << ": " << c.what;
@@ -242,7 +255,8 @@ TEST(Trial, AgreesWithTheChangedFormula) {
   EquationsOfMotion motion(r.subject().mechanics(), 2, {});
   const Alphabet alphabet{{"x", "y"}, {"k", "u", "m", "w", "p"}, {}, {}, {}};
   std::size_t pairs = 0, adding = 0, multiplied = 0;
-  for (const char* text : {"m*x'' = p' - k*x/m - (m + w)*(2*w*y' + sin(x*y)^2)", "dot(m'*(P - u*ex), [x, w, 1]) = D(x^2*y', 1) - 2*Q.x*partial(T_r, x')",
+  for (const char* text : {"m*x'' = p' - k*x/m - (m + w)*(2*w*y' + sin(x*y)^2)",
+                           "dot(m'*(P - u*ex), [x, w, 1]) = D(x^2*y', 1) - 2*Q.x*partial(T_r, x')",
                            "(cross(w*ez, P) + vel(P)*m).y = 3*(x*y')'"}) {
     Vocabulary& words = r.subject().words();
     const Syntax syntax = difference_of(r.read(std::string("e: ") + text + "\n").at(0));

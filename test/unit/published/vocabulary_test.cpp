@@ -1,4 +1,5 @@
-// The words of published equations: quantities, derivatives, eliminations, definitions, vectors, and what is said of wrong ones.
+// The words of published equations: quantities, derivatives, eliminations, definitions, vectors, and what is said of
+// wrong ones.
 #include "support/published.h"
 
 namespace anholon {
@@ -80,27 +81,41 @@ class Words : public test::Published {
 
 TEST(Vocabulary, QuantitiesOfTheDerivation) {
   Words w(kRocket);
-  for (const char* right : {"e: inertia_term.x = G.x + N.x", "e: derived.Q.x + QR.x + Qomega.x + minus_dVO.x + minus_dVomega.x + Gamma.x = G.x", "e: QR.x = -m'*u*cos(th)",
-                            "e: QR(x) = QR.x", "e: N.th = 0", "e: N.x = lambda*partial(phi.edge, x')", "e: V_O = 0",
-                            "e: Gamma.x = 2*w*(M*y' + m*(y' + th'*cos(th)))", "e: mu.rocket = m", "e: m_rocket = m", "e: C.x = x", "e: lambda.edge = lambda", "e: 2*Q = Q + derived.Q.x + Q"})
+  for (const char* right :
+       {"e: inertia_term.x = G.x + N.x",
+        "e: derived.Q.x + QR.x + Qomega.x + minus_dVO.x + minus_dVomega.x + Gamma.x = G.x", "e: QR.x = -m'*u*cos(th)",
+        "e: QR(x) = QR.x", "e: N.th = 0", "e: N.x = lambda*partial(phi.edge, x')", "e: V_O = 0",
+        "e: Gamma.x = 2*w*(M*y' + m*(y' + th'*cos(th)))", "e: mu.rocket = m", "e: m_rocket = m", "e: C.x = x",
+        "e: lambda.edge = lambda", "e: 2*Q = Q + derived.Q.x + Q"})
     EXPECT_EQ(w.verdict(right), "true") << right;
-  for (const char* wrong : {"e: inertia_term.x = G.x - N.x", "e: QR.x = -m*u*cos(th)", "e: N.x = lambda*partial(phi.edge, y')", "e: Gamma.x = 2*w*(M*y' + m*(x' + th'*cos(th)))"})
+  for (const char* wrong : {"e: inertia_term.x = G.x - N.x", "e: QR.x = -m*u*cos(th)",
+                            "e: N.x = lambda*partial(phi.edge, y')", "e: Gamma.x = 2*w*(M*y' + m*(x' + th'*cos(th)))"})
     EXPECT_EQ(w.verdict(wrong), "false") << wrong;
 }
 
 TEST(Vocabulary, FrozenAndTotalDerivatives) {
   Words w(kRocket);
-  for (const char* right : {"e: Dt(partial(T_r, x')) = (M + m)*x'' - m*(th''*sin(th) + th'^2*cos(th))", "e: D(partial(T_r, x'), 1) = Dt(partial(T_r, x')) + m'*(x' - th'*sin(th))",
-                            "e: partial(T_r, x')' = Dt(partial(T_r, x')) + m'*(x' - th'*sin(th))", "e: Dt(m*x') = m*x''", "e: (m*x')' = m*x'' + m'*x'", "e: Dt(T_r, 2) = Dt(Dt(T_r))",
-                            "e: partial(m*x'^2, t) = m'*x'^2", "e: partial(frozen(m*x'^2), t) = 0", "e: partial(T_r, mu.rocket) = norm2(vel(rocket))/2", "e: partial(vel(rocket), th') = partial(rocket, th)"})
+  for (const char* right :
+       {"e: Dt(partial(T_r, x')) = (M + m)*x'' - m*(th''*sin(th) + th'^2*cos(th))",
+        "e: D(partial(T_r, x'), 1) = Dt(partial(T_r, x')) + m'*(x' - th'*sin(th))",
+        "e: partial(T_r, x')' = Dt(partial(T_r, x')) + m'*(x' - th'*sin(th))", "e: Dt(m*x') = m*x''",
+        "e: (m*x')' = m*x'' + m'*x'", "e: Dt(T_r, 2) = Dt(Dt(T_r))", "e: partial(m*x'^2, t) = m'*x'^2",
+        "e: partial(frozen(m*x'^2), t) = 0", "e: partial(T_r, mu.rocket) = norm2(vel(rocket))/2",
+        "e: partial(vel(rocket), th') = partial(rocket, th)"})
     EXPECT_EQ(w.verdict(right), "true") << right;
-  for (const char* wrong : {"e: Dt(m*x') = m*x'' + m'*x'", "e: (m*x')' = m*x''", "e: partial(T_r, x')' = Dt(partial(T_r, x'))"}) EXPECT_EQ(w.verdict(wrong), "false") << wrong;
+  for (const char* wrong :
+       {"e: Dt(m*x') = m*x'' + m'*x'", "e: (m*x')' = m*x''", "e: partial(T_r, x')' = Dt(partial(T_r, x'))"})
+    EXPECT_EQ(w.verdict(wrong), "false") << wrong;
 }
 
 TEST(Vocabulary, ConstraintsPutIn) {
   Words w(kRocket);
-  for (const char* right : {"e: f.y = x'*tan(th)", "e: derived.C.y.x = tan(th)", "e: reduced(y') = f.y", "e: reduced(y'') = D(x'*tan(th), 1)", "e: partial(reduced(T_r), x') = partial(T_r, x') + tan(th)*partial(T_r, y')",
-                            "e: along(G, x) = G.x + tan(th)*G.y", "e: along(inertia_term, th) = along(G, th)", "e: maggi.x = along(inertia_term, x) - along(G, x)", "e: chaplygin.left.th - chaplygin.right.th = 0"})
+  for (const char* right :
+       {"e: f.y = x'*tan(th)", "e: derived.C.y.x = tan(th)", "e: reduced(y') = f.y",
+        "e: reduced(y'') = D(x'*tan(th), 1)",
+        "e: partial(reduced(T_r), x') = partial(T_r, x') + tan(th)*partial(T_r, y')",
+        "e: along(G, x) = G.x + tan(th)*G.y", "e: along(inertia_term, th) = along(G, th)",
+        "e: maggi.x = along(inertia_term, x) - along(G, x)", "e: chaplygin.left.th - chaplygin.right.th = 0"})
     EXPECT_EQ(w.verdict(right), "true") << right;
   EXPECT_EQ(w.verdict("e: partial(reduced(T_r), x') = partial(T_r, x')"), "false");
   EXPECT_EQ(w.verdict("e: maggi.left.x = maggi.right.th"), "false");
@@ -110,28 +125,47 @@ TEST(Vocabulary, ConstraintsThatAreNotSolved) {
   Words w(kSpeed);
   const bool for_r = w.error("e: f.r = 0").empty();
   const std::string y = for_r ? "r" : "psi", x = for_r ? "psi" : "r";
-  EXPECT_EQ(w.error("e: f." + x + " = 0"), "'" + x + "' is an independent coordinate here: the constraints are not solved for it");
-  EXPECT_EQ(w.verdict("e: partial(f." + y + ", " + x + "') = -partial(phi, " + x + "')/partial(phi, " + y + "')"), "true");
-  EXPECT_EQ(w.verdict("let S = reduced(T_r)\ne: partial(S, " + x + "') = partial(T_r, " + x + "') + partial(T_r, " + y + "')*partial(f." + y + ", " + x + "')"), "true");
-  EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + "') = partial(T_r, " + x + "') - partial(T_r, " + y + "')*partial(f." + y + ", " + x + "')"), "false");
-  EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + ") = partial(T_r, " + x + ") + partial(T_r, " + y + "')*partial(f." + y + ", " + x + ")"), "true");
+  EXPECT_EQ(w.error("e: f." + x + " = 0"),
+            "'" + x + "' is an independent coordinate here: the constraints are not solved for it");
+  EXPECT_EQ(w.verdict("e: partial(f." + y + ", " + x + "') = -partial(phi, " + x + "')/partial(phi, " + y + "')"),
+            "true");
+  EXPECT_EQ(w.verdict("let S = reduced(T_r)\ne: partial(S, " + x + "') = partial(T_r, " + x + "') + partial(T_r, " + y +
+                      "')*partial(f." + y + ", " + x + "')"),
+            "true");
+  EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + "') = partial(T_r, " + x + "') - partial(T_r, " + y +
+                      "')*partial(f." + y + ", " + x + "')"),
+            "false");
+  EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + ") = partial(T_r, " + x + ") + partial(T_r, " + y +
+                      "')*partial(f." + y + ", " + x + ")"),
+            "true");
   // A sum with something else in it has no derivative along the manifold that could be told from an ordinary one.
-  EXPECT_EQ(w.error("e: partial(reduced(T_r) + " + x + "', " + x + "') = 0").find("the constraints are not solved as formulas here"), 0U);
-  EXPECT_EQ(w.error("let twice = 2*reduced(T_r)\ne: partial(twice, " + x + "') = 0").find("the constraints are not solved as formulas here"), 0U);
-  EXPECT_EQ(w.error("e: partial(D(f." + y + ", 1), " + x + "') = 0").find("the constraints are not solved as formulas here"), 0U);
+  EXPECT_EQ(w.error("e: partial(reduced(T_r) + " + x + "', " + x + "') = 0")
+                .find("the constraints are not solved as formulas here"),
+            0U);
+  EXPECT_EQ(w.error("let twice = 2*reduced(T_r)\ne: partial(twice, " + x + "') = 0")
+                .find("the constraints are not solved as formulas here"),
+            0U);
+  EXPECT_EQ(
+      w.error("e: partial(D(f." + y + ", 1), " + x + "') = 0").find("the constraints are not solved as formulas here"),
+      0U);
 }
 
 TEST(Vocabulary, QuasiVelocities) {
   Words w(kQuasi);
-  for (const char* right : {"e: g.y = y'", "e: B.y.u1 = -x", "e: B.z.u1 = y", "e: partial(g.y, u2) = 1", "e: u1 = x'", "e: u2 = y' + x*x'", "e: partial(star(T_r), u2) = m*y'",
-                            "e: along(Q, u1) = Q.x*B.x.u1 + Q.y*B.y.u1 + Q.z*B.z.u1", "e: micevic_rusov_quasi.u1 = along(inertia_term, u1) - along(G, u1)"}) {
+  for (const char* right :
+       {"e: g.y = y'", "e: B.y.u1 = -x", "e: B.z.u1 = y", "e: partial(g.y, u2) = 1", "e: u1 = x'", "e: u2 = y' + x*x'",
+        "e: partial(star(T_r), u2) = m*y'", "e: along(Q, u1) = Q.x*B.x.u1 + Q.y*B.y.u1 + Q.z*B.z.u1",
+        "e: micevic_rusov_quasi.u1 = along(inertia_term, u1) - along(G, u1)"}) {
     EXPECT_EQ(w.verdict(right), "true") << right;
   }
   EXPECT_EQ(w.verdict("e: partial(star(T_r), u2) = m*z'"), "false");
-  EXPECT_EQ(w.error("e: partial(T_r, u2) = 0"), "what is differentiated by a quasi-velocity is not expressed in quasi-velocities");
+  EXPECT_EQ(w.error("e: partial(T_r, u2) = 0"),
+            "what is differentiated by a quasi-velocity is not expressed in quasi-velocities");
 }
 
-TEST(Vocabulary, OldNamesOfForms) { EXPECT_EQ(find_formulation("misevic-rusov-quasi"), find_formulation("micevic-rusov-quasi")); }
+TEST(Vocabulary, OldNamesOfForms) {
+  EXPECT_EQ(find_formulation("misevic-rusov-quasi"), find_formulation("micevic-rusov-quasi"));
+}
 
 TEST(Vocabulary, DefinitionsAndVectors) {
   Words w(kRocket);
@@ -147,7 +181,8 @@ TEST(Vocabulary, WrongWordsAreErrors) {
   EXPECT_EQ(w.error("e: QR = 0"), "'QR' has an entry for each coordinate");
   EXPECT_EQ(w.error("e: f.x = 0"), "'x' is an independent coordinate here: the constraints are not solved for it");
   EXPECT_EQ(w.error("e: phi.edg = 0"), "there is no 'phi.edg'; did you mean 'phi.edge'?");
-  EXPECT_EQ(w.error("e: partial(T_r, 2*x) = 0"), "a partial derivative is taken by a derivative of a coordinate, by t, or by another symbol");
+  EXPECT_EQ(w.error("e: partial(T_r, 2*x) = 0"),
+            "a partial derivative is taken by a derivative of a coordinate, by t, or by another symbol");
   EXPECT_EQ(w.error("e: maggi.y = 0"), "the form maggi has no equation 'y'");
   EXPECT_EQ(w.error("e: vel(C) = 1"), "one side is a vector, this one is a number");
   EXPECT_EQ(w.error("let T_r = x\ne: x = 0"), "the name 'T_r' has a meaning in equations");

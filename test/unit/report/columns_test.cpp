@@ -1,11 +1,10 @@
 // What a page keeps of a run.
-#include "report/columns.h"
+#include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "report/bibliography.h"
+#include "report/columns.h"
 #include "report/observer_path.h"
 #include "report/run_report.h"
 #include "support/models.h"
@@ -21,7 +20,8 @@ TEST(Extremes, EveryPeakStaysHoweverNarrow) {
   EXPECT_LT(rows.size(), 1600U);
   EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end()));
   EXPECT_EQ(std::adjacent_find(rows.begin(), rows.end()), rows.end());
-  for (std::size_t kept : {std::size_t{0}, std::size_t{31337}, std::size_t{70001}, std::size_t{50000}, values.size() - 1})
+  for (std::size_t kept :
+       {std::size_t{0}, std::size_t{31337}, std::size_t{70001}, std::size_t{50000}, values.size() - 1})
     EXPECT_TRUE(std::binary_search(rows.begin(), rows.end(), kept)) << kept;
 }
 
@@ -32,7 +32,7 @@ TEST(Extremes, FewRowsAreKeptWhole) {
 
 TEST(Packed, HoldsTheBitsOfTheNumbers) {
   EXPECT_EQ(packed({}), "");
-  EXPECT_EQ(packed({1.0}), "AAAAAAAA8D8=");              // 00 00 00 00 00 00 f0 3f
+  EXPECT_EQ(packed({1.0}), "AAAAAAAA8D8=");  // 00 00 00 00 00 00 f0 3f
   EXPECT_EQ(packed({-2.5, 0.0}), "AAAAAAAABMAAAAAAAAAAAA==");
   EXPECT_EQ(packed({0, 0, 0}), std::string(32, 'A'));
 }
@@ -40,10 +40,13 @@ TEST(Packed, HoldsTheBitsOfTheNumbers) {
 // The mass doubles at an event: the kinetic energy of the rows after it is that of the new mass.
 TEST(Plots, KnowWhatEventsHaveSet) {
   Scenario s;
-  ASSERT_TRUE(make_scenario(test::model_of("coordinates = [\"x\"]\n[mode]\nn = 1\n[[particle]]\nname = \"p\"\nmass = \"n\"\nposition = \"x*ex\"\n"
-                                           "[[event]]\nname = \"catch\"\nwhen = \"x - 1\"\nset = {n = \"2*n\"}\n[initial]\n\"x'\" = 2\n"),
-                            *find_formulation("routh"), {}, s)
-                  .ok());
+  ASSERT_TRUE(
+      make_scenario(
+          test::model_of(
+              "coordinates = [\"x\"]\n[mode]\nn = 1\n[[particle]]\nname = \"p\"\nmass = \"n\"\nposition = \"x*ex\"\n"
+              "[[event]]\nname = \"catch\"\nwhen = \"x - 1\"\nset = {n = \"2*n\"}\n[initial]\n\"x'\" = 2\n"),
+          *find_formulation("routh"), {}, s)
+          .ok());
   RunFile run;
   run.table.set_columns({"t", "x", "x'"});
   for (const char* t : {"0", "0.25", "0.5", "0.75", "1"}) {
@@ -62,7 +65,8 @@ TEST(Plots, KnowWhatEventsHaveSet) {
 
 // What a report says is shown as it stands; what it does not say is a dash.
 TEST(RunReport, IsReadAsItStands) {
-  const RunReport r = read_run_report(R"({"residuals": {"newton": 1.5e-17, "power": null}, "steps": 12, "outcome": "singular", "message": "here",
+  const RunReport r = read_run_report(
+      R"({"residuals": {"newton": 1.5e-17, "power": null}, "steps": 12, "outcome": "singular", "message": "here",
     "error_estimate": {"digits": 11, "means": "a second run"}, "method": {"last": "rk", "turns": [{"to": "bdf"}]},
     "events": [{"name": "e", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}], "monitors": {"w": {"first": 1, "last": 2}}, "warnings": [{"message": "m", "hint": "h"}]})");
   EXPECT_EQ(r.newton, "1.5e-17");
@@ -77,7 +81,8 @@ TEST(RunReport, IsReadAsItStands) {
   EXPECT_EQ(r.watched[0].least, "–");
   EXPECT_EQ(r.warnings[0].hint, "h");
   EXPECT_EQ(read_run_report("no JSON").outcome, "");
-  EXPECT_EQ(read_run_report(R"({"events": 3, "residuals": []})").events.size(), 0U) << "of another kind than it should be";
+  EXPECT_EQ(read_run_report(R"({"events": 3, "residuals": []})").events.size(), 0U)
+      << "of another kind than it should be";
 }
 
 // The frame of a table that turns at a constant rate, and one whose origin goes in a circle.
@@ -95,7 +100,8 @@ TEST(ObserverPath, TurnsAsTheSpinSays) {
 }
 
 TEST(ObserverPath, FollowsTheVelocityOfTheOrigin) {
-  const auto model = test::shipped("papers/luo-zhao-example-2");  // inertial velocity (0.2 cos t, 0.1 sin t), spin 0.1 sin t
+  const auto model =
+      test::shipped("papers/luo-zhao-example-2");  // inertial velocity (0.2 cos t, 0.1 sin t), spin 0.1 sin t
   const std::vector<ObserverPose> poses = observer_path(*model, parameter_values<double>(*model), {4});
   EXPECT_NEAR(poses[0].origin[0], 0.2 * std::sin(4.0), 1e-8);
   EXPECT_NEAR(poses[0].origin[1], 0.1 * (1 - std::cos(4.0)), 1e-8);
@@ -104,7 +110,8 @@ TEST(ObserverPath, FollowsTheVelocityOfTheOrigin) {
 
 TEST(Bibliography, NamesWhatRefsBibHolds) {
   EXPECT_EQ(reference("JorbaZou2005"),
-            "Jorba, À.; Zou, M.: A software package for the numerical integration of ODEs by means of high-order Taylor methods. Experimental Mathematics 14 (1), 99–117, 2005.");
+            "Jorba, À.; Zou, M.: A software package for the numerical integration of ODEs by means of high-order "
+            "Taylor methods. Experimental Mathematics 14 (1), 99–117, 2005.");
   EXPECT_EQ(reference("nobody"), "");
   Bibliography b;
   b.source("Appell 1911; Somebody: A Book");

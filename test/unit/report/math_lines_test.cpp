@@ -1,10 +1,9 @@
 // Formulas that wrap say the same as those that do not.
-#include "report/math_lines.h"
-
 #include <gtest/gtest.h>
 
 #include "mechanics/mechanics.h"
 #include "report/markup.h"
+#include "report/math_lines.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -47,8 +46,11 @@ TEST(MathLines, OnlyLongBracketsAreOpened) {
 
 TEST(MathLines, ALongNumeratorIsTakenOutOfItsFraction) {
   std::string sum = "<mi>x</mi>", product = "<mi>x</mi>";
-  for (int k = 0; k < 14; ++k) sum += "<mo>+</mo><mi>z</mi>", product += "<mo>&#x2062;</mo><msup><mi>z</mi><mn>2</mn></msup>";
-  const auto fraction = [](const std::string& top) { return "<mfrac><mrow>" + top + "</mrow><mrow><mi>c</mi></mrow></mfrac>"; };
+  for (int k = 0; k < 14; ++k)
+    sum += "<mo>+</mo><mi>z</mi>", product += "<mo>&#x2062;</mo><msup><mi>z</mi><mn>2</mn></msup>";
+  const auto fraction = [](const std::string& top) {
+    return "<mfrac><mrow>" + top + "</mrow><mrow><mi>c</mi></mrow></mfrac>";
+  };
   std::string together;
   for (const std::string& p : math_pieces(fraction(sum))) together += p;
   EXPECT_EQ(signs(together), "1c(" + signs(sum) + ")");
@@ -78,7 +80,8 @@ TEST(MathLines, NothingOfAnEquationIsLostOnAnyShippedModel) {
 }
 
 TEST(Page, TextIsNeverMarkup) {
-  EXPECT_EQ(markup_escape("</script><b a='1' b=\"2\">&"), "&lt;/script&gt;&lt;b a=&#39;1&#39; b=&quot;2&quot;&gt;&amp;");
+  EXPECT_EQ(markup_escape("</script><b a='1' b=\"2\">&"),
+            "&lt;/script&gt;&lt;b a=&#39;1&#39; b=&quot;2&quot;&gt;&amp;");
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 // The picture of a model: what is drawn, and that its program places it where the model says.
-#include "report/scene.h"
+#include <cmath>
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "report/scene.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -28,7 +27,8 @@ std::vector<double> run(const Json& scene, const std::vector<double>& row, doubl
   for (const Json& e : scene["code"]) {
     const std::string op = e[0];
     const auto at = [&](std::size_t k) { return v.at(e[k].get<std::size_t>()); };
-    if (op == "c") v.push_back(e[1]);
+    if (op == "c")
+      v.push_back(e[1]);
     else if (op == "i") {
       const int column = scene["inputs"][e[1].get<std::size_t>()]["column"];
       v.push_back(column < 0 ? t : row.at(static_cast<std::size_t>(column)));
@@ -36,12 +36,18 @@ std::vector<double> run(const Json& scene, const std::vector<double>& row, doubl
       double s = e[1];
       for (std::size_t k = 2; k < e.size(); k += 2) s += e[k].get<double>() * at(k + 1);
       v.push_back(s);
-    } else if (op == "*") v.push_back(at(1) * at(2));
-    else if (op == "/") v.push_back(at(1) / at(2));
-    else if (op == "^") v.push_back(std::pow(at(1), e[2].get<double>()));
-    else if (op == "f" && e[1] == "sin") v.push_back(std::sin(at(2)));
-    else if (op == "f" && e[1] == "cos") v.push_back(std::cos(at(2)));
-    else ADD_FAILURE() << "an operation that this test does not know: " << op, v.push_back(0);
+    } else if (op == "*")
+      v.push_back(at(1) * at(2));
+    else if (op == "/")
+      v.push_back(at(1) / at(2));
+    else if (op == "^")
+      v.push_back(std::pow(at(1), e[2].get<double>()));
+    else if (op == "f" && e[1] == "sin")
+      v.push_back(std::sin(at(2)));
+    else if (op == "f" && e[1] == "cos")
+      v.push_back(std::cos(at(2)));
+    else
+      ADD_FAILURE() << "an operation that this test does not know: " << op, v.push_back(0);
   }
   return v;
 }
@@ -97,7 +103,8 @@ TEST(Scene, PlaneModelsAreFlatAndDrawnByTheirView) {
 
 TEST(Scene, WithoutAViewParticlesLeaveTheirPath) {
   Diagnostics d;
-  const auto model = read_model(SourceText{"m.toml", "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n"}, d);
+  const auto model = read_model(
+      SourceText{"m.toml", "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n"}, d);
   ASSERT_TRUE(model);
   const Json s = scene_of(*model);
   EXPECT_EQ(item(s, "trace", "p")["of"], "p");

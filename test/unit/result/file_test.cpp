@@ -1,15 +1,14 @@
-#include "result/file.h"
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <csignal>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
+#include "result/file.h"
 #include "result/rows.h"
 
 namespace anholon {
@@ -31,7 +30,9 @@ class File : public testing::Test {
     all << in.rdbuf();
     return all.str();
   }
-  std::size_t files() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator())); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
 
   fs::path folder_;
   std::string path_;
@@ -54,7 +55,9 @@ TEST_F(File, HasItsNameWhenItIsWhole) {
 
 TEST_F(File, WhatWasNotBegunLeavesNothing) {
   std::ofstream(path_) << "old";
-  { GrowingFile file(path_); }
+  {
+    GrowingFile file(path_);
+  }
   EXPECT_EQ(text(path_), "old");
   EXPECT_EQ(files(), 1u);
 }
@@ -90,7 +93,8 @@ TEST_F(File, IsWrittenByOneProcess) {
   EXPECT_EQ(c, 'y');
   EXPECT_EQ(GrowingFile(path_).error(), "cannot write " + path_ + ": another process writes it");
   fs::create_symlink(path_, folder_ / "link");
-  EXPECT_EQ(GrowingFile((folder_ / "." / "rows.csv").string()).error(), "cannot write " + (folder_ / "." / "rows.csv").string() + ": another process writes it");
+  EXPECT_EQ(GrowingFile((folder_ / "." / "rows.csv").string()).error(),
+            "cannot write " + (folder_ / "." / "rows.csv").string() + ": another process writes it");
   ASSERT_EQ(::write(done[1], &c, 1), 1);
   waitpid(child, nullptr, 0);
   EXPECT_EQ(GrowingFile(path_).error(), "") << "its end ends the claim";
@@ -105,7 +109,7 @@ TEST_F(File, ALinkStaysOne) {
   EXPECT_EQ(write_whole(path_, "new"), "");
   EXPECT_TRUE(fs::is_symlink(path_));
   EXPECT_EQ(text(real), "new");
-  struct stat info {};
+  struct stat info{};
   ASSERT_EQ(::stat(real.c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777, 0640u) << "the mode of what was there";
   EXPECT_EQ(files(), 2u);
@@ -132,7 +136,8 @@ TEST_F(File, DevicesAreWrittenAsTheyAre) {
 }
 
 TEST_F(File, SaysWhatIsInTheWay) {
-  EXPECT_EQ(write_whole((folder_ / "no" / "x").string(), "x"), "cannot write " + (folder_ / "no" / "x").string() + ": No such file or directory");
+  EXPECT_EQ(write_whole((folder_ / "no" / "x").string(), "x"),
+            "cannot write " + (folder_ / "no" / "x").string() + ": No such file or directory");
   EXPECT_EQ(write_whole(folder_.string(), "x"), "cannot write " + folder_.string() + ": Is a directory");
   EXPECT_EQ(obstacle_to_writing(folder_.string()), "cannot write " + folder_.string() + ": Is a directory");
   EXPECT_FALSE(fs::exists(folder_.string() + ".part"));

@@ -1,15 +1,15 @@
 // Results in HDF5: what was written is read, and the file that has a name is whole at every moment.
-#include <fcntl.h>
-#include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <thread>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/diagnostic.h"
 #include "numeric/number.h"
@@ -171,7 +171,8 @@ TEST_F(Hdf5, CheckpointsComeByTimeAndByBytes) {
   EXPECT_EQ(by_time.written(), 1u);
 }
 
-// A process that writes without end is killed at random times: each time the file opens, with all rows up to some checkpoint.
+// A process that writes without end is killed at random times: each time the file opens, with all rows up to some
+// checkpoint.
 TEST_F(Hdf5, SurvivesKills) {
   unsigned random = 12345;
   std::size_t grown = 0;
@@ -249,7 +250,8 @@ TEST_F(Hdf5, FullDiskLeavesTheLastFile) {
 }
 
 TEST_F(Hdf5, SaysWhereItCannotWrite) {
-  EXPECT_EQ(Hdf5Sink((folder_ / "no" / "run.h5").string(), info()).error(), "cannot write " + (folder_ / "no" / "run.h5").string() + ": No such file or directory");
+  EXPECT_EQ(Hdf5Sink((folder_ / "no" / "run.h5").string(), info()).error(),
+            "cannot write " + (folder_ / "no" / "run.h5").string() + ": No such file or directory");
 }
 
 // Damage is an error with a message, never a crash.

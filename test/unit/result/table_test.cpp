@@ -1,24 +1,26 @@
-#include "result/table.h"
+#include <cmath>
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/diagnostic.h"
 #include "base/escape.h"
 #include "result/run_file.h"
+#include "result/table.h"
 
 namespace anholon {
 namespace {
 
 std::string trouble(const std::string& text, bool json = false) {
   try {
-    if (json) read_json_run(text);
-    else read_csv(text);
+    if (json)
+      read_json_run(text);
+    else
+      read_csv(text);
     return "none";
   } catch (const Failure& f) {
-    return std::to_string(f.diagnostic.span.line) + ":" + std::to_string(f.diagnostic.span.column) + ": " + f.diagnostic.message;
+    return std::to_string(f.diagnostic.span.line) + ":" + std::to_string(f.diagnostic.span.column) + ": " +
+           f.diagnostic.message;
   }
 }
 
@@ -49,7 +51,8 @@ TEST(RunTable, HoldsNoTextsWhereTheNumbersSayItAll) {
 }
 
 TEST(Csv, CommasInBracketsAndQuotesBelongToNames) {
-  EXPECT_EQ(split_csv("t,P[1,2],D(x,4),\"a,\"\"b\",y'"), (std::vector<std::string>{"t", "P[1,2]", "D(x,4)", "a,\"b", "y'"}));
+  EXPECT_EQ(split_csv("t,P[1,2],D(x,4),\"a,\"\"b\",y'"),
+            (std::vector<std::string>{"t", "P[1,2]", "D(x,4)", "a,\"b", "y'"}));
   EXPECT_EQ(csv_cell("D(x,4)"), "\"D(x,4)\"");
   EXPECT_EQ(split_csv(csv_cell("a,\"b")), std::vector<std::string>{"a,\"b"});
   EXPECT_EQ(csv_cell("x'"), "x'");
@@ -89,9 +92,12 @@ TEST(Csv, SaysWhereSomethingIsWrong) {
 }
 
 TEST(Json, KeepsNumbersAndReportAsTheyAreWritten) {
-  const std::string report = "{\n  \"model\": \"a \\\"disc\\\"\",\n  \"form\": \"routh\",\n  \"residuals\": {\n    \"newton\": 1e-19\n  },\n  \"outcome\": \"finished\"\n}";
+  const std::string report = "{\n  \"model\": \"a \\\"disc\\\"\",\n  \"form\": \"routh\",\n  \"residuals\": {\n    "
+                             "\"newton\": 1e-19\n  },\n  \"outcome\": \"finished\"\n}";
   const std::size_t place = report.find("\n  \"residuals\"");
-  const std::string text = report.substr(0, place) + "\n  \"columns\": [\"t\", \"x\"],\n  \"rows\": [[0, 1.50], [1, null]]," + report.substr(place) + "\n";
+  const std::string text = report.substr(0, place) +
+                           "\n  \"columns\": [\"t\", \"x\"],\n  \"rows\": [[0, 1.50], [1, null]]," +
+                           report.substr(place) + "\n";
   const RunFile run = read_json_run(text);
   EXPECT_EQ(run.title, "a \"disc\"");
   EXPECT_EQ(run.report, report);
@@ -100,8 +106,10 @@ TEST(Json, KeepsNumbersAndReportAsTheyAreWritten) {
 }
 
 TEST(Json, SaysWhereSomethingIsWrong) {
-  EXPECT_EQ(trouble("{\"columns\": [\"t\"], \"rows\": [[0], [1, 2]]}", true), "1:38: this row is longer than the list of columns");
-  EXPECT_EQ(trouble("{\"columns\": [\"t\", \"x\"],\n \"rows\": [[0]]}", true), "2:14: this row is shorter than the list of columns");
+  EXPECT_EQ(trouble("{\"columns\": [\"t\"], \"rows\": [[0], [1, 2]]}", true),
+            "1:38: this row is longer than the list of columns");
+  EXPECT_EQ(trouble("{\"columns\": [\"t\", \"x\"],\n \"rows\": [[0]]}", true),
+            "2:14: this row is shorter than the list of columns");
   EXPECT_EQ(trouble("{\"columns\": [\"t\"],\n \"rows\": [[a]]}", true), "2:12: a number is missing");
   EXPECT_EQ(trouble("{\"model\": \"x\"}", true), "0:0: this is not the JSON of a run: it has no columns");
   EXPECT_EQ(trouble("{\"columns\": [\"t\"", true), "1:17: a comma is missing");
@@ -109,7 +117,8 @@ TEST(Json, SaysWhereSomethingIsWrong) {
 }
 
 TEST(Json, NumbersAreThoseOfJson) {
-  for (const char* good : {"0", "-0.5", "1e-300", "1.00000000000000000000000000000001e+00", "12.25E3"}) EXPECT_EQ(json_number(good), good);
+  for (const char* good : {"0", "-0.5", "1e-300", "1.00000000000000000000000000000001e+00", "12.25E3"})
+    EXPECT_EQ(json_number(good), good);
   EXPECT_EQ(json_number(".5"), "0.5");
   EXPECT_EQ(json_number("1/4"), "0.25");
   EXPECT_EQ(json_number("5."), "5");

@@ -1,10 +1,9 @@
 // Methods other than Taylor's: they give the same motion, and the automatic choice finds where they pay.
-#include "run/course.h"
+#include <numbers>
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "run/course.h"
 #include "support/models.h"
 #include "support/motion.h"
 
@@ -27,7 +26,8 @@ Rational power_of_ten(int n) {
 
 Result motion(const std::string& text, const Rational& to, const Asked& asked, const std::string& form = "routh") {
   Scenario s;
-  if (const Outcome o = make_scenario(test::model_of(text), *find_formulation(form), {}, s); !o.ok()) throw std::runtime_error(o.message);
+  if (const Outcome o = make_scenario(test::model_of(text), *find_formulation(form), {}, s); !o.ok())
+    throw std::runtime_error(o.message);
   SimulationOptions o;
   o.to = to;
   o.every = Rational(to / 4);
@@ -93,7 +93,8 @@ class ByMethod : public testing::TestWithParam<std::string> {};
 TEST_P(ByMethod, TheMotionIsTheSame) {
   const std::string text = test::shipped_text(GetParam());
   const Result expected = motion(text, 1, {Method::taylor, power_of_ten(13)});
-  const Result rk = motion(text, 1, {Method::runge_kutta, power_of_ten(9)}), bdf = motion(text, 1, {Method::bdf, power_of_ten(8)});
+  const Result rk = motion(text, 1, {Method::runge_kutta, power_of_ten(9)}),
+               bdf = motion(text, 1, {Method::bdf, power_of_ten(8)});
   for (const Result* r : {&rk, &bdf}) {
     ASSERT_TRUE(r->report.outcome.ok()) << r->report.outcome.message;
     EXPECT_EQ(r->report.method.taylor_steps, 0U);
@@ -110,13 +111,16 @@ TEST_P(ByMethod, TheMotionIsTheSame) {
   EXPECT_LT(bdf.report.power, 1e-5);
 }
 INSTANTIATE_TEST_SUITE_P(Model, ByMethod,
-                         testing::Values("zoo/double-pendulum-cartesian", "zoo/chaplygin-sleigh", "zoo/disc", "zoo/isokinetic", "zoo/second-order-linear",
-                                         "zoo/third-order-linear", "zoo/rocket", "zoo/snakeboard", "zoo/chain", "zoo/spherical-robot", "zoo/fourbar"),
+                         testing::Values("zoo/double-pendulum-cartesian", "zoo/chaplygin-sleigh", "zoo/disc",
+                                         "zoo/isokinetic", "zoo/second-order-linear", "zoo/third-order-linear",
+                                         "zoo/rocket", "zoo/snakeboard", "zoo/chain", "zoo/spherical-robot",
+                                         "zoo/fourbar"),
                          [](const auto& p) { return test::test_name(p.param); });
 
 TEST(Course, OtherCoordinatesAreEliminatedOnTheWay) {
   const std::string text = test::shipped_text("zoo/chaplygin-sleigh");
-  const Result expected = motion(text, 8, {Method::taylor, power_of_ten(12)}, "maggi"), r = motion(text, 8, {Method::runge_kutta, power_of_ten(9)}, "maggi");
+  const Result expected = motion(text, 8, {Method::taylor, power_of_ten(12)}, "maggi"),
+               r = motion(text, 8, {Method::runge_kutta, power_of_ten(9)}, "maggi");
   ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
   EXPECT_GT(expected.report.eliminations, 0U);
   EXPECT_GT(r.report.eliminations, 0U);
@@ -181,17 +185,20 @@ TEST(Course, StepsEndAtKinks) {
 std::string among_many() {
   std::string x, y;
   for (int k = -6; k <= 6; ++k) {
-    const std::string a = std::to_string(k), b = std::to_string(k * k % 7), force = "((x - (" + a + "))^2 + (y - " + b + ")^2 + 1)^(-3/2)";
+    const std::string a = std::to_string(k), b = std::to_string(k * k % 7),
+                      force = "((x - (" + a + "))^2 + (y - " + b + ")^2 + 1)^(-3/2)";
     x += " + (" + a + " - x)*" + force;
     y += " + (" + b + " - y)*" + force;
   }
-  return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"(" + x.substr(3) +
-         ")*ex + (" + y.substr(3) + ")*ey\"\n[initial]\nx = 0.3\ny = 0.1\n\"x'\" = 0.5\n\"y'\" = 0.2\n";
+  return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + "
+         "y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"(" +
+         x.substr(3) + ")*ex + (" + y.substr(3) + ")*ey\"\n[initial]\nx = 0.3\ny = 0.1\n\"x'\" = 0.5\n\"y'\" = 0.2\n";
 }
 
 TEST(Course, LooseTolerancesGoByRungeKutta) {
   const std::string text = among_many();
-  const Result found = motion(text, 150, {Method::automatic, power_of_ten(4)}), taylor = motion(text, 150, {Method::taylor, power_of_ten(4)});
+  const Result found = motion(text, 150, {Method::automatic, power_of_ten(4)}),
+               taylor = motion(text, 150, {Method::taylor, power_of_ten(4)});
   ASSERT_TRUE(found.report.outcome.ok()) << found.report.outcome.message;
   ASSERT_EQ(found.report.method.turns.size(), 1U);
   EXPECT_EQ(found.report.method.turns[0].to, Method::runge_kutta);
@@ -199,7 +206,9 @@ TEST(Course, LooseTolerancesGoByRungeKutta) {
   EXPECT_GT(taylor.report.method.taylor_steps, 200U);
   // Over a time that it does not forget its start in.
   const Result exact = motion(text, 10, {Method::taylor, power_of_ten(12)});
-  EXPECT_LT(difference(motion(text, 10, {Method::runge_kutta, power_of_ten(4)}), exact), 10 * difference(motion(text, 10, {Method::taylor, power_of_ten(4)}), exact)) << "cheaper, not worse";
+  EXPECT_LT(difference(motion(text, 10, {Method::runge_kutta, power_of_ten(4)}), exact),
+            10 * difference(motion(text, 10, {Method::taylor, power_of_ten(4)}), exact))
+      << "cheaper, not worse";
   const Result sharp = motion(text, 150, {Method::automatic, power_of_ten(7)});
   EXPECT_EQ(sharp.report.method.steps, 0U);
 }
@@ -207,13 +216,16 @@ TEST(Course, LooseTolerancesGoByRungeKutta) {
 // x = -cos t; x y' = 0 loses its hold at x = 0, where no multiplier has a pole and the pivot, a square, keeps its sign.
 TEST(Course, SingularPointsAreNotPassed) {
   const auto hold = [](const std::string& factor) {
-    return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\n"
-           "vector = \"-x*ex\"\n[[constraint]]\nname = \"hold\"\nequation = \"" + factor + "*y' = 0\"\n[initial]\nx = -1\ny = 0\n\"x'\" = 0\n\"y'\" = 0\n";
+    return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + "
+           "y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\n"
+           "vector = \"-x*ex\"\n[[constraint]]\nname = \"hold\"\nequation = \"" +
+           factor + "*y' = 0\"\n[initial]\nx = -1\ny = 0\n\"x'\" = 0\n\"y'\" = 0\n";
   };
   for (const Method m : {Method::taylor, Method::runge_kutta, Method::bdf})
     for (const int digits : {4, 6, 9}) {
       const Result r = motion(hold("x"), 4, {m, power_of_ten(digits)});
-      EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular) << name(m) << " " << digits << ": " << r.report.outcome.message;
+      EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular)
+          << name(m) << " " << digits << ": " << r.report.outcome.message;
       EXPECT_NEAR(std::stod(r.report.t), std::numbers::pi / 2, 1e-3) << name(m) << " " << digits;
       const Result regular = motion(hold("(x + 3)"), 4, {m, power_of_ten(digits)});
       EXPECT_TRUE(regular.report.outcome.ok()) << name(m) << " " << digits << ": " << regular.report.outcome.message;
@@ -226,21 +238,25 @@ TEST(Course, SingularPointsAreNotPassed) {
 // Where another method cannot go, Taylor does, and stops where it always stopped.
 TEST(Course, TheEndsOfAMotionAreTaylors) {
   const std::string table = test::replaced(kTable, "outside = \"linear\"", "outside = \"error\"");
-  const std::string mass = "coordinates = [\"x\"]\n[functions]\nm = \"1 - t/3\"\n[[particle]]\nname = \"p\"\nmass = \"m\"\nposition = \"x*ex\"\n"
+  const std::string mass = "coordinates = [\"x\"]\n[functions]\nm = \"1 - t/3\"\n[[particle]]\nname = \"p\"\nmass = "
+                           "\"m\"\nposition = \"x*ex\"\n"
                            "[[force]]\nname = \"f\"\non = \"p\"\nvector = \"ex\"\n";
   const std::string blow = "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n"
                            "[[force]]\nname = \"f\"\non = \"p\"\nvector = \"6*x^2*ex\"\n[initial]\nx = 1\n\"x'\" = 2\n";
   for (const std::string& text : {test::replaced(table, "x = 1.25", "x = 1.25\n\"x'\" = 6"), mass, blow}) {
-    const Result expected = motion(text, 20, {Method::taylor, power_of_ten(10)}), rk = motion(text, 20, {Method::runge_kutta, power_of_ten(10)});
+    const Result expected = motion(text, 20, {Method::taylor, power_of_ten(10)}),
+                 rk = motion(text, 20, {Method::runge_kutta, power_of_ten(10)});
     EXPECT_FALSE(expected.report.outcome.ok());
-    EXPECT_EQ(rk.report.outcome.kind, expected.report.outcome.kind) << rk.report.outcome.message << "\n" << expected.report.outcome.message;
+    EXPECT_EQ(rk.report.outcome.kind, expected.report.outcome.kind) << rk.report.outcome.message << "\n"
+                                                                    << expected.report.outcome.message;
     EXPECT_EQ(rk.report.outcome.message.substr(0, 40), expected.report.outcome.message.substr(0, 40));
     EXPECT_GT(rk.report.method.steps, 0U);
     EXPECT_NEAR(std::stod(rk.report.t), std::stod(expected.report.t), 1e-5);
   }
 }
 
-// x = -cos t, and x y' = 0 loses its hold at x = 0. A stop is met by a step that ends before it, or that cannot be made.
+// x = -cos t, and x y' = 0 loses its hold at x = 0. A stop is met by a step that ends before it, or that cannot be
+// made.
 TEST(Course, TheLastRowOfAStopIsOfItsTime) {
   const std::string text = R"(coordinates = ["x", "y"]
 particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
@@ -255,14 +271,16 @@ initial = {x = -1, "x'" = 0, y = 0, "y'" = 0}
     const double t = r.number(2, "t");
     EXPECT_GT(t, 1);
     EXPECT_LT(t, std::numbers::pi / 2);
-    EXPECT_NEAR(r.number(2, "x"), -std::cos(t), 1e-3 * std::pow(10, 4 - digits) + 1e-14) << "at t = " << t << ", to " << digits << " digits";
+    EXPECT_NEAR(r.number(2, "x"), -std::cos(t), 1e-3 * std::pow(10, 4 - digits) + 1e-14)
+        << "at t = " << t << ", to " << digits << " digits";
   }
 }
 
 TEST(Course, ShippedModelsStayTaylors) {
   for (const char* name : {"zoo/disc", "zoo/chaplygin-sleigh", "zoo/rocket", "zoo/tether"}) {
     const std::string text = test::shipped_text(name);
-    const Result chosen = motion(text, 1, {Method::automatic, power_of_ten(12)}), taylor = motion(text, 1, {Method::taylor, power_of_ten(12)});
+    const Result chosen = motion(text, 1, {Method::automatic, power_of_ten(12)}),
+                 taylor = motion(text, 1, {Method::taylor, power_of_ten(12)});
     EXPECT_EQ(chosen.rows.rows(), taylor.rows.rows()) << name;
     EXPECT_EQ(chosen.report.method.trials, 0U) << name;
   }

@@ -1,13 +1,12 @@
 // Ensembles: a case is what `simulate` makes of it, and the same bits whoever computes it and after what.
-#include "run/ensemble.h"
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
 
+#include <gtest/gtest.h>
+
+#include "run/ensemble.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -144,7 +143,8 @@ TEST(Ensemble, EveryCaseIsWhatSimulateMakesOfIt) {
   run.cases({{Rational(3, 2), Rational(2)}, {Rational(5, 2), Rational(1)}});
   const auto list = run.go();
   ASSERT_EQ(list.size(), 2U);
-  for (const auto& [k, set] : {std::pair{0U, Overrides{{"l", "1.5"}, {"m", "2"}}}, std::pair{1U, Overrides{{"l", "2.5"}}}}) {
+  for (const auto& [k, set] :
+       {std::pair{0U, Overrides{{"l", "1.5"}, {"m", "2"}}}, std::pair{1U, Overrides{{"l", "2.5"}}}}) {
     const std::vector<double> row = simulated(kPendulum, set, 1);
     ASSERT_TRUE(list[k].outcome.ok()) << list[k].outcome.message;
     EXPECT_EQ(list[k].t, 1);
@@ -166,7 +166,8 @@ TEST(Ensemble, KernelsAreSeenInTheLastDigits) {
   ASSERT_EQ(with.size(), 2U);
   EXPECT_NE(bits(with) == bits(without), true) << "kernels were at work";
   constexpr double kLastDigits = 1e-13;  // a thousand roundings
-  for (const auto& [k, set] : {std::pair{0U, Overrides{{"l", "1.5"}, {"m", "2"}}}, std::pair{1U, Overrides{{"l", "2.5"}}}}) {
+  for (const auto& [k, set] :
+       {std::pair{0U, Overrides{{"l", "1.5"}, {"m", "2"}}}, std::pair{1U, Overrides{{"l", "2.5"}}}}) {
     const std::vector<double> row = simulated(kPendulum, set, 1, true);
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_NEAR(with[k].last[i], row[1 + i], kLastDigits);
@@ -175,7 +176,8 @@ TEST(Ensemble, KernelsAreSeenInTheLastDigits) {
   }
 }
 
-// Many cases share the lanes of a kernel, few do not: no bit of a case depends on that, nor on its neighbours, parameters or end.
+// Many cases share the lanes of a kernel, few do not: no bit of a case depends on that, nor on its neighbours,
+// parameters or end.
 TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
   Sweep many(test::shipped_text("zoo/disc"));
   many.options.varied = {parameter(many.model(), "m"), initial(3, 0)};
@@ -184,7 +186,9 @@ TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
   for (int k = 0; k < 40; ++k) values.push_back({Rational(1) + Rational(k % 5, 8), Rational(1, 4) + Rational(k, 64)});
   many.cases(values);
   // One of them has no motion.
-  many.options.numbers = [values](std::size_t k) { return EnsembleCase{values[k], k == 13 ? Rational(0) : Rational(1) + Rational(static_cast<int>(k % 3), 4)}; };
+  many.options.numbers = [values](std::size_t k) {
+    return EnsembleCase{values[k], k == 13 ? Rational(0) : Rational(1) + Rational(static_cast<int>(k % 3), 4)};
+  };
   const std::vector<CaseResult> together = many.go(1);
   ASSERT_EQ(together.size(), values.size());
   for (const std::size_t k : {0UL, 7UL, 8UL, 13UL, 23UL, 39UL}) {
@@ -290,7 +294,8 @@ TEST_P(Threads, HaveNoInfluenceOnAnyBit) {
   run.cases(values);
   const std::string one = bits(run.go(1));
   EXPECT_FALSE(one.empty());
-  for (const std::size_t threads : {2U, 3U, 4U, 5U, 6U, 7U, 8U}) EXPECT_EQ(bits(run.go(threads)) == one, true) << threads << " threads";
+  for (const std::size_t threads : {2U, 3U, 4U, 5U, 6U, 7U, 8U})
+    EXPECT_EQ(bits(run.go(threads)) == one, true) << threads << " threads";
   // Alone, every case is the same as among others.
   const auto all = run.go(2);
   for (const std::size_t k : {std::size_t{0}, values.size() / 3, values.size() - 1}) {
@@ -303,11 +308,12 @@ TEST_P(Threads, HaveNoInfluenceOnAnyBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Threads,
-                         testing::Values(Of{"Constraints", kPendulum, "g", "routh", 100}, Of{"Events", kBall, "e", "routh", 48}),
+                         testing::Values(Of{"Constraints", kPendulum, "g", "routh", 100},
+                                         Of{"Events", kBall, "e", "routh", 48}),
                          [](const auto& p) { return std::string(p.param.name); });
 
-// Other coordinates are eliminated on the way, which builds expressions: computed in graphs where others have left theirs, some of
-// these cases have other last bits.
+// Other coordinates are eliminated on the way, which builds expressions: computed in graphs where others have left
+// theirs, some of these cases have other last bits.
 TEST(Ensemble, WhatOneCaseBuildsIsNotSeenByAnother) {
   Sweep run(test::shipped_text("zoo/double-pendulum-cartesian"), "chaplygin");
   run.options.varied = {initial(0, 1)};
@@ -491,7 +497,8 @@ TEST(Ensemble, SaysHowExactItsResultsAre) {
   // No case that was looked at is worse than what is said of it, coordinates by their own size.
   double most[2] = {0, 0};
   for (const std::size_t k : coarse.cases)
-    for (std::size_t i = 0; i < 2; ++i) most[i] = std::max(most[i], std::abs(loose[k].last[i] - sharp[k].last[i]) / std::abs(sharp[k].last[i]));
+    for (std::size_t i = 0; i < 2; ++i)
+      most[i] = std::max(most[i], std::abs(loose[k].last[i] - sharp[k].last[i]) / std::abs(sharp[k].last[i]));
   EXPECT_LE(std::max(most[0], most[1]), coarse.error->kinds[0].error);
   EXPECT_GE(std::max(most[0], most[1]), coarse.error->kinds[0].error / 10);
 }

@@ -1,7 +1,8 @@
-// The digits to trust: how the estimate is made, and that each kind of columns has its own. Many motions against 30 digits: test/estimate.
-#include <gtest/gtest.h>
-
+// The digits to trust: how the estimate is made, and that each kind of columns has its own. Many motions against 30
+// digits: test/estimate.
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "run/estimate.h"
 #include "support/motion.h"
@@ -19,7 +20,8 @@ struct Result : test::Motion {
     return std::nan("");
   }
   bool warned(const std::string& of) const {
-    return std::any_of(report.warnings.begin(), report.warnings.end(), [&](const Warning& w) { return w.message.find(of) != std::string::npos; });
+    return std::any_of(report.warnings.begin(), report.warnings.end(),
+                       [&](const Warning& w) { return w.message.find(of) != std::string::npos; });
   }
 };
 
@@ -53,8 +55,8 @@ x = "1 - e"
 "y'" = "sqrt((1 + e)/(1 - e))"
 )toml";
 
-// Against the reference trajectories: no estimate is smaller than a tenth of the true error, nor larger than a thousand times it (or the
-// round-off of what is printed).
+// Against the reference trajectories: no estimate is smaller than a tenth of the true error, nor larger than a thousand
+// times it (or the round-off of what is printed).
 class Estimate : public testing::TestWithParam<test::OraclePair> {};
 
 TEST_P(Estimate, OfTheErrorIsHonest) {
@@ -89,11 +91,15 @@ TEST_P(Estimate, OfTheErrorIsHonest) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Model, Estimate, testing::ValuesIn(test::oracle_pairs()), [](const auto& p) { return test::test_name(p.param.model); });
+INSTANTIATE_TEST_SUITE_P(Model, Estimate, testing::ValuesIn(test::oracle_pairs()),
+                         [](const auto& p) { return test::test_name(p.param.model); });
 
 // Lorenz' equations beside a point that moves uniformly.
 TEST(DigitsToTrust, StatesHaveTheirOwn) {
-  const Result r = until(kPoint + "[state]\na = {rate = \"10*(b - a)\", initial = 1}\nb = {rate = \"a*(28 - c) - b\", initial = 1}\nc = {rate = \"a*b - 8*c/3\", initial = 1}\n[initial]\nx = 1\n\"x'\" = 1\n", 60);
+  const Result r =
+      until(kPoint + "[state]\na = {rate = \"10*(b - a)\", initial = 1}\nb = {rate = \"a*(28 - c) - b\", initial = "
+                     "1}\nc = {rate = \"a*b - 8*c/3\", initial = 1}\n[initial]\nx = 1\n\"x'\" = 1\n",
+            60);
   EXPECT_LT(r.error(ColumnKind::coordinate), 1e-14);
   EXPECT_GT(r.error(ColumnKind::state), 0.1);
   ASSERT_TRUE(r.report.error->lost);
@@ -103,7 +109,8 @@ TEST(DigitsToTrust, StatesHaveTheirOwn) {
   EXPECT_TRUE(std::isnan(r.error(ColumnKind::reaction))) << "nothing constrains the motion";
 }
 
-// After seven periods the place at the shortest distance is known to 8e-10 (from a run with 30 digits); of 16 equidistant times none is near one.
+// After seven periods the place at the shortest distance is known to 8e-10 (from a run with 30 digits); of 16
+// equidistant times none is near one.
 TEST(DigitsToTrust, OfAKeplerEllipseCountWhereItIsFastest) {
   const Result r = until(kKepler, 46);
   EXPECT_GT(r.error(ColumnKind::coordinate), 1e-9);
@@ -113,22 +120,33 @@ TEST(DigitsToTrust, OfAKeplerEllipseCountWhereItIsFastest) {
 
 TEST(DigitsToTrust, OfASmallMotionAreThoseOfItsSize) {
   const auto oscillator = [](const char* size) {
-    return until(kPoint + "[[force]]\non = \"P\"\nvector = \"-x*ex\"\n[initial]\nx = " + size + "\n\"x'\" = 0\n", 20, [] { SimulationOptions o; o.tolerance = Rational(1, 100'000'000); return o; }()).error(ColumnKind::coordinate);
+    return until(kPoint + "[[force]]\non = \"P\"\nvector = \"-x*ex\"\n[initial]\nx = " + size + "\n\"x'\" = 0\n", 20,
+                 [] {
+                   SimulationOptions o;
+                   o.tolerance = Rational(1, 100'000'000);
+                   return o;
+                 }())
+        .error(ColumnKind::coordinate);
   };
   EXPECT_GT(oscillator("1e-7"), 1e4 * oscillator("1"));
 }
 
 // The upright pendulum stands, but for the last digit of pi: both runs round it alike, and fall alike.
 TEST(DigitsToTrust, OfAnEquilibriumThatIsLostAreThoseOfItsStart) {
-  const std::string pendulum = "coordinates = [\"th\"]\n[[particle]]\nname = \"P\"\nmass = 1\nposition = [\"sin(th)\", \"-cos(th)\", \"0\"]\n[gravity]\nfield = \"-9.81*ey\"\n[initial]\nth = \"pi\"\n\"th'\" = 0\n";
+  const std::string pendulum =
+      "coordinates = [\"th\"]\n[[particle]]\nname = \"P\"\nmass = 1\nposition = [\"sin(th)\", \"-cos(th)\", "
+      "\"0\"]\n[gravity]\nfield = \"-9.81*ey\"\n[initial]\nth = \"pi\"\n\"th'\" = 0\n";
   const Result r = until(pendulum, 10);
   // e^(10 sqrt(9.81)) is 4e13.
   EXPECT_GT(r.error(ColumnKind::coordinate), 1e-8);
 }
 
 TEST(DigitsToTrust, AColumnThatIsZeroButForRoundOffTakesNone) {
-  const Result r = until("coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"P\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[constraint]]\nname = \"rod\"\nequation = \"x^2 + y^2 = 1\"\n[initial]\nx = 1\ny = 0\n\"y'\" = 1\n"
-                         "[monitor]\nnothing = \"x^2 + y^2 - 1\"\n", 20);
+  const Result r = until(
+      "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"P\"\nmass = 1\nposition = \"x*ex + "
+      "y*ey\"\n[[constraint]]\nname = \"rod\"\nequation = \"x^2 + y^2 = 1\"\n[initial]\nx = 1\ny = 0\n\"y'\" = 1\n"
+      "[monitor]\nnothing = \"x^2 + y^2 - 1\"\n",
+      20);
   EXPECT_LT(r.error(ColumnKind::monitor), 1e-12);
   EXPECT_LT(r.error(ColumnKind::multiplier), 1e-11);
   EXPECT_LT(r.error(ColumnKind::reaction), 1e-11);
@@ -136,7 +154,9 @@ TEST(DigitsToTrust, AColumnThatIsZeroButForRoundOffTakesNone) {
 
 // The jump of a velocity lies at the same place in both runs, or on either side of a row.
 TEST(DigitsToTrust, RowsAtEventsAreComparedOnTheirSide) {
-  const Result r = until(kPoint + "[gravity]\nfield = \"-9.81*ex\"\n[initial]\nx = 1\n\"x'\" = 0.3\n[[event]]\nname = \"floor\"\nwhen = \"x\"\ndirection = \"down\"\nset = {\"x'\" = \"-0.8*x'\"}\n", 3);
+  const Result r = until(kPoint + "[gravity]\nfield = \"-9.81*ex\"\n[initial]\nx = 1\n\"x'\" = 0.3\n[[event]]\nname = "
+                                  "\"floor\"\nwhen = \"x\"\ndirection = \"down\"\nset = {\"x'\" = \"-0.8*x'\"}\n",
+                         3);
   EXPECT_GE(r.report.events.size(), 5U);
   EXPECT_LT(r.error(ColumnKind::velocity), 1e-14);
   EXPECT_LT(r.error(ColumnKind::event_time), 1e-14);
@@ -144,7 +164,8 @@ TEST(DigitsToTrust, RowsAtEventsAreComparedOnTheirSide) {
 
 // A run that goes on does not know of the events before.
 TEST(DigitsToTrust, OfARunThatGoesOnAfterEvents) {
-  const std::string ball = kPoint + "[gravity]\nfield = \"-9.81*ex\"\n[initial]\nx = 1\n\"x'\" = 0.3\n[[event]]\nname = \"floor\"\nwhen = \"x\"\ndirection = \"down\"\nset = {\"x'\" = \"-0.8*x'\"}\n";
+  const std::string ball = kPoint + "[gravity]\nfield = \"-9.81*ex\"\n[initial]\nx = 1\n\"x'\" = 0.3\n[[event]]\nname "
+                                    "= \"floor\"\nwhen = \"x\"\ndirection = \"down\"\nset = {\"x'\" = \"-0.8*x'\"}\n";
   SavedRun saved;
   SimulationOptions o;
   o.save = [&](const SavedRun& run) { saved = run; };
@@ -158,7 +179,8 @@ TEST(DigitsToTrust, OfARunThatGoesOnAfterEvents) {
 
 // Saturated friction looks constant where a step is made, and is not where it ends.
 TEST(DigitsToTrust, OfAMotionThatSteppedOverItsRestAreNone) {
-  const Result r = until(kPoint + "[[force]]\non = \"P\"\nvector = \"-tanh(x'/0.01)*ex\"\n[initial]\nx = 0\n\"x'\" = 2\n", 5);
+  const Result r =
+      until(kPoint + "[[force]]\non = \"P\"\nvector = \"-tanh(x'/0.01)*ex\"\n[initial]\nx = 0\n\"x'\" = 2\n", 5);
   const std::size_t last = r.rows.rows().size() - 1;
   const double error = std::abs(r.number(last, "x'")) / 2;  // it has come to rest
   EXPECT_GE(r.error(ColumnKind::velocity), error / 10);
@@ -166,17 +188,22 @@ TEST(DigitsToTrust, OfAMotionThatSteppedOverItsRestAreNone) {
 
 // At the kinks of a force accelerations have kinks or jumps, and steps end there.
 TEST(DigitsToTrust, RowsAtKinksAreComparedOnTheirSide) {
-  const Result r = until(kPoint + "[[force]]\non = \"P\"\nvector = \"(3*sin(3*t) - 0.2*sign(x') - x)*ex\"\n[initial]\nx = 1\n\"x'\" = 0.5\n", 10);
+  const Result r = until(
+      kPoint +
+          "[[force]]\non = \"P\"\nvector = \"(3*sin(3*t) - 0.2*sign(x') - x)*ex\"\n[initial]\nx = 1\n\"x'\" = 0.5\n",
+      10);
   EXPECT_LT(r.error(ColumnKind::acceleration), 1e-9);
 }
 
 // A kick so short that no step sees it: the rows do.
 TEST(DigitsToTrust, OfAMotionThatSteppedOverAKickAreNone) {
-  const std::string kicked = kPoint + "[[force]]\non = \"P\"\nvector = \"exp(-((t - 2.5)/0.01)^2)*ex\"\n[initial]\nx = 1\n\"x'\" = 0.01\n";
+  const std::string kicked =
+      kPoint + "[[force]]\non = \"P\"\nvector = \"exp(-((t - 2.5)/0.01)^2)*ex\"\n[initial]\nx = 1\n\"x'\" = 0.01\n";
   SimulationOptions o;
   o.every = Rational(1, 10);
   const Result r = until(kicked, 5, o);
-  const double gained = 0.01 * std::sqrt(std::acos(-1.0)), error = std::abs(r.number(r.rows.rows().size() - 1, "x'") - 0.01 - gained) / (0.01 + gained);
+  const double gained = 0.01 * std::sqrt(std::acos(-1.0)),
+               error = std::abs(r.number(r.rows.rows().size() - 1, "x'") - 0.01 - gained) / (0.01 + gained);
   EXPECT_GE(r.error(ColumnKind::velocity), error / 10);
   EXPECT_EQ(r.report.error->lost.has_value(), error > 0.1);
 }
@@ -185,7 +212,9 @@ TEST(DigitsToTrust, AMotionThatEndsWithoutAValueHasNone) {
   SimulationOptions o;
   o.to = 5;
   Result r;
-  run(kPoint + "[[force]]\non = \"P\"\nvector = \"-ex\"\n[[event]]\nname = \"half\"\nwhen = \"x - 1/2\"\nset = {\"x'\" = \"sqrt(-x)\"}\n[initial]\nx = 1\n\"x'\" = 0\n", o, r);
+  run(kPoint + "[[force]]\non = \"P\"\nvector = \"-ex\"\n[[event]]\nname = \"half\"\nwhen = \"x - 1/2\"\nset = {\"x'\" "
+               "= \"sqrt(-x)\"}\n[initial]\nx = 1\n\"x'\" = 0\n",
+      o, r);
   ASSERT_EQ(r.report.outcome.kind, OutcomeKind::not_a_number);
   EXPECT_FALSE(r.report.error);
   EXPECT_NE(r.report.no_error, "");
@@ -223,7 +252,8 @@ TEST(DigitsToTrust, AChaoticMotionLosesThem) {
   const std::string text = test::shipped_text("zoo/double-pendulum-cartesian");
   SimulationOptions o;
   o.tolerance = Rational(1, 100'000'000);
-  o.state.overrides = {{1, 0, Rational(24, 5)}, {1, 1, Rational(18, 5)}, {1, 2, Rational(48, 5)}, {1, 3, Rational(36, 5)}};
+  o.state.overrides = {
+      {1, 0, Rational(24, 5)}, {1, 1, Rational(18, 5)}, {1, 2, Rational(48, 5)}, {1, 3, Rational(36, 5)}};
   int before = 16;
   double error = 0;
   for (const int to : {1, 15, 45}) {
@@ -242,7 +272,8 @@ TEST(DigitsToTrust, AChaoticMotionLosesThem) {
 }
 
 TEST(DigitsToTrust, InManyDigitsAndNotOfLongRuns) {
-  const std::string pendulum = "coordinates = [\"th\"]\n[[particle]]\nname = \"P\"\nmass = 1\nposition = [\"sin(th)\", \"-cos(th)\", \"0\"]\n[gravity]\nfield = \"-10*ey\"\n[initial]\nth = 1\n";
+  const std::string pendulum = "coordinates = [\"th\"]\n[[particle]]\nname = \"P\"\nmass = 1\nposition = [\"sin(th)\", "
+                               "\"-cos(th)\", \"0\"]\n[gravity]\nfield = \"-10*ey\"\n[initial]\nth = 1\n";
   SimulationOptions o;
   o.at = {Rational(1)};
   o.tolerance = Rational(1, mpz_class("10000000000000000000000"));
@@ -265,7 +296,9 @@ TEST(DigitsToTrust, InManyDigitsAndNotOfLongRuns) {
   EXPECT_NE(lengthy.no_error.find("--error-estimate"), std::string::npos);
 }
 
-RowComparison of_two(double roundoff = 1e-16) { return {{{"x", ColumnKind::coordinate}, {"y", ColumnKind::coordinate}}, roundoff, 1e-12}; }
+RowComparison of_two(double roundoff = 1e-16) {
+  return {{{"x", ColumnKind::coordinate}, {"y", ColumnKind::coordinate}}, roundoff, 1e-12};
+}
 
 TEST(RowComparison, MeasuresAColumnByItsLargestValue) {
   RowComparison c = of_two();
@@ -304,7 +337,8 @@ TEST(RowComparison, NeverClaimsMoreThanIsWritten) {
 TEST(SampledRows, KeepTheFastPhaseOfALongRun) {
   SampledRows<long double> rows;
   for (int k = 0; k <= 100'000; ++k) {
-    const long double t = k, x = 1 / (1 + (t - 77'001) * (t - 77'001));  // narrower than what one of many rows would see
+    const long double t = k,
+                      x = 1 / (1 + (t - 77'001) * (t - 77'001));  // narrower than what one of many rows would see
     rows.add(t, {x}, 0);
   }
   const std::vector<SampledRow<long double>> kept = rows.take();

@@ -1,8 +1,8 @@
 // Events, states, kinks and servo constraints against closed forms.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <sstream>
+
+#include <gtest/gtest.h>
 
 #include "support/models.h"
 #include "support/motion.h"
@@ -12,7 +12,8 @@ namespace {
 
 using Result = test::Motion;
 
-Result run(const std::string& text, const Rational& to, const std::string& tolerance = "1/100000000000000", const std::function<void(SimulationOptions&)>& more = {}) {
+Result run(const std::string& text, const Rational& to, const std::string& tolerance = "1/100000000000000",
+           const std::function<void(SimulationOptions&)>& more = {}) {
   Result r;
   Scenario s;
   r.report.outcome = make_scenario(test::model_of(text), *find_formulation("routh"), {}, s);
@@ -26,7 +27,9 @@ Result run(const std::string& text, const Rational& to, const std::string& toler
 }
 
 std::string mass_on_a_line(const std::string& force, const std::string& more) {
-  return "coordinates = [\"x\"]\n" + more + "[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\non = \"p\"\nvector = \"(" + force + ")*ex\"\n";
+  return "coordinates = [\"x\"]\n" + more +
+         "[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\non = \"p\"\nvector = \"(" + force +
+         ")*ex\"\n";
 }
 
 TEST(Events, TwoThatAreNearlyAtOnce) {
@@ -49,27 +52,34 @@ y = "5.01 + 3e-14"
 }
 
 TEST(Events, AKinkInTheirFormula) {
-  const Result r = run(mass_on_a_line("0", "initial = {x = 1.5, \"x'\" = -1}\nevent = [{name = \"far\", when = \"abs(x) - 2\"}]\n"), 4);
+  const Result r = run(
+      mass_on_a_line("0", "initial = {x = 1.5, \"x'\" = -1}\nevent = [{name = \"far\", when = \"abs(x) - 2\"}]\n"), 4);
   ASSERT_EQ(r.report.events.size(), 1U);
   EXPECT_NEAR(std::stod(r.report.events[0].t), 3.5, 1e-14);
 }
 
 // x = 3 cos 2t: squares of a series converge more slowly than the series.
-// What the series of a formula does not show, or cannot: it has none where the motion starts, it is all but constant there, or its power is too high.
+// What the series of a formula does not show, or cannot: it has none where the motion starts, it is all but constant
+// there, or its power is too high.
 TEST(Events, AreFoundWhateverTheirFormula) {
   const auto moving = [](const std::string& when, const char* x = "0") {
-    return mass_on_a_line("0", "[initial]\nx = " + std::string(x) + "\n\"x'\" = 1\n[[event]]\nname = \"there\"\nwhen = \"" + when + "\"\nstop = true\n");
+    return mass_on_a_line("0", "[initial]\nx = " + std::string(x) +
+                                   "\n\"x'\" = 1\n[[event]]\nname = \"there\"\nwhen = \"" + when + "\"\nstop = true\n");
   };
   struct Formula {
     const char *when, *x;
     double t;
   };
-  for (const Formula& f : {Formula{"norm(x*ex) - 2", "0", 2}, Formula{"sqrt(x) - 1", "0", 1}, Formula{"x^20 - 1", "0", 1}, Formula{"x^200 - 1", "0", 1},
-                           Formula{"tanh((x - 1)/0.01)", "0", 1}, Formula{"tanh((x - 1)/0.01)", "-100", 101}, Formula{"1/(1 + exp(-(x - 1)/0.001)) - 1/2", "0", 1},
-                           Formula{"exp(x/0.01) - exp(100)", "-2", 3}, Formula{"exp(-((x - 3)/0.01)^2) - 1/2", "0", 3 - 0.01 * 0.83255461115769776},
-                           Formula{"atan((x - 1)/0.0001)", "0", 1}, Formula{"x^(3/2) - 8", "0", 4}, Formula{"abs(x)^(1/3) - 1", "0", 1}, Formula{"norm(x*ex + x^2*ey) - sqrt(2)", "0", 1}})
+  for (const Formula& f :
+       {Formula{"norm(x*ex) - 2", "0", 2}, Formula{"sqrt(x) - 1", "0", 1}, Formula{"x^20 - 1", "0", 1},
+        Formula{"x^200 - 1", "0", 1}, Formula{"tanh((x - 1)/0.01)", "0", 1}, Formula{"tanh((x - 1)/0.01)", "-100", 101},
+        Formula{"1/(1 + exp(-(x - 1)/0.001)) - 1/2", "0", 1}, Formula{"exp(x/0.01) - exp(100)", "-2", 3},
+        Formula{"exp(-((x - 3)/0.01)^2) - 1/2", "0", 3 - 0.01 * 0.83255461115769776},
+        Formula{"atan((x - 1)/0.0001)", "0", 1}, Formula{"x^(3/2) - 8", "0", 4}, Formula{"abs(x)^(1/3) - 1", "0", 1},
+        Formula{"norm(x*ex + x^2*ey) - sqrt(2)", "0", 1}})
     for (const Precision precision : {Precision::real, Precision::quad}) {
-      const Result r = run(moving(f.when, f.x), 5 + (f.t > 10 ? 200 : 0), "1/1000000000000", [&](SimulationOptions& o) { o.precision = precision; });
+      const Result r = run(moving(f.when, f.x), 5 + (f.t > 10 ? 200 : 0), "1/1000000000000",
+                           [&](SimulationOptions& o) { o.precision = precision; });
       ASSERT_EQ(r.report.events.size(), 1U) << f.when << " " << r.report.outcome.message;
       EXPECT_NEAR(std::stod(r.report.events[0].t), f.t, 1e-12) << f.when;
     }
@@ -78,8 +88,9 @@ TEST(Events, AreFoundWhateverTheirFormula) {
 TEST(Events, WithoutAnySeriesHoldNobodyUp) {
   // Of what is at rest, of what has no value.
   for (const char* when : {"sqrt(y) - 1", "norm(y*ey) - 1", "log(y) - 1", "1/y - 1"}) {
-    const Result r = run("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + y*ey\"}]\nevent = [{name = \"e\", when = \"" + std::string(when) +
-                             "\"}]\ninitial = {\"x'\" = 1}\n",
+    const Result r = run("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + "
+                         "y*ey\"}]\nevent = [{name = \"e\", when = \"" +
+                             std::string(when) + "\"}]\ninitial = {\"x'\" = 1}\n",
                          3);
     EXPECT_TRUE(r.report.outcome.ok()) << when << " " << r.report.outcome.message;
     EXPECT_LT(r.report.steps, 10U) << when;
@@ -88,35 +99,47 @@ TEST(Events, WithoutAnySeriesHoldNobodyUp) {
 
 TEST(Events, DoNotFireWhereTheirFormulaOnlyTouches) {
   for (const char* when : {"abs(x - 1)", "norm((x - 1)*ex)", "abs(x - 1)*(x + 3)", "sqrt((x - 1)^2)"}) {
-    const Result r = run(mass_on_a_line("0", "initial = {x = 0, \"x'\" = 1}\nevent = [{name = \"touch\", when = \"" + std::string(when) + "\"}]\n"), 3);
+    const Result r = run(mass_on_a_line("0", "initial = {x = 0, \"x'\" = 1}\nevent = [{name = \"touch\", when = \"" +
+                                                 std::string(when) + "\"}]\n"),
+                         3);
     EXPECT_TRUE(r.report.events.empty()) << when;
   }
-  const Result passes = run(mass_on_a_line("0", "initial = {x = 0, \"x'\" = 1}\nevent = [{name = \"pass\", when = \"(x - 1)*abs(x - 1)\"}]\n"), 3);
+  const Result passes =
+      run(mass_on_a_line("0",
+                         "initial = {x = 0, \"x'\" = 1}\nevent = [{name = \"pass\", when = \"(x - 1)*abs(x - 1)\"}]\n"),
+          3);
   ASSERT_EQ(passes.report.events.size(), 1U);
   EXPECT_NEAR(std::stod(passes.report.events[0].t), 1, 1e-9);
 }
 
 TEST(Events, AreAtTheZeroOfTheFormula) {
-  const Result r = run(mass_on_a_line("-4*x", "initial = {x = 3}\nevent = [{name = \"e\", when = \"x^2 - 1\", set = {\"x'\" = \"2*x'\"}}]\n"), Rational(6, 5), "1/1000000000");
+  const Result r =
+      run(mass_on_a_line(
+              "-4*x", "initial = {x = 3}\nevent = [{name = \"e\", when = \"x^2 - 1\", set = {\"x'\" = \"2*x'\"}}]\n"),
+          Rational(6, 5), "1/1000000000");
   ASSERT_EQ(r.report.events.size(), 2U) << "once down, once up";
   EXPECT_NEAR(std::stod(r.report.events[0].t), std::acos(1.0 / 3) / 2, 1e-11);
 }
 
-// One step from bounce to bounce, longer than its terms: far from where it begins they cancel to more than their round-off there.
+// One step from bounce to bounce, longer than its terms: far from where it begins they cancel to more than their
+// round-off there.
 TEST(Events, KeepTheirDirectionFarFromTheExpansion) {
   const Result r = run(mass_on_a_line("-1.98", R"(event = [
   {name = "above", when = "x^2 - 1.13^2", direction = "up"},
   {name = "floor", when = "x^2 - 0.21^2", direction = "down", set = {"x'" = "-0.89*x'"}},
 ]
 initial = {x = 2.90, "x'" = -1.84}
-)"), 5);
+)"),
+                       5);
   std::string found;
   for (const EventReport& e : r.report.events) found += e.name + ' ';
   EXPECT_EQ(found, "floor above floor above ") << "falling through 1.13 at t = 4.028 is no way up";
 }
 
 TEST(Events, TakenBackwardsKeepTheirDirection) {
-  const std::string text = mass_on_a_line("0", "initial = {x = 1, \"x'\" = 1}\nevent = [{name = \"up\", when = \"x\", direction = \"up\"}, {name = \"down\", when = \"x\", direction = \"down\"}]\n");
+  const std::string text =
+      mass_on_a_line("0", "initial = {x = 1, \"x'\" = 1}\nevent = [{name = \"up\", when = \"x\", direction = \"up\"}, "
+                          "{name = \"down\", when = \"x\", direction = \"down\"}]\n");
   const Result back = run(text, -2);
   ASSERT_EQ(back.report.events.size(), 1U);
   EXPECT_EQ(back.report.events[0].name, "up");
@@ -124,15 +147,18 @@ TEST(Events, TakenBackwardsKeepTheirDirection) {
 }
 
 TEST(Events, EnergyIsBalancedOverThem) {
-  const std::string text = mass_on_a_line("-x - x'/10 - 3", "initial = {x = 2}\nevent = [{name = \"b\", when = \"x\", direction = \"down\", set = {\"x'\" = \"-0.9*x'\"}}]\n");
+  const std::string text = mass_on_a_line("-x - x'/10 - 3", "initial = {x = 2}\nevent = [{name = \"b\", when = \"x\", "
+                                                            "direction = \"down\", set = {\"x'\" = \"-0.9*x'\"}}]\n");
   const Result r = run(text, 3);
   EXPECT_GE(r.report.events.size(), 2U);
   EXPECT_LT(r.report.power, 1e-12);
 }
 
 TEST(Events, RunsGoOnAcrossThemWithTheSameBits) {
-  const std::string text = mass_on_a_line("-10 - x'/5", "initial = {x = 2}\nmode.n = 0\nstate.z = {rate = \"x - n*z\", initial = 0}\n"
-                                          "event = [{name = \"b\", when = \"x\", direction = \"down\", set = {\"x'\" = \"-0.9*x'\", n = \"n + 1\"}}, {name = \"top\", when = \"x'\", direction = \"down\"}]\n");
+  const std::string text = mass_on_a_line(
+      "-10 - x'/5", "initial = {x = 2}\nmode.n = 0\nstate.z = {rate = \"x - n*z\", initial = 0}\n"
+                    "event = [{name = \"b\", when = \"x\", direction = \"down\", set = {\"x'\" = \"-0.9*x'\", n = \"n "
+                    "+ 1\"}}, {name = \"top\", when = \"x'\", direction = \"down\"}]\n");
   std::string saved;
   const auto save = [&](SimulationOptions& o) { o.save = [&](const SavedRun& s) { saved = print(s); }; };
   const Result whole = run(text, 3, "1/1000000000000", save);
@@ -154,7 +180,8 @@ TEST(States, FirstOrderLagAndTsiolkovsky) {
   const Result r = run(R"(coordinates = ["x"]
 particle = [{name = "r", mass = "1 + fuel", position = "x*ex", expelled_velocity = "-3*ex"}]
 state = {fuel = {rate = "-2", initial = 9}, lag = {rate = "(1 - lag)/2", initial = 0}}
-)", 4);
+)",
+                       4);
   EXPECT_NEAR(r.last("x'"), 3 * std::log(10.0 / 2), 1e-12);
   EXPECT_NEAR(r.last("lag"), 1 - std::exp(-2), 1e-13);
   EXPECT_NEAR(r.last("fuel"), 1, 1e-13);
@@ -170,7 +197,8 @@ TEST(Kinks, TheErrorFollowsTheTolerance) {
   const double a = -2 + 0.5;
   // Force -1 above 1, -x below: until t = sqrt(2), v = -sqrt(2); then x = cos(s) - sqrt(2) sin(s).
   const double s = 3 - std::sqrt(2.0), b = std::cos(s) - std::sqrt(2.0) * std::sin(s);
-  for (const Case& c : {Case{"-sign(x)", a}, Case{"piecewise(x > 1, -1, -x)", b}, Case{"max(-1, -x)", b}, Case{"F(x)", b}}) {
+  for (const Case& c :
+       {Case{"-sign(x)", a}, Case{"piecewise(x > 1, -1, -x)", b}, Case{"max(-1, -x)", b}, Case{"F(x)", b}}) {
     double before = 1;
     for (const char* tolerance : {"1/10000", "1/100000000", "1/1000000000000"}) {
       const std::string table = "table = [{name = \"F\", x = [-3, 1, 3], y = [3, -1, -1]}]\n";
@@ -189,17 +217,22 @@ TEST(Servo, IsTheIdealReactionWhereItActsAlongIt) {
   const auto tether = [](const std::string& force, const std::string& by) {
     return run(R"(coordinates = ["x", "y"]
 particle = [{name = "p", mass = 2, position = "x*ex + y*ey"}]
-force = [{name = "f", on = "p", vector = ")" + force + R"("}]
-constraint = [{name = "reel", equation = "norm(p.center) = 1 + t/10")" + by + R"(}]
+force = [{name = "f", on = "p", vector = ")" +
+                   force + R"("}]
+constraint = [{name = "reel", equation = "norm(p.center) = 1 + t/10")" +
+                   by + R"(}]
 gravity.field = "-9.81*ey"
-input.u = )" + (by.empty() ? "\"0\"" : "{}") + R"(
+input.u = )" + (by.empty() ? "\"0\"" : "{}") +
+                   R"(
 [initial]
 x = 0.6
 y = -0.8
 conditions = ["x' = 0.2"]
-)", Rational(1, 10));
+)",
+               Rational(1, 10));
   };
-  const Result ideal = tether("0*ex", ""), along = tether("-u*unit(p.center)", ", by = \"u\""), sideways = tether("u*ex", ", by = \"u\"");
+  const Result ideal = tether("0*ex", ""), along = tether("-u*unit(p.center)", ", by = \"u\""),
+               sideways = tether("u*ex", ", by = \"u\"");
   EXPECT_NEAR(along.last("x"), ideal.last("x"), 1e-13);
   EXPECT_NEAR(along.last("u"), -ideal.last("lambda.reel"), 1e-11);
   EXPECT_GT(std::abs(sideways.last("x") - ideal.last("x")), 1e-3);

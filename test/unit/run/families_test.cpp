@@ -16,10 +16,12 @@ std::string plain(std::string name) {
 }
 
 // Accelerations and multipliers at the start, by name; th[1]'' as th1''.
-std::map<std::string, double> motion_of(const std::shared_ptr<const Model>& model, const std::map<std::string, Rational>& start = {}) {
+std::map<std::string, double> motion_of(const std::shared_ptr<const Model>& model,
+                                        const std::map<std::string, Rational>& start = {}) {
   StateChoice choice;
   for (std::size_t a = 0; a < model->coordinates.size(); ++a)
-    if (const auto it = start.find(plain(model->coordinates[a].name)); it != start.end()) choice.overrides.push_back({0, a, it->second});
+    if (const auto it = start.find(plain(model->coordinates[a].name)); it != start.end())
+      choice.overrides.push_back({0, a, it->second});
   Scenario scenario;
   Outcome o = make_scenario(model, *find_formulation("routh"), choice, scenario);
   StateReport report;
@@ -43,12 +45,16 @@ double difference(const std::map<std::string, double>& a, const std::map<std::st
 }
 
 TEST(Families, TrailersAreTheCarWithThreeTrailers) {
-  const Overrides parameters = {{"M[1]", "4"}, {"M[3]", "2"}, {"J[1]", "1"}, {"J[3]", "0.5"}, {"d[1]", "1"}, {"d[3]", "0.8"}};
+  const Overrides parameters = {{"M[1]", "4"},   {"M[3]", "2"}, {"J[1]", "1"},
+                                {"J[3]", "0.5"}, {"d[1]", "1"}, {"d[3]", "0.8"}};
   const std::map<std::string, Rational> start = {{"ph", {1, 10}}, {"th1", {1, 10}}, {"th2", {-1, 10}}, {"th3", {1, 5}}};
   std::map<std::string, double> by_hand;
   for (const auto& [name, value] : motion_of(test::shipped("zoo/car-three-trailers")))
-    by_hand[name == "lambda.front_axle" ? "lambda.front_wheel" : name == "lambda.rear_axle" ? "lambda.axle0" : name] = value;
-  EXPECT_LE(difference(by_hand, motion_of(test::model_of(test::shipped_text("zoo/trailers"), parameters), start)), kRounded);
+    by_hand[name == "lambda.front_axle"  ? "lambda.front_wheel"
+            : name == "lambda.rear_axle" ? "lambda.axle0"
+                                         : name] = value;
+  EXPECT_LE(difference(by_hand, motion_of(test::model_of(test::shipped_text("zoo/trailers"), parameters), start)),
+            kRounded);
   Overrides wrong = parameters;
   wrong["M[2]"] = "3.01";
   EXPECT_GT(difference(by_hand, motion_of(test::model_of(test::shipped_text("zoo/trailers"), wrong), start)), 1e-5);
@@ -58,14 +64,18 @@ TEST(Families, TheChainIsTheChainWrittenOut) {
   std::map<std::string, Rational> start;
   for (int i = 1; i <= 7; ++i) start["th" + std::to_string(i)] = Rational(30 + 2 * i, 100);
   std::map<std::string, double> by_hand;
-  for (const auto& [name, value] : motion_of(test::model_of(test::chain_text(7)))) by_hand["th" + name.substr(1)] = value;
+  for (const auto& [name, value] : motion_of(test::model_of(test::chain_text(7))))
+    by_hand["th" + name.substr(1)] = value;
   const std::string text = test::shipped_text("zoo/chain");
   EXPECT_LE(difference(by_hand, motion_of(test::model_of(text, {{"n", "7"}}), start)), kRounded);
-  EXPECT_GT(difference(by_hand, motion_of(test::model_of(test::replaced(text, "P[i-1] + l*", "P[i-1] + 1.01*l*"), {{"n", "7"}}), start)), 1e-3);
+  EXPECT_GT(difference(by_hand,
+                       motion_of(test::model_of(test::replaced(text, "P[i-1] + l*", "P[i-1] + 1.01*l*"), {{"n", "7"}}),
+                                 start)),
+            1e-3);
 }
 
-// Beads at equal distances on a light string swing in modes of Laguerre's polynomials: the displacement of the j-th bead from below
-// is L_j(k), where L_n(k) = 0 and k = omega^2 l/g. Zeros of L_4: Abramowitz and Stegun, table 25.9.
+// Beads at equal distances on a light string swing in modes of Laguerre's polynomials: the displacement of the j-th
+// bead from below is L_j(k), where L_n(k) = 0 and k = omega^2 l/g. Zeros of L_4: Abramowitz and Stegun, table 25.9.
 TEST(Families, TheChainSwingsInLaguerresModes) {
   constexpr int n = 4;
   const Rational small(1, 100'000'000);
@@ -73,13 +83,16 @@ TEST(Families, TheChainSwingsInLaguerresModes) {
   for (const char* zero : {"0.322547689619392", "1.745761101158347", "4.536620296921128", "9.395070912301133"}) {
     const Rational k = parse_rational(zero).value();
     std::vector<Rational> l = {1, 1 - k};
-    for (int j = 1; j < n; ++j) l.push_back(((2 * j + 1 - k) * l[static_cast<std::size_t>(j)] - j * l[static_cast<std::size_t>(j - 1)]) / (j + 1));
+    for (int j = 1; j < n; ++j)
+      l.push_back(((2 * j + 1 - k) * l[static_cast<std::size_t>(j)] - j * l[static_cast<std::size_t>(j - 1)]) /
+                  (j + 1));
     std::map<std::string, Rational> start;
     for (std::size_t i = 1; i <= n; ++i) start["th" + std::to_string(i)] = small * (l[n - i] - l[n - i + 1]);
     const auto at = motion_of(test::model_of(test::shipped_text("zoo/chain"), {{"n", std::to_string(n)}}), start);
     double scale = 0;
     for (const auto& [name, angle] : start) scale = std::max(scale, std::abs(49.05 * k.get_d() * angle.get_d()));
-    for (const auto& [name, angle] : start) EXPECT_NEAR(at.at(name + "''"), -49.05 * k.get_d() * angle.get_d(), kCubic * scale) << zero << " " << name;
+    for (const auto& [name, angle] : start)
+      EXPECT_NEAR(at.at(name + "''"), -49.05 * k.get_d() * angle.get_d(), kCubic * scale) << zero << " " << name;
   }
 }
 
@@ -132,7 +145,9 @@ th3 = "0.3*sin(6)"
   const std::string text = test::shipped_text("zoo/snake");
   const auto expected = motion_of(test::model_of(by_hand));
   EXPECT_LE(difference(expected, motion_of(test::model_of(text, {{"n", "3"}}))), kRounded);
-  EXPECT_GT(difference(expected, motion_of(test::model_of(test::replaced(text, "segment[k]\"", "segment[1]\""), {{"n", "3"}}))), 1e-3);
+  EXPECT_GT(difference(expected,
+                       motion_of(test::model_of(test::replaced(text, "segment[k]\"", "segment[1]\""), {{"n", "3"}}))),
+            1e-3);
 }
 
 }  // namespace

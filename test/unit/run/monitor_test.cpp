@@ -1,7 +1,7 @@
 // What is watched along a motion: monitors, integrals, singular values, angles.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "support/models.h"
 #include "support/motion.h"
@@ -11,7 +11,8 @@ namespace {
 
 using Result = test::Motion;
 
-void run(const std::string& text, SimulationOptions o, Result& r, const char* form = "routh", bool with_integrals = true) {
+void run(const std::string& text, SimulationOptions o, Result& r, const char* form = "routh",
+         bool with_integrals = true) {
   Scenario s;
   ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation(form), o.state, s).ok());
   if (with_integrals) o.conserved = conserved(*s.mechanics);
@@ -57,7 +58,8 @@ TEST(Monitor, FormulasAreColumnsAndARange) {
 }
 
 TEST(Monitor, MultipliersInEveryForm) {
-  const std::string text = test::shipped_text("zoo/chaplygin-sleigh") + "\n[monitor]\nhold = \"lambda.blade_edge\"\nrate = \"lambda.blade_edge'\"\n";
+  const std::string text = test::shipped_text("zoo/chaplygin-sleigh") +
+                           "\n[monitor]\nhold = \"lambda.blade_edge\"\nrate = \"lambda.blade_edge'\"\n";
   SimulationOptions o;
   o.to = 1;
   o.every = Rational(1, 2);
@@ -65,7 +67,8 @@ TEST(Monitor, MultipliersInEveryForm) {
   ASSERT_NO_FATAL_FAILURE(run(text, o, routh));
   ASSERT_NO_FATAL_FAILURE(run(text, o, chaplygin, "chaplygin"));
   EXPECT_EQ(routh.number(1, "hold"), routh.number(1, "lambda.blade_edge"));
-  for (const char* name : {"hold", "rate"}) EXPECT_NEAR(routh.number(2, name), chaplygin.number(2, name), 1e-11) << name;
+  for (const char* name : {"hold", "rate"})
+    EXPECT_NEAR(routh.number(2, name), chaplygin.number(2, name), 1e-11) << name;
   EXPECT_GT(std::abs(routh.number(2, "rate")), 1e-3);
 }
 
@@ -93,7 +96,8 @@ theta = 0.5
   EXPECT_TRUE(upright.report.warnings.empty());
   ASSERT_NO_FATAL_FAILURE(run(top, o, passes));
   bool angles = false;
-  for (const Warning& w : passes.report.warnings) angles = angles || w.message.find("the angles psi, theta, phi come near") == 0;
+  for (const Warning& w : passes.report.warnings)
+    angles = angles || w.message.find("the angles psi, theta, phi come near") == 0;
   EXPECT_TRUE(angles);
   // From there the hint: a quaternion.
   EXPECT_NE(passes.report.warnings.back().hint.find("'top' by a quaternion"), std::string::npos);
@@ -107,7 +111,8 @@ TEST(Sigma, ASingularConfigurationAnnouncesItself) {
   ASSERT_NO_FATAL_FAILURE(run(test::shipped_text("zoo/appell-hamel"), o, r));
   EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular);
   ASSERT_FALSE(r.report.warnings.empty());
-  EXPECT_NE(r.report.warnings[0].message.find("the constraint 'thread' hardly holds"), std::string::npos) << r.report.warnings[0].message;
+  EXPECT_NE(r.report.warnings[0].message.find("the constraint 'thread' hardly holds"), std::string::npos)
+      << r.report.warnings[0].message;
   EXPECT_NEAR(std::stod(r.report.smallest_sigma_t), std::stod(r.report.t), 1e-3);
 }
 

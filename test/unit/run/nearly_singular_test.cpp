@@ -1,9 +1,9 @@
-// Motions whose equations are nearly singular, or whose unknowns are of very different sizes: steps of Newton's iteration for the leading derivatives do not
-// shrink there, though the equations hold to round-off.
-#include <gtest/gtest.h>
-
+// Motions whose equations are nearly singular, or whose unknowns are of very different sizes: steps of Newton's
+// iteration for the leading derivatives do not shrink there, though the equations hold to round-off.
 #include <cmath>
 #include <regex>
+
+#include <gtest/gtest.h>
 
 #include "support/motion.h"
 #include "support/oracle.h"
@@ -13,7 +13,8 @@ namespace {
 
 using Result = test::Motion;
 
-Result run(const std::string& text, const Rational& to, Precision numbers = Precision::real, const char* tolerance = "1000000000000", int digits = 16) {
+Result run(const std::string& text, const Rational& to, Precision numbers = Precision::real,
+           const char* tolerance = "1000000000000", int digits = 16) {
   Result r;
   Scenario s;
   const Outcome made = make_scenario(test::model_of(text), *find_formulation("routh"), {}, s);
@@ -33,14 +34,20 @@ std::string as_written(const nlohmann::json& data) {
     text = std::regex_replace(text, std::regex("\\*\\*"), "^");
     return "\"" + std::regex_replace(text, std::regex("\\b(x|y|ps|th|ph)_1\\b"), "$1'") + "\"";
   };
-  const auto vector = [&](const nlohmann::json& v) { return "[" + formula(v[0]) + ", " + formula(v[1]) + ", " + formula(v[2]) + "]"; };
+  const auto vector = [&](const nlohmann::json& v) {
+    return "[" + formula(v[0]) + ", " + formula(v[1]) + ", " + formula(v[2]) + "]";
+  };
   const nlohmann::json& body = data["bodies"][0];
   std::string text = "coordinates = [\"x\", \"y\", \"ps\", \"th\", \"ph\"]\n[parameters]\n", axes, initial;
-  for (const auto& [name, value] : data["params"].items()) text += name + " = " + formula(value.get<std::string>()) + "\n";
-  for (const nlohmann::json& a : body["axes"]) axes += (axes.empty() ? "" : ", ") + ("{weight = " + formula(a[0]) + ", vector = " + vector(a[1]) + "}");
-  text += "[[body]]\nname = \"b\"\nmass = " + formula(body["m"]) + "\ncenter = " + vector(body["r"]) + "\naxes = [" + axes + "]\n";
+  for (const auto& [name, value] : data["params"].items())
+    text += name + " = " + formula(value.get<std::string>()) + "\n";
+  for (const nlohmann::json& a : body["axes"])
+    axes += (axes.empty() ? "" : ", ") + ("{weight = " + formula(a[0]) + ", vector = " + vector(a[1]) + "}");
+  text += "[[body]]\nname = \"b\"\nmass = " + formula(body["m"]) + "\ncenter = " + vector(body["r"]) + "\naxes = [" +
+          axes + "]\n";
   text += "[[force]]\non = \"b\"\nvector = " + vector(body["F"]) + "\n";
-  for (const nlohmann::json& c : data["constraints"]) text += "[[constraint]]\nequation = \"" + formula(c["expr"]).substr(1, formula(c["expr"]).size() - 2) + " = 0\"\n";
+  for (const nlohmann::json& c : data["constraints"])
+    text += "[[constraint]]\nequation = \"" + formula(c["expr"]).substr(1, formula(c["expr"]).size() - 2) + " = 0\"\n";
   text += "[initial]\n";
   for (const auto& [symbol, value] : data["trajectory"]["initial_state"].items()) {
     const auto [name, order] = test::split_order(symbol);
@@ -49,7 +56,8 @@ std::string as_written(const nlohmann::json& data) {
   return text;
 }
 
-// Euler's angles pass near theta = 0, where J has condition 1/theta^2. The shipped model has the same motion in other words.
+// Euler's angles pass near theta = 0, where J has condition 1/theta^2. The shipped model has the same motion in other
+// words.
 TEST(NearlySingular, ARattlebackAsItsFormulasAreWritten) {
   const nlohmann::json data = test::oracle_data("s07_rattleback"), &there = data["trajectory"];
   const std::string text = as_written(data);
@@ -58,17 +66,22 @@ TEST(NearlySingular, ARattlebackAsItsFormulasAreWritten) {
     const char* tolerance;
     double error;
   };
-  for (const Case& c : {Case{Precision::real, "1000000000000", 1e-10}, Case{Precision::real, "1000000000000000", 1e-11}, Case{Precision::long_real, "1000000000000000", 1e-11},
-                        Case{Precision::quad, "100000000000000000000", 1e-14}, Case{Precision::multi, "100000000000000000000", 1e-14}}) {
+  for (const Case& c :
+       {Case{Precision::real, "1000000000000", 1e-10}, Case{Precision::real, "1000000000000000", 1e-11},
+        Case{Precision::long_real, "1000000000000000", 1e-11}, Case{Precision::quad, "100000000000000000000", 1e-14},
+        Case{Precision::multi, "100000000000000000000", 1e-14}}) {
     const Result r = run(text, 1, c.numbers, c.tolerance, c.numbers == Precision::multi ? 24 : 16);
-    ASSERT_TRUE(r.report.outcome.ok()) << name(r.report.outcome.kind) << ": " << r.report.outcome.message << ", tolerance 1/" << c.tolerance;
+    ASSERT_TRUE(r.report.outcome.ok()) << name(r.report.outcome.kind) << ": " << r.report.outcome.message
+                                       << ", tolerance 1/" << c.tolerance;
     ASSERT_EQ(std::stod(there["times"].back().get<std::string>()), 1);
     for (const char* q : {"x", "y", "ps", "th", "ph"})
-      EXPECT_NEAR(r.last(q), std::stod(there["states"].back()[q].get<std::string>()), c.error) << q << ", tolerance 1/" << c.tolerance;
+      EXPECT_NEAR(r.last(q), std::stod(there["states"].back()[q].get<std::string>()), c.error)
+          << q << ", tolerance 1/" << c.tolerance;
   }
 }
 
-// A disc that friction lays flatter and flatter: theta falls below 0.01, and J with theta^2. Steps of Newton's iteration do not shrink from 2.4 s on.
+// A disc that friction lays flatter and flatter: theta falls below 0.01, and J with theta^2. Steps of Newton's
+// iteration do not shrink from 2.4 s on.
 TEST(NearlySingular, ADiscLaidFlatGoesOn) {
   const std::string disc = R"toml(coordinates = ["x", "y", "psi", "theta", "phi"]
 parameters = {m = 1, R = 0.1, g = 9.81, k = 0.005}
@@ -88,9 +101,14 @@ initial = {theta = 0.2, "psi'" = 40, "phi'" = -39.2}
 }
 
 std::string three_masses(const char* least, const char* greatest) {
-  return std::string("coordinates = [\"x1\", \"y1\", \"x2\", \"y2\", \"x3\", \"y3\"]\nparticle = [{name = \"a\", mass = ") + least +
-         ", position = \"x1*ex + y1*ey\"}, {name = \"b\", mass = 1, position = \"x2*ex + y2*ey\"}, {name = \"c\", mass = " + greatest +
-         ", position = \"x3*ex + y3*ey\"}]\ngravity.field = \"-9.81*ey\"\nconstraint = [{name = \"r1\", equation = \"x1^2 + y1^2 = 1\"}, {name = \"r2\", equation = "
+  return std::string(
+             "coordinates = [\"x1\", \"y1\", \"x2\", \"y2\", \"x3\", \"y3\"]\nparticle = [{name = \"a\", mass = ") +
+         least +
+         ", position = \"x1*ex + y1*ey\"}, {name = \"b\", mass = 1, position = \"x2*ex + y2*ey\"}, {name = \"c\", mass "
+         "= " +
+         greatest +
+         ", position = \"x3*ex + y3*ey\"}]\ngravity.field = \"-9.81*ey\"\nconstraint = [{name = \"r1\", equation = "
+         "\"x1^2 + y1^2 = 1\"}, {name = \"r2\", equation = "
          "\"(x1 - x2)^2 + (y1 - y2)^2 = 1\"}, {name = \"r3\", equation = \"(x3 - x2)^2 + (y3 - y2)^2 = 1\"}]\n"
          "initial = {x1 = 0.6, y1 = -0.8, x2 = 1.2, y2 = -1.6, x3 = 1.5, guess = {y3 = -2.5}}\n";
 }
@@ -108,8 +126,12 @@ TEST(NearlySingular, MassesOfVeryDifferentSize) {
 // (x + away) y'' - away y'' is x y'', in a factor: what rounds there is no term of the equation.
 TEST(NearlySingular, TermsThatVanishWithinAFactor) {
   const auto text = [](const std::string& product) {
-    return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey + z*ez\"\n"
-           "[[force]]\non = \"p\"\nvector = \"-x*ex - 2*y*ey - 3*(z - 1)*ez\"\n[[constraint]]\nname = \"c\"\nequation = \"z*(" + product + ") + x'' = -0.3*x - 0.1\"\n"
+    return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey + "
+           "z*ez\"\n"
+           "[[force]]\non = \"p\"\nvector = \"-x*ex - 2*y*ey - 3*(z - 1)*ez\"\n[[constraint]]\nname = \"c\"\nequation "
+           "= \"z*(" +
+           product +
+           ") + x'' = -0.3*x - 0.1\"\n"
            "[initial]\nx = 0.7\ny = 0.3\nz = 1.1\n\"x'\" = 0\n\"y'\" = 0\n";
   };
   const Result far = run(text("(x + 1e8)*y'' - 1e8*y''"), 1), plain = run(text("x*y''"), 1);
@@ -146,8 +168,10 @@ constraint = [{name = "window[k]", equation = "B[k-1] + cos(c[k])*ex + sin(c[k])
 
 // Where there is no solution, nothing is taken for one: z''^2 = x reaches x = 0.
 TEST(NearlySingular, ABranchThatEndsIsNoRoundOff) {
-  const Result r = run("coordinates = [\"x\", \"z\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + z*ez\"}]\n"
-                       "constraint = [{name = \"c\", equation = \"z''^2 = x\"}]\n[initial]\nx = 1\n\"x'\" = -1\nguess = {\"z''\" = 1}\n", 3);
+  const Result r = run(
+      "coordinates = [\"x\", \"z\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + z*ez\"}]\n"
+      "constraint = [{name = \"c\", equation = \"z''^2 = x\"}]\n[initial]\nx = 1\n\"x'\" = -1\nguess = {\"z''\" = 1}\n",
+      3);
   EXPECT_FALSE(r.report.outcome.ok());
   EXPECT_LT(r.last("t"), 1.001);
 }

@@ -1,8 +1,9 @@
-// Motions from and through points where a formula has no derivatives, or no value: roots, norms and unit vectors of zero. Closed forms.
-#include <gtest/gtest.h>
-
+// Motions from and through points where a formula has no derivatives, or no value: roots, norms and unit vectors of
+// zero. Closed forms.
 #include <cmath>
 #include <functional>
+
+#include <gtest/gtest.h>
 
 #include "support/models.h"
 #include "support/motion.h"
@@ -12,7 +13,8 @@ namespace {
 
 using Result = test::Motion;
 
-Result run(const std::string& text, const Rational& to, const std::string& form = "routh", const std::function<void(SimulationOptions&)>& more = {}) {
+Result run(const std::string& text, const Rational& to, const std::string& form = "routh",
+           const std::function<void(SimulationOptions&)>& more = {}) {
   Result r;
   Scenario s;
   r.report.outcome = make_scenario(test::model_of(text), *find_formulation(form), {}, s);
@@ -27,7 +29,9 @@ Result run(const std::string& text, const Rational& to, const std::string& form 
 
 // A particle of mass 1 in the plane.
 std::string particle(const std::string& force, const std::string& more) {
-  return "coordinates = [\"x\", \"y\"]\n" + more + "\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", 0]\n[[force]]\non = \"p\"\nvector = \"" + force + "\"\n";
+  return "coordinates = [\"x\", \"y\"]\n" + more +
+         "\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", 0]\n[[force]]\non = \"p\"\nvector = \"" +
+         force + "\"\n";
 }
 
 // Simpson's rule for a smooth function on [0, b].

@@ -1,10 +1,9 @@
-// Velocities in which the kinetic energy is a sum of squares: which are found, and that they are what they are said to be. That motions in them are the
-// motions of Routh's equations is in representation_test.cpp and in all tests of motions.
-#include "system/quasi_velocities.h"
+// Velocities in which the kinetic energy is a sum of squares: which are found, and that they are what they are said to
+// be. That motions in them are the motions of Routh's equations is in representation_test.cpp and in all tests of
+// motions.
+#include <random>
 
 #include <gtest/gtest.h>
-
-#include <random>
 
 #include "expr/normal.h"
 #include "expr/print.h"
@@ -13,13 +12,16 @@
 #include "run/scenario.h"
 #include "run/simulate.h"
 #include "support/models.h"
+#include "system/quasi_velocities.h"
 
 namespace anholon {
 namespace {
 
 struct Found {
   explicit Found(const std::shared_ptr<const Model>& model) {
-    if (!make_scenario(model, *find_formulation("routh"), {}, scenario).ok() || !initial_state(scenario, {}, start).ok()) return;
+    if (!make_scenario(model, *find_formulation("routh"), {}, scenario).ok() ||
+        !initial_state(scenario, {}, start).ok())
+      return;
     const System& s = scenario.system;
     if (s.constraints.empty()) return;
     parameters = parameter_values<long double>(*scenario.model);
@@ -49,19 +51,24 @@ TEST(QuasiVelocities, AreThoseOfTheBooks) {
   const Found sleigh(test::shipped("zoo/chaplygin-sleigh"));
   ASSERT_TRUE(sleigh.q);
   EXPECT_EQ(sleigh.of_state(), (Texts{"y'*sin(th) + x'*cos(th)", "th'"}));
-  EXPECT_EQ(print(sleigh.q->velocities, sleigh.q->system.model->names, Format::text), (Texts{"p1*cos(th)", "p1*sin(th)", "p2"}));
+  EXPECT_EQ(print(sleigh.q->velocities, sleigh.q->system.model->names, Format::text),
+            (Texts{"p1*cos(th)", "p1*sin(th)", "p2"}));
   EXPECT_TRUE(is_number(sleigh.q->determinant)) << "never singular";
 }
 
 ExpansionWork work_in_quasi_velocities(const std::string& model, const Overrides& overrides = {}) {
   Scenario s;
   Start<long double> start;
-  if (!make_scenario(test::model_of(test::shipped_text(model), overrides), *find_formulation("routh"), {}, s).ok() || !initial_state(s, {}, start).ok()) return {};
+  if (!make_scenario(test::model_of(test::shipped_text(model), overrides), *find_formulation("routh"), {}, s).ok() ||
+      !initial_state(s, {}, start).ok())
+    return {};
   const std::vector<long double> parameters = parameter_values<long double>(*s.model);
   const std::vector<double> state(start.state.begin(), start.state.end());
   const double t = static_cast<double>(start.t);
-  const auto derived = KernelPlan::make(std::make_shared<const Program>(program(s.system, s.structure)), 14, parameters, t, state);
-  for (const Representation& r : representations({derived, s.structure, {}, parameters, t, state, s.mechanics.get()}, WritingEffort::at_once))
+  const auto derived =
+      KernelPlan::make(std::make_shared<const Program>(program(s.system, s.structure)), 14, parameters, t, state);
+  for (const Representation& r :
+       representations({derived, s.structure, {}, parameters, t, state, s.mechanics.get()}, WritingEffort::at_once))
     if (r.writing == Writing::quasi) return work_of(*r.plan);
   return {};
 }
@@ -76,7 +83,8 @@ TEST(QuasiVelocities, AreAsShortAsByHand) {
 // What one more trailer adds, wherever it is.
 TEST(QuasiVelocities, GrowWithTheTrailers) {
   std::size_t products[3], i = 0;
-  for (const char* n : {"4", "5", "10"}) products[i++] = work_in_quasi_velocities("zoo/trailers", {{{"n", n}}}).products;
+  for (const char* n : {"4", "5", "10"})
+    products[i++] = work_in_quasi_velocities("zoo/trailers", {{{"n", n}}}).products;
   EXPECT_LE(products[1] - products[0], 6U);
   EXPECT_EQ(products[2] - products[1], 5 * (products[1] - products[0]));
 }
@@ -122,7 +130,8 @@ TEST(QuasiVelocities, MakeTheEnergyASumOfSquares) {
       };
       const double none = energy({});
       for (std::size_t i = 0; i < l; ++i) {
-        const double inertia = value(f.q->inertia[i], f.start.state), square = energy({{i, 1}}) + energy({{i, -1}}) - 2 * none;
+        const double inertia = value(f.q->inertia[i], f.start.state),
+                     square = energy({{i, 1}}) + energy({{i, -1}}) - 2 * none;
         EXPECT_NEAR(square, inertia, 1e-12 * (1 + std::abs(inertia))) << name << " " << i;
         for (std::size_t j = 0; j < i; ++j) {
           const double mixed = energy({{i, 1}, {j, 1}}) - energy({{i, 1}}) - energy({{j, 1}}) + none;
@@ -130,20 +139,27 @@ TEST(QuasiVelocities, MakeTheEnergyASumOfSquares) {
         }
       }
       reader.motion(f.start.t, own, state);
-      for (std::size_t c : f.scenario.system.constraints) EXPECT_NEAR(value(m.phi[c], state), 0, 1e-12) << name << " " << c;
+      for (std::size_t c : f.scenario.system.constraints)
+        EXPECT_NEAR(value(m.phi[c], state), 0, 1e-12) << name << " " << c;
       reader.own(f.start.t, state, back);
-      for (std::size_t i = 0; i < own.size(); ++i) EXPECT_NEAR(static_cast<double>(back[i]), static_cast<double>(own[i]), 1e-14) << name << " " << i;
+      for (std::size_t i = 0; i < own.size(); ++i)
+        EXPECT_NEAR(static_cast<double>(back[i]), static_cast<double>(own[i]), 1e-14) << name << " " << i;
     }
   }
   EXPECT_GE(models, 12U);
 }
 
 std::string particle(const std::string& more) {
-  return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = \"x*ex + y*ey + z*ez\"\n[[force]]\nname = \"f\"\non = \"p\"\n"
-         "vector = \"-x*ex - 2*y*ey + sin(t)*ez\"\n" + more;
+  return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = \"x*ex + y*ey + "
+         "z*ez\"\n[[force]]\nname = \"f\"\non = \"p\"\n"
+         "vector = \"-x*ex - 2*y*ey + sin(t)*ez\"\n" +
+         more;
 }
 
-std::string constraint(const std::string& equation) { return "[[constraint]]\nname = \"c\"\nequation = \"" + equation + "\"\n[initial]\nx = 1\ny = 0.5\nz = 0.25\n\"y'\" = 0.5\n"; }
+std::string constraint(const std::string& equation) {
+  return "[[constraint]]\nname = \"c\"\nequation = \"" + equation +
+         "\"\n[initial]\nx = 1\ny = 0.5\nz = 0.25\n\"y'\" = 0.5\n";
+}
 
 // Rheonomic and affine constraints, an observer that turns, states and forces on velocities; and what is none of ours.
 TEST(QuasiVelocities, OfOtherConstraints) {
@@ -161,22 +177,31 @@ TEST(QuasiVelocities, OfOtherConstraints) {
     };
     const auto real = run(Precision::real), wide = run(Precision::long_real);
     double worst = 0;
-    for (std::size_t i = 0; i < real.size(); ++i) worst = std::max(worst, std::abs(std::stod(real[i]) - std::stod(wide[i])));
+    for (std::size_t i = 0; i < real.size(); ++i)
+      worst = std::max(worst, std::abs(std::stod(real[i]) - std::stod(wide[i])));
     return worst;
   };
-  for (const std::string& text : {particle(constraint("z' - y*x' = 0")), particle(constraint("z' - y*x' - sin(t)*x = 0")), particle(constraint("cos(t)*x' + sin(y)*y' + x*z' = t")),
-                                  particle("[observer]\nspin = \"cos(t)*ez\"\n" + constraint("z' - y*x' = 0")),
-                                  particle("[state]\nw = {rate = \"x' - w\", initial = 0.5}\n[[force]]\nname = \"g\"\non = \"p\"\nvector = \"w*ey - y'*ey\"\n" + constraint("z' - y*x' = 0"))}) {
+  for (const std::string& text :
+       {particle(constraint("z' - y*x' = 0")), particle(constraint("z' - y*x' - sin(t)*x = 0")),
+        particle(constraint("cos(t)*x' + sin(y)*y' + x*z' = t")),
+        particle("[observer]\nspin = \"cos(t)*ez\"\n" + constraint("z' - y*x' = 0")),
+        particle("[state]\nw = {rate = \"x' - w\", initial = 0.5}\n[[force]]\nname = \"g\"\non = \"p\"\nvector = "
+                 "\"w*ey - y'*ey\"\n" +
+                 constraint("z' - y*x' = 0"))}) {
     EXPECT_TRUE(Found(test::model_of(text)).q) << text;
     EXPECT_LE(distance(text), 1e-10) << text;
   }
-  for (const std::string& text : {particle(constraint("x^2 + y^2 + z^2 = 1.3125")), particle(constraint("x'^2 + y'^2 - z'^2 = 0.5")), particle(constraint("x'' - z = 0"))})
+  for (const std::string& text :
+       {particle(constraint("x^2 + y^2 + z^2 = 1.3125")), particle(constraint("x'^2 + y'^2 - z'^2 = 0.5")),
+        particle(constraint("x'' - z = 0"))})
     EXPECT_FALSE(Found(test::model_of(text)).q) << text;
 }
 
-// The quasi-velocities of the sweep's start divide by c; where that is zero the kernel has no value, and the reference goes on from the state that was.
+// The quasi-velocities of the sweep's start divide by c; where that is zero the kernel has no value, and the reference
+// goes on from the state that was.
 TEST(QuasiVelocities, WithoutAValueNothingIsLost) {
-  const std::string text = particle(constraint("c*z' - (1 + y^2)*x' - (2 + z^2)*y' = 0")) + "\"x'\" = 0.5\n[parameters]\nc = 1\n";
+  const std::string text =
+      particle(constraint("c*z' - (1 + y^2)*x' - (2 + z^2)*y' = 0")) + "\"x'\" = 0.5\n[parameters]\nc = 1\n";
   Scenario s;
   ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, s).ok());
   const std::vector<long double> one = parameter_values<long double>(*s.model);
@@ -186,7 +211,8 @@ TEST(QuasiVelocities, WithoutAValueNothingIsLost) {
   const std::vector<double> state(start.state.begin(), start.state.end());
   const auto derived = KernelPlan::make(std::make_shared<const Program>(p), 14, one, 0, state);
   std::shared_ptr<const KernelPlan> plan;
-  for (const Representation& r : representations({derived, s.structure, {}, one, 0, state, s.mechanics.get()}, WritingEffort::at_once))
+  for (const Representation& r :
+       representations({derived, s.structure, {}, one, 0, state, s.mechanics.get()}, WritingEffort::at_once))
     if (r.writing == Writing::quasi) plan = r.plan;
   ASSERT_TRUE(plan);
   // With c = 0: x' = 0.5 and y' that fits it.
@@ -207,7 +233,8 @@ TEST(QuasiVelocities, WithoutAValueNothingIsLost) {
     return stepper.state();
   };
   const auto with = end(true), without = end(false);
-  for (std::size_t i = 0; i < with.size(); ++i) EXPECT_NEAR(static_cast<double>(with[i]), static_cast<double>(without[i]), 1e-12) << i;
+  for (std::size_t i = 0; i < with.size(); ++i)
+    EXPECT_NEAR(static_cast<double>(with[i]), static_cast<double>(without[i]), 1e-12) << i;
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
-#include "run/representation.h"
-
 #include <gtest/gtest.h>
 
 #include "run/form_choice.h"
+#include "run/representation.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -10,15 +9,20 @@ namespace {
 
 struct Written {
   explicit Written(const std::string& name, const Overrides& overrides = {}) {
-    if (!make_scenario(test::model_of(test::shipped_text(name), overrides), *find_formulation("routh"), {}, scenario).ok()) throw std::runtime_error("no start");
+    if (!make_scenario(test::model_of(test::shipped_text(name), overrides), *find_formulation("routh"), {}, scenario)
+             .ok())
+      throw std::runtime_error("no start");
     parameters = parameter_values<long double>(*scenario.model);
     Start<long double> start;
     if (!initial_state(scenario, {}, start).ok()) throw std::runtime_error("no start");
     state.assign(start.state.begin(), start.state.end());
     t = static_cast<double>(start.t);
-    derived = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), 14, parameters, static_cast<double>(start.t), state);
+    derived = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), 14,
+                               parameters, static_cast<double>(start.t), state);
     const std::size_t before = scenario.model->graph->size();
-    list = representations({derived, scenario.structure, {}, parameters, static_cast<double>(start.t), state, scenario.mechanics.get()}, WritingEffort::long_motion);
+    list = representations(
+        {derived, scenario.structure, {}, parameters, static_cast<double>(start.t), state, scenario.mechanics.get()},
+        WritingEffort::long_motion);
     grown = scenario.model->graph->size() != before;
   }
   Scenario scenario;
@@ -52,7 +56,8 @@ TEST(Representation, WhereSolutionsAreRefinedEquationsStay) {
 
 std::string links(int n) { return std::to_string(n); }
 
-// Four products a link of a chain: its sine, its cosine, and those with the forces at its end. Ten for the equations as derived.
+// Four products a link of a chain: its sine, its cosine, and those with the forces at its end. Ten for the equations as
+// derived.
 TEST(Representation, TotalDerivativesAreLeftToTheSeries) {
   std::size_t before = 0;
   for (const int n : {4, 8, 12}) {
@@ -71,8 +76,10 @@ TEST(Representation, TotalDerivativesAreLeftToTheSeries) {
   }
 }
 
-// Largest difference of two expansions from a state beside the start, in relation to the coefficients of the same order.
-double apart(const Written& w, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b, const std::vector<long double>& parameters) {
+// Largest difference of two expansions from a state beside the start, in relation to the coefficients of the same
+// order.
+double apart(const Written& w, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b,
+             const std::vector<long double>& parameters) {
   Kernel one(a), other(b);
   std::vector<double> state = w.state;
   for (std::size_t i = 0; i < state.size(); ++i) state[i] += 1e-3 * static_cast<double>(1 + i % 3);
@@ -110,7 +117,9 @@ std::size_t compare_with_derived(Writing writing) {
   std::size_t models = 0;
   for (const std::string& name : test::moving_models()) {
     Scenario probe;
-    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, probe).ok() || !no_plan(program(probe.system, probe.structure)).empty()) continue;
+    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, probe).ok() ||
+        !no_plan(program(probe.system, probe.structure)).empty())
+      continue;
     const Written w(name);
     const Representation* r = w.derived ? w.by(writing) : nullptr;
     if (!r) continue;
@@ -140,7 +149,10 @@ TEST(Representation, RatesByTheReference) {
       ASSERT_TRUE(e->prepare().ok() && e->project().ok() && e->solve().ok() && e->extend().ok()) << name;
     }
     for (std::size_t j = 0; j < rates.unknowns(); ++j)
-      for (int k = 0; k <= 8; ++k) EXPECT_NEAR(a.coefficient(j, rates.d[j] + k), b.coefficient(j, rates.d[j] + k), 1e-9 * (1 + std::abs(a.coefficient(j, rates.d[j] + k)))) << name << " " << j << " " << k;
+      for (int k = 0; k <= 8; ++k)
+        EXPECT_NEAR(a.coefficient(j, rates.d[j] + k), b.coefficient(j, rates.d[j] + k),
+                    1e-9 * (1 + std::abs(a.coefficient(j, rates.d[j] + k))))
+            << name << " " << j << " " << k;
   }
 }
 

@@ -1,4 +1,5 @@
-// The residual report has a scale that means something: motions at rest are no worse than others, and a wrong equation shows, however small its forces.
+// The residual report has a scale that means something: motions at rest are no worse than others, and a wrong equation
+// shows, however small its forces.
 #include <gtest/gtest.h>
 
 #include "run/simulate.h"
@@ -42,7 +43,8 @@ constraint = [
 [initial]
 "x[i]" = 0
 guess = {"y[1]" = -0.1, "y[2]" = -0.2, "y[3]" = -0.3, "y[4]" = -0.4}
-)toml"), 5);
+)toml"),
+                                    5);
   EXPECT_LT(r.constraints_kept, kRoundoff);
   EXPECT_LT(r.newton, kRoundoff);
   EXPECT_LT(r.projected, kRoundoff);
@@ -62,7 +64,8 @@ constraint = [
   {name = "e", equation = "(x + cos(th)/2 - 0.3)^2 + (y + sin(th)/2)^2 = 1"},
 ]
 initial = {z = 0.1, guess = {x = 0.5, th = 1}}
-)toml"), 5);
+)toml"),
+                                    5);
   EXPECT_LT(r.constraints_kept, kRoundoff);
   EXPECT_LT(r.newton, kRoundoff);
   for (const ConstraintReport& c : r.constraints_each)
@@ -87,7 +90,8 @@ constraint = [
 ]
 force = [{on = "wheel", from = "cart", torque = "(0.3 - 0.02*phi')*B.y"}]
 initial = {z = 0.08, "psi'" = 0.7}
-)toml"), 5, Rational(1, 20));
+)toml"),
+                                    5, Rational(1, 20));
   EXPECT_LT(r.constraints_kept, kRoundoff);
   for (const ConstraintReport& c : r.constraints_each)
     for (const double x : c.residuals) EXPECT_LT(x, kRoundoff) << c.name;
@@ -100,7 +104,8 @@ particle = [{name = "sled", mass = 100, position = "s*ex"}]
 force = [{on = "sled", vector = "-0.25*s'*abs(s')*ex - 50*sign(s')*ex"}]
 event = [{name = "rest", when = "s'", direction = "down", stop = true}]
 initial = {"s'" = 400}
-)toml"), 600);
+)toml"),
+                                    600);
   EXPECT_LT(r.power, 1e-12);
 }
 
@@ -111,17 +116,21 @@ particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
 gravity.field = "0.981*ex - 9.81*ey"
 constraint = [{name = "c", equation = "y = 1.3*x*sin(x) + 0.1*x"}]
 initial = {x = 0}
-)toml"), 5);
+)toml"),
+                                    5);
   EXPECT_LT(r.power, 1e-6);
 }
 
 std::string pendulum(const char* mass) {
-  return std::string("coordinates = [\"x\", \"y\"]\nparameters = {g = 9.81}\nparticle = [{name = \"p\", mass = \"") + mass +
-         "\", position = \"x*ex + y*ey\"}]\ngravity.field = \"-g*ey\"\nconstraint = [{name = \"rod\", equation = \"x^2 + y^2 = 1\"}]\n"
+  return std::string("coordinates = [\"x\", \"y\"]\nparameters = {g = 9.81}\nparticle = [{name = \"p\", mass = \"") +
+         mass +
+         "\", position = \"x*ex + y*ey\"}]\ngravity.field = \"-g*ey\"\nconstraint = [{name = \"rod\", equation = \"x^2 "
+         "+ y^2 = 1\"}]\n"
          "initial = {x = 0.6, guess = {y = -0.8}}\n";
 }
 
-// The mutant: gravity with the wrong sign in the equations that are integrated. Newton's law and the balance of energy know better, whatever the units.
+// The mutant: gravity with the wrong sign in the equations that are integrated. Newton's law and the balance of energy
+// know better, whatever the units.
 TEST(ResidualScale, AWrongSignIsReportedLarge) {
   for (const char* mass : {"1", "1/1000000000", "1000000000"}) {
     Scenario s = scenario(pendulum(mass));
@@ -129,7 +138,8 @@ TEST(ResidualScale, AWrongSignIsReportedLarge) {
     EXPECT_LT(right.newton, kRoundoff) << mass;
     EXPECT_LT(right.power, 1e-10) << mass;
     Graph& g = *s.model->graph;
-    s.system.equations = substitute(s.system.equations, [&](NodeId id) { return g.node(id).kind == Kind::parameter ? -Expr{&g, id} : Expr{}; });
+    s.system.equations = substitute(
+        s.system.equations, [&](NodeId id) { return g.node(id).kind == Kind::parameter ? -Expr{&g, id} : Expr{}; });
     const SimulationReport wrong = report(s, 1, Rational(1, 10));
     EXPECT_GT(wrong.newton, 0.1) << mass;
     EXPECT_GT(wrong.projected, 0.1) << mass;

@@ -1,7 +1,7 @@
 // A run that is laid down and taken up again gives the rows of the run that never stopped, bit by bit.
-#include <gtest/gtest.h>
-
 #include <sstream>
+
+#include <gtest/gtest.h>
 
 #include "support/models.h"
 #include "support/motion.h"
@@ -26,9 +26,11 @@ struct Result {
 };
 
 // With `most_steps` it ends between rows that are asked for, and has no row of its own there.
-Result run(const Case& c, const Rational& to, const SavedRun* resume, const std::string& set_apart = {}, std::size_t most_steps = 0) {
+Result run(const Case& c, const Rational& to, const SavedRun* resume, const std::string& set_apart = {},
+           std::size_t most_steps = 0) {
   Scenario s;
-  EXPECT_TRUE(make_scenario(test::model_of(test::shipped_text(c.model) + set_apart), *find_formulation(c.form), {}, s).ok());
+  EXPECT_TRUE(
+      make_scenario(test::model_of(test::shipped_text(c.model) + set_apart), *find_formulation(c.form), {}, s).ok());
   SimulationOptions o;
   o.to = to;
   if (!c.steps) o.every = Rational(1, 8);
@@ -41,7 +43,8 @@ Result run(const Case& c, const Rational& to, const SavedRun* resume, const std:
   o.save = [&](const SavedRun& run) { r.saved = print(run); };
   MemorySink sink;
   r.report = simulate(s, o, sink);
-  EXPECT_EQ(r.report.outcome.kind, most_steps > 0 ? OutcomeKind::interrupted : OutcomeKind::finished) << r.report.outcome.message;
+  EXPECT_EQ(r.report.outcome.kind, most_steps > 0 ? OutcomeKind::interrupted : OutcomeKind::finished)
+      << r.report.outcome.message;
   r.rows = sink.rows();
   return r;
 }
@@ -58,7 +61,8 @@ TEST_P(Restart, GoesOnWithTheSameBits) {
   const Result second = run(c, c.whole, &saved, monitor), whole = run(c, c.whole, nullptr, monitor);
   ASSERT_GT(second.rows.size(), 2U);
   ASSERT_GT(whole.rows.size(), second.rows.size());
-  const std::vector<std::vector<std::string>> tail(whole.rows.end() - static_cast<std::ptrdiff_t>(second.rows.size()), whole.rows.end());
+  const std::vector<std::vector<std::string>> tail(whole.rows.end() - static_cast<std::ptrdiff_t>(second.rows.size()),
+                                                   whole.rows.end());
   EXPECT_EQ(second.rows, tail);
   if (!c.steps) {
     EXPECT_EQ(first.rows.size() + second.rows.size(), whole.rows.size());
@@ -72,19 +76,22 @@ TEST_P(Restart, GoesOnWithTheSameBits) {
   EXPECT_EQ(second.saved, whole.saved);
 }
 
-INSTANTIATE_TEST_SUITE_P(Runs, Restart,
-                         testing::Values(Case{"Sleigh", "zoo/chaplygin-sleigh"}, Case{"DoublePendulum", "zoo/double-pendulum-cartesian"},
-                                         Case{"AtTheSteps", "zoo/double-pendulum-cartesian", "routh", Precision::real, 16, 1, 2, true},
-                                         Case{"ConstantJerk", "zoo/constant-jerk"},
-                                         // Its equations are written anew between the two.
-                                         Case{"WrittenAnew", "zoo/two-wheeled-pendulum", "routh", Precision::real, 16, 150, 165}, Case{"InQuasiVelocities", "zoo/disc"},
-                                         Case{"InQuasiVelocitiesAtTheSteps", "zoo/snakeboard", "routh", Precision::real, 16, 1, 2, true},
-                                         Case{"Backwards", "zoo/disc", "routh", Precision::real, 16, -1, -2},
-                                         // Chaplygin's form divides by cos(theta), which vanishes on the way.
-                                         Case{"Elimination", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10},
-                                         Case{"LongDouble", "zoo/disc", "routh", Precision::long_real},
-                                         Case{"Quad", "zoo/chaplygin-sleigh", "routh", Precision::quad}, Case{"ThirtyDigits", "zoo/chaplygin-sleigh", "routh", Precision::multi, 30}),
-                         [](const auto& p) { return std::string(p.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Runs, Restart,
+    testing::Values(Case{"Sleigh", "zoo/chaplygin-sleigh"}, Case{"DoublePendulum", "zoo/double-pendulum-cartesian"},
+                    Case{"AtTheSteps", "zoo/double-pendulum-cartesian", "routh", Precision::real, 16, 1, 2, true},
+                    Case{"ConstantJerk", "zoo/constant-jerk"},
+                    // Its equations are written anew between the two.
+                    Case{"WrittenAnew", "zoo/two-wheeled-pendulum", "routh", Precision::real, 16, 150, 165},
+                    Case{"InQuasiVelocities", "zoo/disc"},
+                    Case{"InQuasiVelocitiesAtTheSteps", "zoo/snakeboard", "routh", Precision::real, 16, 1, 2, true},
+                    Case{"Backwards", "zoo/disc", "routh", Precision::real, 16, -1, -2},
+                    // Chaplygin's form divides by cos(theta), which vanishes on the way.
+                    Case{"Elimination", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10},
+                    Case{"LongDouble", "zoo/disc", "routh", Precision::long_real},
+                    Case{"Quad", "zoo/chaplygin-sleigh", "routh", Precision::quad},
+                    Case{"ThirtyDigits", "zoo/chaplygin-sleigh", "routh", Precision::multi, 30}),
+    [](const auto& p) { return std::string(p.param.name); });
 
 TEST(Restart, TheEliminationChangesBeforeAndAfter) {
   const Case c{"", "zoo/chaplygin-sleigh", "chaplygin", Precision::real, 16, 5, 10};
@@ -104,7 +111,8 @@ TEST(Restart, GoesOnFromEveryStep) {
     o.save = [&](const SavedRun& run) { *saved = print(run); };
     MemorySink sink;
     const SimulationReport report = simulate(s, o, sink);
-    EXPECT_EQ(report.outcome.kind, most_steps < 1000 ? OutcomeKind::interrupted : OutcomeKind::finished) << report.outcome.message;
+    EXPECT_EQ(report.outcome.kind, most_steps < 1000 ? OutcomeKind::interrupted : OutcomeKind::finished)
+        << report.outcome.message;
     return std::pair(sink.rows(), report);
   };
   std::string end, middle, again;
@@ -116,7 +124,8 @@ TEST(Restart, GoesOnFromEveryStep) {
     const auto [rows, report] = motion(1000, &saved, &again);
     const std::size_t first = k + 1;  // rows at the start and at k steps were given before
     ASSERT_EQ(rows.size() + first, all.size()) << k;
-    EXPECT_TRUE(std::equal(rows.begin(), rows.end(), all.begin() + static_cast<std::ptrdiff_t>(first))) << "after " << k << " steps";
+    EXPECT_TRUE(std::equal(rows.begin(), rows.end(), all.begin() + static_cast<std::ptrdiff_t>(first)))
+        << "after " << k << " steps";
     EXPECT_EQ(report.eliminations, whole.eliminations) << k;
     EXPECT_EQ(test::of_the_motion(again), test::of_the_motion(end)) << k;
   }
@@ -135,7 +144,8 @@ TEST(Restart, RefusesWhatDoesNotFit) {
   };
   EXPECT_EQ(refusal(saved), "");
   EXPECT_EQ(refusal("coordinates = []\n"), "this is not a saved run");
-  EXPECT_EQ(refusal(test::replaced(saved, "counts", "countz")), "the saved run was changed after it was written, or is cut off");
+  EXPECT_EQ(refusal(test::replaced(saved, "counts", "countz")),
+            "the saved run was changed after it was written, or is cut off");
   // The state of a larger system.
   const SavedRun of_another = read_saved({"run.state", run({"", "zoo/disc"}, 1, nullptr).saved});
   EXPECT_THROW(run(c, 2, &of_another), Failure);

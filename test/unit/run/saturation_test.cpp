@@ -1,8 +1,8 @@
-// Forces that are all but constant until they ramp, of which Taylor series know nothing from afar: no step passes over them. Against closed forms, and
-// against steps so short that each of them sees what comes.
-#include <gtest/gtest.h>
-
+// Forces that are all but constant until they ramp, of which Taylor series know nothing from afar: no step passes over
+// them. Against closed forms, and against steps so short that each of them sees what comes.
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "integrate/taylor.h"
 #include "run/ensemble.h"
@@ -14,10 +14,10 @@ namespace {
 
 struct Case {
   const char* name;
-  const char* force;    // on a particle of mass a, a = 1, at x
+  const char* force;  // on a particle of mass a, a = 1, at x
   const char* initial;
   int to;
-  double step;          // short enough
+  double step;  // short enough
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
@@ -39,8 +39,10 @@ const Case kCases[] = {
 };
 
 std::string text(const Case& c, const Rational& mass = 1) {
-  return std::string("coordinates = [\"x\"]\nparameters = {a = \"" + mass.get_str() + "\"}\nparticle = [{name = \"p\", mass = \"a\", position = \"x*ex\"}]\nforce = [{on = \"p\", vector = \"(") + c.force +
-         ")*ex\"}]\n[initial]\n" + c.initial + "\n";
+  return std::string("coordinates = [\"x\"]\nparameters = {a = \"" + mass.get_str() +
+                     "\"}\nparticle = [{name = \"p\", mass = \"a\", position = \"x*ex\"}]\nforce = [{on = \"p\", "
+                     "vector = \"(") +
+         c.force + ")*ex\"}]\n[initial]\n" + c.initial + "\n";
 }
 
 // x and x' at the end, by short steps in long double.
@@ -53,7 +55,8 @@ std::vector<double> by_short_steps(const Case& c, const Rational& mass = 1) {
   const Program p = program(s.system, s.structure);
   StepSettings settings;
   settings.log_tolerance = std::log(1e-16);
-  const std::vector<long double> parameters = evaluate_parameters<long double>(*s.model->graph, Column{s.model->parameters[0].value});
+  const std::vector<long double> parameters =
+      evaluate_parameters<long double>(*s.model->graph, Column{s.model->parameters[0].value});
   Stepper<long double> stepper(p, parameters, parameters, settings);
   std::vector<long double> state{s.state.q[0], s.state.qd[0]};
   EXPECT_TRUE(stepper.start(0, state).ok());
@@ -82,9 +85,12 @@ TEST_P(Saturation, IsNotSteppedOver) {
     Precision precision;
     Rational tolerance;
   };
-  for (const Way& way : {Way{"kernel", true, Precision::real, Rational("1/1000000000000")}, Way{"reference", false, Precision::real, Rational("1/1000000000000")},
-                         Way{"digits", true, Precision::real, Rational("1/1000000000000000")}, Way{"loose", true, Precision::real, Rational("1/100000000")},
-                         Way{"long", true, Precision::long_real, Rational("1/10000000000000000")}, Way{"quad", true, Precision::quad, Rational("1/10000000000000000000000")}}) {
+  for (const Way& way : {Way{"kernel", true, Precision::real, Rational("1/1000000000000")},
+                         Way{"reference", false, Precision::real, Rational("1/1000000000000")},
+                         Way{"digits", true, Precision::real, Rational("1/1000000000000000")},
+                         Way{"loose", true, Precision::real, Rational("1/100000000")},
+                         Way{"long", true, Precision::long_real, Rational("1/10000000000000000")},
+                         Way{"quad", true, Precision::quad, Rational("1/10000000000000000000000")}}) {
     Scenario s;
     ASSERT_TRUE(make_scenario(test::model_of(text(GetParam())), *find_formulation("routh"), {}, s).ok());
     SimulationOptions o;
@@ -161,7 +167,8 @@ TEST_P(Saturation, IsNotSteppedOverBySweeps) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Saturation, testing::ValuesIn(kCases), [](const auto& of) { return std::string(of.param.name); });
+INSTANTIATE_TEST_SUITE_P(Of, Saturation, testing::ValuesIn(kCases),
+                         [](const auto& of) { return std::string(of.param.name); });
 
 TEST(Saturation, InClosedForm) {
   // v/tanh(v/w) integrated over v: v^2/2 + w^2 pi^2/12.

@@ -33,7 +33,9 @@ struct Case {
   Integrator integrator;
   std::string form = "routh";
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.model << " by " << name(c.integrator) << ", " << c.form; }
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.model << " by " << name(c.integrator) << ", " << c.form;
+}
 
 class SecondOpinionOn : public testing::TestWithParam<Case> {};
 
@@ -60,10 +62,13 @@ TEST_P(SecondOpinionOn, AgreesWithTaylor) {
       largest = std::max(largest, std::abs(its - mine) / (1 + std::abs(mine)));
     }
   EXPECT_NEAR(largest, r.second->difference, 1e-15);  // round-off of the rows
-  // Accelerations and multipliers are solved for at its points; its state drifts from the constraints, its energy from the work.
-  // Newton's law drifts where its equations are differentiated, too; forms without multipliers hold on the constraints only.
+  // Accelerations and multipliers are solved for at its points; its state drifts from the constraints, its energy from
+  // the work. Newton's law drifts where its equations are differentiated, too; forms without multipliers hold on the
+  // constraints only.
   const Structure& t = motion.scenario.structure;
-  const bool hidden = std::any_of(t.c.begin(), t.c.begin() + static_cast<std::ptrdiff_t>(motion.scenario.system.coordinates), [](int c) { return c > 0; });
+  const bool hidden =
+      std::any_of(t.c.begin(), t.c.begin() + static_cast<std::ptrdiff_t>(motion.scenario.system.coordinates),
+                  [](int c) { return c > 0; });
   EXPECT_LT(r.newton, hidden || GetParam().form != "routh" ? 1e-6 : 1e-12);
   EXPECT_LT(r.constraints_kept, 1e-5);  // of accelerations where order 0 is differentiated twice
   EXPECT_LT(r.power, 1e-6);
@@ -73,8 +78,9 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
     // Orders 0 (index 3), 1, 2 and 3; linear and not; a varying mass; coordinates eliminated.
-    for (const char* model : {"zoo/double-pendulum-cartesian", "zoo/chaplygin-sleigh", "zoo/disc", "zoo/snakeboard", "zoo/isokinetic",
-                              "zoo/constant-acceleration", "zoo/constant-jerk", "zoo/third-order-linear", "zoo/rocket", "zoo/fourbar"})
+    for (const char* model :
+         {"zoo/double-pendulum-cartesian", "zoo/chaplygin-sleigh", "zoo/disc", "zoo/snakeboard", "zoo/isokinetic",
+          "zoo/constant-acceleration", "zoo/constant-jerk", "zoo/third-order-linear", "zoo/rocket", "zoo/fourbar"})
       all.push_back({model, k});
     all.push_back({"zoo/disc", k, "chaplygin"});
     all.push_back({"papers/luo-zhao-example-2", k, "kane"});
@@ -113,7 +119,8 @@ TEST(SecondOpinion, ShowsADisturbedMotion) {
 }
 
 TEST(SecondOpinion, KeepsToItsBranch) {
-  const std::string text = test::replaced(test::shipped_text("zoo/constant-acceleration"), "[simulate]", "branch = {acceleration = \"lambda > 0\"}\n[simulate]");
+  const std::string text = test::replaced(test::shipped_text("zoo/constant-acceleration"), "[simulate]",
+                                          "branch = {acceleration = \"lambda > 0\"}\n[simulate]");
   for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
     Motion motion(text);
     ASSERT_TRUE(motion.start.ok()) << motion.start.message;

@@ -51,11 +51,14 @@ TEST(Along, TakesComponentsOfTheEquation) {
 }
 
 std::string stone(const std::string& orientation, const std::string& more = "") {
-  return "coordinates = [\"e0\", \"e1\", \"e2\", \"e3\", \"a\"]\n[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 2, 2]\ncenter = [0, 0, \"a\"]\norientation = \"" + orientation + "\"\n" + more;
+  return "coordinates = [\"e0\", \"e1\", \"e2\", \"e3\", \"a\"]\n[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 2, "
+         "2]\ncenter = [0, 0, \"a\"]\norientation = \"" +
+         orientation + "\"\n" + more;
 }
 
 TEST(Quaternion, BringsItsUnitNormOnce) {
-  const auto one = test::model_of(stone("quat(e0, e1, e2, e3)", "[frame]\nother = \"rotz(a)*quat(e0, -e1, -e2, -e3)\"\n"));
+  const auto one =
+      test::model_of(stone("quat(e0, e1, e2, e3)", "[frame]\nother = \"rotz(a)*quat(e0, -e1, -e2, -e3)\"\n"));
   ASSERT_EQ(names(*one), std::vector<std::string>{"norm.e0"});
   Graph& g = *one->graph;
   Expr norm = g.number(-1);
@@ -65,27 +68,34 @@ TEST(Quaternion, BringsItsUnitNormOnce) {
   ASSERT_EQ(one->initial.guess.size(), 1U) << "nothing is given: it starts at the identity";
   EXPECT_EQ(one->initial.guess[0].symbol, g.jet(0, 0));
   EXPECT_EQ(test::model_of(stone("quat(e0, e1, e2, e3)", "[initial]\ne1 = 0.1\n"))->initial.guess.size(), 1U);
-  EXPECT_TRUE(test::model_of(stone("quat(e0, e1, e2, e3)", "[initial]\ne1 = 1\n"))->initial.guess.empty()) << "half a turn";
+  EXPECT_TRUE(test::model_of(stone("quat(e0, e1, e2, e3)", "[initial]\ne1 = 1\n"))->initial.guess.empty())
+      << "half a turn";
   EXPECT_TRUE(test::model_of(stone("quat(e0, e1, e2, e3)", "[initial]\ne0 = 0\ne2 = 0.3\n"))->initial.guess.empty());
 }
 
 TEST(Quaternion, OfNormOneAddsNothing) {
   EXPECT_TRUE(names(*test::model_of(stone("quat(cos(a/2), 0, 0, sin(a/2))"))).empty());
   EXPECT_TRUE(names(*test::model_of(stone("quat(3/5, 0, 4/5, 0)"))).empty());
-  EXPECT_EQ(names(*test::model_of(stone("quat(e0, e1, e2, e3)", "[[constraint]]\nname = \"unit\"\nequation = \"e0^2 + e1^2 + e2^2 + e3^2 = 1\"\n"))), std::vector<std::string>{"unit"});
+  EXPECT_EQ(
+      names(*test::model_of(stone("quat(e0, e1, e2, e3)",
+                                  "[[constraint]]\nname = \"unit\"\nequation = \"e0^2 + e1^2 + e2^2 + e3^2 = 1\"\n"))),
+      std::vector<std::string>{"unit"});
 }
 
 TEST(Notation, IsReadAsMathML) {
   const auto mathml = [](const char* text) { return mathml_of(FormulaText(text, Span{1, 1, 1})); };
   EXPECT_EQ(mathml("\\vartheta"), "<mi>ϑ</mi>");
   EXPECT_EQ(mathml("x_{12}"), "<msub><mi>x</mi><mn>12</mn></msub>");
-  EXPECT_EQ(mathml("\\bar{q}_1^2"), "<msubsup><mover accent=\"true\"><mi>q</mi><mo>¯</mo></mover><mn>1</mn><mn>2</mn></msubsup>");
+  EXPECT_EQ(mathml("\\bar{q}_1^2"),
+            "<msubsup><mover accent=\"true\"><mi>q</mi><mo>¯</mo></mover><mn>1</mn><mn>2</mn></msubsup>");
   EXPECT_EQ(mathml("v_\\mathrm{in}"), "<msub><mi>v</mi><mi mathvariant=\"normal\">in</mi></msub>");
-  for (const char* wrong : {"", "\\foo", "x_", "{x", "x}", "x_1_2", "<b>", "\\mathrm{<}"}) EXPECT_THROW(mathml(wrong), Failure) << wrong;
+  for (const char* wrong : {"", "\\foo", "x_", "{x", "x}", "x_1_2", "<b>", "\\mathrm{<}"})
+    EXPECT_THROW(mathml(wrong), Failure) << wrong;
 }
 
 TEST(Notation, IsHowANameIsPrinted) {
-  const auto model = test::model_of("coordinates = [\"theta\"]\n[[particle]]\nname = \"p\"\nmass = \"m0\"\nposition = \"l1*sin(theta)*ex\"\n[parameters]\nm0 = 1\nl1 = 2\n"
+  const auto model = test::model_of("coordinates = [\"theta\"]\n[[particle]]\nname = \"p\"\nmass = \"m0\"\nposition = "
+                                    "\"l1*sin(theta)*ex\"\n[parameters]\nm0 = 1\nl1 = 2\n"
                                     "[notation]\n\"θ\" = '\\vartheta'\nm0 = \"M\"\n");
   Graph& g = *model->graph;
   const Expr e = g.parameter(0) * g.jet(0, 1);
@@ -95,18 +105,23 @@ TEST(Notation, IsHowANameIsPrinted) {
 }
 
 TEST(GreekLetters, AreTheirNamesEverywhere) {
-  const std::string greek = "coordinates = [\"θ\"]\n[[particle]]\nname = \"ψ\"\nmass = \"μ\"\nposition = \"Λ*sin(θ)*ex\"\n[parameters]\n\"μ\" = 1\n\"Λ\" = 2\n"
-                            "\"Ω\" = 3\n[define]\n\"Ω2\" = \"2*Omega\"\n[potential]\nV = \"Ω2*theta\"\n[initial]\n\"θ'\" = \"Ω\"\n";
+  const std::string greek =
+      "coordinates = [\"θ\"]\n[[particle]]\nname = \"ψ\"\nmass = \"μ\"\nposition = "
+      "\"Λ*sin(θ)*ex\"\n[parameters]\n\"μ\" = 1\n\"Λ\" = 2\n"
+      "\"Ω\" = 3\n[define]\n\"Ω2\" = \"2*Omega\"\n[potential]\nV = \"Ω2*theta\"\n[initial]\n\"θ'\" = \"Ω\"\n";
   std::string latin = greek;
-  for (const auto& [letter, name] : {std::pair{"θ", "theta"}, {"ψ", "psi"}, {"μ", "mu"}, {"Λ", "Lambda"}, {"Ω", "Omega"}})
-    for (std::size_t at; (at = latin.find(letter)) != std::string::npos;) latin.replace(at, std::string(letter).size(), name);
+  for (const auto& [letter, name] :
+       {std::pair{"θ", "theta"}, {"ψ", "psi"}, {"μ", "mu"}, {"Λ", "Lambda"}, {"Ω", "Omega"}})
+    for (std::size_t at; (at = latin.find(letter)) != std::string::npos;)
+      latin.replace(at, std::string(letter).size(), name);
   const Overrides set = {{"mu", "5"}};
   const auto a = test::model_of(greek, set), b = test::model_of(latin, set);
   EXPECT_EQ(a->names.coordinates, b->names.coordinates);
   EXPECT_EQ(a->names.parameters, (std::vector<std::string>{"mu", "Lambda", "Omega"}));
   EXPECT_EQ(number_value(a->parameters[0].value), 5);
   EXPECT_EQ(a->bodies[0].name, "psi");
-  EXPECT_EQ(print(a->potentials[0].value, a->names, Format::text), print(b->potentials[0].value, b->names, Format::text));
+  EXPECT_EQ(print(a->potentials[0].value, a->names, Format::text),
+            print(b->potentials[0].value, b->names, Format::text));
   EXPECT_EQ(a->initial.given[0].symbol, a->graph->jet(0, 1));
 }
 

@@ -85,11 +85,13 @@ TEST(DimensionsOfAModel, ThatClashAreReportedWhereTheyMeet) {
       {"(x - l0)", "(x - T0)", 24, "a length (m) minus a time (s)"},
       {"x*ex + y*ey", "x*ex + th*ey", 3, "a pure number is expected here, this is a length (m)"},
       {"mass = \"m\"", "mass = \"l0\"", 18, "a mass (kg) is expected here, this is a length (m)"},
-      {"inertia = \"m*L^2/12\"", "inertia = \"m*L/12 + m*l0\"", 19, "a moment of inertia (kg*m^2) is expected here, this is a quantity in kg*m"},
+      {"inertia = \"m*L^2/12\"", "inertia = \"m*L/12 + m*l0\"", 19,
+       "a moment of inertia (kg*m^2) is expected here, this is a quantity in kg*m"},
       {"-k*(x - l0)*ex - c*vel(P)", "c*P", 24, "a force (N) is expected here, this is a momentum (N*s)"},
       {"\"-k*L^2*th\"", "\"c*x\"", 27, "a torque or energy (N*m) is expected here"},
       {"-g*ey", "-speed*ey", 29, "an acceleration (m/s^2) is expected here, this is a velocity (m/s)"},
-      {"k/2*(norm(P) - l0)^2", "c*L*l0", 31, "a torque or energy (N*m) is expected here, this is an angular momentum (N*m*s)"},
+      {"k/2*(norm(P) - l0)^2", "c*L*l0", 31,
+       "a torque or energy (N*m) is expected here, this is an angular momentum (N*m*s)"},
       {"rho(y)*speed^3*L^2", "c*speed", 33, "a power (W) is expected here, this is a force (N)"},
       {"= L*th'", "= L*L*th'", 36, "a velocity (m/s) on the left side, a quantity in m^2/s on the right side"},
       {"3 ft", "3 s", 38, "a length (m) is expected here, this is a time (s)"},
@@ -106,13 +108,17 @@ TEST(DimensionsOfAModel, ThatClashAreReportedWhereTheyMeet) {
   for (const Clash& c : clashes) {
     const std::vector<Diagnostic> list = found(test::replaced(kCar, c.from, c.to));
     ASSERT_FALSE(list.empty()) << c.to;
-    const bool there = std::any_of(list.begin(), list.end(), [&](const Diagnostic& d) { return d.span.line == c.line && d.message.rfind(c.message, 0) == 0; });
+    const bool there = std::any_of(list.begin(), list.end(), [&](const Diagnostic& d) {
+      return d.span.line == c.line && d.message.rfind(c.message, 0) == 0;
+    });
     EXPECT_TRUE(there) << c.to << "\n" << messages(list);
   }
 }
 
 TEST(DimensionsOfAModel, AreSetFromOutside) {
-  const auto L = [](const char* value) { return number_value(test::model_of(kCar, {{"L", value}})->parameters[1].value); };
+  const auto L = [](const char* value) {
+    return number_value(test::model_of(kCar, {{"L", value}})->parameters[1].value);
+  };
   EXPECT_EQ(L("50"), Rational(1, 2)) << "a bare number has the parameter's unit";
   EXPECT_EQ(L("2 m"), 2);
   const std::vector<Diagnostic> list = found(kCar, {{"l0", "3 s"}});
@@ -131,10 +137,14 @@ TEST(DimensionsOfAModel, OfAnAxisAloneAreFree) {
 
 // The same nonsense without units is consistent with some, or nobody asked.
 TEST(DimensionsOfAModel, AreNotLookedAtWithoutUnits) {
-  EXPECT_EQ(messages(found("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = \"1 + 2\"\nposition = \"sin(x)*ex\"\n[gravity]\nfield = \"x*ey - vel([x, 0, 0])\"\n")), "");
-  const std::string pendulum = "coordinates = [\"th\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"sin(th)*ex\"\n[initial]\nth = ";
+  EXPECT_EQ(messages(found("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = \"1 + 2\"\nposition = "
+                           "\"sin(x)*ex\"\n[gravity]\nfield = \"x*ey - vel([x, 0, 0])\"\n")),
+            "");
+  const std::string pendulum =
+      "coordinates = [\"th\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"sin(th)*ex\"\n[initial]\nth = ";
   EXPECT_EQ(messages(found(pendulum + "\"30 deg\"\n")), "") << "an angle has no dimension";
-  EXPECT_NE(messages(found(pendulum + "\"30 deg\"\n\"th'\" = \"2 s^-1\"\n")), "") << "the length of the pendulum is missing";
+  EXPECT_NE(messages(found(pendulum + "\"30 deg\"\n\"th'\" = \"2 s^-1\"\n")), "")
+      << "the length of the pendulum is missing";
 }
 
 }  // namespace

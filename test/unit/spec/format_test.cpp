@@ -1,7 +1,7 @@
 // anholon fmt: what a file says, its order and its comments stay, and doing it twice changes nothing.
-#include "spec/format.h"
-
 #include <gtest/gtest.h>
+
+#include "spec/format.h"
 
 namespace anholon {
 namespace {
@@ -24,12 +24,15 @@ TEST(Format, WhatIsDecidedOfTheLayout) {
       {"a = [ 1,2 , 3 ]\n", "a = [1, 2, 3]\n"},
       {"a = [\n\"p\", \"q\"]\n", "a = [\n  \"p\",\n  \"q\",\n]\n"},
       {"a = [] # none\nb = {}\nc = [\n]\n", "a = []  # none\nb = {}\nc = []\n"},
-      {"a = [ # first\n1,\n\n# own\n2 # last\n, # after\n# end\n]\n", "a = [\n  # first\n  1,\n\n  # own\n  2,  # last\n  # after\n  # end\n]\n"},
+      {"a = [ # first\n1,\n\n# own\n2 # last\n, # after\n# end\n]\n",
+       "a = [\n  # first\n  1,\n\n  # own\n  2,  # last\n  # after\n  # end\n]\n"},
       {"a = {b=1,c = { d = [1 ,2] } }", "a = {b = 1, c = {d = [1, 2]}}\n"},
       {"a = '''x'y'''\nb = \"\"\"q\\\"\"\"\" # c", "a = '''x'y'''\nb = \"\"\"q\\\"\"\"\"  # c\n"},
       {"a = \"# no comment\" # one\n", "a = \"# no comment\"  # one\n"},
       {"a = 1 \r\nb = 2\r\n", "a = 1\nb = 2\n"},
-      {"\xEF\xBB\xBF" "a = 1\n", "a = 1\n"},
+      {"\xEF\xBB\xBF"
+       "a = 1\n",
+       "a = 1\n"},
       {"\"a=b # [c]\" = 1\n'' = 2\n", "\"a=b # [c]\" = 1\n''          = 2\n"},
       {"a = 1979-05-27 07:32:00 # d\n", "a = 1979-05-27 07:32:00  # d\n"},
       {"\"\xCE\xB8\" = 1\nab = 2\n", "\"\xCE\xB8\" = 1\nab  = 2\n"},
@@ -48,7 +51,8 @@ TEST(Format, BlanksThatAlignTablesBelowEachOtherStay) {
 
 TEST(Format, AWideListHasALineForEachElementOfNumbersAsManyAsFit) {
   std::string words = "a = [", numbers = "b = [";
-  for (int i = 0; i < 60; ++i) words += (i ? ", \"w" : "\"w") + std::to_string(i) + "\"", numbers += (i ? ", " : "") + std::to_string(1000 + i);
+  for (int i = 0; i < 60; ++i)
+    words += (i ? ", \"w" : "\"w") + std::to_string(i) + "\"", numbers += (i ? ", " : "") + std::to_string(1000 + i);
   const std::string w = format(words + "]\n"), n = format(numbers + "]\n");
   EXPECT_EQ(std::count(w.begin(), w.end(), '\n'), 62);
   EXPECT_EQ(std::count(n.begin(), n.end(), '\n'), 6);
@@ -57,7 +61,8 @@ TEST(Format, AWideListHasALineForEachElementOfNumbersAsManyAsFit) {
 }
 
 TEST(Format, NothingIsMadeOfWhatIsNoToml) {
-  for (const char* text : {"a = ", "a = [1", "= 1", "a = \"x", "[a", "a = 1 b = 2"}) EXPECT_THROW(format(text), Failure) << text;
+  for (const char* text : {"a = ", "a = [1", "= 1", "a = \"x", "[a", "a = 1 b = 2"})
+    EXPECT_THROW(format(text), Failure) << text;
 }
 
 // The check at run time: it must notice each of these.
@@ -65,10 +70,11 @@ TEST(Format, ContentIsComparedToTheLastCharacterAndInOrder) {
   const auto tree = [](const std::string& text) { return read_toml(SourceText{"test.toml", text}); };
   const std::string text = "a = 1\nb = [\"x\", true]\n[c]\nd = {e = \"f\"}\n";
   EXPECT_TRUE(same_content(tree(text), tree("a   =   1 # c\nb = [\n\"x\",\ntrue]\nc.d.e = \"f\"\n")));
-  for (const char* other : {"a = 1.0\nb = [\"x\", true]\n[c]\nd = {e = \"f\"}\n", "a = \"1\"\nb = [\"x\", true]\n[c]\nd = {e = \"f\"}\n",
-                            "b = [\"x\", true]\na = 1\n[c]\nd = {e = \"f\"}\n", "a = 1\nb = [\"x\", false]\n[c]\nd = {e = \"f\"}\n",
-                            "a = 1\nb = [\"x\", true]\n[c]\nd = {e = \"f \"}\n", "a = 1\nb = [\"x\", true]\n[c]\nd = {g = \"f\"}\n",
-                            "a = 1\nb = [\"x\"]\n[c]\nd = {e = \"f\"}\n"})
+  for (const char* other :
+       {"a = 1.0\nb = [\"x\", true]\n[c]\nd = {e = \"f\"}\n", "a = \"1\"\nb = [\"x\", true]\n[c]\nd = {e = \"f\"}\n",
+        "b = [\"x\", true]\na = 1\n[c]\nd = {e = \"f\"}\n", "a = 1\nb = [\"x\", false]\n[c]\nd = {e = \"f\"}\n",
+        "a = 1\nb = [\"x\", true]\n[c]\nd = {e = \"f \"}\n", "a = 1\nb = [\"x\", true]\n[c]\nd = {g = \"f\"}\n",
+        "a = 1\nb = [\"x\"]\n[c]\nd = {e = \"f\"}\n"})
     EXPECT_FALSE(same_content(tree(text), tree(other))) << other;
 }
 

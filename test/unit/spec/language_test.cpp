@@ -1,7 +1,7 @@
 // The table of the language and the reader say the same. (Its page is tested by tools/reference.py.)
-#include <gtest/gtest.h>
-
 #include <set>
+
+#include <gtest/gtest.h>
 
 #include "expr/units.h"
 #include "spec/language.h"
@@ -36,14 +36,18 @@ TEST(Language, EveryFunctionIsReadAsItsExampleSays) {
     // Its name, with a slip, is recognized; without arguments every function is an error.
     EXPECT_NE(first(diagnostics_of(kPlate + "[define]\na = \"" + r.name + "()\"\n")), "") << r.call;
     if (r.name.size() > 3) {
-      EXPECT_NE(first(diagnostics_of(kPlate + "[define]\na = \"" + r.name + "q(x)\"\n")).find("'" + r.name + "q'; did you mean '" + r.name), std::string::npos) << r.call;
+      EXPECT_NE(first(diagnostics_of(kPlate + "[define]\na = \"" + r.name + "q(x)\"\n"))
+                    .find("'" + r.name + "q'; did you mean '" + r.name),
+                std::string::npos)
+          << r.call;
     }
   }
 }
 
 TEST(Language, ReservedNamesCannotBeDeclared) {
   for (const ReservedName& r : reserved_names())
-    EXPECT_EQ(first(diagnostics_of(kPlate + "[define]\n" + r.name + " = 1\n")), std::string("the name '") + r.name + "' is reserved");
+    EXPECT_EQ(first(diagnostics_of(kPlate + "[define]\n" + r.name + " = 1\n")),
+              std::string("the name '") + r.name + "' is reserved");
   EXPECT_EQ(first(diagnostics_of(kPlate + "[define]\nq = 1\n")), "");
 }
 
@@ -53,7 +57,8 @@ TEST(Language, EverySectionIsKnownAtTheTopOfAFileAndNothingElse) {
     const bool elements = s.form == LanguageSection::Form::elements;
     for (const Diagnostic& d : diagnostics_of(kPlate + (elements ? "[[" : "[") + s.name + (elements ? "]]\n" : "]\n")))
       EXPECT_EQ(d.message.find("unknown key"), std::string::npos) << s.name;
-    EXPECT_EQ(first(diagnostics_of(kPlate + s.name + "q = 1\n")), std::string("unknown key '") + s.name + "q' in the model file; did you mean '" + s.name + "'?");
+    EXPECT_EQ(first(diagnostics_of(kPlate + s.name + "q = 1\n")),
+              std::string("unknown key '") + s.name + "q' in the model file; did you mean '" + s.name + "'?");
   }
 }
 
@@ -62,11 +67,15 @@ TEST(Language, KeysOfEachSectionAreThoseOfTheTable) {
   for (const LanguageSection& s : language()) {
     using Form = LanguageSection::Form;
     if (s.form != Form::keys && s.form != Form::elements) continue;
-    const std::string open = s.form == Form::elements ? std::string("[[") + s.name + "]]\n" : std::string("[") + s.name + "]\n";
+    const std::string open =
+        s.form == Form::elements ? std::string("[[") + s.name + "]]\n" : std::string("[") + s.name + "]\n";
     const std::set<std::string> given = {"name", "center", "position"};
     const auto unknown = [&](const std::string& key) {
-      const auto list = diagnostics_of(test::replaced(kPlate, "body = [", "other = [") + open + "name = \"p\"\ncenter = \"0\"\nposition = \"0\"\n" + key + " = 1\n");
-      return std::any_of(list.begin(), list.end(), [&](const Diagnostic& d) { return d.message.find("unknown key '" + key + "'") != std::string::npos; });
+      const auto list = diagnostics_of(test::replaced(kPlate, "body = [", "other = [") + open +
+                                       "name = \"p\"\ncenter = \"0\"\nposition = \"0\"\n" + key + " = 1\n");
+      return std::any_of(list.begin(), list.end(), [&](const Diagnostic& d) {
+        return d.message.find("unknown key '" + key + "'") != std::string::npos;
+      });
     };
     EXPECT_TRUE(unknown("zzzzz")) << s.name;
     for (const LanguageKey& k : s.keys)
@@ -88,7 +97,8 @@ TEST(Language, ChoicesAreThoseOfTheReader) {
     if (name == "integrator") return kPlate + "[simulate]\nintegrator = \"" + value + "\"\n";
     return kPlate + "[[table]]\nname = \"T\"\nx = [0, 1]\ny = [0, 1]\n" + name + " = \"" + value + "\"\n";
   };
-  for (const auto& [section, name] : {std::pair{"table", "fit"}, {"table", "outside"}, {"event", "direction"}, {"simulate", "integrator"}}) {
+  for (const auto& [section, name] :
+       {std::pair{"table", "fit"}, {"table", "outside"}, {"event", "direction"}, {"simulate", "integrator"}}) {
     const std::vector<Diagnostic> wrong = diagnostics_of(with(name, "neither"));
     ASSERT_EQ(wrong.size(), 1U) << name;
     const std::string said = wrong[0].message + wrong[0].hint;
@@ -104,7 +114,8 @@ TEST(Language, ChoicesAreThoseOfTheReader) {
 TEST(Language, ShapesAreThoseOfTheReader) {
   const auto wrong = diagnostics_of(test::replaced(kPlate, "inertia = \"J\"", "shape = \"lump(1)\""));
   ASSERT_EQ(wrong.size(), 1U);
-  const std::string prefix = "the shapes are ", all = wrong[0].hint.substr(prefix.size()), meaning = key("body", "shape").meaning;
+  const std::string prefix = "the shapes are ", all = wrong[0].hint.substr(prefix.size()),
+                    meaning = key("body", "shape").meaning;
   int count = 0;
   for (std::size_t from = 0; from < all.size(); ++count) {
     const std::size_t to = all.find(')', from) + 1;
@@ -116,7 +127,8 @@ TEST(Language, ShapesAreThoseOfTheReader) {
 
 TEST(Language, UnitsOfThePageAreRead) {
   const std::string page = reference_page();
-  for (const UnitRow& u : unit_table()) EXPECT_NE(page.find(std::string("| `") + u.name + "`"), std::string::npos) << u.name;
+  for (const UnitRow& u : unit_table())
+    EXPECT_NE(page.find(std::string("| `") + u.name + "`"), std::string::npos) << u.name;
 }
 
 }  // namespace

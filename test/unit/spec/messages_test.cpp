@@ -49,8 +49,10 @@ TEST(Messages, TypicalMistakesHaveTheirPlaceAndTheirWords) {
       {"x = 1", "x = \"theta\"", 15, 5, "an initial value is a number or a formula of parameters"},
       {"\"x\", \"theta\"", "\"x\", \"x\"", 1, 22, "'x' is already declared in line 1"},
       {"[\"x\", \"theta\"]", "[]", 1, 15, "the list of coordinates is empty"},
-      {"position = [\"x\", \"sin(theta)\", \"0\"]", "position = [\"x\", \"y'\"]", 8, 12, "a vector has three components, 2 are given"},
-      {"[\"x\", \"sin(theta)\", \"0\"]", "[\"x'\", \"0\", \"0\"]", 8, 12, "the position of particle 'bob' depends on a velocity (x')"},
+      {"position = [\"x\", \"sin(theta)\", \"0\"]", "position = [\"x\", \"y'\"]", 8, 12,
+       "a vector has three components, 2 are given"},
+      {"[\"x\", \"sin(theta)\", \"0\"]", "[\"x'\", \"0\", \"0\"]", 8, 12,
+       "the position of particle 'bob' depends on a velocity (x')"},
       {"g = 9.81", "g = \"2*h\"\nh = \"g\"", 5, 6, "'g' is defined through itself: g -> h -> g"},
       {"m = 2", "m = \"2*t\"", 3, 1, "the parameter 'm' is not constant"},
       {"name = \"bob\"", "name = \"t\"", 6, 9, "the name 't' is reserved"},
@@ -59,7 +61,8 @@ TEST(Messages, TypicalMistakesHaveTheirPlaceAndTheirWords) {
   };
   for (const Mistake& m : mistakes) {
     const std::vector<Diagnostic> list = diagnostics_of(test::replaced(kGood, m.from, m.to));
-    const auto found = std::find_if(list.begin(), list.end(), [&](const Diagnostic& d) { return d.message == m.message; });
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const Diagnostic& d) { return d.message == m.message; });
     if (found == list.end()) {
       ADD_FAILURE() << "expected: " << m.message << "\nfound: " << (list.empty() ? "nothing" : list[0].message);
       continue;
@@ -78,14 +81,16 @@ TEST(Messages, AllErrorsAreReportedAtOnceInOrder) {
   EXPECT_FALSE(read_model(source, d));
   EXPECT_EQ(d.list().size(), 3U);
   const std::string printed = d.print(source);
-  const std::size_t a = printed.find("test.toml:8:"), b = printed.find("test.toml:13:"), c = printed.find("test.toml:15:");
+  const std::size_t a = printed.find("test.toml:8:"), b = printed.find("test.toml:13:"),
+                    c = printed.find("test.toml:15:");
   ASSERT_NE(c, std::string::npos);
   EXPECT_TRUE(a < b && b < c);
   EXPECT_NE(printed.find("^~~~~"), std::string::npos) << "the place is underlined";
 }
 
 TEST(Messages, ABrokenDefinitionIsReportedOnceNotAtEveryUse) {
-  const std::string text = "coordinates = [\"x\"]\n[define]\nh = \"q + 1\"\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"h\", \"h\", \"h\"]\n";
+  const std::string text = "coordinates = [\"x\"]\n[define]\nh = \"q + 1\"\n[[particle]]\nname = \"p\"\nmass = "
+                           "1\nposition = [\"h\", \"h\", \"h\"]\n";
   const std::vector<Diagnostic> list = diagnostics_of(text);
   ASSERT_EQ(list.size(), 1U);
   EXPECT_EQ(list[0].message, "unknown name 'q'");
@@ -119,7 +124,8 @@ TEST(Overrides, ReplaceParametersExactlyAndKnowTheirNames) {
   EXPECT_FALSE(diagnostics_of(kGood, {{"m", "1 +"}}).empty());
 }
 
-// ---- the reader never takes a user's mistake for a fault of its own ------------------------------------------------------
+// ---- the reader never takes a user's mistake for a fault of its own
+// ------------------------------------------------------
 
 int read_and_leave(const std::string& text) {
   const std::vector<Diagnostic> list = diagnostics_of(text);
@@ -131,7 +137,8 @@ TEST(Robust, DivisionByAParameterThatIsZeroIsTheUsersError) {
 }
 
 TEST(Robust, AnInertiaOverAParameterThatIsZeroIsTheUsersError) {
-  EXPECT_EXIT(read_and_leave(test::replaced(kGood, "mass = \"m\"", "mass = \"1/(m - 2)\"")), testing::ExitedWithCode(10), "");
+  EXPECT_EXIT(read_and_leave(test::replaced(kGood, "mass = \"m\"", "mass = \"1/(m - 2)\"")),
+              testing::ExitedWithCode(10), "");
 }
 
 // (x''^2 + x'')/x'' - x'' is 1: the constraint has order 1, and finding that out must not divide by zero.
@@ -141,14 +148,16 @@ TEST(Robust, AHighestDerivativeThatCancelsUnderAFraction) {
 }
 
 TEST(Robust, AFunctionAtAnArgumentThatDividesByZeroIsTheUsersError) {
-  const std::string text = test::replaced(kGood, "[[particle]]", "[functions]\nf = \"1/t\"\n[define]\nd = \"f(0)\"\n[[particle]]");
+  const std::string text =
+      test::replaced(kGood, "[[particle]]", "[functions]\nf = \"1/t\"\n[define]\nd = \"f(0)\"\n[[particle]]");
   EXPECT_EXIT(read_and_leave(text), testing::ExitedWithCode(10), "");
 }
 
 TEST(Robust, AFractionalPowerOfANegativeNumberIsTheUsersErrorOrNotANumber) {
   for (const char* mass : {"(-2)^(1/2)", "(0)^(-1/2)", "0^0", "log(-1)", "1/0"})
-    EXPECT_EXIT(read_and_leave(test::replaced(kGood, "mass = \"m\"", std::string("mass = \"") + mass + "\"")),
-                [](int status) { return WIFEXITED(status) && WEXITSTATUS(status) != 3; }, "")
+    EXPECT_EXIT(
+        read_and_leave(test::replaced(kGood, "mass = \"m\"", std::string("mass = \"") + mass + "\"")),
+        [](int status) { return WIFEXITED(status) && WEXITSTATUS(status) != 3; }, "")
         << mass;
 }
 

@@ -31,7 +31,8 @@ center = "P + R*ez"
 orientation = "e1*roty(q)"
 [[constraint]]
 name = "c"
-equation = "(x''' + )toml" + left + ") - (" + right + ") = 0\"\n");
+equation = "(x''' + )toml" + left + ") - (" +
+                                    right + ") = 0\"\n");
   const Expr phi = model->constraints.at(0).phi - model->graph->jet(0, 3);
   static std::vector<std::shared_ptr<const Model>> kept;  // the graph lives as long as the expression is looked at
   kept.push_back(model);
@@ -57,7 +58,7 @@ TEST(Meaning, KinematicFunctionsAreWhatTheirNamesSay) {
       {"vel(disc, P).x", "x' - R*q'*cos(th)"},  // rolling: the material point at the contact
       {"vel(disc, P).y", "y' - R*q'*sin(th)"},
       {"vel(disc, disc.center).x", "x'"},
-      {"vel(P, disc).x", "R*q'*cos(th)"},       // P as seen from the disc
+      {"vel(P, disc).x", "R*q'*cos(th)"},  // P as seen from the disc
       {"angvel(disc).z", "th'"},
       {"angvel(disc).x", "-q'*sin(th)"},
       {"angvel(e1).z", "th'"},
@@ -86,19 +87,21 @@ TEST(Meaning, KinematicFunctionsAreWhatTheirNamesSay) {
 }
 
 TEST(Meaning, NamesAreLookedUpInAnyOrderOfDeclaration) {
-  const auto model = test::model_of(
-      "coordinates = [\"x\"]\n[define]\nb = \"2*a\"\na = \"x + c\"\n[parameters]\nc = \"d/3\"\nd = 1\n[[particle]]\nname = \"p\"\nmass = 1\n"
-      "position = \"b*ex\"\n");
+  const auto model = test::model_of("coordinates = [\"x\"]\n[define]\nb = \"2*a\"\na = \"x + c\"\n[parameters]\nc = "
+                                    "\"d/3\"\nd = 1\n[[particle]]\nname = \"p\"\nmass = 1\n"
+                                    "position = \"b*ex\"\n");
   EXPECT_EQ(model->bodies[0].center.x, 2 * (model->graph->jet(0, 0) + model->graph->parameter(0)));
 }
 
 TEST(Meaning, GreekLettersAreTheirNames) {
-  const auto model = test::model_of("coordinates = [\"θ\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"sin(theta)*ex + θ*ey\"\n");
+  const auto model = test::model_of(
+      "coordinates = [\"θ\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"sin(theta)*ex + θ*ey\"\n");
   EXPECT_EQ(model->coordinates[0].name, "theta");
 }
 
 TEST(Meaning, ComponentsThatVanishAreDroppedAndNoted) {
-  const auto model = test::model_of("coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[constraint]]\nname = \"still\"\n"
+  const auto model = test::model_of("coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = "
+                                    "\"x*ex + y*ey\"\n[[constraint]]\nname = \"still\"\n"
                                     "equation = \"vel(p.position) = 0\"\n");
   ASSERT_EQ(model->constraints.size(), 2U);
   EXPECT_EQ(model->constraints[1].name, "still.y");
@@ -107,8 +110,11 @@ TEST(Meaning, ComponentsThatVanishAreDroppedAndNoted) {
 
 TEST(Meaning, TheOrderOfAConstraintIsItsTrueOne) {
   const auto order = [](const std::string& equation) {
-    return test::model_of("coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey\"\n[[constraint]]\nname = \"c\"\nequation = \"" +
-                          equation + "\"\n")->constraints[0].order;
+    return test::model_of("coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + "
+                          "y*ey\"\n[[constraint]]\nname = \"c\"\nequation = \"" +
+                          equation + "\"\n")
+        ->constraints[0]
+        .order;
   };
   EXPECT_EQ(order("x = y^2"), 0);
   EXPECT_EQ(order("x' = y'"), 1);

@@ -59,8 +59,9 @@ TEST_F(ObserverTest, InThePlane) {
   expect_one_motion({rotation + "origin_position_inertial = [\"A*cos(2*t)\", \"t^2\", \"0\"]\n",
                      spin + "origin_position_inertial = [\"A*cos(2*t)\", \"t^2\", \"0\"]\n",
                      rotation + "origin_velocity_inertial = [\"" + vx + "\", \"" + vy + "\", \"0\"]\n",
-                     spin + "origin_velocity_inertial = [\"" + vx + "\", \"" + vy + "\", \"0\"]\n", rotation + moving_velocity,
-                     spin + moving_velocity, spin + "origin_acceleration = " + turned_back(ax, ay),
+                     spin + "origin_velocity_inertial = [\"" + vx + "\", \"" + vy + "\", \"0\"]\n",
+                     rotation + moving_velocity, spin + moving_velocity,
+                     spin + "origin_acceleration = " + turned_back(ax, ay),
                      rotation + "origin_acceleration = " + turned_back(ax, ay)},
                     // omega x v counted for a velocity in inertial components (theory.md section 9, 4).
                     spin + "origin_velocity = [\"" + vx + "\", \"" + vy + "\", \"0\"]\n");
@@ -82,7 +83,8 @@ TEST_F(ObserverTest, TumblingInSpace) {
 }
 
 TEST_F(ObserverTest, WithoutASectionItIsInertial) {
-  const auto model = test::model_of("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n");
+  const auto model =
+      test::model_of("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n");
   EXPECT_TRUE(model->observer.inertial);
   EXPECT_TRUE(is_zero(model->observer.spin));
   EXPECT_FALSE(with_observer("spin = \"w*ez\"\n")->observer.inertial);
@@ -99,7 +101,8 @@ TEST(Antiderivative, HasTheIntegrandAsDerivative) {
   const PrecisionScope precision(40);
   Graph g;
   const Expr t = g.time(), w = g.parameter(0);
-  for (Expr e : {w, t * t, sin(w * t + g.one()), 3 * cos(2 * t) - w * exp(-t), sinh(t) + cosh(w * t), pow(t, {1, 2}), pow(t, -2)}) {
+  for (Expr e : {w, t * t, sin(w * t + g.one()), 3 * cos(2 * t) - w * exp(-t), sinh(t) + cosh(w * t), pow(t, {1, 2}),
+                 pow(t, -2)}) {
     const auto f = antiderivative(e);
     ASSERT_TRUE(f);
     test::Point p(1);

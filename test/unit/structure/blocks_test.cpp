@@ -1,8 +1,7 @@
 // What is solved together, in which order, and what the state must satisfy.
-#include "structure/blocks.h"
-
 #include <gtest/gtest.h>
 
+#include "structure/blocks.h"
 #include "structure/consistent.h"
 #include "support/models.h"
 #include "tape/tape.h"
@@ -27,7 +26,8 @@ Analysed analysed(const std::shared_ptr<const Model>& model) {
   const std::vector<double> parameters = evaluate_parameters<double>(*model->graph, values);
   InitialState<double> start;
   ProbeHints hints;
-  if (consistent_state(InitialProblem<double>{&m, parameters, {}, std::nullopt}, start).ok()) hints = {{start.q, start.qd}, start.states, start.t};
+  if (consistent_state(InitialProblem<double>{&m, parameters, {}, std::nullopt}, start).ok())
+    hints = {{start.q, start.qd}, start.states, start.t};
   const Outcome o = analyse(a.system, parameters, hints, a.structure);
   EXPECT_TRUE(o.ok()) << o.message;
   return a;
@@ -44,8 +44,8 @@ Names unknowns(const Analysed& a) {
   return out;
 }
 
-// Each equation needs, at the order it is solved at, unknowns of its own block and of earlier ones only; and no block can be
-// taken apart: that is what the words mean.
+// Each equation needs, at the order it is solved at, unknowns of its own block and of earlier ones only; and no block
+// can be taken apart: that is what the words mean.
 void expect_triangular(const Structure& t) {
   const std::vector<Block> list = blocks(t);
   std::vector<std::size_t> block_of(t.c.size(), SIZE_MAX);
@@ -66,9 +66,10 @@ void expect_triangular(const Structure& t) {
 
 TEST(Blocks, AnUncoupledCoordinateIsABlockOfItsOwn) {
   // The blade couples x, y and theta; z falls alone.
-  const Analysed a = analysed(test::model_of(
-      "coordinates = [\"x\", \"y\", \"z\", \"s\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n"
-      "[[particle]]\nname = \"q\"\nmass = 1\nposition = [\"s + x\", \"0\", \"0\"]\n[[constraint]]\nname = \"edge\"\nequation = \"x' = z*y'\"\n"));
+  const Analysed a = analysed(test::model_of("coordinates = [\"x\", \"y\", \"z\", \"s\"]\n[[particle]]\nname = "
+                                             "\"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n"
+                                             "[[particle]]\nname = \"q\"\nmass = 1\nposition = [\"s + x\", \"0\", "
+                                             "\"0\"]\n[[constraint]]\nname = \"edge\"\nequation = \"x' = z*y'\"\n"));
   expect_triangular(a.structure);
   const Names names = unknowns(a);
   EXPECT_EQ(names.size(), 2U);

@@ -12,8 +12,10 @@ constexpr double kRoundoff = 1e-14;  // numbers of size one
 
 // A particle of mass 2 in a force field.
 std::string text(const std::string& equation, const std::string& initial, const std::string& force = "[0, 0, -6]") {
-  return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n[[force]]\nname = \"f\"\non = \"p\"\n"
-         "vector = " + force + "\n[[constraint]]\nname = \"c\"\nequation = \"" + equation + "\"\n[initial]\n" + initial;
+  return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", "
+         "\"z\"]\n[[force]]\nname = \"f\"\non = \"p\"\n"
+         "vector = " +
+         force + "\n[[constraint]]\nname = \"c\"\nequation = \"" + equation + "\"\n[initial]\n" + initial;
 }
 
 template <class N = double>
@@ -155,7 +157,10 @@ TEST(Branches, ThatDoNotExistAreRefused) {
 TEST(Conditions, OnAccelerationsFindVelocities) {
   // A conical pendulum at the height -0.6: v^2 = g (1 - z^2)/(-z), g = 3.
   InitialState<double> s;
-  ASSERT_TRUE(complete(text("x^2 + y^2 + z^2 = 1", "y = 0\nz = -0.6\nguess = {x = 1, \"y'\" = 2}\n\"z'\" = 0\nconditions = [\"z'' = 0\"]\n"), s).ok());
+  ASSERT_TRUE(complete(text("x^2 + y^2 + z^2 = 1",
+                            "y = 0\nz = -0.6\nguess = {x = 1, \"y'\" = 2}\n\"z'\" = 0\nconditions = [\"z'' = 0\"]\n"),
+                       s)
+                  .ok());
   EXPECT_NEAR(s.q[0], 0.8, kRoundoff);
   EXPECT_NEAR(s.qd[1] * s.qd[1], 3 * 0.64 / 0.6, 1e-12);
   EXPECT_EQ(s.qd_origin[1], Origin::derived);
@@ -165,17 +170,26 @@ TEST(Conditions, OnMultipliersFindVelocitiesOrElsePositions) {
   InitialState<double> s;
   const std::string sphere = "x^2 + y^2 + z^2 = 1";
   // At the lowest point 2 z'' = -6 - 2 l and z'' = v^2: the multiplier is -3 - v^2.
-  ASSERT_TRUE(complete(text(sphere, "x = 0\ny = 0\nz = -1\n\"y'\" = 0\nguess = {\"x'\" = 1}\nconditions = [\"lambda.c = -5\"]\n"), s).ok());
+  ASSERT_TRUE(
+      complete(
+          text(sphere, "x = 0\ny = 0\nz = -1\n\"y'\" = 0\nguess = {\"x'\" = 1}\nconditions = [\"lambda.c = -5\"]\n"), s)
+          .ok());
   EXPECT_NEAR(s.qd[0] * s.qd[0], 2, 1e-11);
   // At rest everywhere: the place is found where z'' has the value wanted.
-  ASSERT_TRUE(complete(text(sphere, "y = 0\nqdot = {x = 0, y = 0, z = 0}\nguess = {x = 0.8, z = -0.5}\nconditions = [\"z'' = -3/2\"]\n"), s).ok());
+  ASSERT_TRUE(
+      complete(
+          text(sphere,
+               "y = 0\nqdot = {x = 0, y = 0, z = 0}\nguess = {x = 0.8, z = -0.5}\nconditions = [\"z'' = -3/2\"]\n"),
+          s)
+          .ok());
   EXPECT_NEAR(s.q[0] * s.q[0], 0.5, 1e-12);  // z'' = -3 x^2
   EXPECT_EQ(s.q_origin[0], Origin::derived);
 }
 
 TEST(Conditions, ThatCannotHoldAreNamed) {
   InitialState<double> s;
-  const Outcome o = complete(text("x' = y", "x = 0\ny = 0\nz = 0\nqdot = {y = 0, z = 0}\nconditions = [\"z'' = 1\"]\n"), s);
+  const Outcome o =
+      complete(text("x' = y", "x = 0\ny = 0\nz = 0\nqdot = {y = 0, z = 0}\nconditions = [\"z'' = 1\"]\n"), s);
   EXPECT_EQ(o.kind, OutcomeKind::inconsistent);
 }
 

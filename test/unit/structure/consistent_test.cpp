@@ -1,8 +1,8 @@
-// Consistent initial data: given values hold, missing ones follow by least change, rounded ones are corrected, clashes are named.
-#include "structure/consistent.h"
-
+// Consistent initial data: given values hold, missing ones follow by least change, rounded ones are corrected, clashes
+// are named.
 #include <gtest/gtest.h>
 
+#include "structure/consistent.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -10,10 +10,14 @@ namespace {
 
 // A particle of mass m in the plane and one of mass M on a line.
 std::string text(const std::string& constraints, const std::string& initial) {
-  return "coordinates = [\"x\", \"y\"]\n[parameters]\nmx = 1\nmy = 4\n[[particle]]\nname = \"a\"\nmass = \"mx\"\nposition = \"x*ex\"\n[[particle]]\nname = "
-         "\"b\"\nmass = \"my\"\nposition = \"y*ey\"\n" + constraints + "[initial]\n" + initial;
+  return "coordinates = [\"x\", \"y\"]\n[parameters]\nmx = 1\nmy = 4\n[[particle]]\nname = \"a\"\nmass = "
+         "\"mx\"\nposition = \"x*ex\"\n[[particle]]\nname = "
+         "\"b\"\nmass = \"my\"\nposition = \"y*ey\"\n" +
+         constraints + "[initial]\n" + initial;
 }
-std::string constraint(const std::string& equation) { return "[[constraint]]\nname = \"c\"\nequation = \"" + equation + "\"\n"; }
+std::string constraint(const std::string& equation) {
+  return "[[constraint]]\nname = \"c\"\nequation = \"" + equation + "\"\n";
+}
 
 template <class N = double>
 Outcome solve(const std::string& model_text, InitialState<N>& state, std::vector<StateOverride> overrides = {}) {
@@ -21,7 +25,8 @@ Outcome solve(const std::string& model_text, InitialState<N>& state, std::vector
   const Mechanics m = mechanics(*model);
   Column values;
   for (const Parameter& p : model->parameters) values.push_back(p.value);
-  const InitialProblem<N> problem{&m, evaluate_parameters<N>(*model->graph, values), std::move(overrides), std::nullopt};
+  const InitialProblem<N> problem{&m, evaluate_parameters<N>(*model->graph, values), std::move(overrides),
+                                  std::nullopt};
   return consistent_state(problem, state);
 }
 
@@ -64,7 +69,8 @@ TEST(ConsistentState, TheGuessNamesTheBranch) {
 TEST(ConsistentState, AFlatGuessIsLeft) {
   InitialState<double> s;
   const Outcome o = solve(text(constraint("x^2 + y^2 = 25"), ""), s);
-  ASSERT_TRUE(o.ok()) << "the centre of the circle is no dead end: " << o.message << "; reached " << s.q[0] << ", " << s.q[1];
+  ASSERT_TRUE(o.ok()) << "the centre of the circle is no dead end: " << o.message << "; reached " << s.q[0] << ", "
+                      << s.q[1];
   EXPECT_NEAR(s.q[0] * s.q[0] + s.q[1] * s.q[1], 25, 25 * 4 * kRoundoff);
 }
 
@@ -95,7 +101,9 @@ TEST(ConsistentState, ValuesThatClashAreNamed) {
 
 TEST(ConsistentState, ConditionsAreMet) {
   InitialState<double> s;
-  ASSERT_TRUE(solve(text(constraint("x' = y'"), "x = 0\nconditions = [\"y^2 = 2\", \"x' + y' = 6\"]\nguess = {y = 1}\n"), s).ok());
+  ASSERT_TRUE(
+      solve(text(constraint("x' = y'"), "x = 0\nconditions = [\"y^2 = 2\", \"x' + y' = 6\"]\nguess = {y = 1}\n"), s)
+          .ok());
   EXPECT_NEAR(s.q[1], std::sqrt(2.0), 4 * kRoundoff);
   EXPECT_NEAR(s.qd[0], 3, 1e-14);
 }
@@ -108,7 +116,9 @@ TEST(ConsistentState, NoRealSolutionIsInconsistent) {
 
 TEST(ConsistentState, OverridesReplaceTheModelsValues) {
   InitialState<double> s;
-  ASSERT_TRUE(solve(text(constraint("x' = 3*y'"), "x = 1\n\"y'\" = 1\n"), s, {{1, 1, Rational(2)}, {0, 0, Rational(7, 2)}}).ok());
+  ASSERT_TRUE(
+      solve(text(constraint("x' = 3*y'"), "x = 1\n\"y'\" = 1\n"), s, {{1, 1, Rational(2)}, {0, 0, Rational(7, 2)}})
+          .ok());
   EXPECT_EQ(s.q[0], 3.5);
   EXPECT_NEAR(s.qd[0], 6, 6 * kRoundoff);
 }

@@ -1,24 +1,25 @@
 // Initial data that contradict each other: the set that is named is contradictory, and no part of it is.
-#include "structure/contradiction.h"
+#include <random>
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "structure/consistent.h"
+#include "structure/contradiction.h"
 #include "support/models.h"
 
 namespace anholon {
 namespace {
 
-
 // Particles of mass 1 on lines, one for each coordinate, with these constraints c1, c2, ….
-std::string text(const std::vector<std::string>& coordinates, const std::vector<std::string>& equations, const std::string& initial) {
+std::string text(const std::vector<std::string>& coordinates, const std::vector<std::string>& equations,
+                 const std::string& initial) {
   std::string out = "coordinates = [";
   for (const std::string& q : coordinates) out += "\"" + q + "\", ";
   out += "]\n";
-  for (const std::string& q : coordinates) out += "[[particle]]\nname = \"p_" + q + "\"\nmass = 1\nposition = \"" + q + "*ex\"\n";
-  for (std::size_t k = 0; k < equations.size(); ++k) out += "[[constraint]]\nname = \"c" + std::to_string(k + 1) + "\"\nequation = \"" + equations[k] + "\"\n";
+  for (const std::string& q : coordinates)
+    out += "[[particle]]\nname = \"p_" + q + "\"\nmass = 1\nposition = \"" + q + "*ex\"\n";
+  for (std::size_t k = 0; k < equations.size(); ++k)
+    out += "[[constraint]]\nname = \"c" + std::to_string(k + 1) + "\"\nequation = \"" + equations[k] + "\"\n";
   return out + "[initial]\n" + initial;
 }
 
@@ -27,7 +28,8 @@ Outcome solve(const std::string& model_text, std::vector<StateOverride> override
   const Mechanics m = mechanics(*model);
   Column values;
   for (const Parameter& p : model->parameters) values.push_back(p.value);
-  const InitialProblem<double> problem{&m, evaluate_parameters<double>(*model->graph, values), std::move(overrides), std::nullopt};
+  const InitialProblem<double> problem{&m, evaluate_parameters<double>(*model->graph, values), std::move(overrides),
+                                       std::nullopt};
   InitialState<double> state;
   return consistent_state(problem, state);
 }
@@ -35,7 +37,8 @@ Outcome solve(const std::string& model_text, std::vector<StateOverride> override
 bool says(const Outcome& o, const std::string& words) { return o.message.find(words) != std::string::npos; }
 
 TEST(Contradiction, OfVelocitiesNamesThoseThatClashAndNoOthers) {
-  const Outcome o = solve(text({"x", "y", "u", "w"}, {"x' = u'", "u' = y'", "w' = 2*x' + 1"}, "\"x'\" = 1\n\"y'\" = 2\n"));
+  const Outcome o =
+      solve(text({"x", "y", "u", "w"}, {"x' = u'", "u' = y'", "w' = 2*x' + 1"}, "\"x'\" = 1\n\"y'\" = 2\n"));
   ASSERT_EQ(o.kind, OutcomeKind::inconsistent);
   EXPECT_TRUE(says(o, "x' = 1")) << o.message;
   EXPECT_TRUE(says(o, "y' = 2"));
@@ -49,7 +52,8 @@ TEST(Contradiction, OfOneValueSaysWhatIsAskedInItsPlace) {
   // The least miss is shared by all constraints: the largest is none of the clash.
   const Outcome o = solve(text({"x", "y", "u"}, {"x' + y' = u'", "1000*(x' - y') = 0", "y' = 0"}, "\"y'\" = 1\n"));
   ASSERT_EQ(o.kind, OutcomeKind::inconsistent);
-  EXPECT_TRUE(says(o, "y' = 1 (line 24) clashes with constraint 'c3' (line 22), which asks for y' = 0 here")) << o.message;
+  EXPECT_TRUE(says(o, "y' = 1 (line 24) clashes with constraint 'c3' (line 22), which asks for y' = 0 here"))
+      << o.message;
 }
 
 TEST(Contradiction, OfConstraintsAloneBlamesNoValue) {
@@ -66,7 +70,8 @@ TEST(Contradiction, OfConstraintsAloneBlamesNoValue) {
 
 TEST(Contradiction, OfPositionsIsFoundByLeavingOut) {
   // Two links: the first cannot reach x = 2, the second has nothing to do with it.
-  const Outcome o = solve(text({"x", "y", "u", "v"}, {"x^2 + y^2 = 1", "(u - x)^2 + (v - y)^2 = 1"}, "x = 2\nu = 1\nguess = {y = -1, v = -2}\n"));
+  const Outcome o = solve(text({"x", "y", "u", "v"}, {"x^2 + y^2 = 1", "(u - x)^2 + (v - y)^2 = 1"},
+                               "x = 2\nu = 1\nguess = {y = -1, v = -2}\n"));
   ASSERT_EQ(o.kind, OutcomeKind::inconsistent);
   EXPECT_TRUE(says(o, "x = 2")) << o.message;
   EXPECT_TRUE(says(o, "'c1'"));
@@ -76,7 +81,8 @@ TEST(Contradiction, OfPositionsIsFoundByLeavingOut) {
 
 TEST(Contradiction, OfPositionsThroughSeveralConstraints) {
   // The end of two links of length 1 is at most 2 away.
-  const Outcome o = solve(text({"x", "y", "u", "v", "s"}, {"x^2 + y^2 = 1", "(u - x)^2 + (v - y)^2 = 1", "s = u"}, "u = 3\ns = 3\nguess = {y = -1, v = -2}\n"));
+  const Outcome o = solve(text({"x", "y", "u", "v", "s"}, {"x^2 + y^2 = 1", "(u - x)^2 + (v - y)^2 = 1", "s = u"},
+                               "u = 3\ns = 3\nguess = {y = -1, v = -2}\n"));
   ASSERT_EQ(o.kind, OutcomeKind::inconsistent);
   EXPECT_TRUE(says(o, "u = 3")) << o.message;
   EXPECT_TRUE(says(o, "'c1'"));
@@ -102,7 +108,8 @@ TEST(Contradiction, OfLinearEquationsIsMinimal) {
     for (std::size_t i = 0; i < equations; ++i) {
       std::string e = std::to_string(static_cast<int>(random() % 5) - 2);
       for (std::size_t j = 0; j < n; ++j)
-        if (const int c = static_cast<int>(random() % 5) - 2; c != 0 && random() % 2) e += " + (" + std::to_string(c) + ")*q" + std::to_string(j) + "'";
+        if (const int c = static_cast<int>(random() % 5) - 2; c != 0 && random() % 2)
+          e += " + (" + std::to_string(c) + ")*q" + std::to_string(j) + "'";
       list.push_back("3*q0' + " + e + " = 0");
     }
     const auto model = test::model_of(text(coordinates, list, ""));

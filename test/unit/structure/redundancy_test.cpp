@@ -1,7 +1,6 @@
-#include "structure/redundancy.h"
-
 #include <gtest/gtest.h>
 
+#include "structure/redundancy.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -9,10 +8,12 @@ namespace {
 
 // A particle with the constraints listed, separated by semicolons.
 IndependentConstraints choice_of(const std::string& constraints, const std::string& initial) {
-  std::string text = "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", \"z\"]\n";
+  std::string text =
+      "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", \"z\"]\n";
   for (std::size_t at = 0, k = 0; at < constraints.size(); ++k) {
     const std::size_t end = std::min(constraints.find(';', at), constraints.size());
-    text += "[[constraint]]\nname = \"c" + std::to_string(k) + "\"\nequation = \"" + constraints.substr(at, end - at) + "\"\n";
+    text += "[[constraint]]\nname = \"c" + std::to_string(k) + "\"\nequation = \"" + constraints.substr(at, end - at) +
+            "\"\n";
     at = end + 1;
   }
   const auto model = test::model_of(text + "[initial]\n" + initial);

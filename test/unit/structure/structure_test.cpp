@@ -1,8 +1,7 @@
 // Signature, offsets and dimension of the examples of theory.md section 5.
-#include "structure/structure.h"
-
 #include <gtest/gtest.h>
 
+#include "structure/structure.h"
 #include "support/models.h"
 #include "tape/tape.h"
 
@@ -39,15 +38,19 @@ void expect(const Analysed& a, const Ints& c, const Ints& d, int dimension) {
   // d_j - c_i >= sigma_ij, equality on the transversal: what makes the offsets valid.
   for (std::size_t i = 0; i < a.structure.c.size(); ++i) {
     for (std::size_t j = 0; j < a.structure.d.size(); ++j)
-      EXPECT_TRUE(a.structure.sigma[i][j] == kAbsent || a.structure.d[j] - a.structure.c[i] >= a.structure.sigma[i][j]) << i << ", " << j;
+      EXPECT_TRUE(a.structure.sigma[i][j] == kAbsent || a.structure.d[j] - a.structure.c[i] >= a.structure.sigma[i][j])
+          << i << ", " << j;
     const std::size_t j = static_cast<std::size_t>(a.structure.transversal[i]);
     EXPECT_EQ(a.structure.d[j] - a.structure.c[i], a.structure.sigma[i][j]);
   }
 }
 
 std::string particle(const std::string& constraints, const std::string& more = {}) {
-  return "coordinates = [\"x\", \"y\", \"z\"]\n[parameters]\nm = 2\nkx = 3\nky = 2\nkz = 1\nkk = 0.5\n[[particle]]\nname = \"p\"\nmass = \"m\"\n"
-         "position = [\"x\", \"y\", \"z\"]\n[[force]]\nname = \"springs\"\non = \"p\"\nvector = [\"-kx*x\", \"-ky*y\", \"-kz*z\"]\n" + constraints + more;
+  return "coordinates = [\"x\", \"y\", \"z\"]\n[parameters]\nm = 2\nkx = 3\nky = 2\nkz = 1\nkk = "
+         "0.5\n[[particle]]\nname = \"p\"\nmass = \"m\"\n"
+         "position = [\"x\", \"y\", \"z\"]\n[[force]]\nname = \"springs\"\non = \"p\"\nvector = [\"-kx*x\", \"-ky*y\", "
+         "\"-kz*z\"]\n" +
+         constraints + more;
 }
 std::string constraint(const std::string& name, const std::string& equation) {
   return "[[constraint]]\nname = \"" + name + "\"\nequation = \"" + equation + "\"\n";
@@ -55,11 +58,17 @@ std::string constraint(const std::string& name, const std::string& equation) {
 
 TEST(Structure, Unconstrained) { expect(analysed(test::model_of(particle(""))), {0, 0, 0}, {2, 2, 2}, 6); }
 
-TEST(Structure, FirstOrderSleigh) { expect(analysed(test::shipped("zoo/chaplygin-sleigh")), {0, 0, 0, 1}, {2, 2, 2, 0}, 5); }
+TEST(Structure, FirstOrderSleigh) {
+  expect(analysed(test::shipped("zoo/chaplygin-sleigh")), {0, 0, 0, 1}, {2, 2, 2, 0}, 5);
+}
 
-TEST(Structure, FirstOrderNonlinear) { expect(analysed(test::shipped("zoo/appell-hamel")), {0, 0, 0, 1}, {2, 2, 2, 0}, 5); }
+TEST(Structure, FirstOrderNonlinear) {
+  expect(analysed(test::shipped("zoo/appell-hamel")), {0, 0, 0, 1}, {2, 2, 2, 0}, 5);
+}
 
-TEST(Structure, SecondOrderLinear) { expect(analysed(test::shipped("zoo/second-order-linear")), {0, 0, 0, 0}, {2, 2, 2, 0}, 6); }
+TEST(Structure, SecondOrderLinear) {
+  expect(analysed(test::shipped("zoo/second-order-linear")), {0, 0, 0, 0}, {2, 2, 2, 0}, 6);
+}
 
 TEST(Structure, Holonomic) {
   expect(analysed(test::shipped("zoo/fourbar")), {0, 0, 0, 2, 2}, {2, 2, 2, 0, 0}, 2);
@@ -67,19 +76,23 @@ TEST(Structure, Holonomic) {
 }
 
 TEST(Structure, ThirdOrderLinearHasItsMultiplierAsState) {
-  const Analysed a = analysed(test::model_of(particle(constraint("jerk", "x''' - (1 + z'/2)*y''' + kk*x''*y' + z = 0"))));
+  const Analysed a =
+      analysed(test::model_of(particle(constraint("jerk", "x''' - (1 + z'/2)*y''' + kk*x''*y' + z = 0"))));
   expect(a, {1, 1, 0, 0}, {3, 3, 2, 1}, 7);
   constexpr int n = kAbsent;
   EXPECT_EQ(a.structure.sigma, (std::vector<Ints>{{2, n, n, 0}, {n, 2, 1, 0}, {n, n, 2, n}, {3, 3, 1, n}}));
 }
 
 TEST(Structure, OrderTwoNonlinearAndOrderThreeNonlinear) {
-  expect(analysed(test::model_of(particle(constraint("a", "x''^2 + y''^2 + z''^2 = 4")))), {0, 0, 0, 0}, {2, 2, 2, 0}, 6);
-  expect(analysed(test::model_of(particle(constraint("j", "x'''^2 + y'''^2 + z'''^2 = 4")))), {0, 0, 0, 0}, {3, 3, 3, 0}, 9);
+  expect(analysed(test::model_of(particle(constraint("a", "x''^2 + y''^2 + z''^2 = 4")))), {0, 0, 0, 0}, {2, 2, 2, 0},
+         6);
+  expect(analysed(test::model_of(particle(constraint("j", "x'''^2 + y'''^2 + z'''^2 = 4")))), {0, 0, 0, 0},
+         {3, 3, 3, 0}, 9);
 }
 
 TEST(Structure, MixedOrdersEachHaveTheirRow) {
-  const Analysed a = analysed(test::model_of(particle(constraint("sphere", "x^2 + y^2 + z^2 = 4") + constraint("edge", "x' + z*y' = 0"))));
+  const Analysed a = analysed(
+      test::model_of(particle(constraint("sphere", "x^2 + y^2 + z^2 = 4") + constraint("edge", "x' + z*y' = 0"))));
   expect(a, {0, 0, 0, 2, 1}, {2, 2, 2, 0, 0}, 3);
 }
 
@@ -96,7 +109,8 @@ TEST(Structure, ADerivativeThatCancelsDoesNotCount) {
 }
 
 TEST(Structure, AMassThatDependsOnTheAccelerationRaisesTheOrder) {
-  const std::string text = "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = \"2 + x''^2/10\"\nposition = \"x*ex\"\nexpelled_velocity = \"-ex\"\n";
+  const std::string text = "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = \"2 + x''^2/10\"\nposition = "
+                           "\"x*ex\"\nexpelled_velocity = \"-ex\"\n";
   const Analysed a = analysed(test::model_of(text));
   EXPECT_EQ(a.structure.sigma[0][0], 3);
   EXPECT_EQ(a.structure.state_dimension, 3);

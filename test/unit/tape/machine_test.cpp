@@ -16,7 +16,8 @@ constexpr int kOrders = 8;
 // x(t), y(t), x'(t): polynomials whose Taylor coefficients are powers of 2, exact in every number type.
 double coefficient_of_path(std::uint32_t coordinate, std::uint32_t order, int k) {
   if (k > 3) return 0;
-  return (coordinate == 0 ? 0.375 : -0.25) * (order == 0 ? 1 : 1.5) * (k % 2 ? 1 : -0.5) / (1 << k) + (k == 0 ? 0.5 : 0);
+  return (coordinate == 0 ? 0.375 : -0.25) * (order == 0 ? 1 : 1.5) * (k % 2 ? 1 : -0.5) / (1 << k) +
+         (k == 0 ? 0.5 : 0);
 }
 
 Multi on_path(const Graph& g, NodeId id, const Multi& t) {
@@ -34,7 +35,8 @@ void set_inputs(Machine<N>& machine, const Graph& g, int orders) {
   for (const Input& in : machine.tape().inputs) {
     const Node& n = g.node(in.symbol);
     for (int k = 0; k <= orders; ++k)
-      machine.series(in.slot)[k] = n.kind == Kind::time ? N(k == 1 ? 1 : 0) : N(coefficient_of_path(n.index, n.order, k));
+      machine.series(in.slot)[k] =
+          n.kind == Kind::time ? N(k == 1 ? 1 : 0) : N(coefficient_of_path(n.index, n.order, k));
   }
 }
 
@@ -63,9 +65,12 @@ double error_in_roundoffs(Expr e, const std::vector<Multi>& expected) {
     const Multi& c = expected[static_cast<std::size_t>(k)];
     if (abs(c) > size) size = abs(c);
     Multi found;
-    if constexpr (std::same_as<N, Multi>) found = machine.series(tape.roots[0])[k];
-    else if constexpr (std::same_as<N, Quad>) set_mpfr(found.raw(), machine.series(tape.roots[0])[k]);
-    else found = Multi(static_cast<long double>(machine.series(tape.roots[0])[k]));
+    if constexpr (std::same_as<N, Multi>)
+      found = machine.series(tape.roots[0])[k];
+    else if constexpr (std::same_as<N, Quad>)
+      set_mpfr(found.raw(), machine.series(tape.roots[0])[k]);
+    else
+      found = Multi(static_cast<long double>(machine.series(tape.roots[0])[k]));
     worst = std::max(worst, to_double(Multi(abs(Multi(found - c)) / size)) / to_double(unit_roundoff<N>()));
   }
   return worst;
@@ -75,7 +80,8 @@ template <class N>
 class TaylorIn : public testing::Test {
  protected:
   PrecisionScope precision{40};
-  // Recurrences of up to 8 terms, some with derivatives of derivatives: a few hundred round-offs; wrong rules err by 1e10 and more.
+  // Recurrences of up to 8 terms, some with derivatives of derivatives: a few hundred round-offs; wrong rules err by
+  // 1e10 and more.
   static constexpr double kRoundoffs = 1000;
 };
 using NumberTypes = testing::Types<double, long double, Quad, Multi>;
@@ -89,8 +95,7 @@ TYPED_TEST(TaylorIn, EveryElementaryFunction) {
     EXPECT_LE(error_in_roundoffs<TypeParam>(e, reference(e, kOrders)), this->kRoundoffs) << name;
     ++rows;
   };
-#define ROW(name, derivative, parity, latex, domain) \
-  check(#name, name(std::string(#name) == "acosh" ? 1 + x : x));
+#define ROW(name, derivative, parity, latex, domain) check(#name, name(std::string(#name) == "acosh" ? 1 + x : x));
 #include "expr/elementary.def"
 #undef ROW
   EXPECT_EQ(rows, static_cast<int>(RandomExpr::kFunctions));
@@ -100,17 +105,36 @@ TYPED_TEST(TaylorIn, EveryOperation) {
   Graph g;
   const Expr x = g.jet(0, 0), y = g.jet(1, 0), xd = g.jet(0, 1), p = g.parameter(0), t = g.time();
   const std::pair<const char*, Expr> cases[] = {
-      {"constant", g.number(Rational(2, 3))}, {"pi", g.pi()}, {"input", y}, {"parameter", p},
+      {"constant", g.number(Rational(2, 3))},
+      {"pi", g.pi()},
+      {"input", y},
+      {"parameter", p},
       {"linear", 3 * x - Rational(1, 7) * y + g.pi() + g.number(Rational(5, 3))},
-      {"multiply", x * y}, {"multiply by itself derived", x * xd}, {"scale", p * x}, {"scale pi", g.pi() * y},
-      {"square", x * x}, {"fourth power", pow(x, 4)}, {"seventh power", pow(x, 7)}, {"time", t * t * x},
-      {"divide", x / (2 + y)}, {"divide constant", 1 / Rational(1) * (g.one() / (2 + y))}, {"divide by constant", x / p},
+      {"multiply", x * y},
+      {"multiply by itself derived", x * xd},
+      {"scale", p * x},
+      {"scale pi", g.pi() * y},
+      {"square", x * x},
+      {"fourth power", pow(x, 4)},
+      {"seventh power", pow(x, 7)},
+      {"time", t * t * x},
+      {"divide", x / (2 + y)},
+      {"divide constant", 1 / Rational(1) * (g.one() / (2 + y))},
+      {"divide by constant", x / p},
       {"negative power", pow(2 + x, -3)},
-      {"sqrt", sqrt(2 + x)}, {"1/sqrt", pow(2 + x, {-1, 2})}, {"3/2", pow(2 + x, {3, 2})}, {"1/3", pow(2 + x, {1, 3})},
-      {"-5/7", pow(2 + x, {-5, 7})}, {"constant root", sqrt(p) * x},
-      {"atan2", atan2(y, 1 + x)}, {"atan2 of constant y", atan2(p, 1 + x)}, {"atan2 of constant x", atan2(y, p)},
-      {"function of constant", sin(p) * x}, {"nested", exp(sin(cos(x)) * tanh(y)) / sqrt(1 + x * x)}};
-  for (const auto& [name, e] : cases) EXPECT_LE(error_in_roundoffs<TypeParam>(e, reference(e, kOrders)), this->kRoundoffs) << name;
+      {"sqrt", sqrt(2 + x)},
+      {"1/sqrt", pow(2 + x, {-1, 2})},
+      {"3/2", pow(2 + x, {3, 2})},
+      {"1/3", pow(2 + x, {1, 3})},
+      {"-5/7", pow(2 + x, {-5, 7})},
+      {"constant root", sqrt(p) * x},
+      {"atan2", atan2(y, 1 + x)},
+      {"atan2 of constant y", atan2(p, 1 + x)},
+      {"atan2 of constant x", atan2(y, p)},
+      {"function of constant", sin(p) * x},
+      {"nested", exp(sin(cos(x)) * tanh(y)) / sqrt(1 + x * x)}};
+  for (const auto& [name, e] : cases)
+    EXPECT_LE(error_in_roundoffs<TypeParam>(e, reference(e, kOrders)), this->kRoundoffs) << name;
 }
 
 TYPED_TEST(TaylorIn, RandomExpressions) {
@@ -143,7 +167,9 @@ std::vector<Ball> enclosed(Expr e, const Ball& t, int orders) {
     const Node& n = g.node(in.symbol);
     // The polynomial of the path about t, by Horner's scheme.
     std::vector<Ball> c;
-    for (int k = 0; k <= 3; ++k) c.emplace_back(n.kind == Kind::time ? Rational(k == 1 ? 1 : 0) : Rational(coefficient_of_path(n.index, n.order, k)));
+    for (int k = 0; k <= 3; ++k)
+      c.emplace_back(n.kind == Kind::time ? Rational(k == 1 ? 1 : 0)
+                                          : Rational(coefficient_of_path(n.index, n.order, k)));
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 3; k-- > i;) addmul(c[k], t, c[k + 1]);
     for (int k = 0; k <= orders; ++k) machine.series(in.slot)[k] = k <= 3 ? c[static_cast<std::size_t>(k)] : Ball(0);
@@ -179,7 +205,8 @@ TEST(MachineOfBalls, EnclosesTheCoefficientsAtAPointAndOnAnInterval) {
       Ball near(expected[i]);  // the reference comes from differences: right to some 20 digits
       near += Ball(Rational(0), Rational(1, mpz_class("100000000000000"))) * (Ball(1) + abs(near));
       EXPECT_TRUE(near.overlaps(at[i])) << k << ", order " << i << ": " << print(e, {}, Format::text);
-      EXPECT_LT(*at[i].spread().radius(), Rational(1, mpz_class("1000000000000000000000000000000")) * (1 + abs(*at[i].midpoint())));
+      EXPECT_LT(*at[i].spread().radius(),
+                Rational(1, mpz_class("1000000000000000000000000000000")) * (1 + abs(*at[i].midpoint())));
     }
   }
   EXPECT_GT(finite, 1000);
@@ -192,14 +219,16 @@ TEST(MachineOfBalls, KnowsNothingBesideAKink) {
   const Ball wide(Rational(0), Rational(1, 8));
   for (const Expr e : {abs(x), sign(x), atan2(x, g.number(-1)), sqrt(x), log(x), pow(x, {1, 3}), g.one() / x}) {
     const std::vector<Ball> w = enclosed(e, wide, 3);
-    for (std::size_t k = 1; k < w.size(); ++k) EXPECT_FALSE(w[k].is_finite()) << print(e, {}, Format::text) << ", order " << k;
+    for (std::size_t k = 1; k < w.size(); ++k)
+      EXPECT_FALSE(w[k].is_finite()) << print(e, {}, Format::text) << ", order " << k;
     const std::vector<Ball> beside = enclosed(e, Ball(Rational(1, 4), Rational(1, 8)), 3);
     for (const Ball& b : beside) EXPECT_TRUE(b.is_finite()) << print(e, {}, Format::text);
   }
   EXPECT_TRUE(enclosed(abs(x), wide, 0)[0].is_finite());
 }
 
-// A root with lead c holds, after stage s, its coefficients up to order s + c: the derivative of order c comes out at stage 0.
+// A root with lead c holds, after stage s, its coefficients up to order s + c: the derivative of order c comes out at
+// stage 0.
 TEST(Leads, GiveTheCoefficientsOfTheDerivative) {
   const PrecisionScope precision(50);
   Graph g;
@@ -276,10 +305,12 @@ TEST(Partials, AreTheDerivativesByTheOperands) {
     const auto partials = machine.partials(slot);
     const Multi zero(0), two_h = Multi(2) * h;
     if (in.op != Op::scale) {  // its first operand does not vary
-      EXPECT_LE(test::distance(partials.a, Multi((run(h, zero) - run(-h, zero)) / two_h)), 1e-30) << print(e, {}, Format::text);
+      EXPECT_LE(test::distance(partials.a, Multi((run(h, zero) - run(-h, zero)) / two_h)), 1e-30)
+          << print(e, {}, Format::text);
     }
     if (in.op == Op::multiply || in.op == Op::scale || in.op == Op::divide || in.op == Op::arctan2) {
-      EXPECT_LE(test::distance(partials.b, Multi((run(zero, h) - run(zero, -h)) / two_h)), 1e-30) << print(e, {}, Format::text);
+      EXPECT_LE(test::distance(partials.b, Multi((run(zero, h) - run(zero, -h)) / two_h)), 1e-30)
+          << print(e, {}, Format::text);
     }
   }
 }
