@@ -3,9 +3,9 @@
 #include <benchmark/benchmark.h>
 
 #include "expr/normal.h"
-#include "expr/print.h"
 #include "formulation/formulation.h"
-#include "spec/read.h"
+#include "modelfile/read.h"
+#include "print/print.h"
 #include "support/chain.h"
 
 namespace {

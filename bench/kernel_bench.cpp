@@ -10,7 +10,7 @@
 
 #include "base/read_file.h"
 #include "kernel/kernel.h"
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 
 namespace {
 

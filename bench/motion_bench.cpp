@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 
 namespace {
 

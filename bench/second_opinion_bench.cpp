@@ -6,7 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 #include "support/models.h"
 
 namespace {

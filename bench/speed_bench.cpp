@@ -6,8 +6,7 @@
 //   start                          positions and velocities at the start, coordinate by coordinate, in 36 digits
 //   exact DIGITS                   those at the end, so many digits to be trusted
 //   run TOLERANCE SECONDS [STEPS]  as many motions as fit the time, at least one; STEPS: no more of each
-//   lanes NAME                     the neighbours in the lanes of a kernel, which begin with a shifted coordinate NAME:
-//   where
+//   lanes NAME                     the neighbours in the lanes of a kernel, which begin with a shifted coordinate NAME: where
 //                                  they start, and where they end by motions in long double
 //   batch TOLERANCE SECONDS NAME   all of them side by side in one kernel, as often as fits the time
 //
@@ -25,9 +24,9 @@
 #include "base/read_file.h"
 #include "fma_peak.h"
 #include "kernel/arithmetic.h"
-#include "run/form_choice.h"
-#include "run/representation.h"
-#include "run/simulate.h"
+#include "motion/form_choice.h"
+#include "motion/representation.h"
+#include "simulation/simulate.h"
 #include "stopwatch.h"
 
 namespace {
@@ -111,7 +110,7 @@ const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, con
 }
 
 // The only place that knows how a stepper is made and driven. Forms without multipliers go as far
-// as their elimination does: choosing another on the way is the business of run/motion.
+// as their elimination does: choosing another on the way is the business of motion/motion.
 template <Number N>
 struct Trajectory {
   using W = Wider<N>;

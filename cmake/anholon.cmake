@@ -1,17 +1,17 @@
 # The functions CMakeLists.txt is written in.
 
 # anholon_layer(name [DEPENDS layers...] [LINKS targets...] [PRIVATE_LINKS targets...]
-#               [SOURCES generated...] [EXCLUDE file names...])
+#               [SOURCES generated...] [EXCLUDE file names...] [PRECOMPILED header])
 #
-# Static library anholon_<name> from src/<name>/*.cpp; INTERFACE if there are only headers.
+# Static library anholon_<name> from src/<name>/**/*.cpp; INTERFACE if there are only headers.
 # A layer without files makes no target; whoever depends on it gets what it depended on, so the
 # chain below a missing layer is not lost.
 function(anholon_layer name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "DEPENDS;LINKS;PRIVATE_LINKS;SOURCES;EXCLUDE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "PRECOMPILED" "DEPENDS;LINKS;PRIVATE_LINKS;SOURCES;EXCLUDE")
   set(folder "${PROJECT_SOURCE_DIR}/src/${name}")
   # Globbed although the folder may be missing: its first file then triggers a new configure.
-  file(GLOB sources CONFIGURE_DEPENDS "${folder}/*.cpp" "${folder}/forms/*.cpp")
-  file(GLOB headers CONFIGURE_DEPENDS "${folder}/*.h" "${folder}/*.def")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${folder}/*.cpp")
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS "${folder}/*.h" "${folder}/*.def")
   list(LENGTH sources found_sources)
   list(LENGTH headers found_headers)
   foreach(excluded IN LISTS arg_EXCLUDE)
@@ -38,6 +38,10 @@ function(anholon_layer name)
     add_library(anholon_${name} STATIC ${sources})
     target_link_libraries(anholon_${name}
       PUBLIC anholon_options ${links} ${arg_LINKS} PRIVATE anholon_warnings ${arg_PRIVATE_LINKS})
+    if(NOT arg_PRECOMPILED)
+      set(arg_PRECOMPILED mechanics)
+    endif()
+    anholon_use_precompiled(anholon_${name} ${arg_PRECOMPILED})
   else()
     add_library(anholon_${name} INTERFACE)
     target_link_libraries(anholon_${name} INTERFACE anholon_options ${links} ${arg_LINKS})
@@ -48,11 +52,45 @@ function(anholon_layer name)
   set_property(GLOBAL APPEND PROPERTY ANHOLON_LAYERS ${name})
 endfunction()
 
+# anholon_precompiled(name [HEADER name] [LINKS targets...] [OPTIONS flags...])
+#
+# Compiles cmake/precompiled/<header>.h once, with these flags; anholon_use_precompiled gives a target both. Without
+# ANHOLON_PCH every file is compiled by itself, which shows the includes that it lacks.
+function(anholon_precompiled name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "HEADER" "LINKS;OPTIONS")
+  set_property(GLOBAL PROPERTY ANHOLON_OPTIONS_OF_${name} "${arg_OPTIONS}")
+  if(NOT arg_HEADER)
+    set(arg_HEADER ${name})
+  endif()
+  if(ANHOLON_PCH)
+    set(source "${CMAKE_BINARY_DIR}/generated/precompiled_${name}.cpp")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "// Empty: the precompiled header of this target counts.\n")
+    add_library(anholon_precompiled_${name} OBJECT "${source}")
+    target_include_directories(anholon_precompiled_${name} PRIVATE "${PROJECT_SOURCE_DIR}")
+    target_compile_options(anholon_precompiled_${name} PRIVATE ${arg_OPTIONS})
+    target_link_libraries(anholon_precompiled_${name} PRIVATE anholon_options anholon_warnings ${arg_LINKS})
+    target_precompile_headers(anholon_precompiled_${name} PRIVATE "${PROJECT_SOURCE_DIR}/cmake/precompiled/${arg_HEADER}.h")
+  endif()
+endfunction()
+
+function(anholon_use_precompiled target name)
+  get_property(options GLOBAL PROPERTY ANHOLON_OPTIONS_OF_${name})
+  target_compile_options(${target} PRIVATE ${options})
+  if(ANHOLON_PCH)
+    target_precompile_headers(${target} REUSE_FROM anholon_precompiled_${name})
+    # ccache needs it.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  endif()
+endfunction()
+
 # One file per instruction set; the program chooses at run time. Optimized in every build, as nothing else is there to be looked at.
 function(anholon_kernel_tiers)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-    set(folder "${PROJECT_SOURCE_DIR}/src/kernel")
+    set(folder "${PROJECT_SOURCE_DIR}/src/kernel/tiers")
     set_source_files_properties("${folder}/tier_plain.cpp" PROPERTIES COMPILE_OPTIONS "-O2")
+    # Other flags than those of the precompiled header
+    set_source_files_properties("${folder}/tier_plain.cpp" "${folder}/tier_avx2.cpp" "${folder}/tier_avx512.cpp" PROPERTIES
+      SKIP_PRECOMPILE_HEADERS ON)
     set_source_files_properties("${folder}/tier_avx2.cpp" PROPERTIES COMPILE_OPTIONS "-O2;-mavx2;-mfma")
     set_source_files_properties("${folder}/tier_avx512.cpp" PROPERTIES COMPILE_OPTIONS "-O2;-mavx2;-mfma;-mavx512f;-mprefer-vector-width=512")
   endif()
@@ -81,6 +119,10 @@ function(anholon_compiler_module)
     return()
   endif()
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/jit/*.cpp")
+  anholon_precompiled(compiler LINKS LLVM OPTIONS -fPIC -fvisibility=hidden)
+  if(TARGET anholon_precompiled_compiler)
+    target_include_directories(anholon_precompiled_compiler SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
+  endif()
   add_library(anholon_jit MODULE ${sources})
   set_target_properties(anholon_jit PROPERTIES PREFIX "" OUTPUT_NAME "anholon-compiler" LIBRARY_OUTPUT_DIRECTORY "${ANHOLON_PROGRAM_DIR}"
     CXX_VISIBILITY_PRESET hidden)
@@ -89,6 +131,7 @@ function(anholon_compiler_module)
   target_include_directories(anholon_jit PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_include_directories(anholon_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
   target_link_libraries(anholon_jit PRIVATE LLVM anholon_options anholon_warnings)
+  anholon_use_precompiled(anholon_jit compiler)
   # The name of the build is part of the key of what is kept on disk.
   target_link_options(anholon_jit PRIVATE -Wl,--build-id=sha1)
   install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon")

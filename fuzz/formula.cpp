@@ -1,9 +1,9 @@
 // The parser on any bytes; where they are a formula, its value under the names of a small model.
-#include "expr/formula.h"
+#include "formula/formula.h"
 
 #include <string>
 
-#include "spec/read.h"
+#include "modelfile/read.h"
 
 namespace {
 

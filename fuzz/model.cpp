@@ -1,7 +1,7 @@
 // The reader of models on any bytes.
 #include <string>
 
-#include "spec/read.h"
+#include "modelfile/read.h"
 
 namespace {
 

@@ -12,24 +12,39 @@ import re
 import sys
 import tempfile
 
+# The rooms of a layer are layers themselves: "modelfile/text" is src/modelfile/text/.
 LEVEL = {
-    "base": 0, "numeric": 1, "expr": 2, "tape": 3, "model": 4, "spec": 5, "mechanics": 5,
-    "formulation": 6, "system": 7, "structure": 8, "proof": 8, "program": 9, "kernel": 9.5, "jit": 10,
-    "integrate": 10, "result": 11, "run": 12, "published": 12.5, "plot": 13, "report": 13.5, "cli": 14, "python": 14,
+    "base": 0, "numeric": 1, "expr": 2, "print": 2.2, "formula": 2.5, "tape": 3, "model": 4,
+    "modelfile/language": 5, "modelfile/text": 5.1, "modelfile/names": 5.2, "modelfile/mechanical": 5.3,
+    "modelfile/motion": 5.4, "modelfile/check": 5.5, "modelfile": 5.6, "mechanics": 5.7,
+    "formulation": 6, "formulation/forms": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof": 8,
+    "program": 9, "setup": 9.2, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
+    "integrate": 10, "result": 11, "motion": 11.5, "observe": 12, "linear": 12, "simulation": 12.2,
+    "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "cli": 14, "python": 14,
 }  # fmt: skip
+
+MODELFILE = {name for name in LEVEL if name.startswith("modelfile")}
 
 # Layers that may see less than everything below them.
 ONLY = {
     "result": {"base", "numeric"},
     "jit": {"kernel"},  # a module of its own
-    "plot": {"base", "numeric", "expr", "result"},
+    "plot": {"base", "numeric", "expr", "print", "formula", "result"},
 }
 NOT = {
-    "formulation": {"spec"},
-    "structure": {"spec"},
-    "proof": {"spec"},
-    "program": {"spec", "proof"},
-    "kernel": {"spec", "proof"},
+    "modelfile/text": {"tape"},
+    "mechanics": MODELFILE,
+    "formulation": MODELFILE,
+    "formulation/forms": MODELFILE,
+    "system": MODELFILE,
+    "lowering": MODELFILE,
+    "structure": MODELFILE | {"lowering"},
+    "proof": MODELFILE | {"lowering"},
+    "program": MODELFILE | {"lowering", "proof"},
+    "formula": {"print"},
+    "kernel/tiers": MODELFILE | {"proof", "setup"},
+    "kernel": MODELFILE | {"proof", "setup"},
+    "integrate": MODELFILE | {"proof", "setup"},
     "report": {"jit", "integrate"},
 }
 
@@ -39,18 +54,18 @@ VERIFY_MAY = re.compile(r"^(base/|numeric/|proof/(certificate|verify)\w*\.h$)")
 
 # header pattern, what we call it, layers that may include it, number of files in each that may
 OUTSIDE = [
-    (r"(flint/|arb|acb|arf|arith|mag\.h|ca\.h|ca_|calcium|antic|nf\.h|nf_|fmp[qz]|qqbar)", "FLINT/Arb", {"expr", "numeric"}, None),
-    (r"(gmp|gmpxx|mpfr|mpf2mpfr|mpc)\.h$", "GMP/MPFR", {"expr", "numeric"}, None),
-    (r"toml\+\+/", "toml++", {"spec"}, 1),
+    (r"(flint/|arb|acb|arf|arith|mag\.h|ca\.h|ca_|calcium|antic|nf\.h|nf_|fmp[qz]|qqbar)", "FLINT/Arb", {"expr", "formula", "numeric"}, None),
+    (r"(gmp|gmpxx|mpfr|mpf2mpfr|mpc)\.h$", "GMP/MPFR", {"expr", "formula", "numeric"}, None),
+    (r"toml\+\+/", "toml++", {"modelfile/text"}, 1),
     (r"CLI/", "CLI11", {"cli"}, 1),
     (r"(llvm|llvm-c)/", "LLVM", {"jit"}, None),
     (r"sleef", "SLEEF", {"jit"}, None),
-    (r"mpi\.h$", "MPI", {"run"}, 1),
+    (r"mpi\.h$", "MPI", {"ensemble"}, 1),
     (r"(hdf5|H5\w*)(_hl)?\.h$", "HDF5", {"result"}, 1),
     (r"cairo(-\w+)?\.h$", "cairo", {"plot"}, 1),
     (r"sqlite3\.h$", "SQLite", {"result"}, 1),
     (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate"}, 1),
-    (r"(tbb|oneapi)/", "oneTBB", {"run"}, 1),
+    (r"(tbb|oneapi)/", "oneTBB", {"ensemble"}, 1),
     (r"pybind11/", "pybind11", {"python"}, None),
     (r"nlohmann/", "nlohmann-json", {"proof", "report"}, 1),
     (r"boost/", "Boost, of a peer in bench/", set(), None),
@@ -110,6 +125,14 @@ def may_include(layer):
     return (ONLY.get(layer, below) - NOT.get(layer, set())) | {layer}
 
 
+def layer_of(path):
+    """The layer of "a/b/file.h": the longest of its folders that is one; None if there is none."""
+    folder = path.rpartition("/")[0]
+    while folder and folder not in LEVEL:
+        folder = folder.rpartition("/")[0]
+    return folder or None
+
+
 def includes(path):
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         match = INCLUDE.match(line)
@@ -123,26 +146,26 @@ def check(root):
     src = root / "src"
     for path in sorted(p for p in src.rglob("*") if p.is_file() and p.suffix in SOURCES):
         inside = path.relative_to(src)
-        layer = inside.parts[0]
-        if len(inside.parts) == 1 or layer not in LEVEL:
-            problems.append(f"src/{inside}: '{layer}' is not a layer of tools/check_layers.py")
+        layer = layer_of(inside.as_posix())
+        if layer is None or layer != inside.parent.as_posix():
+            problems.append(f"src/{inside}: '{inside.parent}' is not a layer of tools/check_layers.py")
             continue
         allowed = may_include(layer)
         for number, quote, header in includes(path):
             where = f"src/{inside}:{number}"
             if quote == '"':
-                target = header.split("/")[0]
+                target = layer_of(header)
                 if VERIFY.match(str(inside)) and not VERIFY_MAY.match(header):
                     problems.append(f'{where}: the certificate checker may not include "{header}"')
-                elif target == "anholon":
+                elif header.startswith("anholon/"):
                     pass
-                elif "/" not in header or target not in LEVEL:
+                elif target is None:
                     problems.append(f'{where}: "{header}" does not begin with a layer (write "layer/file.h")')
                 elif target not in allowed:
                     way = "across" if LEVEL[target] == LEVEL[layer] else "upward" if LEVEL[target] > LEVEL[layer] else "where it may not look"
                     problems.append(f'{where}: {layer} includes "{header}": {way}')
             for pattern, name, layers, _ in OUTSIDE:
-                if re.match(pattern, header) and not (quote == '"' and header.split("/")[0] in LEVEL):
+                if re.match(pattern, header) and not (quote == '"' and layer_of(header)):
                     users.setdefault((name, layer), set()).add(str(inside))
                     if layer not in layers:
                         place = " and ".join(f"{x}/" for x in sorted(layers)) or "test/"
@@ -174,25 +197,25 @@ GOOD = {
     "src/base/text.h": "#include <string>\n",
     "src/expr/graph.cpp": '#include <flint/flint.h>\n#include "base/text.h"\n#include "expr/graph.h"\n',
     "src/expr/graph.h": '// #include "cli/main.h"\n',
-    "src/spec/read.cpp": '#include <toml++/toml.h>\n#include "model/model.h"\n',
+    "src/modelfile/text/toml.cpp": '#include <toml++/toml.h>\n#include "modelfile/language/language.h"\n',
     "src/result/hdf5.cpp": "#include <hdf5.h>\n",
-    "src/plot/cairo.cpp": '#include <cairo.h>\n#include "expr/print.h"\n',
+    "src/plot/cairo.cpp": '#include <cairo.h>\n#include "print/print.h"\n',
     "src/report/html.cpp": '#include "result/columns.h"\n#include "program/program.h"\n',
     "src/proof/verify.cpp": '#include "numeric/ball.h"\n#include "proof/certificate.h"\n',
     "src/proof/certificate.cpp": '#include <nlohmann/json.hpp>\n#include "base/json.h"\n',
     "src/jit/emitter.cpp": '#include <llvm/IR/Module.h>\n#include "kernel/code.h"\n',
-    "src/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "run/run.h"\n',
+    "src/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "simulation/simulate.h"\n',
     "include/anholon/api.h": "#include <vector>\n",
     "src/cli/say.cpp": "void f() { std::fwrite(text, 1, 1, stdout); }\n",
     "src/cli/words.cpp": 'const char* kText = "std::printf";  // not fputs\nint n = std::snprintf(buffer, 1, "x");\n',
     # The same names where they are different types.
     "src/kernel/plan.h": "namespace anholon {\nstruct Entry {\n  struct Place {};\n};\ntemplate <> struct Of<int> {};\n}\n",
-    "src/run/plan.cpp": "namespace anholon {\nnamespace {\nstruct Entry {};\n}\nstruct Entry;\nstruct Own { struct Place {}; };\n}\nnamespace anholon::cli {\nclass Entry {};\n}\n",
+    "src/simulation/plan.cpp": "namespace anholon {\nnamespace {\nstruct Entry {};\n}\nstruct Entry;\nstruct Own { struct Place {}; };\n}\nnamespace anholon::cli {\nclass Entry {};\n}\n",
 }
 MUTANTS = {
     "upward": ("src/expr/bad.cpp", '#include "model/model.h"\n'),
-    "across": ("src/mechanics/bad.cpp", '#include "spec/read.h"\n'),
-    "across, below": ("src/formulation/forms/bad.cpp", '  #  include "spec/read.h"\n'),
+    "across": ("src/mechanics/bad.cpp", '#include "modelfile/read.h"\n'),
+    "across, below": ("src/formulation/forms/bad.cpp", '  #  include "modelfile/read.h"\n'),
     "result sees numbers only": ("src/result/bad.cpp", '#include "model/model.h"\n'),
     "report does not integrate": ("src/report/bad.cpp", '#include "integrate/taylor.h"\n'),
     "the compiler sees kernels only": ("src/jit/bad.cpp", '#include "program/program.h"\n'),
@@ -205,24 +228,26 @@ MUTANTS = {
     "the format trusts the simplifier": ("src/proof/certificate.h", '#include "expr/expr.h"\n'),
     "nlohmann-json twice": ("src/proof/again.cpp", "#include <nlohmann/json.hpp>\n"),
     "nlohmann-json elsewhere": ("src/cli/bad.cpp", "#include <nlohmann/json.hpp>\n"),
+    "upward within a layer": ("src/modelfile/text/bad.cpp", '#include "modelfile/names/names.h"\n'),
+    "a room that is no layer": ("src/expr/more/bad.h", "\n"),
     "unknown layer": ("src/util/bad.h", "\n"),
     "no layer in the path": ("src/expr/bad.cpp", '#include "graph.h"\n'),
     "FLINT too high": ("src/model/bad.h", "#include <flint/fmpq.h>\n"),
     "GMP too high": ("src/tape/bad.h", "#include <gmpxx.h>\n"),
     "MPFR too low": ("src/base/bad.h", "#include <mpfr.h>\n"),
-    "toml++ twice": ("src/spec/again.cpp", "#include <toml++/toml.h>\n"),
+    "toml++ twice": ("src/modelfile/text/again.cpp", "#include <toml++/toml.h>\n"),
     "toml++ elsewhere": ("src/cli/bad.cpp", "#include <toml++/toml.hpp>\n"),
     "CLI11 twice": ("src/cli/again.cpp", "#include <CLI/App.hpp>\n"),
-    "SUNDIALS elsewhere": ("src/run/bad.cpp", "#include <cvode/cvode.h>\n"),
-    "LLVM outside jit": ("src/run/bad.cpp", "#include <llvm/IR/Module.h>\n"),
+    "SUNDIALS elsewhere": ("src/simulation/bad.cpp", "#include <cvode/cvode.h>\n"),
+    "LLVM outside jit": ("src/simulation/bad.cpp", "#include <llvm/IR/Module.h>\n"),
     "HDF5 twice": ("src/result/bad.cpp", "#include <hdf5.h>\n"),
     "HDF5 elsewhere": ("src/cli/bad.cpp", "#include <hdf5.h>\n"),
     "cairo elsewhere": ("src/cli/bad.cpp", "#include <cairo-pdf.h>\n"),
-    "plot does not simulate": ("src/plot/bad.cpp", '#include "run/simulate.h"\n'),
+    "plot does not simulate": ("src/plot/bad.cpp", '#include "simulation/simulate.h"\n'),
     "test library in src": ("src/base/bad.cpp", "#include <gtest/gtest.h>\n"),
     "two types of one name": ("src/report/words.h", "namespace anholon {\n// {\nstruct Entry {\n  int k;\n};\n}\n"),
-    "two classes of one name": ("src/run/bad.cpp", "namespace anholon {\nconst char* kText = \"}\";\nclass Own final : public Base {\n};\n}\n"),
-    "an enumeration and a type": ("src/run/bad.cpp", "namespace anholon {\nenum class Own : int { a };\n}\n"),
+    "two classes of one name": ("src/simulation/bad.cpp", "namespace anholon {\nconst char* kText = \"}\";\nclass Own final : public Base {\n};\n}\n"),
+    "an enumeration and a type": ("src/simulation/bad.cpp", "namespace anholon {\nenum class Own : int { a };\n}\n"),
     "a command prints by itself": ("src/cli/bad.cpp", "void f() { std::printf(title); }\n"),
     "public header": ("include/anholon/bad.h", '#include "expr/graph.h"\n'),
 }

@@ -2,9 +2,8 @@
 // the trailers:
 //   sleigh    x, y, th, v (along the blade), w
 //   disc      x, y, psi, theta, phi and the angular velocities w1 (lean), w2, w3 (axle) along lean.x, lean.y, lean.z
-//   trailers  x, y, ph, th[0..n], p = v sqrt(I) with 2T = I v^2 + Jp s^2, s = th[0]' + ph': then p' = (drive - tan(ph)
-//   steer/L)/sqrt(I) chain     th, w; the tensions of the rods from their tridiagonal equations (acceleration along a
-//   rod = -l w^2), then w'
+//   trailers  x, y, ph, th[0..n], p = v sqrt(I) with 2T = I v^2 + Jp s^2, s = th[0]' + ph': then p' = (drive - tan(ph) steer/L)/sqrt(I)
+//   chain     th, w; the tensions of the rods from their tridiagonal equations (acceleration along a rod = -l w^2), then w'
 #pragma once
 #include <array>
 #include <cmath>

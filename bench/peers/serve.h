@@ -1,7 +1,6 @@
 // An integrator on the systems of the speed table; in __float128 also the check of the reference.
 //
-//   PROGRAM SYSTEM N END     (N = 1 where there is none) then one position or velocity per line of standard input, 36
-//   digits each, coordinate by
+//   PROGRAM SYSTEM N END     (N = 1 where there is none) then one position or velocity per line of standard input, 36 digits each, coordinate by
 //                            coordinate (of the chain: th[1], th[1]', …; as anholon's models in bench/models have them)
 //   run TOLERANCE SECONDS    as many motions as fit the time; answers with a line of JSON
 //   exact STEPS              the end in __float128 by extrapolation of order 24, in so many equal steps

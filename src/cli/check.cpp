@@ -1,4 +1,5 @@
 #include "cli/check_report.h"
+#include "motion/start.h"
 #include "cli/input.h"
 #include "cli/show.h"
 

@@ -8,8 +8,8 @@
 #include "program/emit.h"
 #include "report/equations.h"
 #include "result/file.h"
-#include "run/eliminate.h"
-#include "run/inputs.h"
+#include "setup/eliminate.h"
+#include "setup/inputs.h"
 
 namespace anholon::cli {
 

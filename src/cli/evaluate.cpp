@@ -1,4 +1,4 @@
-#include "run/evaluate.h"
+#include "observe/evaluate.h"
 
 #include <cstdio>
 

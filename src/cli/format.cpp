@@ -1,4 +1,4 @@
-#include "spec/format.h"
+#include "modelfile/text/format.h"
 
 #include "cli/input.h"
 #include "cli/say.h"

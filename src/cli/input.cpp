@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "cli/say.h"
-#include "run/form_choice.h"
-#include "spec/constant.h"
+#include "modelfile/names/constant.h"
+#include "motion/form_choice.h"
 
 namespace anholon::cli {
 

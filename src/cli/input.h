@@ -8,7 +8,7 @@
 #include "base/read_file.h"
 #include "cli/commands.h"
 #include "proof/prove.h"
-#include "run/scenario.h"
+#include "setup/scenario.h"
 
 namespace anholon::cli {
 

@@ -1,4 +1,4 @@
-#include "run/linearize.h"
+#include "linear/linearize.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -11,7 +11,7 @@
 #include "base/diagnostic.h"
 #include "cli/input.h"
 #include "cli/say.h"
-#include "run/code_for_long_runs.h"
+#include "motion/code_for_long_runs.h"
 
 using namespace anholon;
 using namespace anholon::cli;

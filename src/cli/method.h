@@ -2,7 +2,7 @@
 #pragma once
 #include "base/json.h"
 #include "cli/commands.h"
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 
 namespace anholon::cli {
 

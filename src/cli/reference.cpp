@@ -1,4 +1,4 @@
-#include "spec/reference.h"
+#include "modelfile/language/reference.h"
 
 #include <cstdio>
 

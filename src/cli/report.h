@@ -4,8 +4,8 @@
 
 #include "cli/input.h"
 #include "mechanics/conserved.h"
+#include "motion/saved.h"
 #include "result/run_file.h"
-#include "run/saved.h"
 
 namespace anholon::cli {
 

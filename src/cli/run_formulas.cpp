@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "cli/run_info.h"
-#include "expr/formula.h"
+#include "formula/formula.h"
+#include "modelfile/read.h"
 #include "plot/figure.h"
 #include "report/columns.h"
-#include "spec/read.h"
 
 namespace anholon::cli {
 

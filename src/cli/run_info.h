@@ -2,7 +2,7 @@
 #pragma once
 #include "cli/input.h"
 #include "result/run_file.h"
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 
 namespace anholon::cli {
 

@@ -1,7 +1,7 @@
 // Runs that go on: what --save writes beside the state, and how --continue takes it up.
 #pragma once
 #include "cli/input.h"
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 
 namespace anholon::cli {
 

@@ -5,7 +5,7 @@
 
 #include "base/json.h"
 #include "cli/say.h"
-#include "run/form_choice.h"
+#include "motion/form_choice.h"
 #include "structure/blocks.h"
 
 namespace anholon::cli {

@@ -1,4 +1,4 @@
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 
 #include <algorithm>
 #include <cerrno>

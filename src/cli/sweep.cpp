@@ -13,8 +13,8 @@
 #include "cli/show.h"
 #include "cli/simulation_json.h"
 #include "cli/vary.h"
+#include "ensemble/ensemble.h"
 #include "result/file.h"
-#include "run/ensemble.h"
 
 namespace anholon::cli {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "modelfile/names/constant.h"
 #include "numeric/philox.h"
-#include "spec/constant.h"
 
 namespace anholon::cli {
 

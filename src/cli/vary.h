@@ -1,7 +1,7 @@
 // --vary: which numbers differ from case to case, and which they are.
 #pragma once
 #include "cli/input.h"
-#include "run/ensemble.h"
+#include "ensemble/ensemble.h"
 
 namespace anholon::cli {
 

@@ -1,7 +1,6 @@
 // The motion as an ordinary differential equation x' = f(t, x) of its state, for methods that ask for no more than f.
 //
-//   x = (x_j^(k), k < d_j);  f solves the equations for the leading derivatives and shifts: x_j^(k)' = x_j^(k+1)
-//   (theory: methods)
+//   x = (x_j^(k), k < d_j);  f solves the equations for the leading derivatives and shifts: x_j^(k)' = x_j^(k+1)  (theory: methods)
 //
 // On the hidden constraints f is the motion's own field, around them a smooth one; a state is taken back to them where
 // that is asked for. Evaluated by a kernel without stages beyond the leading derivatives; by the reference where there

@@ -1,17 +1,13 @@
 // The motion by SUNDIALS, as a second opinion on Taylor's: CVODE integrates the state's ordinary differential
 // equations, IDA the implicit equations themselves.
 //
-//   CVODE  y' = f(t, y),           y = (x_j^(k), k < d_j): x_j^(k)' = x_j^(k+1), and at the end of each chain the
-//   leading
+//   CVODE  y' = f(t, y),           y = (x_j^(k), k < d_j): x_j^(k)' = x_j^(k+1), and at the end of each chain the leading
 //                                  derivative, which the equations determine; Adams' methods, fixed-point iteration
-//   IDA    F(t, y, z, y', z') = 0, z = (x_j, d_j = 0): x_j^(k)' = x_j^(k+1), and E_i^(c_i) = 0 with y' in place of the
-//   leading
+//   IDA    F(t, y, z, y', z') = 0, z = (x_j, d_j = 0): x_j^(k)' = x_j^(k+1), and E_i^(c_i) = 0 with y' in place of the leading
 //                                  derivatives; BDF, Newton's method with difference quotients for dF/dy + alpha dF/dy'
 //
-//   BDF    as CVODE, for stiff motions in earnest (theory: methods): BDF, Newton's method with difference quotients; f
-//   is that of
-//          StateRate, every step is taken back to the hidden constraints, and each level of derivatives is measured by
-//          its own size
+//   BDF    as CVODE, for stiff motions in earnest (theory: methods): BDF, Newton's method with difference quotients; f is that of
+//          StateRate, every step is taken back to the hidden constraints, and each level of derivatives is measured by its own size
 //
 // and the integrals W of the program's quadratures, W' = P. Hypothesis: J = dE_i^(c_i) / dx_j^(d_j) is regular, so F
 // has index 1 (theory: dae-view). The hidden constraints E_i^(k) = 0, k < c_i, are what the start satisfies; for CVODE

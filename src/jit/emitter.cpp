@@ -117,7 +117,7 @@ void Emitter::put(const Place& place, int lead, Value* v) {
     store(v, place.at);
 }
 
-// Of a divisor, as kernel/lanes.h has it.
+// Of a divisor, as kernel/tiers/lanes.h has it.
 llvm::Value* Emitter::quotient(Value* x, Value* reciprocal, Value* beyond) {
   // Where nothing is known before.
   if (const auto* nothing = llvm::dyn_cast<llvm::Constant>(x); nothing && nothing->isZeroValue()) return x;

@@ -1,4 +1,4 @@
-// LLVM IR for a kernel of one lane or several: the arithmetic of kernel/sweep.h, operation by operation in the same
+// LLVM IR for a kernel of one lane or several: the arithmetic of kernel/tiers/sweep.h, operation by operation in the same
 // order, so the bits are the same.
 //
 // Shape of the code: blocks of four stages. What a convolution knows before a block is summed for its four orders at

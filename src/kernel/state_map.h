@@ -1,10 +1,10 @@
 // A kernel may have other unknowns than the motion it serves: coordinates, the model's states and quasi-velocities p,
-// all of first order (system/quasi_velocities.h), where the motion's state is q, q', z. From one to the other, in the
+// all of first order (lowering/quasi_velocities.h), where the motion's state is q, q', z. From one to the other, in the
 // width of the motion's state.
 #pragma once
 #include <optional>
 
-#include "system/quasi_velocities.h"
+#include "lowering/quasi_velocities.h"
 #include "tape/tape.h"
 
 namespace anholon {

@@ -7,11 +7,10 @@
 //
 // Momenta: for a field xi_a(q) the quantity p = sum xi_a dT/dq_a' has
 //   dp/dt = sum xi_a (dT/dq_a + G_a + sum mdot dp_a/dm) + sum xi_a' p_a + sum_r lambda_r sum_a Phi_ra xi_a,
-// (where the observer turns, with dT/dq' + sum m (omega x rho).drho/dq for dT/dq' and its rate added),
-// so p is constant where the first two sums cancel and xi is admissible, Phi xi = 0, for every constraint. The fields
-// tried are those affine in q: cyclic coordinates, translations and rotations of the whole or of parts are among them.
-// Which ones come into question is found by linear algebra at random points; what is given back is proved by the exact
-// zero test.
+// (where the observer turns, with dT/dq' + sum m (omega x rho).drho/dq for dT/dq' and its rate added), so p is constant
+// where the first two sums cancel and xi is admissible, Phi xi = 0, for every constraint. The fields tried are those
+// affine in q: cyclic coordinates, translations and rotations of the whole or of parts are among them. Which ones come
+// into question is found by linear algebra at random points; what is given back is proved by the exact zero test.
 #pragma once
 #include "mechanics/mechanics.h"
 

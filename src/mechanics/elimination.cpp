@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/assert.h"
-#include "expr/arrange.h"
 #include "expr/normal.h"
+#include "print/arrange.h"
 
 namespace anholon {
 

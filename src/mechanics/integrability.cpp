@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "base/diagnostic.h"
-#include "expr/arrange.h"
 #include "mechanics/elimination.h"
 #include "mechanics/integrals.h"
 #include "mechanics/pfaff.h"
+#include "print/arrange.h"
 
 namespace anholon {
 

@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "expr/antiderivative.h"
-#include "expr/arrange.h"
 #include "expr/normal.h"
+#include "print/arrange.h"
 
 namespace anholon {
 

@@ -1,8 +1,8 @@
 #include "mechanics/work.h"
 
-#include "expr/arrange.h"
 #include "expr/degree.h"
 #include "expr/normal.h"
+#include "print/arrange.h"
 
 namespace anholon {
 

@@ -2,8 +2,8 @@
 // for a motion that obeys the constraint:
 //
 //   holonomic            -lambda df/dt                     nothing if f does not hold t
-//   order 1, degree d    lambda (sum Phi q' - d phi)       nothing if homogeneous; affine: -lambda b; v^2 = c^2: 2
-//   lambda c^2 order 2 and more     lambda sum Phi q'                 in general not nothing, linear or not
+//   order 1, degree d    lambda (sum Phi q' - d phi)       nothing if homogeneous; affine: -lambda b; v^2 = c^2: 2 lambda c^2
+//   order 2 and more     lambda sum Phi q'                 in general not nothing, linear or not
 #pragma once
 #include "mechanics/mechanics.h"
 

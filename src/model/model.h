@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "expr/formula.h"
-#include "expr/print.h"
+#include "formula/formula.h"
 #include "model/view.h"
+#include "print/print.h"
 
 namespace anholon {
 

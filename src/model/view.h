@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "expr/formula.h"
+#include "formula/formula.h"
 
 namespace anholon {
 

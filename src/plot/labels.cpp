@@ -7,7 +7,7 @@
 
 #include "base/escape.h"
 #include "base/utf8.h"
-#include "expr/print.h"
+#include "print/print.h"
 
 namespace anholon::plot {
 

@@ -2,7 +2,7 @@
 #include <unordered_map>
 
 #include "base/assert.h"
-#include "expr/print.h"
+#include "print/print.h"
 #include "proof/prove.h"
 
 namespace anholon {

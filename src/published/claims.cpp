@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/utf8.h"
-#include "spec/toml.h"
+#include "modelfile/text/toml.h"
 
 namespace anholon {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "expr/arrange.h"
 #include "expr/normal.h"
 #include "numeric/linear.h"
+#include "print/arrange.h"
 #include "proof/witness.h"
 #include "published/identity.h"
 

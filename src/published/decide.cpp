@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "expr/normal.h"
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 
 namespace anholon {
 

@@ -2,7 +2,7 @@
 //
 // An equation is taken as one formula, left - right: the first step of a path is the side.
 #pragma once
-#include "expr/formula.h"
+#include "formula/formula.h"
 #include "published/equation.h"
 
 namespace anholon {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "expr/formula.h"
+#include "formula/formula.h"
 
 namespace anholon {
 

@@ -7,7 +7,7 @@ namespace anholon {
 namespace {
 
 // One equation or definition: its label, and the text after it with the place of each character.
-struct Entry {
+struct FileEntry {
   std::string label;  // of a definition its name
   Span span;
   std::string text;
@@ -39,7 +39,7 @@ class Lines {
       read(line, number);
     }
   }
-  std::vector<Entry> entries;
+  std::vector<FileEntry> entries;
 
  private:
   void read(std::string_view line, std::uint32_t number) {
@@ -69,7 +69,7 @@ class Lines {
     if (colon == std::string_view::npos || label.find('#') != std::string_view::npos)
       return refuse(number, 0, width, "an equation starts with a label", "4.1: " + std::string(label.substr(0, 40)));
     if (label.empty()) return refuse(number, 0, 1, "the label is empty", "4.1: x' = y");
-    for (const Entry& e : entries)
+    for (const FileEntry& e : entries)
       if (e.label == label && !e.definition)
         return refuse(number, 0, width,
                       "the label '" + std::string(label) + "' is already used in line " + std::to_string(e.span.line));
@@ -111,7 +111,7 @@ Syntax component(const Syntax& side, const Value& value, int k) {
   return {Syntax::Op::member, std::string(1, static_cast<char>('x' + k)), {side}, side.span, side.offset, side.end, {}};
 }
 
-void read_equation(Entry& e, Vocabulary& words, std::vector<PublishedEquation>& list) {
+void read_equation(FileEntry& e, Vocabulary& words, std::vector<PublishedEquation>& list) {
   const FormulaText text(std::move(e.text), std::move(e.places));
   std::vector<Syntax> sides = parse_equation(text);
   if (sides.size() != 2) throw Failure(e.span, "the equation '" + e.label + "' has no '='", "write … = 0");
@@ -129,7 +129,7 @@ void read_equation(Entry& e, Vocabulary& words, std::vector<PublishedEquation>& 
                     component(sides[1], right, k)});
 }
 
-void read_definition(Entry& e, Vocabulary& words) {
+void read_definition(FileEntry& e, Vocabulary& words) {
   const FormulaText text(std::move(e.text), std::move(e.places));
   std::vector<Syntax> sides = parse_equation(text);
   if (sides.size() != 1)
@@ -144,7 +144,7 @@ std::vector<PublishedEquation> read_equations(const SourceText& equations, Vocab
                                               Diagnostics& diagnostics) {
   std::vector<PublishedEquation> list;
   Lines lines(equations, diagnostics);
-  for (Entry& e : lines.entries) {
+  for (FileEntry& e : lines.entries) {
     try {
       if (e.definition)
         read_definition(e, words);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 
 namespace anholon {
 

@@ -5,7 +5,7 @@
 
 #include "published/compare.h"
 #include "published/read.h"
-#include "run/scenario.h"
+#include "setup/scenario.h"
 
 namespace anholon {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "expr/functions.h"
+#include "formula/functions.h"
 #include "mechanics/mechanics.h"
 
 namespace anholon {

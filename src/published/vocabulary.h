@@ -1,18 +1,18 @@
 // The words of published equations: the names of the model, and those of the quantities that are derived from it.
 //
 //   T_r, S_r, V_O, V_omega           energies of the relative motion, with frozen masses      [L 2.7, 3.18]
-//   Q.x, QR.x, QD.x, Qomega.x, minus_dVO.x, minus_dVomega.x, Gamma.x, G.x                      generalized forces of x;
-//   G is their sum inertia_term.x, N.x              sum m a . dr/dx and sum lambda dphi/dx^(m) [L 2.2, 2.6] phi.NAME,
-//   lambda.NAME            a constraint (left - right) and its multiplier; phi and lambda, where there is one f.y,
-//   C.y.x                       y^(m) = f.y solved from the constraints, and df.y/dx^(m)  [L 3.8] g.x, B.x.u x^(m) as a
-//   function of quasi-velocities, and dg.x/du      [N 4.2] mu.NAME, m_NAME                  the frozen mass of a body,
-//   and its mass FORM.x, FORM.left.x, FORM.right.x   left - right of a form's equation, with _ for the - of its name
+//   Q.x, QR.x, QD.x, Qomega.x, minus_dVO.x, minus_dVomega.x, Gamma.x, G.x                      generalized forces of x; G is their sum
+//   inertia_term.x, N.x              sum m a . dr/dx and sum lambda dphi/dx^(m)                [L 2.2, 2.6]
+//   phi.NAME, lambda.NAME            a constraint (left - right) and its multiplier; phi and lambda, where there is one
+//   f.y, C.y.x                       y^(m) = f.y solved from the constraints, and df.y/dx^(m)  [L 3.8]
+//   g.x, B.x.u                       x^(m) as a function of quasi-velocities, and dg.x/du      [N 4.2]
+//   mu.NAME, m_NAME                  the frozen mass of a body, and its mass
+//   FORM.x, FORM.left.x, FORM.right.x   left - right of a form's equation, with _ for the - of its name
 //   partial(e, v)                    the partial derivative by a derivative of a coordinate, by t, or by another symbol
 //   Dt(e), Dt(e, k)                  the total derivative with masses regarded as constant (D/Dt of the papers)
 //   frozen(e)                        e with frozen masses
-//   reduced(e), star(e)              e with the constraints put in: in f [L 3.11, N 3.9], and in quasi-velocities
-//   [N 4.6] along(Q, x)                      Q.x + sum over the dependent y of Q.y C.y.x; for a quasi-velocity u: sum
-//   over all x of Q.x B.x.u
+//   reduced(e), star(e)              e with the constraints put in: in f [L 3.11, N 3.9], and in quasi-velocities [N 4.6]
+//   along(Q, x)                      Q.x + sum over the dependent y of Q.y C.y.x; for a quasi-velocity u: sum over all x of Q.x B.x.u
 //
 // The names of the model come first; derived.NAME is the derived quantity in any case. Local definitions (let) come
 // before both.
@@ -20,7 +20,7 @@
 #include <map>
 
 #include "formulation/formulation.h"
-#include "spec/read.h"
+#include "modelfile/read.h"
 
 namespace anholon {
 

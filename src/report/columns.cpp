@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "base/base64.h"
-#include "expr/print_names.h"
 #include "numeric/relative.h"
+#include "print/print_names.h"
 #include "report/run_report.h"
 
 namespace anholon {

@@ -10,7 +10,7 @@
 #include "mechanics/conserved.h"
 #include "report/scene.h"
 #include "result/run_file.h"
-#include "run/scenario.h"
+#include "setup/scenario.h"
 
 namespace anholon {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "expr/arrange.h"
 #include "expr/normal.h"
 #include "formulation/reactions.h"
+#include "print/arrange.h"
 
 namespace anholon {
 

@@ -2,8 +2,7 @@
 // weighted-points).
 //
 //   A' = A [omega x],  A the rotation from the observer's axes to the inertial ones, A = 1 at t = 0
-//   r' = A v, v the given velocity of the origin along the observer's axes; without one r'' = A a0, at rest in r = 0 at
-//   t = 0
+//   r' = A v, v the given velocity of the origin along the observer's axes; without one r'' = A a0, at rest in r = 0 at t = 0
 //
 // For the eye only: Runge-Kutta steps of order 4, much shorter than a turn.
 #pragma once

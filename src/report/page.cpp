@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/base64.h"
-#include "expr/print_names.h"
 #include "numeric/number.h"
+#include "print/print_names.h"
 #include "report/assets.h"
 #include "report/bibliography.h"
 #include "report/markup.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 
 namespace anholon {
 

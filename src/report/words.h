@@ -1,6 +1,6 @@
 // What is said of a system, in words: for the terminal and for pages alike.
 #pragma once
-#include "run/explain.h"
+#include "setup/explain.h"
 
 namespace anholon {
 

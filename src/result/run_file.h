@@ -1,7 +1,6 @@
 // The file of a run: its rows, and what is needed to know where they come from.
 //
-// Which format a file has is told by its content. HDF5 holds everything, JSON the rows and the report, CSV the rows.
-// (doc/results.md)
+// Which format a file has is told by its content. HDF5 holds everything, JSON the rows and the report, CSV the rows.  (doc/results.md)
 #pragma once
 #include <map>
 #include <string>

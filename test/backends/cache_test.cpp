@@ -14,7 +14,7 @@
 
 #include "jit/trust.h"
 #include "kernel/kernel.h"
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 #include "support/compiler.h"
 #include "support/models.h"
 

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "kernel/kernel.h"
-#include "run/representation.h"
-#include "run/simulate.h"
+#include "motion/representation.h"
+#include "simulation/simulate.h"
 #include "support/compiler.h"
 #include "support/models.h"
 

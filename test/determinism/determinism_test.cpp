@@ -1,7 +1,7 @@
 // The same input gives the same digits, whatever was computed before in the same process and however often.
 #include <gtest/gtest.h>
 
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 #include "support/models.h"
 
 namespace anholon {

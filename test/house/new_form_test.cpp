@@ -2,8 +2,8 @@
 // forms.
 #include <gtest/gtest.h>
 
-#include "run/eliminate.h"
-#include "run/evaluate.h"
+#include "observe/evaluate.h"
+#include "setup/eliminate.h"
 #include "support/models.h"
 
 namespace anholon {

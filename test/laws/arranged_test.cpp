@@ -1,9 +1,9 @@
 // The equations as they are printed are the equations: for every shipped model, arranged - original is zero.
 #include <gtest/gtest.h>
 
-#include "expr/arrange.h"
 #include "expr/normal.h"
 #include "formulation/formulation.h"
+#include "print/arrange.h"
 #include "support/model_point.h"
 #include "support/models.h"
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "expr/arrange.h"
 #include "formulation/formulation.h"
+#include "print/arrange.h"
 #include "published/subject.h"
 #include "support/models.h"
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "run/evaluate.h"
-#include "run/simulate.h"
+#include "observe/evaluate.h"
+#include "simulation/simulate.h"
 #include "support/models.h"
 
 namespace anholon {

@@ -7,7 +7,7 @@
 
 #include "proof/prove.h"
 #include "proof/verify.h"
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 #include "support/manifold.h"
 #include "support/models.h"
 

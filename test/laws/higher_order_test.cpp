@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 #include "support/models.h"
 
 namespace anholon {

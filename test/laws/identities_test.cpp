@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "expr/normal.h"
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 #include "support/identity.h"
 
 namespace anholon {
@@ -40,8 +40,7 @@ Column derivative(Column c, int times) {
 // ---- identities of T and of places, in all jets
 // -----------------------------------------------------------------------------
 
-// d F^(k)/dq^(j) = C(k, j) (dF/dq)^(k-j) + C(k, j-1) (dF/dq')^(k-j+1)  (theory: derivatives); `other` replaces C(k,
-// j-1).
+// d F^(k)/dq^(j) = C(k, j) (dF/dq)^(k-j) + C(k, j-1) (dF/dq')^(k-j+1)  (theory: derivatives); `other` replaces C(k, j-1).
 Terms commutation(const System& s, Expr F, unsigned k, unsigned j, std::optional<Rational> other = {}) {
   const Rational first = binomial(k, static_cast<int>(j)),
                  second = other.value_or(binomial(k, static_cast<int>(j) - 1));
@@ -89,8 +88,8 @@ std::pair<Terms, Terms> places(const System& s, unsigned k, const Rational& fact
   return all;
 }
 
-// -2 sum m (omega x v) . dr/dq_a = -2 omega . {sum_k (sum m dr/dq_k x dr/dq_a) q_k' + sum m dr/dt x dr/dq_a}  [L 2.1],
-// the generalized Coriolis force; `with_time` keeps the last sum, `sign` turns the cross products.
+// -2 sum m (omega x v) . dr/dq_a = -2 omega . {sum_k (sum m dr/dq_k x dr/dq_a) q_k' + sum m dr/dt x dr/dq_a}  [L 2.1], the
+// generalized Coriolis force; `with_time` keeps the last sum, `sign` turns the cross products.
 Terms coriolis(const System& s, bool with_time = true, int sign = 1) {
   const Vector& omega = s.model->observer.spin;
   Column bilinear(s.m.q.size(), s.g().zero());
@@ -313,8 +312,7 @@ TEST_P(Reduced, RateOfTheSolvedConstraints) {
 
 INSTANTIATE_TEST_SUITE_P(Case, Reduced, testing::ValuesIn(cases(false)), case_name);
 
-// Appell's equations in the reduced energy of accelerations, and their print, which has S~ itself for every m
-// [L 3.20, 3.21]
+// Appell's equations in the reduced energy of accelerations, and their print, which has S~ itself for every m  [L 3.20, 3.21]
 TEST_P(Reduced, EnergyOfAccelerations) {
   const Column E = lagrange_operator(s.m), contracted = e.contract(E);
   expect(s, e, {find_formulation("appell-reduced")->equations(s.m, e).left, -contracted}, "[L 3.21]");

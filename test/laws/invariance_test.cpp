@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "run/evaluate.h"
+#include "observe/evaluate.h"
 #include "support/generic_system.h"
 #include "support/manifold.h"
 #include "support/models.h"

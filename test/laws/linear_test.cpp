@@ -1,7 +1,7 @@
 // Linear models against derivations by hand, published numbers, and each other.
 #include <gtest/gtest.h>
 
-#include "run/linearize.h"
+#include "linear/linearize.h"
 #include "support/models.h"
 
 namespace anholon::test {
@@ -155,10 +155,10 @@ TEST(LinearModels, DiscThatTurnsSteadily) {
   const PrecisionScope scope(kDigits);
   const std::string text = shipped_text("zoo/disc");
   const StateChoice choice;
-  const auto s = scenario(
-      model_of(text.substr(0, text.find("[initial]")) + "[initial]\ntheta = 1.3\n\"psi'\" = 0.8\n\"theta'\" = "
-                                                        "0\nconditions = [\"theta'' = 0\"]\nguess = {\"phi'\" = -6}\n"),
-      choice);
+  const auto s = scenario(model_of(text.substr(0, text.find("[initial]")) +
+                                   "[initial]\ntheta = 1.3\n\"psi'\" = 0.8\n\"theta'\" = "
+                                   "0\nconditions = [\"theta'' = 0\"]\nguess = {\"phi'\" = -6}\n"),
+                          choice);
   const LinearModel m = linear(*s, choice);
   EXPECT_EQ(m.motion, LinearModel::Motion::steady) << m.why;
   const Multi spin = [&] {
@@ -194,8 +194,7 @@ TEST(LinearModels, FormsAgree) {
 
 // A cart with a pendulum, pushed by u, its rod a holonomic constraint: the textbook's A, B, C, D. With M, m, l, g and
 // the rod downwards
-//   x'' = (u + m g th)/M,  th'' = -((M + m) g th + u)/(M l),  rod's pull (lambda in the direction of the rod) = m g to
-//   first order.
+//   x'' = (u + m g th)/M,  th'' = -((M + m) g th + u)/(M l),  rod's pull (lambda in the direction of the rod) = m g to first order.
 TEST(LinearModels, InputsAndOutputs) {
   const PrecisionScope scope(kDigits);
   const auto model = model_of(R"(title = "cart"

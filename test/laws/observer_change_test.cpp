@@ -1,7 +1,7 @@
 // The same motion described by two observers: luo-zhao-example-2 in the frame of the plane and in an inertial frame.
 #include <gtest/gtest.h>
 
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 #include "support/models.h"
 
 namespace anholon {

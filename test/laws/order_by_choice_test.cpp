@@ -3,7 +3,7 @@
 // manifold of the lifted constraints, B the tangents found there by numbers.
 #include <gtest/gtest.h>
 
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 #include "support/contraction.h"
 #include "support/identity.h"
 #include "support/particle_system.h"

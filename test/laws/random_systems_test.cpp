@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 #include "support/models.h"
 #include "support/random_system.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formulation/reactions.h"
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 #include "support/least_norm.h"
 #include "support/models.h"
 #include "support/motion_point.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 #include "support/contraction.h"
 #include "support/models.h"
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "model/loads.h"
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 #include "support/least_norm.h"
 #include "support/models.h"
 #include "support/motion_point.h"

@@ -4,7 +4,7 @@
 // other sign here, lean is counted from the vertical, and (x, y, z) is the centre of the rear wheel.
 #include <gtest/gtest.h>
 
-#include "run/evaluate.h"
+#include "observe/evaluate.h"
 #include "support/models.h"
 
 namespace anholon::test {

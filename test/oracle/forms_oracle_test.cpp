@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 #include "support/manifold.h"
 #include "support/oracle.h"
 

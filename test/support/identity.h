@@ -4,7 +4,7 @@
 #include <map>
 
 #include "expr/normal.h"
-#include "run/eliminate.h"
+#include "setup/eliminate.h"
 #include "support/generic_system.h"
 #include "support/manifold.h"
 #include "support/models.h"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "spec/read.h"
+#include "modelfile/read.h"
 
 namespace anholon::test {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "run/simulate.h"
+#include "simulation/simulate.h"
 
 namespace anholon::test {
 

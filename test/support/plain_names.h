@@ -1,8 +1,8 @@
 // Names for formulas without a model: numbers x, y (coordinates 0, 1), z (2), a, b (parameters 0, 1), m (mass 0), f
 // (given 0), lambda.c (multiplier 0), vectors u and v, a rotation R, t and pi.
 #pragma once
-#include "expr/formula.h"
-#include "expr/print.h"
+#include "formula/formula.h"
+#include "print/print.h"
 
 namespace anholon::test {
 

@@ -1,8 +1,7 @@
 // The Boltzmann-Hamel equations (theory: classics), for constraints of order 1, with n quasi-velocities u_k(q, q', t),
 // nonlinear ones too, of which the last s are the constraints. q' = chi(q, u, t), beta = dchi/du, T* = T with q' = chi:
 //
-//   D/Dt dT*/du_a - sum_s dT*/dq_s beta_sa + sum_k dT*/du_k sum_s (d/dt du_k/dq_s' - du_k/dq_s) beta_sa = sum_s G_s
-//   beta_sa
+//   D/Dt dT*/du_a - sum_s dT*/dq_s beta_sa + sum_k dT*/du_k sum_s (d/dt du_k/dq_s' - du_k/dq_s) beta_sa = sum_s G_s beta_sa
 //
 // for the n - s free ones; k runs over all n, and only then are the last s put to zero.
 #include "formulation/formulation.h"

@@ -2,8 +2,8 @@
 //
 //   sum_s (dT^(m)/dq_s^(m) - dT^(m-1)/dq_s^(m-1) - dT/dq_s - G_s) B_sa = 0
 //
-// B_sa = dg_s/du_a, where q^(m) = g(q, …, q^(m-1), u, t) are the constraints and the quasi-velocities u solved
-// [N 4.2, 4.3].
+// B_sa = dg_s/du_a, where q^(m) = g(q, …, q^(m-1), u, t) are the constraints and the quasi-velocities u solved [N 4.2,
+// 4.3].
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

@@ -1,11 +1,10 @@
 // The Micevic-Rusov equations in quasi-coordinates, reduced [N 4.11]. T*^(k) is T^(k) with q^(m) = g, q^(m+1) = g' =
 // dg/dt put in [N 4.9, 4.10]:
 //
-//   dT*^(m)/du_a - dT*^(m-1)/dpi_a^(m-1) - dT/dpi_a - sum_s dT^(m-1)/dq_s^(m) (dg'_s/du_a - dg_s/dpi_a^(m-1)) = sum_s
-//   G_s B_sa
+//   dT*^(m)/du_a - dT*^(m-1)/dpi_a^(m-1) - dT/dpi_a - sum_s dT^(m-1)/dq_s^(m) (dg'_s/du_a - dg_s/dpi_a^(m-1)) = sum_s G_s B_sa
 //
-// d/dpi_a := sum_s d/dq_s B_sa and d/dpi_a^(m-1) := sum_s d/dq_s^(m-1) B_sa are definitions, no partial derivatives
-// [N 4.7, 4.8].
+// d/dpi_a := sum_s d/dq_s B_sa and d/dpi_a^(m-1) := sum_s d/dq_s^(m-1) B_sa are definitions, no partial derivatives [N
+// 4.7, 4.8].
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

@@ -3,7 +3,7 @@
 #include <sys/resource.h>
 
 #include "expr/diff.h"
-#include "expr/print.h"
+#include "print/print.h"
 #include "support/random_expr.h"
 #include "support/value.h"
 

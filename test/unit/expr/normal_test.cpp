@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "expr/normal.h"
-#include "expr/print.h"
+#include "print/print.h"
 #include "support/plain_names.h"
 #include "support/random_expr.h"
 #include "support/value.h"

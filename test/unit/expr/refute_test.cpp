@@ -3,8 +3,8 @@
 #include "expr/degree.h"
 #include "expr/diff.h"
 #include "expr/normal.h"
-#include "expr/print.h"
 #include "expr/refute.h"
+#include "print/print.h"
 #include "support/plain_names.h"
 #include "support/random_expr.h"
 

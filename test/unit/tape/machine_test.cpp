@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "expr/print.h"
 #include "numeric/ball.h"
+#include "print/print.h"
 #include "support/random_expr.h"
 #include "support/value.h"
 #include "tape/tape.h"

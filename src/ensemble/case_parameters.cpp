@@ -1,0 +1,129 @@
+#include "ensemble/case_parameters.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+namespace {
+
+// What is derived from others follows from those that are varied.
+Tape parameter_tape(const Model& model, const std::vector<Varied>& varied) {
+  Graph& g = *model.graph;
+  Column values;
+  for (const Parameter& p : model.parameters) values.push_back(p.value);
+  for (const Varied& v : varied)
+    if (v.kind == Varied::Kind::parameter) values[v.index] = g.parameter(static_cast<std::uint32_t>(v.index));
+  Column es = values;
+  for (std::size_t depth = 0; depth <= values.size(); ++depth)
+    es = substitute(es, [&](NodeId id) {
+      const Node& n = g.node(id);
+      return n.kind == Kind::parameter ? values[n.index] : Expr{};
+    });
+  return compile(es);
+}
+
+bool of_parameters(Expr e) {
+  for (NodeId id : symbols({&e, 1}))
+    if (e.graph->node(id).kind != Kind::parameter) return false;
+  return true;
+}
+
+}  // namespace
+
+CaseParameters::CaseParameters(const Scenario& s, const std::vector<Varied>& varied) : s_(s), varied_(varied) {
+  const Model& model = *s.model;
+  if (model.parameters.empty()) return;
+  tape_ = parameter_tape(model, varied);
+  any_ = std::any_of(varied.begin(), varied.end(), [](const Varied& v) { return v.kind == Varied::Kind::parameter; });
+  if (!any_) return;
+  Column es;
+  for (const Body& b : model.bodies) {
+    if (of_parameters(b.mass)) {
+      checks_.push_back({"the mass of '" + b.name + "'", es.size(), {}});
+      es.push_back(b.mass);
+    }
+    if (b.shape)
+      for (Expr size : b.shape->sizes) {
+        checks_.push_back({"a size of the shape of '" + b.name + "'", es.size(), {}});
+        es.push_back(size);
+      }
+    const auto known = [](const Axis& a) {
+      return a.own.size() == 3 && of_parameters(a.weight) && std::all_of(a.own.begin(), a.own.end(), is_number);
+    };
+    if (b.axes.empty() || !std::all_of(b.axes.begin(), b.axes.end(), known)) continue;
+    checks_.push_back({"the inertia of '" + b.name + "'", es.size(), {}});
+    for (const Axis& a : b.axes) checks_.back().axes.push_back(a.own), es.push_back(a.weight);
+  }
+  if (!es.empty()) bodies_ = compile(es);
+  whole_ = implicit_system(s.model, *s.mechanics, *s.system.form, s.independent, s.elimination);
+  equations_ = compile(whole_.equations);
+}
+
+template <Number N>
+std::vector<N> CaseParameters::values(const std::vector<Rational>& numbers) const {
+  const std::size_t n = s_.model->parameters.size();
+  std::vector<N> list(n, N(0));
+  if (n == 0) return list;
+  for (std::size_t i = 0; i < varied_.size(); ++i)
+    if (varied_[i].kind == Varied::Kind::parameter) list[varied_[i].index] = from_rational<N>(numbers[i]);
+  Machine<N> machine(tape_, 0, list);
+  machine.evaluate();
+  for (std::size_t i = 0; i < n; ++i) list[i] = machine.value(i);
+  return list;
+}
+template std::vector<double> CaseParameters::values(const std::vector<Rational>&) const;
+template std::vector<long double> CaseParameters::values(const std::vector<Rational>&) const;
+
+Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (!is_finite(parameters[i]))
+      return {OutcomeKind::not_a_number, "the parameter '" + s_.model->parameters[i].name + "' has no value",
+              "look for roots of negative numbers and divisions by zero among the parameters"};
+  if (!bodies_) return {};
+  Machine<double> machine(*bodies_, 0, parameters);
+  machine.evaluate();
+  for (const Check& c : checks_) {
+    if (c.axes.empty()) {
+      if (const double v = machine.value(c.root); !(v >= 0))
+        return {OutcomeKind::negative_mass, c.what + " is " + number_text(v, 6),
+                "it is not negative: leave out such values"};
+      continue;
+    }
+    // E = sum w u u' has no negative eigenvalue: no principal minor of E + slack is negative.
+    double e[3][3] = {}, slack = 0;
+    for (std::size_t k = 0; k < c.axes.size(); ++k) {
+      const double w = machine.value(c.root + k);
+      slack += 1e-9 * std::abs(w);
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+          e[i][j] += w * number_value(c.axes[k][i]).get_d() * number_value(c.axes[k][j]).get_d();
+    }
+    bool wrong = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t k = (i + 1) % 3;
+      wrong = wrong || !(e[i][i] >= -slack) ||
+              !((e[i][i] + slack) * (e[k][k] + slack) - e[i][k] * e[k][i] >= -slack * slack);
+    }
+    const double det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+                       e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+                       e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+    const double size = std::abs(e[0][0]) + std::abs(e[1][1]) + std::abs(e[2][2]);
+    if (wrong || !(det >= -slack * size * size))
+      return {OutcomeKind::negative_mass, c.what + " is that of no body",
+              "each principal moment is at most the sum of the two others: leave out such values"};
+  }
+  return {};
+}
+
+bool CaseParameters::same_structure(const std::vector<double>& parameters) const {
+  if (!equations_) return true;
+  const auto sigma = signature(whole_, *equations_, parameters, hints_at(s_.state));
+  if (!sigma) return false;
+  const Structure& t = s_.structure;
+  for (std::size_t i = 0; i < sigma->size(); ++i)
+    for (std::size_t j = 0; j < sigma->size(); ++j)
+      if ((*sigma)[i][j] + t.c[i] > t.d[j] && (*sigma)[i][j] != kAbsent) return false;
+  return true;
+}
+
+}  // namespace anholon

@@ -1,0 +1,416 @@
+#include "ensemble/cases.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "motion/representation.h"
+#include "observe/watch.h"
+
+namespace anholon {
+
+std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
+  std::vector<StateOverride> list = o.state.overrides;
+  for (std::size_t i = 0; i < o.varied.size(); ++i)
+    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial)
+      list.push_back({v.order, v.index, numbers ? numbers->values[i] : Rational(0)});
+  return list;
+}
+
+static void put_parameters(Model& model, const EnsembleOptions& o, const EnsembleCase& numbers) {
+  for (std::size_t i = 0; i < o.varied.size(); ++i)
+    if (o.varied[i].kind == Varied::Kind::parameter)
+      model.parameters[o.varied[i].index].value = model.graph->number(numbers.values[i]);
+}
+
+Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers,
+                         Scenario& scenario, std::shared_ptr<Model>& model) {
+  model = std::make_shared<Model>(*o.again());
+  StateChoice state = o.state;
+  if (numbers) put_parameters(*model, o, *numbers), state.overrides = overrides_of(o, numbers);
+  return make_scenario(model, form, state, scenario);
+}
+
+std::vector<std::string> ensemble_columns(const Model& model) {
+  std::vector<std::string> names;
+  for (const unsigned k : {0U, 1U})
+    for (const Coordinate& c : model.coordinates) names.push_back(derivative_name(c.name, k, Format::text));
+  for (const StateVariable& z : model.states) names.push_back(z.name);
+  for (const Monitor& m : model.monitors) names.push_back(m.name);
+  return names;
+}
+
+EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
+    : scenario(s), options(o), parameters(s, o.varied) {
+  const Model& model = *s.model;
+  Graph& g = *model.graph;
+  settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
+  plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() &&
+          s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
+  if (!plain) return;
+  start.emplace(*s.mechanics, overrides_of(o, nullptr));
+  for (std::size_t j = 0; j < s.system.size(); ++j)
+    for (int k = 0; k < s.structure.d[j]; ++k)
+      entries.push_back(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
+  Column masses;
+  for (const VaryingMass& m : model.masses) masses.push_back(m.value);
+  program = anholon::program(s.system, s.structure, masses);
+  settings.measure = false;
+  if (Start<long double> at; o.kernel && initial_state(s, o.state, at).ok()) {
+    const std::vector<long double> numbers = parameter_values<long double>(model);
+    const std::vector<double> state(at.state.begin(), at.state.end());
+    const double t = static_cast<double>(at.t);
+    const int order = o.order > 0 ? o.order : taylor_order(settings.log_tolerance);
+    if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state,
+                                              Company::in_lanes))
+      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()},
+                                        WritingEffort::long_motion))
+                   .plan;
+  }
+  constexpr std::size_t kMany = 32;
+  if (kernel && o.cases >= kMany) lanes = tiers().back().lanes;
+  Column watched;
+  for (const Monitor& m : model.monitors) watched.push_back(m.value);
+  stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, watched));
+  leading = stages > 0 || std::any_of(s.structure.d.begin(),
+                                      s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
+                                      [](int d) { return d < 2; });
+  if (watched.empty()) return;
+  outputs = compile(OutputTape<Wider<double>>::put(s, watched));
+  for (const Input& in : outputs->inputs) {
+    const Node& n = g.node(in.symbol);
+    output_inputs.push_back({in.slot, s.system.variable(in.symbol), n.kind == Kind::time ? 0 : n.order});
+    leading = leading || (output_inputs.back().variable &&
+                          output_inputs.back().order >= s.structure.d[*output_inputs.back().variable]);
+  }
+}
+
+void EnsemblePlan::compile_if_long() const {
+  if (const std::unique_lock lock(compiling_, std::try_to_lock); lock) code_.step(kernel, lanes);
+}
+
+// A model read once more, with a graph of its own in which a thread may build.
+struct CaseWorker::Own {
+  // With the numbers of a case, or those of the scenario of all cases.
+  Own(const EnsemblePlan& plan, const EnsembleCase* numbers) {
+    const EnsembleOptions& o = plan.options;
+    std::optional<EnsembleCase> like;
+    if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
+    outcome = scenario_of_case(*plan.scenario.system.form, o, numbers, scenario, model);
+  }
+
+  std::shared_ptr<Model> model;
+  Scenario scenario;
+  Outcome outcome;        // of its start
+  std::size_t cases = 0;  // that were computed in it
+};
+
+Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& o, Scenario& scenario) {
+  constexpr std::size_t kMost = 64;
+  Outcome first;
+  for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
+    const EnsembleCase numbers = o.numbers(k);
+    std::shared_ptr<Model> model;
+    Scenario s;
+    const Outcome outcome = scenario_of_case(form, o, &numbers, s, model);
+    if (k == 0) first = outcome;
+    if (!outcome.ok()) continue;
+    scenario = std::move(s);
+    o.like = k;
+    return {};
+  }
+  return first;
+}
+
+CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shared_ptr<Kernel>& kernel, int lane) {
+  plan_ = &plan;
+  result_ = nullptr;
+  numbers_ = plan.options.numbers(r.number);
+  for (const Rational& v : numbers_.values) r.values.push_back(from_rational<double>(v));
+  std::vector<W> parameters = plan.parameters.values<W>(numbers_.values);
+  ready_ = ready_ && parameters == parameters_;
+  if (!ready_) {
+    parameters_ = std::move(parameters);
+    narrow_parameters_ = plan.parameters.values<double>(numbers_.values);
+  }
+  r.t = plan.scenario.state.t;
+  if (r.outcome = plan.parameters.possible(narrow_parameters_); !r.outcome.ok()) return CaseWay::plain;
+  if (!ready_) same_structure_ = plan.parameters.same_structure(narrow_parameters_);
+  if (!same_structure_) return CaseWay::derivation;
+  if (!plan.plain) return CaseWay::simulation;
+  if (!ready_) {
+    stepper_.emplace(*plan.program, narrow_parameters_, parameters_, plan.settings);
+    if (kernel) {
+      kernel->set_parameters(lane, parameters_);
+      stepper_->accelerate(kernel, lane);
+    }
+    point_.emplace(*plan.program, parameters_, std::max(1, plan.stages));
+    if (plan.outputs) outputs_.emplace(*plan.outputs, 0, parameters_);
+    ready_ = true;
+  }
+  const EnsembleOptions& o = plan.options;
+  InitialProblem<W> problem{plan.scenario.mechanics.get(), parameters_, overrides_of(o, &numbers_), o.state.t};
+  problem.plan = &*plan.start;
+  r.outcome = consistent_state(problem, named_);
+  r.t = to_double(named_.t);
+  if (!r.outcome.ok()) return CaseWay::plain;
+  std::vector<W> state;
+  for (const Node& n : plan.entries) {
+    const W* known = named_.value(n);
+    state.push_back(known ? *known : W(0));
+  }
+  end_ = from_rational<W>(numbers_.to ? *numbers_.to : o.to);
+  const bool forward = !(end_ < named_.t);
+  times_.clear();
+  for (const Rational& t : o.at)
+    if (const W at = from_rational<W>(t); forward ? at <= end_ : at >= end_) times_.push_back(at);
+  if (!forward) std::reverse(times_.begin(), times_.end());
+  result_ = &r;
+  if (end_ == named_.t)
+    return stepper_->start(named_.t, state, {}, false).ok() ? after_step() : stop(CaseWay::derivation);
+  stepper_->place(named_.t, state);
+  return CaseWay::plain;
+}
+
+CaseWay CaseWalk::stop(CaseWay way) {
+  result_ = nullptr;
+  return way;
+}
+
+CaseWay CaseWalk::stopped(const Outcome& why) {
+  const EnsembleOptions& o = plan_->options;
+  if (why.kind != OutcomeKind::interrupted || !o.cancelled || !o.cancelled())
+    return stop(stepper_->steps() == 0 ? CaseWay::derivation : CaseWay::simulation);
+  result_->outcome = why;
+  return stop(CaseWay::plain);
+}
+
+CaseWay CaseWalk::begin_step() { return stepper_->begin_step() ? CaseWay::plain : stopped(stepper_->trouble()); }
+
+CaseWay CaseWalk::aim() { return stepper_->aim(end_) ? CaseWay::plain : stopped(stepper_->trouble()); }
+
+CaseWay CaseWalk::look_at_end() {
+  const EndOfStep there = stepper_->look_at_end(end_);
+  looks_elsewhere_ = there == EndOfStep::elsewhere;
+  return there == EndOfStep::failed ? stopped(stepper_->trouble()) : CaseWay::plain;
+}
+
+CaseWay CaseWalk::finish_step() { return stepper_->finish_step() ? after_step() : stopped(stepper_->trouble()); }
+
+CaseWay CaseWalk::step() {
+  if (const Outcome o = stepper_->step(end_); !o.ok()) return stopped(o);
+  return after_step();
+}
+
+// What the last step has to give, which may be the end.
+CaseWay CaseWalk::after_step() {
+  for (std::size_t i = 0; i < plan_->program->quadratures; ++i)
+    if (!plan_->scenario.model->masses[i].weight &&
+        stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
+      return stop(CaseWay::simulation);
+  if (!rows()) return stop(CaseWay::simulation);
+  if (!(stepper_->time() == end_)) return CaseWay::plain;
+  result_->t = to_double(end_);
+  result_->steps = stepper_->steps();
+  return stop(keep(end_, result_->last) ? CaseWay::plain : CaseWay::simulation);
+}
+
+// Those that lie in the last step.
+bool CaseWalk::rows() {
+  const bool forward = !(end_ < stepper_->before());
+  while (result_->rows.size() < times_.size()) {
+    const W& t = times_[result_->rows.size()];
+    if (forward ? t > stepper_->time() : t < stepper_->time()) break;
+    std::vector<double> row = {to_double(t)};
+    if (!keep(t, row)) return false;
+    result_->rows.push_back(std::move(row));
+  }
+  return true;
+}
+
+// What is kept of the state at t, which lies in the last step.
+bool CaseWalk::keep(const W& t, std::vector<double>& values) {
+  const System& system = plan_->scenario.system;
+  if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
+  for (const int k : {0, 1})
+    for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
+  for (std::size_t j = system.mechanical(); j < system.size(); ++j)
+    values.push_back(to_double(point_->derivative(j, 0)));
+  if (!outputs_) return true;
+  for (const EnsemblePlan::Entry& e : plan_->output_inputs)
+    outputs_->series(e.slot)[0] = e.variable ? point_->derivative(*e.variable, e.order) : point_->time();
+  outputs_->evaluate();
+  for (std::size_t i = 0; i < plan_->outputs->roots.size(); ++i) values.push_back(to_double(outputs_->value(i)));
+  return true;
+}
+
+// A case never stops the others.
+template <class Work>
+static bool contained(CaseResult& r, const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const Failure& e) {
+    r.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
+  } catch (const std::bad_alloc&) {
+    r.outcome = {OutcomeKind::too_large, "out of memory", "fewer threads need less"};
+  }
+  return false;
+}
+
+// Each lane takes the next case when it has done one. A lane has the same bits whatever is beside it.
+void CaseWorker::integrate(std::span<CaseResult> results) {
+  plan_.compile_if_long();
+  if (plan_.kernel && !kernel_) kernel_ = std::make_shared<Kernel>(plan_.kernel, plan_.lanes);
+  while (walks_.size() < static_cast<std::size_t>(plan_.lanes)) walks_.emplace_back();
+  std::size_t next = 0, walking = 0;
+  const auto go = [&](CaseWalk& walk, CaseWay (CaseWalk::*part)()) {
+    if (!walk.walking()) return;
+    CaseResult& r = walk.result();
+    CaseWay way = CaseWay::plain;
+    const bool done = contained(r, [&] { way = (walk.*part)(); });
+    if (!done) walk.abandon();
+    if (walk.walking()) return;
+    --walking;
+    if (done) contained(r, [&] { end(way, walk.numbers(), r); });
+  };
+  for (;;) {
+    for (std::size_t lane = 0; lane < walks_.size(); ++lane)
+      while (!walks_[lane].walking() && next < results.size()) {
+        CaseResult& r = results[next++];
+        CaseWalk& walk = walks_[lane];
+        const bool done = contained(r, [&] {
+          const CaseWay way = walk.begin(plan_, r, kernel_, static_cast<int>(lane));
+          if (!walk.walking()) end(way, walk.numbers(), r);
+        });
+        if (!done) walk.abandon();
+        if (walk.walking()) ++walking;
+      }
+    if (walking == 0) return;
+    if (walks_.size() == 1) {
+      go(walks_[0], &CaseWalk::step);
+      continue;
+    }
+    for (CaseWalk& w : walks_) go(w, &CaseWalk::begin_step);
+    if (kernel_) kernel_->begin();
+    for (CaseWalk& w : walks_) go(w, &CaseWalk::aim);
+    for (bool again = kernel_ != nullptr; again;) {
+      kernel_->advance();
+      kernel_->start_next();
+      again = false;
+      for (CaseWalk& w : walks_) {
+        go(w, &CaseWalk::look_at_end);
+        again = again || (w.walking() && w.looks_elsewhere());
+      }
+    }
+    for (CaseWalk& w : walks_) go(w, &CaseWalk::finish_step);
+  }
+}
+
+void CaseWorker::end(CaseWay way, const EnsembleCase& numbers, CaseResult& r) {
+  if (way == CaseWay::simulation) {
+    by_simulation(numbers, r);
+    // What fails where it begins may have another structure there, or other redundant constraints.
+    if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent &&
+        r.outcome.kind != OutcomeKind::interrupted)
+      way = CaseWay::derivation;
+  }
+  if (way == CaseWay::derivation) by_derivation(numbers, r);
+}
+
+namespace {
+
+// Rows of `simulate`, of which the columns of an ensemble are kept.
+class Kept final : public RowSink {
+ public:
+  Kept(const Scenario& s, const std::vector<Rational>& times, CaseResult& result)
+      : s_(s), times_(times), result_(result) {}
+  void columns(const std::vector<std::string>& names) override {
+    const Model& model = *s_.model;
+    const std::size_t n = model.coordinates.size();
+    for (std::size_t i = 1; i <= 2 * n; ++i) columns_.push_back(i);
+    const std::size_t monitors = names.size() - model.monitors.size(), states = monitors - n - model.states.size();
+    for (std::size_t i = states; i < monitors - n; ++i) columns_.push_back(i);
+    for (std::size_t i = monitors; i < names.size(); ++i) columns_.push_back(i);
+  }
+  void row(const std::vector<std::string>& texts) override {
+    const double t = std::strtod(texts[0].c_str(), nullptr);
+    result_.t = t;
+    result_.last.clear();
+    for (std::size_t c : columns_) result_.last.push_back(std::strtod(texts[c].c_str(), nullptr));
+    const auto wanted = [&](const Rational& at) { return from_rational<double>(at) == t; };
+    if (std::none_of(times_.begin(), times_.end(), wanted)) return;
+    std::vector<double> row = {t};
+    row.insert(row.end(), result_.last.begin(), result_.last.end());
+    result_.rows.push_back(std::move(row));
+  }
+
+ private:
+  const Scenario& s_;
+  const std::vector<Rational>& times_;
+  CaseResult& result_;
+  std::vector<std::size_t> columns_;
+};
+
+}  // namespace
+
+// Without numbers: those of the scenario.
+void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& r) {
+  const EnsembleOptions& o = plan_.options;
+  r.rows.clear();
+  r.last.clear();
+  std::optional<EnsembleCase> like;
+  if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
+  const Rational to = numbers && numbers->to ? *numbers->to : o.to;
+  SimulationOptions options;
+  options.state = o.state;
+  if (numbers) options.state.overrides = overrides_of(o, numbers);
+  for (const Rational& t : o.at)
+    if (to < Rational(own.scenario.state.t) ? t > to : t < to) options.at.push_back(t);
+  options.at.push_back(to);
+  std::sort(options.at.begin(), options.at.end());
+  options.tolerance = o.tolerance;
+  options.order = o.order;
+  options.method = o.method;
+  options.most_steps = o.most_steps;
+  options.cancelled = o.cancelled;
+  options.kernel = o.kernel;
+  Kept rows(own.scenario, o.at, r);
+  const SimulationReport report = simulate(own.scenario, options, rows);
+  r.outcome = report.outcome;
+  r.steps = report.steps;
+  r.t = std::strtod(report.t.c_str(), nullptr);
+}
+
+// Expressions that a case builds stand before those of later cases, and their order is that of sums. So no case may be
+// computed where another one has left some: a graph that has grown is thrown away, and a case that made it grow is
+// computed in a new one.
+void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {
+  ++again_;
+  for (;;) {
+    std::shared_ptr<Own> own = std::exchange(own_, nullptr);
+    if (!own) {
+      own = std::make_shared<Own>(plan_, nullptr);
+      // What all cases build, the motion of the scenario builds first.
+      CaseResult nothing;
+      simulate_in(*own, nullptr, nothing);
+    }
+    put_parameters(*own->model, plan_.options, numbers);
+    const std::size_t before = own->model->graph->size();
+    simulate_in(*own, &numbers, r);
+    const bool first = own->cases++ == 0, grown = own->model->graph->size() != before;
+    if (!grown) own_ = std::move(own);
+    if (!grown || first) return;
+  }
+}
+
+void CaseWorker::by_derivation(const EnsembleCase& numbers, CaseResult& r) {
+  ++again_;
+  Own own(plan_, &numbers);
+  r.outcome = own.outcome;
+  r.t = own.scenario.state.t;
+  r.rows.clear();
+  r.last.clear();
+  if (own.outcome.ok()) simulate_in(own, &numbers, r);
+}
+
+}  // namespace anholon

@@ -1,0 +1,92 @@
+#include "ensemble/cases_error.h"
+
+#include "ensemble/cases.h"
+#include "observe/estimate.h"
+
+namespace anholon {
+
+namespace {
+
+// The columns of an ensemble among those of a row.
+std::vector<std::size_t> kept_columns(const Scenario& s) {
+  std::vector<std::size_t> list;
+  const std::vector<RowColumn> columns = row_columns(s, largest_order(s, s.structure.d));
+  for (const ColumnKind kind : {ColumnKind::coordinate, ColumnKind::velocity, ColumnKind::state, ColumnKind::monitor})
+    for (std::size_t j = 0; j < columns.size(); ++j)
+      if (columns[j].kind == kind) list.push_back(j);
+  return list;
+}
+
+SimulationReport compared(const Formulation& form, const EnsembleOptions& o, const CaseResult& r) {
+  SimulationReport report;
+  const EnsembleCase numbers = o.numbers(r.number);
+  std::shared_ptr<Model> model;
+  Scenario s;
+  if (report.outcome = scenario_of_case(form, o, &numbers, s, model); !report.outcome.ok()) return report;
+  SimulationOptions options;
+  options.state = o.state;
+  options.state.overrides = overrides_of(o, &numbers);
+  options.tolerance = o.tolerance;
+  options.most_steps = o.most_steps;
+  options.cancelled = o.cancelled;
+  options.estimate = o.estimate;
+  RunToJudge<long double> run;
+  run.columns = kept_columns(s);
+  run.knows_resets = false;
+  const auto end = from_rational<long double>(numbers.to ? *numbers.to : o.to);
+  const auto add = [&](long double t, auto begin, auto last) {
+    run.rows.add(t, std::vector<long double>(begin, last), 0);
+  };
+  for (const std::vector<double>& row : r.rows) add(row[0], row.begin() + 1, row.end());
+  // Written is the double next to the time that was asked for.
+  add(static_cast<double>(end) == r.t ? end : r.t, r.last.begin(), r.last.end());
+  estimate_error<double>(s, options, run, report);
+  return report;
+}
+
+}  // namespace
+
+std::vector<std::size_t> cases_to_compare(std::size_t cases) {
+  constexpr std::size_t kFew = 3, kMany = 8, kManyCases = 20'000;
+  const std::size_t count = std::min(cases, cases < kManyCases ? kFew : kMany);
+  std::vector<std::size_t> list;
+  for (std::size_t k = 0; k < count; ++k) list.push_back(count == 1 ? 0 : k * (cases - 1) / (count - 1));
+  return list;
+}
+
+CasesError cases_error(const Formulation& form, const EnsembleOptions& o, std::span<const CaseResult> results,
+                       const Each& each) {
+  CasesError all;
+  std::vector<const CaseResult*> fit;
+  for (const CaseResult& r : results)
+    if (r.outcome.ok() && r.steps > 0 && (o.estimate == ErrorEstimate::always || r.steps <= kShortRun))
+      fit.push_back(&r);
+  std::vector<SimulationReport> reports(fit.size());
+  each(fit.size(), [&](std::size_t i) {
+    try {
+      reports[i] = compared(form, o, *fit[i]);
+    } catch (const Failure& e) {
+      reports[i].no_error = e.diagnostic.message;
+    }
+  });
+  for (std::size_t i = 0; i < fit.size(); ++i) {
+    const SimulationReport& r = reports[i];
+    if (!r.error) {
+      all.none = r.no_error;
+      continue;
+    }
+    all.cases.push_back(fit[i]->number);
+    if (!all.error || r.error->worst().error > all.error->worst().error) all.worst = fit[i]->number;
+    if (!all.error)
+      all.error = r.error;
+    else
+      all.error->take_worse(*r.error);
+  }
+  if (!all.error && all.none.empty())
+    all.none =
+        "none of the cases looked at has finished" +
+        std::string(o.estimate == ErrorEstimate::always ? "" : " within " + std::to_string(kShortRun) + " steps");
+  return all;
+}
+
+}  // namespace anholon

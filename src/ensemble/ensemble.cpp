@@ -1,0 +1,126 @@
+#include "ensemble/ensemble.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include "base/assert.h"
+#include "ensemble/cases.h"
+#include "ensemble/cases_error.h"
+
+namespace anholon {
+
+namespace {
+
+// Cases that are integrated together, in the lanes of one kernel; as many for any number of threads.
+std::size_t together(std::size_t cases) {
+  constexpr std::size_t kMost = 32, kFew = 8;
+  return std::clamp<std::size_t>(cases / kFew, 1, kMost);
+}
+
+// Cases on their way for each thread, however they are grouped: room for one that takes long while the others go on.
+constexpr std::size_t kWindow = 256;
+
+// Debian's libtbb is not compiled for ThreadSanitizer, which so sees neither that what a thread is given was ready
+// before, nor that one stage ends before the next begins. `joined`, `ready` and the lock of the two stages in order say
+// it once more; so all other races are found.
+void joined() {
+  static std::mutex all;
+  const std::lock_guard lock(all);
+}
+
+struct Group {
+  std::vector<CaseResult> cases;
+  std::atomic<bool> ready{false};
+  void hand_over() { ready.store(true, std::memory_order_release); }
+  std::vector<CaseResult>& take() {
+    while (!ready.exchange(false, std::memory_order_acquire)) {
+    }
+    return cases;
+  }
+};
+
+}  // namespace
+
+EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& sink) {
+  ANHOLON_ASSERT(o.numbers && o.again);
+  const auto start = std::chrono::steady_clock::now();
+  EnsembleReport report;
+  report.threads = o.threads > 0 ? o.threads : static_cast<std::size_t>(tbb::info::default_concurrency());
+  const EnsemblePlan plan(s, o);
+  const std::size_t group = together(o.cases);
+  const auto cancelled = [&] { return o.cancelled && o.cancelled(); };
+
+  tbb::enumerable_thread_specific<CaseWorker> workers([&] { return CaseWorker(plan); });
+  std::mutex in_order;
+  std::size_t next = 0, held = 0;
+  bool cut = false;
+  const auto begin = [&](tbb::flow_control& flow) -> Group* {
+    joined();
+    const std::lock_guard lock(in_order);
+    if (next >= o.cases || cancelled()) {
+      flow.stop();
+      return nullptr;
+    }
+    auto* g = new Group;
+    for (; next < o.cases && g->cases.size() < group; ++next) g->cases.emplace_back().number = next;
+    report.most_held = std::max(report.most_held, held += g->cases.size());
+    g->hand_over();
+    return g;
+  };
+  const auto integrate = [&](Group* g) {
+    joined();
+    workers.local().integrate(g->take());
+    g->hand_over();
+    return g;
+  };
+  const std::vector<std::size_t> to_compare =
+      o.estimate == ErrorEstimate::never ? std::vector<std::size_t>{} : cases_to_compare(o.cases);
+  std::vector<CaseResult> compared;
+  const auto deliver = [&](Group* g) {
+    joined();
+    const std::unique_ptr<Group> owned(g);
+    const std::lock_guard lock(in_order);
+    for (const CaseResult& r : g->take()) {
+      // What Ctrl-C cut short is no result, and neither is what comes after it: the results are the first ones, without
+      // a gap.
+      cut = cut || (r.outcome.kind == OutcomeKind::interrupted && cancelled());
+      if (cut) continue;
+      sink.result(r);
+      if (std::binary_search(to_compare.begin(), to_compare.end(), r.number)) compared.push_back(r);
+      ++report.done;
+      if (r.outcome.ok()) ++report.finished;
+    }
+    held -= g->cases.size();
+    if (o.progress) o.progress(report.done);
+  };
+
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, report.threads);
+  tbb::task_arena arena(static_cast<int>(report.threads));
+  joined();
+  arena.execute([&] {
+    tbb::parallel_pipeline(kWindow / group * report.threads,
+                           tbb::make_filter<void, Group*>(tbb::filter_mode::serial_in_order, begin) &
+                               tbb::make_filter<Group*, Group*>(tbb::filter_mode::parallel, integrate) &
+                               tbb::make_filter<Group*, void>(tbb::filter_mode::serial_in_order, deliver));
+  });
+  const std::lock_guard lock(in_order);
+  for (const CaseWorker& w : workers) report.again += w.again();
+  if (report.done < o.cases)
+    report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
+  else if (o.estimate != ErrorEstimate::never)
+    report.error = cases_error(*s.system.form, o, compared, [&](std::size_t count, const auto& f) {
+      arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, f); });
+    });
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+}  // namespace anholon

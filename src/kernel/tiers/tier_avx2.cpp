@@ -1,0 +1,14 @@
+// AVX2 and FMA, four lanes.
+#include "kernel/tiers/sweep.h"
+
+namespace anholon {
+
+static std::unique_ptr<Arithmetic> make(const KernelTables& tables, double* arena, int lanes) {
+  if (lanes == 4) return std::make_unique<Sweep<4>>(tables, arena);
+
+  return std::make_unique<Sweep<1>>(tables, arena);
+}
+
+const Tier tier_avx2{"avx2", 4, make, Sines<1>::at, Sines<4>::at};
+
+}  // namespace anholon

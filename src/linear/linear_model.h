@@ -1,0 +1,84 @@
+// The linear model of a motion at one of its points: z' = A z in independent coordinates and velocities.
+//
+// With the offsets c, d of the structure, all that is known of the motion near a point is
+//   E_i^(k) = 0,  k = 0..c_i,   in the entries  x_j^(k),  k = 0..d_j        (theory: dae-view)
+// and nothing else: equations of motion, constraints and their derivatives. Differentiated by the entries they give as
+// many linear equations as there are entries that do not belong to a choice of independent ones z. So every variation
+// follows from those of z, and z' consists of entries again. This holds for constraints of any order; what the
+// multipliers contribute to the stiffness (lambda d^2 phi/dq dq) stands in dE/dq (theory: linear-models).
+//
+// A steady motion is one in which the coordinates that move have no influence on the others: x, y, heading and spin of
+// a disc that rolls in a circle. They are found, and the eigenvalues are those of the others.
+#pragma once
+#include "numeric/eigen.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+// What acts on a system besides its own motion, and what is observed of it: symbols u and formulas y. A symbol stands
+// in the equations as a constant; B and D tell what a change of it does while all formulas of the model go on to hold.
+struct Signals {
+  std::vector<std::string> inputs, outputs;
+  Column u, y;
+};
+
+// z' = A z + B u,  y = C z + D u.
+struct LinearModel {
+  enum class Motion : std::uint8_t {
+    equilibrium,
+    steady,     // coordinates without influence move, all else rests, and A stays as it is
+    unsteady,   // A holds for an instant, its eigenvalues tell nothing of stability
+    unchecked,  // perhaps steady; the check found no other point of the motion
+  };
+  Motion motion = Motion::unchecked;
+  std::string why;  // unsteady, unchecked: what tells so
+  Multi t{0};
+  std::vector<std::string> states;     // names of z: x, …, x', …
+  std::vector<std::string> dependent;  // entries of the state that follow from z
+  std::vector<Multi> values, rates;    // z and z' on the motion
+  Matrix<Multi> A, B, C, D;
+  std::vector<std::string> inputs, outputs;
+  std::vector<std::string> notes;    // signals that have no place in the model
+  std::vector<std::size_t> cyclic;   // indices of states: coordinates that influence neither the others nor themselves
+  std::vector<std::size_t> core;     // the others
+  std::vector<Eigenvalue> spectrum;  // of A over the core; vectors over the core
+};
+const char* name(LinearModel::Motion motion);
+
+// Derivatives and their tape, once for all parameter values. The precision of the thread must be that of its
+// construction.
+class Linearizer {
+ public:
+  Linearizer(const Scenario& scenario, const StateChoice& choice, Signals signals = {});
+  // With other values of the parameters; the initial data are solved anew. Only if `check` it is found out whether the
+  // motion is steady.
+  Outcome at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const;
+
+ private:
+  friend class LinearPoint;
+  struct Entry {
+    std::size_t variable;
+    int order;
+  };
+  struct Partial {
+    std::size_t row, column;  // rows: E_i^(k), then outputs; columns: entries, then inputs
+  };
+  std::size_t entry(std::size_t variable, int order) const {
+    return first_[variable] + static_cast<std::size_t>(order);
+  }
+  bool leading(std::size_t e) const { return entries_[e].order == s_.structure.d[entries_[e].variable]; }
+  std::string entry_name(std::size_t e) const;
+
+  const Scenario& s_;
+  const StateChoice& choice_;
+  Signals signals_;
+  std::vector<std::string> notes_;
+  std::vector<Column> mass_;                       // the mass matrix
+  std::vector<Entry> entries_;                     // x_j^(k), k <= d_j
+  std::vector<std::size_t> first_;                 // of each variable
+  std::vector<std::pair<std::size_t, int>> rows_;  // E_i^(k), k <= c_i
+  std::vector<Partial> partials_;
+  Tape tape_;  // values of the rows, outputs, then the partial derivatives
+};
+
+}  // namespace anholon

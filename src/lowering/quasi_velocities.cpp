@@ -1,0 +1,255 @@
+#include "lowering/quasi_velocities.h"
+
+#include <algorithm>
+
+#include "lowering/admissible_velocities.h"
+#include "lowering/copied_mechanics.h"
+#include "lowering/short_energy.h"
+
+namespace anholon {
+
+namespace {
+
+// With more, the energy is not short in any velocities.
+constexpr std::size_t kMostVelocities = 4;
+
+class Writer {
+ public:
+  Writer(const System& derived, const Mechanics& m, std::span<const Expr> others,
+         const std::function<double(const Node&)>& symbol)
+      : derived_(derived), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph),
+        at_([this, symbol](const Node& n) { return stands_for(n) ? value_of_[n.index - n_] : symbol(n); }),
+        q_(jets(*c_.model, 0)), qd_(jets(*c_.model, 1)), n_(q_.size()), zero_(g_.zero()), v_(qd_, at_, tidy_) {}
+
+  std::optional<QuasiVelocities> run() {
+    if (!v_.solve(put_masses(*c_.model, c_.constraints)) || v_.free.size() > kMostVelocities || !use_names())
+      return std::nullopt;
+    for (Expr v : qd_) velocity_.push_back(tidy_(v_.solved(v)));
+    read_points();
+    if (!energy_.diagonalize(mass_matrix(), v_.free, at_, tidy_, [this](Expr e) { return one_series(e); }))
+      return std::nullopt;
+    return equations();
+  }
+
+ private:
+  Expr p(std::size_t i) { return g_.state(static_cast<std::uint32_t>(c_.state_rates.size() + i), 0); }
+
+  // What is used more than once gets a series of its own: otherwise products would be taken apart, and made anew each
+  // time.
+  Expr one_series(Expr e) {
+    const Node& n = g_.node(e.id);
+    const bool simple = n.kind != Kind::product && n.kind != Kind::sum;
+    if (simple || is_constant(e)) return e;
+    const auto [at, fresh] = series_.try_emplace(e.id, rates_.size());
+    if (fresh) value_of_.push_back(at_(e)), rates_.push_back(e);
+    return g_.jet(static_cast<std::uint32_t>(n_ + at->second), 0);
+  }
+  bool stands_for(const Node& n) const { return n.kind == Kind::jet && n.index >= n_; }
+
+  // Velocities with a name, in those that are free. False where they are not homogeneous.
+  bool use_names() {
+    const std::size_t l = v_.free.size();
+    for (std::size_t i = 0; i < l; ++i) used_by_free_.push_back(Column(l, zero_)), used_by_free_[i][i] = g_.one();
+    used_ = v_.free;
+    for (std::size_t s = 0; s < v_.named.size(); ++s) {
+      const auto [by, rest] = linear(v_.definitions[s], used_, tidy_);
+      if (!is_zero(rest)) return false;
+      Column row = by * used_by_free_;
+      for (Expr& x : row) x = one_series(x);
+      used_by_free_.push_back(std::move(row));
+      used_.push_back(v_.named[s]);
+    }
+    return true;
+  }
+
+  // Velocities of the weighted points, component by component, in used_.
+  void read_points() {
+    for (const CopiedMechanics::Point& point : c_.points) {
+      if (is_zero(point.weight)) continue;
+      for (int i = 0; i < 3; ++i) {
+        const Expr v = total_derivative(point.place[i]);
+        if (!is_zero(v)) points_.push_back({point.weight, linear(v_.solved(v), used_, tidy_)});
+      }
+      bounds_.push_back(points_.size());
+    }
+  }
+
+  Rows mass_matrix() {
+    const std::size_t l = v_.free.size(), n = used_.size();
+    Rows M(l, Column(l, zero_)), local(n, Column(n, zero_));
+    // What squares of sines and cosines make one is within one point.
+    std::size_t first = 0;
+    for (const std::size_t end : bounds_) {
+      for (std::size_t s = 0; s < n; ++s)
+        for (std::size_t t = s; t < n; ++t) {
+          std::vector<Expr> terms;
+          for (std::size_t c = first; c < end; ++c)
+            if (const auto& [weight, e] = points_[c]; !is_zero(e.by[s]) && !is_zero(e.by[t]))
+              terms.push_back(weight * e.by[s] * e.by[t]);
+          if (!terms.empty()) local[s][t] = local[s][t] + tidy_(sum(terms));
+        }
+      first = end;
+    }
+    for (std::size_t s = 0; s < n; ++s)
+      for (std::size_t t = s; t < n; ++t) local[t][s] = local[s][t] = tidy_(local[s][t]);
+    for (std::size_t i = 0; i < l; ++i)
+      for (std::size_t j = i; j < l; ++j) {
+        std::vector<Expr> terms{zero_};
+        for (std::size_t s = 0; s < n; ++s)
+          for (std::size_t t = 0; t < n; ++t)
+            if (!is_zero(local[s][t]) && !is_zero(used_by_free_[s][i]) && !is_zero(used_by_free_[t][j]))
+              terms.push_back(local[s][t] * used_by_free_[s][i] * used_by_free_[t][j]);
+        M[i][j] = M[j][i] = v_.named.empty() ? tidy_(sum(terms)) : sum(terms);
+      }
+    return M;
+  }
+
+  std::optional<QuasiVelocities> equations() {
+    const std::size_t l = v_.free.size(), states = c_.state_rates.size();
+    QuasiVelocities r;
+    r.count = l;
+    r.inertia = energy_.inertia;
+    Column ps;
+    for (std::size_t i = 0; i < l; ++i)
+      ps.push_back(p(i)), c_.model->names.states.push_back("p" + std::to_string(i + 1));
+    r.of_state = v_.in_velocities(energy_.p_by_v);
+    // Short formulas alone are better taken apart.
+    const bool apart = rates_.empty();
+    const Column free = energy_.v_in(ps, [&](Expr e) { return apart ? e : one_series(e); });
+    Column values = free;
+    for (std::size_t s = l; s < used_.size(); ++s) values.push_back(one_series(dot(used_by_free_[s], free)));
+    r.velocities = put(velocity_, used_, values);
+    on_velocities_ = {qd_, r.velocities};
+    Column rates;
+    for (std::size_t i = 0; i < states; ++i)
+      rates.push_back(put(put_masses(*c_.model, c_.state_rates[i]), qd_, r.velocities));
+    for (std::size_t i = 0; i < states; ++i)
+      on_velocities_.first.push_back(g_.state(static_cast<std::uint32_t>(i), 1)),
+          on_velocities_.second.push_back(rates[i]);
+    const Rows A = gyroscopic(r.velocities);
+    // Forces on what is used first, where sines and cosines meet.
+    Column forces = pullback(velocity_, put(put_masses(*c_.model, c_.forces), qd_, r.velocities), used_);
+    for (Expr& f : forces) f = tidy_(f);
+    const Column Q = forces * used_by_free_ * energy_.v_by_p;
+    ps.push_back(g_.one());
+    for (std::size_t i = 0; i < l; ++i) rates.push_back((Q[i] - dot(A[i], ps)) / energy_.inertia[i]);
+    const Column second = jets(*c_.model, 2), accelerations = total_derivative(r.velocities);
+    for (Expr e : c_.others) {
+      r.others.push_back(on_velocities(put(e, second, accelerations)));
+      for (NodeId id : symbols({&r.others.back(), 1}))
+        if (const Node& n = g_.node(id);
+            n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 0 && !stands_for(n)))
+          return std::nullopt;
+    }
+    r.determinant = determinant();
+    r.system = first_order_system(r.velocities, rates);
+    return r;
+  }
+
+  // q' = velocities, and the rates of the states.
+  System first_order_system(const Column& velocities, const Column& rates) const {
+    System s = derived_;
+    s.model = c_.model;
+    s.constraints.clear();
+    s.of_motion = n_;
+    s.equations = qd_ - velocities;
+    s.equation_names.resize(n_);
+    s.variable_names.resize(n_);
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      s.equations.push_back(g_.state(static_cast<std::uint32_t>(i), 1) - rates[i]);
+      for (auto* names : {&s.equation_names, &s.variable_names}) names->push_back(c_.model->names.states[i]);
+    }
+    s.rates = rates_;
+    return s;
+  }
+
+  Expr determinant() {
+    std::vector<std::pair<Expr, Rational>> factors;
+    for (Expr d : energy_.pivots)
+      if (!is_constant(d)) factors.push_back({d, Rational(1)});
+    for (Expr a : v_.pivots)
+      if (!is_constant(a)) factors.push_back({a, Rational(2)});
+    const Expr d = tidy_(g_.product(factors));
+    return is_constant(d) ? g_.one() : d;
+  }
+
+  Expr on_velocities(Expr e) const { return put(e, on_velocities_.first, on_velocities_.second); }
+
+  // Row i: A_ij, then sum_c m_c e_ci . e_c0'.
+  Rows gyroscopic(const Column& velocities) {
+    const std::size_t l = v_.free.size();
+    Rows used_by_p;
+    for (const Column& row : used_by_free_) used_by_p.push_back(row * energy_.v_by_p);
+    std::vector<std::pair<Expr, Column>> points;
+    for (const auto& [weight, e] : points_) {
+      Column by = e.by * used_by_p;
+      by.push_back(e.rest);
+      for (Expr& x : by) x = tidy_(x);
+      points.push_back({weight, std::move(by)});
+    }
+    const auto moved = [&](std::size_t i, std::size_t j) {  // sum_c m_c e_ci . e_cj'
+      Column by_velocity(n_, zero_);
+      std::vector<Expr> terms{zero_};
+      for (const auto& [weight, e] : points) {
+        if (is_zero(e[i]) || is_zero(e[j])) continue;
+        const Expr of = written_out(e[j], n_, rates_);
+        const Column gradient = anholon::gradient(of, q_);
+        for (std::size_t a = 0; a < n_; ++a)
+          if (!is_zero(gradient[a])) by_velocity[a] = by_velocity[a] + weight * e[i] * gradient[a];
+        if (const Expr rest = on_velocities(put(total_derivative(of), qd_, Column(n_, zero_))); !is_zero(rest))
+          terms.push_back(weight * e[i] * rest);
+      }
+      for (std::size_t a = 0; a < n_; ++a)
+        if (!is_zero(by_velocity[a])) terms.push_back(tidy_(by_velocity[a]) * velocities[a]);
+      return sum(terms);
+    };
+    Rows A(l, Column(l + 1, zero_));
+    for (std::size_t i = 0; i < l; ++i) {
+      for (std::size_t j = i + 1; j < l; ++j) {
+        // What is simpler is differentiated.
+        const auto length = [&](std::size_t k) {
+          std::size_t all = 0;
+          for (const auto& [weight, e] : points)
+            if (!is_zero(e[i]) && !is_zero(e[j])) all += node_count(written_out(e[k], n_, rates_));
+          return all;
+        };
+        const bool forward = length(j) <= length(i);
+        A[i][j] = forward ? moved(i, j) : -moved(j, i);
+        A[j][i] = -A[i][j];
+      }
+      A[i][l] = moved(i, l);
+    }
+    return A;
+  }
+
+  const System& derived_;
+  CopiedMechanics c_;
+  Graph& g_;
+  PointValues at_;
+  Tidy tidy_;
+  Column q_, qd_;
+  std::size_t n_;
+  Expr zero_;
+  AdmissibleVelocities v_;
+  ShortEnergy energy_;
+  Column velocity_, used_;  // q' in used_: what is free, and names
+  Rows used_by_free_;
+  std::vector<std::pair<Expr, Linear>> points_;
+  std::vector<std::size_t> bounds_;          // of each weighted point's among them
+  std::pair<Column, Column> on_velocities_;  // q' and z', and what they are
+  Column rates_;                             // jets of coordinates n + k stand for these
+  std::vector<double> value_of_;
+  std::unordered_map<NodeId, std::size_t> series_;
+};
+
+}  // namespace
+
+std::optional<QuasiVelocities> quasi_velocities(const System& derived, const Mechanics& m, std::span<const Expr> others,
+                                                const std::function<double(const Node&)>& symbol) {
+  const auto of_first_order = [&](std::size_t r) { return m.order[r] == 1 && !m.model->constraints[r].by; };
+  if (!m.model->masses.empty() || !std::all_of(derived.constraints.begin(), derived.constraints.end(), of_first_order))
+    return std::nullopt;
+  return Writer(derived, m, others, symbol).run();
+}
+
+}  // namespace anholon

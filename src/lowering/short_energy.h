@@ -1,0 +1,31 @@
+// Velocities in which a quadratic form is a sum of squares: M = L D L^T on the graph, simple pivots first (theory:
+// quasi-velocities).
+#pragma once
+#include <functional>
+
+#include "lowering/velocity_algebra.h"
+#include "mechanics/elimination.h"
+#include "tape/point.h"
+
+namespace anholon {
+
+// T = 1/2 v^T M v = 1/2 sum inertia_i p_i^2, inertia constant, p_i = r_i (v_k + sum_j L_jk v_j), k the i-th pivot.
+class ShortEnergy {
+ public:
+  // `v`: symbols. What a varying root is called from then on: `named`. False where M is not positive or its elimination
+  // does not stay short.
+  bool diagonalize(Rows M, const Column& v, PointValues& at, Tidy& tidy, const std::function<Expr(Expr)>& named);
+
+  Rows v_by_p;    // v_k = sum_i v_by_p[k][i] p_i
+  Column p_by_v;  // p in v
+  Column inertia;
+  Column pivots;  // D
+  // v in p, one by the other; `named`: what each of them is called.
+  Column v_in(const Column& p, const std::function<Expr(Expr)>& named) const;
+
+ private:
+  std::vector<std::size_t> order_;
+  Rows above_;  // L_jk by j, in the order of pivots
+};
+
+}  // namespace anholon

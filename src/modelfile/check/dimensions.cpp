@@ -1,0 +1,293 @@
+#include "modelfile/check/dimensions.h"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <map>
+
+#include "modelfile/check/formula_dimensions.h"
+#include "modelfile/text/collect.h"
+
+namespace anholon {
+
+namespace {
+
+// A number, a blank and a letter somewhere, or a key 'unit'.
+bool may_have_units(const Item& item) {
+  if (item.key == "unit") return true;
+  for (const char* prose : {"title", "source", "doc"})
+    if (item.key == prose) return false;
+  if (item.kind == Item::Kind::string) {
+    const std::string& s = item.text();
+    for (std::size_t i = 0; i + 2 < s.size(); ++i)
+      if ((std::isdigit(static_cast<unsigned char>(s[i])) || s[i] == '.') &&
+          (s[i + 1] == ' ' || static_cast<unsigned char>(s[i + 1]) >= 0x80 || s[i + 1] == '\t'))
+        return true;
+  }
+  return std::any_of(item.items.begin(), item.items.end(), may_have_units);
+}
+
+// What each element of a model file says about dimensions.
+class Elements {
+ public:
+  Elements(const Item& root, const Scope& scope, const Model& model)
+      : root_(root), model_(model), formulas_(scope, model) {}
+
+  bool run() {
+    // A value from outside may have taken the place of the only one with a unit.
+    each("parameters", [&](const Item& i) {
+      if (i.is_formula()) formulas_.look_for_units(parse_formula(i.formula));
+    });
+    tables();  // the units of their knots are given, not found
+    formulas_.declarations(found_);
+    observer();
+    each("gravity", [&](const Item& i) {
+      if (i.key == "field") formulas_.in_field = true, expect(i, "m/s^2"), formulas_.in_field = false;
+    });
+    bodies();
+    forces();
+    each("potential", [&](const Item& i) { expect(i, "J"); });
+    each("dissipation", [&](const Item& i) { expect(i, "W"); });
+    states();
+    events();
+    each("output", [&](const Item& i) { output(i); });
+    list("constraint", [&](const Item& c) {
+      if (const Item* e = c.find("equation")) equation(*e);
+    });
+    initial();
+    each("monitor", [&](const Item& i) {
+      if (i.is_formula()) formulas_.of(i);
+    });
+    each("simulate", [&](const Item& i) {
+      if (i.key == "to" || i.key == "every") expect(i, "s");
+      if (i.key == "at")
+        for (const Item& t : i.items) expect(t, "s");
+    });
+    return formulas_.units_seen;
+  }
+
+  const std::vector<Diagnostic>& found() const { return found_.list(); }
+  FormulaDimensions& formulas() { return formulas_; }
+
+ private:
+  void guard(const std::function<void()>& f, Span place) { collect(found_, f, place); }
+
+  void each(const char* section, const std::function<void(const Item&)>& f) {
+    if (const Item* s = root_.find(section); s && s->kind == Item::Kind::table)
+      for (const Item& i : s->items) guard([&] { f(i); }, i.span);
+  }
+  void list(const char* name, const std::function<void(const Item&)>& f) {
+    if (const Item* s = root_.find(name); s && s->kind == Item::Kind::array)
+      for (const Item& i : s->items) guard([&] { f(i); }, i.span);
+  }
+
+  void expect(const Item& i, const DimensionForm& wanted) {
+    guard(
+        [&] {
+          if (i.is_formula() || i.kind == Item::Kind::array)
+            formulas_.expect(formulas_.term(i), wanted, i.is_formula() ? i.formula.whole() : i.span);
+        },
+        i.span);
+  }
+  void expect(const Item& i, const char* unit) { expect(i, formulas_.unit(unit)); }
+  void expect(const Item* i, const char* unit) {
+    if (i) expect(*i, unit);
+  }
+
+  void equation(const Item& i) {
+    if (i.kind != Item::Kind::string) return;
+    const std::vector<Syntax> sides = parse_equation(i.formula);
+    const Measured left = formulas_.term(sides[0]);
+    if (sides.size() == 2)
+      formulas_.alike(left, formulas_.term(sides[1]), i.formula.whole(), " on the left side, ", " on the right side");
+  }
+
+  void observer() {
+    each("observer", [&](const Item& i) {
+      if (i.key == "spin")
+        expect(i, "s^-1");
+      else if (i.key == "rotation")
+        formulas_.of(i);
+      else if (i.key == "origin_acceleration")
+        expect(i, "m/s^2");
+      else if (i.key == "origin_velocity" || i.key == "origin_velocity_inertial")
+        expect(i, "m/s");
+      else if (i.key == "origin_position_inertial")
+        expect(i, "m");
+    });
+  }
+
+  void bodies() {
+    for (const char* key : {"body", "particle"})
+      list(key, [&](const Item& b) {
+        expect(b.find("mass"), "kg");
+        expect(b.find("center"), "m");
+        expect(b.find("position"), "m");
+        expect(b.find("expelled_velocity"), "m/s");
+        expect(b.find("exit_point"), "m");
+        expect(b.find("angle"), "rad");
+        if (const Item* o = b.find("orientation")) guard([&] { formulas_.of(*o); }, o->span);
+        if (const Item* inertia = b.find("inertia")) moments(*inertia);
+        if (const Item* shape = b.find("shape"))
+          guard(
+              [&] {
+                const Syntax s = parse_formula(shape->formula);
+                for (const Syntax& a : s.args) formulas_.expect(formulas_.of(a), formulas_.unit("m"), a.span);
+              },
+              shape->span);
+        if (const Item* axes = b.find("axes"))
+          for (const Item& a : axes->items)
+            if (const Item *w = a.find("weight"), *v = a.find("vector"); w && v)
+              guard([&] { expect(*w, formulas_.unit("kg*m^2") / power(formulas_.of(*v).dimension, 2)); }, a.span);
+      });
+  }
+
+  void moments(const Item& inertia) {
+    if (inertia.kind != Item::Kind::array) return expect(inertia, "kg*m^2");
+    for (const Item& i : inertia.items) moments(i);
+  }
+
+  void forces() {
+    list("force", [&](const Item& f) {
+      expect(f.find("vector"), "N");
+      expect(f.find("torque"), "N*m");
+      expect(f.find("tension"), "N");
+      for (const char* place : {"on", "from"})
+        if (const Item* p = f.find(place); p && p->kind == Item::Kind::table) expect(p->find("at"), "m");
+      if (const Item* g = f.find("generalized"); g && g->kind == Item::Kind::table)
+        for (const Item& i : g->items) expect(i, formulas_.unit("J") / named(i.key));
+    });
+  }
+
+  void states() {
+    each("state", [&](const Item& s) {
+      const DimensionForm z = named(s.key);
+      if (const Item* rate = s.find("rate")) expect(*rate, z / formulas_.unit("s"));
+      if (const Item* initial = s.find("initial")) expect(*initial, z);
+    });
+    each("input", [&](const Item& i) { expect(i, named(i.key)); });
+  }
+
+  // The knots may have units, too.
+  void tables() {
+    list("table", [&](const Item& t) {
+      const Item* name = t.find("name");
+      if (!name) return;
+      const auto [x, y] = formulas_.table(normal_name(name->text()));
+      for (const auto& [key, dimension] : {std::pair{"x", x}, {"y", y}})
+        if (const Item* values = t.find(key))
+          for (const Item& v : values->items) expect(v, dimension);
+    });
+  }
+
+  void events() {
+    list("event", [&](const Item& e) {
+      if (const Item* when = e.find("when")) guard([&] { formulas_.of(*when); }, when->span);
+      if (const Item* set = e.find("set"))
+        for (const Item& i : set->items) {
+          std::string name = i.key;
+          int order = 0;
+          while (!name.empty() && name.back() == '\'') name.pop_back(), ++order;
+          expect(i, named(name) / power(formulas_.unit("s"), order));
+        }
+    });
+  }
+
+  void output(const Item& i) {
+    const Item* value = i.kind == Item::Kind::table ? i.find("value") : &i;
+    if (!value) return;
+    const Item* unit = i.kind == Item::Kind::table ? i.find("unit") : nullptr;
+    if (unit)
+      expect(*value, formulas_.given_unit(normal_name(unit->text())));
+    else
+      formulas_.term(*value);
+  }
+
+  DimensionForm named(const std::string& name) { return formulas_.named(name).dimension; }
+
+  // "x''" of [initial]: the dimension of the derivative.
+  void initial() {
+    const Item* section = root_.find("initial");
+    if (section) values(*section);
+    if (const Item* guess = section ? section->find("guess") : nullptr) values(*guess);
+  }
+
+  void value(const Item& i, std::string name, int order) {
+    while (!name.empty() && name.back() == '\'') name.pop_back(), ++order;
+    if (name.rfind("D(", 0) == 0 && name.find(',') != std::string::npos) {
+      order = std::atoi(name.c_str() + name.find(',') + 1);
+      name = name.substr(2, name.find(',') - 2);
+    }
+    const auto& names = model_.names.coordinates;
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      expect(i, named(name) / power(formulas_.unit("s"), order));
+  }
+
+  void values(const Item& table) {
+    for (const Item& i : table.items) {
+      if (i.key == "t")
+        expect(i, "s");
+      else if (i.key == "conditions")
+        for (const Item& c : i.items) guard([&] { equation(c); }, c.span);
+      else if (i.kind == Item::Kind::table)
+        for (const auto& [key, order] : {std::pair{"q", 0}, {"qdot", 1}, {"qddot", 2}, {"qdddot", 3}}) {
+          if (i.key == key)
+            for (const Item& v : i.items) value(v, v.key, order);
+        }
+      else
+        value(i, i.key, 0);
+    }
+  }
+
+  const Item& root_;
+  const Model& model_;
+  FormulaDimensions formulas_;
+  Diagnostics found_;
+};
+
+}  // namespace
+
+// A number without a unit among others that have one may be meant in theirs: "b = 18" beside "r = 8 cm".
+static void note_bare_numbers(const Scope& scope, Model& model) {
+  const auto& names = model.names.parameters;
+  std::map<std::string, std::string>
+      measured;  // the unit in SI: a parameter that is given with a unit, as it is written
+  std::vector<std::pair<std::size_t, std::string>> bare;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Scope::Declaration& d = scope.declarations().at(names[i]);
+    const std::string& si = model.parameter_units[i];
+    if (si.empty() || si == "1" || d.item) continue;
+    const Syntax s = parse_formula(d.formula);
+    const Syntax& number = s.op == Syntax::Op::negate ? s.args[0] : s;
+    if (number.op == Syntax::Op::quantity)
+      measured.emplace(si, names[i] + " = " + d.formula.text());
+    else if (!d.unit.empty())
+      measured.emplace(si, names[i] + " = " + d.formula.text() + " " + d.unit);
+    else if (number.op == Syntax::Op::number && parse_rational(number.text).value_or(0) != 0)
+      bare.push_back({i, d.formula.text()});
+  }
+  for (const auto& [i, text] : bare)
+    if (const auto other = measured.find(model.parameter_units[i]); other != measured.end())
+      model.notes.push_back("parameter " + names[i] + " = " + text + " has no unit and is " + text + " " +
+                            model.parameter_units[i] + ", beside " + other->second);
+}
+
+void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagnostics& diagnostics) {
+  if (!may_have_units(root)) return;
+  Elements elements(root, scope, model);
+  if (!elements.run()) return;
+  for (const Diagnostic& d : elements.found()) diagnostics.add(d);
+  const auto units = [&](const std::vector<std::string>& names) {
+    std::vector<std::string> list;
+    for (const std::string& name : names) {
+      const auto d = elements.formulas().known(name);
+      list.push_back(d ? print(*d) : "");
+    }
+    return list;
+  };
+  model.coordinate_units = units(model.names.coordinates);
+  model.parameter_units = units(model.names.parameters);
+  note_bare_numbers(scope, model);
+}
+
+}  // namespace anholon

@@ -1,0 +1,70 @@
+// The dimension of a formula, by its syntax tree.
+#pragma once
+#include "modelfile/check/unify.h"
+#include "modelfile/names/names.h"
+
+namespace anholon {
+
+// What a formula is, as far as dimensions go. The components of a vector are alike; the entries of a rotation are
+// numbers.
+struct Measured {
+  enum class Type : std::uint8_t { number, vector, rotation, body, other } type = Type::other;
+  DimensionForm dimension;
+};
+
+class FormulaDimensions {
+ public:
+  FormulaDimensions(const Scope& scope, const Model& model);
+
+  // All names that are declared; clashes inside one are reported once, where they are.
+  void declarations(Diagnostics& found);
+
+  void look_for_units(const Syntax& s);
+  Measured of(const Syntax& s);
+  Measured of(const Item& item);  // a formula, or an array of three
+  // As a whole side of an equation, or a term of a sum: an axis alone is 1 of any unit along it, as in vel(P) = T.x.
+  Measured term(const Syntax& s);
+  Measured term(const Item& item) { return item.is_formula() ? term(parse_formula(item.formula)) : of(item); }
+  Measured named(const std::string& name);
+  DimensionForm unit(const char* text) const;
+  // Throw Failure where it cannot be.
+  void expect(const Measured& m, const DimensionForm& wanted, Span place);
+  void alike(const Measured& a, const Measured& b, Span place, const char* between, const char* behind = "");
+  std::optional<Dimension> known(const std::string& name);
+
+  // x and y of a table.
+  std::pair<DimensionForm, DimensionForm> table(const std::string& name);
+  // A unit that stands beside a value.
+  DimensionForm given_unit(const std::string& text);
+
+  bool units_seen = false;  // in the file, not in --set
+  bool in_field = false;    // of [gravity], where 'here' is a place
+
+ private:
+  Measured declared(const std::string& name, const Scope::Declaration& d);
+  Measured measured(const Syntax& s);
+  Measured call(const Syntax& s);
+  Measured user_call(const Syntax& s, const Scope::Declaration& d);
+  Measured product(const Syntax& s);
+  Measured raised(const Syntax& s);
+  Measured number(DimensionForm d = {}) const { return {Measured::Type::number, std::move(d)}; }
+  Measured vector(DimensionForm d = {}) const { return {Measured::Type::vector, std::move(d)}; }
+  Measured anything() { return {Measured::Type::other, dimensions_.unknown()}; }
+  void seen(const DimensionForm& unit);
+  void pure(const Syntax& argument);
+  bool is_body(const std::string& name) const;
+
+  const Scope& scope_;
+  Dimensions dimensions_;
+  std::map<std::string, Measured> names_;
+  std::map<std::string, std::pair<DimensionForm, DimensionForm>> tables_;
+  std::map<std::string, Syntax> functions_;
+  std::vector<std::map<std::string, Measured>> arguments_;
+  Diagnostics* found_ = nullptr;
+  std::vector<std::string> open_;
+  std::size_t calls_ = 0;
+  int depth_ = 0;
+  bool in_override_ = false;
+};
+
+}  // namespace anholon

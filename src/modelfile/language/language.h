@@ -1,0 +1,81 @@
+// The language of model files as one table: its sections, their keys, what stands behind each, and what a reader of the
+// language wants to know of them. The reader takes the keys it knows from here, `anholon reference` prints it, and
+// editors get it as a JSON Schema, so that none of them can say anything else than the others.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formula/functions.h"
+
+namespace anholon {
+
+// What stands behind a key.
+enum class Content : std::uint8_t {
+  text,
+  name,
+  names,
+  formula,
+  vector,
+  rotation,
+  equation,
+  equations,
+  number,
+  numbers,
+  truth,
+  choice,
+  inertia,
+  place,
+  columns,
+  formulas,  // a table of formulas by name
+  values,    // the same, and tables of them by name
+  any,
+};
+
+struct LanguageKey {
+  const char* name;
+  Content content;
+  const char* meaning;                    // in Markdown, without full stop
+  std::vector<std::string> choices = {};  // of a choice
+};
+
+struct LanguageSection {
+  enum class Form : std::uint8_t {
+    top,       // the file itself
+    keys,      // [gravity]: these keys
+    elements,  // [[body]]: a list of tables with these keys
+    named,     // [define]: names of the author, all with the same content, or with a table of these keys
+    part,      // a table within a section, called NAME of that section and the key: "force.on"
+  };
+  const char* name;
+  Form form;
+  Content content;  // of each name of a `named` section
+  std::vector<LanguageKey> keys;
+  const char* page;  // Markdown: examples first, then what is decided where one could doubt
+};
+
+// In the order of the reference page.
+const std::vector<LanguageSection>& language();
+const LanguageSection& language_section(const std::string& name);
+
+// Keys of a section; of the file itself also the names of the sections.
+std::vector<std::string> known_keys(const LanguageSection& section);
+
+// Names that mean something everywhere and cannot be declared.
+struct ReservedName {
+  const char* name;
+  const char* meaning;
+};
+const std::vector<ReservedName>& reserved_names();
+bool is_reserved(const std::string& name);
+
+// Functions of formulas that need the model: velocities, angular velocities, the field of gravity.
+const std::vector<FunctionRow>& kinematic_functions();
+
+// The parts of the table, each in a file of its own.
+std::vector<LanguageSection> language_of_files();
+std::vector<LanguageSection> language_of_names();
+std::vector<LanguageSection> language_of_bodies();
+std::vector<LanguageSection> language_of_motion();
+
+}  // namespace anholon

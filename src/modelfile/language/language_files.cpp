@@ -1,0 +1,135 @@
+// The language: the file itself, and what makes several files or elements of one.
+#include "modelfile/language/language.h"
+
+namespace anholon {
+
+using enum Content;
+using Form = LanguageSection::Form;
+
+std::vector<LanguageSection> language_of_files() {
+  return {
+      {"",
+       Form::top,
+       any,
+       {{"title", text, "one line for reports"},
+        {"source", text, "where the system comes from"},
+        {"coordinates", names, "the order is that of q everywhere"},
+        {"dependent", names, "coordinates that forms without multipliers eliminate; without it they are chosen"},
+        {"base", text, "a file to start from"}},
+       R"md(```toml
+title = "Skate on ice"
+source = "Caratheodory 1933"
+coordinates = ["x", "y", "theta"]
+dependent = ["y"]
+body = [{name = "skate", mass = 2, inertia = 0.1, center = "x*ex + y*ey", angle = "theta"}]
+constraint = [{name = "edge", equation = "y'*cos(theta) = x'*sin(theta)"}]
+```
+
+- Only `coordinates` and one body or particle must be there. Sections and names may come in any order: a name is looked up
+  when it is needed, and a definition that needs itself is an error that prints the path.
+- TOML wants keys of the top of the file before the first `[section]`. `body = [{…}]` above it means the same as `[[body]]`,
+  `frame.B = "…"` the same as `B = "…"` under `[frame]`. A key with other characters than `A-Z a-z 0-9 _ -` stands in quotes:
+  `"x'" = 1`, `"P[0]" = "0"`.
+- A section stands once, and a list is written in one of both ways; that is TOML's rule:
+
+```toml
+coordinates = ["x"]
+body = [{name = "a", mass = 1, center = "x*ex"}]
+[[body]]
+name = "b"
+center = "0"
+```
+```text
+error: 'body' is a list in one place and [[body]] in another
+```
+
+- All errors of a file are reported at once. An unknown key is an error, never skipped:
+
+```toml
+coordinate = ["x"]
+```
+```text
+error: unknown key 'coordinate' in the model file; did you mean 'coordinates'?
+```
+
+`base` starts from another file, whose place is relative to this one. Tables are put together key by key, elements of lists by
+their `name`; those without a counterpart are added at the end; every other value (a list of names or numbers, too) is replaced.
+Nothing can be taken away. A base may have a base; `--case` may name the cases of all of them.
+
+```toml heavy.toml
+base = "model.toml"
+parameters.m = 5                   # of [parameters], the other names stay
+body.plate.inertia = "J + 1"       # of the body plate, the other keys stay
+```
+```console
+$ anholon check heavy.toml --quiet > heavy.txt
+```
+)md"},
+      {"index",
+       Form::named,
+       formula,
+       {},
+       R"md(```toml
+coordinates = ["s[i]"]
+particle = [{name = "bead[i]", mass = "mb[i]", position = "Q[i]"}]
+[index]
+n = 3                              # --set n=64
+i = "1..n"
+[parameters]
+"mb[i]" = [0.1, 0.2, 0.1]          # in order; one value alone is that of all
+[point]
+"Q[0]" = "0"
+"Q[i]" = "Q[i-1] + s[i]*ex"
+[define]
+total = "sum(i, mb[i])"
+[initial]
+"s[i]" = "0.1*i"
+conditions = ["s[i]' = 0"]         # one equation for each value of i
+```
+
+- An entry is an integer formula, or an inclusive range of two. A range whose end lies before its start is empty: its sum is 0,
+  its product 1.
+- A name whose bracket holds a letter with a range is a *family*: an element for each value, whose formulas see the letter as a
+  number. Brackets hold integer formulas: `Q[i-1]`, `c[2*i, j]`. This holds for keys of all sections, names of bodies,
+  constraints, forces, events and tables, and entries of `coordinates`.
+- With several letters a list gives the values in the order of the letters, the last one fastest. Its length must fit. In `[point]` a list of
+  three formulas is a vector; a list of such lists gives members.
+- A member written out (`"Q[0]"`) wins over the family, wherever it stands.
+- Of forces without `name`, `on` decides whether they are a family; several may act on one body.
+- `--set n=64` reads the file with another integer, `--set "mb[2]=5"` another parameter of one member. A range cannot be set.
+- The letters are names of their own and cannot be declared otherwise. `sum` and `prod` bind theirs.
+- A member that does not exist is an error with the range that does:
+
+```toml
+coordinates = ["s[i]"]
+particle = [{name = "bead[i]", mass = 1, position = "s[i+1]*ex"}]
+index = {i = "1..2"}
+```
+```text
+error: in bead[2]: there is no 's[3]'; s has 1..2
+```
+)md"},
+      {"case",
+       Form::named,
+       any,
+       {},
+       R"md(```toml
+[case.light]                       # --case light
+parameters.m = 1
+body.plate.inertia = "J/2"
+[[case.light.force]]               # a new element
+name = "push"
+on = "plate"
+vector = "ex"
+```
+
+- A case changes its own file in the way in which a file changes its base, but it changes only names that are there: a slip in
+  `parameters`, `define`, `point`, … is an error. New elements of lists stand in a list, as above.
+- `--case a --case b` applies both, one after the other; the later wins. `--set` comes last. Without `--case` none applies, but names in them
+  are not looked up.
+- An element of a family goes by the name in the file (`"trailer[i]"`); one member alone is written out in a new element.
+)md"},
+  };
+}
+
+}  // namespace anholon

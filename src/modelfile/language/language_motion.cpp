@@ -1,0 +1,258 @@
+// The language: unknowns beside coordinates, the start, what is recorded, how it is integrated.
+#include "modelfile/language/language.h"
+
+namespace anholon {
+
+using enum Content;
+using Form = LanguageSection::Form;
+
+std::vector<LanguageSection> language_of_motion() {
+  return {
+      {"state",
+       Form::named,
+       any,
+       {{"rate", formula, "its derivative by time, a formula of anything but rates of states"},
+        {"initial", number, "a number or a formula of parameters"}},
+       R"md(```toml
+[state]
+fuel     = {rate = "-0.1", initial = 2}
+integral = {rate = "theta - 0.2", initial = 0}     # of a controller
+[[force]]
+on = "plate"
+torque = "-(3*integral + theta)*ez"
+```
+```toml
+state.fuel = {rate = "-0.1", initial = 2}
+body.plate.mass = "m + fuel"       # the mass follows
+```
+
+- A state may be used wherever a coordinate may; its derivative `fuel'` is its rate.
+)md"},
+      {"mode",
+       Form::named,
+       number,
+       {},
+       R"md(```toml
+mode.stage = 1
+define.thrust = "choose(stage, 10, 4, 0)"
+[[event]]
+when = "t - 2"
+set = {stage = "stage + 1"}
+```
+
+- A number that only events change. `--set stage=2` is for parameters, not for modes: a case changes where a mode starts.
+)md"},
+      {"event",
+       Form::elements,
+       any,
+       {{"name", name, "for reports; `event1`, … without it"},
+        {"when", formula, "it happens where this formula passes zero"},
+        {"direction", choice, "only upwards or only downwards", {"up", "down"}},
+        {"set", formulas, "new values of modes, states, coordinates `x` and velocities `x'`"},
+        {"stop", truth, "`true`: the motion ends there"}},
+       R"md(```toml
+[[event]]
+name = "bounce"
+when = "y"
+direction = "down"
+set = {"y'" = "-0.8*y'"}
+
+[[event]]
+name = "top"                       # sets nothing: recorded only
+when = "y'"
+direction = "down"
+
+[[event]]
+name = "late"
+when = "t - 5"
+stop = true
+```
+
+- An event happens where the formula strictly changes its sign. It does not happen at the start, nor right after an event where its formula
+  is zero: the side on which the motion goes on counts. A formula that touches zero without changing sign does not fire.
+- Its time is located on the Taylor polynomial to round-off, whatever the tolerance. Events may hold `lambda.NAME`, `reaction(B)` and accelerations, also through `[define]`.
+- Several at one moment are taken in the order of the file. All formulas of one `set` use the values before this event; a later
+  event at the same moment sees what the earlier ones have set.
+- Then velocities (and, where positions were set, positions) are made consistent with the constraints by the least change in the mass norm; the change is reported.
+- A jump of a mass gives no impulse: velocities stay. `expelled_velocity` counts between events only.
+- What constraints determine cannot be set. An event whose sets bring its formula to zero again and again ends the motion with an outcome.
+
+```toml
+[[event]]
+when = "y"
+set = {"y''" = 1}
+```
+```text
+error: an event sets coordinates and velocities; 'y''' follows from them
+```
+)md"},
+      {"input",
+       Form::named,
+       formula,
+       {},
+       R"md(```toml
+[input]
+u = "-2*theta - theta'"            # any formula
+w = {}                             # kept by a constraint, by = "w"
+[[force]]
+on = "plate"
+torque = "(u + w)*ez"
+[[constraint]]
+equation = "theta'' = 0"
+by = "w"
+```
+
+- A control. Motions use its formula; `linearize` gives the derivatives by it, with the formula put in where it is used otherwise.
+- Where an input stands in a position or orientation its formula may hold t and states only.
+- Programs (`derive --format c` or `python`) take inputs as an argument, and their formulas where it is not given. An input that holds accelerations or
+  stands in a constraint of which derivatives are needed remains a formula there.
+- Inputs may use each other, not themselves. `{}` needs a constraint that is kept by it.
+)md"},
+      {"output",
+       Form::named,
+       any,
+       {{"value", vector, "a number or a vector, also of `lambda.NAME`"},
+        {"unit", text, "shown with it"},
+        {"doc", text, "what it is"},
+        {"conserved", truth, "`true`: its drift is part of the report"}},
+       R"md(```toml
+[output]
+speed = "norm(vel(P))"
+place = {value = "P", unit = "m", doc = "of the centre"}     # columns place.x, place.y, place.z
+turn = {value = "theta'", conserved = true}
+```
+)md"},
+      {"initial",
+       Form::named,
+       any,
+       {{"t", number, "0 without it"},
+        {"conditions", equations, "solved together with the constraints"},
+        {"guess", values, "values that are looked for nearby, 0 without"},
+        {"branch", formulas, "`{NAME = \"lambda > 0\"}`: the sign of a multiplier, where there are several solutions"},
+        {"q", values, "positions, where a coordinate has the name of a key"},
+        {"qdot", values, "velocities"},
+        {"qddot", values, "accelerations: with constraints of order 3 and more"},
+        {"qdddot", values, "third derivatives: with constraints of order 4 and more"},
+        {"lambda", values, "multipliers: with constraints of order 3 and more"},
+        {"lambdadot", values, "their rates: with constraints of order 4 and more"}},
+       R"md(```toml
+[initial]
+theta  = 0.3
+"x'"   = "2*R"                     # a formula of parameters
+conditions = ["dot(vel(P), B.y) = 0", "y = x^2 + 1"]
+guess  = {x = 1}
+```
+
+```toml
+title = "A constraint of order 3, nonlinear: accelerations are initial data, and one of two solutions is named"
+coordinates = ["x", "y"]
+particle = [{name = "p", mass = 2, position = "x*ex + y*ey"}]
+gravity.field = "-9.81*ey"
+constraint = [{name = "jerk", equation = "x'''^2 + y'''^2 = 9"}]
+[initial]
+t = 2
+q = {x = 1, y = 0}                 # the same as x = 1, y = 0
+qdot = {x = 0.5}
+qddot = {x = 1, y = -9}
+branch = {jerk = "lambda > 0"}
+```
+```toml
+title = "A constraint of order 4: a multiplier and its rate, or accelerations and third derivatives, are initial data"
+coordinates = ["x", "y"]
+particle = [{name = "p", mass = 2, position = "x*ex + y*ey"}]
+constraint = [{name = "snap", equation = "D(x, 4) + (1 + x'/3)*D(y, 4) = y"}]
+[initial]
+lambda = {snap = 0.4}
+lambdadot = {snap = 0.1}
+[case.other]
+initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
+```
+
+- Every coordinate and its derivatives may be a key: `theta`, `"theta'"`, `"D(theta, 3)"`. What is not given follows from the constraints, and what they leave free
+  is as near to the guess as the mass norm allows. `check` says of each value where it comes from.
+- A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and
+  `lambda.NAME`: they are solved with the equations of motion (`"theta'' = 0"`: a steady motion).
+- Values that miss a constraint by no more than 1e-8 of its scale are taken as rounded, and corrected by the least change; by more
+  it is an error that names the clash.
+- A guess also names one of several solutions: the nearest is taken. `--q` and `--qdot` take the place of values and of conditions that clash with them.
+- A vector condition is one for each component.
+
+```toml
+initial = {theta = "x + 1"}
+```
+```text
+error: an initial value is a number or a formula of parameters
+```
+)md"},
+      {"monitor",
+       Form::named,
+       formula,
+       {},
+       R"md(```toml
+[monitor]
+height = "P.y"
+reach  = "norm(P) - 2"
+```
+
+- Numbers to watch along the motion: columns, with their range in the report. May hold `lambda.NAME`, `reaction(B)` and derivatives of any order, also through `[define]`.
+)md"},
+      {"simulate",
+       Form::keys,
+       any,
+       {{"to", number, "end time, absolute; it may lie before the start"},
+        {"tolerance", number, "of each step, relative; 1e-12 without it"},
+        {"every", number, "rows at this interval; at the accepted steps without it"},
+        {"at", numbers, "rows at these times"},
+        {"form", text, "the form of the equations, see `anholon forms`"},
+        {"integrator", choice, "SUNDIALS' for a second opinion", {"taylor", "cvode", "ida"}}},
+       R"md(```toml
+[simulate]
+to = 10
+tolerance = 1e-13
+every = 0.1
+form = "routh"
+integrator = "taylor"
+```
+
+- Options on the command line win.
+)md"},
+      {"view",
+       Form::named,
+       any,
+       {{"camera", vector, "from where it is looked at"},
+        {"target", vector, "what lies in the middle at the start"},
+        {"up", vector, "the direction that is up on the page; `ez` without it"},
+        {"follow", name, "the body or point that stays in the middle"},
+        {"floor", any, "the height of a grid in the plane z = const; `false`: none"},
+        {"hide", names, "bodies and points that are not drawn"}},
+       R"md(```toml
+[view]
+camera = "5*ex + 3*ez"
+target = "P"
+up     = "ez"
+follow = "plate"
+floor  = -1
+hide   = ["plate"]
+path   = {trace = "P"}
+arm    = {line = ["0*ex", "P", "plate.center"], color = "#36c"}
+plate  = {shape = "box(2, 1, 1/10)"}                            # this is how the body is drawn
+mast   = {shape = "rod(2)", at = "P + ez", axes = "roty(pi/2)"}  # and this stands beside the bodies
+pull   = {vector = "vel(P)", at = "P"}
+```
+
+- The picture of reports. Bodies with a `shape` are drawn as such, others as points with their axes, points as dots; forces with a `tension` as lines.
+- Every other name is an element: `shape` (with `at` and `axes`; of a body it takes its own place), `line` (through a list of places), `trace` (the path of a
+  place), `vector` (with `at`); each may have a `color`. Without a trace particles and points leave one.
+- Nothing here has a part in the motion. `anholon report MODEL -o page.html` shows it.
+
+```toml
+view = {follow = "plat"}
+```
+```text
+error: there is no body or point 'plat'; did you mean 'plate'?
+```
+)md"},
+  };
+}
+
+}  // namespace anholon

@@ -1,0 +1,157 @@
+// The language: names for numbers, functions, vectors and rotations.
+#include "modelfile/language/language.h"
+
+namespace anholon {
+
+using enum Content;
+using Form = LanguageSection::Form;
+
+std::vector<LanguageSection> language_of_names() {
+  return {
+      {"parameters",
+       Form::named,
+       values,
+       {{"value", vector, "a number, a formula of other parameters, or a vector"},
+        {"unit", text, "its unit, as behind a number; a bare number after `--set` is one of this unit, too"},
+        {"doc", text, "what it is, for reports"}},
+       R"md(```toml
+[parameters]
+l     = 0.7                        # exactly 7/10
+k     = "2*m*g/l"                  # of other parameters, in any order
+angle = "30 deg"
+axis  = ["1", "0", "l"]            # a vector
+c     = {value = 3, unit = "N*s/m", doc = "of the damper"}
+```
+
+- A parameter is constant: what depends on t stands under `[functions]`, what depends on coordinates under `[define]`.
+- `--set l=0.8` gives another value, and what follows from `l` follows. Decimals are exact, `0.1` is 1/10.
+)md"},
+      {"functions",
+       Form::named,
+       formula,
+       {},
+       R"md(```toml
+[functions]
+mass     = "m - 0.05*t"            # used as mass or mass(t); mass' is its derivative
+"rho(h)" = "1.2*exp(-h/8500)"      # used with an argument: rho(y)
+"mix(a, b)" = "(a + b)/2"
+wind     = {}                      # unknown: derived and proved with, not integrated
+```
+
+- Functions of t do not depend on coordinates. Functions with arguments may hold anything: names that are not arguments mean what they mean
+  in the file. An argument hides a name of the file.
+- `f(2*t)` puts the argument in place of t; `f'` is the derivative by time. Of functions with arguments: `D(rho(y), 1)`.
+)md"},
+      {"define",
+       Form::named,
+       any,
+       {},
+       R"md(```toml
+[define]
+speed = "norm(vel(P))"
+v     = "vel(P)"                   # a vector
+nose  = ["x", "y + R", "0"]        # a vector, too
+turn  = "rotz(2*theta)"            # a rotation; with axes turn.x
+```
+
+- A name for a formula of any type. Equations print the name where the formula occurs as a whole.
+- One that holds `lambda.NAME` or `reaction(B)` is for monitors, outputs, rates, conditions and events; forces and constraints refuse it.
+)md"},
+      {"frame",
+       Form::named,
+       rotation,
+       {},
+       R"md(```toml
+[frame]
+lean  = "rotz(theta)*rotx(0.2)"    # about z, then about the new x
+wheel = "lean*roty(x/R)"
+[define]
+tip   = "lean(0, R, 0)"            # 0 lean.x + R lean.y + 0 lean.z
+```
+
+- A rotation from the observer's axes. `lean.x` is an axis, a vector.
+- Rotations are active and right-handed; products are read from left to right, each turn about the axes where they then are.
+)md"},
+      {"point",
+       Form::named,
+       vector,
+       {},
+       R"md(```toml
+[point]
+Q = "P + R*B.x"
+O = "0"                            # the origin
+S = ["1", "0", "x"]                # components along ex, ey, ez
+```
+
+- A position vector from the origin of the observer. Points and bodies may share a name: the body is meant where a body is wanted.
+)md"},
+      {"table",
+       Form::elements,
+       any,
+       {{"name", name, "it is called as a function: `Cd(mach)`"},
+        {"x", numbers, "the knots, ascending, at least two"},
+        {"y", numbers, "the values there"},
+        {"file", text,
+         "instead of x and y: a text file of columns, relative to the model file; lines with # are skipped"},
+        {"columns", columns, "two names of the heading, or numbers from 1; the first two without it"},
+        {"fit",
+         choice,
+         "between the knots: a step, straight, a cubic with one continuous derivative and no overshoot, a natural "
+         "cubic spline",
+         {"hold", "linear", "monotone", "spline"}},
+        {"outside",
+         choice,
+         "beyond the knots: the last value, the tangent, or the motion ends",
+         {"hold", "linear", "error"}}},
+       R"md(```toml
+table = [
+  {name = "Cd", x = [0, 0.8, 1.2, 3], y = [0.3, 0.3, 0.5, 0.3]},
+  {name = "lift", x = [0, 1, 2], y = [0, 1, 4], fit = "spline", outside = "error"},
+]
+force = [{on = "plate", vector = "-Cd(norm(vel(P)))*vel(P)"}]
+monitor = {l = "lift(1)"}
+```
+
+- `fit = "linear"` and `outside = "hold"` unless said otherwise. The step is that of the knot below. Values are exact.
+- Knots are located and stepped to. `linear` may be differentiated once, `monotone` twice, `spline` three times, the last derivative
+  a step; `hold` not at all. A formula that needs more is an error.
+- With `outside = "error"` the motion stops with an outcome where the argument leaves the knots, also at the start.
+
+```toml
+table = [{name = "a", x = [0, 1], y = [0, 1]}]
+monitor = {i = "D(a(x), 1)", j = "D(a(x), 2)"}
+```
+```text
+error: a derivative of order 2 of the table 'a', which its fit does not have
+```
+
+Columns of a file stand between commas, semicolons or blanks:
+
+```csv drag.csv
+mach,drag,lift
+0,0.3,0
+1,0.5,0.1
+```
+```toml
+[[table]]
+name = "drag"
+file = "drag.csv"
+columns = ["mach", "drag"]
+```
+)md"},
+      {"notation",
+       Form::named,
+       text,
+       {},
+       R"md(```toml
+[notation]
+theta = '\vartheta'
+m     = 'm_{\mathrm{p}}'
+```
+
+- How a name is written in LaTeX and MathML. `'…'` is a text of TOML without escapes. A name that the file does not have is an error.
+)md"},
+  };
+}
+
+}  // namespace anholon

@@ -1,0 +1,280 @@
+#include "modelfile/language/reference.h"
+
+#include "base/diagnostic.h"
+#include "formula/units.h"
+#include "modelfile/language/language.h"
+
+namespace anholon {
+
+namespace {
+
+using Form = LanguageSection::Form;
+
+constexpr const char* kStart = R"md(# The language of model files
+
+This page is printed by `anholon reference`, from the table that the reader of model files uses; `anholon reference event` prints one section.
+Every example on it is run by a test. Those that are no whole model complete this one:
+
+```toml model.toml
+coordinates = ["x", "y", "theta"]
+parameters = {m = 2, J = "1/2", R = 0.3, g = 9.81}
+frame.B = "rotz(theta)"
+point.P = "x*ex + y*ey"
+body = [{name = "plate", mass = "m", inertia = "J", center = "P", orientation = "B"}]
+```
+
+A model file is [TOML 1.0](https://toml.io) with formulas as strings. `anholon new pendulum -o mine.toml` writes one to start from, `anholon check
+mine.toml` says what is read, `anholon fmt mine.toml` formats it. Editors with a language server for TOML (Taplo, Even Better TOML)
+complete and check keys by [anholon.schema.json](anholon.schema.json), named in the first line of the file:
+
+```toml
+#:schema ./anholon.schema.json
+monitor = {height = "P.y"}
+```
+
+A path beside the model or a URL; `anholon reference --schema > anholon.schema.json` writes the file. The program takes the line for a comment.
+
+## Formulas
+
+```toml
+[define]
+kinetic  = "m/2*norm2(vel(P)) + J/2*theta'^2"
+sideways = "dot(vel(P), B.y)"      # a component along an axis
+along_x  = "vel(P).x"              # of the observer
+climb    = "D(y, 3)"               # the third derivative, y'''
+switch   = "piecewise(x > 1, 1, x > 0, x, 0)"
+```
+
+- A formula has a type: number, vector or rotation; a wrong type is an error with its place. A vector may be written as an array of three
+  formulas along ex, ey, ez. `0` is also the zero vector. A formula that is only a number needs no quotes.
+- `+ - * / ^`, in the order of mathematics: `-x^2` is −(x²), `2^3^2` is 2^(3^2), `a/b*c` is (a/b)·c. A product needs its `*`. `a*b` of two vectors is an
+  error: write `dot` or `cross`.
+- `'` is the total derivative by time of anything: a coordinate, a definition, a function, a vector. Derivatives of numbers and vectors
+  go up to order 20.
+- Numbers are exact: `0.1` is 1/10, `1e-3` is 1/1000. `1/2` is a formula: in quotes.
+- `x²`, `x³`, `·`, `×`, `−`, `≤`, `≥` are read. A Greek letter and its spelled name are one name: `θ` is `theta`, in keys, too (`"θ'" = 0.2`).
+- Names are letters, digits and `_`. A name before `(` is a function, elsewhere a value, so that a parameter may be called `D`. Values
+  share one set of names, bodies have another.
+- A text in three quotes may go over several lines and hold `# comments`.
+
+```toml
+define.a = "cross(vel(P), ex)*ey"
+```
+```text
+error: product of two vectors
+```
+```toml
+monitor.a = "2x"
+```
+```text
+error: an operator is missing before 'x'
+```
+
+**Kinks.** `abs`, `sign`, `min`, `max`, `piecewise`, `choose` and tables switch where their conditions change sign along the motion. The switch is
+located and stepped to; at it the branch is the one that the motion enters. Where the argument of `sqrt`, `norm`, `unit` or of a
+power is zero, at the start (a ball with quadratic drag falls from rest) or on the way, the motion goes on one-sided as well. Where it is open how (dry friction
+that holds, a thrust along a velocity that is zero) it stops, and the outcome names the formula. What is recorded at exactly that moment is the value there:
+`sign` is 0, `unit` has none (`nan`); accelerations are those right after it.
+
+**Conditions** `a > b`, `>=`, `<`, `<=` stand in `piecewise` only.
+
+)md";
+
+constexpr const char* kUnits = R"md(
+### Units
+
+```toml
+[parameters]
+height = "6371 km"
+mu     = "3.986e14 m^3/s^2"
+tilt   = "30 deg"
+push   = "2*(10 N + 3 kp)"
+```
+
+- A number, a blank, a unit: converted to SI exactly. Factors stand without blanks between them, `kg*m^2`, with whole powers; `/`
+  divides by the next factor only: `m/s/s`, `J/kg/K`.
+- Behind a number and a blank a unit is meant also where the file has that name: with a parameter `m`, `3 m` is a length and `3*m` three times
+  the parameter. A unit ends before a name that is none: `10 m/s*R` is a velocity times the parameter R; `(10 m/s)*m` keeps a parameter m apart.
+- `t` is a tonne only right after the number: `5 t`; elsewhere, as in `5 m/s*t`, it is the time.
+- A bare number fits any dimension, so that files without units are never asked. Where a file has units, all its formulas must fit together:
+  sums, both sides of equations, arguments of `sin`, and what forces and bodies are.
+- An angle is a pure number: `rad` is 1, `deg` is pi/180.
+- Prefixes `Y Z E P T G M k h da d c m u (or mu) n p f a z y` stand before units marked ⁺.
+
+```toml
+parameters.l = "3 m"
+define.s = "l + 2 s"
+```
+```text
+error: a length (m) plus a time (s)
+```
+
+)md";
+
+// What a formula means where one could doubt; checked by the test of the page.
+struct Decision {
+  const char* formula;
+  const char* value;
+  const char* why;
+};
+constexpr Decision kDecisions[] = {
+    {"-x^2", "-9", "a power before a minus"},
+    {"2^3^2", "512", "powers from the right"},
+    {"8/2*4", "16", "division and product from the left"},
+    {"1/2*x", "1.5", "likewise"},
+    {"2**3 + x²", "17", "other ways to write powers"},
+    {"ex×ey·ez", "1", "of vectors"},
+    {"piecewise(x > 3, 1, 2)", "2", "3 is not above 3"},
+    {"piecewise(x >= 3, 1, 2)", "1", ""},
+    {"choose(0, 7, 8)", "7", "below 1: the first"},
+    {"choose(1.4, 7, 8)", "7", "rounded"},
+    {"choose(9, 7, 8)", "8", "above their number: the last"},
+    {"sign(x - 3)", "0", "at rest there"},
+    {"atan2(0, -1)", "3.141592653589793", "pi, not -pi"},
+    {"norm(0*ex)", "0", ""},
+    {"3*m", "6", "m is a parameter"},
+    {"3 m", "3", "three metres"},
+    {"10 m/s*m", "10", "m is a unit within a unit"},
+    {"10 m/s*R", "3", "R is none"},
+    {"5 t", "5000", "tonnes"},
+    {"5 m/s*t", "5", "the time"},
+    {"2 min", "120", "minutes; `min(…)` is the function"},
+    {"30 deg", "0.5235987755982989", ""},
+};
+
+std::string cell(std::string text) {
+  std::string out;
+  for (char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
+  return out;
+}
+
+std::string rows(const std::vector<FunctionRow>& table) {
+  std::string out = "| | |\n|---|---|\n";
+  for (const FunctionRow& r : table) out += "| `" + cell(r.call) + "` | " + cell(r.meaning) + " |\n";
+  return out;
+}
+
+std::string formulas() {
+  std::string out = kStart;
+  out += "### Functions\n\n" + rows(function_table());
+  out += "\n### Decided\n\nIn the model above with x = 3, everything at rest, at t = 1:\n\n| formula | value | "
+         "|\n|---|---|---|\n";
+  for (const Decision& d : kDecisions) out += "| `" + cell(d.formula) + "` | " + d.value + " | " + d.why + " |\n";
+  out += "\n### Kinematics\n\n" + rows(kinematic_functions());
+  out += "\n### Reserved names\n\n| | |\n|---|---|\n";
+  for (const ReservedName& r : reserved_names()) out += std::string("| `") + r.name + "` | " + r.meaning + " |\n";
+  out += "\nLikewise the letters of `[index]`.\n";
+  out += kUnits;
+  out += "| | | |\n|---|---|---|\n";
+  for (const UnitRow& u : unit_table()) {
+    const std::string dimension = print(find_unit(u.name)->dimension);
+    out += std::string("| `") + u.name + "`" + (u.prefixes ? "⁺" : "") + " | " + u.meaning + " | " + u.factor +
+           (u.pi == 1 ? "·pi" : "") + (dimension == "1" ? "" : " " + dimension) + " |\n";
+  }
+  return out;
+}
+
+const char* describe(Content c) {
+  switch (c) {
+  case Content::text:
+    return "text";
+  case Content::name:
+    return "name";
+  case Content::names:
+    return "list of names";
+  case Content::formula:
+    return "formula";
+  case Content::vector:
+    return "vector";
+  case Content::rotation:
+    return "rotation";
+  case Content::equation:
+    return "equation";
+  case Content::equations:
+    return "list of equations";
+  case Content::number:
+    return "number";
+  case Content::numbers:
+    return "list of numbers";
+  case Content::truth:
+    return "true or false";
+  case Content::choice:
+    return "";
+  case Content::inertia:
+    return "number, list or matrix";
+  case Content::place:
+    return "name or table";
+  case Content::columns:
+    return "two names";
+  case Content::formulas:
+    return "table of formulas";
+  case Content::values:
+    return "table of values";
+  case Content::any:
+    return "";
+  }
+  return "";
+}
+
+std::string heading(const LanguageSection& s) {
+  const std::string name = s.name;
+  switch (s.form) {
+  case Form::top:
+    return "The file";
+  case Form::keys:
+    return "`[" + name + "]`";
+  case Form::elements:
+    return "`[[" + name + "]]`";
+  case Form::named:
+    return name == "case" ? "`[case.NAME]`" : "`[" + name + "]`";
+  case Form::part:
+    return "`{…}` of `" + name + "`";
+  }
+  return name;
+}
+
+std::string part(const LanguageSection& s) {
+  std::string out = std::string(s.form == Form::part ? "#### " : "## ") + heading(s) + "\n\n";
+  if (s.form == Form::named && s.keys.empty() && s.content != Content::any)
+    out += std::string("Entries: `NAME` = ") +
+           (std::string(s.name) == "index" ? "whole number or range" : describe(s.content)) + ".\n\n";
+  std::string page = s.page;
+  if (!s.keys.empty()) {
+    if (s.form == Form::named && std::string(s.name) != "initial")
+      out += "Either the value alone or a table with these keys:\n\n";
+    out += "| key | | |\n|---|---|---|\n";
+    for (const LanguageKey& k : s.keys) {
+      std::string kind = describe(k.content);
+      for (std::size_t i = 0; i < k.choices.size(); ++i) kind += (i ? ", " : "") + ("`\"" + k.choices[i] + "\"`");
+      out += std::string("| `") + k.name + "` | " + kind + " | " + cell(k.meaning) + " |\n";
+    }
+    if (!page.empty()) out += "\n";
+  }
+  return out + page;
+}
+
+}  // namespace
+
+std::string reference_page() {
+  std::string out = formulas();
+  for (const LanguageSection& s : language()) out += "\n" + part(s);
+  return out;
+}
+
+std::string reference_section(const std::string& name) {
+  std::vector<std::string> known = {"formulas"};
+  if (name == "formulas") return formulas();
+  for (const LanguageSection& s : language()) {
+    if (s.form != Form::part && s.form != Form::top) known.emplace_back(s.name);
+    if (name == s.name) return part(s);
+  }
+  std::string list;
+  for (const std::string& k : known) list += (list.empty() ? "there is " : ", ") + k;
+  const std::string near = did_you_mean(name, known);
+  throw Failure(Span{},
+                "there is no section '" + name.substr(0, 40) + "'" +
+                    (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                near.empty() ? list : "");
+}
+
+}  // namespace anholon

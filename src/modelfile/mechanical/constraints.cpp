@@ -1,0 +1,128 @@
+#include "modelfile/mechanical/constraints.h"
+
+#include <algorithm>
+
+#include "expr/normal.h"
+#include "formula/indices.h"
+#include "modelfile/mechanical/control.h"
+#include "modelfile/names/along.h"
+#include "modelfile/text/collect.h"
+#include "modelfile/text/keys.h"
+
+namespace anholon {
+
+// The highest order of derivative on which phi truly depends.
+int ConstraintReader::true_order(Expr& phi) const {
+  Graph& g = *model_.graph;
+  for (int k = jet_order(phi);; --k) {
+    if (k < 0) return k;
+    Column top;
+    for (NodeId id : symbols({&phi, 1}))
+      if (g.node(id).kind == Kind::jet && g.node(id).order == k) top.push_back({&g, id});
+    const Column d = gradient(phi, top);
+    const auto told = [](Expr e) { return is_number(e) && !is_zero(e); };  // without a proof
+    const bool depends = std::any_of(d.begin(), d.end(), told) ||
+                         std::any_of(d.rbegin(), d.rend(), [](Expr e) { return !proved_zero(e); });
+    if (depends) return k;
+    phi = substitute({&phi, 1}, [&](NodeId id) {
+      const Node& n = g.node(id);
+      // Any value will do, as phi does not depend on it; zero might stand in a denominator.
+      return n.kind == Kind::jet && n.order == k ? g.number(Rational(17, 13)) : Expr{};
+    })[0];
+  }
+}
+
+void ConstraintReader::add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place) {
+  phi = with_feedback(model_, phi);
+  const int order = true_order(phi);
+  if (order < 0) {
+    if (proved_zero(phi)) throw Failure(place, "this equation always holds: it constrains nothing");
+    if (const auto constant = expanded(phi); constant && is_number(*constant))
+      throw Failure(place, "this equation never holds: its sides differ by " +
+                               to_string(Rational(abs(number_value(*constant)))));
+    throw Failure(place, "no coordinate or derivative occurs in this equation",
+                  "a constraint relates coordinates and their derivatives");
+  }
+  if (model_.constraints.size() + model_.coordinates.size() >= kMostUnknowns)
+    throw Failure(place,
+                  "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
+  if (!names_.insert(name).second) throw Failure(place, "there are two constraints '" + name + "'");
+  model_.constraints.push_back({name, phi, order, equation, place});
+  model_.names.multipliers.push_back(name);
+}
+
+// What quaternions need to be rotations.
+std::vector<UnitNorm> ConstraintReader::norms_of_quaternions() {
+  std::vector<UnitNorm> norms;
+  collect(diagnostics_, [&] { norms = unit_norms(scope_, model_); });
+  for (const UnitNorm& n : norms)
+    collect(diagnostics_, [&] {
+      add_constraint(n.name, n.phi, n.equation, n.span);
+      model_.notes.push_back("constraint '" + n.name + "' is added: " + n.equation +
+                             ", without which quat(…) in line " + std::to_string(n.span.line) + " is no rotation");
+    });
+  return norms;
+}
+
+void ConstraintReader::read(const Item& root) {
+  const Item* list = root.find("constraint");
+  if (!list) return;
+  if (list->items.size() + model_.coordinates.size() > kMostUnknowns) {
+    diagnostics_.error(list->key_span, std::to_string(list->items.size()) + " constraints on " +
+                                           std::to_string(model_.coordinates.size()) + " coordinates; at most " +
+                                           std::to_string(kMostUnknowns) + " of both together are accepted");
+    return;
+  }
+  for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
+    check_keys(c, "a constraint", "constraint", diagnostics_);
+    const std::size_t first = model_.constraints.size();
+    const auto servo = [&] {
+      if (const Item* by = c.find("by")) keep_by(*by, first, scope_, model_);
+    };
+    const Item* equation = c.find("equation");
+    if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"x' = 0\"");
+    const Item* named = c.find("name");
+    if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");
+    const std::string name = named ? normal_name(named->text()) : "constraint" + std::to_string(k + 1);
+    if (!is_element_name(name)) throw Failure(named->span, "'" + name.substr(0, 40) + "' is not a name");
+    const std::vector<Syntax> sides = scope_.equation(*equation);
+    const std::string text = equation_text(equation->formula, sides);
+    Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
+    const Item* along = c.find("along");
+    const Span place = equation->formula.whole();
+    if (std::holds_alternative<Expr>(left) && std::holds_alternative<Expr>(right)) {
+      if (along) throw Failure(along->key_span, "'along' goes with an equation of vectors, this is one of numbers");
+      add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), text, place);
+      servo();
+      return;
+    }
+    const Vector difference = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
+    std::string dropped;
+    std::vector<std::pair<std::string, Expr>> kept;
+    int index = 0;
+    for (const Direction& d : directions(along, scope_)) {
+      const Expr phi = component(difference, d, index++);
+      if (proved_zero(phi))
+        dropped += (dropped.empty() ? "" : ", ") + name + "." + d.tag;
+      else
+        kept.push_back({name + "." + d.tag, phi});
+    }
+    if (kept.empty()) throw Failure(place, "this equation always holds: it constrains nothing");
+    if (!dropped.empty())
+      model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
+    for (const auto& [full, phi] : kept) add_constraint(full, phi, text, place);
+    servo();
+  });
+}
+
+Vector ConstraintReader::evaluate_vector_side(const Value& side, const Syntax& s) const {
+  const Value v = as_point(side, scope_, s.span);
+  if (const Vector* a = std::get_if<Vector>(&v)) return *a;
+  if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
+  throw Failure(s.span, std::string("one side of the equation is a vector, the other is ") + type_name(v),
+                v.index() == 3   ? body_hint(v, scope_)
+                : v.index() == 0 ? "0 is also the zero vector"
+                                 : "");
+}
+
+}  // namespace anholon

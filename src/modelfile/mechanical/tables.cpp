@@ -1,0 +1,174 @@
+#include "modelfile/mechanical/tables.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "modelfile/text/collect.h"
+#include "modelfile/text/keys.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr std::size_t kMostKnots = 10'000;
+constexpr std::uintmax_t kLargestFile = 16U << 20;
+
+// A row of a text file: fields between commas, semicolons or blanks.
+std::vector<std::string> fields(const std::string& line) {
+  std::vector<std::string> out;
+  const bool marked = line.find_first_of(",;") != std::string::npos;
+  std::string field;
+  const auto end = [&] {
+    const auto from = field.find_first_not_of(" \t\r\"");
+    const auto to = field.find_last_not_of(" \t\r\"");
+    if (from != std::string::npos)
+      out.push_back(field.substr(from, to - from + 1));
+    else if (marked)
+      out.push_back("");
+    field.clear();
+  };
+  for (char c : line) {
+    if (marked ? c == ',' || c == ';' : c == ' ' || c == '\t')
+      end();
+    else
+      field += c;
+  }
+  end();
+  return out;
+}
+
+class TableReader {
+ public:
+  TableReader(Scope& scope, Model& model, Diagnostics& diagnostics)
+      : scope_(scope), model_(model), diagnostics_(diagnostics) {}
+
+  void read(const Item& t) {
+    check_keys(t, "a table", "table", diagnostics_);
+    const Item* named = t.find("name");
+    if (!named || named->kind != Item::Kind::string) throw Failure(t.span, "a table has no name", "name = \"Cd\"");
+    Table table;
+    table.name = normal_name(named->text());
+    table.fit = choice<Fit>(t, "fit", {"hold", "linear", "monotone", "spline"}, Fit::linear);
+    table.outside = choice<Outside>(t, "outside", {"hold", "linear", "error"}, Outside::hold);
+    const Item *x = t.find("x"), *y = t.find("y"), *file = t.find("file");
+    if (file && (x || y))
+      throw Failure(file->span, "the table '" + table.name + "' has its values here and in a file",
+                    "leave out one of them");
+    if (file) {
+      from_file(*file, t.find("columns"), table);
+    } else {
+      if (!x || !y)
+        throw Failure(named->span, "the table '" + table.name + "' has no " + (x ? "y" : "x"),
+                      "x = [0, 1, 2], y = [0, 1, 4]");
+      table.x = numbers(*x);
+      table.y = numbers(*y);
+      if (table.x.size() != table.y.size())
+        throw Failure(y->span,
+                      std::to_string(table.y.size()) + " values for " + std::to_string(table.x.size()) + " knots");
+    }
+    const Span place = x ? x->span : file->span;
+    if (table.x.size() < 2) throw Failure(place, "a table has at least two knots");
+    if (table.x.size() > kMostKnots)
+      throw Failure(place, "a table of more than " + std::to_string(kMostKnots) + " knots");
+    for (std::size_t k = 1; k < table.x.size(); ++k)
+      if (!(table.x[k - 1] < table.x[k]))
+        throw Failure(x ? x->items[k].span : place,
+                      "the knots of a table ascend; the " + std::to_string(k + 1) + ". does not");
+    Scope::Declaration d;
+    d.role = Scope::Role::table;
+    d.span = named->formula.whole();
+    d.index = scope_.add_table(std::move(table));
+    scope_.declare(normal_name(named->text()), d);
+  }
+
+ private:
+  template <class Choice>
+  Choice choice(const Item& t, const char* key, const std::vector<std::string>& names, Choice usual) {
+    const Item* i = t.find(key);
+    if (!i) return usual;
+    const std::string text = i->kind == Item::Kind::string ? i->text() : std::string();
+    const auto it = std::find(names.begin(), names.end(), text);
+    if (it != names.end()) return static_cast<Choice>(it - names.begin());
+    std::string list;
+    for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
+    throw Failure(i->span, std::string("'") + key + "' is one of " + list);
+  }
+
+  Rational number(const Item& i) {
+    const Expr e = scope_.number(i);
+    if (!is_number(e)) throw Failure(i.span, "the entries of a table are plain numbers");
+    return number_value(e);
+  }
+
+  std::vector<Rational> numbers(const Item& list) {
+    if (list.kind != Item::Kind::array) throw Failure(list.span, "x and y of a table are lists of numbers");
+    std::vector<Rational> out;
+    for (const Item& i : list.items) out.push_back(number(i));
+    return out;
+  }
+
+  void from_file(const Item& file, const Item* columns, Table& table) {
+    if (file.kind != Item::Kind::string) throw Failure(file.span, "a file is a name in quotes");
+    const std::filesystem::path path = std::filesystem::path(model_.source_text.name).parent_path() / file.text();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+      throw Failure(file.span, "there is no file '" + path.string() + "'", "the name is relative to the model file");
+    if (std::filesystem::file_size(path, error) > kLargestFile)
+      throw Failure(file.span, "the file '" + path.string() + "' is larger than 16 MiB");
+    std::ifstream in(path);
+    std::vector<std::string> wanted = {"1", "2"};
+    if (columns) {
+      if (columns->kind != Item::Kind::array || columns->items.size() != 2)
+        throw Failure(columns->span, "columns are two names or numbers", "columns = [\"mach\", \"Cd\"]");
+      wanted = {columns->items[0].text(), columns->items[1].text()};
+    }
+    std::size_t at[2] = {0, 0}, number = 0;
+    bool placed = false;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      const std::vector<std::string> row = fields(line);
+      if (row.empty() || row[0].rfind('#', 0) == 0) continue;
+      if (!placed) {
+        placed = true;
+        bool heading = false;
+        for (int k = 0; k < 2; ++k) {
+          const auto it = std::find(row.begin(), row.end(), wanted[static_cast<std::size_t>(k)]);
+          const auto index = parse_rational(wanted[static_cast<std::size_t>(k)]);
+          if (it != row.end() && !index)
+            at[k] = static_cast<std::size_t>(it - row.begin()), heading = true;
+          else if (index && index->get_den() == 1 && *index >= 1 && *index <= 1000)
+            at[k] = index->get_num().get_ui() - 1;
+          else
+            throw Failure(columns ? columns->items[static_cast<std::size_t>(k)].span : file.span,
+                          "the file '" + path.string() + "' has no column '" + wanted[static_cast<std::size_t>(k)] +
+                              "'");
+        }
+        if (heading || !parse_rational(row[0])) continue;
+      }
+      for (int k = 0; k < 2; ++k) {
+        const auto v = at[k] < row.size() ? parse_rational(row[at[k]]) : std::nullopt;
+        if (!v)
+          throw Failure(file.span, "line " + std::to_string(number) + " of '" + path.string() +
+                                       "' has no number in column " + std::to_string(at[k] + 1));
+        (k == 0 ? table.x : table.y).push_back(*v);
+      }
+    }
+  }
+
+  Scope& scope_;
+  Model& model_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+void declare_tables(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
+  const Item* list = root.find("table");
+  if (!list) return;
+  TableReader reader(scope, model, diagnostics);
+  for_each_table(*list, "table", diagnostics, [&](const Item& t, std::size_t) { reader.read(t); });
+}
+
+}  // namespace anholon

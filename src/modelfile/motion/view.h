@@ -1,0 +1,10 @@
+// [view]: the picture of a model.
+#pragma once
+#include "modelfile/names/names.h"
+
+namespace anholon {
+
+// Reads the section, and takes over the named points. After bodies are known.
+void read_view(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
+
+}  // namespace anholon

@@ -1,0 +1,18 @@
+// The directions along which a vector equation is taken: the observer's axes, or those that `along` names.
+#pragma once
+#include "modelfile/names/names.h"
+
+namespace anholon {
+
+struct Direction {
+  std::string tag;             // "x", "y", "z" of axes, "1", "2", … of a list
+  std::optional<Vector> axis;  // none: the observer's own, whose component stands in the vector itself
+};
+
+// along = "frame" (a frame, a body, or a formula of a rotation) or along = ["v1", "v2"]; without it ex, ey, ez. Throws
+// Failure.
+std::vector<Direction> directions(const Item* along, Scope& scope);
+
+Expr component(const Vector& v, const Direction& d, int index);
+
+}  // namespace anholon

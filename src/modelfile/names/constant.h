@@ -1,0 +1,22 @@
+// A constant on a command line: "0.25", "1/3", "pi/2", "8 cm", "30 deg".
+#pragma once
+#include <optional>
+#include <string>
+
+#include "formula/units.h"
+#include "model/model.h"
+
+namespace anholon {
+
+struct Constant {
+  Rational value;                      // in SI units; where pi or a root is in it, to 60 digits
+  std::optional<Dimension> dimension;  // of a number with a unit
+};
+
+// Throws Failure, with the place in the text as column of line 1.
+Constant read_constant(const std::string& text);
+
+// The value of an expression of parameters and numbers; nullopt if it depends on anything else.
+std::optional<double> constant_value(const Model& model, Expr e);
+
+}  // namespace anholon

@@ -1,0 +1,85 @@
+// Multipliers and reactions in formulas, and in the definitions that such formulas use.
+#include <algorithm>
+
+#include "model/loads.h"
+#include "modelfile/names/names.h"
+
+namespace anholon {
+
+std::string multiplier_path(const Syntax& s) {
+  const Syntax& object = s.args[0];
+  if (object.op == Syntax::Op::name) return object.text == "lambda" ? s.text : "";
+  if (object.op != Syntax::Op::member) return "";
+  const std::string inner = multiplier_path(object);
+  return inner.empty() ? "" : inner + "." + s.text;
+}
+
+Value Scope::multiplier(const std::string& path, Span use) {
+  const std::vector<std::string>& names = model_.names.multipliers;
+  if (const auto it = std::find(names.begin(), names.end(), path); it != names.end())
+    return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
+  for (const std::string& n : names)
+    if (n.rfind(path + ".", 0) == 0) return InertialName{};  // of a vector equation: a component follows
+  const std::string near = did_you_mean(path, names);
+  throw Failure(use, "there is no constraint '" + path + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+bool is_reaction(const std::string& function) { return function == "reaction" || function == "reaction_torque"; }
+
+// reaction(B), reaction_torque(B): by Newton's law, from the accelerations.
+Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
+  if (multipliers_ == 0)
+    throw Failure(call.span,
+                  "a reaction has no meaning here: it follows from the equations of which this formula is a part",
+                  kWhereMultipliers);
+  const Load r = reaction(model_, body);
+  return call.text == "reaction" ? r.force : r.torque;
+}
+
+// A look at the texts spares most files the search below.
+bool Scope::speaks_of_multipliers() {
+  if (!speaks_of_multipliers_)
+    speaks_of_multipliers_ = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
+      const std::string& text = named.second.formula.text();
+      return text.find("lambda") != std::string::npos || text.find("λ") != std::string::npos ||
+             text.find("reaction") != std::string::npos;
+    });
+  return *speaks_of_multipliers_;
+}
+
+// Does a definition hold a multiplier or a reaction, itself or through others?
+bool Scope::holds_multiplier(const std::string& name) {
+  if (!speaks_of_multipliers()) return false;
+  if (const auto known = holds_multiplier_.find(name); known != holds_multiplier_.end()) return known->second;
+  std::set<std::string> seen = {name};
+  std::vector<std::string> open = {name};
+  bool found = false;
+  const auto meet = [&](const std::string& n) {
+    if (declarations_.count(n) && seen.insert(n).second) open.push_back(n);
+  };
+  while (!open.empty() && !found) {
+    const Declaration& d = declarations_.at(open.back());
+    open.pop_back();
+    if (d.role == Role::parameter || d.role == Role::table || d.formula.text().empty()) continue;
+    std::vector<Syntax> trees;
+    try {
+      trees.push_back(parse_formula(d.formula));
+    } catch (const Failure&) {
+      continue;  // reported where it is evaluated
+    }
+    while (!trees.empty() && !found) {
+      const Syntax s = std::move(trees.back());
+      trees.pop_back();
+      if (s.op == Syntax::Op::name) found = s.text == "lambda", meet(s.text);
+      if (s.op == Syntax::Op::call) found = is_reaction(s.text) && !declarations_.count(s.text), meet(s.text);
+      trees.insert(trees.end(), s.args.begin(), s.args.end());
+    }
+  }
+  if (found)
+    holds_multiplier_[name] = true;
+  else
+    for (const std::string& n : seen) holds_multiplier_[n] = false;
+  return found;
+}
+
+}  // namespace anholon

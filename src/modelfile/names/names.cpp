@@ -1,0 +1,511 @@
+#include "modelfile/names/names.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "formula/habits.h"
+#include "formula/indices.h"
+#include "formula/units.h"
+#include "modelfile/language/language.h"
+
+namespace anholon {
+
+// Definitions within each other in one go (a matter of the stack); what is deeper waits for its parts
+// (from_the_ground).
+static constexpr std::size_t kDeepest = 200;
+
+void Scope::check_name(const std::string& name, Span span) const {
+  if (!is_element_name(name))
+    throw Failure(span, "'" + name.substr(0, 40) + "' is not a name",
+                  "letters, digits and _, not starting with a digit");
+  if (is_reserved(name)) throw Failure(span, "the name '" + name + "' is reserved");
+  if (letters_.count(name.substr(0, name.find('['))))
+    throw Failure(span, "the name '" + name + "' is reserved: it is an index");
+}
+
+void Scope::declare(const std::string& name, Declaration d) {
+  check_name(name, d.span);
+  for (const std::string& a : d.arguments)
+    if (letters_.count(a)) throw Failure(d.span, "the argument '" + a + "' is an index");
+  d.place = declarations_.size();
+  const auto [it, fresh] = declarations_.emplace(name, d);
+  if (!fresh)
+    throw Failure(d.span, "'" + name + "' is already declared in " + line_of(it->second.span, model_.source_text));
+}
+
+void Scope::declare_body(const std::string& name, Span span) {
+  parts_.emplace_back();
+  body_names_.push_back(name);
+  body_spans_.push_back(span);
+  check_name(name, span);
+  const auto [it, fresh] = bodies_.emplace(name, body_names_.size() - 1);
+  if (!fresh)
+    throw Failure(span, "a body '" + name + "' is already declared in " +
+                            line_of(body_spans_[it->second], model_.source_text));
+}
+
+std::size_t Scope::add_table(Table table) {
+  TableFunction function(*model_.graph, table);
+  tables_.push_back({std::move(table), std::move(function)});
+  return tables_.size() - 1;
+}
+
+void Scope::set_gravity(const Item& field) { gravity_ = &field; }
+
+std::size_t Scope::body(const std::string& name, Span span) const {
+  if (const std::size_t* found = find_body(name)) return *found;
+  if (const std::string members = members_known(name, body_names_); !members.empty())
+    throw Failure(span, "there is no body or particle '" + name + "'" + members);
+  const std::string near = did_you_mean(name, body_names_);
+  throw Failure(span,
+                "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+const std::size_t* Scope::find_body(const std::string& name) const {
+  const auto it = bodies_.find(name);
+  return it == bodies_.end() ? nullptr : &it->second;
+}
+
+void Scope::unknown(const std::string& name, Span span) const {
+  // Where so much is unknown a guess at each name helps nobody, and takes long.
+  constexpr std::size_t kMostGuesses = 100;
+  if (failures.size() > kMostGuesses) throw Failure(span, "unknown name '" + name.substr(0, 60) + "'");
+  std::vector<std::string> known;
+  for (const ReservedName& r : reserved_names()) known.emplace_back(r.name);
+  for (const auto& [n, d] : declarations_) known.push_back(n);
+  known.insert(known.end(), body_names_.begin(), body_names_.end());
+  const bool member = name.find('[') != std::string::npos;
+  if (const std::string members = members_known(member ? name : name + "[", known); !members.empty())
+    throw Failure(span,
+                  member ? "there is no '" + name + "'" + members : "'" + name + "' is a family, not a name" + members);
+  const auto varies = [&](const std::string& n) {
+    const auto it = declarations_.find(n);
+    return it != declarations_.end() &&
+           (it->second.role == Role::coordinate || it->second.role == Role::state || it->second.role == Role::control);
+  };
+  if (const std::string habit = habit_of_name(name, varies); !habit.empty())
+    throw Failure(span, "unknown name '" + name.substr(0, 60) + "'", habit);
+  const std::string near = did_you_mean(name, known);
+  throw Failure(span,
+                "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                near.empty() ? "give it a value under [parameters] or [define]" : "");
+}
+
+// ---- evaluation ------------------------------------------------------------------------------
+
+Expr Scope::number(const Item& item) {
+  if (!item.is_formula()) throw Failure(item.span, "a number or a formula is expected here");
+  return evaluate_number(parse_formula(item.formula), *this);
+}
+
+Value Scope::evaluate_value(const Item& item) {
+  if (item.kind == Item::Kind::array) return vector(item);
+  if (!item.is_formula()) throw Failure(item.span, "a number or a formula is expected here");
+  return evaluate(parse_formula(item.formula), *this);
+}
+
+Vector Scope::vector(const Item& item) {
+  if (item.kind == Item::Kind::array) {
+    if (item.items.size() != 3)
+      throw Failure(item.span, "a vector has three components, " + std::to_string(item.items.size()) + " are given",
+                    item.items.size() == 2 ? "in the plane the third is 0" : "");
+    return {number(item.items[0]), number(item.items[1]), number(item.items[2])};
+  }
+  if (!item.is_formula()) throw Failure(item.span, "a vector is expected: [\"…\", \"…\", \"…\"] or a formula");
+  return evaluate_vector(parse_formula(item.formula), *this);
+}
+
+Rotation Scope::rotation(const Item& item) {
+  if (item.kind != Item::Kind::string)
+    throw Failure(item.span, "a rotation is expected", "a formula such as \"rotz(theta)\"");
+  return evaluate_rotation(parse_formula(item.formula), *this);
+}
+
+std::vector<Syntax> Scope::equation(const Item& item) {
+  if (item.kind != Item::Kind::string)
+    throw Failure(item.span, "an equation is expected", "a string such as \"x' = 0\"");
+  std::vector<Syntax> sides = parse_equation(item.formula);
+  if (sides.size() != 2)
+    throw Failure(item.formula.whole(), "an equation needs '='", "write \"" + item.text().substr(0, 60) + " = 0\"");
+  return sides;
+}
+
+bool has_unit(const Syntax& s) {
+  return s.op == Syntax::Op::quantity || std::any_of(s.args.begin(), s.args.end(), has_unit);
+}
+
+// {value = 2, unit = "km"} is 2 km; a bare number from outside has this unit, too, one with a unit its own.
+Value Scope::in_its_unit(Value v, const Declaration& d) {
+  if (d.unit.empty()) return v;
+  const bool own = d.item ? std::any_of(d.item->items.begin(), d.item->items.end(),
+                                        [](const Item& i) { return has_unit(parse_formula(i.formula)); })
+                          : has_unit(parse_formula(d.formula));
+  if (own && !d.override.empty()) return v;
+  if (own)
+    throw Failure(d.item ? d.item->span : d.formula.whole(), "the unit is given twice: with the value and by 'unit'");
+  Graph& g = *model_.graph;
+  const Unit unit = read_unit(d.unit).value_or(Unit{});
+  const Expr factor = unit.factor * pow(g.pi(), unit.pi);
+  if (const Expr* e = std::get_if<Expr>(&v)) return *e * factor;
+  if (const Vector* a = std::get_if<Vector>(&v)) return factor * *a;
+  return v;
+}
+
+Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
+  Graph& g = *model_.graph;
+  switch (d.role) {
+  case Role::state:
+    return g.state(static_cast<std::uint32_t>(d.index), 0);
+  case Role::control:
+    return g.control(static_cast<std::uint32_t>(d.index), 0);
+  case Role::table:
+    return InertialName{};  // means something with an argument only
+  case Role::coordinate:
+    return g.jet(static_cast<std::uint32_t>(d.index), 0);
+  case Role::function:
+    if (d.symbolic) return g.given(static_cast<std::uint32_t>(d.index), 0);
+    [[fallthrough]];
+  case Role::define:
+  case Role::parameter: {
+    Value v = in_its_unit(d.item ? Value(vector(*d.item)) : evaluate(parse_formula(d.formula), *this), d);
+    if (d.role != Role::parameter) {
+      if (Expr* e = std::get_if<Expr>(&v)) {
+        const Kind k = g.node(e->id).kind;
+        if (k == Kind::sum || k == Kind::product || k == Kind::function || k == Kind::atan2)
+          model_.names.defined.emplace(e->id, name);
+      }
+    }
+    if (d.role == Role::define) return v;
+    if (d.role == Role::function) {
+      Expr* e = std::get_if<Expr>(&v);
+      if (e && jet_order(*e) >= 0)
+        throw Failure(d.span, "the given function '" + name + "' depends on a coordinate",
+                      "functions of t stand under [functions], formulas with coordinates under [define]");
+      return v;
+    }
+    const auto check = [&](Expr e) {
+      for (NodeId id : symbols({&e, 1}))
+        if (g.node(id).kind != Kind::parameter)
+          throw Failure(d.span, "the parameter '" + name + "' is not constant",
+                        "functions of t stand under [functions], formulas with coordinates under [define]");
+    };
+    if (Expr* e = std::get_if<Expr>(&v)) {
+      check(*e);
+      model_.parameters[d.index].value = *e;
+      return g.parameter(static_cast<std::uint32_t>(d.index));
+    }
+    if (Vector* a = std::get_if<Vector>(&v)) {
+      for (int i = 0; i < 3; ++i) check((*a)[i]);
+      return v;
+    }
+    throw Failure(d.span, std::string("a parameter is a number or a vector, this is ") + type_name(v));
+  }
+  case Role::frame:
+    return evaluate_rotation(parse_formula(d.formula), *this);
+  case Role::point:
+    return d.item ? vector(*d.item) : evaluate_vector(parse_formula(d.formula), *this);
+  }
+  return InertialName{};
+}
+
+namespace {
+// Marks something as being evaluated, whatever way its evaluation ends.
+class Opened {
+ public:
+  Opened(bool& flag, std::size_t& depth) : flag_(flag), depth_(depth) { flag_ = true, ++depth_; }
+  ~Opened() { flag_ = false, --depth_; }
+  Opened(const Opened&) = delete;
+  Opened& operator=(const Opened&) = delete;
+
+ private:
+  bool& flag_;
+  std::size_t& depth_;
+};
+}  // namespace
+
+// Asks again and again, each time for what was too deep before, until the first question is answered.
+void Scope::from_the_ground(const std::function<void()>& ask) {
+  std::vector<TooDeep> waiting{{"", nullptr, {}, ask}};
+  while (!waiting.empty()) {
+    try {
+      waiting.back().ask();
+      waiting.pop_back();
+    } catch (const TooDeep& deep) {
+      const auto again =
+          std::find_if(waiting.begin(), waiting.end(), [&](const TooDeep& w) { return w.name == deep.name; });
+      if (again != waiting.end()) {
+        std::string path;
+        for (auto it = again; it != waiting.end(); ++it) path += it->name + " -> … -> ";
+        const Failure f(deep.use, "'" + deep.name + "' is defined through itself: " + path + deep.name);
+        if (!deep.declaration) throw f;
+        deep.declaration->state = Declaration::State::failed;
+        failures.push_back(f.diagnostic);
+        throw silent_failure();
+      }
+      waiting.push_back(deep);
+    } catch (const Failure&) {
+      // A declaration has kept its failure, and who waits for it meets it.
+      if (waiting.size() == 1 || !waiting.back().declaration) throw;
+      waiting.pop_back();
+    }
+  }
+}
+
+const Value& Scope::resolve(const std::string& name, Declaration& d, Span use) {
+  if (d.state == Declaration::State::done) return d.value;
+  if (depth_ == 0)
+    from_the_ground([&] { settle(name, d, use); });
+  else
+    settle(name, d, use);
+  return d.value;
+}
+
+void Scope::settle(const std::string& name, Declaration& d, Span use) {
+  using State = Declaration::State;
+  if (d.state == State::done) return;
+  if (d.state == State::failed) throw silent_failure();
+  if (d.state == State::open) {
+    std::string path;
+    const auto from = std::find(open_.begin(), open_.end(), name);
+    for (auto it = from; it != open_.end(); ++it) path += *it + " -> ";
+    throw Failure(use, "'" + name + "' is defined through itself: " + path + name);
+  }
+  if (depth_ > kDeepest) throw TooDeep{name, &d, use, [this, name, &d, use] { settle(name, d, use); }};
+  d.state = State::open;
+  ++depth_;
+  open_.push_back(name);
+  // A definition means the same wherever it is used: not frozen, not inside a call.
+  const bool frozen = std::exchange(freeze_masses, false);
+  const auto arguments = std::exchange(arguments_, {});
+  const auto here = std::exchange(here_, std::nullopt);
+  const auto restore = [&] {
+    --depth_;
+    open_.pop_back();
+    freeze_masses = frozen;
+    arguments_ = arguments;
+    here_ = here;
+  };
+  try {
+    d.value = evaluate_declaration(name, d);
+    d.state = State::done;
+  } catch (const Failure& f) {
+    d.state = State::failed;
+    restore();
+    if (!is_silent(f.diagnostic)) {
+      failures.push_back(f.diagnostic);
+      if (name.find('[') != std::string::npos) failures.back().message = "in " + name + ": " + f.diagnostic.message;
+      if (!d.override.empty()) failures.back().message = d.override + ": " + f.diagnostic.message;
+    }
+    throw silent_failure();
+  } catch (const TooDeep&) {
+    d.state = State::fresh;
+    restore();
+    throw;
+  }
+  restore();
+}
+
+void Scope::resolve_all() {
+  // In the order of the file, members of a family in their order.
+  std::vector<std::pair<const std::string*, Declaration*>> order;
+  for (auto& [name, d] : declarations_) order.push_back({&name, &d});
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    const auto key = [](const Declaration& d) { return std::tuple(d.span.file, d.span.line, d.span.column, d.place); };
+    return key(*a.second) < key(*b.second);
+  });
+  for (const auto& [named, declared] : order) {
+    const std::string& name = *named;
+    Declaration& d = *declared;
+    try {
+      std::optional<Multipliers> allowed;
+      if (d.role == Role::define) allowed.emplace(*this);
+      if (d.arguments.empty())
+        resolve(name, d, d.span);
+      else if (!d.parsed)
+        parse_formula(d.formula);
+    } catch (const Failure& f) {
+      if (!is_silent(f.diagnostic)) failures.push_back(f.diagnostic);
+    }
+  }
+}
+
+Value Scope::name(const std::string& name, Span span) {
+  Graph& g = *model_.graph;
+  if (!arguments_.empty())
+    if (const auto it = arguments_.back().find(name); it != arguments_.back().end()) return it->second;
+  if (name == "t") return g.time();
+  if (name == "pi") return g.pi();
+  if (name == "ex" || name == "ey" || name == "ez") return identity_rotation(g)[name[1] - 'x'];
+  if (name == "inertial") return InertialName{};
+  if (name == "here") {
+    if (!here_) throw Failure(span, "'here' has a meaning only in the field of [gravity]");
+    return *here_;
+  }
+  if (name == "lambda") {
+    if (multipliers_ > 0) return InertialName{};  // means something with a member only
+    throw Failure(span,
+                  "a multiplier has no meaning here: it follows from the equations of which this formula is a part",
+                  kWhereMultipliers);
+  }
+  const auto it = declarations_.find(name);
+  if (it != declarations_.end()) {
+    if (it->second.role == Role::table || !it->second.arguments.empty())
+      throw Failure(span, "the function '" + name + "' is used without its arguments", name + "(…)");
+    if (multipliers_ == 0 && holds_multiplier(name))
+      throw Failure(
+          span,
+          "'" + name +
+              "' holds a multiplier or a reaction, which follow from the equations of which this formula is a part",
+          kWhereMultipliers);
+    const Value v = resolve(name, it->second, span);
+    if (freeze_masses)
+      if (const Expr* e = std::get_if<Expr>(&v))
+        for (std::size_t i = 0; i < model_.masses.size(); ++i)
+          if (model_.masses[i].value == *e) return g.mass(static_cast<std::uint32_t>(i));
+    return v;
+  }
+  if (const std::size_t* body = find_body(name)) return BodyName{*body};
+  unknown(name, span);
+}
+
+std::vector<std::string> Scope::functions() const {
+  std::vector<std::string> list;
+  for (const FunctionRow& f : kinematic_functions()) list.push_back(f.name);
+  for (const auto& [name, d] : declarations_)
+    if (d.role == Role::function || d.role == Role::frame || d.role == Role::table) list.push_back(name);
+  list.insert(list.end(), body_names_.begin(), body_names_.end());
+  return list;
+}
+
+Value Scope::member(const Value& object, const Syntax& s) {
+  const std::string& m = s.text;
+  const int axis = m.size() == 1 && m[0] >= 'x' && m[0] <= 'z' ? m[0] - 'x' : -1;
+  if (const Vector* v = std::get_if<Vector>(&object)) {
+    if (axis >= 0) return (*v)[axis];
+    const std::string habit = habit_of_member(s);
+    throw Failure(s.span, "a vector has the members x, y and z", habit);
+  }
+  if (const Rotation* r = std::get_if<Rotation>(&object)) {
+    if (axis >= 0) return (*r)[axis];
+    throw Failure(s.span, "a frame has the members x, y and z");
+  }
+  if (const BodyName* b = std::get_if<BodyName>(&object)) {
+    if (m == "center" || m == "position") return center(b->index, s.span);
+    if (axis >= 0 && parts_[b->index].particle) return center(b->index, s.span)[axis];
+    if (axis >= 0) return orientation(b->index, s.span)[axis];
+    throw Failure(s.span, parts_[b->index].particle ? "a particle has the members position, x, y and z"
+                                                    : "a body has the members center, x, y and z");
+  }
+  if (multipliers_ > 0 && object.index() == 4)
+    if (const std::string path = multiplier_path(s); !path.empty()) return multiplier(path, s.span);
+  throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'",
+                object.index() == 0 ? habit_of_member(s) : "");
+}
+
+// A particle is the point where it is. (Of a body that merely has no orientation the centre is meant less surely.)
+std::optional<Vector> Scope::point(const BodyName& body, Span use) {
+  return parts_[body.index].particle ? std::optional(center(body.index, use)) : std::nullopt;
+}
+
+std::optional<Rotation> Scope::frame(const BodyName& body, Span use) {
+  return has_orientation(body.index) ? std::optional(orientation(body.index, use)) : std::nullopt;
+}
+
+Vector Scope::center(std::size_t body, Span use) {
+  if (depth_ == 0)
+    from_the_ground([&] { settle_center(body, use); });
+  else
+    settle_center(body, use);
+  return *parts_[body].center_value;
+}
+
+// What fails once is reported once: whoever needs it afterwards fails in silence.
+static void keep_failure(bool& failed, const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Failure&) {
+    failed = true;
+    throw;
+  }
+}
+
+void Scope::settle_center(std::size_t body, Span use) {
+  BodyParts& p = parts_[body];
+  if (p.center_value) return;
+  if (!p.center || p.center_failed) throw silent_failure();
+  if (p.center_open) throw Failure(use, "the centre of '" + body_names_[body] + "' is defined through itself");
+  if (depth_ > kDeepest)
+    throw TooDeep{body_names_[body] + ".center", nullptr, use, [this, body, use] { settle_center(body, use); }};
+  const Opened opened(p.center_open, depth_);
+  keep_failure(p.center_failed, [&] { p.center_value = vector(*p.center); });
+}
+
+const Rotation& Scope::orientation(std::size_t body, Span use) {
+  if (depth_ == 0)
+    from_the_ground([&] { settle_orientation(body, use); });
+  else
+    settle_orientation(body, use);
+  return *parts_[body].orientation_value;
+}
+
+void Scope::settle_orientation(std::size_t body, Span use) {
+  BodyParts& p = parts_[body];
+  if (p.orientation_value) return;
+  if (p.orientation_failed) throw silent_failure();
+  if (!has_orientation(body))
+    throw Failure(use, "the body '" + body_names_[body] + "' has no orientation",
+                  "give it orientation = \"…\", or angle = \"…\" in the plane");
+  if (p.orientation_open)
+    throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
+  if (depth_ > kDeepest)
+    throw TooDeep{body_names_[body] + ".orientation", nullptr, use,
+                  [this, body, use] { settle_orientation(body, use); }};
+  const Opened opened(p.orientation_open, depth_);
+  keep_failure(p.orientation_failed,
+               [&] { p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle)); });
+}
+
+Vector Scope::gravity_at(const Vector& place, Span use) {
+  if (!gravity_) throw Failure(use, "there is no [gravity] field");
+  if (here_) throw Failure(use, "the field of [gravity] is defined through itself");
+  here_ = place;
+  const auto arguments = std::exchange(arguments_, {});
+  const auto restore = [&] { here_.reset(), arguments_ = arguments; };
+  try {
+    const Vector field = vector(*gravity_);
+    restore();
+    return field;
+  } catch (...) {
+    restore();
+    throw;
+  }
+}
+
+std::vector<Vector> Scope::gravity_gradient_at(const Vector& place, Span use) {
+  Graph& g = *model_.graph;
+  // The place stands as three symbols that no model has, so that the field can be differentiated by it.
+  constexpr std::uint32_t kPlace = 200'000;
+  const Column here = {g.quasi(kPlace, 0), g.quasi(kPlace + 1, 0), g.quasi(kPlace + 2, 0)};
+  const Vector field = gravity_at({here[0], here[1], here[2]}, use);
+  for (int i = 0; i < 3; ++i)
+    for (NodeId id : symbols({&field[i], 1}))
+      if (g.node(id).kind == Kind::quasi && g.node(id).order > 0)
+        throw Failure(gravity_->span, "the field depends on the velocity of 'here'",
+                      "a gradient is taken of a field of the place");
+  const Column rows[3] = {gradient(field.x, here), gradient(field.y, here), gradient(field.z, here)};
+  std::vector<Vector> by;
+  bool uniform = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Expr parts[] = {rows[0][k], rows[1][k], rows[2][k]};
+    const Column at = substitute(parts, [&](NodeId id) {
+      const Node& n = g.node(id);
+      return n.kind == Kind::quasi && n.index >= kPlace ? place[static_cast<int>(n.index - kPlace)] : Expr{};
+    });
+    by.push_back({at[0], at[1], at[2]});
+    uniform = uniform && is_zero(by.back());
+  }
+  if (uniform) by.clear();
+  return by;
+}
+
+}  // namespace anholon

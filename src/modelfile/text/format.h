@@ -1,0 +1,22 @@
+// The text of a model file in its usual layout. Order, comments and the text of every value stay the author's; blanks,
+// blank lines, the alignment of = and of comments, and the lines of lists are set.
+//
+//   key = value          consecutive lines have their = in one column, and their comments
+//   [a, b], {k = v}      on one line up to 120 characters; a list that the author broke, or that is wider, has one element on each
+//                        line, a list of numbers as many as fit. Blanks that align tables below each other stay.
+//   [section]            with an empty line before it and none after it
+#pragma once
+#include <string>
+
+#include "base/diagnostic.h"
+#include "modelfile/text/toml.h"
+
+namespace anholon {
+
+// Throws Failure where the text is not TOML, or where its layout could not be changed without changing what it says.
+std::string formatted(const SourceText& source);
+
+// Do both say the same, place and layout aside?
+bool same_content(const Item& a, const Item& b);
+
+}  // namespace anholon

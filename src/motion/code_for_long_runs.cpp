@@ -1,0 +1,73 @@
+#include "motion/code_for_long_runs.h"
+
+#include <mutex>
+#include <vector>
+
+namespace anholon {
+
+namespace {
+
+struct Left {
+  std::shared_ptr<std::atomic<bool>> done;
+  std::thread thread;
+};
+std::mutex left_lock;
+std::vector<Left>& left_behind() {
+  static auto* const list = new std::vector<Left>;  // outlives every destructor
+  return *list;
+}
+
+void wait_for_left_behind() {
+  std::vector<Left> list;
+  {
+    const std::lock_guard lock(left_lock);
+    list.swap(left_behind());
+  }
+  for (Left& l : list) l.thread.join();
+}
+
+// The compiler makes statics of its own as it goes, and exit() destroys the latest first: whatever waits among them
+// comes too late for a thread that still compiles. What belongs to the main thread is destroyed before all of them.
+struct WaitsAtTheEndOfMain {
+  ~WaitsAtTheEndOfMain() { wait_for_left_behind(); }
+  void arm() {}
+};
+thread_local WaitsAtTheEndOfMain waits;
+[[maybe_unused]] const bool armed = (waits.arm(), true);  // by the thread that initializes the program
+
+}  // namespace
+
+CodeForLongRuns::~CodeForLongRuns() { leave(); }
+
+void CodeForLongRuns::leave() {
+  if (!compilation_.thread.joinable()) return;
+  if (*compilation_.done) return compilation_.thread.join();
+  const std::lock_guard lock(left_lock);
+  std::erase_if(left_behind(), [](Left& l) { return *l.done && (l.thread.join(), true); });
+  left_behind().push_back({compilation_.done, std::move(compilation_.thread)});
+}
+
+void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, int lanes) {
+  // A compilation takes 0.1 to 2 s, on another core if there is one.
+  constexpr std::chrono::milliseconds kLong(400);
+  constexpr std::size_t kSometimes = 64;
+  if (!plan || compilation_.plan == plan || (lanes == 1 && ++asked_ % kSometimes != 0) ||
+      (compilation_.done && !*compilation_.done))
+    return;
+  if (std::chrono::steady_clock::now() - since_ < kLong) return;
+  leave();
+  const auto done = std::make_shared<std::atomic<bool>>(false);
+  compilation_ = {plan, done, std::thread([plan, lanes, done] {
+                    plan->compile(code_cache(), lanes);
+                    *done = true;
+                  })};
+}
+
+bool compiling_for_nobody() {
+  const std::lock_guard lock(left_lock);
+  for (const Left& l : left_behind())
+    if (!*l.done) return true;
+  return false;
+}
+
+}  // namespace anholon

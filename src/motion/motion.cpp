@@ -1,0 +1,337 @@
+#include "motion/motion.h"
+
+#include "kernel/kernel.h"
+
+namespace anholon {
+
+// Kernels, which only doubles have, know the slots of the tape as it is derived; others share what products have in
+// common.
+template <Number N>
+Motion<N>::Leg::Leg(const Motion& m, System of, Structure structured)
+    : system(std::move(of)), structure(std::move(structured)),
+      program(anholon::program(system, structure, m.with_events(), !std::same_as<N, double>)),
+      stepper(program, m.narrow_parameters_, m.parameters_, m.settings_),
+      point(program, m.parameters_, std::max(1, m.stages_)), present(program, m.parameters_, 1) {
+  stepper.watch(m.watched());
+}
+
+template <Number N>
+Motion<N>::Motion(const Scenario& s, const StepSettings& settings, std::vector<Expr> quadratures, int stages)
+    : s_(s), settings_(settings), quadratures_(std::move(quadratures)), stages_(stages),
+      parameters_(parameter_values<W>(*s.model)), narrow_parameters_(parameter_values<N>(*s.model)),
+      leg_(std::make_unique<Leg>(*this, s.system, s.structure)) {
+  begun_parameters_ = parameters_;
+  watch_pivots(s.elimination);
+}
+
+// Each number by another multiple of its round-off: changes that are alike could be such as the constraints take back.
+template <Number W>
+static void change_last_digits(std::vector<W>& state) {
+  constexpr int kMost = 5, kPeriod = 2 * kMost + 1, kStride = 7, kFirst = 3;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const int by = (static_cast<int>(i % kPeriod) * kStride + kFirst) % kPeriod - kMost;
+    state[i] += state[i] * unit_roundoff<W>() * W(by == 0 ? kMost : by);
+  }
+}
+
+template <Number N>
+Outcome Motion<N>::start(const StateChoice& choice) {
+  if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
+  if (other_digits_) change_last_digits(start_.state);
+  accelerate(*leg_);
+  Outcome o = leg_->stepper.start(start_.t, start_.state, start_.leading);
+  if (o.kind == OutcomeKind::not_a_number) o.message += " at t = " + number_text(to_double(start_.t), 12);
+  note_pivots();
+  return o;
+}
+
+// Pivots are chosen at the start of the whole motion, so that a run that goes on has the same.
+template <Number N>
+void Motion<N>::accelerate(Leg& leg) const {
+  if constexpr (std::same_as<N, double>) {
+    if (!settings_.kernel || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return;
+    std::vector<double> state;
+    for (const W& x : start_.state) state.push_back(to_double(x));
+    const double t = to_double(start_.t);
+    const auto derived =
+        KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, t, state);
+    leg.stepper.accelerate(derived);
+    if (!leg.stepper.accelerated()) return;
+    const std::vector<Expr> quadratures = with_events();
+    const std::vector<Representation> list =
+        representations({derived, leg.structure, quadratures, parameters_, t, state, s_.mechanics.get()}, effort_);
+    const Representation& best = settings_.multipliers ? cheapest_unmapped(list) : cheapest(list);
+    if (best.plan != derived) leg.stepper.accelerate(best.plan);
+    leg.plan = best.plan;
+    leg.unmapped_plan = cheapest_unmapped(list).plan;
+    leg.writing = best.writing;
+  } else {
+    (void)leg;
+  }
+}
+
+// The effort depends on the steps made alone, so that a run that goes on makes the same. Where coordinates are
+// eliminated anew on the way, no writing lasts long enough.
+template <Number N>
+void Motion<N>::write_anew() {
+  const WritingEffort effort = effort_after(leg_->stepper.steps());
+  if (effort == effort_ || pivots_ || !leg_->stepper.accelerated()) return;
+  effort_ = effort;
+  auto next = std::make_unique<Leg>(*this, leg_->system, leg_->structure);
+  accelerate(*next);
+  if (next->writing == leg_->writing || !next->stepper.take_over(leg_->stepper).ok()) return;
+  leg_ = std::move(next);
+  mark_ = {choices_.size(), chosen_};
+  begun_parameters_ = parameters_;
+}
+
+static bool can_go_on(OutcomeKind kind) {
+  return kind == OutcomeKind::singular || kind == OutcomeKind::step_collapse || kind == OutcomeKind::not_a_number ||
+         kind == OutcomeKind::no_convergence;
+}
+
+template <Number N>
+Outcome Motion<N>::step(const W& end) {
+  if (stepped_ && pivots_ && pivot_is_small(present())) eliminate_again();
+  if (stepped_) write_anew();
+  code_.step(leg_->plan);
+  const Mark before{choices_.size(), chosen_};
+  const std::size_t expansions = leg_->stepper.expansions();
+  Outcome o = leg_->stepper.step(end);
+  if (leg_->stepper.expansions() != expansions) mark_ = before, begun_parameters_ = parameters_;
+  // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
+  if (!o.ok() && pivots_ && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
+  stepped_ = true;
+  return o;
+}
+
+template <Number N>
+Outcome Motion<N>::at(const W& t) {
+  if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
+    o.message += " at t = " + number_text(to_double(t), 12);
+    return o;
+  }
+  return stages_ > 0 ? leg_->point.extend() : Outcome{};
+}
+
+// Keeps an eye on what the elimination divides by.
+template <Number N>
+void Motion<N>::watch_pivots(const Elimination& e) {
+  elimination_ = e;
+  pivots_.reset();
+  chosen_.clear();
+  if (!e.pivots().empty())
+    pivots_ =
+        std::make_unique<OutputTape<W>>(s_, put_masses(*s_.model, e.in_coordinates(e.on(e.pivots()))), parameters_);
+}
+
+template <Number N>
+bool Motion<N>::pivot_is_small(const Expansion<W>& at) {
+  constexpr double kSmall = 0.4;
+  if (!pivots_) return false;
+  pivots_->evaluate(at);
+  bool small = false;
+  const bool first = chosen_.empty();
+  for (std::size_t i = 0; i < elimination_.pivots().size(); ++i) {
+    const double v = std::abs(to_double((*pivots_)[i]));
+    if (first) chosen_.push_back(v);
+    small = small || v < kSmall * chosen_[i];
+  }
+  return small;
+}
+
+// What the pivots are where they were chosen.
+template <Number N>
+void Motion<N>::note_pivots() {
+  chosen_.clear();
+  if (pivots_) pivot_is_small(present());
+}
+
+// Where the motion has come to; what leads it is a guess.
+template <Number N>
+const Expansion<typename Motion<N>::W>& Motion<N>::present() {
+  leg_->present.load(leg_->stepper.time(), leg_->stepper.state(), leg_->stepper.leading());
+  return leg_->present;
+}
+
+template <Number N>
+InitialState<double> Motion<N>::here() {
+  InitialState<double> here;
+  const Expansion<W>& point = present();
+  here.t = to_double(point.time());
+  const auto level = [&](std::size_t k) {
+    std::vector<double> values;
+    for (std::size_t a = 0; a < s_.system.coordinates; ++a)
+      values.push_back(static_cast<int>(k) <= leg_->program.d[a] ? to_double(point.derivative(a, static_cast<int>(k)))
+                                                                 : 0.0);
+    return values;
+  };
+  here.q = level(0);
+  here.qd = level(1);
+  for (std::size_t k = 2; k < levels(); ++k) here.higher.push_back({level(k), {}});
+  for (std::size_t j = s_.system.mechanical(); j < s_.system.size(); ++j) {
+    here.states.push_back(to_double(point.derivative(j, 0)));
+    here.state_rates.push_back(to_double(point.derivative(j, 1)));
+  }
+  return here;
+}
+
+// The equations with the dependent coordinates that are best at a point; null if they and their pivots are the present
+// ones, or the equations cannot be made.
+template <Number N>
+std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialState<double>& here) {
+  const Model& model = *s_.model;
+  try {
+    std::vector<double> now;
+    for (const W& p : parameters_) now.push_back(to_double(p));
+    const auto at = std::make_shared<PointValues>(values_near(model, now, here));
+    const Elimination e(*s_.mechanics,
+                        choose_elimination(*s_.mechanics, s_.independent, s_.system.form->unknowns, {}, *at), at);
+    System system = implicit_system(s_.model, *s_.mechanics, *s_.system.form, s_.independent, e);
+    Structure structure;
+    ProbeHints hints;
+    hints.t = here.t;
+    hints.derivatives = {here.q, here.qd};
+    for (const Level<double>& k : here.higher) hints.derivatives.push_back(k.value);
+    hints.states = here.states;
+    if (!analyse(system, now, hints, structure).ok() || structure.d != leg_->structure.d) return nullptr;
+    drop_absent(system, structure);
+    const bool same = e.dependent == elimination_.dependent && e.pivots() == elimination_.pivots();
+    watch_pivots(e);
+    return same ? nullptr : std::make_unique<Leg>(*this, std::move(system), std::move(structure));
+  } catch (const Failure&) {
+    return nullptr;  // the present elimination goes on as far as it can
+  }
+}
+
+// Another choice of dependent coordinates where the motion has come to; false if there is none better.
+template <Number N>
+bool Motion<N>::eliminate_again() {
+  const Elimination before = elimination_;
+  choices_.push_back({here(), false});
+  auto next = eliminate_at(choices_.back().here);
+  if (next) accelerate(*next);
+  const bool taken = next && next->stepper.take_over(leg_->stepper).ok();
+  if (next && !taken) watch_pivots(before);
+  if (taken) {
+    leg_ = std::move(next);
+    choices_.back().taken = true;
+    ++eliminations_;
+  }
+  note_pivots();
+  if (taken) mark_ = {choices_.size(), chosen_};
+  return taken;
+}
+
+template <Number N>
+void Motion<N>::save(SavedRun& to) const {
+  const StepperState<N>& b = leg_->stepper.begun();
+  to.set_numbers<W>("t", {b.t});
+  to.set_numbers("state", b.state);
+  to.set_numbers("carry", b.carry);
+  to.set_numbers("leading", b.leading);
+  to.set_numbers("own", b.own);
+  to.set_numbers("own_leading", b.own_leading);
+  to.set_numbers("integrals", b.integrals);
+  to.set_numbers("integral_carry", b.integral_carry);
+  to.set_numbers<W>("stepper", {b.branch_step, b.worst_constraint, b.worst_equation, b.smallest_sigma_t, b.last_step});
+  to.set_numbers<N>("sigma", {b.first_sigma, b.smallest_sigma, b.sigma_before, b.least_health});
+  to.set_numbers("direction", b.direction);
+  to.set("counts", {std::to_string(b.steps), std::to_string(b.weakest), b.careful ? "1" : "0"});
+  std::vector<double> choices;
+  for (std::size_t i = 0; i < mark_.choices; ++i) {
+    const Choice& c = choices_[i];
+    choices.push_back(c.taken ? 1 : 0);
+    choices.push_back(c.here.t);
+    choices.insert(choices.end(), c.here.q.begin(), c.here.q.end());
+    choices.insert(choices.end(), c.here.qd.begin(), c.here.qd.end());
+    for (const Level<double>& k : c.here.higher) choices.insert(choices.end(), k.value.begin(), k.value.end());
+    choices.insert(choices.end(), c.here.states.begin(), c.here.states.end());
+    choices.insert(choices.end(), c.here.state_rates.begin(), c.here.state_rates.end());
+  }
+  to.set_numbers("eliminations", choices);
+  to.set_numbers("pivots", mark_.chosen);
+  std::vector<W> sides(b.sides.begin(), b.sides.end());
+  to.set_numbers("sides", sides);
+  to.set_numbers("modes", begun_parameters_);
+}
+
+template <Number N>
+Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
+  // As at the start, for what it leaves in the graph.
+  if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
+  if (const std::vector<W> modes = from.numbers<W>("modes", parameters_.size()); modes != parameters_) {
+    set_modes(modes);
+    leg_ = std::make_unique<Leg>(*this, s_.system, s_.structure);
+  }
+  const std::size_t n = s_.system.coordinates, states = s_.model->states.size(), length = 2 + n * levels() + 2 * states;
+  const std::vector<double> choices = from.numbers<double>("eliminations");
+  if (choices.size() % length != 0) SavedRun::unfit("eliminations");
+  for (auto at = choices.begin(); at != choices.end();) {
+    Choice c;
+    c.taken = *at++ != 0;
+    c.here.t = *at++;
+    const auto level = [&] {
+      std::vector<double> values(at, at + static_cast<std::ptrdiff_t>(n));
+      at += static_cast<std::ptrdiff_t>(n);
+      return values;
+    };
+    c.here.q = level();
+    c.here.qd = level();
+    for (std::size_t k = 2; k < levels(); ++k) c.here.higher.push_back({level(), {}});
+    for (std::size_t i = 0; i < states; ++i) c.here.states.push_back(*at++);
+    for (std::size_t i = 0; i < states; ++i) c.here.state_rates.push_back(*at++);
+    const Elimination before = elimination_;
+    auto next = eliminate_at(c.here);
+    if (c.taken && !next) SavedRun::unfit("eliminations");
+    if (next && !c.taken) watch_pivots(before);
+    if (c.taken) leg_ = std::move(next), ++eliminations_;
+    choices_.push_back(std::move(c));
+  }
+  const std::vector<double> pivots = from.numbers<double>("pivots");
+  if (!pivots.empty() && pivots.size() != elimination_.pivots().size()) SavedRun::unfit("pivots");
+  chosen_ = pivots;
+  mark_ = {choices_.size(), chosen_};
+
+  const Program& p = leg_->program;
+  const std::size_t size = leg_->point.state_size();
+  const std::vector<W> more = from.numbers<W>("stepper", 5);
+  const std::vector<N> sigma = from.numbers<N>("sigma", 4);
+  const std::vector<long double> counts = from.numbers<long double>("counts", 3);
+  StepperState<N> b;
+  b.t = from.number<W>("t");
+  b.state = from.numbers<W>("state", size);
+  b.carry = from.numbers<W>("carry", size);
+  b.leading = from.numbers<W>("leading");
+  if (!b.leading.empty() && b.leading.size() != p.unknowns()) SavedRun::unfit("leading");
+  b.own = from.numbers<W>("own");
+  b.own_leading = from.numbers<W>("own_leading");
+  b.integrals = from.numbers<W>("integrals", p.quadratures);
+  b.integral_carry = from.numbers<W>("integral_carry", p.quadratures);
+  b.branch_step = more[0];
+  b.worst_constraint = more[1];
+  b.worst_equation = more[2];
+  b.smallest_sigma_t = more[3];
+  b.last_step = more[4];
+  b.first_sigma = sigma[0];
+  b.smallest_sigma = sigma[1];
+  b.sigma_before = sigma[2];
+  b.least_health = sigma[3];
+  b.steps = static_cast<std::size_t>(counts[0]);
+  b.weakest = static_cast<std::size_t>(counts[1]);
+  b.careful = counts[2] != 0;
+  b.direction = from.numbers<N>("direction");
+  for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(static_cast<int>(to_double(side)));
+  if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns()))
+    SavedRun::unfit("direction");
+  if (!pivots_) effort_ = effort_after(b.steps);
+  accelerate(*leg_);
+  return leg_->stepper.resume(b);
+}
+
+template class Motion<double>;
+template class Motion<long double>;
+template class Motion<Quad>;
+template class Motion<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,151 @@
+// One motion on its way: the steps, the events between them, and the elimination of coordinates on which its equations
+// stand.
+//
+// A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the
+// equations are then made again with other dependent coordinates, and the motion goes on from the same state (theory:
+// elimination).
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+#include "integrate/taylor.h"
+#include "motion/code_for_long_runs.h"
+#include "motion/representation.h"
+#include "motion/saved.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+// An event that fired.
+template <Number W>
+struct Occurrence {
+  std::size_t event = 0;  // of the model
+  W t{0};
+  struct Change {
+    std::string name;
+    W before{0}, after{0};
+  };
+  std::vector<Change> changes;  // what was set
+  W correction{0};              // by which constraints made what was set consistent, the largest
+};
+
+// N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
+template <Number N>
+class Motion {
+ public:
+  using W = Wider<N>;
+
+  // `quadratures`: expressions to be integrated or watched along the motion. `stages`: how many orders beyond the
+  // leading derivatives the points know.
+  Motion(const Scenario& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
+
+  // From the consistent state; on request from one that differs from it by some round-offs.
+  void start_in_other_digits(bool other) { other_digits_ = other; }
+  Outcome start(const StateChoice& choice);
+  // What is needed to go on from where the last expansion was made, and how: with the same bits as if the run had never
+  // ended.
+  void save(SavedRun& to) const;
+  Outcome resume(const StateChoice& choice, const SavedRun& from);
+  // One step towards `end`, with another elimination where this one fails or its pivots have become small.
+  Outcome step(const W& end);
+  // The solution anywhere in the last step, with the orders beyond where there are any.
+  Outcome at(const W& t);
+  const Expansion<W>& point() const { return leg_->point; }
+  // What fired in the last step. `settle` puts in what it sets, after which the motion goes on from the end of the
+  // step; false in `goes_on` where an event ends the motion. Not ok if a table was left, or the state set has no
+  // consistent one near.
+  bool fired() const { return !leg_->stepper.fired().empty(); }
+  Outcome settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on);
+  // Not ok if the argument of a table lies outside of it at the start.
+  Outcome within_bounds();
+  // The formula of an event at the start.
+  double at_start(std::size_t event) const {
+    return to_double(leg_->stepper.quadrature(quadratures_.size() + event, W(0)));
+  }
+
+  const Stepper<N>& stepper() const { return leg_->stepper; }
+  const Program& program() const { return leg_->program; }
+  const std::vector<W>& parameters() const { return parameters_; }
+  std::size_t eliminations() const { return eliminations_; }  // how often other coordinates were eliminated on the way
+  // For another method (motion/course.h): the plan of the kernel, if there is one; whether other coordinates should be
+  // eliminated at a point; Taylor steps from where it has come to.
+  const std::shared_ptr<const KernelPlan>& plan() const { return leg_->plan; }
+  // The same in the motion's unknowns, for other methods.
+  const std::shared_ptr<const KernelPlan>& unmapped_plan() const { return leg_->unmapped_plan; }
+  bool pivot_is_small(const Expansion<W>& at);
+  Outcome go_on(const StepperState<N>& from) { return leg_->stepper.resume(from); }
+
+ private:
+  // A stretch of the motion with one elimination: its system and what steps through it.
+  struct Leg {
+    Leg(const Motion& motion, System of, Structure structured);
+    System system;
+    Structure structure;
+    Program program;
+    Stepper<N> stepper;
+    Expansion<W> point, present;
+    std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
+    std::shared_ptr<const KernelPlan> unmapped_plan;
+    Writing writing = Writing::derived;
+  };
+
+  // Every choice of dependent coordinates on the way. The graph grows with each of them, and the order of its nodes
+  // decides the order of sums: whoever resumes makes them all again.
+  struct Choice {
+    InitialState<double> here;
+    bool taken = false;
+  };
+  // Those made before the last expansion, and what the pivots were at the last of them.
+  struct Mark {
+    std::size_t choices = 0;
+    std::vector<double> chosen;
+  };
+
+  void watch_pivots(const Elimination& e);
+  void note_pivots();
+  const Expansion<W>& present();
+  InitialState<double> here();
+  void accelerate(Leg& leg) const;
+  void write_anew();
+  std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
+  bool eliminate_again();
+  std::size_t levels() const {
+    return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0);
+  }
+
+  const Scenario& s_;
+  StepSettings settings_;
+  void set_modes(const std::vector<W>& parameters);
+  Outcome fire(const Event& event, std::vector<W>& state, std::vector<W>& parameters, Occurrence<W>& occurrence);
+  std::vector<Expr> with_events() const;
+  std::vector<WatchedSeries> watched() const;
+
+  std::vector<Expr> quadratures_;
+  int stages_;
+  std::vector<W> parameters_;
+  std::vector<N> narrow_parameters_;
+  Start<W> start_;
+  std::vector<W> begun_parameters_;  // where the last expansion was made
+  std::unique_ptr<Leg> leg_;
+  bool stepped_ = false, other_digits_ = false;
+  Elimination elimination_;                // the present one
+  std::unique_ptr<OutputTape<W>> pivots_;  // its pivots, and what they were when it was chosen
+  std::vector<double> chosen_;
+  std::vector<Choice> choices_;
+  Mark mark_;
+  std::size_t eliminations_ = 0;
+  CodeForLongRuns code_;
+  WritingEffort effort_ = WritingEffort::at_once;  // that went into how the equations of the kernel are written
+};
+
+extern template class Motion<double>;
+extern template class Motion<long double>;
+extern template class Motion<Quad>;
+extern template class Motion<Multi>;
+
+// Says what the motion ran into: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.
+template <Number N>
+void explain_stop(const Scenario& scenario, const Motion<N>& motion, Outcome& outcome);
+
+}  // namespace anholon

@@ -1,0 +1,266 @@
+#include "motion/representation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "expr/copy.h"
+#include "expr/normal.h"
+#include "lowering/by_rates.h"
+#include "lowering/quasi_velocities.h"
+#include "lowering/velocity_algebra.h"
+#include "print/arrange.h"
+#include "print/print.h"
+
+namespace anholon {
+
+namespace {
+
+// Beyond these, as in chains, there are few pairs, and equations written out are longer than they were.
+constexpr std::size_t kMostUnknowns = 12, kMostNodes = 2000;
+// Beyond, a plan takes longer to make than it saves: of refined solutions, of quasi-velocities.
+constexpr std::size_t kMostRefined = 64, kMostInQuasi = 64;
+// Products of terms for one equation, a fraction of a millisecond.
+constexpr long kMostProducts = 4000;
+// Two writings of one equation agree to this, in relation to the largest coefficient of the order, or one of them loses
+// digits.
+constexpr double kAgree = 1e-11;
+
+// A program with the system it stands on, in a graph of its own.
+struct Rewritten {
+  System system;
+  Program program;
+};
+
+System names_and_graph(const System& from) {
+  auto model = std::make_shared<Model>();
+  model->graph = std::make_shared<Graph>();
+  model->names = from.model->names;
+  model->names.defined.clear();
+  System s = from;
+  s.equations.clear();
+  s.model = std::move(model);
+  return s;
+}
+
+// No derivative beyond those solved for: they had cancelled before, and a program could not know their values.
+bool same_offsets(const System& s, const Structure& structure) {
+  for (std::size_t i = 0; i < s.equations.size(); ++i)
+    for (NodeId id : symbols({&s.equations[i], 1}))
+      if (const auto j = s.variable(id); j && s.model->graph->node(id).order + structure.c[i] > structure.d[*j])
+        return false;
+  return true;
+}
+
+std::shared_ptr<const Program> rewritten(const ToRepresent& e, Writing writing) {
+  const System& derived = *e.derived->program().system;
+  Column all = derived.equations;
+  all.insert(all.end(), e.quadratures.begin(), e.quadratures.end());
+  if (reachable(all).size() > kMostNodes) return nullptr;
+  auto r = std::make_shared<Rewritten>();
+  r->system = names_and_graph(derived);
+  Graph& g = *r->system.model->graph;
+  Column written;
+  for (Expr x : copied(all, g)) {
+    const std::optional<Expr> out = expanded(x, kMostProducts);
+    written.push_back(!out ? x : writing == Writing::expanded ? *out : arranged(x, r->system.model->names));
+  }
+  const auto equations = static_cast<std::ptrdiff_t>(derived.size());
+  r->system.equations.assign(written.begin(), written.begin() + equations);
+  if (!same_offsets(r->system, e.structure)) return nullptr;
+  r->program = program(r->system, e.structure, std::span(written).subspan(derived.size()), true);
+  return {r, &r->program};
+}
+
+std::shared_ptr<const Program> left_to_series(const ToRepresent& e) {
+  if (!e.mechanics) return nullptr;
+  std::optional<ByRates> by = by_rates(*e.derived->program().system, *e.mechanics, e.quadratures);
+  if (!by || !same_offsets(by->system, e.structure)) return nullptr;
+  auto r = std::make_shared<Rewritten>(Rewritten{std::move(by->system), {}});
+  r->program = program(r->system, e.structure, by->others, true);
+  return {r, &r->program};
+}
+
+// What the derived system knows of a symbol at the start.
+double value_at_start(const ToRepresent& e, const Node& n) {
+  const Program& p = e.derived->program();
+  if (n.kind == Kind::time) return e.t;
+  if (n.kind == Kind::parameter) return static_cast<double>(e.parameters[n.index]);
+  std::size_t at = 0, j = n.kind == Kind::state ? p.system->mechanical() + n.index : n.index;
+  if ((n.kind != Kind::state && n.kind != Kind::jet) || j >= p.unknowns() || n.order >= p.d[j]) return 0;
+  for (std::size_t i = 0; i < j; ++i) at += static_cast<std::size_t>(p.d[i]);
+  return e.state[at + n.order];
+}
+
+// Largest difference of two expansions at one state, order by order.
+double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>& a,
+                  const std::shared_ptr<const KernelPlan>& b) {
+  Kernel one(a), other(b);
+  for (Kernel* k : {&one, &other}) {
+    k->set_parameters(0, e.parameters);
+    std::vector<long double> state(e.state.begin(), e.state.end()), own;
+    if (k->plan().map())
+      k->reader(0).own(e.t, state, own);
+    else
+      own = state;
+    k->load<long double>(0, e.t, own, {});
+    k->expand();
+    if (!k->finite(0)) return std::numeric_limits<double>::infinity();
+  }
+  double worst = 0;
+  const std::size_t unknowns = a->plan().d.size();
+  for (int k = 0; k <= a->plan().stages; ++k) {
+    double size = 1e-9, off = 0;
+    for (std::size_t j = 0; j < unknowns; ++j) {
+      const auto of_other = b->map() ? b->map()->own(j, unknowns) : std::optional<std::size_t>(j);
+      if (!of_other) continue;
+      const int order = k + b->plan().d[*of_other];
+      size = std::max(size, std::abs(one.coefficient(j, order)));
+      off = std::max(off, std::abs(one.coefficient(j, order) - other.coefficient(*of_other, order)));
+    }
+    worst = std::max(worst, off / size);
+  }
+  return worst;
+}
+
+// Where accelerations and multipliers are all that is solved for.
+std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
+  const Program& derived = e.derived->program();
+  const System& s = *derived.system;
+  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostInQuasi)
+    return std::nullopt;
+  for (std::size_t j = 0; j < derived.unknowns(); ++j)
+    if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return std::nullopt;
+  std::optional<QuasiVelocities> q =
+      quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });
+  if (!q) return std::nullopt;
+  Representation found{Writing::quasi, nullptr, {}};
+  for (Expr p : q->of_state)
+    found.velocities.push_back(
+        print(written_out(p, s.coordinates, q->system.rates), q->system.model->names, Format::text));
+  const bool judged = !is_number(q->determinant);
+  if (judged) q->others.push_back(q->determinant);
+  auto map = std::make_shared<const StateMap>(*q);
+  auto r = std::make_shared<Rewritten>(Rewritten{std::move(q->system), {}});
+  Structure first_order;
+  first_order.c.assign(r->system.size(), 0);
+  first_order.d.assign(r->system.size(), 1);
+  r->program = program(r->system, first_order, q->others, true);
+  found.plan = KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t,
+                                e.state, e.derived->company());
+  if (!found.plan || !(difference(e, e.derived, found.plan) < kAgree)) return std::nullopt;
+  return found;
+}
+
+}  // namespace
+
+const char* name(Writing writing) {
+  switch (writing) {
+  case Writing::derived:
+    return "derived";
+  case Writing::paired:
+    return "paired";
+  case Writing::rates:
+    return "rates";
+  case Writing::quasi:
+    return "quasi";
+  case Writing::expanded:
+    return "expanded";
+  case Writing::arranged:
+    return "arranged";
+  }
+  return "";
+}
+
+std::vector<Representation> representations(const ToRepresent& e, WritingEffort effort) {
+  std::vector<Representation> list{{Writing::derived, e.derived, {}}};
+  const auto& first = e.derived;
+  const Program& derived = first->program();
+  // The stepper follows such roots by the slots of the derived tape.
+  if (!first->plan().roots_of_even_powers.empty()) return list;
+  // Where few unknowns ask for refined solutions, J has rounded something away, and no writing is as good as another.
+  // The condition of a long chain asks for them in any writing, sooner or later.
+  const bool large = derived.unknowns() > kMostUnknowns;
+  const auto add = [&](Writing writing, std::shared_ptr<const Program> p) {
+    auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state, first->company())
+                  : nullptr;
+    if (plan && (large || plan->tables().refine == first->tables().refine) &&
+        plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
+      list.push_back({writing, std::move(plan), {}});
+  };
+  if (!first->tables().refine || (large && derived.unknowns() <= kMostRefined)) add(Writing::rates, left_to_series(e));
+  if (!first->tables().refine)
+    if (auto quasi = in_quasi_velocities(e)) list.push_back(std::move(*quasi));
+  if (large) return list;
+  add(Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)));
+  if (first->tables().refine) return list;
+  if (effort >= WritingEffort::long_motion) add(Writing::expanded, rewritten(e, Writing::expanded));
+  if (effort >= WritingEffort::very_long_motion) add(Writing::arranged, rewritten(e, Writing::arranged));
+  return list;
+}
+
+std::size_t steps_before(WritingEffort effort) {
+  switch (effort) {
+  case WritingEffort::at_once:
+    return 0;
+  case WritingEffort::long_motion:
+    return 2000;
+  case WritingEffort::very_long_motion:
+    return 200'000;
+  }
+  return 0;
+}
+
+WritingEffort effort_after(std::size_t steps) {
+  WritingEffort most = WritingEffort::at_once;
+  for (const WritingEffort e : kWritingEfforts)
+    if (steps >= steps_before(e)) most = e;
+  return most;
+}
+
+const Representation& cheapest(const std::vector<Representation>& list) {
+  return *std::min_element(list.begin(), list.end(), [](const Representation& a, const Representation& b) {
+    return a.plan->cost() < b.plan->cost();
+  });
+}
+
+const Representation& cheapest_unmapped(const std::vector<Representation>& list) {
+  const auto cost = [](const Representation& r) {
+    return r.plan->map() ? std::numeric_limits<double>::infinity() : r.plan->cost();
+  };
+  return *std::min_element(list.begin(), list.end(),
+                           [&](const Representation& a, const Representation& b) { return cost(a) < cost(b); });
+}
+
+ExpansionWork work_of(const KernelPlan& plan) {
+  ExpansionWork w;
+  for (const std::vector<Step>* list : {&plan.plan().stage, &plan.plan().after})
+    for (const Step& s : *list) switch (s.act) {
+      case Act::linear:
+        w.sums += s.count;
+        break;
+      case Act::multiply:
+      case Act::divide:
+      case Act::function:
+      case Act::square:
+      case Act::square_root:
+      case Act::power:
+      case Act::sine_cosine:
+      case Act::arctan2:
+        ++w.products;
+        break;
+      case Act::input:
+      case Act::beyond:
+      case Act::weigh:
+      case Act::select:
+      case Act::lookup:
+        break;
+      }
+  w.solve = static_cast<std::size_t>(plan.elimination().work());
+  w.operations = plan.work();
+  w.waits = plan.waits();
+  w.total = plan.cost();
+  return w;
+}
+
+}  // namespace anholon

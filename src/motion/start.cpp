@@ -1,0 +1,39 @@
+#include "motion/start.h"
+
+#include "integrate/taylor.h"
+#include "setup/redundant.h"
+
+namespace anholon {
+
+// Prepares, projects and solves at the start.
+template <Number N>
+static Outcome settle(const Scenario& s, Expansion<N>& point) {
+  const Start<double> start = start_of(s);
+  point.load(start.t, {start.state.begin(), start.state.end()}, {start.leading.begin(), start.leading.end()});
+  if (Outcome o = point.prepare(); !o.ok()) return o;
+  if (Outcome o = point.project(); !o.ok()) return o;
+  return point.solve();
+}
+
+Outcome regular_at_start(const Scenario& s) {
+  using W = Wider<double>;
+  const Program p = program(s.system, s.structure);
+  const std::vector<W> parameters = parameter_values<W>(*s.model);
+  Expansion<double> point(p, parameter_values<double>(*s.model), 1);
+  const Outcome here = settle(s, point);
+  if (here.kind == OutcomeKind::not_a_number) {
+    // The equations may have a solution beside the start all the same.
+    Stepper<double> stepper(p, point.parameters(), parameters, {});
+    const Start<double> start = start_of(s);
+    Outcome beside = stepper.start(start.t, {start.state.begin(), start.state.end()});
+    if (!beside.ok()) beside.message += " at t = " + number_text(start.t, 12);
+    return beside;
+  }
+  if (!here.ok() || s.redundant.empty()) return here;
+  Expansion<W> wide(p, parameters, 1);
+  if (Outcome o = settle(s, wide); !o.ok()) return o;
+  double missed = 0;
+  return Redundant<W>(s, parameters).hold(wide, true, missed);
+}
+
+}  // namespace anholon

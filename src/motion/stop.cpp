@@ -1,0 +1,160 @@
+#include <algorithm>
+
+#include "motion/motion.h"
+#include "setup/eliminate.h"
+#include "structure/branch.h"
+#include "structure/redundancy.h"
+
+namespace anholon {
+
+static std::string joined(const std::vector<std::string>& list) {
+  std::string all;
+  for (const std::string& x : list) all += (all.empty() ? "" : ", ") + x;
+  return all;
+}
+
+// A root or logarithm in the equations whose argument has come to zero.
+template <Number N>
+static std::string vanishing_root(const Motion<N>& motion) {
+  const Tape& tape = motion.program().tape;
+  for (std::uint32_t k = 0; k < tape.main_end; ++k) {
+    const Instruction& in = tape.code[k];
+    const bool root = in.op == Op::power && tape.rationals[in.index].get_den() != 1;
+    const bool logarithm = in.op == Op::function && in.index == static_cast<std::uint32_t>(Function::log);
+    if ((root || logarithm) && std::abs(to_double(motion.stepper().point(true).machine().series(in.a)[0])) < 1e-9)
+      return root ? "the root of a quantity that reaches zero" : "the logarithm of a quantity that reaches zero";
+  }
+  return {};
+}
+
+// The state has grown beyond all that it was: a position, a velocity or a higher derivative that belongs to the state.
+template <Number N>
+static std::string unbounded(const Scenario& s, const Motion<N>& motion) {
+  constexpr double kUnbounded = 1e5;
+  const auto& point = motion.stepper().point();
+  for (int k = 0; k < largest_order(s, motion.program().d); ++k) {
+    const std::size_t level = static_cast<std::size_t>(k);
+    double start = 1;
+    for (double v : level == 0 ? s.state.q : level == 1 ? s.state.qd : s.state.higher[level - 2].value)
+      start = std::max(start, std::abs(v));
+    for (std::size_t a = 0; a < s.system.coordinates; ++a)
+      if (k < motion.program().d[a] && std::abs(to_double(point.derivative(a, k))) > kUnbounded * start)
+        return derivative_name(s.system.variable_names[a], static_cast<unsigned>(k), Format::text);
+  }
+  return {};
+}
+
+// The constraint whose row in Phi has vanished, or depends on the others, in comparison with the start; empty if none.
+template <Number N>
+static std::string lost_hold(const Scenario& s, const Motion<N>& motion) {
+  using W = Wider<N>;
+  constexpr double kLost = 1e-2;
+  const Mechanics& m = *s.mechanics;
+  const std::size_t n = s.system.coordinates, rows = s.independent.size();
+  if (rows == 0) return {};
+  Column es;
+  std::vector<int> order;
+  for (std::size_t r : s.independent) {
+    order.push_back(m.order[r]);
+    for (Expr e : m.Phi[r]) es.push_back(put_masses(*s.model, e));
+  }
+  OutputTape<W> phi_tape(s, es, motion.parameters());
+  phi_tape.evaluate(motion.stepper().point());
+  Matrix<double> phi(rows, n), at_start(rows, n);
+  PointValues start = values_near(*s.model, parameter_values<double>(*s.model), s.state);
+  for (std::size_t i = 0; i < phi.data.size(); ++i)
+    phi.data[i] = to_double(phi_tape[i]), at_start.data[i] = start(es[i]);
+  const auto size = [&](const Matrix<double>& of, std::size_t i) {
+    double largest = 0;
+    for (std::size_t a = 0; a < n; ++a) largest = std::max(largest, std::abs(of(i, a)));
+    return largest;
+  };
+  for (std::size_t i = 0; i < rows; ++i)
+    if (size(phi, i) < kLost * size(at_start, i))
+      return "the partial derivatives of the constraint '" + s.model->constraints[s.independent[i]].name + "' vanish";
+  const IndependentConstraints choice = choose_independent(phi, order);
+  if (choice.weakest > kLost * choose_independent(at_start, order).weakest && choice.redundant.empty()) return {};
+  const std::size_t which = choice.redundant.empty() ? choice.weakest_row : choice.redundant[0];
+  return "the constraint '" + s.model->constraints[s.independent[which]].name + "' becomes dependent on the others";
+}
+
+// " (x = 1, y = 2)": where the motion is, if that is not too long to be read.
+template <Number N>
+static std::string where(const Scenario& s, const Motion<N>& motion) {
+  constexpr std::size_t kMost = 6;
+  std::vector<std::string> list;
+  for (std::size_t a = 0; a < s.system.coordinates && s.system.coordinates <= kMost; ++a)
+    list.push_back(s.system.variable_names[a] + " = " +
+                   number_text(to_double(motion.stepper().point().derivative(a, 0)), 6));
+  return list.empty() ? "" : " (" + joined(list) + ")";
+}
+
+template <Number N>
+void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
+  using W = Wider<N>;
+  constexpr double kVanished = 1e-9, kUnbounded = 1e9, kFallen = 1e-3, kFaint = 1e-3;
+  constexpr int kRecentSteps = 8;
+  const Stepper<N>& stepper = motion.stepper();
+  const Expansion<W>& point = stepper.point();
+  std::string& message = outcome.message;
+  const std::string when = " at t = " + number_text(to_double(stepper.time()), 12);
+  if (const std::string name = unbounded(s, motion); !name.empty() && outcome.kind != OutcomeKind::interrupted) {
+    outcome.kind = OutcomeKind::blow_up;
+    message += "; " + name + " grows without bound";
+    outcome.hint = "look at the last good state: end the motion before";
+    return;
+  }
+  const double first = to_double(stepper.first_sigma()), least = to_double(stepper.smallest_sigma());
+  const std::string lost = lost_hold(s, motion);
+  // Not where the motion has passed a singular configuration long before.
+  const Wider<N> steps = abs(W(stepper.time() - stepper.before())) * W(kRecentSteps);
+  const bool here = abs(W(stepper.smallest_sigma_time() - stepper.time())) <= steps;
+  const bool fallen = outcome.kind == OutcomeKind::singular || (here && least < kFallen * first) || !lost.empty();
+  for (std::size_t k = 0; k < s.system.constraints.size() && lost.empty(); ++k) {
+    const std::size_t r = s.system.constraints[k];
+    if (!may_branch(*s.mechanics, s.system, r)) continue;
+    const double now = to_double(point.derivative(s.system.coordinates + k, 0)),
+                 start = s.state.multipliers[0].value[r];
+    const bool vanishes = s.mechanics->order[r] > 2 && std::abs(now) < kFaint * std::abs(start);
+    if (!vanishes && !fallen) continue;
+    outcome.kind = OutcomeKind::singular;
+    message = "singular configuration: " +
+              (vanishes ? "the multiplier of the constraint '" + s.model->constraints[r].name + "' goes to 0"
+                        : "two solutions for the constraint '" + s.model->constraints[r].name + "' meet") +
+              when + ", and the equations no longer determine the motion there";
+    outcome.hint = "end the motion before; the other branch, [initial] branch = {…}, may go on";
+    return;
+  }
+  if (fallen) {
+    const std::size_t j = stepper.weakest_unknown();
+    outcome.kind = OutcomeKind::singular;
+    message = "singular configuration" + when + where(s, motion) + ": " +
+              (!lost.empty() ? lost
+                             : (j < s.system.coordinates ? "the equations no longer determine the acceleration of "
+                                                         : "the equations no longer determine the multiplier ") +
+                                   s.system.variable_names[j]);
+    if (outcome.hint.empty() || !lost.empty())
+      outcome.hint = "end the motion before; coordinates or constraints written otherwise may be regular there";
+  }
+  if (const std::string root = vanishing_root(motion); !root.empty() && outcome.kind != OutcomeKind::not_a_number)
+    message += "; " + root + " is at the edge of where it has a value";
+  for (std::size_t i = 0; i < s.model->masses.size(); ++i)
+    if (std::abs(to_double(stepper.quadrature(1 + i, W(0)))) < kVanished)
+      message += "; the mass of '" + s.model->masses[i].name + "' vanishes there";
+  std::vector<std::string> unbounded;
+  for (std::size_t k = 0; k < s.system.constraints.size(); ++k)
+    if (std::abs(to_double(point.derivative(s.system.coordinates + k, 0))) > kUnbounded)
+      unbounded.push_back("'" + s.system.equation_names[s.system.coordinates + k] + "'");
+  if (unbounded.size() == 1)
+    message += "; the multiplier of " + unbounded[0] + " grows without bound: the constraint loses its hold there";
+  if (unbounded.size() > 1)
+    message +=
+        "; the multipliers of " + joined(unbounded) + " grow without bound: the constraints lose their hold there";
+}
+
+template void explain_stop(const Scenario&, const Motion<double>&, Outcome&);
+template void explain_stop(const Scenario&, const Motion<long double>&, Outcome&);
+template void explain_stop(const Scenario&, const Motion<Quad>&, Outcome&);
+template void explain_stop(const Scenario&, const Motion<Multi>&, Outcome&);
+
+}  // namespace anholon

@@ -1,0 +1,93 @@
+#include "observe/angles.h"
+
+#include <algorithm>
+
+#include "expr/normal.h"
+
+namespace anholon {
+
+namespace {
+
+// Of a body with second moments: by which velocities it turns.
+std::vector<bool> turned_by(const Body& body, const Column& qd) {
+  std::vector<bool> by(qd.size(), false);
+  if (body.axes.empty() || !body.orientation) return by;
+  const Vector& rate = body.orientation->own_rate;
+  for (const Expr& e : {rate.x, rate.y, rate.z})
+    for (NodeId id : symbols({&e, 1}))
+      for (std::size_t a = 0; a < qd.size(); ++a)
+        if (qd[a].id == id) by[a] = true;
+  return by;
+}
+
+// Another body that turns by some of three angles only (a gimbal with an inertia, a link of an arm) has kinetic energy
+// where the three fall into a plane: nothing becomes singular there.
+bool held_by_another(const Model& model, const std::vector<std::size_t>& angles, const Column& qd) {
+  return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& other) {
+    const std::vector<bool> by = turned_by(other, qd);
+    const auto count = std::count_if(angles.begin(), angles.end(), [&](std::size_t a) { return by[a]; });
+    return count > 0 && count < 3;
+  });
+}
+
+}  // namespace
+
+std::vector<AngleTriple> angle_triples(const Model& model) {
+  std::vector<AngleTriple> list;
+  const Column qd = jets(model, 1);
+  for (const Body& body : model.bodies) {
+    if (!body.orientation) continue;
+    const Vector& rate = body.orientation->own_rate;
+    const Column by[] = {gradient(rate.x, qd), gradient(rate.y, qd), gradient(rate.z, qd)};
+    AngleTriple triple{body.name, {}, {}};
+    std::vector<std::size_t> angles;
+    for (std::size_t a = 0; a < qd.size(); ++a) {
+      const Vector column{by[0][a], by[1][a], by[2][a]};
+      if (is_zero(column)) continue;
+      if (angles.size() < 3) triple.rates[angles.size()] = column;
+      angles.push_back(a);
+      triple.angles += (triple.angles.empty() ? "" : ", ") + model.coordinates[a].name;
+    }
+    const bool known =
+        std::any_of(list.begin(), list.end(), [&](const AngleTriple& t) { return t.angles == triple.angles; });
+    if (angles.size() != 3 || known || held_by_another(model, angles, qd)) continue;
+    // Two joints about the same axis are in a plane with any third, always: that is no singularity.
+    if (!proved_zero(dot(triple.rates[0], cross(triple.rates[1], triple.rates[2])))) list.push_back(triple);
+  }
+  return list;
+}
+
+template <Number W>
+Column AngleWatch<W>::expressions(const std::vector<AngleTriple>& triples) {
+  Column es;
+  for (const AngleTriple& t : triples) {
+    es.push_back(dot(t.rates[0], cross(t.rates[1], t.rates[2])));
+    for (const Vector& v : t.rates) es.push_back(dot(v, v));
+  }
+  return es;
+}
+
+template <Number W>
+AngleWatch<W>::AngleWatch(const Scenario& s, const std::vector<W>& parameters)
+    : triples(angle_triples(*s.model)), least(triples.size()) {
+  if (!triples.empty()) outputs_.emplace(s, expressions(triples), parameters);
+}
+
+template <Number W>
+void AngleWatch<W>::see(const Expansion<W>& point) {
+  if (!outputs_) return;
+  OutputTape<W>& out = *outputs_;
+  out.evaluate(point);
+  for (std::size_t i = 0; i < triples.size(); ++i) {
+    const std::size_t at = 4 * i;
+    const W lengths = sqrt(W(out[at + 1] * out[at + 2] * out[at + 3]));
+    const double value = lengths > W(0) ? to_double(W(abs(out[at]) / lengths)) : 0;
+    if (value < least[i].value) least[i] = {value, point.time()};
+  }
+}
+
+template class AngleWatch<long double>;
+template class AngleWatch<Quad>;
+template class AngleWatch<Multi>;
+
+}  // namespace anholon

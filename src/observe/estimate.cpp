@@ -1,0 +1,404 @@
+#include "observe/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "observe/watch.h"
+
+namespace anholon {
+
+namespace {
+
+// The error between the rows that are compared may be somewhat larger, and the sharper run has an error of its own.
+constexpr double kSafety = 2;
+constexpr int kSharper = 100;
+constexpr std::size_t kMostTimesLonger = 10;
+constexpr int kMoreDigits = 10;
+
+// The sharper run, in numbers M, of a motion computed in numbers N.
+template <Number M, Number N>
+class SharperRun {
+ public:
+  using W = Wider<M>;
+  using V = Wider<N>;
+
+  SharperRun(const Scenario& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<V>& run)
+      : s_(s), o_(o), motion_(s, settings, {}, orders_of_rows(s)), outputs_(s, motion_.parameters()),
+        highest_(largest_order(s, motion_.program().d)), tolerance_(std::exp(settings.log_tolerance)), run_(run),
+        rows_(run.rows.take()) {
+    for (const SampledRow<V>& r : rows_) times_.push_back(time_of(r));
+    compared_.resize(rows_.size());
+  }
+
+  // Until the last row, or as far as it goes.
+  Outcome go() {
+    // Both runs in one type of numbers would round their start alike, and grow alike from what is lost there.
+    motion_.start_in_other_digits(std::same_as<W, V> && s_.model->events.empty());
+    if (Outcome o = motion_.start(o_.state); !o.ok()) return o;
+    t0_ = motion_.stepper().time();
+    end_ = times_.back();
+    forward_ = end_ > t0_;
+    for (;;) {
+      if (Outcome o = rows_of_step(); !o.ok()) return o;
+      bool goes_on = true;
+      if (motion_.fired())
+        if (Outcome o = settle(goes_on); !o.ok()) return o;
+      if (!goes_on || done()) return {};
+      const std::size_t kinks = motion_.stepper().kinks();
+      if (Outcome o = motion_.step(end_); !o.ok()) return o;
+      was_kink_ = at_kink_;
+      at_kink_ = motion_.stepper().kinks() != kinks;
+      if (o_.progress) o_.progress(to_double(motion_.stepper().time()), motion_.stepper().steps());
+    }
+  }
+
+  // What was found, until where the run came.
+  RowComparison comparison(double roundoff) {
+    RowComparison c(kept(row_columns(s_, highest_)), roundoff, o_.tolerance.get_d());
+    for (std::optional<RowComparison::Row>& row : compared_)
+      if (row) c.see(std::move(*row));
+    if (lost_) c.lose(to_double(*lost_));
+    for (std::size_t i = 0; i < s_.model->events.size(); ++i) {
+      std::size_t mine = 0;
+      for (const EventMoment<V>& e : run_.events) {
+        if (e.event != i) continue;
+        while (mine < met_.size() && met_[mine].event != i) ++mine;
+        if (mine == met_.size()) break;
+        c.event(s_.model->events[i].name, to_double(e.t), to_double(W(abs(W(convert<W>(e.t) - met_[mine++].t)))));
+      }
+    }
+    return c;
+  }
+  std::optional<double> last_compared() const {
+    for (std::size_t i = compared_.size(); i-- > 0;)
+      if (compared_[i]) return to_double(rows_[i].t);
+    return std::nullopt;
+  }
+  bool whole() const { return lost_ || (!compared_.empty() && compared_.back()); }
+
+ private:
+  static int orders_of_rows(const Scenario& s) {
+    Column monitors;
+    for (const Monitor& m : s.model->monitors) monitors.push_back(m.value);
+    return std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
+  }
+
+  // As it was asked for, if these numbers can say that.
+  static W time_of(const SampledRow<V>& r) {
+    if (const auto t = r.label.empty() ? std::nullopt : parse_rational(r.label)) return from_rational<W>(*t);
+    return convert<W>(r.t);
+  }
+  std::size_t resets_before(std::size_t row) const {
+    return run_.knows_resets ? uncounted_ + rows_[row].resets : resets_;
+  }
+
+  // Of all columns of a row those of the run.
+  template <class T>
+  std::vector<T> kept(std::vector<T> all) const {
+    if (run_.columns.empty()) return all;
+    std::vector<T> some;
+    for (std::size_t j : run_.columns) some.push_back(std::move(all[j]));
+    return some;
+  }
+
+  bool passed(const W& t) const { return forward_ ? !(t > motion_.stepper().time()) : !(t < motion_.stepper().time()); }
+  W last_step() const { return abs(W(motion_.stepper().time() - motion_.stepper().before())); }
+  W from_now(std::size_t row) const { return abs(W(times_[row] - motion_.stepper().time())); }
+
+  // What lies in the last step. Where a kink ends it, the kink of the other run may lie on the other side of a row: the
+  // row is compared with the motions before and after it, and the nearer one counts.
+  Outcome rows_of_step() {
+    constexpr double kAboutAKink = 1e-3;
+    const std::size_t first = next_;
+    for (; next_ < rows_.size() && resets_before(next_) <= resets_ && passed(times_[next_]); ++next_)
+      if (Outcome o = compare(next_); !o.ok()) return o;
+    const W about = W(kAboutAKink) * last_step();
+    if (was_kink_)
+      for (std::size_t i = first; i-- > 0 && abs(W(times_[i] - motion_.stepper().before())) < about;) compare(i);
+    if (at_kink_)
+      for (std::size_t i = next_; i < rows_.size() && resets_before(i) == resets_ && from_now(i) < about; ++i)
+        compare(i);
+    return {};
+  }
+
+  // The other run may have met the event somewhat sooner or later: rows are compared on the side of it on which they
+  // were made.
+  Outcome settle(bool& goes_on) {
+    const W within = last_step();
+    std::vector<Occurrence<W>> occurrences;
+    for (; next_ < rows_.size() && run_.knows_resets && resets_before(next_) == resets_ && sets() &&
+           from_now(next_) < within;
+         ++next_)
+      if (Outcome o = compare(next_); !o.ok()) return o;
+    const Outcome o = motion_.settle(occurrences, goes_on);
+    bool set = false;
+    const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since)
+                                                  : motion_.stepper().time() < convert<W>(*run_.since));
+    for (const Occurrence<W>& each : occurrences) {
+      if (counted) met_.push_back({each.event, each.t});
+      set = set || !each.changes.empty();
+    }
+    if (!o.ok()) return o;
+    if (set) {
+      ++resets_;
+      if (!counted) ++uncounted_;
+      outputs_.set_parameters(motion_.parameters());
+      at_kink_ = was_kink_ = false;
+      for (; next_ < rows_.size() && resets_before(next_) < resets_; ++next_) lose(next_);
+    }
+    for (; next_ < rows_.size() && resets_before(next_) == resets_ && (set || !goes_on) &&
+           (passed(times_[next_]) || !goes_on) && from_now(next_) < within;
+         ++next_)
+      if (Outcome at = compare(next_); !at.ok()) return at;
+    // Events of one moment may come in another order.
+    if (!goes_on && next_ < rows_.size() && from_now(next_) > later()) lose(next_);
+    return {};
+  }
+
+  // Whether what fired in the last step changes the state.
+  bool sets() const {
+    for (const auto& f : motion_.stepper().fired())
+      if (f.series < s_.model->events.size() && !s_.model->events[f.series].set.empty()) return true;
+    return false;
+  }
+
+  // All rows are compared, or cannot be. A row after an event that is still to come lets the run go on a little
+  // further.
+  bool done() {
+    if (lost_) return true;
+    const bool at_end = motion_.stepper().time() == end_;
+    const auto before_end = [&](const EventMoment<V>& e) {
+      return forward_ ? !(convert<W>(e.t) > times_.back()) : !(convert<W>(e.t) < times_.back());
+    };
+    const auto expected = static_cast<std::size_t>(std::count_if(run_.events.begin(), run_.events.end(), before_end));
+    if (!at_end || (next_ == rows_.size() && met_.size() >= expected)) return at_end;
+    if (extended_) {
+      lose(std::min(next_, rows_.size() - 1));
+      return true;
+    }
+    extended_ = true;
+    end_ += forward_ ? later() : W(-later());
+    return false;
+  }
+
+  // By so much the moments of an event may differ.
+  W later() const { return abs(W(times_.back() - t0_)) * W(1e-6); }
+
+  void lose(std::size_t row) {
+    if (!lost_) lost_ = rows_[row].t;
+  }
+
+  Outcome compare(std::size_t i) {
+    const W t = times_[i];
+    if (Outcome at = motion_.at(t); !at.ok()) return at;
+    outputs_.see(motion_.point());
+    std::vector<W> run;
+    for (const V& v : rows_[i].values) run.push_back(convert<W>(v));
+    const std::vector<double> missed = kept(missed_at(t));
+    RowComparison::Row row =
+        difference(s_, to_double(t), run, kept(row_values(s_, highest_, motion_.point(), outputs_)), outputs_);
+    for (std::size_t j = 0; j < row.differences.size(); ++j) row.differences[j] += missed[j];
+    if (!compared_[i] || weight(row) < weight(*compared_[i])) compared_[i] = std::move(row);
+    return {};
+  }
+
+  // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the
+  // equations at a row, by far more than the tolerance, the state misses their difference times the step. Kinks and
+  // events make jumps at its ends.
+  std::vector<double> missed_at(const W& t) {
+    constexpr double kFarMore = 1e4;
+    const Stepper<M>& stepper = motion_.stepper();
+    const Expansion<W>& here = motion_.point();
+    const std::size_t n = s_.system.coordinates;
+    std::vector<double> missed(row_columns(s_, highest_).size(), 0.0);
+    const bool inside =
+        forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
+    if (!inside || at_kink_ || was_kink_ || motion_.fired()) return missed;
+    const double h = to_double(last_step());
+    for (std::size_t a = 0; a < n; ++a) {
+      const int d = motion_.program().d[a];
+      if (d == 0) continue;
+      const W leading = here.derivative(a, d);
+      const double by = to_double(W(abs(W(leading_of_polynomial(a, t) - leading)))) * h,
+                   size = std::max(1.0, std::abs(to_double(here.derivative(a, d - 1))));
+      if (!(by > kFarMore * tolerance_ * size)) continue;
+      missed[static_cast<std::size_t>(d - 1) * n + a] = by;
+      if (d > 1) missed[static_cast<std::size_t>(d - 2) * n + a] = by * h;
+    }
+    return missed;
+  }
+
+  // The derivative that leads unknown j, of the last step's polynomial.
+  W leading_of_polynomial(std::size_t j, const W& t) const {
+    const Stepper<M>& stepper = motion_.stepper();
+    const int d = motion_.program().d[j];
+    const W dt = t - stepper.before();
+    W sum(0);
+    for (int k = stepper.degree(j); k >= d; --k) {
+      W factor(1);
+      for (int i = 0; i < d; ++i) factor *= W(k - i);
+      sum = sum * dt + factor * stepper.dense(j, k);
+    }
+    return sum;
+  }
+
+  static double weight(const RowComparison::Row& row) {
+    double w = 0;
+    for (std::size_t j = 0; j < row.differences.size(); ++j)
+      if (row.differences[j] > 0) w += row.differences[j] / (row.differences[j] + row.magnitudes[j]);
+    return w;
+  }
+
+  const Scenario& s_;
+  const SimulationOptions& o_;
+  Motion<M> motion_;
+  RowOutputs<W> outputs_;
+  int highest_;
+  double tolerance_;  // of this run
+  const RunToJudge<V>& run_;
+  std::vector<SampledRow<V>> rows_;
+  std::vector<W> times_;
+  std::vector<std::optional<RowComparison::Row>> compared_;
+  std::vector<EventMoment<W>> met_;
+  W t0_{0}, end_{0};
+  bool forward_ = true, extended_ = false, at_kink_ = false, was_kink_ = false;
+  std::size_t next_ = 0, resets_ = 0, uncounted_ = 0;
+  std::optional<V> lost_;
+};
+
+template <Number M, Number N>
+void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<Wider<N>>& run,
+             SimulationReport& report) {
+  SharperRun<M, N> sharper(s, o, settings, run);
+  const Outcome outcome = sharper.go();
+  const std::optional<double> until = sharper.last_compared();
+  if (!outcome.ok() && (!until || *until == s.state.t)) {
+    report.no_error = "the second run stopped: " + outcome.message;
+    return;
+  }
+  report.error = sharper.comparison(to_double(unit_roundoff<N>())).report(kSafety, written_roundoff<N>(o));
+  if (outcome.ok() || sharper.whole()) return;
+  report.error->until = until;
+  report.error->stopped = outcome.message;
+}
+
+}  // namespace
+
+template <Number W>
+void SampledRows<W>::add(const W& t, const std::vector<W>& values, std::size_t resets, const std::string& label) {
+  if (last_ && kept_.size() > 1 && (kept_[1].row.t > kept_[0].row.t ? t < last_->t : t > last_->t)) return;
+  const double pace = pace_to(t, values);
+  last_ = SampledRow<W>{t, values, resets, label};
+  if (in_group_ == 0)
+    kept_.push_back({*last_, pace});
+  else if (pace > kept_.back().pace)
+    kept_.back() = {*last_, pace};
+  in_group_ = (in_group_ + 1) % stride_;
+  if (kept_.size() < kMost || in_group_ != 0) return;
+  // Of each two neighbours the faster one; the first row has no pace.
+  std::vector<Candidate> fewer = {std::move(kept_[0])};
+  for (std::size_t i = 1; i < kept_.size(); i += 2) {
+    const std::size_t j = i + 1 < kept_.size() && kept_[i + 1].pace > kept_[i].pace ? i + 1 : i;
+    fewer.push_back(std::move(kept_[j]));
+  }
+  kept_ = std::move(fewer);
+  stride_ *= 2;
+}
+
+// How fast the numbers change from the last row to this one, each in relation to the largest that it has been.
+template <Number W>
+double SampledRows<W>::pace_to(const W& t, const std::vector<W>& values) {
+  magnitudes_.resize(values.size(), 0);
+  double pace = 0;
+  const double dt = last_ ? std::abs(to_double(W(t - last_->t))) : 0;
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    magnitudes_[j] = std::max(magnitudes_[j], std::abs(to_double(values[j])));
+    if (!(dt > 0) || !(magnitudes_[j] > 0)) continue;
+    pace = std::max(pace, std::abs(to_double(W(values[j] - last_->values[j]))) / magnitudes_[j] / dt);
+  }
+  return pace;
+}
+
+template <Number W>
+std::vector<SampledRow<W>> SampledRows<W>::take() {
+  std::vector<SampledRow<W>> rows;
+  for (Candidate& c : kept_) rows.push_back(std::move(c.row));
+  if (last_ && !(rows.back().t == last_->t)) rows.push_back(std::move(*last_));
+  clear();
+  return rows;
+}
+
+template <Number W>
+RowComparison::Row difference(const Scenario& s, double t, const std::vector<W>& run, const std::vector<W>& sharper,
+                              const RowOutputs<W>& outputs) {
+  RowComparison::Row row{t, {}, {}, {}};
+  const std::size_t n = sharper.size(), monitors = s.model->monitors.size();
+  for (std::size_t j = 0; j < n; ++j) {
+    row.differences.push_back(to_double(W(abs(W(run[j] - sharper[j])))));
+    row.magnitudes.push_back(to_double(W(abs(sharper[j]))));
+    row.terms.push_back(j + monitors < n ? row.magnitudes.back() : to_double(outputs.monitor_terms(j + monitors - n)));
+  }
+  return row;
+}
+
+template <Number N>
+double written_roundoff(const SimulationOptions& o) {
+  const double of_text = 0.5 * std::pow(10.0, -(o.digits + 1));
+  if constexpr (std::same_as<N, Multi>)
+    return of_text;
+  else if constexpr (std::same_as<N, Quad>)
+    return o.digits > 16 ? std::max(of_text, to_double(unit_roundoff<N>())) : to_double(unit_roundoff<N>());
+  else
+    return to_double(unit_roundoff<N>());
+}
+
+template <Number N>
+void estimate_error(const Scenario& s, const SimulationOptions& o, RunToJudge<Wider<N>>& run,
+                    SimulationReport& report) {
+  const Rational tolerance = o.tolerance / kSharper;
+  StepSettings settings{natural_logarithm(tolerance), 0, o.most_steps, o.cancelled};
+  // A stiff motion that is short by another method is long for Taylor.
+  if (o.estimate == ErrorEstimate::short_runs)
+    settings.most_steps = std::min(settings.most_steps, kMostTimesLonger * kShortRun);
+  settings.order = taylor_order(settings.log_tolerance) + 2;
+  std::string numbers = "with " + std::to_string(kMoreDigits) + " digits more";
+  if constexpr (std::same_as<N, Multi>) {
+    const PrecisionScope precision(o.digits + 12 + kMoreDigits);
+    compare<Multi, Multi>(s, o, settings, run, report);
+  } else if constexpr (std::same_as<N, Quad>) {
+    const PrecisionScope precision(kQuadDigits + kMoreDigits);
+    compare<Multi, Quad>(s, o, settings, run, report);
+  } else {
+    bool wide_enough = true;
+    if constexpr (std::same_as<N, long double>) wide_enough = !(tolerance.get_d() < to_double(unit_roundoff<N>()));
+    numbers = wide_enough ? "in long double" : "in quadruple precision";
+    if (wide_enough)
+      compare<long double, N>(s, o, settings, run, report);
+    else if constexpr (std::same_as<N, long double>)
+      compare<Quad, N>(s, o, settings, run, report);
+  }
+  if (report.error)
+    report.error->means = "a second run " + numbers + ", tolerance " + number_text(tolerance.get_d(), 3) + ", order " +
+                          std::to_string(settings.order);
+}
+
+#define INSTANTIATE(W)                                                                                                 \
+  template class SampledRows<W>;                                                                                       \
+  template RowComparison::Row difference(const Scenario&, double, const std::vector<W>&, const std::vector<W>&,        \
+                                         const RowOutputs<W>&);
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
+
+#define INSTANTIATE(N)                                                                                                 \
+  template void estimate_error<N>(const Scenario&, const SimulationOptions&, RunToJudge<Wider<N>>&,                    \
+                                  SimulationReport&);                                                                  \
+  template double written_roundoff<N>(const SimulationOptions&);
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
+
+}  // namespace anholon

@@ -1,0 +1,82 @@
+// The global error of a run, by a second and sharper one: in wider numbers where there are any, at a tolerance 100
+// times smaller
+// and two orders higher, from a start that differs in its last digits where both would round it alike. The two are
+// compared in every column, at
+// rows all along the run. A motion that forgets its start (a double pendulum after long) shows as digits lost.  (theory: integrals)
+#pragma once
+#include "motion/motion.h"
+#include "observe/options.h"
+#include "observe/report.h"
+#include "observe/row_comparison.h"
+
+namespace anholon {
+
+// A row of the run, and how often events had changed the state before it.
+template <Number W>
+struct SampledRow {
+  W t{0};
+  std::vector<W> values;
+  std::size_t resets = 0;
+  std::string label;  // the time as it was asked for, where that says more
+};
+
+// Rows to be compared: all, or where there are many those between which the numbers change fastest, so that no short
+// phase is left out.
+template <Number W>
+class SampledRows {
+ public:
+  // In the order of time; others are left out.
+  void add(const W& t, const std::vector<W>& values, std::size_t resets, const std::string& label = {});
+  void clear() { *this = {}; }
+  // The first, the last and those between.
+  std::vector<SampledRow<W>> take();
+
+ private:
+  static constexpr std::size_t kMost = 256;
+  struct Candidate {
+    SampledRow<W> row;
+    double pace = 0;
+  };
+  double pace_to(const W& t, const std::vector<W>& values);
+
+  std::vector<Candidate> kept_;
+  std::optional<SampledRow<W>> last_;
+  std::vector<double> magnitudes_;
+  std::size_t stride_ = 1, in_group_ = 0;  // rows of which one is kept
+};
+
+// A moment at which an event fired.
+template <Number W>
+struct EventMoment {
+  std::size_t event = 0;
+  W t{0};
+};
+
+template <Number W>
+struct RunToJudge {
+  SampledRows<W> rows;
+  std::vector<EventMoment<W>> events;
+  std::vector<std::size_t> columns;  // of a row, that its values are; none: all
+  std::optional<W> since;            // events up to there are not counted: it goes on with an earlier run
+  bool knows_resets = true;          // else an event may have changed the state any number of times
+};
+
+// N: the numbers of the run. Fills `error`, or `no_error`.
+template <Number N>
+void estimate_error(const Scenario& scenario, const SimulationOptions& options, RunToJudge<Wider<N>>& run,
+                    SimulationReport& report);
+
+// The relative round-off of the numbers that a run writes.
+template <Number N>
+double written_roundoff(const SimulationOptions& options);
+
+// The differences of two rows.
+template <Number W>
+RowComparison::Row difference(const Scenario& scenario, double t, const std::vector<W>& run,
+                              const std::vector<W>& sharper, const RowOutputs<W>& outputs);
+
+extern template class SampledRows<long double>;
+extern template class SampledRows<Quad>;
+extern template class SampledRows<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,68 @@
+#include "observe/judge.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+template <Number N>
+void Judge<N>::look_beside(const Course<N>& course) {
+  if (o_.estimate != ErrorEstimate::never)
+    beside_.emplace(
+        s_, course.taylor().parameters(),
+        RowComparison(row_columns(s_, highest(course)), to_double(unit_roundoff<N>()), o_.tolerance.get_d()));
+}
+
+template <Number N>
+void Judge<N>::row(const W& t, const std::string& label, const std::vector<W>& numbers, const Course<N>& course) {
+  if (beside_) {
+    beside_->outputs.see(course.point());
+    beside_->comparison.see(difference(s_, to_double(t), numbers,
+                                       row_values(s_, highest(course), course.point(), beside_->outputs),
+                                       beside_->outputs));
+  } else if (wanted(course)) {
+    run_.rows.add(label.empty() ? convert<W>(convert<N>(t)) : t, numbers, resets_, label);
+  } else {
+    run_.rows.clear();
+  }
+}
+
+template <Number N>
+void Judge<N>::events(const std::vector<Occurrence<W>>& occurrences) {
+  for (const Occurrence<W>& o : occurrences) run_.events.push_back({o.event, o.t});
+  if (std::any_of(occurrences.begin(), occurrences.end(), [](const Occurrence<W>& o) { return !o.changes.empty(); }))
+    ++resets_;
+}
+
+// Of the rows of another integrator the motion beside it tells, of others a second run.
+template <Number N>
+void Judge<N>::estimate(const Course<N>& course, SimulationReport& report) {
+  constexpr double kBeside = 2;  // that motion has an error, too
+  if (o_.estimate == ErrorEstimate::never) return;
+  if (report.outcome.kind == OutcomeKind::not_a_number) {
+    report.no_error = "a formula had no value where the motion ended";
+  } else if (course.steps() == 0 || report.rows == 0) {
+    report.no_error = "the run is too short";
+  } else if (beside_) {
+    report.error = beside_->comparison.report(kBeside, written_roundoff<N>(o_));
+    report.error->means = course.report().steps > 0
+                              ? "the motion by method " + std::string(name(course.report().last)) + " beside it"
+                              : "Taylor's motion beside it";
+  } else if (!wanted(course)) {
+    report.no_error = "the run has more than " + std::to_string(kShortRun) + " steps: --error-estimate makes one";
+  } else {
+    estimate_error<N>(s_, o_, run_, report);
+  }
+  if (!report.error || !report.error->lost) return;
+  const ErrorReport& e = *report.error;
+  report.warnings.push_back(
+      {"no digit of " + e.lost_of + " can be trusted from t = " + number_text(*e.lost, 6) +
+           " on: the error is as large as the motion",
+       "end the motion earlier, or take a smaller tolerance, with more digits where it is below 1e-15 (--digits 30)"});
+}
+
+template class Judge<double>;
+template class Judge<long double>;
+template class Judge<Quad>;
+template class Judge<Multi>;
+
+}  // namespace anholon

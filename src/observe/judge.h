@@ -1,0 +1,53 @@
+// What is kept of a run for the estimate of its error: rows, and moments of events, or the comparison with the motion
+// beside it.
+#pragma once
+#include "motion/course.h"
+#include "observe/estimate.h"
+
+namespace anholon {
+
+template <Number N>
+class Judge {
+ public:
+  using W = Wider<N>;
+
+  Judge(const Scenario& scenario, const SimulationOptions& options) : s_(scenario), o_(options) {}
+
+  // The run goes on from here; what events did before is not known.
+  void goes_on_from(const W& t) { run_.since = t; }
+
+  // The rows are those of another integrator, and compared with the motion beside it.
+  void look_beside(const Course<N>& course);
+  // A row, at the time that is written, after so many steps of the course.
+  void row(const W& t, const std::string& label, const std::vector<W>& numbers, const Course<N>& course);
+  // What fired at one moment.
+  void events(const std::vector<Occurrence<W>>& occurrences);
+  // Fills `error`, or `no_error`, of a run that has ended.
+  void estimate(const Course<N>& course, SimulationReport& report);
+
+ private:
+  bool wanted(const Course<N>& course) const {
+    return o_.estimate == ErrorEstimate::always ||
+           (o_.estimate == ErrorEstimate::short_runs && course.steps() <= kShortRun);
+  }
+  int highest(const Course<N>& course) const { return largest_order(s_, course.taylor().program().d); }
+
+  const Scenario& s_;
+  const SimulationOptions& o_;
+  RunToJudge<W> run_;
+  std::size_t resets_ = 0;  // how often events have changed the state
+  struct Beside {
+    Beside(const Scenario& s, const std::vector<W>& parameters, RowComparison c)
+        : outputs(s, parameters), comparison(std::move(c)) {}
+    RowOutputs<W> outputs;
+    RowComparison comparison;
+  };
+  std::optional<Beside> beside_;
+};
+
+extern template class Judge<double>;
+extern template class Judge<long double>;
+extern template class Judge<Quad>;
+extern template class Judge<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,45 @@
+// What is asked of one motion: its span, rows and accuracy, and what is watched on the way.
+#pragma once
+#include <functional>
+
+#include "mechanics/conserved.h"
+#include "motion/course.h"
+#include "motion/saved.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+// Whether a second, sharper run is made for the estimate of the global error; it costs more than the run itself.
+enum class ErrorEstimate : std::uint8_t { never, short_runs, always };
+inline constexpr std::size_t kShortRun = 5000;  // steps
+
+struct SimulationOptions {
+  StateChoice state;
+  std::optional<Rational> to;
+  std::vector<Rational> at;  // exactly these rows, ascending, on one side of the start
+  std::optional<Rational> every;
+  Rational tolerance{1, 1000000000000};
+  int order = 0;  // of the Taylor polynomials; 0: from the tolerance
+  Integrator integrator =
+      Integrator::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
+  // Whose motion it is. Where only Taylor's can give what is asked for, automatic means that; others by name compute in
+  // double, do not save, and know neither events nor enclosures.
+  Method method = Method::automatic;
+  Precision precision = Precision::real;
+  int digits = 16;                      // of the numbers written, where more than 16 (multi: also of the computation)
+  std::optional<std::size_t> rigorous;  // the defect of the dense output, enclosed at so many times; at all times: 0
+  std::vector<std::string> at_text;     // the times as written, to be printed as given
+  std::function<void(double t, std::size_t steps)> progress;
+  std::function<bool()> cancelled;
+  std::function<void(const std::string&)> note;  // told of the notes of the report as soon as there is one
+  std::size_t most_steps = 50'000'000;
+  bool kernel = true;  // where there is one: its pivots, chosen at the start, are seen in the last digits
+  ErrorEstimate estimate = ErrorEstimate::never;
+  std::vector<Conserved> conserved;  // to be watched
+  // Called at the end, and every few seconds: what is needed to go on.
+  std::function<void(const SavedRun&)> save;
+  double save_seconds = 10;
+  const SavedRun* resume = nullptr;  // a run to go on with; only rows after its last are given
+};
+
+}  // namespace anholon

@@ -1,0 +1,52 @@
+// Supports that look like floors: which constraints hold the whole system up against gravity, and when one of them
+// begins to pull.
+//
+// A constraint is called a support where it is geometric, of a single equation, and speaks of a height alone: a
+// coordinate moves all bodies upwards as one, another (or two) sideways, and the residual of the constraint changes
+// with the first at a constant rate and with the others not at all, here and at other places. What is held sideways as
+// well is a hinge, which may pull. This is about notes, so what is in doubt is no support.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "setup/scenario.h"
+
+namespace anholon {
+
+struct Support {
+  std::size_t constraint = 0;
+  double upwards = 0;  // the force on the system against gravity is this times its multiplier
+};
+std::vector<Support> supports(const Scenario& s);
+
+// What the supports bear along a run, at its rows.
+class SupportWatch {
+ public:
+  explicit SupportWatch(const Scenario& s) : s_(s) {
+    for (const Support& support : supports(s)) loads_.emplace_back(support);
+  }
+  bool any() const { return !loads_.empty(); }
+  // multiplier(r): of constraint r.
+  template <class F>
+  void see(double t, F multiplier) {
+    for (Load& l : loads_) l.see(t, l.support.upwards * multiplier(l.support.constraint));
+  }
+  // A sentence for each support that pulls.
+  std::vector<std::string> notes() const;
+
+ private:
+  struct Load {
+    explicit Load(const Support& s) : support(s) {}
+    void see(double t, double force);
+    Support support;
+    bool any = false;
+    double first = 0, largest = 0, least = 0,
+           least_t = 0;  // when it pulls first; what it bears at most; the strongest pull
+    std::optional<double> pulls;
+  };
+  const Scenario& s_;
+  std::vector<Load> loads_;
+};
+
+}  // namespace anholon

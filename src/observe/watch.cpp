@@ -1,0 +1,262 @@
+#include "observe/watch.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+// The power of all forces for the energy balance. Constraints that do no work on the motion (first
+// order and homogeneous, holonomic without t) are left out: their power is zero, and its terms, which
+// are large and cancel, would only add round-off to the balance.
+static Expr balance_power(const Scenario& s, const Power& p) {
+  const Mechanics& m = *s.mechanics;
+  Graph& g = m.graph();
+  Expr total = p.noncons;
+  for (std::size_t r : s.system.constraints) {
+    if (s.model->constraints[r].by || (m.order[r] == 1 && s.classes[r].homogeneous)) continue;
+    Expr rate = g.zero();
+    if (m.order[r] == 0)
+      rate = -partial(m.phi[r], g.time());
+    else
+      for (std::size_t a = 0; a < m.q.size(); ++a) rate += m.Phi[r][a] * m.qd[a];
+    total += m.lambda[r] * put_masses(*s.model, rate);
+  }
+  return total;
+}
+
+std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p) {
+  std::vector<Expr> es = {balance_power(s, p)};
+  for (const VaryingMass& m : s.model->masses) es.push_back(m.value);
+  return es;
+}
+
+std::vector<ConstraintReport> constraint_reports(const Scenario& s) {
+  std::vector<ConstraintReport> list;
+  for (std::size_t i = s.system.coordinates; i < s.system.mechanical(); ++i)
+    list.push_back({s.system.equation_names[i],
+                    std::vector<double>(static_cast<std::size_t>(std::max(1, s.structure.c[i])), 0.0)});
+  return list;
+}
+
+bool declared_conserved(const Model& model, const Monitor& m) {
+  return std::any_of(model.outputs.begin(), model.outputs.end(), [&](const OutputQuantity& o) {
+    return o.conserved && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0));
+  });
+}
+
+template <Number W>
+void Track<W>::see(const W& value) {
+  if (!any) first = least = greatest = value;
+  any = true;
+  last = value;
+  if (value < least) least = value;
+  if (value > greatest) greatest = value;
+  size = std::max(size, W(abs(value)));
+  if (W v = abs(W(value - first)); v > change || !is_finite(v)) change = v;
+}
+
+template <Number W>
+template <class MadeOf>
+void Track<W>::see(const W& value, const W& terms, MadeOf made_of) {
+  see(value);
+  size = std::max(size, terms);
+  if (W v = relative_miss(W(value - first), size, made_of); v > missed || !is_finite(v)) missed = v;
+}
+
+template <Number W>
+Watch<W>::Watch(const Scenario& s, const Power& power, const std::vector<Conserved>& conserved,
+                const std::vector<W>& parameters)
+    : s_(s), outputs_(s, expressions(power, conserved), parameters), redundant_(s, parameters) {}
+
+// N, then what the residual report needs: h, E, G, Phi; the terms of what is watched.
+template <Number W>
+Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& conserved) {
+  const Model& model = *s_.model;
+  const Mechanics& m = *s_.mechanics;
+  Column es = put_masses(model, m.N);
+  es.push_back(power.h);
+  const Column inertia = newton_left_side(m);
+  const Column force = put_masses(model, forces(m));
+  es.insert(es.end(), inertia.begin(), inertia.end());
+  es.insert(es.end(), force.begin(), force.end());
+  for (std::size_t k : s_.system.constraints)
+    for (Expr e : m.Phi[k]) es.push_back(model.constraints[k].by ? m.graph().zero() : put_masses(model, e));
+  first_open_ = es.size();
+  for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
+    if (s_.structure.c[s_.system.coordinates + i] == 0) {
+      open_.push_back(i);
+      es.push_back(put_masses(model, m.phi[s_.system.constraints[i]]));
+    }
+  first_monitor_ = es.size();
+  for (const Monitor& monitor : model.monitors) {
+    es.push_back(monitor.value);
+    terms_.push_back(1);
+    constant_.push_back(declared_conserved(model, monitor));
+  }
+  for (const Conserved& c : conserved) {
+    es.insert(es.end(), c.terms.begin(), c.terms.end());
+    terms_.push_back(c.terms.size());
+    constant_.push_back(true);
+  }
+  tracks_.resize(terms_.size());
+  return es;
+}
+
+template <Number W>
+Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
+  outputs_.evaluate(point);
+  const std::size_t n = s_.system.coordinates;
+  std::vector<W> inertia(n), force(n), reaction(n);
+  Matrix<W> phi(s_.system.constraints.size(), n);
+  for (std::size_t a = 0; a < n; ++a) {
+    reaction[a] = outputs_[a];
+    inertia[a] = outputs_[n + 1 + a];
+    force[a] = outputs_[2 * n + 1 + a];
+  }
+  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = outputs_[3 * n + 1 + i];
+  newton(certify(inertia, force, reaction, phi), report);
+  turn_over(energy());
+  constraints(point, phi, report);
+  track();
+  multipliers_ = redundant_.multipliers(point);
+  return still_redundant(point, report);
+}
+
+template <Number W>
+void Watch<W>::newton(const NewtonResidual<W>& c, SimulationReport& report) {
+  forces_ = std::max(forces_, c.largest);
+  const auto made_of = [&] {
+    W most(0);
+    for (std::size_t i = 0; i < 3 * s_.system.coordinates + 1; ++i)
+      if (const W& v = outputs_.made_of(i); i != s_.system.coordinates && v > most) most = v;  // N, E, G
+    return most;
+  };
+  report.newton = std::max(report.newton, to_double(relative_miss(c.newton, forces_, made_of)));
+  report.projected = std::max(report.projected, to_double(relative_miss(c.projected, forces_, made_of)));
+}
+
+template <Number W>
+Outcome Watch<W>::still_redundant(const Expansion<W>& point, SimulationReport& report) {
+  double missed = 0;
+  Outcome o = redundant_.hold(point, !(point.time() != start_), missed);
+  report.constraints_kept = std::max(report.constraints_kept, missed);
+  return o;
+}
+
+// C3, and each constraint with its derivatives by itself.
+template <Number W>
+void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const {
+  const std::size_t n = s_.system.coordinates;
+  report.constraints_kept = std::max(report.constraints_kept, to_double(point.constraint_residual()));
+  const auto worse = [&](std::size_t i, int k, double residual) {
+    double& worst = report.constraints_each[i].residuals[static_cast<std::size_t>(k)];
+    worst = std::max(worst, residual);
+  };
+  for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
+    for (int k = 0; k < s_.structure.c[n + i]; ++k) worse(i, k, to_double(point.hidden_residual(n + i, k)));
+  for (std::size_t o = 0; o < open_.size(); ++o) {
+    const std::size_t i = open_[o];
+    W terms(0);
+    for (std::size_t a = 0; a < n; ++a)
+      terms += abs(W(phi(i, a) * point.derivative(a, s_.mechanics->order[s_.system.constraints[i]])));
+    const double residual = to_double(relative_miss(outputs_[first_open_ + o], terms, [&] {
+      return std::max(outputs_.made_of(first_open_ + o), point.size_of_level(0, n + i));
+    }));
+    worse(i, 0, residual);
+    report.constraints_kept = std::max(report.constraints_kept, residual);
+  }
+}
+
+template <Number W>
+void Watch<W>::save(SavedRun& to) const {
+  std::vector<W> tracks;
+  for (const Track<W>& t : tracks_)
+    tracks.insert(tracks.end(), {W(t.any ? 1 : 0), t.first, t.last, t.least, t.greatest, t.change, t.size, t.missed});
+  to.set_numbers("tracks", tracks);
+  to.set_numbers<W>("energy", {h0_, forces_, turned_over_});
+  to.set_numbers<W>("from", from_);
+}
+
+template <Number W>
+void Watch<W>::resume(const SavedRun& from) {
+  const std::vector<W> tracks = from.numbers<W>("tracks", 8 * tracks_.size()), energy = from.numbers<W>("energy", 3);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const W* t = &tracks[8 * i];
+    tracks_[i] = {!(t[0] == W(0)), t[1], t[2], t[3], t[4], t[5], t[6], t[7]};
+  }
+  h0_ = energy[0];
+  forces_ = energy[1];
+  turned_over_ = energy[2];
+  from_ = from.numbers<W>("from", s_.system.coordinates);
+}
+
+template <Number W>
+void Watch<W>::track() {
+  std::size_t at = first_monitor_;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    W value(0), terms(0);
+    for (std::size_t k = 0; k < terms_[i]; ++k, ++at) {
+      value += outputs_[at];
+      terms += outputs_.terms(at);
+    }
+    if (!constant_[i]) {
+      tracks_[i].see(value);
+      continue;
+    }
+    tracks_[i].see(value, terms, [&] {
+      W made(0);
+      for (std::size_t k = at - terms_[i]; k < at; ++k) made += outputs_.made_of(k);
+      return made;
+    });
+  }
+}
+
+template <Number W>
+void Watch<W>::start(const Expansion<W>& point) {
+  outputs_.evaluate(point);
+  h0_ = energy();
+  start_ = point.time();
+  for (std::size_t a = 0; a < s_.system.coordinates; ++a) from_.push_back(point.derivative(a, 0));
+  track();
+}
+
+template <Number W>
+void Watch<W>::leave(const Expansion<W>& point) {
+  outputs_.evaluate(point);
+  before_ = energy();
+  track();
+}
+
+template <Number W>
+void Watch<W>::enter(const Expansion<W>& point, const std::vector<W>& parameters) {
+  outputs_.set_parameters(parameters);
+  redundant_.set_parameters(parameters);
+  outputs_.evaluate(point);
+  h0_ += energy() - before_;
+}
+
+template <Number W>
+void Watch<W>::end(const Expansion<W>& point, const W& work, SimulationReport& report) {
+  outputs_.evaluate(point);
+  const W h = energy();
+  // Forces in balance turn energy over, though none is left: what each does on its way.
+  constexpr double kNone = 1e-8;  // half the digits of a double
+  const std::size_t n = s_.system.coordinates;
+  W ways(0), made_of = outputs_.made_of(n);
+  for (std::size_t a = 0; a < n; ++a) {
+    ways += outputs_.terms(2 * n + 1 + a) * abs(W(point.derivative(a, 0) - from_[a]));
+    made_of += outputs_.made_of(2 * n + 1 + a) * abs(point.derivative(a, 0));
+  }
+  for (const W& v : {h, h0_, work}) turn_over(v);
+  if (turned_over_ < ways * W(kNone)) turned_over_ = ways;
+  report.power = to_double(relative_miss(W(h - h0_ - work), turned_over_, [&] { return made_of; }));
+  track();
+}
+
+template struct Track<long double>;
+template struct Track<Quad>;
+template struct Track<Multi>;
+template class Watch<long double>;
+template class Watch<Quad>;
+template class Watch<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,99 @@
+// What is watched along a motion, point by point: the residual report by another way than the equations integrated, and
+// the reactions N that the rows show.
+//
+//   C1, C2  Newton's law by the points themselves, with and without multipliers  (theory: certificate)
+//   C3      hidden constraints
+//   power   h - h(0) - W, W the integral of the right side of the power identity
+// each in relation to the greatest of its terms so far: a motion that comes to rest is measured by what it was
+// and the model's [monitor] formulas and the integrals of the motion  (theory: integrals).
+#pragma once
+#include "mechanics/conserved.h"
+#include "motion/motion.h"
+#include "numeric/relative.h"
+#include "observe/evaluate.h"
+#include "observe/report.h"
+#include "setup/redundant.h"
+
+namespace anholon {
+
+// What has to be integrated for it: the power of all forces first, then the masses that vary.
+std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p);
+
+// The constraints with a residual for each derivative that has to vanish, none seen yet.
+std::vector<ConstraintReport> constraint_reports(const Scenario& s);
+
+// Whether [output] conserved = true says of a monitor that it keeps its value: of a vector all components do.
+bool declared_conserved(const Model& model, const Monitor& m);
+
+// A number along the motion: its range, and how far it went from its first value.
+template <Number W>
+struct Track {
+  bool any = false;
+  W first{0}, last{0}, least{0}, greatest{0}, change{0}, size{0}, missed{0};
+  void see(const W& value);
+  // What ought to be constant. `terms`: the sum of the magnitudes of its terms; `made_of`: of the numbers these are
+  // made of (numeric/relative.h).
+  template <class MadeOf>
+  void see(const W& value, const W& terms, MadeOf made_of);
+  // Of its size; or of its terms, if it ought to be constant.
+  double relative_change() const { return to_double(missed > W(0) || change == W(0) ? missed : W(change / size)); }
+};
+
+template <Number W>
+class Watch {
+ public:
+  Watch(const Scenario& scenario, const Power& power, const std::vector<Conserved>& conserved,
+        const std::vector<W>& parameters);
+
+  // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows
+  // from the others.
+  Outcome see(const Expansion<W>& point, SimulationReport& report);
+  // That alone.
+  Outcome still_redundant(const Expansion<W>& point, SimulationReport& report);
+  // The monitors of the model, then the integrals.
+  const std::vector<Track<W>>& tracks() const { return tracks_; }
+  // What was seen, for a run that goes on.
+  void save(SavedRun& to) const;
+  void resume(const SavedRun& from);
+  // lambda of every constraint, N and the monitors at the point seen last.
+  const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
+  const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
+  const W& monitor(std::size_t i) const { return tracks_[i].last; }
+
+  // The first and the last point: the energy balance goes from one to the other, between which the work is integrated.
+  void start(const Expansion<W>& point);
+  // What an event changes at a moment is no work: the energy before and after it, and the modes from there on.
+  void leave(const Expansion<W>& point);
+  void enter(const Expansion<W>& point, const std::vector<W>& parameters);
+  // The work so far, where a step begins.
+  void turn_over(const W& work) { turned_over_ = std::max(turned_over_, W(abs(work))); }
+  void end(const Expansion<W>& point, const W& work, SimulationReport& report);
+
+ private:
+  Column expressions(const Power& power, const std::vector<Conserved>& conserved);
+  void track();
+  void constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const;
+  void newton(const NewtonResidual<W>& c, SimulationReport& report);
+  W energy() const { return outputs_[s_.system.coordinates]; }
+
+  const Scenario& s_;
+  std::vector<Track<W>> tracks_;
+  std::vector<std::size_t> terms_;  // of which each is the sum
+  std::vector<bool> constant_;      // which ought to be
+  // Constraints that no derivative hides: their accelerations, … are solved for with the equations.
+  std::vector<std::size_t> open_;
+  std::size_t first_open_ = 0, first_monitor_ = 0;  // among the outputs
+  OutputTape<W> outputs_;
+  Redundant<W> redundant_;
+  std::vector<W> multipliers_;
+  W h0_{0}, start_{0}, before_{0};
+  // The greatest so far: of the terms of Newton's law, of energies and work.
+  W forces_{0}, turned_over_{0};
+  std::vector<W> from_;  // the coordinates at the start
+};
+
+extern template class Watch<long double>;
+extern template class Watch<Quad>;
+extern template class Watch<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,102 @@
+// Names in LaTeX and MathML: Greek letters, subscripts, indices, derivatives.
+#include "print/print_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "print/print.h"
+
+namespace anholon {
+
+static const std::array kGreekNames = {
+    "alpha", "beta",  "gamma", "delta", "epsilon", "zeta",  "eta", "theta",   "iota", "kappa", "lambda",
+    "mu",    "nu",    "xi",    "pi",    "rho",     "sigma", "tau", "upsilon", "phi",  "chi",   "psi",
+    "omega", "Gamma", "Delta", "Theta", "Lambda",  "Xi",    "Pi",  "Sigma",   "Phi",  "Psi",   "Omega"};
+
+static const std::array<const char*, kGreekNames.size()> kGreekLetters = {
+    "α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "ι", "κ", "λ", "μ", "ν", "ξ", "π", "ρ", "σ",
+    "τ", "υ", "φ", "χ", "ψ", "ω", "Γ", "Δ", "Θ", "Λ", "Ξ", "Π", "Σ", "Φ", "Ψ", "Ω"};
+
+static bool is_greek(const std::string& s) {
+  return std::find(kGreekNames.begin(), kGreekNames.end(), s) != kGreekNames.end();
+}
+
+std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name) {
+  const std::size_t open = name.find('['), close = name.find(']');
+  if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
+  return std::pair{name.substr(0, open) + name.substr(close + 1), name.substr(open + 1, close - open - 1)};
+}
+
+std::string latex_name(const std::string& name) {
+  if (const auto indexed = indexed_name(name)) {
+    const auto& [base, index] = *indexed;
+    const std::string written = latex_name(base);
+    // One subscript holds what the name had and the index: x_{1,3}.
+    if (written.find("_{") != std::string::npos && written.back() == '}')
+      return written.substr(0, written.size() - 1) + "," + index + "}";
+    return written + "_{" + index + "}";
+  }
+  if (is_greek(name)) return "\\" + name;
+  if (name.size() == 1) return name;
+  std::size_t digits = name.size();
+  while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
+  const std::size_t underscore = name.find('_');
+  if (digits < name.size() && digits > 0 && underscore == std::string::npos)
+    return latex_name(name.substr(0, digits)) + "_{" + name.substr(digits) + "}";
+  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
+    return latex_name(name.substr(0, underscore)) + "_{" + latex_name(name.substr(underscore + 1)) + "}";
+  return "\\mathrm{" + latex_escape(name) + "}";
+}
+
+std::string mathml_name(const std::string& name) {
+  if (const auto indexed = indexed_name(name)) {
+    const auto& [base, index] = *indexed;
+    std::string own = "<mn>";
+    for (const char c : index) own += c == ',' ? std::string("</mn><mo>,</mo><mn>") : std::string(1, c);
+    own += "</mn>";
+    const std::string written = mathml_name(base), open = "<msub>", close = "</msub>";
+    if (written.rfind(open, 0) != 0)
+      return open + written + (index.find(',') == std::string::npos ? own : row(own)) + close;
+    // Its second child, the subscript, goes before the index.
+    const std::size_t underscore = base.find('_'), digit = base.find_last_not_of("0123456789") + 1;
+    const std::string root = mathml_name(base.substr(0, underscore != std::string::npos ? underscore : digit));
+    const std::size_t start = open.size() + root.size();
+    return open + root + row(written.substr(start, written.size() - start - close.size()) + "<mo>,</mo>" + own) + close;
+  }
+  const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
+  if (greek != kGreekNames.end())
+    return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
+  if (name.size() == 1) return "<mi>" + markup_escape(name) + "</mi>";
+  std::size_t digits = name.size();
+  while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
+  if (digits == 0) return "<mn>" + name + "</mn>";
+  const std::size_t underscore = name.find('_');
+  if (digits < name.size() && underscore == std::string::npos)
+    return "<msub>" + mathml_name(name.substr(0, digits)) + "<mn>" + name.substr(digits) + "</mn></msub>";
+  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
+    return "<msub>" + mathml_name(name.substr(0, underscore)) + mathml_name(name.substr(underscore + 1)) + "</msub>";
+  return "<mi mathvariant=\"normal\">" + markup_escape(name) + "</mi>";
+}
+
+std::string derivative_name(const std::string& name, unsigned order, Format format) {
+  if (order == 0) return name;
+  switch (format) {
+  case Format::text:
+    if (order <= 3) return name + std::string(order, '\'');
+    return "D(" + name + "," + std::to_string(order) + ")";
+  case Format::latex: {
+    static const char* const kDots[] = {"\\dot{", "\\ddot{", "\\dddot{"};
+    if (order <= 3) return kDots[order - 1] + name + "}";
+    return name + "^{(" + std::to_string(order) + ")}";
+  }
+  case Format::mathml: {
+    static const char* const kDots[] = {"˙", "¨", "⃛"};
+    if (order <= 3) return "<mover accent=\"true\">" + name + "<mo>" + kDots[order - 1] + "</mo></mover>";
+    return "<msup>" + name + row("<mo>(</mo><mn>" + std::to_string(order) + "</mn><mo>)</mo>") + "</msup>";
+  }
+  }
+  return name;
+}
+
+}  // namespace anholon

@@ -1,0 +1,203 @@
+#include "setup/eliminate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace anholon {
+
+namespace {
+
+// Below this part of its size a pivot counts as zero.
+constexpr double kSingular = 1e-9;
+
+// A number in [0.6, 1.4) that depends on the symbol alone.
+double arbitrary(const Node& n) {
+  std::uint64_t h = static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order;
+  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
+  return 0.6 + 0.8 * static_cast<double>(h >> 40) / 16777216.0;
+}
+
+Matrix<double> constraint_matrix(const Mechanics& m, const std::vector<std::size_t>& constraints, PointValues& at) {
+  Matrix<double> phi(constraints.size(), m.q.size());
+  for (std::size_t i = 0; i < constraints.size(); ++i)
+    for (std::size_t a = 0; a < m.q.size(); ++a) phi(i, a) = at(put_masses(*m.model, m.Phi[constraints[i]][a]));
+  return phi;
+}
+
+std::string list_of(const Model& model, const std::vector<std::size_t>& which) {
+  std::string list;
+  for (std::size_t a : which) list += (list.empty() ? "" : ", ") + model.coordinates[a].name;
+  return list;
+}
+
+// A pivot that is a number can never vanish: it is worth a few times its size.
+double weight(const Mechanics& m, const std::vector<std::size_t>& constraints, std::size_t a) {
+  constexpr double kConstant = 4;
+  for (std::size_t r : constraints)
+    if (!is_number(m.Phi[r][a])) return 1;
+  return kConstant;
+}
+
+// Full pivoting on Phi M^(-1/2), the mass matrix by its diagonal.
+std::vector<std::size_t> best_pivots(const Mechanics& m, const std::vector<std::size_t>& constraints, PointValues& at) {
+  Matrix<double> phi = constraint_matrix(m, constraints, at);
+  const Column p = gradient(m.T, m.qd);
+  double largest = 0;
+  std::vector<double> mass;
+  for (std::size_t a = 0; a < phi.cols; ++a) {
+    mass.push_back(std::abs(at(put_masses(*m.model, partial(p[a], m.qd[a])))));
+    largest = std::max(largest, mass.back());
+  }
+  for (std::size_t a = 0; a < phi.cols; ++a) {
+    // A coordinate without inertia is as light as can be.
+    const double scale = largest > 0 ? std::sqrt(std::max(mass[a] / largest, 1e-6)) : 1;
+    for (std::size_t i = 0; i < phi.rows; ++i) phi(i, a) *= weight(m, constraints, a) / scale;
+  }
+  return choose_rows(phi, kSingular).pivot_columns;
+}
+
+std::vector<std::size_t> dependent_coordinates(const Mechanics& m, const std::vector<std::size_t>& constraints,
+                                               const std::vector<std::size_t>& wanted, PointValues& at) {
+  const Model& model = *m.model;
+  if (constraints.empty()) return {};
+  const Matrix<double> phi = constraint_matrix(m, constraints, at);
+  const std::vector<std::size_t>& asked = wanted.empty() ? model.dependent : wanted;
+  if (asked.empty()) {
+    std::vector<std::size_t> pivots = best_pivots(m, constraints, at);
+    // At a singular state any choice that is regular elsewhere serves for the equations themselves.
+    if (pivots.size() < constraints.size()) {
+      PointValues elsewhere(arbitrary);
+      pivots = best_pivots(m, constraints, elsewhere);
+    }
+    if (pivots.size() < constraints.size())
+      throw Failure({}, "the constraints do not determine as many coordinates as there are constraints",
+                    "look for constraints that say the same");
+    return pivots;
+  }
+  if (asked.size() != constraints.size())
+    throw Failure({},
+                  "to eliminate: " + std::to_string(asked.size()) + " coordinates (" + list_of(model, asked) +
+                      "), but there are " + std::to_string(constraints.size()) + " independent constraints",
+                  "as many dependent coordinates as constraints");
+  Matrix<double> phi_D(constraints.size(), asked.size());
+  for (std::size_t i = 0; i < phi_D.rows; ++i)
+    for (std::size_t b = 0; b < asked.size(); ++b) phi_D(i, b) = phi(i, asked[b]);
+  if (choose_rows(phi_D, kSingular).independent.size() < asked.size())
+    throw Failure({}, "the constraints do not determine " + list_of(model, asked) + " at this state",
+                  "others that they determine: " + list_of(model, best_pivots(m, constraints, at)));
+  return asked;
+}
+
+std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vector<std::size_t>& constraints,
+                                            const std::vector<std::size_t>& dependent, PointValues& at) {
+  const Model& model = *m.model;
+  const std::size_t n = m.q.size(), s = constraints.size();
+  std::vector<QuasiVelocity> list = model.quasi;
+  if (list.size() > n - s)
+    throw Failure(list[n - s].span,
+                  std::to_string(list.size()) + " quasi-velocities; the constraints leave room for " +
+                      std::to_string(n - s),
+                  "leave out " + std::to_string(list.size() - (n - s)));
+  // At a singular state the rows that are regular elsewhere serve for the equations themselves.
+  PointValues elsewhere(arbitrary);
+  Matrix<double> rows = constraint_matrix(m, constraints, at);
+  const bool singular = choose_rows(rows, kSingular).independent.size() < s;
+  if (singular) rows = constraint_matrix(m, constraints, elsewhere);
+  const auto with = [&](const std::vector<double>& row) {
+    Matrix<double> more(rows.rows + 1, n);
+    std::copy(rows.data.begin(), rows.data.end(), more.data.begin());
+    std::copy(row.begin(), row.end(), more.data.end() - static_cast<std::ptrdiff_t>(n));
+    return more;
+  };
+  const auto independent = [](const Matrix<double>& a) { return choose_rows(a, 1e-6).independent.size() == a.rows; };
+  for (const QuasiVelocity& u : list) {
+    std::vector<double> row;
+    for (Expr e : gradient(u.value, jets(model, static_cast<unsigned>(u.order))))
+      row.push_back((singular ? elsewhere : at)(e));
+    const Matrix<double> more = with(row);
+    if (!independent(more))
+      throw Failure(u.span,
+                    "the quasi-velocity '" + u.name + "' depends on the constraints and the quasi-velocities before it",
+                    "n - s quasi-velocities are independent of each other and of the constraints");
+    rows = more;
+  }
+  std::vector<std::size_t> order;  // independent coordinates first
+  for (std::size_t a = 0; a < n; ++a)
+    if (std::find(dependent.begin(), dependent.end(), a) == dependent.end()) order.push_back(a);
+  order.insert(order.end(), dependent.begin(), dependent.end());
+  for (std::size_t a : order) {
+    if (list.size() == n - s) break;
+    std::vector<double> row(n, 0.0);
+    row[a] = 1;
+    const Matrix<double> more = with(row);
+    if (!independent(more)) continue;
+    rows = more;
+    list.push_back({"u_" + model.coordinates[a].name, m.qd[a], 1, {}});
+  }
+  return list;
+}
+
+}  // namespace
+
+PointValues values_near(const Model& model, const std::vector<double>& parameters, const InitialState<double>& state) {
+  // Varying masses stand for their values at the state, as far as pivots are concerned: any positive number does.
+  const bool known = state.q.size() == model.coordinates.size();
+  return PointValues([parameters, state, known](const Node& n) {
+    if (n.kind == Kind::parameter && n.index < parameters.size()) return parameters[n.index];
+    if (known && n.kind == Kind::time) return state.t;
+    if (const double* value = n.kind == Kind::jet || n.kind == Kind::state ? state.value(n) : nullptr) return *value;
+    return arbitrary(n);
+  });
+}
+
+EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::size_t>& constraints, Unknowns unknowns,
+                                     const std::vector<std::size_t>& wanted, PointValues& at) {
+  EliminationChoice choice{
+      constraints, dependent_coordinates(m, constraints, wanted, at), unknowns == Unknowns::quasi_velocities, {}};
+  if (choice.by_quasi) choice.quasi = quasi_velocities(m, constraints, choice.dependent, at);
+  return choice;
+}
+
+// Of those constraints `all` that are independent.
+static Elimination elimination_of(const Mechanics& m, const std::vector<std::size_t>& all, Unknowns unknowns,
+                                  const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted,
+                                  bool solve, unsigned order) {
+  const Model& model = *m.model;
+  Column es;
+  for (const Parameter& p : model.parameters) es.push_back(p.value);
+  const std::vector<double> parameters = evaluate_parameters<double>(*model.graph, es);
+  InitialState<double> state;
+  if (model.unknown_functions.empty())
+    if (!consistent_state(InitialProblem<double>{&m, parameters, overrides, {}}, state).ok()) state = {};
+  const auto at = std::make_shared<PointValues>(values_near(model, parameters, state));
+  std::vector<std::size_t> rows = choose_rows(constraint_matrix(m, all, *at), kSingular).independent;
+  if (rows.size() < all.size()) {
+    // Fewer at a singular state only?
+    PointValues elsewhere(arbitrary);
+    rows = choose_rows(constraint_matrix(m, all, elsewhere), kSingular).independent;
+  }
+  std::vector<std::size_t> chosen;
+  for (std::size_t i : rows) chosen.push_back(all[i]);
+  EliminationChoice choice = choose_elimination(m, chosen, unknowns, wanted, *at);
+  choice.solve = solve;
+  choice.m = order;
+  return Elimination(m, choice, at);
+}
+
+Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::vector<StateOverride>& overrides,
+                            const std::vector<std::size_t>& wanted, bool solve, unsigned order) {
+  if (unknowns != Unknowns::coordinates && unknowns != Unknowns::quasi_velocities) return Elimination::of_order(order);
+  std::vector<std::size_t> all;
+  for (std::size_t r = 0; r < m.phi.size(); ++r) all.push_back(r);
+  return elimination_of(m, all, unknowns, overrides, wanted, solve, order);
+}
+
+Elimination elimination_of_reactions(const Mechanics& m, const std::vector<StateOverride>& overrides,
+                                     const std::vector<std::size_t>& wanted) {
+  std::vector<std::size_t> ideal;
+  for (std::size_t r = 0; r < m.phi.size(); ++r)
+    if (!m.model->constraints[r].by) ideal.push_back(r);
+  return elimination_of(m, ideal, Unknowns::coordinates, overrides, wanted, true, 0);
+}
+
+}  // namespace anholon

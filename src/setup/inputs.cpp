@@ -1,0 +1,66 @@
+#include "setup/inputs.h"
+
+#include <algorithm>
+#include <set>
+
+namespace anholon {
+
+namespace {
+
+bool known_before_solving(const Scenario& s, Expr value) {
+  const Graph& g = *s.model->graph;
+  for (NodeId id : symbols({&value, 1})) {
+    const Node& n = g.node(id);
+    if (n.kind == Kind::time || n.kind == Kind::parameter) continue;
+    const auto j = s.system.variable(id);
+    if (!j || static_cast<int>(n.order) >= s.structure.d[*j]) return false;
+  }
+  return true;
+}
+
+// The system with these inputs as symbols.
+System with_symbols(const Scenario& s, const std::set<std::size_t>& inputs) {
+  auto model = std::make_shared<Model>(*s.model);
+  for (std::size_t k : inputs) model->controls[k].value.reset();
+  System system = implicit_system(model, *s.mechanics, *s.system.form, s.independent, s.elimination);
+  drop_absent(system, s.structure);
+  return system;
+}
+
+// Those of the inputs that act as they should when they are set.
+std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::set<std::size_t> inputs) {
+  const Graph& g = *s.model->graph;
+  std::set<std::size_t> occurring;
+  for (std::size_t i = 0; i < system.size(); ++i)
+    for (NodeId id : symbols({&system.equations[i], 1})) {
+      const Node& n = g.node(id);
+      if (n.kind != Kind::control || !inputs.count(n.index)) continue;
+      occurring.insert(n.index);
+      if (n.order > 0 || s.structure.c[i] > 0) inputs.erase(n.index);
+    }
+  for (NodeId id : reachable(system.equations))
+    for (std::size_t k : std::set<std::size_t>(inputs))
+      if (s.model->controls[k].value->id == id && !g.summands(id).empty()) inputs.erase(k);
+  std::erase_if(inputs, [&](std::size_t k) { return !occurring.count(k); });
+  return inputs;
+}
+
+}  // namespace
+
+OpenSystem open_inputs(const Scenario& s) {
+  std::set<std::size_t> inputs;
+  for (std::size_t k = 0; k < s.model->controls.size(); ++k)
+    if (const Control& u = s.model->controls[k]; u.value && !u.constraint && known_before_solving(s, *u.value))
+      inputs.insert(k);
+  if (inputs.empty()) return {s.system, {}};
+  System system = with_symbols(s, inputs);
+  if (const auto fewer = free_ones(s, system, inputs); fewer != inputs) {
+    inputs = fewer;
+    system = with_symbols(s, inputs);
+  }
+  OpenSystem open{std::move(system), {}};
+  for (std::size_t k : inputs) open.inputs.push_back({k, *s.model->controls[k].value});
+  return open;
+}
+
+}  // namespace anholon

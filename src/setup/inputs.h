@@ -1,0 +1,18 @@
+// A system whose inputs can be set from outside: their symbols stand in the equations, their formulas beside them.
+#pragma once
+#include "program/emit.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+struct OpenSystem {
+  System system;  // of a model in which these inputs have no formulas
+  std::vector<InputFormula> inputs;
+};
+
+// Not among them, and put in as formulas: inputs that hold accelerations or multipliers, that keep a constraint, that
+// stand in an equation which is differentiated (their rates would be inputs, too), or whose formula stands in a
+// potential, mass or constraint.
+OpenSystem open_inputs(const Scenario& scenario);
+
+}  // namespace anholon

@@ -1,0 +1,272 @@
+#include "setup/scenario.h"
+
+#include <algorithm>
+
+#include "expr/degree.h"
+#include "expr/normal.h"
+#include "expr/table.h"
+#include "structure/redundancy.h"
+
+namespace anholon {
+
+namespace {
+
+bool all_proved_zero(const Column& es) {
+  for (Expr e : es)
+    if (!proved_zero(e)) return false;
+  return true;
+}
+
+ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
+  Graph& g = m.graph();
+  const int order = m.order[r];
+  ConstraintClass c;
+  for (NodeId id : symbols({&m.phi[r], 1})) {
+    const Kind k = g.node(id).kind;
+    c.rheonomic = c.rheonomic || k == Kind::time || k == Kind::state || k == Kind::control;
+  }
+  if (order == 0) {
+    c.kind = "holonomic";
+    return c;
+  }
+  const Column top = jets(*m.model, static_cast<unsigned>(order));
+  bool linear = true;
+  Expr radial = g.zero();  // q^(m) dphi/dq^(m): equals d phi for phi homogeneous of degree d
+  for (std::size_t a = 0; a < top.size(); ++a) {
+    if (is_zero(m.Phi[r][a])) continue;
+    if (linear && !all_proved_zero(gradient(m.Phi[r][a], top))) linear = false;
+    radial += top[a] * m.Phi[r][a];
+  }
+  constexpr int kMost = 6;
+  const auto by_structure =
+      homogeneous_degree(m.phi[r], [&](const Node& n) { return n.kind == Kind::jet && n.order == order; });
+  c.homogeneous = by_structure && by_structure->get_den() == 1 && *by_structure >= 1 && *by_structure <= kMost;
+  for (int degree = 1; degree <= (linear ? 1 : kMost) && !c.homogeneous; ++degree)
+    c.homogeneous = proved_zero(radial - Rational(degree) * m.phi[r]);
+  c.kind = !linear ? "nonlinear" : c.homogeneous ? "linear" : "affine";
+  return c;
+}
+
+}  // namespace
+
+std::vector<ConstraintClass> classify(const Mechanics& m) {
+  std::vector<ConstraintClass> classes;
+  for (std::size_t r = 0; r < m.phi.size(); ++r) classes.push_back(classify_one(m, r));
+  return classes;
+}
+
+std::optional<Diagnostic> not_integrated(const Model& model) {
+  if (!model.unknown_functions.empty())
+    return Diagnostic{Severity::error,
+                      {},
+                      "the given function '" + model.unknown_functions[0] + "' has no formula",
+                      "numbers need one: [functions] " + model.unknown_functions[0] + " = \"…\""};
+  for (const Control& u : model.controls)
+    if (!u.value && !u.constraint)
+      return Diagnostic{Severity::error, u.span,
+                        "the input '" + u.name + "' has no formula, and no constraint is kept by it",
+                        "[input] " + u.name + " = \"…\", or by = \"" + u.name + "\" in a constraint"};
+  return std::nullopt;
+}
+
+int multiplier_orders(const Scenario& s) {
+  if (!s.routh) return 0;
+  int highest = 0;
+  for (std::size_t j = s.routh->coordinates; j < s.routh->mechanical(); ++j)
+    highest = std::max(highest, s.routh_structure.d[j]);
+  return highest;
+}
+
+int largest_order(const Scenario& s, const std::vector<int>& d) {
+  return *std::max_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates));
+}
+
+int orders_beyond(const Scenario& s, const std::vector<int>& d) {
+  int beyond = 0;
+  const int coordinates = largest_order(s, d), multipliers = multiplier_orders(s);
+  for (std::size_t j = 0; j < s.system.mechanical(); ++j)
+    beyond = std::max(beyond, (j < s.system.coordinates ? coordinates : multipliers) - d[j]);
+  return beyond;
+}
+
+// What the system's form asks for, out of the named values.
+template <Number N>
+static Start<N> start_of(const Scenario& s, const InitialState<N>& named) {
+  const Graph& g = *s.model->graph;
+  // The multipliers of a variational principle are not those of the reactions.
+  const bool reactions = s.system.form->unknowns != Unknowns::variational;
+  const auto value = [&](std::size_t j, int k) {
+    if (j >= s.system.coordinates && j < s.system.mechanical() && !reactions) return N(0);
+    const N* known = named.value(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
+    return known ? *known : N(0);
+  };
+  Start<N> start;
+  start.t = named.t;
+  for (std::size_t j = 0; j < s.system.size(); ++j) {
+    for (int k = 0; k < s.structure.d[j]; ++k) start.state.push_back(value(j, k));
+    if (s.routh) start.leading.push_back(value(j, s.structure.d[j]));
+  }
+  return start;
+}
+
+Start<double> start_of(const Scenario& s) { return start_of(s, s.state); }
+
+ProbeHints hints_at(const InitialState<double>& state) {
+  ProbeHints hints;
+  if (state.q.empty()) return hints;
+  hints.t = state.t;
+  hints.derivatives = {state.q, state.qd};
+  hints.states = state.states;
+  for (const Level<double>& level : state.higher) hints.derivatives.push_back(level.value);
+  return hints;
+}
+
+// Independent constraints at the state; those that follow from them are left out, with a note.
+static void choose_constraints(const Model& model, const std::vector<double>& parameters, Scenario& s) {
+  IndependentConstraints rows = independent_constraints(*s.mechanics, parameters, s.state);
+  s.independent = std::move(rows.independent);
+  s.redundant = std::move(rows.redundant);
+  for (std::size_t r : s.redundant) {
+    s.classes[r].redundant = true;
+    s.notes.push_back("constraint '" + model.constraints[r].name +
+                      "' follows from the others at the initial state: it is left out, and watched");
+  }
+}
+
+// No motion starts from a number beyond those of the machine, or with a negative mass.
+static Outcome admissible(const Model& model, const std::vector<double>& parameters,
+                          const InitialState<double>& state) {
+  for (std::size_t a = 0; a < state.q.size(); ++a)
+    for (const unsigned k : {0U, 1U})
+      if (!is_finite(k ? state.qd[a] : state.q[a]))
+        return {OutcomeKind::not_a_number,
+                "at the start " + derivative_name(model.coordinates[a].name, k, Format::text) +
+                    " has no value in double precision",
+                "give another initial value, or choose units in which it is of moderate size"};
+  PointValues at = values_near(model, parameters, state);
+  for (const VaryingMass& m : model.masses) {
+    if (m.weight || jet_order(m.value) > 1) continue;
+    if (const double value = at(m.value); value < 0)
+      return {OutcomeKind::negative_mass, "the mass of '" + m.name + "' is " + number_text(value, 6) + " at the start",
+              "a mass is not negative: start at another time or place, or change its formula"};
+  }
+  return {};
+}
+
+// Routh's equations know all multipliers: the state is completed with them, whatever the form.
+static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
+  auto routh =
+      std::make_shared<System>(implicit_system(s.model, *s.mechanics, *find_formulation("routh"), s.independent, {}));
+  Structure structure;
+  if (Outcome o = analyse(*routh, problem.parameters, hints_at(s.state), structure); !o.ok()) return o;
+  drop_absent(*routh, structure);
+  if (!needs_completion(*s.mechanics, *routh, structure)) return {};
+  s.routh = std::move(routh);
+  s.routh_structure = std::move(structure);
+  return complete_state(problem, *s.routh, s.routh_structure, s.state);
+}
+
+// Constraints on accelerations, and conditions on them, ask for more than positions and velocities.
+static bool may_need_completion(const Model& model) {
+  const auto high = [](Expr e) {
+    for (NodeId id : symbols({&e, 1}))
+      if (const Node& n = e.graph->node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1))
+        return true;
+    return false;
+  };
+  return std::any_of(model.constraints.begin(), model.constraints.end(),
+                     [](const Constraint& c) { return c.order >= 2; }) ||
+         std::any_of(model.initial.conditions.begin(), model.initial.conditions.end(),
+                     [&](const Condition& c) { return high(c.residual); });
+}
+
+// Derivatives of a constraint that the structure asks for, and the fits of its tables do not have.
+static void smooth_enough(const Scenario& s) {
+  for (std::size_t k = 0; k < s.system.constraints.size(); ++k) {
+    const int c = s.structure.c[s.system.coordinates + k];
+    const Constraint& constraint = s.model->constraints[s.system.constraints[k]];
+    if (const auto name = too_rough(put_masses(*s.model, constraint.phi), c))
+      throw Failure(constraint.span,
+                    "the constraint '" + constraint.name + "' is differentiated " +
+                        (c == 1   ? "once"
+                         : c == 2 ? "twice"
+                                  : std::to_string(c) + " times") +
+                        ", and the table '" + *name + "' in it has a fit that jumps before",
+                    "fit = \"linear\" goes into velocities, \"monotone\" and \"spline\" into positions, too");
+  }
+}
+
+Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
+                      Scenario& s) {
+  s.model = model;
+  s.mechanics = std::make_unique<Mechanics>(mechanics(*model));
+  s.classes = classify(*s.mechanics);
+  s.notes = model->notes;
+  const std::vector<double> parameters = parameter_values<double>(*model);
+  // Without formulas for all given functions there are no numbers, but there is a structure.
+  const bool numbers = model->unknown_functions.empty();
+  s.start = numbers ? std::make_shared<const StartPlan>(*s.mechanics, std::vector<StateOverride>{}) : nullptr;
+  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t, nullptr,
+                                       s.start.get(),     true};
+  Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
+  if (initial.ok() && numbers) initial = admissible(*model, parameters, s.state);
+  s.independent.clear();
+  s.redundant.clear();
+  if (initial.ok() && numbers)
+    choose_constraints(*model, parameters, s);
+  else
+    for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);
+  if (initial.ok() && numbers && may_need_completion(*model)) initial = complete(problem, s);
+  s.elimination = Elimination();
+  if (form.eliminates()) {
+    const auto at = std::make_shared<PointValues>(values_near(*model, parameters, s.state));
+    s.elimination = Elimination(
+        *s.mechanics, choose_elimination(*s.mechanics, s.independent, form.unknowns, choice.eliminate, *at), at);
+  }
+  s.system = implicit_system(model, *s.mechanics, form, s.independent, s.elimination);
+  if (!numbers)
+    s.system.equations = substitute(s.system.equations, [&](NodeId id) {
+      const Node& n = model->graph->node(id);
+      return n.kind == Kind::given
+                 ? model->graph->number(Rational(17 + 3 * static_cast<int>(n.index) + static_cast<int>(n.order), 19))
+                 : Expr{};
+    });
+  const Outcome structured = analyse(s.system, parameters, hints_at(s.state), s.structure);
+  if (structured.ok()) smooth_enough(s), drop_absent(s.system, s.structure);
+  if (!initial.ok()) return initial;
+  if (!structured.ok()) return structured;
+  // Masses and forces that depend on accelerations may ask for more, too.
+  const bool beyond =
+      std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
+                  [](int d) { return d > 2; });
+  if (beyond && numbers && !s.routh) initial = complete(problem, s);
+  s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());
+  return initial;
+}
+
+template <Number N>
+Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start) {
+  const InitialProblem<N> problem{
+      s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr, s.start.get(), true};
+  InitialState<N> named;
+  if (Outcome o = consistent_state(problem, named); !o.ok()) return o;
+  if (s.routh)
+    if (Outcome o = complete_state(problem, *s.routh, s.routh_structure, named); !o.ok()) return o;
+  start = start_of(s, named);
+  return {};
+}
+
+template Outcome initial_state<double>(const Scenario&, const StateChoice&, Start<double>&);
+template Outcome initial_state<long double>(const Scenario&, const StateChoice&, Start<long double>&);
+template Outcome initial_state<Quad>(const Scenario&, const StateChoice&, Start<Quad>&);
+template Outcome initial_state<Multi>(const Scenario&, const StateChoice&, Start<Multi>&);
+
+int orders_needed(const Scenario& s, std::span<const Expr> es) {
+  int beyond = 0;
+  for (NodeId id : symbols(es))
+    if (const auto j = s.system.variable(id))
+      beyond = std::max(beyond, static_cast<int>(s.model->graph->node(id).order) - s.structure.d[*j]);
+  return beyond;
+}
+
+}  // namespace anholon

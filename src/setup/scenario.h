@@ -1,0 +1,136 @@
+// One model made ready: mechanics, consistent state, independent constraints, implicit system in a
+// form, structure. The composition of the whole main line up to the stepping program.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "modelfile/read.h"
+#include "program/expansion.h"
+#include "setup/eliminate.h"
+#include "structure/consistent.h"
+
+namespace anholon {
+
+struct ConstraintClass {
+  std::string kind;          // holonomic, linear, affine, nonlinear (in its top derivative)
+  bool homogeneous = false;  // in the top derivative (order 1: it does no work)
+  bool rheonomic = false;    // holds t explicitly
+  bool redundant = false;    // follows from the others at the initial state
+};
+
+// The numbers of a computation. multi: MPFR with as many digits as asked for.
+enum class Precision : std::uint8_t { real, long_real, quad, multi };
+
+struct StateChoice {
+  std::vector<StateOverride> overrides;
+  std::optional<Rational> t;
+  std::vector<std::size_t> eliminate;  // coordinates to eliminate; empty: chosen
+};
+
+struct Scenario {
+  std::shared_ptr<const Model> model;
+  std::unique_ptr<Mechanics> mechanics;
+  std::vector<ConstraintClass> classes;
+  std::shared_ptr<const StartPlan> start;  // null without numbers
+  InitialState<double> state;              // consistent, in double
+  std::vector<std::size_t> independent, redundant;
+  Elimination elimination;  // of forms without multipliers
+  System system;
+  Structure structure;
+  // Routh's system, where the initial state holds more than positions and velocities, or the equations several
+  // solutions: it is completed there, whatever the form.
+  std::shared_ptr<const System> routh;
+  Structure routh_structure;
+  std::vector<std::string> notes;
+};
+
+// Classes of the constraints, by exact tests on their partial derivatives.
+std::vector<ConstraintClass> classify(const Mechanics& mechanics);
+
+// Diagnostics: what this model lacks for numbers (unknown functions).
+// The outcome tells of numbers: inconsistent data, a singular start.
+Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
+                      Scenario& scenario);
+
+// Derivatives of the multipliers that belong to the state or are solved for, in forms with multipliers.
+int multiplier_orders(const Scenario& scenario);
+
+// The highest derivative that is solved for of any coordinate, d being of the system in the scenario's form; how many
+// more than their own are to be computed of the others, and of the multipliers.
+int largest_order(const Scenario& scenario, const std::vector<int>& d);
+int orders_beyond(const Scenario& scenario, const std::vector<int>& d);
+
+// By how many orders the expressions exceed what is solved for.
+int orders_needed(const Scenario& scenario, std::span<const Expr> es);
+
+// Where the structure of its system is probed.
+ProbeHints hints_at(const InitialState<double>& state);
+
+// Nothing if numbers can be computed for the model, else why not.
+std::optional<Diagnostic> not_integrated(const Model& model);
+
+// The state in the order of an Expansion's, its time, and the leading derivatives (empty: they follow without a guess).
+template <Number N>
+struct Start {
+  N t{0};
+  std::vector<N> state, leading;
+};
+// The consistent state in double.
+Start<double> start_of(const Scenario& scenario);
+// The consistent state in the number type N.
+template <Number N>
+Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start);
+
+template <Scalar N>
+std::vector<N> parameter_values(const Model& model) {
+  Column es;
+  for (const Parameter& p : model.parameters) es.push_back(p.value);
+  return evaluate_parameters<N>(*model.graph, es);
+}
+
+// Expressions evaluated at a point of the motion.
+template <Number N>
+class OutputTape {
+ public:
+  OutputTape(const Scenario& s, const Column& es, const std::vector<N>& parameters)
+      : system_(s.system), tape_(compile(put(s, es))), machine_(tape_, 0, parameters) {}
+  void evaluate(const Expansion<N>& point) {
+    const Graph& g = *system_.model->graph;
+    for (const Input& in : tape_.inputs) {
+      const Node& n = g.node(in.symbol);
+      N value(0);
+      if (n.kind == Kind::time)
+        value = point.time();
+      else if (const auto j = system_.variable(in.symbol))
+        value = point.derivative(*j, n.order);
+      machine_.series(in.slot)[0] = value;
+    }
+    machine_.evaluate();
+    sizes_.clear();
+  }
+  const N& operator[](std::size_t i) const { return machine_.value(i); }
+  // The sum of the absolute values of its terms.
+  N terms(std::size_t i) const { return machine_.magnitude(tape_.roots[i]); }
+  // What it is made of (tape/tape.h), at the point evaluated last.
+  const N& made_of(std::size_t i) const {
+    if (sizes_.empty()) machine_.made_of(sizes_);
+    return sizes_[tape_.roots[i]];
+  }
+  // Modes have changed.
+  void set_parameters(const std::vector<N>& parameters) { machine_ = Machine<N>(tape_, 0, parameters); }
+  // Multipliers of redundant constraints are zero.
+  static Column put(const Scenario& s, const Column& es) {
+    Graph& g = *s.model->graph;
+    return substitute(es, [&](NodeId id) {
+      return g.node(id).kind == Kind::multiplier && !s.system.variable(id) ? g.zero() : Expr{};
+    });
+  }
+
+ private:
+  const System& system_;
+  Tape tape_;
+  Machine<N> machine_;
+  mutable std::vector<N> sizes_;
+};
+
+}  // namespace anholon

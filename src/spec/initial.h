@@ -1,9 +1,0 @@
-// [initial]: values, guesses and conditions, in each of the accepted spellings.
-#pragma once
-#include "spec/names.h"
-
-namespace anholon {
-
-void read_initial(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
-
-}  // namespace anholon

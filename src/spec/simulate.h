@@ -1,9 +1,0 @@
-// [simulate]: end, rows, tolerance, form and integrator of a run.
-#pragma once
-#include "spec/names.h"
-
-namespace anholon {
-
-void read_simulate(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
-
-}  // namespace anholon

@@ -1,9 +1,0 @@
-// [[table]]: functions given by values at knots, in the file or in columns of another one.
-#pragma once
-#include "spec/names.h"
-
-namespace anholon {
-
-void declare_tables(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
-
-}  // namespace anholon

@@ -1,0 +1,290 @@
+// Methods other than Taylor's: they give the same motion, and the automatic choice finds where they pay.
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "motion/course.h"
+#include "support/models.h"
+#include "support/motion.h"
+
+namespace anholon {
+namespace {
+
+using Result = test::Motion;
+
+struct Asked {
+  Method method = Method::automatic;
+  Rational tolerance{1, 100000000};
+  std::size_t most_steps = 50'000'000;
+};
+
+Rational power_of_ten(int n) {
+  Rational r(1);
+  for (int k = 0; k < n; ++k) r /= 10;
+  return r;
+}
+
+Result motion(const std::string& text, const Rational& to, const Asked& asked, const std::string& form = "routh") {
+  Scenario s;
+  if (const Outcome o = make_scenario(test::model_of(text), *find_formulation(form), {}, s); !o.ok())
+    throw std::runtime_error(o.message);
+  SimulationOptions o;
+  o.to = to;
+  o.every = Rational(to / 4);
+  o.tolerance = asked.tolerance;
+  o.method = asked.method;
+  o.most_steps = asked.most_steps;
+  Result r;
+  r.report = simulate(s, o, r.rows);
+  return r;
+}
+
+// Largest difference of two tables of rows, relative to 1 + |x|.
+double difference(const Result& a, const Result& b) {
+  double worst = a.rows.rows().size() == b.rows.rows().size() ? 0 : 1e300;
+  for (std::size_t k = 0; k < std::min(a.rows.rows().size(), b.rows.rows().size()); ++k)
+    for (std::size_t i = 0; i < a.rows.names().size(); ++i) {
+      const double x = std::stod(a.rows.rows()[k][i]), y = std::stod(b.rows.rows()[k][i]);
+      worst = std::max(worst, std::abs(x - y) / (1 + std::abs(y)));
+    }
+  return worst;
+}
+
+// A slider between a very stiff spring and a strong damper, and a pendulum that hangs on it.
+const char* const kStiff = R"(
+coordinates = ["x", "th"]
+[[particle]]
+name = "slider"
+mass = 1
+position = "x*ex"
+[[particle]]
+name = "bob"
+mass = 1
+position = "x*ex + sin(th)*ex - cos(th)*ey"
+[gravity]
+field = "-9.81*ey"
+[[force]]
+name = "spring"
+on = "slider"
+vector = "(-1e8*x - 2e5*x')*ex"
+[initial]
+th = 1
+)";
+
+// A bead on a spring whose force is straight between knots, driven through many of them.
+const char* const kTable = R"(
+coordinates = ["x"]
+table = [{name = "pull", x = [-2, -1, -0.5, 0.25, 0.75, 1.5, 2], y = [9, 5, 1, 0, -2, -4, -9], outside = "linear"}]
+[[particle]]
+name = "bead"
+mass = 1
+position = "x*ex"
+[[force]]
+name = "spring"
+on = "bead"
+vector = "(pull(x) + cos(t))*ex"
+[initial]
+x = 1.25
+)";
+
+class ByMethod : public testing::TestWithParam<std::string> {};
+
+// Orders of constraints 0 to 3, many links, varying masses, forms that eliminate.
+TEST_P(ByMethod, TheMotionIsTheSame) {
+  const std::string text = test::shipped_text(GetParam());
+  const Result expected = motion(text, 1, {Method::taylor, power_of_ten(13)});
+  const Result rk = motion(text, 1, {Method::runge_kutta, power_of_ten(9)}),
+               bdf = motion(text, 1, {Method::bdf, power_of_ten(8)});
+  for (const Result* r : {&rk, &bdf}) {
+    ASSERT_TRUE(r->report.outcome.ok()) << r->report.outcome.message;
+    EXPECT_EQ(r->report.method.taylor_steps, 0U);
+    EXPECT_EQ(r->report.steps, r->report.method.steps);
+    EXPECT_GT(r->report.method.evaluations, r->report.steps);
+    // Rows are points on the constraints, solved for accelerations and multipliers.
+    EXPECT_LT(r->report.newton, 1e-15);
+    EXPECT_LT(r->report.constraints_kept, 1e-15);
+    EXPECT_GT(difference(*r, expected), 0) << "the same bits are no other method";
+  }
+  EXPECT_LT(difference(rk, expected), 3e-8);
+  EXPECT_LT(difference(bdf, expected), 1e-4);
+  EXPECT_LT(rk.report.power, 1e-7);
+  EXPECT_LT(bdf.report.power, 1e-5);
+}
+INSTANTIATE_TEST_SUITE_P(Model, ByMethod,
+                         testing::Values("zoo/double-pendulum-cartesian", "zoo/chaplygin-sleigh", "zoo/disc",
+                                         "zoo/isokinetic", "zoo/second-order-linear", "zoo/third-order-linear",
+                                         "zoo/rocket", "zoo/snakeboard", "zoo/chain", "zoo/spherical-robot",
+                                         "zoo/fourbar"),
+                         [](const auto& p) { return test::test_name(p.param); });
+
+TEST(Course, OtherCoordinatesAreEliminatedOnTheWay) {
+  const std::string text = test::shipped_text("zoo/chaplygin-sleigh");
+  const Result expected = motion(text, 8, {Method::taylor, power_of_ten(12)}, "maggi"),
+               r = motion(text, 8, {Method::runge_kutta, power_of_ten(9)}, "maggi");
+  ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+  EXPECT_GT(expected.report.eliminations, 0U);
+  EXPECT_GT(r.report.eliminations, 0U);
+  EXPECT_GT(r.report.method.steps, 4 * r.report.method.taylor_steps);
+  EXPECT_LT(difference(r, expected), 1e-7);
+}
+
+TEST(Course, StiffMotionsGoByBdf) {
+  constexpr std::size_t kForTaylor = 100'000, kForBdf = 5000;
+  const Result taylor = motion(kStiff, 10, {Method::taylor, power_of_ten(8), kForTaylor});
+  EXPECT_EQ(taylor.report.outcome.kind, OutcomeKind::interrupted) << "not stiff: " << taylor.report.steps << " steps";
+  const Result bdf = motion(kStiff, 10, {Method::bdf, power_of_ten(8), kForBdf});
+  ASSERT_TRUE(bdf.report.outcome.ok()) << bdf.report.outcome.message;
+  for (const std::size_t most : {kForTaylor, std::size_t{50'000'000}}) {
+    const Result found = motion(kStiff, 10, {Method::automatic, power_of_ten(8), most});
+    ASSERT_TRUE(found.report.outcome.ok()) << found.report.outcome.message;
+    const MethodReport& m = found.report.method;
+    EXPECT_LT(m.steps, kForBdf);
+    EXPECT_LT(m.taylor_steps, kForBdf);
+    ASSERT_EQ(m.turns.size(), 1U);
+    EXPECT_EQ(m.turns[0].to, Method::bdf);
+    EXPECT_NE(m.turns[0].why.find("stiff"), std::string::npos) << m.turns[0].why;
+    EXPECT_NEAR(found.number(4, "th"), bdf.number(4, "th"), 1e-6);
+    // The same choice every time, at the same place.
+    const Result again = motion(kStiff, 10, {Method::automatic, power_of_ten(8), most});
+    EXPECT_EQ(again.rows.rows(), found.rows.rows());
+    EXPECT_EQ(again.report.method.trial_evaluations, m.trial_evaluations);
+  }
+}
+
+// Sharp rows stay Taylor's, whatever that takes; so do motions that are not stiff.
+TEST(Course, NothingElseGoesByBdf) {
+  const Result sharp = motion(kStiff, Rational(1, 5), {Method::automatic, power_of_ten(12)});
+  EXPECT_TRUE(sharp.report.outcome.ok());
+  EXPECT_GT(sharp.report.method.taylor_steps, 2048U);
+  EXPECT_EQ(sharp.report.method.trials, 0U);
+  const Result smooth = motion(test::shipped_text("zoo/chaplygin-sleigh"), 4000, {Method::automatic, power_of_ten(8)});
+  EXPECT_EQ(smooth.report.method.steps, 0U);
+  const Result disc = motion(test::shipped_text("zoo/disc"), 450, {Method::automatic, power_of_ten(8)});
+  EXPECT_GT(disc.report.method.taylor_steps, 4096U);
+  EXPECT_GT(disc.report.method.trials, 0U) << "it was not even tried";
+  EXPECT_EQ(disc.report.method.steps, 0U);
+}
+
+TEST(Course, KinksAreMetToTheTolerance) {
+  const Result expected = motion(kTable, 20, {Method::taylor, power_of_ten(14)});
+  ASSERT_TRUE(expected.report.outcome.ok()) << expected.report.outcome.message;
+  for (const int digits : {5, 7, 9, 11}) {
+    const Result rk = motion(kTable, 20, {Method::runge_kutta, power_of_ten(digits)});
+    ASSERT_TRUE(rk.report.outcome.ok()) << rk.report.outcome.message;
+    EXPECT_LT(difference(rk, expected), 30 * std::pow(10.0, -digits)) << digits;
+  }
+}
+
+// Left to the error test alone, each kink costs a dozen refusals and as many short steps.
+TEST(Course, StepsEndAtKinks) {
+  const Result rk = motion(kTable, 20, {Method::runge_kutta, power_of_ten(8)});
+  EXPECT_LT(rk.report.method.refused, rk.report.method.steps / 10);
+}
+
+// A particle among so many others that are held: much to evaluate, few unknowns.
+std::string among_many() {
+  std::string x, y;
+  for (int k = -6; k <= 6; ++k) {
+    const std::string a = std::to_string(k), b = std::to_string(k * k % 7),
+                      force = "((x - (" + a + "))^2 + (y - " + b + ")^2 + 1)^(-3/2)";
+    x += " + (" + a + " - x)*" + force;
+    y += " + (" + b + " - y)*" + force;
+  }
+  return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + "
+         "y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"(" +
+         x.substr(3) + ")*ex + (" + y.substr(3) + ")*ey\"\n[initial]\nx = 0.3\ny = 0.1\n\"x'\" = 0.5\n\"y'\" = 0.2\n";
+}
+
+TEST(Course, LooseTolerancesGoByRungeKutta) {
+  const std::string text = among_many();
+  const Result found = motion(text, 150, {Method::automatic, power_of_ten(4)}),
+               taylor = motion(text, 150, {Method::taylor, power_of_ten(4)});
+  ASSERT_TRUE(found.report.outcome.ok()) << found.report.outcome.message;
+  ASSERT_EQ(found.report.method.turns.size(), 1U);
+  EXPECT_EQ(found.report.method.turns[0].to, Method::runge_kutta);
+  EXPECT_LT(found.report.method.taylor_steps, 100U);
+  EXPECT_GT(taylor.report.method.taylor_steps, 200U);
+  // Over a time that it does not forget its start in.
+  const Result exact = motion(text, 10, {Method::taylor, power_of_ten(12)});
+  EXPECT_LT(difference(motion(text, 10, {Method::runge_kutta, power_of_ten(4)}), exact),
+            10 * difference(motion(text, 10, {Method::taylor, power_of_ten(4)}), exact))
+      << "cheaper, not worse";
+  const Result sharp = motion(text, 150, {Method::automatic, power_of_ten(7)});
+  EXPECT_EQ(sharp.report.method.steps, 0U);
+}
+
+// x = -cos t; x y' = 0 loses its hold at x = 0, where no multiplier has a pole and the pivot, a square, keeps its sign.
+TEST(Course, SingularPointsAreNotPassed) {
+  const auto hold = [](const std::string& factor) {
+    return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + "
+           "y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\n"
+           "vector = \"-x*ex\"\n[[constraint]]\nname = \"hold\"\nequation = \"" +
+           factor + "*y' = 0\"\n[initial]\nx = -1\ny = 0\n\"x'\" = 0\n\"y'\" = 0\n";
+  };
+  for (const Method m : {Method::taylor, Method::runge_kutta, Method::bdf})
+    for (const int digits : {4, 6, 9}) {
+      const Result r = motion(hold("x"), 4, {m, power_of_ten(digits)});
+      EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular)
+          << name(m) << " " << digits << ": " << r.report.outcome.message;
+      EXPECT_NEAR(std::stod(r.report.t), std::numbers::pi / 2, 1e-3) << name(m) << " " << digits;
+      const Result regular = motion(hold("(x + 3)"), 4, {m, power_of_ten(digits)});
+      EXPECT_TRUE(regular.report.outcome.ok()) << name(m) << " " << digits << ": " << regular.report.outcome.message;
+      if (m != Method::taylor) {
+        EXPECT_EQ(regular.report.method.taylor_steps, 0U) << "nothing is suspected without need";
+      }
+    }
+}
+
+// Where another method cannot go, Taylor does, and stops where it always stopped.
+TEST(Course, TheEndsOfAMotionAreTaylors) {
+  const std::string table = test::replaced(kTable, "outside = \"linear\"", "outside = \"error\"");
+  const std::string mass = "coordinates = [\"x\"]\n[functions]\nm = \"1 - t/3\"\n[[particle]]\nname = \"p\"\nmass = "
+                           "\"m\"\nposition = \"x*ex\"\n"
+                           "[[force]]\nname = \"f\"\non = \"p\"\nvector = \"ex\"\n";
+  const std::string blow = "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n"
+                           "[[force]]\nname = \"f\"\non = \"p\"\nvector = \"6*x^2*ex\"\n[initial]\nx = 1\n\"x'\" = 2\n";
+  for (const std::string& text : {test::replaced(table, "x = 1.25", "x = 1.25\n\"x'\" = 6"), mass, blow}) {
+    const Result expected = motion(text, 20, {Method::taylor, power_of_ten(10)}),
+                 rk = motion(text, 20, {Method::runge_kutta, power_of_ten(10)});
+    EXPECT_FALSE(expected.report.outcome.ok());
+    EXPECT_EQ(rk.report.outcome.kind, expected.report.outcome.kind) << rk.report.outcome.message << "\n"
+                                                                    << expected.report.outcome.message;
+    EXPECT_EQ(rk.report.outcome.message.substr(0, 40), expected.report.outcome.message.substr(0, 40));
+    EXPECT_GT(rk.report.method.steps, 0U);
+    EXPECT_NEAR(std::stod(rk.report.t), std::stod(expected.report.t), 1e-5);
+  }
+}
+
+// x = -cos t, and x y' = 0 loses its hold at x = 0. A stop is met by a step that ends before it, or that cannot be
+// made.
+TEST(Course, TheLastRowOfAStopIsOfItsTime) {
+  const std::string text = R"(coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+force = [{name = "f", on = "p", vector = "-x*ex"}]
+constraint = [{name = "hold", equation = "x*y' = 0"}]
+initial = {x = -1, "x'" = 0, y = 0, "y'" = 0}
+)";
+  for (const int digits : {4, 6, 8, 10, 12, 14, 15}) {
+    const Result r = motion(text, 4, {Method::taylor, power_of_ten(digits)});
+    EXPECT_EQ(r.report.outcome.kind, OutcomeKind::singular) << r.report.outcome.message;
+    ASSERT_EQ(r.rows.rows().size(), 3U) << "at 0, at 1, and the last good state";
+    const double t = r.number(2, "t");
+    EXPECT_GT(t, 1);
+    EXPECT_LT(t, std::numbers::pi / 2);
+    EXPECT_NEAR(r.number(2, "x"), -std::cos(t), 1e-3 * std::pow(10, 4 - digits) + 1e-14)
+        << "at t = " << t << ", to " << digits << " digits";
+  }
+}
+
+TEST(Course, ShippedModelsStayTaylors) {
+  for (const char* name : {"zoo/disc", "zoo/chaplygin-sleigh", "zoo/rocket", "zoo/tether"}) {
+    const std::string text = test::shipped_text(name);
+    const Result chosen = motion(text, 1, {Method::automatic, power_of_ten(12)}),
+                 taylor = motion(text, 1, {Method::taylor, power_of_ten(12)});
+    EXPECT_EQ(chosen.rows.rows(), taylor.rows.rows()) << name;
+    EXPECT_EQ(chosen.report.method.trials, 0U) << name;
+  }
+}
+
+}  // namespace
+}  // namespace anholon
