@@ -11,12 +11,15 @@ set(no_cache "ANHOLON_CACHE=")
 find_program(ANHOLON_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(ANHOLON_PYTHON python3 REQUIRED)
 
+set(test_optimization $<$<CONFIG:Release>:-Og;-g0>)
+anholon_precompiled(tests OPTIONS ${test_optimization} LINKS anholon_setup GTest::gtest)
+
 function(anholon_test_executable target)
   add_executable(${target} ${ARGN})
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/test")
   target_compile_definitions(${target} PRIVATE ANHOLON_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # The work is done in the layers; a test itself need not be fast, but its compilation.
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1;-g0>)
+  anholon_use_precompiled(${target} tests)
   target_link_libraries(${target} PRIVATE anholon_options anholon_warnings
     nlohmann_json::nlohmann_json GTest::gtest GTest::gtest_main)
 endfunction()
@@ -55,6 +58,7 @@ gtest_discover_tests(test_new_form TEST_PREFIX "house." PROPERTIES LABELS unit E
 file(GLOB support_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/test/support/*.cpp")
 if(support_sources)
   add_library(anholon_test_support STATIC ${support_sources})
+  anholon_use_precompiled(anholon_test_support tests)
   target_include_directories(anholon_test_support PUBLIC "${PROJECT_SOURCE_DIR}/test")
   target_compile_definitions(anholon_test_support PUBLIC ANHOLON_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   anholon_link_layers(anholon_test_support)
