@@ -27,14 +27,15 @@ endfunction()
 # test/unit/<layer>/*_test.cpp: one executable per layer, one ctest test per TEST
 
 get_property(layers GLOBAL PROPERTY ANHOLON_LAYERS)
-set(upto "")
 foreach(layer IN LISTS layers)
-  list(APPEND upto anholon_${layer})
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/test/unit/${layer}/*_test.cpp")
   if(sources)
     anholon_test_executable(test_${layer} ${sources})
-    # A test may use anything declared up to its layer: a test of mechanics may read a model file.
-    target_link_libraries(test_${layer} PRIVATE ${upto})
+    # A test may use layers above its own: a test of mechanics reads a model file.
+    anholon_link_layers(test_${layer})
+    if(layer STREQUAL "cli")
+      target_link_libraries(test_${layer} PRIVATE anholon_cli)
+    endif()
     gtest_discover_tests(test_${layer} TEST_PREFIX "unit.${layer}." PROPERTIES LABELS unit ENVIRONMENT "${no_cache}"
       DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
   endif()
