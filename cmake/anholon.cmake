@@ -119,7 +119,7 @@ function(anholon_compiler_module)
     return()
   endif()
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/jit/*.cpp")
-  anholon_precompiled(compiler LINKS LLVM OPTIONS -fPIC -fvisibility=hidden)
+  anholon_precompiled(compiler LINKS LLVM)
   if(TARGET anholon_precompiled_compiler)
     target_include_directories(anholon_precompiled_compiler SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
   endif()
@@ -135,6 +135,31 @@ function(anholon_compiler_module)
   # The name of the build is part of the key of what is kept on disk.
   target_link_options(anholon_jit PRIVATE -Wl,--build-id=sha1)
   install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon")
+endfunction()
+
+# libanholon: the layers behind the headers of include/anholon, as one shared library that other projects find by
+# find_package(anholon) and link as anholon::anholon. The program links the layers themselves.
+function(anholon_public_library)
+  if(NOT TARGET anholon_api)
+    return()
+  endif()
+  file(GLOB headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/anholon/*.h")
+  add_library(anholon_library SHARED $<TARGET_OBJECTS:anholon_api>)
+  add_library(anholon::anholon ALIAS anholon_library)
+  set_target_properties(anholon_library PROPERTIES OUTPUT_NAME anholon EXPORT_NAME anholon
+    VERSION "${PROJECT_VERSION}" SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
+  target_sources(anholon_library PUBLIC FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${headers})
+  target_compile_features(anholon_library INTERFACE cxx_std_20)
+  get_target_property(links anholon_api LINK_LIBRARIES)
+  target_link_libraries(anholon_library PRIVATE ${links})
+  target_link_options(anholon_library PRIVATE -Wl,--exclude-libs,ALL)
+  include(CMakePackageConfigHelpers)
+  set(place "${CMAKE_INSTALL_LIBDIR}/cmake/anholon")
+  install(TARGETS anholon_library EXPORT anholonConfig
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(EXPORT anholonConfig NAMESPACE anholon:: DESTINATION "${place}")
+  write_basic_package_version_file("${CMAKE_BINARY_DIR}/anholonConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+  install(FILES "${CMAKE_BINARY_DIR}/anholonConfigVersion.cmake" DESTINATION "${place}")
 endfunction()
 
 # The source folder is baked in here and nowhere else, so that ccache can serve the other layers

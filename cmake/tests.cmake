@@ -118,6 +118,8 @@ foreach(attack fields mutants certificates faults)
 endforeach()
 
 if(TARGET anholon)
+  # The installed library, used by a project of its own
+  anholon_script_test(outside tools/check_outside.py ${CMAKE_BINARY_DIR} --compiler ${CMAKE_CXX_COMPILER})
   anholon_script_test(readme tools/readme.py --program $<TARGET_FILE:anholon>)
   anholon_script_test(reference tools/reference.py --program $<TARGET_FILE:anholon>)
   anholon_script_test(reference_selftest tools/reference.py --program $<TARGET_FILE:anholon> --self-test)

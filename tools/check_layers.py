@@ -20,7 +20,7 @@ LEVEL = {
     "formulation": 6, "formulation/forms": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof": 8,
     "program": 9, "setup": 9.2, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
     "integrate": 10, "result": 11, "motion": 11.5, "observe": 12, "linear": 12, "simulation": 12.2,
-    "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "cli": 14, "python": 14,
+    "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "api": 13.8, "cli": 14, "python": 14,
 }  # fmt: skip
 
 MODELFILE = {name for name in LEVEL if name.startswith("modelfile")}
@@ -67,7 +67,7 @@ OUTSIDE = [
     (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate"}, 1),
     (r"(tbb|oneapi)/", "oneTBB", {"ensemble"}, 1),
     (r"pybind11/", "pybind11", {"python"}, None),
-    (r"nlohmann/", "nlohmann-json", {"proof", "report"}, 1),
+    (r"nlohmann/", "nlohmann-json", {"proof", "simulation"}, 1),
     (r"boost/", "Boost, of a peer in bench/", set(), None),
     (r"(gtest|gmock|benchmark)/", "a test library", set(), None),
 ]  # fmt: skip

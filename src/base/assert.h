@@ -1,13 +1,23 @@
 // ANHOLON_ASSERT: a condition that only a bug of ours can violate. Always checked.
 #pragma once
-#include <cstdio>
-#include <cstdlib>
+#include <stdexcept>
+
+namespace anholon {
+
+// Thrown by a violated assertion where nobody has chosen otherwise.
+struct InternalFault : std::logic_error {
+  using std::logic_error::logic_error;
+};
+
+// Called with the place and the condition of a violated assertion; does not return. The library throws InternalFault;
+// the program, which has nobody to catch it, prints the fault and ends with exit status 3.
+using FaultHandler = void (*)(const char* file, int line, const char* condition);
+void set_fault_handler(FaultHandler handler);
+[[noreturn]] void internal_fault(const char* file, int line, const char* condition);
+
+}  // namespace anholon
 
 #define ANHOLON_ASSERT(condition)                                                                                      \
   do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      std::fprintf(stderr, "%s:%d: internal fault: %s\nplease report this with the model\n", __FILE__, __LINE__,       \
-                   #condition);                                                                                        \
-      std::_Exit(3);                                                                                                   \
-    }                                                                                                                  \
+    if (!(condition)) ::anholon::internal_fault(__FILE__, __LINE__, #condition);                                       \
   } while (false)

@@ -31,22 +31,6 @@ void deliver(const Options& o, const std::string& text) {
   if (const std::string why = write_whole(o.output, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
 }
 
-// Programs do not solve for what enters nonlinearly, and do not start from more than positions and velocities.
-std::optional<Diagnostic> not_written(const Model& model, const Mechanics& m) {
-  if (auto d = not_integrated(model)) return d;
-  const std::vector<ConstraintClass> classes = classify(m);
-  for (std::size_t r = 0; r < model.constraints.size(); ++r) {
-    const Constraint& c = model.constraints[r];
-    if (c.order > 2 || (c.order == 2 && classes[r].kind == "nonlinear"))
-      return Diagnostic{Severity::error, c.span,
-                        "a program is not written yet for the constraint '" + c.name + "' of order " +
-                            std::to_string(c.order) + " (" + classes[r].kind + ")",
-                        "anholon simulate integrates it; programs are written for orders 0 and 1, and 2 where it is "
-                        "linear in the accelerations"};
-  }
-  return std::nullopt;
-}
-
 Elimination pivots_of(const Reader& in, const Mechanics& m, const StateChoice& choice) {
   try {
     return elimination_of_reactions(m, choice.overrides, choice.eliminate);
@@ -59,7 +43,7 @@ Elimination pivots_of(const Reader& in, const Mechanics& m, const StateChoice& c
 int write_program(const Options& o, const Reader& in, const Mechanics& m, const Formulation& f) {
   if (o.json)
     throw UsageError{"error: --format " + o.format + " is not JSON\nhint: leave one of --json and --format out\n"};
-  if (const auto d = not_written(*in.model, m)) {
+  if (const auto d = not_emitted(*in.model, m)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }

@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "base/installed.h"
 #include "cli/say.h"
 #include "modelfile/names/constant.h"
 #include "motion/form_choice.h"
@@ -16,15 +17,6 @@
 namespace anholon::cli {
 
 namespace fs = std::filesystem;
-
-std::vector<fs::path> data_folders(const char* name, const char* in_source) {
-  std::vector<fs::path> folders;
-  std::error_code ignored;
-  const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
-  if (!self.empty()) folders.push_back(self.parent_path().parent_path() / "share" / "anholon" / name);
-  folders.emplace_back(in_source);
-  return folders;
-}
 
 static std::string first_line_value(const std::string& text, const std::string& key) {
   std::istringstream in(text);

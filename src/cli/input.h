@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/installed.h"
 #include "base/read_file.h"
 #include "cli/commands.h"
 #include "proof/prove.h"
@@ -56,9 +57,6 @@ std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, 
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source);
 void print_outcome(const Outcome& o);
-
-// Where data of this name may lie: installed beside the program, and in the source.
-std::vector<std::filesystem::path> data_folders(const char* name, const char* in_source);
 
 struct ShippedModel {
   std::string name, path, title;

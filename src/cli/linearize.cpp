@@ -7,6 +7,7 @@
 #include "cli/input.h"
 #include "cli/say.h"
 #include "cli/show.h"
+#include "linear/equilibrium.h"
 
 namespace anholon::cli {
 
@@ -62,70 +63,6 @@ std::optional<ParameterRange> range(const Options& o, const Model& model) {
   }
   if (r.values.empty()) wrong_range(o, "no value is given");
   return r;
-}
-
-// The inputs of the file with a constant added to each, 0 here: the symbol u by which B and D are derivatives. A
-// formula of an input goes on to hold, so A is that of the motion that `simulate` computes. A servo constraint has its
-// input as an unknown, not as a signal.
-std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) {
-  auto m = std::make_shared<Model>(model);
-  Graph& g = *m->graph;
-  for (Control& control : m->controls) {
-    if (!control.value || control.constraint) continue;
-    const Expr u = g.parameter(static_cast<std::uint32_t>(m->parameters.size()));
-    m->parameters.push_back({control.name, g.zero(), "", control.span});
-    control.value = *control.value + u;
-    signals.inputs.push_back(control.name);
-    signals.u.push_back(u);
-  }
-  for (const OutputQuantity& output : m->outputs)
-    for (std::size_t i = 0; i < output.values.size(); ++i) {
-      signals.outputs.push_back(output.name + (output.values.size() == 1 ? "" : std::string(".") + "xyz"[i]));
-      signals.y.push_back(output.values[i]);
-    }
-  return m;
-}
-
-// Rest without accelerations, near the positions of the file.
-std::shared_ptr<const Model> at_rest(const Model& model) {
-  auto m = std::make_shared<Model>(model);
-  Graph& g = *m->graph;
-  InitialData data;
-  data.t = model.initial.t;
-  for (const std::vector<GivenValue>* list : {&model.initial.guess, &model.initial.given})
-    for (const GivenValue& v : *list)
-      if (const Node& n = g.node(v.symbol.id); n.kind == Kind::jet && n.order == 0) data.guess.push_back(v);
-  for (std::size_t a = 0; a < m->coordinates.size(); ++a) {
-    const auto index = static_cast<std::uint32_t>(a);
-    data.given.push_back({g.jet(index, 1), g.zero(), {}});
-    data.conditions.push_back({g.jet(index, 2), m->coordinates[a].name + "'' = 0", {}});
-  }
-  m->initial = std::move(data);
-  return m;
-}
-
-// Positions of the command line are where the search for an equilibrium begins, as those of the file are: held, they
-// would be no equilibrium.
-std::shared_ptr<const Model> searched_from(const Model& at_rest, StateChoice& choice) {
-  auto m = std::make_shared<Model>(at_rest);
-  Graph& g = *m->graph;
-  for (const StateOverride& given : choice.overrides) {
-    if (given.multiplier || given.order > 0)
-      throw UsageError{"error: an equilibrium is at rest: only positions can be given, by --q\nhint: leave out the "
-                       "others, or linearize about the state that is given: --about state\n"};
-    const Expr q = g.jet(static_cast<std::uint32_t>(given.coordinate), 0);
-    std::erase_if(m->initial.guess, [&](const GivenValue& v) { return v.symbol == q; });
-    m->initial.guess.push_back({q, g.number(given.value), {}});
-  }
-  choice.overrides.clear();
-  return m;
-}
-
-// Where no rest was found, the conditions that failed are not those of the file.
-void say_no_rest(Outcome& o) {
-  if (o.kind != OutcomeKind::inconsistent) return;
-  o.message = "no equilibrium was found near the initial positions";
-  o.hint = "there may be none; the search begins at other positions by --q or [initial]";
 }
 
 // ---- what is printed -------------------------------------------------------------------------------

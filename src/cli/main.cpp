@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/assert.h"
 #include "base/diagnostic.h"
 #include "cli/input.h"
 #include "cli/say.h"
@@ -527,6 +528,10 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  set_fault_handler([](const char* file, int line, const char* condition) {
+    say(stderr, "%s:%d: internal fault: %s\nplease report this with the model\n", file, line, condition);
+    std::_Exit(kFault);
+  });
   // A limit of the size of files is an error like a full disk, with a message.
   std::signal(SIGXFSZ, SIG_IGN);
   try {

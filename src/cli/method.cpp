@@ -58,10 +58,8 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
         small(kLeastRungeKuttaTolerance).c_str(), which.c_str());
 }
 
-static bool worth_saying(const MethodReport& r) { return r.steps > 0 || r.trials > 0 || !r.turns.empty(); }
-
 void print_method(const MethodReport& r) {
-  if (!worth_saying(r)) return;
+  if (!r.differs_from_taylor()) return;
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   if (r.asked == Method::automatic) {
@@ -82,37 +80,6 @@ void print_method(const MethodReport& r) {
     add(std::to_string(r.trials) + (r.trials == 1 ? " trial, " : " trials, ") + std::to_string(r.trial_evaluations) +
         " evaluations");
   say(stderr, "method: %s\n", text.c_str());
-}
-
-void write_method(JsonWriter& j, const MethodReport& r) {
-  if (!worth_saying(r)) return;
-  j.key("method").open_object().key("asked").string(name(r.asked)).key("last").string(name(r.last));
-  j.key("taylor_steps")
-      .integer(static_cast<long long>(r.taylor_steps))
-      .key("steps")
-      .integer(static_cast<long long>(r.steps));
-  j.key("refused")
-      .integer(static_cast<long long>(r.refused))
-      .key("evaluations")
-      .integer(static_cast<long long>(r.evaluations));
-  j.key("trials")
-      .integer(static_cast<long long>(r.trials))
-      .key("trial_evaluations")
-      .integer(static_cast<long long>(r.trial_evaluations));
-  if (!r.turns.empty()) {
-    j.key("turns").open_array();
-    for (const MethodReport::Turn& turn : r.turns)
-      j.open_object()
-          .key("t")
-          .number(number_text(turn.t))
-          .key("to")
-          .string(name(turn.to))
-          .key("why")
-          .string(turn.why)
-          .close();
-    j.close();
-  }
-  j.close();
 }
 
 }  // namespace anholon::cli

@@ -1,6 +1,5 @@
 // --method: by which method a motion is computed, and what was done about it.
 #pragma once
-#include "base/json.h"
 #include "cli/commands.h"
 #include "simulation/simulate.h"
 
@@ -10,8 +9,7 @@ namespace anholon::cli {
 // is asked for.
 void choose_method(const Options& o, const Scenario& scenario, SimulationOptions& options);
 
-// Nothing where all is Taylor's and nothing else was tried.
+// Prints nothing if Taylor's method made every step and no other was tried.
 void print_method(const MethodReport& report);
-void write_method(JsonWriter& j, const MethodReport& report);
 
 }  // namespace anholon::cli

@@ -12,6 +12,7 @@
 #include "cli/run_formulas.h"
 #include "cli/run_info.h"
 #include "cli/say.h"
+#include "observe/row_values.h"
 #include "proof/verify.h"
 #include "report/page.h"
 #include "result/file.h"

@@ -1,40 +1,9 @@
 #include "cli/run_info.h"
 
 #include "base/hash.h"
+#include "observe/row_values.h"
 
 namespace anholon::cli {
-
-namespace {
-
-// Beyond these derivatives no column goes.
-constexpr unsigned kHighest = 12;
-
-std::string rate(const std::string& unit, unsigned order) {
-  if (order == 0) return unit;
-  const std::string over = order == 1 ? "s" : "s^" + std::to_string(order);
-  if (unit == "1") return "1/" + over;
-  return (unit.find_first_of(" */") == std::string::npos ? unit : "(" + unit + ")") + "/" + over;
-}
-
-}  // namespace
-
-std::map<std::string, std::string> column_units(const Model& model) {
-  std::map<std::string, std::string> units;
-  bool any = false;
-  for (std::size_t i = 0; i < model.coordinate_units.size() && i < model.coordinates.size(); ++i) {
-    const std::string& unit = model.coordinate_units[i];
-    if (unit.empty()) continue;
-    any = true;
-    for (unsigned k = 0; k <= kHighest; ++k)
-      units[derivative_name(model.coordinates[i].name, k, Format::text)] = rate(unit, k);
-  }
-  if (any) units["t"] = "s";
-  for (const OutputQuantity& o : model.outputs)
-    for (const Monitor& m : model.monitors)
-      if (!o.unit.empty() && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0)))
-        units[m.name] = o.unit;
-  return units;
-}
 
 RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const SimulationOptions& options) {
   RunInfo info;

@@ -6,9 +6,6 @@
 
 namespace anholon::cli {
 
-// Of the columns of a run of this model, where they are known.
-std::map<std::string, std::string> column_units(const Model& model);
-
 RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const SimulationOptions& options);
 // The way back: the options with what was asked for when the run was made, so far as its start and its equations depend
 // on it.

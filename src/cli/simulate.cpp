@@ -12,13 +12,14 @@
 #include "cli/method.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "cli/report_text.h"
 #include "cli/run_info.h"
 #include "cli/saved.h"
 #include "cli/say.h"
 #include "cli/show.h"
-#include "cli/simulation_json.h"
 #include "result/file.h"
 #include "result/hdf5_sink.h"
+#include "simulation/report_json.h"
 
 namespace anholon::cli {
 
@@ -183,9 +184,10 @@ void events(const SimulationReport& r) {
   for (std::size_t k = 0; k < r.events.size() && k < kMostLines; ++k) {
     const EventReport& e = r.events[k];
     std::string list;
-    for (const auto& c : e.changes) list += (list.empty() ? ": " : ", ") + c.name + " " + c.before + " -> " + c.after;
+    for (const auto& c : e.changes)
+      list += (list.empty() ? ": " : ", ") + c.name + " " + c.before.text() + " -> " + c.after.text();
     if (e.correction > 0) list += "; made consistent by " + small(e.correction);
-    say(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.c_str(), list.c_str(),
+    say(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.text().c_str(), list.c_str(),
         e.stop ? ": the motion ends here" : "");
   }
   if (r.events.size() > kMostLines)
@@ -207,11 +209,12 @@ void report(const Scenario& s, const SimulationReport& r) {
     say(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
   events(r);
   for (const WatchedReport& w : r.conserved)
-    say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.c_str(),
+    say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.text().c_str(),
         small(w.largest_change).c_str());
   for (const WatchedReport& w : r.monitors)
     say(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(),
-        w.first.c_str(), w.last.c_str(), w.least.c_str(), w.greatest.c_str(), small(w.largest_change).c_str());
+        w.first.text().c_str(), w.last.text().c_str(), w.least.text().c_str(), w.greatest.text().c_str(),
+        small(w.largest_change).c_str());
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;
     say(stderr,
@@ -222,7 +225,7 @@ void report(const Scenario& s, const SimulationReport& r) {
   }
   say(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n",
       (r.second ? beside(r) + ": " : "").c_str(), r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(),
-      r.smallest_sigma_t.c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
+      number_text(r.smallest_sigma_t, 6).c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
   print_method(r.method);
   if (r.second) second_opinion(s, r);
   for (const Warning& w : r.warnings) say(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
@@ -353,15 +356,16 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
       if (!o.save.empty()) options.save = std::ref(saver);
       r = run(s, options, rows, nullptr);
     } else if (json) {
-      MemorySink rows;
+      RunFile kept;
+      RunSink rows(kept);
       GrowingFile file(o.output);
       if (!file.error().empty()) throw UsageError{"error: " + file.error() + "\n"};
       if (!o.save.empty()) options.save = std::ref(saver);
       if (start.ok())
         r = run(s, options, rows, told);
       else
-        r.outcome = start, r.t = number_text(s.state.t);
-      file.write(simulation_json(s, rows, r));
+        r.outcome = start, r.t = s.state.t, r.model = s.model->title, r.form = s.system.form->name;
+      file.write(run_json(kept.table, r));
       write_error = file.close();
     } else {
       if (!start.ok()) {
@@ -379,7 +383,7 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
         // Nobody waits for rows that have no place.
         options.cancelled = [&] { return stop_requested() || !rows.error().empty(); };
         r = run(s, options, rows, told);
-        if constexpr (std::same_as<decltype(rows), Hdf5Sink&>) rows.report(report_json(s, r));
+        if constexpr (std::same_as<decltype(rows), Hdf5Sink&>) rows.report(report_json(r));
         write_error = rows.close();
         if constexpr (std::same_as<decltype(rows), CsvSink&>) part = rows.part();
       };
@@ -387,14 +391,14 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
         Hdf5Sink rows(o.output, run_info(o, in, s, options));
         if (resume) go_on(rows, o, *resume, in);
         into(rows);
-        if (o.json) hand_out(report_json(s, r) + "\n");
+        if (o.json) hand_out(report_json(r) + "\n");
       } else {
         CsvSink rows(o.output);
         into(rows);
       }
     }
   }
-  if (told) told->run.report = report_json(s, r);
+  if (told) told->run.report = report_json(r);
   if (!o.quiet && r.rows > 0) report(s, r);
   // A run that is ended because its rows have no place was not interrupted by anybody.
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {

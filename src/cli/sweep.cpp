@@ -9,12 +9,13 @@
 #include "cli/input.h"
 #include "cli/method.h"
 #include "cli/progress.h"
+#include "cli/report_text.h"
 #include "cli/say.h"
 #include "cli/show.h"
-#include "cli/simulation_json.h"
 #include "cli/vary.h"
 #include "ensemble/ensemble.h"
 #include "result/file.h"
+#include "simulation/report_json.h"
 
 namespace anholon::cli {
 
@@ -75,7 +76,9 @@ class Csv final : public Output {
   Csv(const std::string& path, const Variation& v, const std::vector<std::string>& columns)
       : Output(columns), sink_(path) {
     if (!sink_.error().empty()) throw UsageError{"error: " + sink_.error() + "\n"};
-    sink_.columns(header(v, columns));
+    std::vector<std::string> names;
+    for (const std::string& n : header(v, columns)) names.push_back(csv_cell(n));
+    sink_.cells(names);
   }
   std::string close(const EnsembleReport&) override { return sink_.close(); }
   const std::string& error() const override { return sink_.error(); }
@@ -86,7 +89,7 @@ class Csv final : public Output {
     for (double v : r.values) line.push_back(number_text(v));
     line.emplace_back(name(r.outcome.kind));
     for (double v : numbers(r)) line.push_back(std::isnan(v) ? "" : number_text(v));
-    sink_.row(line);
+    sink_.cells(line);
   }
 
  private:

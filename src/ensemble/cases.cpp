@@ -39,6 +39,14 @@ std::vector<std::string> ensemble_columns(const Model& model) {
   return names;
 }
 
+std::vector<std::size_t> ensemble_places(const std::vector<RunColumn>& columns) {
+  std::vector<std::size_t> places;
+  for (const ColumnKind kind : {ColumnKind::coordinate, ColumnKind::velocity, ColumnKind::state, ColumnKind::monitor})
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      if (columns[k].kind == kind) places.push_back(k);
+  return places;
+}
+
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
     : scenario(s), options(o), parameters(s, o.varied) {
   const Model& model = *s.model;
@@ -319,36 +327,30 @@ void CaseWorker::end(CaseWay way, const EnsembleCase& numbers, CaseResult& r) {
 
 namespace {
 
-// Rows of `simulate`, of which the columns of an ensemble are kept.
-class Kept final : public RowSink {
+// Keeps of the rows of `simulate` the columns of an ensemble.
+class EnsembleRowFilter final : public RowSink {
  public:
-  Kept(const Scenario& s, const std::vector<Rational>& times, CaseResult& result)
-      : s_(s), times_(times), result_(result) {}
-  void columns(const std::vector<std::string>& names) override {
-    const Model& model = *s_.model;
-    const std::size_t n = model.coordinates.size();
-    for (std::size_t i = 1; i <= 2 * n; ++i) columns_.push_back(i);
-    const std::size_t monitors = names.size() - model.monitors.size(), states = monitors - n - model.states.size();
-    for (std::size_t i = states; i < monitors - n; ++i) columns_.push_back(i);
-    for (std::size_t i = monitors; i < names.size(); ++i) columns_.push_back(i);
+  EnsembleRowFilter(const std::vector<Rational>& times, CaseResult& result) : result_(result) {
+    for (const Rational& t : times) times_.push_back(from_rational<double>(t));
   }
-  void row(const std::vector<std::string>& texts) override {
-    const double t = std::strtod(texts[0].c_str(), nullptr);
+  void columns(const std::vector<RunColumn>& columns) override {
+    kept_ = ensemble_places(columns);
+  }
+  void row(const Row& row) override {
+    const double t = row.values[0];
     result_.t = t;
     result_.last.clear();
-    for (std::size_t c : columns_) result_.last.push_back(std::strtod(texts[c].c_str(), nullptr));
-    const auto wanted = [&](const Rational& at) { return from_rational<double>(at) == t; };
-    if (std::none_of(times_.begin(), times_.end(), wanted)) return;
-    std::vector<double> row = {t};
-    row.insert(row.end(), result_.last.begin(), result_.last.end());
-    result_.rows.push_back(std::move(row));
+    for (std::size_t k : kept_) result_.last.push_back(row.values[k]);
+    if (std::find(times_.begin(), times_.end(), t) == times_.end()) return;
+    std::vector<double>& kept = result_.rows.emplace_back();
+    kept.push_back(t);
+    kept.insert(kept.end(), result_.last.begin(), result_.last.end());
   }
 
  private:
-  const Scenario& s_;
-  const std::vector<Rational>& times_;
+  std::vector<double> times_;
   CaseResult& result_;
-  std::vector<std::size_t> columns_;
+  std::vector<std::size_t> kept_;  // columns
 };
 
 }  // namespace
@@ -374,11 +376,11 @@ void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& 
   options.most_steps = o.most_steps;
   options.cancelled = o.cancelled;
   options.kernel = o.kernel;
-  Kept rows(own.scenario, o.at, r);
+  EnsembleRowFilter rows(o.at, r);
   const SimulationReport report = simulate(own.scenario, options, rows);
   r.outcome = report.outcome;
   r.steps = report.steps;
-  r.t = std::strtod(report.t.c_str(), nullptr);
+  r.t = report.t;
 }
 
 // Expressions that a case builds stand before those of later cases, and their order is that of sums. So no case may be

@@ -7,16 +7,6 @@ namespace anholon {
 
 namespace {
 
-// The columns of an ensemble among those of a row.
-std::vector<std::size_t> kept_columns(const Scenario& s) {
-  std::vector<std::size_t> list;
-  const std::vector<RowColumn> columns = row_columns(s, largest_order(s, s.structure.d));
-  for (const ColumnKind kind : {ColumnKind::coordinate, ColumnKind::velocity, ColumnKind::state, ColumnKind::monitor})
-    for (std::size_t j = 0; j < columns.size(); ++j)
-      if (columns[j].kind == kind) list.push_back(j);
-  return list;
-}
-
 SimulationReport compared(const Formulation& form, const EnsembleOptions& o, const CaseResult& r) {
   SimulationReport report;
   const EnsembleCase numbers = o.numbers(r.number);
@@ -31,7 +21,7 @@ SimulationReport compared(const Formulation& form, const EnsembleOptions& o, con
   options.cancelled = o.cancelled;
   options.estimate = o.estimate;
   RunToJudge<long double> run;
-  run.columns = kept_columns(s);
+  run.columns = ensemble_places(columns_after_time(s, largest_order(s, s.structure.d)));
   run.knows_resets = false;
   const auto end = from_rational<long double>(numbers.to ? *numbers.to : o.to);
   const auto add = [&](long double t, auto begin, auto last) {

@@ -88,6 +88,8 @@ struct EnsembleReport {
 
 // What is kept of a state: coordinates, velocities, the model's states, outputs.
 std::vector<std::string> ensemble_columns(const Model& model);
+// Their places among the columns of a row.
+std::vector<std::size_t> ensemble_places(const std::vector<RunColumn>& columns);
 
 // Where the model's own numbers have no consistent start: the scenario of the first case that has one, which `options`
 // remember. Not ok if none of the first cases has.

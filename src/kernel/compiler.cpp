@@ -4,16 +4,18 @@
 
 #include <dlfcn.h>
 
+#include "base/installed.h"
 #include "kernel/code.h"
 
 namespace anholon {
 
-// Beside the program, in the folder above it (programs of a build tree), or among the libraries of an installation.
+// Beside the program or library, in the folder above it (a build tree), or among the libraries of an installation.
 static const CompilerModule* load() {
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return nullptr;
   std::error_code none;
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", none).parent_path();
-  for (const std::filesystem::path& folder : {here, here.parent_path(), here.parent_path() / "lib" / "anholon"}) {
+  const std::filesystem::path here = own_file().parent_path();
+  for (const std::filesystem::path& folder :
+       {here, here.parent_path(), here / "anholon", here.parent_path() / "lib" / "anholon"}) {
     const std::filesystem::path file = folder / "anholon-compiler.so";
     if (!std::filesystem::exists(file, none)) continue;
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);

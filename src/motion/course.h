@@ -32,6 +32,7 @@ struct MethodReport {
   std::size_t taylor_steps = 0, expansions = 0;
   std::size_t steps = 0, refused = 0, evaluations = 0;  // of the other method
   std::size_t trials = 0, trial_evaluations = 0;        // that led to nothing, or were made again
+  bool differs_from_taylor() const { return steps > 0 || trials > 0 || !turns.empty(); }
 };
 
 template <Number N>

@@ -54,7 +54,7 @@ class SharperRun {
 
   // What was found, until where the run came.
   RowComparison comparison(double roundoff) {
-    RowComparison c(kept(row_columns(s_, highest_)), roundoff, o_.tolerance.get_d());
+    RowComparison c(kept(columns_after_time(s_, highest_)), roundoff, o_.tolerance.get_d());
     for (std::optional<RowComparison::Row>& row : compared_)
       if (row) c.see(std::move(*row));
     if (lost_) c.lose(to_double(*lost_));
@@ -210,7 +210,7 @@ class SharperRun {
     const Stepper<M>& stepper = motion_.stepper();
     const Expansion<W>& here = motion_.point();
     const std::size_t n = s_.system.coordinates;
-    std::vector<double> missed(row_columns(s_, highest_).size(), 0.0);
+    std::vector<double> missed(columns_after_time(s_, highest_).size(), 0.0);
     const bool inside =
         forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
     if (!inside || at_kink_ || was_kink_ || motion_.fired()) return missed;

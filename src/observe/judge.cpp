@@ -9,7 +9,7 @@ void Judge<N>::look_beside(const Course<N>& course) {
   if (o_.estimate != ErrorEstimate::never)
     beside_.emplace(
         s_, course.taylor().parameters(),
-        RowComparison(row_columns(s_, highest(course)), to_double(unit_roundoff<N>()), o_.tolerance.get_d()));
+        RowComparison(columns_after_time(s_, highest(course)), to_double(unit_roundoff<N>()), o_.tolerance.get_d()));
 }
 
 template <Number N>

@@ -4,13 +4,14 @@
 #include "observe/defect.h"
 #include "observe/row_comparison.h"
 #include "observe/second_opinion.h"
+#include "result/table.h"
 
 namespace anholon {
 
 // A number watched from the start, at the rows and at the end; the numbers are in the precision of the rows.
 struct WatchedReport {
   std::string name;
-  std::string first, last, least, greatest;
+  WrittenNumber first, last, least, greatest;
   double largest_change = 0;  // from the start, in relation to the greatest of its terms
 };
 
@@ -27,9 +28,11 @@ struct Warning {
 
 // Where an event fired, and what it changed: name, before, after.
 struct EventReport {
-  std::string name, t;
+  std::string name;
+  WrittenNumber t;
   struct Change {
-    std::string name, before, after;
+    std::string name;
+    WrittenNumber before, after;
   };
   std::vector<Change> changes;
   double correction = 0;  // by which constraints made what was set consistent
@@ -37,27 +40,30 @@ struct EventReport {
 };
 
 struct SimulationReport {
+  std::string model, form;  // the title of the model, the name of the form whose equations were integrated
   Outcome outcome;
-  std::string t;  // reached
+  double t = std::numeric_limits<double>::quiet_NaN();  // reached
   std::size_t steps = 0, rows = 0;
   int order = 0;
   double seconds = 0;
   // In relation to the greatest of their terms so far (theory: certificate).
-  double newton = 0;             // C1: Newton's law with ideal reactions
-  double projected = 0;          // C2: the same without multipliers
-  double constraints = 0;        // C3: worst hidden constraint, before it was projected
-  double constraints_kept = 0;   // C3 at the rows, after projection
-  double power = 0;              // |h - h0 - work| in relation to the largest energy and work along the motion
-  double smallest_sigma = 1;     // scaled, of the system Jacobian
-  std::string smallest_sigma_t;  // when it was met
+  double newton = 0;            // C1: Newton's law with ideal reactions
+  double projected = 0;         // C2: the same without multipliers
+  double constraints = 0;       // C3: worst hidden constraint, before it was projected
+  double constraints_kept = 0;  // C3 at the rows, after projection
+  double power = 0;             // |h - h0 - work| in relation to the largest energy and work along the motion
+  double smallest_sigma = 1;    // scaled, of the system Jacobian
+  double smallest_sigma_t = std::numeric_limits<double>::quiet_NaN();  // when it was met
   std::vector<ConstraintReport> constraints_each;
   std::optional<ErrorReport> error;
   std::string no_error;  // why there is no estimate, where one was asked for
   std::vector<Warning> warnings;
   std::vector<std::string> notes;  // limits that are passed at the start, floors that pull
+  bool looks_for_events = false;   // the model has events
   std::vector<EventReport> events;
   std::optional<RigorousReport> rigorous;
-  std::size_t eliminations = 0;  // how often other coordinates were eliminated on the way
+  std::optional<std::size_t>
+      eliminations;  // how often other coordinates were eliminated on the way, where the form eliminates
   MethodReport method;
   std::optional<SecondOpinion>
       second;  // where another integrator was asked for; steps, order and sigma are those of the motion beside it

@@ -38,7 +38,7 @@ struct ErrorReport {
 class RowComparison {
  public:
   // `roundoff` and `tolerance`: of the run that is judged.
-  RowComparison(std::vector<RowColumn> columns, double roundoff, double tolerance)
+  RowComparison(std::vector<RunColumn> columns, double roundoff, double tolerance)
       : columns_(std::move(columns)), roundoff_(roundoff), tolerance_(tolerance), most_(columns_.size()),
         terms_(columns_.size()) {}
 
@@ -61,7 +61,7 @@ class RowComparison {
  private:
   std::vector<double> scales() const;
 
-  std::vector<RowColumn> columns_;
+  std::vector<RunColumn> columns_;
   double roundoff_, tolerance_;
   std::vector<Row> rows_;
   std::vector<double> most_, terms_;  // magnitudes of the columns

@@ -2,51 +2,63 @@
 
 namespace anholon {
 
-const char* name(ColumnKind kind) {
-  switch (kind) {
-  case ColumnKind::coordinate:
-    return "coordinates";
-  case ColumnKind::velocity:
-    return "velocities";
-  case ColumnKind::acceleration:
-    return "accelerations";
-  case ColumnKind::higher_derivative:
-    return "higher derivatives";
-  case ColumnKind::multiplier:
-    return "multipliers";
-  case ColumnKind::multiplier_rate:
-    return "rates of multipliers";
-  case ColumnKind::input:
-    return "inputs";
-  case ColumnKind::state:
-    return "states";
-  case ColumnKind::reaction:
-    return "reactions";
-  case ColumnKind::monitor:
-    return "monitors";
-  case ColumnKind::event_time:
-    return "times of events";
-  }
-  return "";
+// The unit of the derivative of that order.
+static std::string rate(const std::string& unit, unsigned order) {
+  if (order == 0) return unit;
+  const std::string over = order == 1 ? "s" : "s^" + std::to_string(order);
+  if (unit == "1") return "1/" + over;
+  return (unit.find_first_of(" */") == std::string::npos ? unit : "(" + unit + ")") + "/" + over;
 }
 
-std::vector<RowColumn> row_columns(const Scenario& s, int highest) {
+std::map<std::string, std::string> column_units(const Model& model) {
+  constexpr unsigned kHighest = 12;  // derivative of a column
+  std::map<std::string, std::string> units;
+  for (std::size_t i = 0; i < model.coordinate_units.size() && i < model.coordinates.size(); ++i) {
+    const std::string& unit = model.coordinate_units[i];
+    if (unit.empty()) continue;
+    for (unsigned k = 0; k <= kHighest; ++k)
+      units[derivative_name(model.coordinates[i].name, k, Format::text)] = rate(unit, k);
+  }
+  if (!units.empty()) units["t"] = "s";
+  for (const OutputQuantity& o : model.outputs)
+    for (const Monitor& m : model.monitors)
+      if (!o.unit.empty() && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0)))
+        units[m.name] = o.unit;
+  return units;
+}
+
+std::vector<RunColumn> columns_after_time(const Scenario& s, int highest) {
   const Model& model = *s.model;
   constexpr ColumnKind kByOrder[] = {ColumnKind::coordinate, ColumnKind::velocity, ColumnKind::acceleration,
                                      ColumnKind::higher_derivative};
-  std::vector<RowColumn> columns;
-  for (int k = 0; k <= highest; ++k)
-    for (const Coordinate& c : model.coordinates)
-      columns.push_back({derivative_name(c.name, static_cast<unsigned>(k), Format::text), kByOrder[std::min(k, 3)]});
-  for (int k = 0; k <= multiplier_orders(s); ++k)
+  const std::map<std::string, std::string> units = column_units(model);
+  std::vector<RunColumn> columns;
+  const auto add = [&](std::string name, ColumnKind kind, std::size_t index, unsigned order = 0) {
+    const auto unit = units.find(name);
+    columns.push_back({std::move(name), kind, index, order, unit == units.end() ? "" : unit->second});
+  };
+  for (unsigned k = 0; static_cast<int>(k) <= highest; ++k)
+    for (std::size_t a = 0; a < model.coordinates.size(); ++a)
+      add(derivative_name(model.coordinates[a].name, k, Format::text), kByOrder[std::min(k, 3U)], a, k);
+  for (unsigned k = 0; static_cast<int>(k) <= multiplier_orders(s); ++k)
     for (std::size_t r = 0; r < model.constraints.size(); ++r)
-      columns.push_back({derivative_name(multiplier_name(model, r), static_cast<unsigned>(k), Format::text),
-                         k > 0                     ? ColumnKind::multiplier_rate
-                         : model.constraints[r].by ? ColumnKind::input
-                                                   : ColumnKind::multiplier});
-  for (const StateVariable& z : model.states) columns.push_back({z.name, ColumnKind::state});
-  for (const Coordinate& c : model.coordinates) columns.push_back({"N." + c.name, ColumnKind::reaction});
-  for (const Monitor& m : model.monitors) columns.push_back({m.name, ColumnKind::monitor});
+      add(derivative_name(multiplier_name(model, r), k, Format::text),
+          k > 0                     ? ColumnKind::multiplier_rate
+          : model.constraints[r].by ? ColumnKind::input
+                                    : ColumnKind::multiplier,
+          r, k);
+  for (std::size_t z = 0; z < model.states.size(); ++z) add(model.states[z].name, ColumnKind::state, z);
+  for (std::size_t a = 0; a < model.coordinates.size(); ++a)
+    add("N." + model.coordinates[a].name, ColumnKind::reaction, a);
+  for (std::size_t i = 0; i < model.monitors.size(); ++i) add(model.monitors[i].name, ColumnKind::monitor, i);
+  return columns;
+}
+
+std::vector<RunColumn> run_columns(const Scenario& s, int highest) {
+  std::vector<RunColumn> columns = columns_after_time(s, highest);
+  const std::map<std::string, std::string> units = column_units(*s.model);
+  const auto unit = units.find("t");
+  columns.insert(columns.begin(), {"t", ColumnKind::time, 0, 0, unit == units.end() ? "" : unit->second});
   return columns;
 }
 

@@ -1,34 +1,22 @@
 // What a row holds: its columns by name and kind, and their values at a point of a motion.
 #pragma once
+#include <map>
+
+#include "result/columns.h"
 #include "setup/redundant.h"
 
 namespace anholon {
 
-// Columns of one kind are made in the same way from a state, so their errors are of one size.
-enum class ColumnKind : std::uint8_t {
-  coordinate,
-  velocity,
-  acceleration,
-  higher_derivative,
-  multiplier,
-  multiplier_rate,
-  input,
-  state,
-  reaction,
-  monitor,
-  event_time
-};
-const char* name(ColumnKind kind);  // "coordinates", "velocities", …
+// Units of columns by name, where the model names them.
+std::map<std::string, std::string> column_units(const Model& model);
 
-struct RowColumn {
-  std::string name;
-  ColumnKind kind = ColumnKind::coordinate;
-};
+// The columns of a row after t: derivatives of the coordinates up to order `highest`, multipliers with their derivatives,
+// inputs, states, reactions, monitors. `highest` is the highest derivative that is solved for of any coordinate.
+std::vector<RunColumn> columns_after_time(const Scenario& scenario, int highest);
+// The same after t.
+std::vector<RunColumn> run_columns(const Scenario& scenario, int highest);
 
-// All columns but the first, which is t; `highest` is the highest derivative that is solved for of any coordinate.
-std::vector<RowColumn> row_columns(const Scenario& scenario, int highest);
-
-// The numbers of these columns at a point. `outputs` knows multipliers, reactions and monitors there.
+// The numbers of the columns after t at a point. `outputs` knows multipliers, reactions and monitors there.
 template <Number W, class Outputs>
 std::vector<W> row_values(const Scenario& s, int highest, const Expansion<W>& here, const Outputs& outputs) {
   const std::size_t n = s.system.coordinates;

@@ -9,7 +9,7 @@
 #include "base/base64.h"
 #include "numeric/relative.h"
 #include "print/print_names.h"
-#include "report/run_report.h"
+#include "simulation/report_json.h"
 
 namespace anholon {
 
@@ -46,13 +46,14 @@ struct ModeChange {
   double value;
 };
 
-std::vector<ModeChange> mode_changes(const Model& model, const RunReport& report) {
+std::vector<ModeChange> mode_changes(const Model& model, const std::optional<SimulationReport>& report) {
   std::vector<ModeChange> list;
-  for (const RunReport::Event& e : report.events)
-    for (const auto& c : e.changes)
+  if (!report) return list;
+  for (const EventReport& e : report->events)
+    for (const EventReport::Change& c : e.changes)
       for (std::size_t k = 0; k < model.parameters.size(); ++k)
         if (model.parameters[k].mode && model.parameters[k].name == c.name)
-          list.push_back({std::strtod(e.t.c_str(), nullptr), k, std::strtod(c.after.c_str(), nullptr)});
+          list.push_back({e.t.value, k, c.after.value});
   return list;
 }
 
@@ -96,7 +97,7 @@ class Plots {
  public:
   Plots(const Scenario& s, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene)
       : s_(s), model_(*s.model), run_(run), conserved_(conserved), scene_(scene),
-        parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, read_run_report(run.report))) {}
+        parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, read_report(run.report))) {}
 
   PlotData make() {
     data_.t = run_.table.values.empty() ? std::vector<double>{} : run_.table.values[0];
@@ -320,7 +321,7 @@ ColumnOf column_of(const Model& model, const RunTable& table) {
 }
 
 bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>& values) {
-  const std::vector<ModeChange> modes = mode_changes(model, read_run_report(run.report));
+  const std::vector<ModeChange> modes = mode_changes(model, read_report(run.report));
   AtRows rows(model, run.table, {e}, parameter_values<double>(model), modes);
   if (!rows.possible()) return false;
   rows.go([&](std::size_t, const Machine<double>& m) { values.push_back(m.value(0)); });

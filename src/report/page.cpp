@@ -10,7 +10,7 @@
 #include "report/markup.h"
 #include "report/math_lines.h"
 #include "report/page_data.h"
-#include "report/run_report.h"
+#include "simulation/report_json.h"
 #include "structure/blocks.h"
 
 namespace anholon {
@@ -44,7 +44,7 @@ std::string picture_in_words(const std::string& source) {
 class Writer {
  public:
   explicit Writer(const Page& p) : p_(p), model_(*p.cases[0].scenario->model) {
-    for (const PageCase& c : p.cases) reports_.push_back(read_run_report(c.run.report));
+    for (const PageCase& c : p.cases) reports_.push_back(read_report(c.run.report));
   }
 
   std::string write() {
@@ -126,12 +126,10 @@ class Writer {
     return out + "</tbody></table></div>\n";
   }
 
-  static std::string outcome(const RunReport& r) {
-    if (r.outcome == "finished") return "";
-    const std::string words = r.outcome.empty()   ? "The run was not finished; the rows up to here are shown."
-                              : r.message.empty() ? r.outcome
-                                                  : r.message;
-    return warning({words, r.hint});
+  static std::string outcome(const std::optional<SimulationReport>& r) {
+    if (!r) return warning({"The run was not finished; the rows up to here are shown.", ""});
+    if (r->outcome.ok()) return "";
+    return warning({r->outcome.message.empty() ? name(r->outcome.kind) : r->outcome.message, r->outcome.hint});
   }
 
   static std::string warning(const Warning& w) {
@@ -426,39 +424,58 @@ class Writer {
                                                   {"smallest scaled singular value of the system Jacobian"},
                                                   {"steps, order"}};
     for (std::size_t k = 0; k < reports_.size(); ++k) {
-      const RunReport& r = reports_[k];
+      const std::optional<SimulationReport>& r = reports_[k];
       const std::string& name = p_.cases[k].name;
       head.push_back(name.empty() ? (reports_.size() > 1 ? "as the file says" : "") : user(name));
-      const std::vector<std::string> shown = {markup_escape(r.newton),
-                                              markup_escape(r.projected),
-                                              markup_escape(r.constraints),
-                                              markup_escape(r.before_projection),
-                                              markup_escape(r.power),
-                                              user(r.digits),
-                                              markup_escape(r.smallest_sigma + " at t = " + r.smallest_sigma_t),
-                                              markup_escape(r.steps + ", " + r.order)};
+      std::vector<std::string> shown(rows.size(), kNotKnown);
+      if (r)
+        shown = {residual(r->newton),
+                 residual(r->projected),
+                 residual(r->constraints_kept),
+                 residual(r->constraints),
+                 residual(r->power),
+                 user(digits(*r)),
+                 residual(r->smallest_sigma) + " at t = " + residual(r->smallest_sigma_t, 6),
+                 std::to_string(r->steps) + ", " + std::to_string(r->order)};
       for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(shown[i]);
     }
     out += table("Residual report", reports_.size() > 1 ? head : std::vector<std::string>{}, rows);
     for (std::size_t k = 0; k < reports_.size(); ++k)
-      out += watched(reports_[k], p_.cases[k].name.empty() ? "" : ", " + p_.cases[k].name);
+      if (reports_[k]) out += watched(*reports_[k], p_.cases[k].name.empty() ? "" : ", " + p_.cases[k].name);
     return out;
   }
 
-  static std::string watched(const RunReport& r, const std::string& of) {
+  static constexpr const char* kNotKnown = "–";
+
+  static std::string residual(double x, int digits = 3) { return std::isnan(x) ? kNotKnown : number_text(x, digits); }
+
+  // "coordinates 13, velocities 12, by a second run …"
+  static std::string digits(const SimulationReport& r) {
+    if (!r.error) return r.no_error.empty() ? "not estimated" : r.no_error;
+    std::string list;
+    for (const KindError& k : r.error->kinds)
+      list += (list.empty() ? "" : ", ") + std::string(name(k.kind)) + " " + std::to_string(k.digits);
+    if (r.error->until)
+      list += ", up to t = " + number_text(*r.error->until, 6) + " (the second run stopped: " + r.error->stopped + ")";
+    return list + ", by " + r.error->means;
+  }
+
+  static std::string watched(const SimulationReport& r, const std::string& of) {
     constexpr std::size_t kMostEvents = 50;
     std::vector<std::vector<std::string>> rows;
-    for (const RunReport::Watched& w : r.watched)
-      rows.push_back({user(w.name), markup_escape(w.first), markup_escape(w.last), markup_escape(w.least),
-                      markup_escape(w.greatest), markup_escape(w.change)});
+    for (const std::vector<WatchedReport>* list : {&r.conserved, &r.monitors})
+      for (const WatchedReport& w : *list)
+        rows.push_back({user(w.name), w.first.text(), w.last.text(), w.least.text(), w.greatest.text(),
+                        residual(w.largest_change)});
     std::string out = table("Integrals of the motion and what was watched" + of,
                             {"", "first", "last", "least", "greatest", "largest change, relative"}, rows);
     std::vector<std::vector<std::string>> events;
     for (std::size_t k = 0; k < std::min(r.events.size(), kMostEvents); ++k) {
+      const EventReport& e = r.events[k];
       std::string set;
-      for (const auto& c : r.events[k].changes)
-        set += (set.empty() ? "" : ", ") + user(c.name) + " " + markup_escape(c.before + " → " + c.after);
-      events.push_back({user(r.events[k].name), markup_escape(r.events[k].t), set});
+      for (const EventReport::Change& c : e.changes)
+        set += (set.empty() ? "" : ", ") + user(c.name) + " " + c.before.text() + " → " + c.after.text();
+      events.push_back({user(e.name), e.t.text(), set});
     }
     out += table("Events" + of, {"", "t", "what was set"}, events);
     for (const Warning& w : r.warnings) out += warning(w);
@@ -488,9 +505,14 @@ class Writer {
     for (const Derivation& d : p_.equations) literature_.source(d.form->source);
     literature_.key("Pryce2001");
     literature_.key("NedialkovPryce2005");
-    for (const RunReport& r : reports_) {
-      if (r.used("cvode") || r.used("ida") || r.used("bdf")) literature_.key("Hindmarsh2005");
-      if (r.used("rk")) literature_.key("PrinceDormand1981");
+    for (const std::optional<SimulationReport>& r : reports_) {
+      if (!r) continue;
+      const auto used = [&](Method m) {
+        return r->method.last == m || std::any_of(r->method.turns.begin(), r->method.turns.end(),
+                                                  [&](const MethodReport::Turn& turn) { return turn.to == m; });
+      };
+      if (r->second || used(Method::bdf)) literature_.key("Hindmarsh2005");
+      if (used(Method::runge_kutta)) literature_.key("PrinceDormand1981");
     }
     literature_.key("JorbaZou2005");
     literature_.key("Neumaier1974");
@@ -504,7 +526,7 @@ class Writer {
 
   const Page& p_;
   const Model& model_;
-  std::vector<RunReport> reports_;  // of the cases
+  std::vector<std::optional<SimulationReport>> reports_;  // of the cases; nullopt where a run was not finished
   Bibliography literature_;
   std::string contents_;
 };

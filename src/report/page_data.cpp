@@ -4,7 +4,7 @@
 #include "report/columns.h"
 #include "report/markup.h"
 #include "report/observer_path.h"
-#include "report/run_report.h"
+#include "simulation/report_json.h"
 
 namespace anholon {
 
@@ -47,9 +47,11 @@ void frames(JsonWriter& j, const PlotData& d) {
   j.close().close();
 }
 
-void events(JsonWriter& j, const RunReport& r) {
+void events(JsonWriter& j, const std::optional<SimulationReport>& r) {
   j.key("events").open_array();
-  for (const RunReport::Event& e : r.events) j.open_object().key("t").number(e.t).key("name").string(e.name).close();
+  if (r)
+    for (const EventReport& e : r->events)
+      j.open_object().key("t").number(json_number(e.t.text())).key("name").string(e.name).close();
   j.close();
 }
 
@@ -82,7 +84,7 @@ void one_case(JsonWriter& j, const PageCase& c) {
   j.key("unit").string(model.coordinate_units.empty() ? "" : "s");
   columns(j, d);
   frames(j, d);
-  events(j, read_run_report(c.run.report));
+  events(j, read_report(c.run.report));
   j.key("scene");
   // In the page the time is no column.
   const ColumnOf in_table = column_of(model, c.run.table);

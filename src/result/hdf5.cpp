@@ -26,21 +26,20 @@ const char* const kNoHdf5Hint = "-o run.csv, or build it where libhdf5-dev is in
 
 bool looks_like_hdf5(std::string_view beginning) { return beginning.substr(0, 8) == "\x89HDF\r\n\x1A\n"; }
 
-void RowBlock::add(const std::vector<std::string>& row) {
-  columns = row.size();
+void RowBlock::add(const Row& row) {
+  columns = row.values.size();
   const std::size_t before = rows();
-  for (std::size_t j = 0; j < row.size(); ++j) {
-    double value = 0;
-    parse_number(row[j], value);
-    numbers.push_back(value);
-    const bool plain = says_all(row[j], value);
-    const auto it = texts.find(j);
-    if (plain && it == texts.end()) continue;
-    std::vector<std::string>& own = it == texts.end() ? texts[j] : it->second;
+  numbers.insert(numbers.end(), row.values.begin(), row.values.end());
+  const auto add_text = [&](std::vector<std::string>& own, std::string_view digits) {
     own.resize(before);
-    own.push_back(plain ? std::string() : row[j]);
-    text_bytes += sizeof(std::string) + own.back().size();
-  }
+    own.emplace_back(digits);
+    text_bytes += sizeof(std::string) + digits.size();
+  };
+  for (std::size_t j = 0; j < row.texts.size(); ++j)
+    if (const std::string_view digits = digits_beside(row, j); !digits.empty() || texts.count(j) > 0)
+      add_text(texts[j], digits);
+  for (auto& [j, own] : texts)
+    if (j >= row.texts.size()) add_text(own, {});
 }
 
 void RowBlock::add(const RunTable& table, std::size_t from, std::size_t to) {

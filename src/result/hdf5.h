@@ -31,7 +31,7 @@ struct RowBlock {
 
   std::size_t rows() const { return columns == 0 ? 0 : numbers.size() / columns; }
   std::size_t bytes() const { return sizeof(double) * (numbers.size() + steps.size()) + text_bytes; }
-  void add(const std::vector<std::string>& row);
+  void add(const Row& row);
   void add(const RunTable& table, std::size_t from, std::size_t to);
   void clear();
   std::size_t text_bytes = 0;

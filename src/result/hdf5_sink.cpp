@@ -36,16 +36,16 @@ void Hdf5Sink::go_on(const RunFile& before, std::size_t rows, std::size_t steps)
   steps_ = block_.steps.size();
 }
 
-void Hdf5Sink::columns(const std::vector<std::string>& names) {
-  names_ = names;
-  if (!names_before_.empty() && names_before_ != names) block_.clear(), steps_ = 0;
+void Hdf5Sink::columns(const std::vector<RunColumn>& columns) {
+  names_ = names_of(columns);
+  if (!names_before_.empty() && names_before_ != names_) block_.clear(), steps_ = 0;
   begun_ = true;
   checkpoint();
 }
 
-void Hdf5Sink::row(const std::vector<std::string>& values) {
+void Hdf5Sink::row(const Row& row) {
   if (!error_.empty()) return;
-  block_.add(values);
+  block_.add(row);
   if (block_.bytes() >= std::max(pace_.bytes, size_ / 4) || std::chrono::steady_clock::now() >= next_) checkpoint();
 }
 

@@ -34,8 +34,8 @@ class Hdf5Sink final : public RowSink {
   // Before `columns`: the first rows and steps of a run, which the rows to come follow; left out where that has other
   // columns.
   void go_on(const RunFile& before, std::size_t rows, std::size_t steps);
-  void columns(const std::vector<std::string>& names) override;
-  void row(const std::vector<std::string>& values) override;
+  void columns(const std::vector<RunColumn>& columns) override;
+  void row(const Row& row) override;
   void step(double t) override;
   // The JSON of the whole run; with it the file is complete.
   void report(std::string json) { block_.report = std::move(json); }

@@ -35,10 +35,8 @@ struct RunFile : RunInfo {
 class RunSink final : public RowSink {
  public:
   explicit RunSink(RunFile& run) : run_(run) {}
-  void columns(const std::vector<std::string>& names) override { run_.table.set_columns(names); }
-  void row(const std::vector<std::string>& values) override {
-    for (std::size_t k = 0; k < values.size(); ++k) run_.table.add(k, values[k]);
-  }
+  void columns(const std::vector<RunColumn>& columns) override { run_.table.set_columns(names_of(columns)); }
+  void row(const Row& row) override { run_.table.add_row(row); }
   void step(double t) override { run_.steps.push_back(t); }
 
  private:

@@ -10,6 +10,13 @@
 
 namespace anholon {
 
+std::string WrittenNumber::text() const { return digits.empty() ? number_text(value) : digits; }
+
+std::string_view digits_beside(const Row& row, std::size_t k) {
+  if (k >= row.texts.size() || row.texts[k].empty() || says_all(row.texts[k], row.values[k])) return {};
+  return row.texts[k];
+}
+
 std::string RunTable::text(std::size_t row, std::size_t column) const {
   if (column < texts.size() && row < texts[column].size() && !texts[column][row].empty()) return texts[column][row];
   return number_text(values[column][row]);
@@ -32,6 +39,18 @@ bool RunTable::add(std::size_t column, std::string_view written) {
   }
   values[column].push_back(value);
   return number;
+}
+
+void RunTable::add_row(const Row& row) {
+  for (std::size_t k = 0; k < row.values.size(); ++k) {
+    const std::string_view digits = digits_beside(row, k);
+    std::vector<std::string>& own = texts[k];
+    if (!own.empty() || !digits.empty()) {
+      own.resize(values[k].size());
+      own.emplace_back(digits);
+    }
+    values[k].push_back(row.values[k]);
+  }
 }
 
 std::size_t RunTable::find(std::string_view name) const {

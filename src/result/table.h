@@ -5,11 +5,21 @@
 // anything on its way through formats.
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "result/rows.h"
+
 namespace anholon {
+
+// A number as a double, and its digits where these say more than the double: of a run in wider numbers.
+struct WrittenNumber {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::string digits;
+  std::string text() const;
+};
 
 struct RunTable {
   std::vector<std::string> columns;
@@ -24,6 +34,8 @@ struct RunTable {
   // Adds a number at the end of a column as it was written; false if it is none: then it is kept as a text beside a
   // NaN.
   bool add(std::size_t column, std::string_view written);
+  // Adds a row that has a number for every column.
+  void add_row(const Row& row);
   // The place of a column, or columns.size().
   std::size_t find(std::string_view name) const;
 };
@@ -32,6 +44,8 @@ struct RunTable {
 bool parse_number(std::string_view written, double& value);
 // Whether `written` is what a double with this value is written as.
 bool says_all(std::string_view written, double value);
+// The digits of column k, where they say more than its double; else empty.
+std::string_view digits_beside(const Row& row, std::size_t k);
 // The same number as JSON has it: .5 and 1/3 are none there.
 std::string json_number(std::string_view written);
 

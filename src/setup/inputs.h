@@ -15,4 +15,8 @@ struct OpenSystem {
 // potential, mass or constraint.
 OpenSystem open_inputs(const Scenario& scenario);
 
+// Why the motion of the model cannot be written as a program: programs do not solve for what enters nonlinearly, and do
+// not start from more than positions and velocities. Returns nullopt if it can.
+std::optional<Diagnostic> not_emitted(const Model& model, const Mechanics& mechanics);
+
 }  // namespace anholon

@@ -42,7 +42,10 @@ class Run {
                 std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
         watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()), judge_(s, o),
         supports_(s) {
+    report_.model = s.model->title;
+    report_.form = s.system.form->name;
     report_.constraints_each = constraint_reports(s);
+    report_.looks_for_events = !s.model->events.empty();
   }
 
   SimulationReport go() {
@@ -52,17 +55,17 @@ class Run {
       begin();
     if (report_.outcome.ok()) {
       ask_second();
-      sink_.columns(column_names());
+      sink_.columns(run_columns(s_, highest()));
       run();
     }
     report_.order = course_.order();
     report_.method = course_.report();
-    report_.t = number_text(to_double(reached_ ? *reached_ : course_.time()));
+    report_.t = to_double(reached_ ? *reached_ : course_.time());
     report_.steps = course_.steps();
     report_.constraints = to_double(course_.worst_constraint());
     report_.smallest_sigma = to_double(course_.smallest_sigma());
-    report_.smallest_sigma_t = number_text(to_double(course_.smallest_sigma_time()), 6);
-    report_.eliminations = motion().eliminations();
+    report_.smallest_sigma_t = to_double(course_.smallest_sigma_time());
+    if (s_.system.form->eliminates()) report_.eliminations = motion().eliminations();
     if (second_) {
       report_.second = second_->report();
       report_.constraints = report_.second->drift;
@@ -88,12 +91,6 @@ class Run {
   const Motion<N>& motion() const { return course_.taylor(); }
 
   int highest() const { return largest_order(s_, motion().program().d); }
-
-  std::vector<std::string> column_names() const {
-    std::vector<std::string> names = {"t"};
-    for (const RowColumn& c : row_columns(s_, highest())) names.push_back(c.name);
-    return names;
-  }
 
   void begin() {
     report_.outcome = course_.start(o_.state);
@@ -275,8 +272,8 @@ class Run {
     report_.outcome = motion().settle(occurrences, goes_on);
     for (const Occurrence<W>& o : occurrences) {
       const Event& e = s_.model->events[o.event];
-      EventReport r{e.name, text(o.t), {}, to_double(o.correction), e.stop};
-      for (const auto& c : o.changes) r.changes.push_back({c.name, text(c.before), text(c.after)});
+      EventReport r{e.name, written(o.t), {}, to_double(o.correction), e.stop};
+      for (const auto& c : o.changes) r.changes.push_back({c.name, written(c.before), written(c.after)});
       report_.events.push_back(std::move(r));
       accumulate(o);
     }
@@ -362,7 +359,7 @@ class Run {
                                            " is hardly determined"
                                      : "the constraint '" + s_.system.equation_names[j] + "' hardly holds";
       report_.warnings.push_back(
-          {"the motion passes near a singular configuration at t = " + report_.smallest_sigma_t + ": " + what,
+          {"the motion passes near a singular configuration at t = " + number_text(report_.smallest_sigma_t, 6) + ": " + what,
            "trust what follows less; write the constraint or the coordinates so that they are regular there"});
     }
     // Far above what integration and round-off leave.
@@ -419,9 +416,15 @@ class Run {
       return number_text(convert<N>(x));
   }
 
+  WrittenNumber written(const W& x) const { return {to_double(x), kWide ? text(x) : std::string()}; }
+
   WatchedReport watched(const std::string& name, const Track<W>& track) const {
-    return {
-        name, text(track.first), text(track.last), text(track.least), text(track.greatest), track.relative_change()};
+    return {name,
+            written(track.first),
+            written(track.last),
+            written(track.least),
+            written(track.greatest),
+            track.relative_change()};
   }
 
   void row(const W& t, const std::string& label) {
@@ -431,17 +434,28 @@ class Run {
     report_.outcome = watch_.see(here, report_);
     const std::vector<W> numbers = row_values(s_, highest(), here, watch_);
     judge_.row(t, label, numbers, course_);
-    std::vector<std::string> values = {label.empty() ? text(t) : label};
-    for (const W& x : numbers) values.push_back(text(x));
+    values_.assign(1, to_double(t));
+    for (const W& x : numbers) values_.push_back(to_double(x));
+    texts_.clear();
+    if (kWide) {
+      texts_.push_back(text(t));
+      for (const W& x : numbers) texts_.push_back(text(x));
+    }
+    if (!label.empty()) texts_.resize(std::max<std::size_t>(1, texts_.size())), texts_[0] = label;
     supports_.see(to_double(t), [&](std::size_t r) { return to_double(watch_.multiplier(r)); });
-    sink_.row(values);
+    sink_.row({values_, texts_});
     ++report_.rows;
     ++given_rows_;
   }
 
+  // The numbers written say more than doubles do.
+  static constexpr bool kWide = !std::same_as<N, double>;
+
   const Scenario& s_;
   const SimulationOptions& o_;
   RowSink& sink_;
+  std::vector<double> values_;  // of the row that is written, and its digits
+  std::vector<std::string> texts_;
   Power power_;
   Course<N> course_;
   std::unique_ptr<SecondMotion> second_;  // what another integrator makes of it

@@ -3,6 +3,7 @@
 
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -16,7 +17,7 @@ std::vector<std::vector<std::string>> rows(const std::shared_ptr<const Model>& m
   options.to = to;
   options.precision = precision;
   options.digits = precision == Precision::multi ? 20 : 16;
-  MemorySink sink;
+  test::TextRows sink;
   simulate(s, options, sink);
   return sink.rows();
 }

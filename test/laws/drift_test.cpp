@@ -7,6 +7,7 @@
 
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon::test {
 namespace {
@@ -21,7 +22,7 @@ std::size_t wanted_steps() { return all_of_them() ? 1'000'000 : 10'000; }
 
 struct Motion {
   SimulationReport report;
-  MemorySink rows;
+  test::TextRows rows;
   Scenario scenario;
 };
 

@@ -6,6 +6,7 @@
 
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -15,7 +16,7 @@ constexpr double kBalance = 1e-14;  // power against energy
 
 struct Motion {
   SimulationReport report;
-  MemorySink rows;
+  test::TextRows rows;
 };
 
 Motion run(const std::shared_ptr<const Model>& model, const Formulation& form, const Rational& to) {
@@ -97,7 +98,7 @@ TEST(BranchThatEnds, StopsTheRunInEveryForm) {
     const Motion m = run(model, *find_formulation(form), Rational(2));
     EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular) << form << ": " << m.report.outcome.message;
     EXPECT_NE(m.report.outcome.message.find("'jerk' goes to 0"), std::string::npos) << m.report.outcome.message;
-    EXPECT_NEAR(std::stod(m.report.t), end, 1e-9) << form;
+    EXPECT_NEAR(m.report.t, end, 1e-9) << form;
     EXPECT_GT(m.rows.rows().size(), 1U) << "the last good state is there";
   }
 }
@@ -106,7 +107,7 @@ TEST(BranchThatEnds, AlsoWhereTheReactionTurns) {
   const Motion m =
       run(test::model_of(on_the_other_branch("constant-jerk-central")), *find_formulation("routh"), Rational(20));
   EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular) << m.report.outcome.message;
-  EXPECT_NEAR(std::stod(m.report.t), 1.730232088, 1e-8);
+  EXPECT_NEAR(m.report.t, 1.730232088, 1e-8);
 }
 
 // The free multiplier: the figures of the specification.

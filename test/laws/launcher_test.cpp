@@ -8,6 +8,7 @@
 
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -24,12 +25,12 @@ Flight flight(const std::string& text, const char* tolerance = "1e-13") {
   SimulationOptions o;
   o.tolerance = *parse_rational(tolerance);
   o.at = {Rational(600)};
-  MemorySink rows;
+  test::TextRows rows;
   const SimulationReport r = simulate(s, o, rows);
   if (!r.outcome.ok()) throw std::runtime_error(r.outcome.message);
   Flight f;
   for (std::size_t k = 0; k < rows.names().size(); ++k) f.end[rows.names()[k]] = std::stod(rows.rows().back()[k]);
-  for (const EventReport& e : r.events) f.events.emplace_back(e.name, std::stod(e.t));
+  for (const EventReport& e : r.events) f.events.emplace_back(e.name, e.t.value);
   return f;
 }
 

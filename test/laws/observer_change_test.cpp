@@ -3,6 +3,7 @@
 
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -20,7 +21,7 @@ Rows motion(const std::string& text) {
   for (int k = 0; k <= 8; ++k) options.at.push_back(Rational(k, 4));
   options.tolerance = 1e-17;
   options.precision = Precision::long_real;
-  MemorySink sink;
+  test::TextRows sink;
   EXPECT_TRUE(simulate(s, options, sink).outcome.ok());
   Rows rows;
   for (const auto& row : sink.rows()) {

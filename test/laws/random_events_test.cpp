@@ -8,6 +8,7 @@
 #include "simulation/simulate.h"
 #include "support/models.h"
 #include "support/random_events.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -22,7 +23,7 @@ struct Verdict {
   std::string fault;
 };
 
-SimulationReport run(const test::EventModel& m, const std::string& text, MemorySink& rows) {
+SimulationReport run(const test::EventModel& m, const std::string& text, test::TextRows& rows) {
   Scenario s;
   SimulationReport r;
   r.outcome = make_scenario(test::model_of(text), *find_formulation("routh"), {}, s);
@@ -39,10 +40,10 @@ Verdict judge(std::uint64_t seed) {
   Verdict v;
   if (!expected.decided) return v;
   v.decided = true;
-  MemorySink rows;
+  test::TextRows rows;
   const SimulationReport r = run(m, m.text(), rows);
   std::string found, wanted;
-  for (const EventReport& e : r.events) found += " " + e.name + "@" + e.t;
+  for (const EventReport& e : r.events) found += " " + e.name + "@" + e.t.text();
   for (const auto& e : expected.events)
     wanted += " " + m.event_name(e.event) + "@" + number_text(static_cast<double>(e.t));
   const std::string both = "\nfound:  " + found + "\nwanted: " + wanted + "\n" + m.text();
@@ -58,7 +59,7 @@ Verdict judge(std::uint64_t seed) {
   long double carried = 0;  // by which events that graze shift what follows
   for (std::size_t k = 0; k < r.events.size(); ++k) {
     const auto& e = expected.events[k];
-    const long double miss = std::abs(std::strtold(r.events[k].t.c_str(), nullptr) - e.t);
+    const long double miss = std::abs(std::strtold(r.events[k].t.text().c_str(), nullptr) - e.t);
     if (r.events[k].name != m.event_name(e.event) || miss > kTime + (kGrazing + kSpeed * carried) / e.slope) {
       v.fault = "event " + std::to_string(k) + " misses by " + number_text(static_cast<double>(miss), 3) + both;
       return v;

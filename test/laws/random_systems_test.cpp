@@ -8,6 +8,7 @@
 #include "simulation/simulate.h"
 #include "support/models.h"
 #include "support/random_system.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -19,7 +20,7 @@ constexpr int kShards = 8, kEach = 25, kFinish = 20;
 
 struct Motion {
   SimulationReport report;
-  MemorySink rows;
+  test::TextRows rows;
   double end = 0;
 };
 
@@ -35,7 +36,7 @@ Motion run(const std::shared_ptr<const Model>& model, const Formulation& form, i
   o.tolerance = Rational(1, mpz_class(digits > 16 ? "1000000000000000000000000" : "10000000000000"));
   if (digits > 16) o.precision = Precision::multi, o.digits = digits;
   m.report = simulate(s, o, m.rows);
-  m.end = std::stod(m.report.t);
+  m.end = m.report.t;
   return m;
 }
 

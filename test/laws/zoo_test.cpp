@@ -9,6 +9,7 @@
 
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -22,7 +23,7 @@ std::map<std::string, double> end_of(const std::string& text, int to) {
   SimulationOptions o;
   o.tolerance = Rational(1, mpz_class("10000000000000"));
   o.at = {Rational(to)};
-  MemorySink rows;
+  test::TextRows rows;
   const SimulationReport r = simulate(s, o, rows);
   if (!r.outcome.ok()) throw std::runtime_error(r.outcome.message);
   std::map<std::string, double> end;

@@ -7,6 +7,7 @@
 #include "observe/evaluate.h"
 #include "simulation/simulate.h"
 #include "support/oracle.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -177,7 +178,7 @@ class Oracle : public testing::TestWithParam<Pair> {
     options.precision = numbers;
     options.digits = digits;
     options.method = method;
-    MemorySink sink;
+    test::TextRows sink;
     const SimulationReport report = simulate(s, options, sink);
     EXPECT_EQ(report.outcome.kind, OutcomeKind::finished) << report.outcome.message;
     if (sink.rows().size() != path["times"].size())

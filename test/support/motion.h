@@ -6,12 +6,13 @@
 #include <string>
 
 #include "simulation/simulate.h"
+#include "support/rows.h"
 
 namespace anholon::test {
 
 struct Motion {
   SimulationReport report;
-  MemorySink rows;
+  test::TextRows rows;
 
   // Throws std::out_of_range where there is no such row or column, so that a test fails.
   double number(std::size_t row, const std::string& column) const {

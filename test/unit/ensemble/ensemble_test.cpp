@@ -8,6 +8,7 @@
 
 #include "ensemble/ensemble.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -122,7 +123,7 @@ std::vector<double> simulated(const std::string& text, const Overrides& set, con
   SimulationOptions o;
   o.kernel = kernel;
   o.at = {to};
-  MemorySink sink;
+  test::TextRows sink;
   simulate(s, o, sink);
   std::vector<double> row;
   for (const std::string& v : sink.rows().back()) row.push_back(std::stod(v));

@@ -13,6 +13,7 @@
 #include "setup/scenario.h"
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -171,7 +172,7 @@ TEST(QuasiVelocities, OfOtherConstraints) {
       o.to = 2;
       o.tolerance = Rational(1, mpz_class("1000000000000"));
       o.precision = precision;
-      MemorySink sink;
+      test::TextRows sink;
       EXPECT_TRUE(simulate(s, o, sink).outcome.ok());
       return sink.rows().back();
     };

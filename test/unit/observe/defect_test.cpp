@@ -3,6 +3,7 @@
 #include "observe/defect.h"
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -126,7 +127,7 @@ TEST_P(DefectOfAMotion, ForAllTimesHoldsAtMany) {
   SimulationOptions o;
   o.to = Rational(1);
   o.tolerance = Rational(1, mpz_class("1000000000000"));
-  MemorySink rows;
+  test::TextRows rows;
   o.rigorous = 0;
   const SimulationReport all = simulate(*s, o, rows);
   o.rigorous = 300;
@@ -157,7 +158,7 @@ TEST(Defect, FallsWithTheToleranceInEveryNumberType) {
   SimulationOptions o;
   o.to = Rational(1, 2);
   o.rigorous = 20;
-  MemorySink rows;
+  test::TextRows rows;
   const auto newton = [&](Precision numbers, const char* tolerance, int digits) {
     o.precision = numbers;
     o.tolerance = parse_rational(tolerance).value();
@@ -175,7 +176,7 @@ TEST(Defect, WithoutMultipliersIsThatOfTheMotionAlone) {
   const auto s = scenario(test::shipped("zoo/appell-hamel"));
   SimulationOptions o;
   o.to = Rational(1, 2);
-  MemorySink rows;
+  test::TextRows rows;
   for (const std::size_t times : {0U, 16U}) {
     o.rigorous = times;
     const SimulationReport r = simulate(*s, o, rows);

@@ -7,6 +7,7 @@
 #include "observe/estimate.h"
 #include "support/motion.h"
 #include "support/oracle.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -289,7 +290,7 @@ TEST(DigitsToTrust, InManyDigitsAndNotOfLongRuns) {
   p.at = {Rational(1500)};
   p.estimate = ErrorEstimate::short_runs;
   ASSERT_TRUE(make_scenario(test::model_of(pendulum), *find_formulation("routh"), p.state, s).ok());
-  MemorySink rows;
+  test::TextRows rows;
   const SimulationReport lengthy = simulate(s, p, rows);
   ASSERT_GT(lengthy.steps, kShortRun);
   EXPECT_FALSE(lengthy.error);
@@ -297,7 +298,7 @@ TEST(DigitsToTrust, InManyDigitsAndNotOfLongRuns) {
 }
 
 RowComparison of_two(double roundoff = 1e-16) {
-  return {{{"x", ColumnKind::coordinate}, {"y", ColumnKind::coordinate}}, roundoff, 1e-12};
+  return {{{"x", ColumnKind::coordinate, 0, 0, ""}, {"y", ColumnKind::coordinate, 1, 0, ""}}, roundoff, 1e-12};
 }
 
 TEST(RowComparison, MeasuresAColumnByItsLargestValue) {

@@ -6,7 +6,6 @@
 #include "report/bibliography.h"
 #include "report/columns.h"
 #include "report/observer_path.h"
-#include "report/run_report.h"
 #include "support/models.h"
 
 namespace anholon {
@@ -61,28 +60,6 @@ TEST(Plots, KnowWhatEventsHaveSet) {
   EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 2, 2}));
   run.report = R"({"events": [{"name": "catch", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}]})";
   EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 4, 4}));
-}
-
-// What a report says is shown as it stands; what it does not say is a dash.
-TEST(RunReport, IsReadAsItStands) {
-  const RunReport r = read_run_report(
-      R"({"residuals": {"newton": 1.5e-17, "power": null}, "steps": 12, "outcome": "singular", "message": "here",
-    "error_estimate": {"digits": 11, "means": "a second run"}, "method": {"last": "rk", "turns": [{"to": "bdf"}]},
-    "events": [{"name": "e", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}], "monitors": {"w": {"first": 1, "last": 2}}, "warnings": [{"message": "m", "hint": "h"}]})");
-  EXPECT_EQ(r.newton, "1.5e-17");
-  EXPECT_EQ(r.power, "–");
-  EXPECT_EQ(r.steps, "12");
-  EXPECT_EQ(r.message, "here");
-  EXPECT_EQ(r.digits, "11, by a second run");
-  EXPECT_TRUE(r.used("rk") && r.used("bdf") && !r.used("ida"));
-  ASSERT_EQ(r.events.size(), 1U);
-  EXPECT_EQ(r.events[0].changes[0].after, "2");
-  ASSERT_EQ(r.watched.size(), 1U);
-  EXPECT_EQ(r.watched[0].least, "–");
-  EXPECT_EQ(r.warnings[0].hint, "h");
-  EXPECT_EQ(read_run_report("no JSON").outcome, "");
-  EXPECT_EQ(read_run_report(R"({"events": 3, "residuals": []})").events.size(), 0U)
-      << "of another kind than it should be";
 }
 
 // The frame of a table that turns at a constant rate, and one whose origin goes in a circle.

@@ -10,6 +10,7 @@
 
 #include "result/file.h"
 #include "result/rows.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -42,8 +43,8 @@ TEST_F(File, HasItsNameWhenItIsWhole) {
   std::ofstream(path_) << "old";
   {
     CsvSink rows(path_);
-    rows.columns({"t", "x"});
-    rows.row({"0", "1"});
+    test::set_columns(rows, {"t", "x"});
+    test::add_row(rows, {"0", "1"});
     rows.flush();
     EXPECT_EQ(text(path_), "old");
     EXPECT_EQ(text(path_ + ".part"), "t,x\n0,1\n");
@@ -66,8 +67,8 @@ TEST_F(File, RowsGoThereWhole) {
   const pid_t child = fork();
   if (child == 0) {
     CsvSink rows(path_);
-    rows.columns({"t", "x"});
-    for (int k = 0; k < 200000; ++k) rows.row({std::to_string(k), "0.123456789"});
+    test::set_columns(rows, {"t", "x"});
+    for (int k = 0; k < 200000; ++k) test::add_row(rows, {std::to_string(k), "0.123456789"});
     raise(SIGKILL);
   }
   waitpid(child, nullptr, 0);
@@ -130,7 +131,7 @@ TEST_F(File, DevicesAreWrittenAsTheyAre) {
   EXPECT_EQ(write_whole("/dev/full", "x"), "cannot write /dev/full: No space left on device");
   EXPECT_FALSE(fs::exists("/dev/null.part"));
   CsvSink rows("/dev/full");
-  rows.columns({"t"});
+  test::set_columns(rows, {"t"});
   EXPECT_EQ(rows.close(), "cannot write /dev/full: No space left on device");
   EXPECT_EQ(obstacle_to_writing("/dev/null"), "");
 }

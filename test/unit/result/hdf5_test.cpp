@@ -14,6 +14,7 @@
 #include "base/diagnostic.h"
 #include "numeric/number.h"
 #include "result/hdf5_sink.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -58,8 +59,8 @@ class Hdf5 : public ::testing::Test {
   // The file of a run of so many rows.
   std::string bytes_of_a_run(int rows) const {
     Hdf5Sink sink(path_, info());
-    sink.columns({"t", "x"});
-    for (int i = 0; i < rows; ++i) sink.row({std::to_string(i), "0.50"});
+    test::set_columns(sink, {"t", "x"});
+    for (int i = 0; i < rows; ++i) test::add_row(sink, {std::to_string(i), "0.50"});
     sink.close();
     std::ostringstream bytes;
     bytes << std::ifstream(path_, std::ios::binary).rdbuf();
@@ -74,9 +75,9 @@ class Hdf5 : public ::testing::Test {
 TEST_F(Hdf5, EverythingComesBack) {
   {
     Hdf5Sink sink(path_, info());
-    sink.columns({"t", "x", "θ'"});
+    test::set_columns(sink, {"t", "x", "θ'"});
     for (int i = 0; i < 2500; ++i) {
-      sink.row({std::to_string(i), i < 10 ? "0.1" : number_text(1.0 / i), i == 2000 ? "1/3" : "nan"});
+      test::add_row(sink, {std::to_string(i), i < 10 ? "0.1" : number_text(1.0 / i), i == 2000 ? "1/3" : "nan"});
       sink.step(i + 0.5);
       if (i == 3 || i == 1999) sink.flush();
     }
@@ -112,11 +113,11 @@ TEST_F(Hdf5, EverythingComesBack) {
 // Texts may begin in any column at any row; what came before has none.
 TEST_F(Hdf5, TextsOfSeveralColumns) {
   Hdf5Sink sink(path_, info());
-  sink.columns({"a", "b", "c"});
+  test::set_columns(sink, {"a", "b", "c"});
   std::vector<std::vector<std::string>> rows;
   for (int i = 0; i < 40; ++i) {
     rows.push_back({"1", i % 7 == 3 ? "0.10" : "0.1", i > 20 ? "1.00000000000000000000000000001" : "1"});
-    sink.row(rows.back());
+    test::add_row(sink, rows.back());
     if (i % 5 == 4) sink.flush();
   }
   ASSERT_EQ(sink.close(), "");
@@ -129,13 +130,13 @@ TEST_F(Hdf5, TextsOfSeveralColumns) {
 TEST_F(Hdf5, IsThereFromTheBeginning) {
   Hdf5Sink sink(path_, info());
   EXPECT_FALSE(fs::exists(path_));
-  sink.columns({"t"});
+  test::set_columns(sink, {"t"});
   const RunFile run = read_run(path_);
   EXPECT_EQ(run.table.rows(), 0u);
   EXPECT_EQ(run.model.at(0).name, "disc.toml");
   EXPECT_TRUE(run.report.empty());
   // Between checkpoints nothing is seen, and nothing has to be.
-  sink.row({"1"});
+  test::add_row(sink, {"1"});
   EXPECT_EQ(read_run(path_).table.rows(), 0u);
   sink.flush();
   EXPECT_EQ(read_run(path_).table.rows(), 1u);
@@ -144,11 +145,11 @@ TEST_F(Hdf5, IsThereFromTheBeginning) {
 // A reader that has opened the file, and one that removes it, do not disturb the run.
 TEST_F(Hdf5, GoesOnWhereItsFileWasTakenAway) {
   Hdf5Sink sink(path_, info());
-  sink.columns({"t"});
-  sink.row({"1"});
+  test::set_columns(sink, {"t"});
+  test::add_row(sink, {"1"});
   sink.flush();
   fs::remove(path_);
-  sink.row({"2"});
+  test::add_row(sink, {"2"});
   EXPECT_EQ(sink.close(), "");
   EXPECT_EQ(read_run(path_).table.values[0], (std::vector<double>{1, 2}));
 }
@@ -158,16 +159,16 @@ TEST_F(Hdf5, CheckpointsComeByTimeAndByBytes) {
   pace.seconds = 1000;
   pace.bytes = 8000;
   Hdf5Sink by_bytes(path_, info(), pace);
-  by_bytes.columns({"t"});
-  for (int i = 0; i < 100'000; ++i) by_bytes.row({"1"});
+  test::set_columns(by_bytes, {"t"});
+  for (int i = 0; i < 100'000; ++i) test::add_row(by_bytes, {"1"});
   EXPECT_GT(by_bytes.written(), 80'000u);
   pace = {};
   pace.seconds = 0.01;
   pace.share = 0;
   Hdf5Sink by_time((folder_ / "other.h5").string(), info(), pace);
-  by_time.columns({"t"});
+  test::set_columns(by_time, {"t"});
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  by_time.row({"1"});
+  test::add_row(by_time, {"1"});
   EXPECT_EQ(by_time.written(), 1u);
 }
 
@@ -186,9 +187,9 @@ TEST_F(Hdf5, SurvivesKills) {
       pace.seconds = 0;
       pace.share = 0;  // a checkpoint at every row: most of the time it is in the middle of one
       Hdf5Sink sink(path_, info(), pace);
-      sink.columns({"t", "x"});
+      test::set_columns(sink, {"t", "x"});
       for (std::uint64_t i = 0;; ++i) {
-        sink.row({std::to_string(i), i % 3 ? "0.25" : "0.250"});
+        test::add_row(sink, {std::to_string(i), i % 3 ? "0.25" : "0.250"});
         const std::uint64_t written = sink.written();
         if (!sink.error().empty() || write(reports[1], &written, sizeof written) != sizeof written) _exit(1);
       }
@@ -228,13 +229,13 @@ TEST_F(Hdf5, FullDiskLeavesTheLastFile) {
   if (child == 0) {
     std::signal(SIGXFSZ, SIG_IGN);
     Hdf5Sink sink(path_, info());
-    sink.columns({"t"});
-    for (int i = 0; i < 1000; ++i) sink.row({std::to_string(i)});
+    test::set_columns(sink, {"t"});
+    for (int i = 0; i < 1000; ++i) test::add_row(sink, {std::to_string(i)});
     sink.flush();
     if (!sink.error().empty() || sink.written() != 1000) _exit(1);
     const rlimit little{3u << 20, 3u << 20};
     setrlimit(RLIMIT_FSIZE, &little);
-    for (int i = 1000; i < 500'000; ++i) sink.row({std::to_string(i)});
+    for (int i = 1000; i < 500'000; ++i) test::add_row(sink, {std::to_string(i)});
     sink.report("{}");
     const std::string why = sink.close();
     if (why != "cannot write " + path_ + ": File too large") _exit(2);

@@ -3,6 +3,7 @@
 #include "simulation/simulate.h"
 #include "support/chain.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -13,7 +14,7 @@ TEST(Chain, OfThirtyTwoLinksKeepsItsEnergyAndNewtonsLaw) {
   SimulationOptions options;
   options.to = Rational(1, 10);
   options.every = Rational(1, 20);
-  MemorySink sink;
+  test::TextRows sink;
   const SimulationReport r = simulate(s, options, sink);
   ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
   EXPECT_EQ(sink.rows().size(), 3U);

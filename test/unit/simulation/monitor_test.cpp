@@ -49,9 +49,9 @@ TEST(Monitor, FormulasAreColumnsAndARange) {
   ASSERT_EQ(r.report.monitors.size(), 2U);
   const WatchedReport& speed2 = r.report.monitors[0];
   EXPECT_EQ(speed2.name, "speed2");
-  EXPECT_EQ(speed2.first, "0");
-  EXPECT_EQ(speed2.least, "0");
-  EXPECT_LE(std::stod(speed2.greatest), 20 * (1 - std::cos(1.0)) + 1e-9);
+  EXPECT_EQ(speed2.first.value, 0);
+  EXPECT_EQ(speed2.least.value, 0);
+  EXPECT_LE(speed2.greatest.value, 20 * (1 - std::cos(1.0)) + 1e-9);
   EXPECT_EQ(speed2.largest_change, 1);
   ASSERT_EQ(r.report.conserved.size(), 1U);
   EXPECT_LT(r.report.conserved[0].largest_change, 1e-12);
@@ -113,7 +113,7 @@ TEST(Sigma, ASingularConfigurationAnnouncesItself) {
   ASSERT_FALSE(r.report.warnings.empty());
   EXPECT_NE(r.report.warnings[0].message.find("the constraint 'thread' hardly holds"), std::string::npos)
       << r.report.warnings[0].message;
-  EXPECT_NEAR(std::stod(r.report.smallest_sigma_t), std::stod(r.report.t), 1e-3);
+  EXPECT_NEAR(r.report.smallest_sigma_t, r.report.t, 1e-3);
 }
 
 TEST(ConstraintsEach, HaveTheirDerivatives) {

@@ -4,6 +4,7 @@
 
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -20,7 +21,7 @@ SimulationReport report(const Scenario& s, const Rational& to, const Rational& e
   o.to = to;
   if (every > 0) o.every = every;
   o.conserved = conserved(*s.mechanics);
-  MemorySink rows;
+  test::TextRows rows;
   SimulationReport r = simulate(s, o, rows);
   EXPECT_TRUE(r.outcome.ok()) << r.outcome.message;
   return r;

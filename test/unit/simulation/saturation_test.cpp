@@ -8,6 +8,7 @@
 #include "integrate/taylor.h"
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -98,7 +99,7 @@ TEST_P(Saturation, IsNotSteppedOver) {
     o.kernel = way.kernel;
     o.precision = way.precision;
     o.tolerance = way.tolerance;
-    MemorySink rows;
+    test::TextRows rows;
     const SimulationReport report = simulate(s, o, rows);
     ASSERT_TRUE(report.outcome.ok()) << way.name << ": " << report.outcome.message;
     const double near = way.tolerance > Rational("1/10000000000") ? 1e-3 : 1e-9;
@@ -117,7 +118,7 @@ TEST_P(Saturation, RunsGoOnWithTheSameBits) {
     o.kernel = kernel;
     o.resume = resume;
     if (saved) o.save = [saved](const SavedRun& r) { *saved = r; };
-    MemorySink rows;
+    test::TextRows rows;
     const SimulationReport report = simulate(s, o, rows);
     EXPECT_TRUE(report.outcome.ok()) << report.outcome.message;
     return rows.rows().empty() ? std::vector<std::string>{} : rows.rows().back();

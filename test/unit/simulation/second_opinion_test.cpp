@@ -2,6 +2,7 @@
 
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -20,12 +21,12 @@ struct Motion {
     start = make_scenario(test::model_of(text), *find_formulation(form), {}, scenario);
   }
   SimulationReport by(Integrator integrator) {
-    rows = MemorySink();
+    rows = test::TextRows();
     return simulate(scenario, options_for(integrator, *scenario.model), rows);
   }
   Scenario scenario;
   Outcome start;
-  MemorySink rows;
+  test::TextRows rows;
 };
 
 struct Case {
@@ -44,7 +45,7 @@ TEST_P(SecondOpinionOn, AgreesWithTaylor) {
   Motion motion(test::shipped_text(GetParam().model), GetParam().form);
   ASSERT_TRUE(motion.start.ok()) << motion.start.message;
   const SimulationReport taylor = motion.by(Integrator::taylor);
-  const MemorySink expected = motion.rows;
+  const test::TextRows expected = motion.rows;
   const SimulationReport r = motion.by(GetParam().integrator);
   ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
   EXPECT_FALSE(taylor.second);

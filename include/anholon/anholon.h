@@ -1,0 +1,10 @@
+// All of the library.
+#pragma once
+#include "anholon/equations.h"
+#include "anholon/linear.h"
+#include "anholon/model.h"
+#include "anholon/motion.h"
+#include "anholon/proof.h"
+#include "anholon/sweep.h"
+#include "anholon/system.h"
+#include "anholon/version.h"

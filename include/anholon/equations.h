@@ -1,0 +1,23 @@
+// The equations of motion of a model in a classical form.
+#pragma once
+#include "anholon/model.h"
+
+namespace anholon::v1 {
+
+struct DeriveOptions {
+  std::string form = "routh";   // a name that Model::forms() lists
+  std::string expand = "auto";  // auto, none, paper, full or parts: how far sums and products are written out
+  bool steps = false;           // with the quantities that lead to them: energies, momenta, forces
+  bool reactions = false;       // with the ideal reactions
+};
+
+// The same equations in four notations.
+struct Equations {
+  std::string form;
+  std::string text, latex, mathml, json;
+};
+
+// Errors: the form is not known or does not apply (a diagnostic that lists those that do).
+ANHOLON_API Result<Equations> derive(const Model& model, const DeriveOptions& options = {});
+
+}  // namespace anholon::v1

@@ -1,0 +1,65 @@
+// What stands behind the types of the public headers, and how the trouble of the layers becomes theirs.
+#pragma once
+#include "anholon/motion.h"
+#include "modelfile/read.h"
+#include "setup/scenario.h"
+
+namespace anholon::v1 {
+
+namespace inner = ::anholon;
+
+struct Model::Data {
+  inner::SourceText source;
+  inner::Overrides overrides;
+  std::vector<std::string> cases;
+  std::shared_ptr<const inner::Model> model;
+  std::vector<Diagnostic> remarks;
+
+  // The same model with an expression graph of its own, in which its holder may build.
+  std::shared_ptr<const inner::Model> own_copy() const;
+};
+
+struct System::Data {
+  std::shared_ptr<const Model::Data> model;
+  inner::StateChoice choice;
+  inner::Scenario scenario;
+};
+
+Severity to_public(inner::Severity severity);
+Diagnostic to_public(const inner::Diagnostic& d, const inner::SourceText& source);
+OutcomeKind to_public(inner::OutcomeKind kind);
+Outcome to_public(const inner::Outcome& outcome);
+
+Error error_of(const inner::Diagnostics& diagnostics, const inner::SourceText& source);
+Error error_of(const inner::Failure& failure, const inner::SourceText& source);
+Error error_of(const inner::Outcome& outcome);
+// Of an argument of a call.
+Error mistake(const std::string& message, const std::string& hint = {});
+
+// Calls f, which returns a Result; a Failure that it throws becomes the error.
+template <class F>
+auto guarded(const inner::SourceText& source, F f) -> decltype(f()) {
+  try {
+    return f();
+  } catch (const inner::Failure& failure) {
+    return error_of(failure, source);
+  } catch (const std::bad_alloc&) {
+    return error_of(
+        inner::Outcome{inner::OutcomeKind::too_large, "out of memory", "the model is too large for this machine"});
+  }
+}
+
+// The number as an exact rational in SI units. Throws Failure that names the argument.
+inner::Rational exact(const Number& number, const std::string& argument);
+
+// The form of that name. Throws Failure if there is none; with mechanics also if it does not apply.
+const inner::Formulation& find_form(const std::string& name, const inner::Mechanics* mechanics = nullptr);
+
+// The initial values and eliminations that were asked for. Throws Failure.
+inner::StateChoice state_choice(const PrepareOptions& options, const inner::Model& model);
+
+// The prepared system. Throws Failure.
+inner::Outcome make_system(std::shared_ptr<const inner::Model> model, const std::string& form,
+                           const inner::StateChoice& choice, inner::Scenario& scenario);
+
+}  // namespace anholon::v1

@@ -1,0 +1,151 @@
+#include "anholon/model.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "anholon/version.h"
+#include "api/data.h"
+#include "base/installed.h"
+#include "base/read_file.h"
+
+namespace anholon::v1 {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The value of `key = "…"` at the beginning of a line.
+std::string quoted_value(const std::string& text, const std::string& key) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line(text.data() + at, end - at);
+    const std::size_t open = line.find('"'), close = line.rfind('"');
+    if (line.starts_with(key) && open != std::string_view::npos && close > open)
+      return std::string(line.substr(open + 1, close - open - 1));
+    at = end + 1;
+  }
+  return {};
+}
+
+Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
+  auto data = std::make_shared<Model::Data>();
+  data->source = std::move(source);
+  data->cases = options.cases;
+  for (const auto& [name, value] : options.set) data->overrides[inner::normal_name(name)] = value.text();
+  inner::Diagnostics diagnostics;
+  const auto model = inner::open_model(data->source, diagnostics, data->overrides, data->cases);
+  if (!model) return error_of(diagnostics, data->source);
+  data->model = model->model;
+  for (const inner::Diagnostic& d : diagnostics.list()) data->remarks.push_back(to_public(d, data->model->source_text));
+  return Model(std::move(data));
+}
+
+}  // namespace
+
+const char* version() { return ANHOLON_VERSION; }
+
+std::shared_ptr<const inner::Model> Model::Data::own_copy() const {
+  inner::Diagnostics ignored;
+  inner::SourceText read = model->source_text;
+  const auto copy = inner::open_model(source, ignored, overrides, cases);
+  if (!copy) throw inner::Failure({}, "the model's files have changed since they were read", "read the model again");
+  return copy->model;
+}
+
+const std::string& Model::title() const { return data_->model->title; }
+const std::vector<Diagnostic>& Model::remarks() const { return data_->remarks; }
+const std::string& Model::text() const { return data_->source.text; }
+
+std::vector<Coordinate> Model::coordinates() const {
+  const inner::Model& m = *data_->model;
+  std::vector<Coordinate> list;
+  for (std::size_t i = 0; i < m.coordinates.size(); ++i)
+    list.push_back({m.coordinates[i].name, i < m.coordinate_units.size() ? m.coordinate_units[i] : ""});
+  return list;
+}
+
+std::vector<Parameter> Model::parameters() const {
+  const inner::Model& m = *data_->model;
+  std::vector<double> values;
+  try {
+    values = inner::parameter_values<double>(m);
+  } catch (const inner::Failure&) {
+    // A parameter without a value: a model for equations alone.
+    values.assign(m.parameters.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+  std::vector<Parameter> list;
+  for (std::size_t i = 0; i < m.parameters.size(); ++i)
+    list.push_back({m.parameters[i].name, values[i], i < m.parameter_units.size() ? m.parameter_units[i] : ""});
+  return list;
+}
+
+std::vector<Constraint> Model::constraints() const {
+  std::vector<Constraint> list;
+  for (const inner::Constraint& c : data_->model->constraints) list.push_back({c.name, static_cast<int>(c.order)});
+  return list;
+}
+
+template <class List>
+static std::vector<std::string> names(const List& list) {
+  std::vector<std::string> result;
+  for (const auto& element : list) result.push_back(element.name);
+  return result;
+}
+
+std::vector<std::string> Model::states() const { return names(data_->model->states); }
+std::vector<std::string> Model::inputs() const { return names(data_->model->controls); }
+std::vector<std::string> Model::monitors() const { return names(data_->model->monitors); }
+std::vector<std::string> Model::cases() const { return data_->model->cases; }
+
+std::vector<Form> Model::forms() const {
+  const std::shared_ptr<const inner::Model> model = data_->own_copy();
+  const inner::Mechanics m = inner::mechanics(*model);
+  std::vector<Form> list;
+  for (const inner::Formulation* f : inner::formulations()) {
+    const std::string why = inner::obstacle(*f, m);
+    list.push_back({f->name, f->title, f->equation, f->source, why.empty(), why});
+  }
+  return list;
+}
+
+std::vector<ShippedModel> shipped_models() {
+  std::vector<ShippedModel> list;
+  for (const fs::path& folder : inner::data_folders("models", ANHOLON_MODELS_DIR)) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) continue;
+    for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
+      if (e.path().extension() != ".toml" || e.path().parent_path().filename() == "templates") continue;
+      std::string text;
+      inner::read_file(e.path(), text);
+      list.push_back({e.path().stem().string(), e.path().string(), quoted_value(text, "title")});
+    }
+    if (!list.empty()) break;
+  }
+  std::sort(list.begin(), list.end(), [](const ShippedModel& a, const ShippedModel& b) { return a.path < b.path; });
+  return list;
+}
+
+Result<Model> read_file(const std::string& path, const ReadOptions& options) {
+  inner::SourceText source{path, {}};
+  std::string why;
+  if (inner::read_file(path, source.text, &why)) return opened(std::move(source), options);
+  std::vector<std::string> known;
+  for (const ShippedModel& m : shipped_models()) {
+    known.push_back(m.name);
+    if (m.name != path || !inner::read_file(m.path, source.text)) continue;
+    source.name = m.name + ".toml";
+    source.path = m.path;
+    return opened(std::move(source), options);
+  }
+  const std::string near = inner::did_you_mean(path, known);
+  return mistake("cannot read the model '" + path + "': " + why,
+                 near.empty() ? "a path to a .toml file, or the name of a shipped model"
+                              : "did you mean the shipped model '" + near + "'?");
+}
+
+Result<Model> read_text(const std::string& text, const ReadOptions& options, const std::string& name) {
+  return opened({name, text}, options);
+}
+
+}  // namespace anholon::v1

@@ -1,0 +1,59 @@
+#include "anholon/proof.h"
+
+#include <algorithm>
+
+#include "anholon/version.h"
+#include "api/data.h"
+#include "base/hash.h"
+#include "proof/prove.h"
+#include "proof/verify.h"
+#include "setup/eliminate.h"
+
+namespace anholon::v1 {
+
+static_assert(static_cast<int>(Verdict::refuted) == static_cast<int>(inner::Verdict::refuted));
+
+bool Proof::all_proved() const {
+  return std::all_of(forms.begin(), forms.end(), [](const FormVerdict& f) { return f.verdict == Verdict::proved; });
+}
+
+Result<Proof> prove(const Model& model, const std::vector<std::string>& names) {
+  return guarded(model.data().source, [&]() -> Result<Proof> {
+    const std::shared_ptr<const inner::Model> own = model.data().own_copy();
+    const inner::Mechanics m = inner::mechanics(*own);
+    std::vector<const inner::Formulation*> forms;
+    for (const std::string& name : names) forms.push_back(&find_form(name, &m));
+    if (names.empty())
+      for (const inner::Formulation* f : inner::formulations())
+        if (inner::obstacle(*f, m).empty()) forms.push_back(f);
+    std::vector<inner::Eliminations> eliminations;
+    for (const bool solve : {true, false})
+      eliminations.push_back({inner::elimination_for(m, inner::Unknowns::coordinates, {}, {}, solve, 0),
+                              inner::elimination_for(m, inner::Unknowns::quasi_velocities, {}, {}, solve, 0)});
+    const inner::Proof p = inner::prove(m, forms, eliminations);
+    Proof result;
+    for (const inner::FormProof& f : p.forms) {
+      FormVerdict& v = result.forms.emplace_back();
+      v.form = f.form->name;
+      v.verdict = static_cast<Verdict>(f.verdict);
+      for (const inner::Difference& d : f.differences)
+        if (d.verdict != inner::Verdict::proved && v.detail.empty()) v.detail = d.component + ": " + d.detail;
+    }
+    result.certificate = inner::to_json(inner::certificate(
+        m, p, eliminations.front(), std::string("anholon ") + version(), inner::sha256_text(model.text())));
+    return result;
+  });
+}
+
+Result<Verification> verify(const std::string& certificate) {
+  const inner::SourceText source{"certificate", certificate};
+  return guarded(source, [&]() -> Result<Verification> {
+    const inner::Verification v = inner::verify(inner::read_certificate(certificate));
+    Verification result;
+    result.claims = v.claims.size();
+    for (const inner::ClaimFinding& f : v.claims) result.confirmed += f.finding == inner::Finding::confirmed;
+    return result;
+  });
+}
+
+}  // namespace anholon::v1

@@ -1,0 +1,56 @@
+#include "anholon/system.h"
+
+#include "api/data.h"
+#include "motion/form_choice.h"
+
+namespace anholon::v1 {
+
+static_assert(static_cast<int>(Origin::corrected) == static_cast<int>(inner::Origin::corrected));
+
+Result<System> prepare(const Model& model, const PrepareOptions& options) {
+  return guarded(model.data().source, [&]() -> Result<System> {
+    auto data = std::make_shared<System::Data>();
+    data->model = std::make_shared<const Model::Data>(model.data());
+    const std::shared_ptr<const inner::Model> own = model.data().own_copy();
+    data->choice = state_choice(options, *own);
+    std::string form = options.form;
+    if (form == "auto") form = inner::choose_form([&] { return model.data().own_copy(); }, data->choice).form->name;
+    if (const inner::Outcome o = make_system(own, form, data->choice, data->scenario); !o.ok()) return error_of(o);
+    return System(std::move(data));
+  });
+}
+
+const std::string& System::form() const {
+  static thread_local std::string name;
+  return name = data_->scenario.system.form->name;
+}
+double System::start() const { return data_->scenario.state.t; }
+int System::degrees_of_freedom() const { return data_->scenario.structure.degrees_of_freedom; }
+const std::vector<std::string>& System::notes() const { return data_->scenario.state.notes; }
+Model System::model() const { return Model(data_->model); }
+
+std::vector<InitialValue> System::initial() const {
+  const inner::Scenario& s = data_->scenario;
+  std::vector<InitialValue> list;
+  const auto add = [&](const std::string& name, double value, inner::Origin origin) {
+    list.push_back({name, value, static_cast<Origin>(origin)});
+  };
+  const std::vector<inner::Coordinate>& q = s.model->coordinates;
+  for (std::size_t a = 0; a < s.state.q.size(); ++a) add(q[a].name, s.state.q[a], s.state.q_origin[a]);
+  for (std::size_t a = 0; a < s.state.qd.size(); ++a) add(q[a].name + "'", s.state.qd[a], s.state.qd_origin[a]);
+  for (std::size_t z = 0; z < s.state.states.size(); ++z)
+    add(s.model->states[z].name, s.state.states[z], s.state.states_origin[z]);
+  return list;
+}
+
+std::vector<ConstraintClass> System::constraints() const {
+  const inner::Scenario& s = data_->scenario;
+  std::vector<ConstraintClass> list;
+  for (std::size_t r = 0; r < s.classes.size(); ++r) {
+    const inner::ConstraintClass& c = s.classes[r];
+    list.push_back({s.model->constraints[r].name, c.kind, c.homogeneous, c.rheonomic, c.redundant});
+  }
+  return list;
+}
+
+}  // namespace anholon::v1

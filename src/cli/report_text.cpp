@@ -1,0 +1,25 @@
+#include "cli/report_text.h"
+
+namespace anholon::cli {
+
+std::string small(double x) { return number_text(x, 3); }
+
+ErrorEstimate error_estimate(const Options& o) {
+  return o.error_estimate == "always"  ? ErrorEstimate::always
+         : o.error_estimate == "never" ? ErrorEstimate::never
+                                       : ErrorEstimate::short_runs;
+}
+
+std::string digits_to_trust(const ErrorReport& e) {
+  std::string list;
+  for (const KindError& k : e.kinds)
+    list += (list.empty() ? "" : ", ") + std::string(name(k.kind)) + " " + std::to_string(k.digits);
+  const KindError& worst = e.worst();
+  const std::string until =
+      e.until ? ", up to t = " + number_text(*e.until, 6) + ", where the second run stopped (" + e.stopped + ")" : "";
+  return until + ": " + list + " (worst: " + worst.of + ", error " + small(worst.error) +
+         (worst.kind == ColumnKind::event_time ? "" : " of its largest value") + ", at t = " + number_text(worst.t, 6) +
+         "; by " + e.means + ")";
+}
+
+}  // namespace anholon::cli

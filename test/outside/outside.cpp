@@ -1,0 +1,119 @@
+// Uses every part of the installed library, and prints what comes out of it.
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include <anholon/anholon.h>
+
+namespace {
+
+int failures = 0;
+
+void expect(bool holds, const char* what) {
+  if (holds) return;
+  std::printf("NOT: %s\n", what);
+  ++failures;
+}
+
+constexpr const char* kPendulum = R"(
+title = "pendulum"
+coordinates = ["theta"]
+parameters = {m = 1, l = "9.81/4"}
+[[particle]]
+name = "bob"
+mass = "m"
+position = ["l*sin(theta)", "-l*cos(theta)"]
+[gravity]
+field = ["0", "-9.81"]
+[initial]
+theta = 0.1
+theta' = 0
+[simulate]
+to = 2
+)";
+
+void mistakes() {
+  const auto none = anholon::read_text("title = 3", {}, "bad.toml");
+  expect(!none && !none.error().diagnostics.empty(), "a mistake is a diagnostic");
+  expect(!none && none.error().diagnostics[0].file == "bad.toml", "it names its file");
+  expect(none.text().find("bad.toml:1") != std::string::npos, "its text has the place");
+  const auto model = anholon::read_text(kPendulum);
+  anholon::PrepareOptions wrong;
+  wrong.initial.emplace("thetta", 1.0);
+  const auto system = anholon::prepare(*model, wrong);
+  expect(!system && system.text().find("did you mean 'theta'") != std::string::npos, "a slip has a suggestion");
+}
+
+void motion(const anholon::System& system) {
+  anholon::MotionOptions options;
+  options.every = 0.25;
+  const auto run = anholon::simulate(system, options);
+  expect(bool(run), "the motion is computed");
+  if (!run) return;
+  expect(run->outcome().ok(), "it finishes");
+  expect(run->rows() == 9 && run->t().back() == 2, "its rows are those that were asked for");
+  expect(std::abs(run->column("theta").back() - 0.1 * std::cos(4.0)) < 1e-3, "theta = 0.1 cos 2t, nearly");
+  expect(run->column("no such").empty(), "an unknown column is empty");
+  expect(run->report().newton < 1e-12, "Newton's law holds");
+  expect(!run->report().trust.empty() && run->report().trust[0].digits > 8, "digits can be trusted");
+  std::size_t asked = 0;
+  options.cancelled = [&asked] { return ++asked > 3; };
+  const auto stopped = anholon::simulate(system, options);
+  expect(stopped && stopped->outcome().kind == anholon::OutcomeKind::interrupted && stopped->rows() > 0,
+         "a cancelled motion keeps its rows");
+
+  // Two threads use one system, and get the bits of one.
+  std::vector<double> first, second;
+  const auto go = [&system](std::vector<double>& to) {
+    const auto r = anholon::simulate(system);
+    to.assign(r->column("theta").begin(), r->column("theta").end());
+  };
+  std::thread one([&] { go(first); }), two([&] { go(second); });
+  one.join(), two.join();
+  expect(!first.empty() && first == second, "two threads get the same bits");
+}
+
+void sweep(const anholon::System& system) {
+  anholon::SweepOptions options;
+  options.vary = {{"m", {1, 2}}, {"theta'", anholon::linspace(0, 1, 5)}};
+  const auto all = anholon::sweep(system, options);
+  expect(bool(all), "the sweep is computed");
+  if (!all) return;
+  expect(all->cases() == 10 && all->finished() == 10, "all cases finish");
+  expect(all->column("theta'").size() == 10 && all->column("m")[5] == 2, "the last one varies fastest");
+  expect(all->column("theta")[0] == all->column("theta")[5], "the mass of a pendulum has no influence");
+}
+
+}  // namespace
+
+int main() {
+  std::printf("anholon %s, %zu shipped models\n", anholon::version(), anholon::shipped_models().size());
+  mistakes();
+  const auto model = anholon::read_text(kPendulum);
+  expect(bool(model), "the model is read");
+  if (!model) return std::printf("%s", model.text().c_str()), 1;
+  expect(model->parameters()[1].value == 9.81 / 4, "a parameter has its value");
+  const auto equations = anholon::derive(*model, {.form = "lagrange-type"});
+  expect(equations && equations->text.find("theta''") != std::string::npos, "equations are derived");
+  if (!equations) std::printf("%s", equations.text().c_str());
+  const auto proof = anholon::prove(*model);
+  expect(proof && proof->all_proved(), "all forms are proved equal");
+  const auto verified = anholon::verify(proof->certificate);
+  expect(verified && verified->all_confirmed() && verified->claims > 0, "the certificate is confirmed");
+  const auto system = anholon::prepare(*model);
+  expect(bool(system), "the system is prepared");
+  if (!system) return std::printf("%s", system.text().c_str()), 1;
+  expect(system->degrees_of_freedom() == 1, "it has one degree of freedom");
+  motion(*system);
+  sweep(*system);
+  const auto source = anholon::program_text(*system, anholon::Language::c);
+  expect(source && source->find("#include <math.h>") != std::string::npos, "the motion is written as a program");
+  const auto disc = anholon::read_file("disc");
+  expect(bool(disc), "a shipped model is found");
+  const auto rest = anholon::prepare(*anholon::read_text(kPendulum), {.initial = {{"theta", 0}}});
+  const auto linear = anholon::linearize(*rest);
+  expect(linear && linear->eigenvalues.size() == 2 && std::abs(std::abs(linear->eigenvalues[0].imag()) - 2) < 1e-12,
+         "the pendulum at rest has the frequency 2");
+  std::printf("%d failures\n", failures);
+  return failures == 0 ? 0 : 1;
+}
