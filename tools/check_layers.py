@@ -3,7 +3,7 @@
 
 usage: check_layers.py [--root DIR] [--self-test]
 
-The table below is the one of ARCHITECTURE.md.
+ARCHITECTURE.md says what each folder owns; the table below holds its level.
 """
 
 import argparse

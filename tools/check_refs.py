@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Checks that every equation tag cited in the code is derived in doc/theory/.
+"""Checks that every equation tag cited in the code, the tests and the documents is derived in doc/theory/.
 
 usage: check_refs.py [--root DIR] [--self-test]
 
-Cited in src/formulation/ and src/mechanics/:
-  [L 2.7]  [N 2.10, 3.1]  [L 2.8–2.13]   must stand, one by one or in a list, in a file of doc/theory/
-  (theory: name)                         is a file doc/theory/name.md, a heading there (as a link would
-                                         spell it), or stands there as (theory: name)
+Cited in src/, test/, doc/ and NOTATION.md:
+  [L 2.7]  [N 2.10, 3.1]  [L 2.8–2.13]   occurs, alone or in a list, in a file of doc/theory/
+  (theory: name)                         is a file doc/theory/name.md or a heading there, as a link would spell it
 """
 
 import argparse
@@ -19,6 +18,9 @@ NUMBER = r"\d+(?:\.\d+)*[a-z]?"
 TAG = re.compile(rf"\[([A-Z]{{1,3}}) ({NUMBER}(?:\s*(?:,|–|-)\s*{NUMBER})*)\]")
 THEORY = re.compile(r"\(theory: ?([\w.-]+)\)")
 HEADING = re.compile(r"^#+\s+(.*?)\s*#*\s*$")
+FOLDERS = ("src", "test", "doc")
+SUFFIXES = {".h", ".cpp", ".def", ".py", ".md"}
+EXAMPLE = "(theory: name)"  # how a page is cited
 
 
 def expand(numbers):
@@ -50,7 +52,6 @@ def check(root):
     for path in sorted((root / "doc" / "theory").glob("**/*.md")):
         text = path.read_text(encoding="utf-8")
         known.update(tag for _, tag in tags(text))
-        known.update(f"(theory: {name})" for name in THEORY.findall(text))
         known.add(f"(theory: {path.stem})")
         for line in text.splitlines():
             heading = HEADING.match(line)
@@ -58,33 +59,35 @@ def check(root):
                 known.add(f"(theory: {slug(heading[1])})")
 
     problems, cited = [], 0
-    for layer in ("formulation", "mechanics"):
-        for path in sorted(p for p in (root / "src" / layer).glob("**/*") if p.is_file()):
-            text = path.read_text(encoding="utf-8")
-            found = list(tags(text)) + [(m.start(), f"(theory: {m[1]})") for m in THEORY.finditer(text)]
-            for position, tag in sorted(found):
-                cited += 1
-                if tag not in known:
-                    line = text.count("\n", 0, position) + 1
-                    problems.append(f"{path.relative_to(root)}:{line}: {tag} is not in doc/theory/")
+    files = [p for folder in FOLDERS for p in sorted((root / folder).rglob("*")) if p.suffix in SUFFIXES]
+    for path in [*files, *root.glob("NOTATION.md")]:
+        text = path.read_text(encoding="utf-8")
+        found = list(tags(text)) + [(m.start(), f"(theory: {m[1]})") for m in THEORY.finditer(text)]
+        for position, tag in sorted(found):
+            cited += 1
+            if tag not in known and tag != EXAMPLE:
+                line = text.count("\n", 0, position) + 1
+                problems.append(f"{path.relative_to(root)}:{line}: {tag} is not in doc/theory/")
     return problems, cited
 
 
 def self_test():
-    doc = "# Routh form\n\n### [L 2.7] elimination\nand [Q 13], [N 2.10, 3.1] and [L 2.8–2.11] (theory: lambda-sign)\n"
-    good = "// [L 2.7] [Q 13] [N 3.1] [L 2.10] [L 2.9, 2.11] (theory: routh) (theory: routh-form) (theory: lambda-sign)\nint a[3];\n"
+    doc = "# Routh form\n\n### [L 2.7] elimination\nand [Q 13], [N 2.10, 3.1] and [L 2.8–2.11] (theory: routh)\n"
+    good = "// [L 2.7] [Q 13] [N 3.1] [L 2.10] [L 2.9, 2.11] (theory: routh) (theory: routh-form)\nint a[3];\n"
     bad = ["[L 2.12]", "[Q 1]", "[N 2.10, 3.2]", "[L 2.10–2.13]", "(theory: hamel)", "[NF 2.7]"]
+    places = ["src/formulation/forms/routh.cpp", "test/laws/forms_test.cpp", "doc/results.md", "NOTATION.md"]
     failures = 0
-    for text, refused in [("", False), (good, False)] + [(f"//\n// {tag}\n", True) for tag in bad]:
+    cases = [("", False, places[0])] + [(good, False, p) for p in places]
+    for text, refused, place in cases + [(f"//\n// {tag}\n", True, p) for tag in bad for p in places]:
         with tempfile.TemporaryDirectory() as scratch:
             root = pathlib.Path(scratch)
             if text:
                 (root / "doc/theory").mkdir(parents=True)
                 (root / "doc/theory/routh.md").write_text(doc, encoding="utf-8")
-                (root / "src/formulation/forms").mkdir(parents=True)
-                (root / "src/formulation/forms/routh.cpp").write_text(text, encoding="utf-8")
+                (root / place).parent.mkdir(parents=True, exist_ok=True)
+                (root / place).write_text(text, encoding="utf-8")
             if bool(check(root)[0]) != refused:
-                print(f"{'not refused' if refused else 'refused'}: {text!r} {check(root)[0]}")
+                print(f"{'not refused' if refused else 'refused'}: {place}: {text!r} {check(root)[0]}")
                 failures += 1
     print(f"{failures} mistakes")
     return 1 if failures else 0

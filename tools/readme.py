@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the ```console blocks of README.md, doc/papers.md and doc/language.md with the rules of golden.py.
+"""Runs the ```console blocks of README.md and of pages of doc/ with the rules of golden.py.
 
 usage: readme.py --program PROGRAM [--bless]
 
@@ -15,6 +15,7 @@ import sys
 
 import golden
 
+PAGES = ("README.md", "doc/papers.md", "doc/language.md", "doc/outcomes.md", "doc/json.md")
 RUN = {"anholon", "build/anholon", "cat", "head", "tail"}
 LEAVE = {"git", "cd", "sudo", "apt-get", "apt"}
 
@@ -42,7 +43,7 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--bless", action="store_true")
     args = parser.parse_args()
-    pages = [page for page in (golden.ROOT / "README.md", golden.ROOT / "doc" / "papers.md", golden.ROOT / "doc" / "language.md") if page.exists()]
+    pages = [page for page in (golden.ROOT / name for name in PAGES) if page.exists()]
     return 1 if golden.run_all(pages, args.program, args.bless, step_mode) else 0
 
 
