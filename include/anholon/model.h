@@ -10,8 +10,8 @@
 namespace anholon::v1 {
 
 struct ReadOptions {
-  std::map<std::string, Number> set;  // parameters by name, instead of the values of the file
-  std::vector<std::string> cases;     // [case.NAME] sections that are laid over the file, one after the other
+  std::map<std::string, Number> set = {};  // parameters by name, instead of the values of the file
+  std::vector<std::string> cases = {};     // [case.NAME] sections that are laid over the file, one after the other
 };
 
 struct Coordinate {

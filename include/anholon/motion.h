@@ -9,17 +9,17 @@
 namespace anholon::v1 {
 
 struct MotionOptions {
-  std::optional<Number> to;         // the end; that of the file if it is empty
-  std::optional<Number> every;      // a row at each multiple of it after the start; empty: a row at each step
-  std::vector<Number> at;           // rows at these times and at no other
-  std::optional<Number> tolerance;  // relative, of each step; 1e-12 if neither the file nor you say otherwise
-  int order = 0;                    // of the Taylor polynomials; 0: from the tolerance
-  std::string method = "auto";      // auto, taylor, rk or bdf
-  int digits = 16;                  // more than 16: multiple precision
-  bool error_estimate = true;       // by a second, sharper run, where there are no more than 5000 steps
+  std::optional<Number> to = {};         // the end; that of the file if it is empty
+  std::optional<Number> every = {};      // a row at each multiple of it after the start; empty: a row at each step
+  std::vector<Number> at = {};           // rows at these times and at no other
+  std::optional<Number> tolerance = {};  // relative, of each step; 1e-12 if neither the file nor you say otherwise
+  int order = 0;                         // of the Taylor polynomials; 0: from the tolerance
+  std::string method = "auto";           // auto, taylor, rk or bdf
+  int digits = 16;                       // more than 16: multiple precision
+  bool error_estimate = true;            // by a second, sharper run, where there are no more than 5000 steps
   std::size_t most_steps = 50'000'000;
-  std::function<bool()> cancelled;  // asked at every step; true ends the motion
-  std::function<void(double t, std::size_t steps)> progress;
+  std::function<bool()> cancelled = {};  // asked at every step; true ends the motion
+  std::function<void(double t, std::size_t steps)> progress = {};
 };
 
 struct Column {

@@ -16,12 +16,12 @@ struct Vary {
 ANHOLON_API std::vector<Number> linspace(double from, double to, std::size_t count);
 
 struct SweepOptions {
-  std::vector<Vary> vary;  // the grid of all combinations; the last one varies fastest
-  std::optional<Number> to;
-  std::optional<Number> tolerance;
-  std::size_t threads = 0;                         // 0: as many as the machine has
-  std::function<bool()> cancelled;                 // many threads ask at once
-  std::function<void(std::size_t done)> progress;  // by one thread at a time
+  std::vector<Vary> vary = {};  // the grid of all combinations; the last one varies fastest
+  std::optional<Number> to = {};
+  std::optional<Number> tolerance = {};
+  std::size_t threads = 0;                              // 0: as many as the machine has
+  std::function<bool()> cancelled = {};                 // many threads ask at once
+  std::function<void(std::size_t done)> progress = {};  // by one thread at a time
 };
 
 // Cases in the order of the grid. Immutable and cheap to copy; spans live as long as any copy does.

@@ -5,9 +5,9 @@
 namespace anholon::v1 {
 
 struct PrepareOptions {
-  std::string form = "routh";             // "auto": the form whose motion takes the fewest operations
-  std::map<std::string, Number> initial;  // "x", "x'", "theta''", "lambda.rod": instead of the values of the file
-  std::vector<std::string> eliminate;     // coordinates that forms without multipliers eliminate; empty: chosen
+  std::string form = "routh";                  // "auto": the form whose motion takes the fewest operations
+  std::map<std::string, Number> initial = {};  // "x", "x'", "theta''", "lambda.rod": instead of the values of the file
+  std::vector<std::string> eliminate = {};     // coordinates that forms without multipliers eliminate; empty: chosen
 };
 
 // Where a value of the initial state comes from.

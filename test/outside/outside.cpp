@@ -15,7 +15,7 @@ void expect(bool holds, const char* what) {
   ++failures;
 }
 
-constexpr const char* kPendulum = R"(
+constexpr const char* kPendulum = R"toml(
 title = "pendulum"
 coordinates = ["theta"]
 parameters = {m = 1, l = "9.81/4"}
@@ -30,7 +30,7 @@ theta = 0.1
 theta' = 0
 [simulate]
 to = 2
-)";
+)toml";
 
 void mistakes() {
   const auto none = anholon::read_text("title = 3", {}, "bad.toml");
