@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Installs a build into an empty folder, builds test/outside against it alone, and runs that.
+"""Installs a build into an empty folder, builds test/outside and the examples of doc/library.md against it, and runs them.
 
 usage: check_outside.py BUILD_FOLDER [--compiler CXX]
 """
@@ -7,9 +7,14 @@ usage: check_outside.py BUILD_FOLDER [--compiler CXX]
 import argparse
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
+
+
+# The programs of doc/library.md
+EXAMPLE = re.compile(r"```cpp\n(.*?)```", re.S)
 
 
 def run(*command, env=None):
@@ -31,6 +36,13 @@ def main():
         run("cmake", "-S", project, "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_COMPILER={options.compiler}",
             "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")  # fmt: skip
         run("cmake", "--build", build)
+        for k, program in enumerate(EXAMPLE.findall((project.parent.parent / "doc" / "library.md").read_text(encoding="utf-8"))):
+            source, example = pathlib.Path(scratch) / f"example{k}.cpp", pathlib.Path(scratch) / f"example{k}"
+            source.write_text(program, encoding="utf-8")
+            library = next(prefix.glob("lib/**/libanholon.so"))
+            run(options.compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror", f"-I{prefix / 'include'}", source, library,
+                f"-Wl,-rpath,{library.parent}", "-o", example)  # fmt: skip
+            print(run(example, env=os.environ | {"ANHOLON_CACHE": ""}), end="")
         environment = {k: v for k, v in os.environ.items() if k != "ANHOLON_CACHE"} | {"ANHOLON_CACHE": ""}
         print(run(build / "outside", env=environment), end="")
         print(run(prefix / "bin" / "anholon", "models", env=environment).splitlines()[0])

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "expr/generic_point.h"
 #include "structure/stage.h"
 
 namespace anholon {
@@ -12,8 +13,9 @@ namespace {
 // A row this near to the span of others is taken only if no better one is left.
 constexpr double kNearlyDependent = 0.05;
 
-// A value that depends on the symbol alone, for what a rank must not depend on.
-double arbitrary(const Node& n) { return 0.7 + 0.13 * static_cast<double>((n.index * 7 + n.order * 3) % 11); }
+// The value of a symbol that the state does not hold: in (0.5, 1.5), different for each symbol, so that rows of
+// different constraints are not parallel by accident.
+double generic(const Node& symbol) { return 0.5 + generic_value(symbol, 0); }
 
 double length(const std::vector<double>& v) {
   double sum = 0;
@@ -96,7 +98,7 @@ IndependentConstraints independent_constraints(const Mechanics& m, const std::ve
   for (const Input& in : tape.inputs) {
     const Node& node = g.node(in.symbol);
     const double* known = state.value(node);
-    machine.series(in.slot)[0] = node.kind == Kind::time ? state.t : known ? *known : arbitrary(node);
+    machine.series(in.slot)[0] = node.kind == Kind::time ? state.t : known ? *known : generic(node);
   }
   machine.evaluate();
   Matrix<double> phi(s, n);

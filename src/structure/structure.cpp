@@ -28,7 +28,9 @@ class Probe {
   // False if a formula has no value at the point.
   bool measure(const ProbeHints& hints, std::mt19937_64& random, std::vector<std::vector<double>>& largest) {
     const Graph& g = *system_.model->graph;
-    std::uniform_real_distribution<double> spread(0.05, 0.35);
+    constexpr double kLeast = 0.05, kMost = 0.35;
+    // A distribution of the standard library has other bits in other libraries.
+    const auto spread = [&] { return static_cast<double>(random()) * 0x1p-64 * (kMost - kLeast) + kLeast; };
     for (const Input& in : tape_.inputs) {
       const Node& n = g.node(in.symbol);
       double base = 0.4;
@@ -38,7 +40,7 @@ class Probe {
         base = hints.derivatives[n.order][n.index];
       else if (n.kind == Kind::state && n.order == 0 && n.index < hints.states.size())
         base = hints.states[n.index];
-      machine_.series(in.slot)[0] = base + (1 + std::abs(base)) * spread(random);
+      machine_.series(in.slot)[0] = base + (1 + std::abs(base)) * spread();
     }
     machine_.evaluate();
     partials_.clear();

@@ -36,6 +36,28 @@ TEST(IndependentConstraints, KeepTheLowerOrder) {
   EXPECT_EQ(choice_of("x' = 3*y';x''' = 3*y''';x = 3*y", "\"y'\" = 1\n").independent, Indices{2});
 }
 
+// The rows of the two constraints are (2 x0'', 2 x11'') and (x11'', x0''). Accelerations are no part of the state, so
+// the rows are looked at where nothing is special: at x0'' = x11'' they would be parallel, and one constraint would be
+// called redundant.
+TEST(IndependentConstraints, AreNotRedundantByAccident) {
+  std::string text = "coordinates = [";
+  for (int a = 0; a < 12; ++a) text += (a ? ", \"x" : "\"x") + std::to_string(a) + "\"";
+  text += "]\n";
+  for (int a = 0; a < 12; ++a) {
+    const std::string k = std::to_string(a);
+    text += "[[particle]]\nname = \"p" + k + "\"\nmass = 1\nposition = [\"x" + k + "\", \"0\", \"0\"]\n";
+  }
+  text += "[[constraint]]\nname = \"sphere\"\nequation = \"x0''^2 + x11''^2 = 1\"\n"
+          "[[constraint]]\nname = \"saddle\"\nequation = \"x0''*x11'' = 1/4\"\n";
+  const auto model = test::model_of(text);
+  const Mechanics m = mechanics(*model);
+  InitialState<double> s;
+  s.q.assign(12, 0.0), s.qd.assign(12, 0.0);
+  const IndependentConstraints c = independent_constraints(m, {}, s);
+  EXPECT_EQ(c.independent, (Indices{0, 1}));
+  EXPECT_TRUE(c.redundant.empty());
+}
+
 // The second is nearly the first; the third is a good one.
 TEST(IndependentConstraints, PreferRowsFarFromDependent) {
   const IndependentConstraints c = choice_of("x' = 3*y';x' = 3*y' + z'/1000;x' = z' + 3*y'", "\"y'\" = 0\n");
