@@ -286,37 +286,19 @@ int rows_to_look_at(const Mechanics& m) {
   return static_cast<int>(std::clamp<std::size_t>(kNumbers / (4 * m.q.size() + 3 * m.phi.size() + 6), 250, 1000));
 }
 
-}  // namespace
+bool sets_values(const Model& model) {
+  return std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return !e.set.empty(); });
+}
 
-int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
-  const bool hdf5 = is_hdf5(asked.output);
-  if (hdf5 && !has_hdf5()) throw UsageError{"error: " + std::string(kNoHdf5) + "\nhint: " + kNoHdf5Hint + "\n"};
-  Told own;
-  Told& all = told ? *told : own;
-  all.in = read(asked);
-  const Reader& in = all.in;
-  const Options o = with_form(asked, in);
-  if (resume) same_model(*resume, in);
-  SimulationOptions options;
-  options.resume = resume;
+// All that is asked of the motion of this system. drawn: the motion is for a page or a film alone.
+void ask(const Options& o, const Reader& in, const Scenario& s, bool drawn, SimulationOptions& options) {
   options.estimate = error_estimate(o);
-  options.state = state_choice(o, *in.model);
   options.order = o.order;
-  Scenario& s = all.scenario;
-  const Outcome start = ready(in, form(o, *in.model), options.state, s);
-  form(o, *in.model, s.mechanics.get());
-  if (const auto d = not_integrated(*in.model)) {
-    print_diagnostic(*d, in.source);
-    return kBadInput;
-  }
-  if (!o.show.empty()) return show(o, s);
-  const Rational last = times(o, s, options, told && o.output.empty());
-  if (resume) beyond(*resume, o, last);
-  if (told && o.output.empty() && !options.every && options.at.empty() && last != Rational(s.state.t))
+  const Rational last = times(o, s, options, drawn);
+  if (options.resume) beyond(*options.resume, o, last);
+  if (drawn && !options.every && options.at.empty() && last != Rational(s.state.t))
     options.every = abs(Rational(last - Rational(s.state.t))) / rows_to_look_at(*s.mechanics);
-  // What an event sets is not conserved.
-  const bool reset =
-      std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  const bool reset = sets_values(*in.model);
   if (reset && last < Rational(s.state.t))
     throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after "
                      "the start, t = " +
@@ -328,91 +310,172 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   accuracy(o, *in.model, options);
   integrator(o, *in.model, options);
   choose_method(o, s, options);
+  // An event that sets values does not conserve what is an integral between events.
   if (!reset) options.conserved = conserved(*s.mechanics);
-  Saver saver(o, in, *s.system.form, options);
-  if (!o.quiet) options.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
-  catch_stop(told && o.output.empty() ? o.report : o.output);
-  options.cancelled = stop_requested;
+}
 
-  if (told) {
-    static_cast<RunInfo&>(told->run) = run_info(o, in, s, options);
-    told->conserved = options.conserved;
+// What became of a motion and of the file of its rows.
+struct Written {
+  SimulationReport report;
+  std::string error;  // why the file could not be written; empty if it was
+  std::string part;   // where the rows lie that could be written
+  bool started = true;
+};
+
+// Computes the motion and writes its rows to where the options say.
+class Writer {
+ public:
+  Writer(const Options& o, const Reader& in, const Scenario& s, const Outcome& start, SimulationOptions& options,
+         Saver& saver, Told* told)
+      : o_(o), in_(in), s_(s), start_(start), options_(options), saver_(saver), told_(told) {}
+
+  Written write() {
+    if (told_ && o_.output.empty()) return keep();
+    if (is_hdf5(o_.output)) return hdf5();
+    return o_.json || o_.output.ends_with(".json") ? json() : csv();
   }
-  const bool json = !hdf5 && (o.json || o.output.ends_with(".json"));
-  SimulationReport r;
-  std::string write_error, part;
-  {
-    const double end = options.at.empty() ? options.to->get_d()
-                                          : std::max(options.at.back().get_d(),
-                                                     options.to ? options.to->get_d() : options.at.back().get_d());
-    Progress progress(o.quiet || end == s.state.t, "t", "steps");
-    options.progress = [&](double t, std::size_t steps) { progress((t - s.state.t) / (end - s.state.t), t, steps); };
-    if (told && o.output.empty()) {
-      if (!start.ok()) {
-        print_outcome(start);
-        return kStopped;
-      }
-      RunSink rows(told->run);
-      if (!o.save.empty()) options.save = std::ref(saver);
-      r = run(s, options, rows, nullptr);
-    } else if (json) {
-      RunFile kept;
-      RunSink rows(kept);
-      GrowingFile file(o.output);
-      if (!file.error().empty()) throw UsageError{"error: " + file.error() + "\n"};
-      if (!o.save.empty()) options.save = std::ref(saver);
-      if (start.ok())
-        r = run(s, options, rows, told);
-      else
-        r.outcome = start, r.t = s.state.t, r.model = s.model->title, r.form = s.system.form->name;
-      file.write(run_json(kept.table, r));
-      write_error = file.close();
-    } else {
-      if (!start.ok()) {
-        print_outcome(start);
-        return kStopped;
-      }
-      // What --save lays down is never ahead of the rows.
-      const auto into = [&](auto& rows) {
-        if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
-        if (!o.save.empty())
-          options.save = [&](const SavedRun& run) {
-            rows.flush();
-            saver(run);
-          };
-        // Nobody waits for rows that have no place.
-        options.cancelled = [&] { return stop_requested() || !rows.error().empty(); };
-        r = run(s, options, rows, told);
-        if constexpr (std::same_as<decltype(rows), Hdf5Sink&>) rows.report(report_json(r));
-        write_error = rows.close();
-        if constexpr (std::same_as<decltype(rows), CsvSink&>) part = rows.part();
+
+ private:
+  Written keep() {
+    Written w;
+    if (!has_started(w)) return w;
+    RunSink rows(told_->run);
+    if (!o_.save.empty()) options_.save = std::ref(saver_);
+    w.report = run(s_, options_, rows, nullptr);
+    return w;
+  }
+
+  Written json() {
+    Written w;
+    RunFile kept;
+    RunSink rows(kept);
+    GrowingFile file(o_.output);
+    if (!file.error().empty()) throw UsageError{"error: " + file.error() + "\n"};
+    if (!o_.save.empty()) options_.save = std::ref(saver_);
+    if (start_.ok())
+      w.report = run(s_, options_, rows, told_);
+    else
+      w.report.outcome = start_, w.report.t = s_.state.t, w.report.model = s_.model->title,
+      w.report.form = s_.system.form->name;
+    file.write(run_json(kept.table, w.report));
+    w.error = file.close();
+    return w;
+  }
+
+  Written hdf5() {
+    Written w;
+    if (!has_started(w)) return w;
+    Hdf5Sink rows(o_.output, run_info(o_, in_, s_, options_));
+    if (options_.resume) go_on(rows, o_, *options_.resume, in_);
+    into(rows, w);
+    rows.report(report_json(w.report));
+    w.error = rows.close();
+    if (o_.json) hand_out(report_json(w.report) + "\n");
+    return w;
+  }
+
+  Written csv() {
+    Written w;
+    if (!has_started(w)) return w;
+    CsvSink rows(o_.output);
+    into(rows, w);
+    w.error = rows.close();
+    w.part = rows.part();
+    return w;
+  }
+
+  bool has_started(Written& w) const {
+    if (start_.ok()) return true;
+    print_outcome(start_);
+    return w.started = false;
+  }
+
+  template <class Rows>
+  void into(Rows& rows, Written& w) {
+    if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
+    // What --save writes is never ahead of the rows.
+    if (!o_.save.empty())
+      options_.save = [this, &rows](const SavedRun& saved) {
+        rows.flush();
+        saver_(saved);
       };
-      if (hdf5) {
-        Hdf5Sink rows(o.output, run_info(o, in, s, options));
-        if (resume) go_on(rows, o, *resume, in);
-        into(rows);
-        if (o.json) hand_out(report_json(r) + "\n");
-      } else {
-        CsvSink rows(o.output);
-        into(rows);
-      }
-    }
+    // Rows that cannot be written end the motion.
+    options_.cancelled = [&rows] { return stop_requested() || !rows.error().empty(); };
+    w.report = run(s_, options_, rows, told_);
   }
-  if (told) told->run.report = report_json(r);
-  if (!o.quiet && r.rows > 0) report(s, r);
+
+  const Options& o_;
+  const Reader& in_;
+  const Scenario& s_;
+  const Outcome& start_;
+  SimulationOptions& options_;
+  Saver& saver_;
+  Told* told_;
+};
+
+// Says how the motion ended and where its rows are; returns the exit status.
+int say_end(const Options& o, const Written& w, const std::string& save_error) {
+  const SimulationReport& r = w.report;
+  std::string write_error = w.error;
   // A run that is ended because its rows have no place was not interrupted by anybody.
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);
     if (r.rows > 0 && !o.output.empty() && write_error.empty())
       say(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
   }
-  if (write_error.empty()) write_error = saver.error;
+  if (write_error.empty()) write_error = save_error;
   if (!write_error.empty()) {
     say(stderr, "error: %s\n", write_error.c_str());
-    if (!part.empty()) say(stderr, "the rows that could be written are in %s\n", part.c_str());
+    if (!w.part.empty()) say(stderr, "the rows that could be written are in %s\n", w.part.c_str());
     return kBadInput;
   }
   return r.outcome.ok() ? kOk : kStopped;
+}
+
+}  // namespace
+
+int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
+  if (is_hdf5(asked.output) && !has_hdf5())
+    throw UsageError{"error: " + std::string(kNoHdf5) + "\nhint: " + kNoHdf5Hint + "\n"};
+  Told own;
+  Told& all = told ? *told : own;
+  all.in = read(asked);
+  const Reader& in = all.in;
+  const Options o = with_form(asked, in);
+  if (resume) same_model(*resume, in);
+  SimulationOptions options;
+  options.resume = resume;
+  options.state = state_choice(o, *in.model);
+  Scenario& s = all.scenario;
+  const Outcome start = ready(in, form(o, *in.model), options.state, s);
+  form(o, *in.model, s.mechanics.get());
+  if (const auto d = not_integrated(*in.model)) {
+    print_diagnostic(*d, in.source);
+    return kBadInput;
+  }
+  if (!o.show.empty()) return show(o, s);
+  ask(o, in, s, told && o.output.empty(), options);
+  Saver saver(o, in, *s.system.form, options);
+  if (!o.quiet) options.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
+  catch_stop(told && o.output.empty() ? o.report : o.output);
+  options.cancelled = stop_requested;
+  if (told) {
+    static_cast<RunInfo&>(told->run) = run_info(o, in, s, options);
+    told->conserved = options.conserved;
+  }
+  Written w;
+  {
+    const double end = options.at.empty() ? options.to->get_d()
+                                          : std::max(options.at.back().get_d(),
+                                                     options.to ? options.to->get_d() : options.at.back().get_d());
+    Progress progress(o.quiet || end == s.state.t, "t", "steps");
+    options.progress = [&](double t, std::size_t steps) { progress((t - s.state.t) / (end - s.state.t), t, steps); };
+    w = Writer(o, in, s, start, options, saver, told).write();
+  }
+  if (!w.started) return kStopped;
+  if (told) told->run.report = report_json(w.report);
+  if (!o.quiet && w.report.rows > 0) report(s, w.report);
+  return say_end(o, w, saver.error);
 }
 
 int simulate(const Options& o) {
