@@ -101,12 +101,16 @@ void set_accuracy(const MotionOptions& asked, const inner::Scenario& s, inner::S
   const auto method = inner::find_method(asked.method);
   if (!method) throw inner::Failure({}, "there is no method '" + asked.method + "'", "auto, taylor, rk or bdf");
   o.method = *method;
-  const bool other = o.method == inner::Method::runge_kutta || o.method == inner::Method::bdf;
-  if (other && o.precision != inner::Precision::real)
-    throw inner::Failure({}, "the method '" + asked.method + "' computes in double", "leave out digits");
-  if (other)
-    if (const std::string why = inner::only_taylor(*s.model, inner::program(s.system, s.structure)); !why.empty())
-      throw inner::Failure({}, "the method '" + asked.method + "' " + why, "use the method taylor");
+  if (o.method == inner::Method::automatic || o.method == inner::Method::taylor) return;
+  const auto refuse = [&](const std::string& why) {
+    throw inner::Failure({}, "the method '" + asked.method + "' " + why, "use the method taylor");
+  };
+  const bool wide = o.precision != inner::Precision::real;
+  if (const auto refused =
+          inner::refusal(inner::info(o.method), {wide, false, false, o.order > 0, o.tolerance.get_d()}))
+    refuse(refused->why);
+  if (const std::string why = inner::only_taylor(*s.model, inner::program(s.system, s.structure)); !why.empty())
+    refuse(why);
 }
 
 }  // namespace

@@ -77,6 +77,40 @@ void structure(JsonWriter& j, const Scenario& s, const Explanation& x) {
   j.close();
 }
 
+// The numbers of the structure: dimensions, offsets c and d, the signature matrix.
+void dimensions(JsonWriter& j, const Scenario& s) {
+  j.key("degrees_of_freedom").integer(s.structure.degrees_of_freedom);
+  j.key("configuration_dimension").integer(s.structure.configuration_dimension);
+  j.key("state_dimension").integer(s.structure.state_dimension);
+  j.key("offsets").open_object().key("c").open_object();
+  for (std::size_t i = 0; i < s.system.size(); ++i) j.key(s.system.equation_names[i]).integer(s.structure.c[i]);
+  j.close().key("d").open_object();
+  for (std::size_t i = 0; i < s.system.size(); ++i) j.key(s.system.variable_names[i]).integer(s.structure.d[i]);
+  j.close().close();
+  j.key("signature").open_array();
+  for (const auto& row : s.structure.sigma) {
+    j.open_array();
+    for (int e : row) e == kAbsent ? j.null() : j.integer(e);
+    j.close();
+  }
+  j.close();
+}
+
+// The consistent initial state, each value with its origin.
+void initial_state(JsonWriter& j, const Scenario& s) {
+  const Model& model = *s.model;
+  j.key("initial").open_object().key("t").number(number_text(s.state.t));
+  for (std::size_t a = 0; a < s.state.q.size(); ++a)
+    for (int k = 0; k < 2; ++k) {
+      j.key(model.coordinates[a].name + (k ? "'" : "")).open_object();
+      j.key("value").number(number_text(k ? s.state.qd[a] : s.state.q[a]));
+      j.key("origin").string(name(k ? s.state.qd_origin[a] : s.state.q_origin[a])).close();
+    }
+  for (const StateEntry& e : higher_state(s))
+    j.key(e.name).open_object().key("value").number(number_text(e.value)).key("origin").string(name(e.origin)).close();
+  j.close();
+}
+
 }  // namespace
 
 void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome) {
@@ -124,40 +158,11 @@ void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome)
   j.key("reactions_hypothesis").string(model.constraints.empty() ? "none" : "ideal (Chetaev-Niu)");
   if (!x.integrability.constraints.empty() || !x.integrability.undecided.empty()) integrability(j, s, x);
   if (outcome.ok()) {
-    j.key("degrees_of_freedom").integer(s.structure.degrees_of_freedom);
-    j.key("configuration_dimension").integer(s.structure.configuration_dimension);
-    j.key("state_dimension").integer(s.structure.state_dimension);
-    j.key("offsets").open_object().key("c").open_object();
-    for (std::size_t i = 0; i < s.system.size(); ++i) j.key(s.system.equation_names[i]).integer(s.structure.c[i]);
-    j.close().key("d").open_object();
-    for (std::size_t i = 0; i < s.system.size(); ++i) j.key(s.system.variable_names[i]).integer(s.structure.d[i]);
-    j.close().close();
-    j.key("signature").open_array();
-    for (const auto& row : s.structure.sigma) {
-      j.open_array();
-      for (int e : row) e == kAbsent ? j.null() : j.integer(e);
-      j.close();
-    }
-    j.close();
+    dimensions(j, s);
     structure(j, s, x);
-    j.key("initial").open_object().key("t").number(number_text(s.state.t));
-    for (std::size_t a = 0; a < s.state.q.size(); ++a)
-      for (int k = 0; k < 2; ++k) {
-        j.key(model.coordinates[a].name + (k ? "'" : "")).open_object();
-        j.key("value").number(number_text(k ? s.state.qd[a] : s.state.q[a]));
-        j.key("origin").string(name(k ? s.state.qd_origin[a] : s.state.q_origin[a])).close();
-      }
-    for (const StateEntry& e : higher_state(s))
-      j.key(e.name)
-          .open_object()
-          .key("value")
-          .number(number_text(e.value))
-          .key("origin")
-          .string(name(e.origin))
-          .close();
-    j.close();
+    initial_state(j, s);
+    write_conserved(j, *s.mechanics);
   }
-  if (outcome.ok()) write_conserved(j, *s.mechanics);
   strings("notes", s.notes);
   j.key("outcome").string(name(outcome.kind));
   if (!outcome.ok()) j.key("message").string(outcome.message).key("hint").string(outcome.hint);

@@ -7,24 +7,32 @@
 
 namespace anholon::cli {
 
-namespace {
-
-std::string title(Method m) {
-  switch (m) {
-  case Method::runge_kutta:
-    return "Runge-Kutta 8";
-  case Method::bdf:
-    return "BDF";
-  case Method::automatic:
-  case Method::taylor:
-    break;
-  }
-  return "Taylor";
+MethodDemands demands(const Options& o, const SimulationOptions& options) {
+  return {options.precision != Precision::real, !o.save.empty() || options.resume, options.rigorous.has_value(),
+          options.order > 0, options.tolerance.get_d()};
 }
 
-std::string small(double x) { return number_text(x, 3); }
+std::string option_of(MethodRefusal::Of of, const Options& o) {
+  switch (of) {
+  case MethodRefusal::Of::numbers:
+    return o.digits > 16 ? "--digits" : "--numbers";
+  case MethodRefusal::Of::saving:
+    return o.save.empty() ? "--continue" : "--save";
+  case MethodRefusal::Of::enclosing:
+    return "--rigorous";
+  case MethodRefusal::Of::order:
+    return "--order";
+  case MethodRefusal::Of::tolerance:
+    return "--tolerance";
+  }
+  return {};
+}
 
-}  // namespace
+void say_raised(const MethodInfo& method, const SimulationOptions& options) {
+  if (!(options.tolerance.get_d() < method.least_tolerance)) return;
+  const std::string least = number_text(method.least_tolerance, 3);
+  say(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), method.name);
+}
 
 void choose_method(const Options& o, const Scenario& s, SimulationOptions& options) {
   if (!o.method.empty()) {
@@ -38,24 +46,17 @@ void choose_method(const Options& o, const Scenario& s, SimulationOptions& optio
     options.method = *wanted;
   }
   if (options.method == Method::automatic || options.method == Method::taylor) return;
-  const std::string which = name(options.method);
+  const MethodInfo& method = info(options.method);
   const auto refuse = [&](const std::string& what, const std::string& remedy) {
-    throw UsageError{"error: the method '" + which + "' " + what +
+    throw UsageError{"error: the method '" + std::string(method.name) + "' " + what +
                      "\nhint: " + (remedy.empty() ? "" : remedy + ", or ") + "use --method taylor\n"};
   };
-  if (options.precision != Precision::real)
-    refuse("computes in double", std::string("leave out ") + (o.digits > 16 ? "--digits" : "--numbers"));
-  if (!o.save.empty() || options.resume)
-    refuse("cannot go on with the same bits", std::string("leave out ") + (o.save.empty() ? "--continue" : "--save"));
-  if (options.rigorous) refuse("has no dense output that is enclosed", "leave out --rigorous");
-  if (options.order > 0) refuse("has no order to choose", "leave out --order");
+  const auto refused = refusal(method, demands(o, options));
+  const bool tolerance = refused && refused->of == MethodRefusal::Of::tolerance;
+  if (refused && !tolerance) refuse(refused->why, "leave out " + option_of(refused->of, o));
   if (const std::string why = only_taylor(*s.model, program(s.system, s.structure)); !why.empty()) refuse(why, "");
-  const double tolerance = options.tolerance.get_d();
-  if (options.method == Method::bdf && tolerance < kLeastBdfTolerance)
-    refuse("is of order 5 at most, for tolerances of " + small(kLeastBdfTolerance) + " and more", "--tolerance 1e-8");
-  if (tolerance < kLeastRungeKuttaTolerance)
-    say(stderr, "note: a tolerance below %s means %s to %s\n", small(kLeastRungeKuttaTolerance).c_str(),
-        small(kLeastRungeKuttaTolerance).c_str(), which.c_str());
+  if (tolerance) refuse(refused->why, "--tolerance 1e-8");
+  say_raised(method, options);
 }
 
 void print_method(const MethodReport& r) {
@@ -65,11 +66,11 @@ void print_method(const MethodReport& r) {
   if (r.asked == Method::automatic) {
     if (r.turns.empty()) add("Taylor, others were tried and not cheaper");
     for (const MethodReport::Turn& turn : r.turns)
-      add(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
+      add(std::string(info(turn.to).title) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
   } else {
-    add(title(r.asked) + ", as asked");
+    add(std::string(info(r.asked).title) + ", as asked");
     for (const MethodReport::Turn& turn : r.turns)
-      add(title(turn.to) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
+      add(std::string(info(turn.to).title) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
   }
   if (r.steps > 0) {
     add(std::to_string(r.steps) + " steps (" + std::to_string(r.refused) + " refused), " +

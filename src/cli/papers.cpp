@@ -226,40 +226,45 @@ void print_markdown(const std::vector<Paper>& papers) {
   hand_out(out);
 }
 
+// The claims that the options name; empty if the papers are only to be listed.
+std::vector<FoundClaim> wanted_claims(const Options& o, const std::vector<Paper>& papers) {
+  std::vector<FoundClaim> wanted;
+  if (o.model.empty()) {
+    if (o.check_only || o.json)
+      for (const Paper& p : papers)
+        for (const Claim& c : p.claims) wanted.push_back({&p, &c});
+    return wanted;
+  }
+  wanted = find_claims(papers, o.model);
+  if (!wanted.empty()) return wanted;
+  const std::string near = nearest_tag(papers, o.model);
+  throw UsageError{"error: no paper has '" + o.model + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                   "\nhint: anholon papers lists the tags; L3.13, Q13, N3.16\n"};
+}
+
 struct Counts {
   std::size_t numbered = 0, numbered_right = 0, others = 0, others_right = 0, checks = 0, mutants = 0;
+
+  void add(const Claim& claim, const std::vector<Decision>& decisions, bool right) {
+    ++(claim.numbered ? numbered : others);
+    (claim.numbered ? numbered_right : others_right) += right;
+    checks += decisions.size();
+    mutants += static_cast<std::size_t>(std::count_if(decisions.begin(), decisions.end(), [](const Decision& d) {
+      return d.has_mutant && d.mutant == Verdict::refuted;
+    }));
+  }
+  bool all_right() const { return numbered == numbered_right && others == others_right; }
 };
 
-}  // namespace
-
-int papers(const Options& o) {
-  const std::vector<Paper> papers = read_papers();
-  if (o.markdown) return print_markdown(papers), kOk;
-  std::vector<FoundClaim> wanted;
-  if (!o.model.empty()) {
-    wanted = find_claims(papers, o.model);
-    if (wanted.empty()) {
-      const std::string near = nearest_tag(papers, o.model);
-      throw UsageError{"error: no paper has '" + o.model + "'" +
-                       (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                       "\nhint: anholon papers lists the tags; L3.13, Q13, N3.16\n"};
-    }
-  } else if (o.check_only || o.json) {
+// The claims on their way to the terminal or to JSON.
+class Listing {
+ public:
+  Listing(const Options& o, const std::vector<Paper>& papers, std::size_t claims)
+      : o_(o), claims_(claims), terminal_(isatty(STDERR_FILENO) != 0 && !o.quiet) {
+    if (!o.json) return;
+    j_.open_object().key("papers").open_array();
     for (const Paper& p : papers)
-      for (const Claim& c : p.claims) wanted.push_back({&p, &c});
-  } else {
-    list(papers);
-    return kOk;
-  }
-  const bool decides = o.check_only || !o.model.empty();
-  const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
-  Decider decider(load);
-  Counts n;
-  JsonWriter j;
-  if (o.json) {
-    j.open_object().key("papers").open_array();
-    for (const Paper& p : papers)
-      j.open_object()
+      j_.open_object()
           .key("key")
           .string(p.key)
           .key("title")
@@ -269,60 +274,84 @@ int papers(const Options& o) {
           .key("reference")
           .string(p.reference)
           .close();
-    j.close().key("claims").open_array();
+    j_.close().key("claims").open_array();
   }
+
+  void begin(const FoundClaim& f, std::size_t number) const {
+    if (terminal_ && claims_ > 1)
+      say(stderr, "\r\033[K%zu of %zu: %s", number, claims_, tag_of(*f.paper, *f.claim).c_str());
+  }
+
+  void add(const FoundClaim& f, const std::vector<Decision>& decisions, bool right) {
+    if (o_.json) {
+      j_.new_line();
+      write_json(j_, *f.paper, *f.claim, decisions);
+      return;
+    }
+    if (o_.check_only && right) return;
+    clear_line();
+    if (o_.check_only)
+      say(stdout, "%s\n", tag_of(*f.paper, *f.claim).c_str());
+    else
+      show(*f.paper, *f.claim);
+    for (const Decision& d : decisions)
+      if (!o_.check_only || !d.as_expected()) print_decision(d);
+  }
+
+  void end(const Counts& n, bool decides) {
+    clear_line();
+    if (o_.json) {
+      j_.close().key("decided").boolean(decides);
+      count("numbered", n.numbered);
+      count("unnumbered", n.others);
+      if (decides) {
+        count("numbered_as_expected", n.numbered_right);
+        count("unnumbered_as_expected", n.others_right);
+      }
+      hand_out(j_.close().text() + "\n");
+    } else if (o_.check_only) {
+      say(stdout,
+          "%zu of %zu numbered equations and %zu of %zu other formulas are decided as the tables say; %zu checks, %zu "
+          "mutants refuted\n",
+          n.numbered_right, n.numbered, n.others_right, n.others, n.checks, n.mutants);
+    }
+  }
+
+ private:
+  void clear_line() const {
+    if (terminal_) say(stderr, "\r\033[K");
+  }
+  void count(const char* key, std::size_t n) { j_.key(key).integer(static_cast<long>(n)); }
+
+  const Options& o_;
+  std::size_t claims_;
+  bool terminal_;
+  JsonWriter j_;
+};
+
+}  // namespace
+
+int papers(const Options& o) {
+  const std::vector<Paper> papers = read_papers();
+  if (o.markdown) return print_markdown(papers), kOk;
+  const std::vector<FoundClaim> wanted = wanted_claims(o, papers);
+  if (wanted.empty()) return list(papers), kOk;
+  const bool decides = o.check_only || !o.model.empty();
+  Decider decider(load);
+  Counts n;
+  Listing listing(o, papers, wanted.size());
   for (const FoundClaim& f : wanted) {
-    if (terminal && wanted.size() > 1)
-      say(stderr, "\r\033[K%zu of %zu: %s", static_cast<std::size_t>(&f - wanted.data()) + 1, wanted.size(),
-          tag_of(*f.paper, *f.claim).c_str());
+    listing.begin(f, static_cast<std::size_t>(&f - wanted.data()) + 1);
     std::vector<Decision> decisions;
     if (decides)
       for (const ClaimCheck& c : f.claim->checks) decisions.push_back(decider.decide(c));
     const bool right =
         std::all_of(decisions.begin(), decisions.end(), [](const Decision& d) { return d.as_expected(); });
-    ++(f.claim->numbered ? n.numbered : n.others);
-    (f.claim->numbered ? n.numbered_right : n.others_right) += right;
-    n.checks += decisions.size();
-    n.mutants += static_cast<std::size_t>(std::count_if(decisions.begin(), decisions.end(), [](const Decision& d) {
-      return d.has_mutant && d.mutant == Verdict::refuted;
-    }));
-    if (o.json) {
-      j.new_line();
-      write_json(j, *f.paper, *f.claim, decisions);
-      continue;
-    }
-    if (o.check_only && right) continue;
-    if (terminal) say(stderr, "\r\033[K");
-    if (o.check_only)
-      say(stdout, "%s\n", tag_of(*f.paper, *f.claim).c_str());
-    else
-      show(*f.paper, *f.claim);
-    for (const Decision& d : decisions)
-      if (!o.check_only || !d.as_expected()) print_decision(d);
+    n.add(*f.claim, decisions, right);
+    listing.add(f, decisions, right);
   }
-  if (terminal) say(stderr, "\r\033[K");
-  const bool all = n.numbered == n.numbered_right && n.others == n.others_right;
-  if (o.json) {
-    j.close()
-        .key("decided")
-        .boolean(decides)
-        .key("numbered")
-        .integer(static_cast<long>(n.numbered))
-        .key("unnumbered")
-        .integer(static_cast<long>(n.others));
-    if (decides)
-      j.key("numbered_as_expected")
-          .integer(static_cast<long>(n.numbered_right))
-          .key("unnumbered_as_expected")
-          .integer(static_cast<long>(n.others_right));
-    hand_out(j.close().text() + "\n");
-  } else if (o.check_only) {
-    say(stdout,
-        "%zu of %zu numbered equations and %zu of %zu other formulas are decided as the tables say; %zu checks, %zu "
-        "mutants refuted\n",
-        n.numbered_right, n.numbered, n.others_right, n.others, n.checks, n.mutants);
-  }
-  return !decides || all ? kOk : kStopped;
+  listing.end(n, decides);
+  return !decides || n.all_right() ? kOk : kStopped;
 }
 
 }  // namespace anholon::cli

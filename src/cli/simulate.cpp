@@ -134,22 +134,18 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
     s.integrator = *wanted;
   }
   if (s.integrator == Integrator::taylor) return;
-  const std::string which = name(s.integrator);
+  const MethodInfo& method = info(s.integrator);
   const auto refuse = [&](const std::string& what, const std::string& option) {
-    throw UsageError{"error: the integrator '" + which + "' " + what + "\nhint: leave out " + option +
-                     ", or use --integrator taylor\n"};
+    throw UsageError{"error: the integrator '" + std::string(method.name) + "' " + what + "\nhint: leave out " +
+                     option + ", or use --integrator taylor\n"};
   };
-  if (s.precision != Precision::real) refuse("computes in double", o.digits > 16 ? "--digits" : "--numbers");
-  if (!o.save.empty() || s.resume) refuse("cannot go on with the same bits", o.save.empty() ? "--continue" : "--save");
-  if (s.rigorous) refuse("has no dense output that is enclosed", "--rigorous");
+  if (const auto refused = refusal(method, demands(o, s))) refuse(refused->why, option_of(refused->of, o));
   if (std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return e.ends_step(); }))
     refuse("does not stop at events", "the events");
-  // How many digits of its rows may be trusted, the difference tells, which costs nothing more.
+  // The difference from Taylor's motion says how many digits of the rows can be trusted.
   if (s.estimate == ErrorEstimate::always)
     refuse("has its difference from Taylor's motion for an estimate", "--error-estimate");
-  const std::string least = small(kLeastSundialsTolerance);
-  if (s.tolerance.get_d() < kLeastSundialsTolerance)
-    say(stderr, "note: a tolerance below %s means %s to %s\n", least.c_str(), least.c_str(), which.c_str());
+  say_raised(method, s);
 }
 
 // "blade'" for the first derivative of the constraint that holds worst.

@@ -107,9 +107,63 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
 
 }  // namespace
 
+// The law of random values, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO).
+Variation::Values Variation::law(const std::string& word, std::size_t sign, const std::string& unit) {
+  Values values;
+  const std::size_t open = word.find('(', sign);
+  const std::string law = word.substr(sign + 1, (open == std::string::npos ? word.size() : open) - sign - 1);
+  if (law != "normal" && law != "uniform") {
+    const std::string near = did_you_mean(law, {"normal", "uniform"});
+    wrong(word, sign + 1, law.size(),
+          "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+          "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+  }
+  if (open == std::string::npos || word.back() != ')')
+    wrong(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+  const auto list = parts(word, open + 1, word.size() - 1, ',');
+  if (list.size() != 2)
+    wrong(word, open, word.size() - open, "two numbers are expected here",
+          "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+  const Rational a = number(word, list[0], unit), b = number(word, list[1], unit);
+  values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
+  if (values.law == Values::Law::normal ? b < 0 : b < a)
+    wrong(word, list[1].at, list[1].text.size(),
+          law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
+          "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+  values.a = from_rational<double>(a);
+  values.b = from_rational<double>(b);
+  values.stream = streams_++;
+  return values;
+}
+
+// A grid, NAME=FROM:TO:COUNT, or a list, NAME=A,B,….
+Variation::Values Variation::listed(const std::string& word, std::size_t sign, const std::string& unit) {
+  Values values;
+  if (word.find(':', sign) == std::string::npos) {
+    for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p, unit));
+    return values;
+  }
+  const auto list = parts(word, sign + 1, word.size(), ':');
+  if (list.size() != 3)
+    wrong(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
+          "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
+  const Rational from = number(word, list[0], unit), to = number(word, list[1], unit),
+                 count = number(word, list[2], "");
+  if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) ||
+      (count == 1 && from != to))
+    wrong(word, list[2].at, list[2].text.size(), "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
+          "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
+  const unsigned long n = count.get_num().get_ui();
+  for (unsigned long k = 0; k < n; ++k) {
+    Rational part(k, std::max(n - 1, 1UL));
+    part.canonicalize();
+    values.list.push_back(from + (to - from) * part);
+  }
+  return values;
+}
+
 Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
   if (o.varied.empty()) throw UsageError{std::string("error: nothing is varied\nhint: ") + kHint + "\n"};
-  std::uint32_t streams = 0;
   for (const std::string& word : o.varied) {
     const std::size_t sign = word.find_first_of("=~");
     if (sign == std::string::npos || sign == 0)
@@ -119,52 +173,7 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
       if (before.name == v.name) wrong(word, 0, sign, "'" + v.name + "' is varied twice", "one --vary for each name");
     varied_.push_back(v);
     const std::string unit = unit_of(v, model);
-    Values values;
-    if (word[sign] == '~') {
-      const std::size_t open = word.find('(', sign);
-      const std::string law = word.substr(sign + 1, (open == std::string::npos ? word.size() : open) - sign - 1);
-      if (law != "normal" && law != "uniform") {
-        const std::string near = did_you_mean(law, {"normal", "uniform"});
-        wrong(word, sign + 1, law.size(),
-              "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-              "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
-      }
-      if (open == std::string::npos || word.back() != ')')
-        wrong(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
-      const auto list = parts(word, open + 1, word.size() - 1, ',');
-      if (list.size() != 2)
-        wrong(word, open, word.size() - open, "two numbers are expected here",
-              "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
-      const Rational a = number(word, list[0], unit), b = number(word, list[1], unit);
-      values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
-      if (values.law == Values::Law::normal ? b < 0 : b < a)
-        wrong(word, list[1].at, list[1].text.size(),
-              law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
-              "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
-      values.a = from_rational<double>(a);
-      values.b = from_rational<double>(b);
-      values.stream = streams++;
-    } else if (word.find(':', sign) != std::string::npos) {
-      const auto list = parts(word, sign + 1, word.size(), ':');
-      if (list.size() != 3)
-        wrong(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
-              "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
-      const Rational from = number(word, list[0], unit), to = number(word, list[1], unit),
-                     count = number(word, list[2], "");
-      if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) ||
-          (count == 1 && from != to))
-        wrong(word, list[2].at, list[2].text.size(),
-              "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
-              "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
-      const unsigned long n = count.get_num().get_ui();
-      for (unsigned long k = 0; k < n; ++k) {
-        Rational part(k, std::max(n - 1, 1UL));
-        part.canonicalize();
-        values.list.push_back(from + (to - from) * part);
-      }
-    } else {
-      for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p, unit));
-    }
+    Values values = word[sign] == '~' ? law(word, sign, unit) : listed(word, sign, unit);
     if (!values.list.empty()) {
       if (values.list.size() > kMostCases / grid_)
         throw UsageError{"error: the grids have more than " + std::to_string(kMostCases) +
@@ -174,7 +183,7 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
     values_.push_back(std::move(values));
   }
   if (o.case_count.empty()) {
-    if (streams > 0) throw UsageError{"error: how many cases are to be drawn?\nhint: -n 1000\n"};
+    if (streams_ > 0) throw UsageError{"error: how many cases are to be drawn?\nhint: -n 1000\n"};
     cases_ = grid_;
     return;
   }
@@ -183,7 +192,7 @@ Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
     throw UsageError{"error: -n takes a number of cases up to " + std::to_string(kMostCases) + ", not '" +
                      o.case_count + "'\nhint: -n 1000\n"};
   cases_ = n->get_num().get_ui();
-  if (streams == 0 && cases_ != grid_)
+  if (streams_ == 0 && cases_ != grid_)
     throw UsageError{"error: nothing is random, and the grid has " + std::to_string(grid_) +
                      (grid_ == 1 ? " point" : " points") + "\nhint: leave out -n\n"};
   if (cases_ < grid_)

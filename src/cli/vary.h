@@ -22,10 +22,14 @@ class Variation {
     double a = 0, b = 0;  // its parameters
     std::uint32_t stream = 0;
   };
+  Values law(const std::string& word, std::size_t sign, const std::string& unit);
+  Values listed(const std::string& word, std::size_t sign, const std::string& unit);
+
   std::vector<Varied> varied_;
   std::vector<Values> values_;
   std::size_t grid_ = 1, cases_ = 0;
   std::uint64_t seed_ = 0;
+  std::uint32_t streams_ = 0;  // of random values
 };
 
 }  // namespace anholon::cli

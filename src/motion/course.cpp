@@ -19,20 +19,6 @@ std::vector<W> widened(const std::vector<double>& from) {
 
 }  // namespace
 
-const std::vector<std::string>& method_names() {
-  static const std::vector<std::string> names = {"auto", "taylor", "rk", "bdf"};
-  return names;
-}
-
-const char* name(Method method) { return method_names()[static_cast<std::size_t>(method)].c_str(); }
-
-std::optional<Method> find_method(const std::string& name) {
-  const auto& names = method_names();
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) return std::nullopt;
-  return static_cast<Method>(at - names.begin());
-}
-
 std::string only_taylor(const Model& model, const Program& program) {
   if (!model.events.empty()) return "does not look for events";
   if (program.nonlinear)

@@ -7,19 +7,10 @@
 #pragma once
 #include "integrate/state_rate.h"
 #include "motion/code_for_long_runs.h"
+#include "motion/methods.h"
 #include "motion/motion.h"
 
 namespace anholon {
-
-enum class Method : std::uint8_t { automatic, taylor, runge_kutta, bdf };
-const std::vector<std::string>& method_names();  // auto, taylor, rk, bdf
-const char* name(Method method);
-std::optional<Method> find_method(const std::string& name);
-
-// BDF, of order 5 at most, would take forever beyond.
-inline constexpr double kLeastBdfTolerance = 1e-10;
-// The round-off of f in double.
-inline constexpr double kLeastRungeKuttaTolerance = 1e-14;
 
 struct MethodReport {
   Method asked = Method::automatic, last = Method::taylor;

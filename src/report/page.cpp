@@ -507,12 +507,12 @@ class Writer {
     literature_.key("NedialkovPryce2005");
     for (const std::optional<SimulationReport>& r : reports_) {
       if (!r) continue;
-      const auto used = [&](Method m) {
-        return r->method.last == m || std::any_of(r->method.turns.begin(), r->method.turns.end(),
-                                                  [&](const MethodReport::Turn& turn) { return turn.to == m; });
+      const auto cite = [&](const MethodInfo& method) {
+        if (method.citation[0]) literature_.key(method.citation);
       };
-      if (r->second || used(Method::bdf)) literature_.key("Hindmarsh2005");
-      if (used(Method::runge_kutta)) literature_.key("PrinceDormand1981");
+      cite(info(r->method.last));
+      for (const MethodReport::Turn& turn : r->method.turns) cite(info(turn.to));
+      if (r->second) cite(info(r->second->integrator));
     }
     literature_.key("JorbaZou2005");
     literature_.key("Neumaier1974");
