@@ -1,0 +1,17 @@
+// The words of the command line before and after they are parsed.
+#pragma once
+#include "cli/commands.h"
+
+namespace anholon::cli {
+
+// Throws UsageError with a suggestion if the first word is no command and no option.
+void check_command(const char* word);
+
+// In --q x=1 y=2 MODEL the model slips into the list of assignments: takes a word without '=' out of these lists as the
+// model, where none is named.
+void rescue_model(Options& o);
+
+// The words as they could be typed again.
+std::string command_line(int argc, char** argv);
+
+}  // namespace anholon::cli
