@@ -36,7 +36,12 @@ foreach(layer IN LISTS layers)
     if(layer STREQUAL "cli")
       target_link_libraries(test_${layer} PRIVATE anholon_cli)
     endif()
-    gtest_discover_tests(test_${layer} TEST_PREFIX "unit.${layer}." PROPERTIES LABELS unit ENVIRONMENT "${no_cache}"
+    # Some motions are computed in multiple precision under ANHOLON_LONG=1 only.
+    set(labels unit)
+    if(layer STREQUAL "simulation")
+      set(labels "unit;long")
+    endif()
+    gtest_discover_tests(test_${layer} TEST_PREFIX "unit.${layer}." PROPERTIES LABELS "${labels}" ENVIRONMENT "${no_cache}"
       DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
   endif()
 endforeach()
