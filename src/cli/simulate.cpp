@@ -247,12 +247,12 @@ class Saver {
   const SimulationOptions& options_;
 };
 
-SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSink& rows, Told* told) {
+SimulationReport run(Workspace& s, const SimulationOptions& options, RowSink& rows, Told* told) {
   try {
-    if (!told) return anholon::simulate(s, options, rows);
+    if (!told) return simulate_in(s, options, rows);
     RunSink kept(told->run);
     TwoSinks both(rows, kept);
-    return anholon::simulate(s, options, both);
+    return simulate_in(s, options, both);
   } catch (const Failure& e) {
     throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
   }
@@ -299,14 +299,15 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   options.estimate = error_estimate(o);
   options.state = state_choice(o, *in.model);
   options.order = o.order;
-  Scenario& s = all.scenario;
-  const Outcome start = ready(in, form(o, *in.model), options.state, s);
-  form(o, *in.model, s.mechanics.get());
+  Scenario prepared;
+  const Outcome start = ready(in, form(o, *in.model), options.state, prepared);
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }
-  if (!o.show.empty()) return show(o, s);
+  if (!o.show.empty()) return show(o, prepared);
+  all.scenario = std::make_unique<Workspace>(prepared);
+  Workspace& s = *all.scenario;
   const Rational last = times(o, s, options, told && o.output.empty());
   if (resume) beyond(*resume, o, last);
   if (told && o.output.empty() && !options.every && options.at.empty() && last != Rational(s.state.t))

@@ -13,6 +13,7 @@ struct OpenSystem {
 // Not among them, and put in as formulas: inputs that hold accelerations or multipliers, that keep a constraint, that
 // stand in an equation which is differentiated (their rates would be inputs, too), or whose formula stands in a
 // potential, mass or constraint.
-OpenSystem open_inputs(const Scenario& scenario);
+// The system is of the workspace.
+OpenSystem open_inputs(Workspace& scenario);
 
 }  // namespace anholon
