@@ -16,9 +16,9 @@ int check(const Options& asked) {
   Workspace own(s);
   const Explanation x = explain(own);
   if (o.json)
-    check_json(s, x, outcome);
+    check_json(own, x, outcome);
   else
-    check_text(s, x, outcome);
+    check_text(own, x, outcome);
   if (outcome.ok()) return kOk;
   print_outcome(outcome);
   return kStopped;

@@ -79,7 +79,7 @@ void structure(JsonWriter& j, const Scenario& s, const Explanation& x) {
 
 }  // namespace
 
-void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome) {
+void check_json(Workspace& s, const Explanation& x, const Outcome& outcome) {
   const Model& model = *s.model;
   JsonWriter j;
   j.open_object();

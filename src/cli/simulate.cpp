@@ -301,13 +301,14 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   options.order = o.order;
   Scenario prepared;
   const Outcome start = ready(in, form(o, *in.model), options.state, prepared);
+  all.scenario = std::make_unique<Workspace>(prepared);
+  Workspace& s = *all.scenario;
+  form(o, *in.model, s.mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, prepared);
-  all.scenario = std::make_unique<Workspace>(prepared);
-  Workspace& s = *all.scenario;
   const Rational last = times(o, s, options, told && o.output.empty());
   if (resume) beyond(*resume, o, last);
   if (told && o.output.empty() && !options.every && options.at.empty() && last != Rational(s.state.t))

@@ -226,6 +226,7 @@ int sweep(const Options& asked) {
   options.threads = static_cast<std::size_t>(o.threads);
   Scenario s;
   Outcome start = ready(in, form(o, *in.model), options.state, s);
+  form(o, *in.model, Workspace(s).mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
