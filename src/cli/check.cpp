@@ -1,7 +1,7 @@
 #include "cli/check_report.h"
-#include "motion/start.h"
 #include "cli/input.h"
 #include "cli/show.h"
+#include "motion/start.h"
 
 namespace anholon::cli {
 

@@ -53,8 +53,7 @@ void EnsemblePlan::make() {
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
-    for (int k = 0; k < s.structure.d[j]; ++k)
-      entries.push_back(s.system.symbol_node(j, static_cast<unsigned>(k)));
+    for (int k = 0; k < s.structure.d[j]; ++k) entries.push_back(s.system.symbol_node(j, static_cast<unsigned>(k)));
   Column masses;
   for (const VaryingMass& m : model.masses) masses.push_back(m.value);
   program = anholon::program(s.system, s.structure, masses);

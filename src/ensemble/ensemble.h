@@ -76,7 +76,7 @@ struct EnsembleReport {
   Outcome outcome;  // interrupted, or finished although cases may have stopped
   std::size_t done = 0, finished = 0;
   std::size_t in_workspaces = 0;  // cases that were not computed by the tapes all share
-  std::size_t most_held = 0;  // results at once in memory
+  std::size_t most_held = 0;      // results at once in memory
   std::size_t threads = 0;
   double seconds = 0;
   CasesError error;

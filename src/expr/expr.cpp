@@ -66,7 +66,8 @@ std::unique_ptr<Graph> Graph::clone(std::size_t nodes) const {
   const bool whole = nodes == nodes_.size();
   // Operands are stored in the order of the nodes.
   const Node& last = nodes_[nodes - 1];
-  const std::size_t terms = whole ? terms_.size() : std::max(last.first + last.count, last.view_first + last.view_count);
+  const std::size_t terms =
+      whole ? terms_.size() : std::max(last.first + last.count, last.view_first + last.view_count);
   g->nodes_.assign(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(nodes));
   g->terms_.assign(terms_.begin(), terms_.begin() + static_cast<std::ptrdiff_t>(terms));
   g->rationals_ = rationals_;

@@ -402,8 +402,8 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
 }
 
 Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
-  const InitialProblem<Multi> problem{
-      s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr, &s_.state};
+  const InitialProblem<Multi> problem{s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr,
+                                      &s_.state};
   InitialState<Multi> state;
   if (Outcome o = consistent_state(problem, state); !o.ok()) return o;
   if (s_.routh)

@@ -37,8 +37,7 @@ const Eigenvalue& ranked(const LinearModel& m, int rank, int always) {
 
 class Search {
  public:
-  Search(Workspace& s, const StateChoice& choice, const std::optional<ParameterRange>& range,
-         const Signals& signals)
+  Search(Workspace& s, const StateChoice& choice, const std::optional<ParameterRange>& range, const Signals& signals)
       : s_(s), range_(range), linearizer_(s, choice, signals) {}
 
   LinearResult at(const Rational* value, bool check = true) const {

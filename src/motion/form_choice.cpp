@@ -1,9 +1,10 @@
 #include "motion/form_choice.h"
-#include "integrate/taylor.h"
-#include "motion/start.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "integrate/taylor.h"
+#include "motion/start.h"
 
 namespace anholon {
 

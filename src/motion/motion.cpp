@@ -8,8 +8,7 @@ namespace anholon {
 // Kernels, which only doubles have, know the slots of the tape as it is derived; others share what products have in
 // common.
 template <Number N>
-Motion<N>::Leg::Leg(const Motion& m, std::shared_ptr<Workspace> of_leg, Elimination by, System of,
-                    Structure structured)
+Motion<N>::Leg::Leg(const Motion& m, std::shared_ptr<Workspace> of_leg, Elimination by, System of, Structure structured)
     : own(std::move(of_leg)), elimination(std::move(by)), system(std::move(of)), structure(std::move(structured)),
       quadratures(m.with_events(m.workspace(*this))),
       program(anholon::program(system, structure, quadratures, !std::same_as<N, double>)),
@@ -123,8 +122,8 @@ void Motion<N>::watch_pivots(Leg& leg) const {
   const Elimination& e = leg.elimination;
   if (e.pivots().empty()) return;
   Workspace& in = workspace(leg);
-  leg.pivots = std::make_unique<OutputTape<W>>(in, put_masses(*in.model, e.in_coordinates(e.on(e.pivots()))),
-                                               parameters_);
+  leg.pivots =
+      std::make_unique<OutputTape<W>>(in, put_masses(*in.model, e.in_coordinates(e.on(e.pivots()))), parameters_);
 }
 
 // The present leg once more, with the present parameters.
@@ -294,8 +293,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
     for (std::size_t i = 0; i < states; ++i) c.here.state_rates.push_back(*at++);
     choices_.push_back(std::move(c));
   }
-  eliminations_ =
-      static_cast<std::size_t>(std::count_if(choices_.begin(), choices_.end(), [](const Choice& c) { return c.taken; }));
+  eliminations_ = static_cast<std::size_t>(
+      std::count_if(choices_.begin(), choices_.end(), [](const Choice& c) { return c.taken; }));
   const auto last = std::find_if(choices_.rbegin(), choices_.rend(), [](const Choice& c) { return c.taken; });
   if (last != choices_.rend()) {
     auto next = base_ ? derived_at(last->here) : nullptr;

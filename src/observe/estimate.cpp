@@ -353,8 +353,7 @@ double written_roundoff(const SimulationOptions& o) {
 }
 
 template <Number N>
-void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N>>& run,
-                    SimulationReport& report) {
+void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N>>& run, SimulationReport& report) {
   const Rational tolerance = o.tolerance / kSharper;
   StepSettings settings{natural_logarithm(tolerance), 0, o.most_steps, o.cancelled};
   // A stiff motion that is short by another method is long for Taylor.
@@ -392,8 +391,7 @@ INSTANTIATE(Multi)
 #undef INSTANTIATE
 
 #define INSTANTIATE(N)                                                                                                 \
-  template void estimate_error<N>(Workspace&, const SimulationOptions&, RunToJudge<Wider<N>>&,                    \
-                                  SimulationReport&);                                                                  \
+  template void estimate_error<N>(Workspace&, const SimulationOptions&, RunToJudge<Wider<N>>&, SimulationReport&);     \
   template double written_roundoff<N>(const SimulationOptions&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -25,8 +25,8 @@ bool translate(const Program& from, const std::vector<double>& state, const std:
 
 }  // namespace
 
-SecondMotion::SecondMotion(Workspace& scenario, const StateChoice& choice, Expr power,
-                           const SundialsSettings& settings, long double end)
+SecondMotion::SecondMotion(Workspace& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings,
+                           long double end)
     : model_(*scenario.model) {
   report_.integrator = settings.integrator;
   report_.of = model_.coordinates[0].name;

@@ -312,8 +312,8 @@ std::shared_ptr<Model> given_model(const Scenario& s) { return clone(*s.model, s
 
 template <Number N>
 Outcome initial_state(Workspace& s, const StateChoice& choice, Start<N>& start) {
-  const InitialProblem<N> problem{
-      s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr, s.start.get()};
+  const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr,
+                                  s.start.get()};
   InitialState<N> named;
   if (Outcome o = consistent_state(problem, named); !o.ok()) return o;
   if (s.routh)
