@@ -68,8 +68,7 @@ std::unique_ptr<Ready> make_ready(const Request& request) {
   if (!m) throw Failed{diagnostics.print(source)};
   auto model = std::make_shared<const Model>(std::move(*m));
   r->read = lap();
-  const auto again = [&] { return std::make_shared<const Model>(*read_model(source, diagnostics, request.set)); };
-  const Formulation* form = request.form == "auto" ? choose_form(again, {}).form : find_formulation(request.form);
+  const Formulation* form = request.form == "auto" ? choose_form(model, {}).form : find_formulation(request.form);
   if (!form) throw Failed{"no form " + request.form};
   must(make_scenario(model, *form, {}, r->scenario));
   r->scenario_made = lap();
@@ -226,7 +225,7 @@ std::vector<Start<W>> neighbours(const Ready& r, const std::string& name) {
   const auto found = std::find_if(q.begin(), q.end(), [&](const Coordinate& c) { return c.name == name; });
   if (found == q.end()) throw Failed{"no coordinate " + name};
   const auto j = static_cast<std::size_t>(found - q.begin());
-  const double* const from = s.state.value(s.model->graph->node(s.system.symbol(j, 0).id));
+  const double* const from = s.state.value(s.system.symbol_node(j, 0));
   std::vector<Start<W>> starts(static_cast<std::size_t>(tiers().back().lanes));
   for (std::size_t lane = 0; lane < starts.size(); ++lane)
     must(initial_state(s, {{{0, j, Rational(*from) + Rational(static_cast<long>(lane), 64)}}, {}, {}}, starts[lane]));

@@ -36,7 +36,7 @@ struct ConstraintClass {
 // Immutable, cheap to copy, and safe to use from many threads.
 class ANHOLON_API System {
  public:
-  const std::string& form() const;
+  std::string form() const;
   double start() const;  // the initial time
   std::vector<InitialValue> initial() const;
   std::vector<ConstraintClass> constraints() const;

@@ -131,8 +131,11 @@ inner::StateChoice state_choice(const PrepareOptions& options, const inner::Mode
 inner::Outcome make_system(std::shared_ptr<const inner::Model> model, const std::string& form,
                            const inner::StateChoice& choice, inner::Scenario& scenario) {
   const inner::Formulation& f = find_form(form);
-  const inner::Mechanics m = inner::mechanics(*model);
-  find_form(form, &m);
+  {
+    const std::shared_ptr<const inner::Model> own = inner::clone(*model);
+    const inner::Mechanics m = inner::mechanics(*own);
+    find_form(form, &m);
+  }
   if (f.unknowns == inner::Unknowns::variational)
     throw inner::Failure({}, "the form '" + form + "' is another mechanics: no motion is computed with it",
                          "derive and compare it, or name another form");

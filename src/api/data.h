@@ -15,8 +15,8 @@ struct Model::Data {
   std::shared_ptr<const inner::Model> model;
   std::vector<Diagnostic> remarks;
 
-  // The same model with an expression graph of its own, in which its holder may build.
-  std::shared_ptr<const inner::Model> own_copy() const;
+  // A copy with an expression graph of its own, in which its holder may build.
+  std::shared_ptr<const inner::Model> own_copy() const { return inner::clone(*model); }
 };
 
 struct System::Data {

@@ -45,14 +45,6 @@ Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
 
 const char* version() { return ANHOLON_VERSION; }
 
-std::shared_ptr<const inner::Model> Model::Data::own_copy() const {
-  inner::Diagnostics ignored;
-  inner::SourceText read = model->source_text;
-  const auto copy = inner::open_model(source, ignored, overrides, cases);
-  if (!copy) throw inner::Failure({}, "the model's files have changed since they were read", "read the model again");
-  return copy->model;
-}
-
 const std::string& Model::title() const { return data_->model->title; }
 const std::vector<Diagnostic>& Model::remarks() const { return data_->remarks; }
 const std::string& Model::text() const { return data_->source.text; }

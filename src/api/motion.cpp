@@ -118,11 +118,7 @@ void set_accuracy(const MotionOptions& asked, const inner::Scenario& s, inner::S
 Result<Run> simulate(const System& system, const MotionOptions& asked) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Run> {
-    // The motion builds expressions, and a system is used by many threads: it has a system of its own.
-    inner::Scenario s;
-    if (const inner::Outcome o = make_system(of.model->own_copy(), of.scenario.system.form->name, of.choice, s);
-        !o.ok())
-      return error_of(o);
+    inner::Workspace s(of.scenario);
     inner::SimulationOptions o;
     o.state = of.choice;
     set_times(asked, s, o);
@@ -135,7 +131,7 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     if (!sets) o.conserved = inner::conserved(*s.mechanics);
     auto data = std::make_shared<Run::Data>();
     RowKeeper rows(*data);
-    data->inner_report = inner::simulate(s, o, rows);
+    data->inner_report = inner::simulate_in(s, o, rows);
     const inner::SimulationReport& r = data->inner_report;
     data->outcome = to_public(r.outcome);
     data->report = to_public(r);

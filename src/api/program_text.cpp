@@ -8,10 +8,7 @@ namespace anholon::v1 {
 Result<std::string> program_text(const System& system, Language language) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<std::string> {
-    inner::Scenario s;
-    if (const inner::Outcome o = make_system(of.model->own_copy(), of.scenario.system.form->name, of.choice, s);
-        !o.ok())
-      return error_of(o);
+    inner::Workspace s(of.scenario);
     if (const auto d = inner::not_emitted(*s.model, *s.mechanics)) throw inner::Failure(*d);
     inner::EmitOptions options;
     options.name = of.model->source.name;

@@ -73,10 +73,7 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
   constexpr std::size_t kMostCases = 100'000'000;
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Sweep> {
-    inner::Scenario s;
-    if (const inner::Outcome o = make_system(of.model->own_copy(), of.scenario.system.form->name, of.choice, s);
-        !o.ok())
-      return error_of(o);
+    const inner::Scenario& s = of.scenario;
     inner::EnsembleOptions o;
     o.state = of.choice;
     std::vector<std::vector<inner::Rational>> grid;
@@ -113,7 +110,6 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
     o.threads = asked.threads;
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
-    o.again = [&of] { return of.model->own_copy(); };
     for (const std::string& n : inner::ensemble_columns(*s.model)) data->columns.push_back(n);
     const double nothing = std::numeric_limits<double>::quiet_NaN();
     data->values.assign(data->columns.size(), std::vector<double>(o.cases, nothing));

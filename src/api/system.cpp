@@ -11,19 +11,15 @@ Result<System> prepare(const Model& model, const PrepareOptions& options) {
   return guarded(model.data().source, [&]() -> Result<System> {
     auto data = std::make_shared<System::Data>();
     data->model = std::make_shared<const Model::Data>(model.data());
-    const std::shared_ptr<const inner::Model> own = model.data().own_copy();
-    data->choice = state_choice(options, *own);
+    data->choice = state_choice(options, *model.data().model);
     std::string form = options.form;
-    if (form == "auto") form = inner::choose_form([&] { return model.data().own_copy(); }, data->choice).form->name;
-    if (const inner::Outcome o = make_system(own, form, data->choice, data->scenario); !o.ok()) return error_of(o);
+    if (form == "auto") form = inner::choose_form(model.data().model, data->choice).form->name;
+    if (const inner::Outcome o = make_system(model.data().model, form, data->choice, data->scenario); !o.ok()) return error_of(o);
     return System(std::move(data));
   });
 }
 
-const std::string& System::form() const {
-  static thread_local std::string name;
-  return name = data_->scenario.system.form->name;
-}
+std::string System::form() const { return data_->scenario.system.form->name; }
 double System::start() const { return data_->scenario.state.t; }
 int System::degrees_of_freedom() const { return data_->scenario.structure.degrees_of_freedom; }
 const std::vector<std::string>& System::notes() const { return data_->scenario.state.notes; }

@@ -13,11 +13,12 @@ int check(const Options& asked) {
   Outcome outcome = ready(in, form(o, *in.model), state_choice(o, *in.model), s);
   if (outcome.ok() && !not_integrated(*in.model)) outcome = regular_at_start(s);
   if (!o.show.empty()) return show(o, s);
-  const Explanation x = explain(s);
+  Workspace own(s);
+  const Explanation x = explain(own);
   if (o.json)
-    check_json(s, x, outcome);
+    check_json(own, x, outcome);
   else
-    check_text(s, x, outcome);
+    check_text(own, x, outcome);
   if (outcome.ok()) return kOk;
   print_outcome(outcome);
   return kStopped;

@@ -113,7 +113,7 @@ void initial_state(JsonWriter& j, const Scenario& s) {
 
 }  // namespace
 
-void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome) {
+void check_json(Workspace& s, const Explanation& x, const Outcome& outcome) {
   const Model& model = *s.model;
   JsonWriter j;
   j.open_object();

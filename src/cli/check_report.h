@@ -4,7 +4,7 @@
 
 namespace anholon::cli {
 
-void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome);
-void check_json(const Scenario& s, const Explanation& x, const Outcome& outcome);
+void check_text(Workspace& s, const Explanation& x, const Outcome& outcome);
+void check_json(Workspace& s, const Explanation& x, const Outcome& outcome);
 
 }  // namespace anholon::cli

@@ -193,7 +193,7 @@ void state_table(const Scenario& s) {
 
 }  // namespace
 
-void check_text(const Scenario& s, const Explanation& x, const Outcome& outcome) {
+void check_text(Workspace& s, const Explanation& x, const Outcome& outcome) {
   const Model& model = *s.model;
   say(stdout, "%s\n", model.title.empty() ? model.source_text.name.c_str() : model.title.c_str());
   if (!model.source.empty()) say(stdout, "source: %s\n", model.source.c_str());

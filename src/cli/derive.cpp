@@ -60,7 +60,8 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   for (const std::string& set : o.set) options.made_by += " --set " + set;
   options.start = {s.state.t, s.state.q, s.state.qd};
   // What constraints settle is solved for in wider numbers, as for a motion.
-  if (Start<long double> start; initial_state(s, choice, start).ok()) {
+  Workspace own(s);
+  if (Start<long double> start; initial_state(own, choice, start).ok()) {
     const long double* x = start.state.data();
     for (std::size_t a = 0; a < s.system.coordinates; x += s.structure.d[a++]) {
       if (s.structure.d[a] > 0) options.start->q[a] = static_cast<double>(x[0]);
@@ -68,7 +69,7 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
     }
   }
   try {
-    OpenSystem open = open_inputs(s);
+    OpenSystem open = open_inputs(own);
     options.inputs = std::move(open.inputs);
     deliver(o, (o.format == "c" ? emit_c : emit_python)(open.system, s.structure, options));
   } catch (const Failure& failure) {

@@ -105,7 +105,7 @@ int evaluate(const Options& o) {
   const StateChoice choice = state_choice(o, *in.model);
   Scenario s;
   Outcome outcome = ready(in, form(o, *in.model), choice, s);
-  form(o, *in.model, s.mechanics.get());
+  form(o, *in.model, Workspace(s).mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;

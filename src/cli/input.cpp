@@ -158,14 +158,6 @@ Reader read(const Options& o, SourceText source) {
     throw UsageError{diagnostics.print(r.source) + std::to_string(n) + (n == 1 ? " error\n" : " errors\n")};
   }
   say_lines(stderr, diagnostics.print(r.source));
-  r.again = [source = r.source, overrides, cases = o.cases,
-             was = all_text(model->model->source_text)]() -> std::shared_ptr<const Model> {
-    Diagnostics ignored;
-    const auto copy = open_model(source, ignored, overrides, cases);
-    if (!copy || all_text(copy->model->source_text) != was)
-      throw Failure({}, "the model's files have changed on the way", "leave them until the end");
-    return copy->model;
-  };
   r.model = model->model;
   r.source = r.model->source_text;
   r.names = model->names;
@@ -215,7 +207,7 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
 
 Options with_form(Options o, const Reader& in) {
   if ((o.form_given || !in.model->simulate.form ? o.form : *in.model->simulate.form) != "auto") return o;
-  const FormChoice choice = choose_form(in.again, state_choice(o, *in.model));
+  const FormChoice choice = choose_form(in.model, state_choice(o, *in.model));
   o.form = choice.form->name;
   o.form_given = true;
   if (!o.quiet) say(stderr, "form %s: %s\n", choice.form->name, choice.why.c_str());

@@ -1,7 +1,6 @@
 // From the words of a command line to a model, a state and exact numbers.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -22,8 +21,6 @@ struct Reader {
   std::shared_ptr<const Model> model;
   std::shared_ptr<Names> names;
   SourceText source;
-  // The same model once more, with a graph of its own; throws Failure if its files have changed since.
-  std::function<std::shared_ptr<const Model>()> again;
 };
 // The texts of all files that a model was read from, for its fingerprint.
 std::string all_text(const SourceText& source);

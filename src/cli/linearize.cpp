@@ -347,7 +347,7 @@ int linearize(const Options& o) {
   if (o.about == "equilibrium") in.model = searched_from(*in.model, choice);
   Scenario s;
   const Outcome start = ready(in, form(o, *in.model), choice, s);
-  form(o, *in.model, s.mechanics.get());
+  form(o, *in.model, Workspace(s).mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;

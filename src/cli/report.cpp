@@ -25,19 +25,21 @@ namespace {
 constexpr std::size_t kMostProved = 12, kMostNodesProved = 600, kMostRead = 24;
 
 void make_ready(const Options& o, Told& x) {
-  const Outcome outcome = ready(x.in, form(o, *x.in.model), state_choice(o, *x.in.model), x.scenario);
+  Scenario prepared;
+  const Outcome outcome = ready(x.in, form(o, *x.in.model), state_choice(o, *x.in.model), prepared);
   if (!outcome.ok()) {
     print_outcome(outcome);
     throw UsageError{"error: the start of the run cannot be found again\n"};
   }
+  x.scenario = std::make_unique<Workspace>(prepared);
   const bool reset =
       std::any_of(x.in.model->events.begin(), x.in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
-  if (!reset) x.conserved = conserved(*x.scenario.mechanics);
+  if (!reset) x.conserved = conserved(*x.scenario->mechanics);
 }
 
 // Routh's equations, those of the motion, and Maggi's where there is something to eliminate.
 std::vector<const Formulation*> shown_forms(const Options& o, const Told& x) {
-  const Mechanics& m = *x.scenario.mechanics;
+  const Mechanics& m = *x.scenario->mechanics;
   std::vector<const Formulation*> list;
   const auto add = [&](const Formulation* f) {
     if (f && obstacle(*f, m).empty() && std::find(list.begin(), list.end(), f) == list.end()) list.push_back(f);
@@ -50,7 +52,7 @@ std::vector<const Formulation*> shown_forms(const Options& o, const Told& x) {
   }
   if (!list.empty()) return list;
   add(find_formulation("routh"));
-  add(x.scenario.system.form);
+  add(x.scenario->system.form);
   if (!m.phi.empty() && m.q.size() <= kMostRead) add(find_formulation("maggi"));
   return list;
 }
@@ -125,11 +127,11 @@ void write_page(const Options& o, std::deque<Told>& cases) {
   Page page;
   Told& first = cases[0];
   const Model& model = *first.in.model;
-  const Mechanics& m = *first.scenario.mechanics;
+  const Mechanics& m = *first.scenario->mechanics;
   std::deque<Explanation> explanations;
   for (Told& x : cases) {
-    explanations.push_back(explain(x.scenario));
-    page.cases.push_back({x.name, &x.scenario, &explanations.back(), x.conserved, x.run});
+    explanations.push_back(explain(*x.scenario));
+    page.cases.push_back({x.name, x.scenario.get(), &explanations.back(), x.conserved, x.run});
   }
   // Equations and proof ask for the eliminations at the state of the run.
   const Options was = first.run.settings.empty() ? o : options_of(first.run, o);
@@ -163,7 +165,7 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     for (const Formulation* f : formulations())
       if (obstacle(*f, m).empty()) forms.push_back(f);
     // On a graph of its own: that of the motion and the printed equations has grown.
-    fresh = first.in.again();
+    fresh = clone(*first.in.model);
     const Mechanics own = mechanics(*fresh);
     const std::vector<Eliminations> offered = eliminations_of(first.in, own, choice);
     ProofOptions options;

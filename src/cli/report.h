@@ -1,6 +1,7 @@
 // A motion on its way to a page.
 #pragma once
 #include <deque>
+#include <memory>
 
 #include "cli/input.h"
 #include "mechanics/conserved.h"
@@ -13,7 +14,7 @@ namespace anholon::cli {
 struct Told {
   std::string name;  // of the scenario
   Reader in;
-  Scenario scenario;
+  std::unique_ptr<Workspace> scenario;  // in which the motion was made, and its page is
   std::vector<Conserved> conserved;
   RunFile run;
 };

@@ -98,7 +98,7 @@ static void cost_json(const FormChoice& c) {
 }
 
 int show_cost(const Options& o, const Reader& in) {
-  const FormChoice c = choose_form(in.again, state_choice(o, *in.model), Costs::all);
+  const FormChoice c = choose_form(in.model, state_choice(o, *in.model), Costs::all);
   if (o.json) return cost_json(c), kOk;
   say(stdout, "one expansion at tolerance 1e-12\n\n");
   say(stdout, "%-8s  %-9s  %8s  %6s  %6s  %10s  %5s  %8s  taken\n", "form", "writing", "products", "sums", "solve",

@@ -246,12 +246,12 @@ class Saver {
   const SimulationOptions& options_;
 };
 
-SimulationReport run(const Scenario& s, const SimulationOptions& options, RowSink& rows, Told* told) {
+SimulationReport run(Workspace& s, const SimulationOptions& options, RowSink& rows, Told* told) {
   try {
-    if (!told) return anholon::simulate(s, options, rows);
+    if (!told) return simulate_in(s, options, rows);
     RunSink kept(told->run);
     TwoSinks both(rows, kept);
-    return anholon::simulate(s, options, both);
+    return simulate_in(s, options, both);
   } catch (const Failure& e) {
     throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
   }
@@ -287,7 +287,7 @@ bool sets_values(const Model& model) {
 }
 
 // All that is asked of the motion of this system. drawn: the motion is for a page or a film alone.
-void ask(const Options& o, const Reader& in, const Scenario& s, bool drawn, SimulationOptions& options) {
+void ask(const Options& o, const Reader& in, const Workspace& s, bool drawn, SimulationOptions& options) {
   options.estimate = error_estimate(o);
   options.order = o.order;
   const Rational last = times(o, s, options, drawn);
@@ -321,7 +321,7 @@ struct Written {
 // Computes the motion and writes its rows to where the options say.
 class Writer {
  public:
-  Writer(const Options& o, const Reader& in, const Scenario& s, const Outcome& start, SimulationOptions& options,
+  Writer(const Options& o, const Reader& in, Workspace& s, const Outcome& start, SimulationOptions& options,
          Saver& saver, Told* told)
       : o_(o), in_(in), s_(s), start_(start), options_(options), saver_(saver), told_(told) {}
 
@@ -402,7 +402,7 @@ class Writer {
 
   const Options& o_;
   const Reader& in_;
-  const Scenario& s_;
+  Workspace& s_;
   const Outcome& start_;
   SimulationOptions& options_;
   Saver& saver_;
@@ -442,14 +442,16 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   SimulationOptions options;
   options.resume = resume;
   options.state = state_choice(o, *in.model);
-  Scenario& s = all.scenario;
-  const Outcome start = ready(in, form(o, *in.model), options.state, s);
+  Scenario prepared;
+  const Outcome start = ready(in, form(o, *in.model), options.state, prepared);
+  all.scenario = std::make_unique<Workspace>(prepared);
+  Workspace& s = *all.scenario;
   form(o, *in.model, s.mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }
-  if (!o.show.empty()) return show(o, s);
+  if (!o.show.empty()) return show(o, prepared);
   ask(o, in, s, told && o.output.empty(), options);
   Saver saver(o, in, *s.system.form, options);
   if (!o.quiet) options.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };

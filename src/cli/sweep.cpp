@@ -227,17 +227,16 @@ int sweep(const Options& asked) {
   options.order = o.order;
   options.estimate = error_estimate(o);
   options.threads = static_cast<std::size_t>(o.threads);
-  options.again = in.again;
   Scenario s;
   Outcome start = ready(in, form(o, *in.model), options.state, s);
-  form(o, *in.model, s.mechanics.get());
+  form(o, *in.model, Workspace(s).mechanics.get());
   if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
   options.method = method_of_cases(o, s, options);
-  if (!start.ok()) start = scenario_of_cases(*s.system.form, options, s);
+  if (!start.ok()) start = scenario_of_cases(options, s);
   if (!start.ok()) {
     print_outcome(start);
     return kStopped;

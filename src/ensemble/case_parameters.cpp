@@ -30,7 +30,7 @@ bool of_parameters(Expr e) {
 
 }  // namespace
 
-CaseParameters::CaseParameters(const Scenario& s, const std::vector<Varied>& varied) : s_(s), varied_(varied) {
+CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) : s_(s), varied_(varied) {
   const Model& model = *s.model;
   if (model.parameters.empty()) return;
   tape_ = parameter_tape(model, varied);

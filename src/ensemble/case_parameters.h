@@ -7,7 +7,7 @@ namespace anholon {
 // Read by many threads: it builds no expressions.
 class CaseParameters {
  public:
-  CaseParameters(const Scenario& scenario, const std::vector<Varied>& varied);
+  CaseParameters(Workspace& scenario, const std::vector<Varied>& varied);
 
   // Of all parameters, those that are derived from others too.
   template <Number N>

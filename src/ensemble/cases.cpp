@@ -16,18 +16,15 @@ std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const Ensemble
   return list;
 }
 
-static void put_parameters(Model& model, const EnsembleOptions& o, const EnsembleCase& numbers) {
+Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
+                         Scenario& scenario) {
+  const std::shared_ptr<Model> model = given_model(of_all);
   for (std::size_t i = 0; i < o.varied.size(); ++i)
     if (o.varied[i].kind == Varied::Kind::parameter)
-      model.parameters[o.varied[i].index].value = model.graph->number(numbers.values[i]);
-}
-
-Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& o, const EnsembleCase* numbers,
-                         Scenario& scenario, std::shared_ptr<Model>& model) {
-  model = std::make_shared<Model>(*o.again());
+      model->parameters[o.varied[i].index].value = model->graph->number(numbers.values[i]);
   StateChoice state = o.state;
-  if (numbers) put_parameters(*model, o, *numbers), state.overrides = overrides_of(o, numbers);
-  return make_scenario(model, form, state, scenario);
+  state.overrides = overrides_of(o, &numbers);
+  return make_scenario(model, *of_all.system.form, state, scenario);
 }
 
 std::vector<std::string> ensemble_columns(const Model& model) {
@@ -48,17 +45,23 @@ std::vector<std::size_t> ensemble_places(const std::vector<RunColumn>& columns) 
 }
 
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
-    : scenario(s), options(o), parameters(s, o.varied) {
+    : of_all(s), options(o), scenario(s), parameters(scenario, o.varied) {
+  make();
+  scenario.graph().freeze();
+}
+
+void EnsemblePlan::make() {
+  Workspace& s = scenario;
+  const EnsembleOptions& o = options;
   const Model& model = *s.model;
-  Graph& g = *model.graph;
+  const Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() &&
           s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
-    for (int k = 0; k < s.structure.d[j]; ++k)
-      entries.push_back(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
+    for (int k = 0; k < s.structure.d[j]; ++k) entries.push_back(s.system.symbol_node(j, static_cast<unsigned>(k)));
   Column masses;
   for (const VaryingMass& m : model.masses) masses.push_back(m.value);
   program = anholon::program(s.system, s.structure, masses);
@@ -96,34 +99,16 @@ void EnsemblePlan::compile_if_long() const {
   if (const std::unique_lock lock(compiling_, std::try_to_lock); lock) code_.step(kernel, lanes);
 }
 
-// A model read once more, with a graph of its own in which a thread may build.
-struct CaseWorker::Own {
-  // With the numbers of a case, or those of the scenario of all cases.
-  Own(const EnsemblePlan& plan, const EnsembleCase* numbers) {
-    const EnsembleOptions& o = plan.options;
-    std::optional<EnsembleCase> like;
-    if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
-    outcome = scenario_of_case(*plan.scenario.system.form, o, numbers, scenario, model);
-  }
-
-  std::shared_ptr<Model> model;
-  Scenario scenario;
-  Outcome outcome;        // of its start
-  std::size_t cases = 0;  // that were computed in it
-};
-
-Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& o, Scenario& scenario) {
+Outcome scenario_of_cases(const EnsembleOptions& o, Scenario& scenario) {
   constexpr std::size_t kMost = 64;
   Outcome first;
   for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
     const EnsembleCase numbers = o.numbers(k);
-    std::shared_ptr<Model> model;
     Scenario s;
-    const Outcome outcome = scenario_of_case(form, o, &numbers, s, model);
+    const Outcome outcome = scenario_of_case(scenario, o, numbers, s);
     if (k == 0) first = outcome;
     if (!outcome.ok()) continue;
     scenario = std::move(s);
-    o.like = k;
     return {};
   }
   return first;
@@ -355,19 +340,16 @@ class EnsembleRowFilter final : public RowSink {
 
 }  // namespace
 
-// Without numbers: those of the scenario.
-void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& r) {
+void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, CaseResult& r) {
   const EnsembleOptions& o = plan_.options;
   r.rows.clear();
   r.last.clear();
-  std::optional<EnsembleCase> like;
-  if (!numbers && o.like) like = o.numbers(*o.like), numbers = &*like;
-  const Rational to = numbers && numbers->to ? *numbers->to : o.to;
+  const Rational to = numbers.to ? *numbers.to : o.to;
   SimulationOptions options;
   options.state = o.state;
-  if (numbers) options.state.overrides = overrides_of(o, numbers);
+  options.state.overrides = overrides_of(o, &numbers);
   for (const Rational& t : o.at)
-    if (to < Rational(own.scenario.state.t) ? t > to : t < to) options.at.push_back(t);
+    if (to < Rational(own.state.t) ? t > to : t < to) options.at.push_back(t);
   options.at.push_back(to);
   std::sort(options.at.begin(), options.at.end());
   options.tolerance = o.tolerance;
@@ -377,42 +359,31 @@ void CaseWorker::simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& 
   options.cancelled = o.cancelled;
   options.kernel = o.kernel;
   EnsembleRowFilter rows(o.at, r);
-  const SimulationReport report = simulate(own.scenario, options, rows);
+  const SimulationReport report = simulate_in(own, options, rows);
   r.outcome = report.outcome;
   r.steps = report.steps;
   r.t = report.t;
 }
 
-// Expressions that a case builds stand before those of later cases, and their order is that of sums. So no case may be
-// computed where another one has left some: a graph that has grown is thrown away, and a case that made it grow is
-// computed in a new one.
 void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {
-  ++again_;
-  for (;;) {
-    std::shared_ptr<Own> own = std::exchange(own_, nullptr);
-    if (!own) {
-      own = std::make_shared<Own>(plan_, nullptr);
-      // What all cases build, the motion of the scenario builds first.
-      CaseResult nothing;
-      simulate_in(*own, nullptr, nothing);
-    }
-    put_parameters(*own->model, plan_.options, numbers);
-    const std::size_t before = own->model->graph->size();
-    simulate_in(*own, &numbers, r);
-    const bool first = own->cases++ == 0, grown = own->model->graph->size() != before;
-    if (!grown) own_ = std::move(own);
-    if (!grown || first) return;
-  }
+  ++in_workspaces_;
+  Workspace own(plan_.of_all);
+  const EnsembleOptions& o = plan_.options;
+  for (std::size_t i = 0; i < o.varied.size(); ++i)
+    if (o.varied[i].kind == Varied::Kind::parameter) own.set_parameter(o.varied[i].index, numbers.values[i]);
+  simulate_case(own, numbers, r);
 }
 
 void CaseWorker::by_derivation(const EnsembleCase& numbers, CaseResult& r) {
-  ++again_;
-  Own own(plan_, &numbers);
-  r.outcome = own.outcome;
-  r.t = own.scenario.state.t;
+  ++in_workspaces_;
+  Scenario anew;
+  r.outcome = scenario_of_case(plan_.of_all, plan_.options, numbers, anew);
+  r.t = anew.state.t;
   r.rows.clear();
   r.last.clear();
-  if (own.outcome.ok()) simulate_in(own, &numbers, r);
+  if (!r.outcome.ok()) return;
+  Workspace own(anew);
+  simulate_case(own, numbers, r);
 }
 
 }  // namespace anholon

@@ -3,7 +3,7 @@
 // The plain way reads tapes that were compiled before: parameters, consistent positions and velocities, the stepping
 // program, outputs. It builds no expressions, so all threads share one graph. It only finishes: what stops on the way,
 // or needs events, completed states, redundant constraints or another elimination, goes the way of `simulate` in a
-// graph of the thread's own, so that its outcome is that of `simulate`. A case with which the equations have another
+// workspace of the case, so that its outcome is that of `simulate`. A case with which the equations have another
 // structure is derived anew.
 #pragma once
 #include <deque>
@@ -17,17 +17,18 @@ namespace anholon {
 
 // The initial values that are given or varied; without numbers only which they are.
 std::vector<StateOverride> overrides_of(const EnsembleOptions& options, const EnsembleCase* numbers);
-// With the numbers of a case, or those of the file, in a graph of its own.
-Outcome scenario_of_case(const Formulation& form, const EnsembleOptions& options, const EnsembleCase* numbers,
-                         Scenario& scenario, std::shared_ptr<Model>& model);
+// The scenario of a case, derived anew with its numbers in the form of the scenario of all cases.
+Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& options, const EnsembleCase& numbers,
+                         Scenario& scenario);
 
 // Read by all threads, changed by none.
 class EnsemblePlan {
  public:
   EnsemblePlan(const Scenario& scenario, const EnsembleOptions& options);
 
-  const Scenario& scenario;
+  const Scenario& of_all;  // as it was given
   const EnsembleOptions& options;
+  Workspace scenario;  // in which the plan was made; frozen
   bool plain = false;  // the plain way goes for this model
   std::optional<StartPlan> start;
   CaseParameters parameters;
@@ -51,11 +52,13 @@ class EnsemblePlan {
   StepSettings settings;
 
  private:
+  void make();
+
   mutable std::mutex compiling_;
   mutable CodeForLongRuns code_;
 };
 
-// How a case is computed: by the tapes of the plan, or in a graph of its own, by the program of the scenario or one
+// How a case is computed: by the tapes of the plan, or in a workspace of its own, by the program of the scenario or one
 // that is derived anew.
 enum class CaseWay : std::uint8_t { plain, simulation, derivation };
 
@@ -109,9 +112,7 @@ class CaseWorker {
 
   // These cases, whose numbers stand in the results.
   void integrate(std::span<CaseResult> results);
-  std::size_t again() const { return again_; }
-
-  struct Own;  // a graph of its own
+  std::size_t in_workspaces() const { return in_workspaces_; }
 
  private:
   using W = Wider<double>;
@@ -119,13 +120,12 @@ class CaseWorker {
   void end(CaseWay way, const EnsembleCase& numbers, CaseResult& result);
   void by_simulation(const EnsembleCase& numbers, CaseResult& result);
   void by_derivation(const EnsembleCase& numbers, CaseResult& result);
-  void simulate_in(Own& own, const EnsembleCase* numbers, CaseResult& result);
+  void simulate_case(Workspace& own, const EnsembleCase& numbers, CaseResult& result);
 
   const EnsemblePlan& plan_;
   std::shared_ptr<Kernel> kernel_;
   std::deque<CaseWalk> walks_;  // one for each lane
-  std::shared_ptr<Own> own_;
-  std::size_t again_ = 0;
+  std::size_t in_workspaces_ = 0;
 };
 
 }  // namespace anholon

@@ -7,12 +7,12 @@ namespace anholon {
 
 namespace {
 
-SimulationReport compared(const Formulation& form, const EnsembleOptions& o, const CaseResult& r) {
+SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r) {
   SimulationReport report;
   const EnsembleCase numbers = o.numbers(r.number);
-  std::shared_ptr<Model> model;
-  Scenario s;
-  if (report.outcome = scenario_of_case(form, o, &numbers, s, model); !report.outcome.ok()) return report;
+  Scenario of_case;
+  if (report.outcome = scenario_of_case(of_all, o, numbers, of_case); !report.outcome.ok()) return report;
+  Workspace s(of_case);
   SimulationOptions options;
   options.state = o.state;
   options.state.overrides = overrides_of(o, &numbers);
@@ -44,7 +44,7 @@ std::vector<std::size_t> cases_to_compare(std::size_t cases) {
   return list;
 }
 
-CasesError cases_error(const Formulation& form, const EnsembleOptions& o, std::span<const CaseResult> results,
+CasesError cases_error(const Scenario& scenario, const EnsembleOptions& o, std::span<const CaseResult> results,
                        const Each& each) {
   CasesError all;
   std::vector<const CaseResult*> fit;
@@ -54,7 +54,7 @@ CasesError cases_error(const Formulation& form, const EnsembleOptions& o, std::s
   std::vector<SimulationReport> reports(fit.size());
   each(fit.size(), [&](std::size_t i) {
     try {
-      reports[i] = compared(form, o, *fit[i]);
+      reports[i] = compared(scenario, o, *fit[i]);
     } catch (const Failure& e) {
       reports[i].no_error = e.diagnostic.message;
     }

@@ -7,7 +7,7 @@ namespace anholon {
 // `results`: of cases_to_compare(); `each` calls a function with all numbers below a count, side by side if it can.
 // Those that have not finished are left out, and so are long ones where short runs are asked for.
 using Each = std::function<void(std::size_t count, const std::function<void(std::size_t)>&)>;
-CasesError cases_error(const Formulation& form, const EnsembleOptions& options, std::span<const CaseResult> results,
+CasesError cases_error(const Scenario& scenario, const EnsembleOptions& options, std::span<const CaseResult> results,
                        const Each& each);
 
 }  // namespace anholon

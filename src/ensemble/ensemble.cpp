@@ -50,7 +50,7 @@ struct Group {
 }  // namespace
 
 EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& sink) {
-  ANHOLON_ASSERT(o.numbers && o.again);
+  ANHOLON_ASSERT(o.numbers);
   const auto start = std::chrono::steady_clock::now();
   EnsembleReport report;
   report.threads = o.threads > 0 ? o.threads : static_cast<std::size_t>(tbb::info::default_concurrency());
@@ -112,11 +112,11 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
                                tbb::make_filter<Group*, void>(tbb::filter_mode::serial_in_order, deliver));
   });
   const std::lock_guard lock(in_order);
-  for (const CaseWorker& w : workers) report.again += w.again();
+  for (const CaseWorker& w : workers) report.in_workspaces += w.in_workspaces();
   if (report.done < o.cases)
     report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   else if (o.estimate != ErrorEstimate::never)
-    report.error = cases_error(*s.system.form, o, compared, [&](std::size_t count, const auto& f) {
+    report.error = cases_error(s, o, compared, [&](std::size_t count, const auto& f) {
       arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, f); });
     });
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

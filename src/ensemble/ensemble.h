@@ -43,10 +43,6 @@ struct EnsembleOptions {
   std::size_t threads = 0;                        // 0: as many as the machine has
   std::function<void(std::size_t done)> progress;  // by one thread at a time
   std::function<bool()> cancelled;                 // many threads ask at once
-  // The same model again, with a graph of its own: events, completed states and what stopped on the way build
-  // expressions, which threads cannot do in one graph.
-  std::function<std::shared_ptr<const Model>()> again;
-  std::optional<std::size_t> like;  // the case with whose numbers the scenario was made; none: those of the model
 };
 
 struct CaseResult {
@@ -79,8 +75,8 @@ std::vector<std::size_t> cases_to_compare(std::size_t cases);
 struct EnsembleReport {
   Outcome outcome;  // interrupted, or finished although cases may have stopped
   std::size_t done = 0, finished = 0;
-  std::size_t again = 0;      // cases that needed a graph of their own
-  std::size_t most_held = 0;  // results at once in memory
+  std::size_t in_workspaces = 0;  // cases that were not computed by the tapes all share
+  std::size_t most_held = 0;      // results at once in memory
   std::size_t threads = 0;
   double seconds = 0;
   CasesError error;
@@ -91,11 +87,11 @@ std::vector<std::string> ensemble_columns(const Model& model);
 // Their places among the columns of a row.
 std::vector<std::size_t> ensemble_places(const std::vector<RunColumn>& columns);
 
-// Where the model's own numbers have no consistent start: the scenario of the first case that has one, which `options`
-// remember. Not ok if none of the first cases has.
-Outcome scenario_of_cases(const Formulation& form, EnsembleOptions& options, Scenario& scenario);
+// Where the model's own numbers, those of `scenario`, have no consistent start: puts the scenario of the first case that
+// has one in its place. Not ok if none of the first cases has.
+Outcome scenario_of_cases(const EnsembleOptions& options, Scenario& scenario);
 
-// The scenario is that of the model's own numbers, or of `options.like`; threads only read it.
+// The scenario is that of the model's own numbers, or of `scenario_of_cases`; threads only read it.
 EnsembleReport ensemble(const Scenario& scenario, const EnsembleOptions& options, CaseSink& sink);
 
 }  // namespace anholon

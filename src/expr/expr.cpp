@@ -59,12 +59,61 @@ Graph::Graph() {
   one_ = number(1).id;
 }
 
+std::unique_ptr<Graph> Graph::clone(std::size_t nodes) const {
+  ANHOLON_ASSERT(nodes >= 2 && nodes <= nodes_.size());
+  const auto known = [&](NodeId id) { return id < nodes; };
+  auto g = std::make_unique<Graph>();
+  const bool whole = nodes == nodes_.size();
+  // Operands are stored in the order of the nodes.
+  const Node& last = nodes_[nodes - 1];
+  const std::size_t terms =
+      whole ? terms_.size() : std::max(last.first + last.count, last.view_first + last.view_count);
+  g->nodes_.assign(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(nodes));
+  g->terms_.assign(terms_.begin(), terms_.begin() + static_cast<std::ptrdiff_t>(terms));
+  g->rationals_ = rationals_;
+  g->rational_index_ = rational_index_;
+  g->step_functions_ = step_functions_;
+  if (whole) {
+    g->index_ = index_;
+    g->rates_ = rates_;
+  } else {
+    g->index_.clear();
+    for (const auto& [hash, id] : index_)
+      if (known(id)) g->index_.emplace(hash, id);
+    g->rates_.assign(rates_.begin(), rates_.begin() + static_cast<std::ptrdiff_t>(std::min(nodes, rates_.size())));
+    for (NodeId& rate : g->rates_)
+      if (!known(rate)) rate = kUnknown;
+  }
+  g->work_ = work_;
+  g->most_work_ = most_work_;
+  g->ancestors_ = ancestors_;
+  for (Ancestor& a : g->ancestors_) a.nodes = std::min(a.nodes, nodes);
+  g->ancestors_.push_back({identity_, nodes});
+  return g;
+}
+
+Expr Graph::own(Expr e) {
+  if (e.graph == this) return e;
+  ANHOLON_ASSERT(e.graph != nullptr);
+  const auto from = std::find_if(ancestors_.begin(), ancestors_.end(),
+                                 [&](const Ancestor& a) { return a.identity == e.graph->identity_; });
+  ANHOLON_ASSERT(from != ancestors_.end() && e.id < from->nodes);
+  return {this, e.id};
+}
+
 void Graph::set_rate(NodeId id, NodeId rate) {
+  ANHOLON_ASSERT(!frozen_);
   if (rates_.size() <= id) rates_.resize(nodes_.size(), kUnknown);
   rates_[id] = rate;
 }
 
+void Graph::allow(std::uint64_t work) {
+  ANHOLON_ASSERT(!frozen_);
+  most_work_ = work_ + work;
+}
+
 void Graph::spend(std::uint64_t work) {
+  if (frozen_) return;  // nothing is constructed, and many threads may look things up
   work_ += work;
   if (work_ > most_work_)
     throw Failure(Span{}, "the expressions grow out of all proportion",
@@ -92,6 +141,11 @@ std::uint32_t Graph::rational_index(const Rational& r) {
       throw Failure(Span{}, "a number of more than " + std::to_string(kLongestNumber * 19) + " digits");
     spend(limbs * limbs / kShortNumber);
   }
+  if (frozen_) {
+    const auto known = rational_index_.find(key(r));
+    ANHOLON_ASSERT(known != rational_index_.end());
+    return known->second;
+  }
   const auto [it, fresh] = rational_index_.try_emplace(key(r), static_cast<std::uint32_t>(rationals_.size()));
   if (fresh) rationals_.push_back(r);
   return it->second;
@@ -112,6 +166,7 @@ NodeId Graph::intern(Node node, std::span<const Term> operands, std::span<const 
                    [](const Term& a, const Term& b) { return a.weight == b.weight && a.node == b.node; }))
       return it->second;
   }
+  ANHOLON_ASSERT(!frozen_);
   node.first = node.view_first = static_cast<std::uint32_t>(terms_.size());
   node.count = node.view_count = static_cast<std::uint32_t>(operands.size());
   terms_.insert(terms_.end(), operands.begin(), operands.end());
@@ -146,6 +201,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
   spend(operands.size());
   std::vector<Part> parts;
   std::size_t most = 0;
+  for (const auto& [factor, e] : operands) ANHOLON_ASSERT(e.graph == this);
   for (const auto& [factor, e] : operands)
     most += nodes_[e.id].kind == Kind::sum && nodes_[e.id].count <= kOpenedTerms ? nodes_[e.id].count : 1;
   parts.reserve(most);
@@ -245,7 +301,10 @@ Expr Graph::product(std::span<const std::pair<Expr, Rational>> operands) {
   std::vector<Part> parts;
   // Operands are opened one level at a time: c*x inside a product gives up c, a product its factors.
   std::vector<Part> pending;
-  for (auto it = operands.rbegin(); it != operands.rend(); ++it) pending.push_back({it->first.id, it->second});
+  for (auto it = operands.rbegin(); it != operands.rend(); ++it) {
+    ANHOLON_ASSERT(it->first.graph == this);
+    pending.push_back({it->first.id, it->second});
+  }
   while (!pending.empty()) {
     Part p = std::move(pending.back());
     pending.pop_back();
@@ -460,6 +519,9 @@ Expr Graph::lookup(std::uint32_t f, Expr x) {
 
 std::uint32_t Graph::add_step_function(StepFunction f) {
   ANHOLON_ASSERT(f.values.size() == f.knots.size() + 1);
+  const auto known = std::find(step_functions_.begin(), step_functions_.end(), f);
+  if (known != step_functions_.end()) return static_cast<std::uint32_t>(known - step_functions_.begin());
+  ANHOLON_ASSERT(!frozen_);
   step_functions_.push_back(std::move(f));
   return static_cast<std::uint32_t>(step_functions_.size() - 1);
 }

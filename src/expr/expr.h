@@ -16,7 +16,8 @@
 //       of link i = position of link i-1 + …). Its flat terms decide equality; `summands` shows the
 //       short way to compute it, so sweeps over a chain of n links cost O(n), not O(n^2).
 //
-// Thread safety: a graph may be read by many threads while none builds.
+// Thread safety: a graph may be read by many threads while none builds. A frozen graph cannot be built in, so any number
+// of threads may use it; whoever has to build beside it does so in a clone.
 #pragma once
 #include <compare>
 #include <cstdint>
@@ -59,6 +60,7 @@ struct StepFunction {
   // Of a table: the power of the argument whose coefficient this is (-1: where the polynomial is measured from), and
   // how many derivatives of the table are continuous (-1: the table itself jumps).
   int power = 0, smooth = 100;
+  friend bool operator==(const StepFunction& a, const StepFunction& b) = default;
 };
 
 enum class Function : std::uint8_t {
@@ -135,6 +137,7 @@ class Graph {
   Expr arctangent2(Expr y, Expr x);
   Expr select(Expr s, Expr a, Expr b);
   Expr lookup(std::uint32_t step_function, Expr argument);
+  // Returns the index of an equal one if there is one.
   std::uint32_t add_step_function(StepFunction f);
   const StepFunction& step_function(std::uint32_t index) const { return step_functions_[index]; }
 
@@ -143,9 +146,21 @@ class Graph {
   Expr rate(NodeId id) { return id < rates_.size() && rates_[id] != kUnknown ? Expr{this, rates_[id]} : Expr{}; }
   void set_rate(NodeId id, NodeId rate);
 
+  // After `freeze` the graph never changes again: what it has is found as before, and to ask for a node, a number, a
+  // rate or a step function that it does not have is a broken invariant.
+  void freeze() { frozen_ = true; }
+  bool frozen() const { return frozen_; }
+  // The same nodes under the same ids in a graph that can be built in: what is built there next gets the ids that it
+  // would get here. `nodes`: the first so many, as this graph was when it had no more.
+  std::unique_ptr<Graph> clone() const { return clone(nodes_.size()); }
+  std::unique_ptr<Graph> clone(std::size_t nodes) const;
+  // The same expression in this graph, of which `e` is one or which is a clone of that of `e`, directly or through other
+  // clones. REQUIRES: `e` is older than the clone.
+  Expr own(Expr e);
+
   // Construction costs one unit for every operand of a sum or product, more for long numbers. From here on it may cost
   // `work`; beyond that it throws Failure. So a short formula that unfolds without end is refused in time.
-  void allow(std::uint64_t work) { most_work_ = work_ + work; }
+  void allow(std::uint64_t work);
   std::uint64_t work() const { return work_; }
 
   // Reading.
@@ -163,6 +178,13 @@ class Graph {
  private:
   static constexpr NodeId kUnknown = 0xffffffffU;
 
+  // A graph that this one is a clone of. The identity outlives the graph, so no other graph is taken for it.
+  using Identity = std::shared_ptr<const char>;
+  struct Ancestor {
+    Identity identity;
+    std::size_t nodes;  // that are common to both
+  };
+
   std::uint32_t rational_index(const Rational& r);
   void spend(std::uint64_t work);
   Expr leaf(Kind kind, std::uint32_t index, std::uint32_t order);
@@ -178,6 +200,9 @@ class Graph {
   std::vector<StepFunction> step_functions_;
   std::uint64_t work_ = 0, most_work_ = ~std::uint64_t{0};
   NodeId zero_ = 0, one_ = 0;
+  bool frozen_ = false;
+  Identity identity_ = std::make_shared<const char>();
+  std::vector<Ancestor> ancestors_;
 };
 
 bool is_zero(Expr e);  // the node 0 (structurally; see normal.h for the exact zero test)

@@ -16,6 +16,7 @@
 
 #include "base/diagnostic.h"
 #include "expr/diff.h"
+#include "expr/handles.h"
 
 namespace anholon {
 
@@ -107,6 +108,15 @@ struct Rotation {
   bool by_turns = true;  // orthonormal identically (a quaternion is so only on its unit sphere)
   const Vector& operator[](int k) const { return columns[k]; }
 };
+
+inline void for_each_expression(Vector& v, const ExprVisitor& f) {
+  auto& [x, y, z] = v;
+  for_each_expression_of(f, x, y, z);
+}
+inline void for_each_expression(Rotation& r, const ExprVisitor& f) {
+  auto& [columns, rate, own_rate, by_turns] = r;
+  for_each_expression_of(f, columns, rate, own_rate, by_turns);
+}
 
 Vector operator+(const Vector& a, const Vector& b);
 Vector operator-(const Vector& a, const Vector& b);

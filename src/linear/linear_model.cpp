@@ -46,7 +46,7 @@ const char* name(LinearModel::Motion motion) {
   return "";
 }
 
-Linearizer::Linearizer(const Scenario& scenario, const StateChoice& choice, Signals signals)
+Linearizer::Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals)
     : s_(scenario), choice_(choice), signals_(std::move(signals)), mass_(mass_matrix(*scenario.mechanics)) {
   const Graph& g = *s_.model->graph;
   Column columns, es;
@@ -249,9 +249,9 @@ class LinearPoint {
   std::vector<bool> follows;
 
  private:
-  const Node& node(std::size_t e) const {
+  Node node(std::size_t e) const {
     const auto& entry = l_.entries_[e];
-    return l_.s_.model->graph->node(l_.s_.system.symbol(entry.variable, static_cast<unsigned>(entry.order)).id);
+    return l_.s_.system.symbol_node(entry.variable, static_cast<unsigned>(entry.order));
   }
   std::pair<int, std::size_t> rank(std::size_t e) const {
     const auto& entry = l_.entries_[e];
@@ -402,8 +402,8 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
 }
 
 Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
-  const InitialProblem<Multi> problem{
-      s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr, false, &s_.state};
+  const InitialProblem<Multi> problem{s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr,
+                                      &s_.state};
   InitialState<Multi> state;
   if (Outcome o = consistent_state(problem, state); !o.ok()) return o;
   if (s_.routh)

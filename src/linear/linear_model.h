@@ -49,7 +49,7 @@ const char* name(LinearModel::Motion motion);
 // construction.
 class Linearizer {
  public:
-  Linearizer(const Scenario& scenario, const StateChoice& choice, Signals signals = {});
+  Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals = {});
   // With other values of the parameters; the initial data are solved anew. Only if `check` it is found out whether the
   // motion is steady.
   Outcome at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const;

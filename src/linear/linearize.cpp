@@ -37,8 +37,7 @@ const Eigenvalue& ranked(const LinearModel& m, int rank, int always) {
 
 class Search {
  public:
-  Search(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range,
-         const Signals& signals)
+  Search(Workspace& s, const StateChoice& choice, const std::optional<ParameterRange>& range, const Signals& signals)
       : s_(s), range_(range), linearizer_(s, choice, signals) {}
 
   LinearResult at(const Rational* value, bool check = true) const {
@@ -127,7 +126,11 @@ class Search {
 
 Linearization linearize(const Scenario& s, const StateChoice& choice, const std::optional<ParameterRange>& range,
                         const Signals& signals) {
-  const Search search(s, choice, range, signals);
+  Workspace own(s);
+  Signals own_signals = signals;
+  for (Column* list : {&own_signals.u, &own_signals.y})
+    for (Expr& e : *list) e = own.graph().own(e);
+  const Search search(own, choice, range, own_signals);
   Linearization out;
   if (!range) {
     out.results.push_back(search.at(nullptr));

@@ -34,7 +34,8 @@ struct Linearization {
   std::vector<std::string> notes;  // crossings that were not found
 };
 
-// In a working precision that the caller has set (PrecisionScope).
+// In a working precision that the caller has set (PrecisionScope). The signals are expressions of the model that the
+// scenario was made of, or of the scenario.
 Linearization linearize(const Scenario& scenario, const StateChoice& choice, const std::optional<ParameterRange>& range,
                         const Signals& signals = {});
 

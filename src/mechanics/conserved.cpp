@@ -428,4 +428,9 @@ std::vector<Conserved> conserved(const Mechanics& m) {
   return list;
 }
 
+void for_each_expression(Conserved& c, const ExprVisitor& f) {
+  auto& [name, because, value, terms] = c;
+  for_each_expression_of(f, name, because, value, terms);
+}
+
 }  // namespace anholon

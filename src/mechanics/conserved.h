@@ -25,6 +25,9 @@ struct Conserved {
 
 std::vector<Conserved> conserved(const Mechanics& m);
 
+// The handles of an integral (expr/handles.h).
+void for_each_expression(Conserved& c, const ExprVisitor& f);
+
 // For tests: dp/dt or d(h + U)/dt along motions by the right sides above, multipliers left out; zero for what
 // `conserved` gives back.
 Expr momentum_rate(const Mechanics& m, const Column& field);

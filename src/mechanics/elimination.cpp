@@ -370,4 +370,21 @@ Column Elimination::in_coordinates(const Column& X) const {
   return put(X, from, to);
 }
 
+Elimination Elimination::of(const Mechanics& copy) const {
+  Elimination e = *this;
+  if (mechanics_) e.mechanics_ = &copy;
+  if (at_) e.at_ = std::make_shared<PointValues>(*at_);
+  return e;
+}
+
+void for_each_expression(Elimination& e, const ExprVisitor& f) {
+  auto& [m, asked, constraints, dependent, independent, phi, Phi_D, Phi_D_inverse, names, orders, solved, quasi, u, g,
+         w, chi_by_u, mechanics, at, top, next, u_rate, g_rate, u_value, u_rate_value, W_inverse, B, g_rate_by_u, g_by,
+         pivots] = e;
+  static_cast<void>(mechanics), static_cast<void>(at);
+  for_each_expression_of(f, m, asked, constraints, dependent, independent, phi, Phi_D, Phi_D_inverse, names, orders,
+                         solved, quasi, u, g, w, chi_by_u, top, next, u_rate, g_rate, u_value, u_rate_value, W_inverse,
+                         B, g_rate_by_u, g_by, pivots);
+}
+
 }  // namespace anholon

@@ -102,6 +102,12 @@ class Elimination {
   // Quasi-velocities written out in coordinates again.
   Column in_coordinates(const Column& X) const;
 
+  // The same of `copy`, a copy of the mechanics, with values of its own near the state; the handles are left as they
+  // are.
+  Elimination of(const Mechanics& copy) const;
+  // The handles of the elimination (expr/handles.h), without those of its mechanics.
+  friend void for_each_expression(Elimination& e, const ExprVisitor& f);
+
  private:
   static Column pick(const Column& X, const std::vector<std::size_t>& which);
   void by_coordinates(bool solve);
@@ -118,6 +124,8 @@ class Elimination {
   mutable std::vector<Rows> g_by_;
   mutable Column pivots_;
 };
+
+void for_each_expression(Elimination& e, const ExprVisitor& f);
 
 // sum_b X_b Y_b,a: the sums over dependent coordinates of [L 3.13] and its kin.
 Column operator*(const Column& X, const Rows& Y);

@@ -174,4 +174,17 @@ Column newton_left_side(const Mechanics& m) {
   return put_masses(*m.model, pull.back(m.q));
 }
 
+static void for_each_expression(WeightedPoint& p, const ExprVisitor& f) {
+  auto& [weight, place, uniform_field, body, speed2, acceleration2] = p;
+  for_each_expression_of(f, weight, place, uniform_field, body, speed2, acceleration2);
+}
+
+void for_each_expression(Mechanics& m, const ExprVisitor& f) {
+  auto& [model, points, q, qd, qdd, T, S, V_O, V_omega, Q, QR, QD, Qomega, minus_dVO, minus_dVomega, Gamma, phi, order,
+         Phi, lambda, N] = m;
+  static_cast<void>(model);
+  for_each_expression_of(f, points, q, qd, qdd, T, S, V_O, V_omega, Q, QR, QD, Qomega, minus_dVO, minus_dVomega, Gamma,
+                         phi, order, Phi, lambda, N);
+}
+
 }  // namespace anholon

@@ -46,6 +46,9 @@ struct Mechanics {
 
 Mechanics mechanics(const Model& model);
 
+// The handles of the mechanics (expr/handles.h), without those of its model.
+void for_each_expression(Mechanics& m, const ExprVisitor& f);
+
 // Q + QR + QD + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces.
 Column forces(const Mechanics& m);
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "expr/handles.h"
 #include "formula/formula.h"
 #include "model/view.h"
 #include "print/print.h"
@@ -244,6 +245,13 @@ struct Model {
   std::vector<std::string> coordinate_units, parameter_units;
   std::vector<std::string> notes;  // what the reader did on its own: components dropped, …
 };
+
+// The handles of the model (expr/handles.h).
+void for_each_expression(Model& model, const ExprVisitor& f);
+void for_each_expression(QuasiVelocity& u, const ExprVisitor& f);
+// The same model with a clone of its graph, in which its holder may build. `nodes`: with the first so many nodes alone.
+std::shared_ptr<Model> clone(const Model& model);
+std::shared_ptr<Model> clone(const Model& model, std::size_t nodes);
 
 // mu -> m(t, q, q'): puts the masses in, after which derivatives are no longer frozen; inputs likewise.
 Column put_masses(const Model& model, std::span<const Expr> es);

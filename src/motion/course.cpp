@@ -27,8 +27,7 @@ std::string only_taylor(const Model& model, const Program& program) {
 }
 
 template <Number N>
-Course<N>::Course(const Scenario& s, const StepSettings& settings, Method asked, std::vector<Expr> quadratures,
-                  int stages)
+Course<N>::Course(Workspace& s, const StepSettings& settings, Method asked, std::vector<Expr> quadratures, int stages)
     : s_(s), settings_(settings), motion_(s, settings, quadratures, stages), stages_(stages) {
   report_.asked = asked;
   if (!std::same_as<N, double> || asked == Method::taylor || !only_taylor(*s.model, motion_.program()).empty()) return;

@@ -31,8 +31,7 @@ class Course {
  public:
   using W = Wider<N>;
 
-  Course(const Scenario& scenario, const StepSettings& settings, Method asked, std::vector<Expr> quadratures,
-         int stages);
+  Course(Workspace& scenario, const StepSettings& settings, Method asked, std::vector<Expr> quadratures, int stages);
 
   Outcome start(const StateChoice& choice) { return motion_.start(choice); }
   Outcome step(const W& end);

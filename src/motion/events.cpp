@@ -4,10 +4,11 @@
 namespace anholon {
 
 template <Number N>
-std::vector<Expr> Motion<N>::with_events() const {
-  std::vector<Expr> es = quadratures_;
-  for (const Event& e : s_.model->events) es.push_back(e.when);
-  for (const Bound& b : s_.model->bounds) es.push_back(put_masses(*s_.model, b.inside));
+std::vector<Expr> Motion<N>::with_events(Workspace& in) const {
+  std::vector<Expr> es;
+  for (Expr e : quadratures_) es.push_back(in.graph().own(e));
+  for (const Event& e : in.model->events) es.push_back(e.when);
+  for (const Bound& b : in.model->bounds) es.push_back(put_masses(*in.model, b.inside));
   return es;
 }
 
@@ -108,10 +109,10 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   if (!set) return {};
   if (parameters != parameters_) {
     set_modes(parameters);
-    auto next = std::make_unique<Leg>(*this, leg_->system, leg_->structure);
+    auto next = same_leg();
     next->stepper.adopt(leg_->stepper);
     leg_ = std::move(next);
-    watch_pivots(elimination_);
+    chosen_.clear();
   }
   Outcome o = leg_->stepper.restart(state);
   begun_parameters_ = parameters_;
@@ -130,7 +131,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
 }
 
 #define INSTANTIATE(N)                                                                                                 \
-  template std::vector<Expr> Motion<N>::with_events() const;                                                           \
+  template std::vector<Expr> Motion<N>::with_events(Workspace&) const;                                                 \
   template std::vector<WatchedSeries> Motion<N>::watched() const;                                                      \
   template void Motion<N>::set_modes(const std::vector<Wider<N>>&);                                                    \
   template Outcome Motion<N>::within_bounds();                                                                         \

@@ -1,9 +1,10 @@
 #include "motion/form_choice.h"
-#include "integrate/taylor.h"
-#include "motion/start.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "integrate/taylor.h"
+#include "motion/start.h"
 
 namespace anholon {
 
@@ -23,7 +24,8 @@ std::string why_no_kernel(const Scenario& s, const Program& p) {
 
 }  // namespace
 
-FormCost cost_of(const Scenario& s, const StateChoice& choice, WritingEffort most) {
+FormCost cost_of(const Scenario& scenario, const StateChoice& choice, WritingEffort most) {
+  Workspace s(scenario);
   FormCost cost;
   cost.form = s.system.form;
   const auto p = std::make_shared<const Program>(program(s.system, s.structure));
@@ -65,13 +67,12 @@ static bool in_quasi_velocities(const FormCost& cost) {
                      [](const WritingCost& w) { return w.writing == Writing::quasi && w.after == 0U; });
 }
 
-FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& again, const StateChoice& choice,
-                       Costs costs) {
+FormChoice choose_form(const std::shared_ptr<const Model>& model, const StateChoice& choice, Costs costs) {
   FormChoice c;
   c.form = find_formulation("routh");
   const auto add = [&](const Formulation& form) {
     Scenario s;
-    const Outcome o = make_scenario(again(), form, choice, s);
+    const Outcome o = make_scenario(model, form, choice, s);
     if (!o.ok() || !regular_at_start(s).ok())
       return c.costs.push_back({&form, {}, 0, o.ok() ? "its equations are singular at the start" : o.message});
     // Where quasi-velocities serve Routh's equations, no other writing is asked for.
@@ -80,13 +81,12 @@ FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& agai
     c.costs.push_back(in_quasi_velocities(soon) ? soon : cost_of(s, choice));
   };
   const Formulation& maggi = *find_formulation("maggi");
-  const std::shared_ptr<const Model> model = again();
   if (model->constraints.empty())
     c.why = "there are no constraints to eliminate";
   else if (model->coordinates.size() + model->constraints.size() + model->states.size() > kFewUnknowns)
     c.why = "with more than " + std::to_string(kFewUnknowns) +
             " unknowns the sparse equations with multipliers are the cheap ones";
-  else if (const std::string no = obstacle(maggi, mechanics(*model)); !no.empty())
+  else if (const std::string no = obstacle(maggi, mechanics(*clone(*model))); !no.empty())
     c.why = no;
   if (!c.why.empty() && costs == Costs::where_needed) return c;
   add(*c.form);

@@ -4,7 +4,7 @@
 // alone. Forms without multipliers eliminate anew where a pivot becomes small and recover lambda for every row: they
 // are taken where they save enough to pay for that.
 #pragma once
-#include <functional>
+#include <memory>
 
 #include "motion/representation.h"
 #include "setup/scenario.h"
@@ -34,8 +34,7 @@ struct FormChoice {
 };
 // Counting takes longer than many a motion: it is left out where something else decides, unless it is to be shown.
 enum class Costs : std::uint8_t { where_needed, all };
-// `again`: the model, each time in a graph of its own, in which nothing else is made.
-FormChoice choose_form(const std::function<std::shared_ptr<const Model>()>& again, const StateChoice& choice,
+FormChoice choose_form(const std::shared_ptr<const Model>& model, const StateChoice& choice,
                        Costs costs = Costs::where_needed);
 
 }  // namespace anholon

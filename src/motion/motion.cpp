@@ -1,5 +1,6 @@
 #include "motion/motion.h"
 
+#include "expr/copy.h"
 #include "kernel/kernel.h"
 
 namespace anholon {
@@ -7,21 +8,23 @@ namespace anholon {
 // Kernels, which only doubles have, know the slots of the tape as it is derived; others share what products have in
 // common.
 template <Number N>
-Motion<N>::Leg::Leg(const Motion& m, System of, Structure structured)
-    : system(std::move(of)), structure(std::move(structured)),
-      program(anholon::program(system, structure, m.with_events(), !std::same_as<N, double>)),
+Motion<N>::Leg::Leg(const Motion& m, std::shared_ptr<Workspace> of_leg, Elimination by, System of, Structure structured)
+    : own(std::move(of_leg)), elimination(std::move(by)), system(std::move(of)), structure(std::move(structured)),
+      quadratures(m.with_events(m.workspace(*this))),
+      program(anholon::program(system, structure, quadratures, !std::same_as<N, double>)),
       stepper(program, m.narrow_parameters_, m.parameters_, m.settings_),
       point(program, m.parameters_, std::max(1, m.stages_)), present(program, m.parameters_, 1) {
   stepper.watch(m.watched());
+  m.watch_pivots(*this);
 }
 
 template <Number N>
-Motion<N>::Motion(const Scenario& s, const StepSettings& settings, std::vector<Expr> quadratures, int stages)
-    : s_(s), settings_(settings), quadratures_(std::move(quadratures)), stages_(stages),
+Motion<N>::Motion(Workspace& s, const StepSettings& settings, std::vector<Expr> quadratures, int stages)
+    : s_(s), base_(s.elimination.pivots().empty() ? nullptr : std::make_unique<const Workspace>(s)),
+      settings_(settings), quadratures_(std::move(quadratures)), stages_(stages),
       parameters_(parameter_values<W>(*s.model)), narrow_parameters_(parameter_values<N>(*s.model)),
-      leg_(std::make_unique<Leg>(*this, s.system, s.structure)) {
+      leg_(std::make_unique<Leg>(*this, nullptr, s.elimination, s.system, s.structure)) {
   begun_parameters_ = parameters_;
-  watch_pivots(s.elimination);
 }
 
 // Each number by another multiple of its round-off: changes that are alike could be such as the constraints take back.
@@ -57,9 +60,8 @@ void Motion<N>::accelerate(Leg& leg) const {
         KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, t, state);
     leg.stepper.accelerate(derived);
     if (!leg.stepper.accelerated()) return;
-    const std::vector<Expr> quadratures = with_events();
-    const std::vector<Representation> list =
-        representations({derived, leg.structure, quadratures, parameters_, t, state, s_.mechanics.get()}, effort_);
+    const std::vector<Representation> list = representations(
+        {derived, leg.structure, leg.quadratures, parameters_, t, state, workspace(leg).mechanics.get()}, effort_);
     const Representation& best = settings_.multipliers ? cheapest_unmapped(list) : cheapest(list);
     if (best.plan != derived) leg.stepper.accelerate(best.plan);
     leg.plan = best.plan;
@@ -75,9 +77,9 @@ void Motion<N>::accelerate(Leg& leg) const {
 template <Number N>
 void Motion<N>::write_anew() {
   const WritingEffort effort = effort_after(leg_->stepper.steps());
-  if (effort == effort_ || pivots_ || !leg_->stepper.accelerated()) return;
+  if (effort == effort_ || leg_->pivots || !leg_->stepper.accelerated()) return;
   effort_ = effort;
-  auto next = std::make_unique<Leg>(*this, leg_->system, leg_->structure);
+  auto next = same_leg();
   accelerate(*next);
   if (next->writing == leg_->writing || !next->stepper.take_over(leg_->stepper).ok()) return;
   leg_ = std::move(next);
@@ -92,7 +94,7 @@ static bool can_go_on(OutcomeKind kind) {
 
 template <Number N>
 Outcome Motion<N>::step(const W& end) {
-  if (stepped_ && pivots_ && pivot_is_small(present())) eliminate_again();
+  if (stepped_ && leg_->pivots && pivot_is_small(present())) eliminate_again();
   if (stepped_) write_anew();
   code_.step(leg_->plan);
   const Mark before{choices_.size(), chosen_};
@@ -100,7 +102,7 @@ Outcome Motion<N>::step(const W& end) {
   Outcome o = leg_->stepper.step(end);
   if (leg_->stepper.expansions() != expansions) mark_ = before, begun_parameters_ = parameters_;
   // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
-  if (!o.ok() && pivots_ && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
+  if (!o.ok() && leg_->pivots && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
   stepped_ = true;
   return o;
 }
@@ -116,24 +118,29 @@ Outcome Motion<N>::at(const W& t) {
 
 // Keeps an eye on what the elimination divides by.
 template <Number N>
-void Motion<N>::watch_pivots(const Elimination& e) {
-  elimination_ = e;
-  pivots_.reset();
-  chosen_.clear();
-  if (!e.pivots().empty())
-    pivots_ =
-        std::make_unique<OutputTape<W>>(s_, put_masses(*s_.model, e.in_coordinates(e.on(e.pivots()))), parameters_);
+void Motion<N>::watch_pivots(Leg& leg) const {
+  const Elimination& e = leg.elimination;
+  if (e.pivots().empty()) return;
+  Workspace& in = workspace(leg);
+  leg.pivots =
+      std::make_unique<OutputTape<W>>(in, put_masses(*in.model, e.in_coordinates(e.on(e.pivots()))), parameters_);
+}
+
+// The present leg once more, with the present parameters.
+template <Number N>
+std::unique_ptr<typename Motion<N>::Leg> Motion<N>::same_leg() const {
+  return std::make_unique<Leg>(*this, leg_->own, leg_->elimination, leg_->system, leg_->structure);
 }
 
 template <Number N>
 bool Motion<N>::pivot_is_small(const Expansion<W>& at) {
   constexpr double kSmall = 0.4;
-  if (!pivots_) return false;
-  pivots_->evaluate(at);
+  if (!leg_->pivots) return false;
+  leg_->pivots->evaluate(at);
   bool small = false;
   const bool first = chosen_.empty();
-  for (std::size_t i = 0; i < elimination_.pivots().size(); ++i) {
-    const double v = std::abs(to_double((*pivots_)[i]));
+  for (std::size_t i = 0; i < leg_->elimination.pivots().size(); ++i) {
+    const double v = std::abs(to_double((*leg_->pivots)[i]));
     if (first) chosen_.push_back(v);
     small = small || v < kSmall * chosen_[i];
   }
@@ -144,7 +151,7 @@ bool Motion<N>::pivot_is_small(const Expansion<W>& at) {
 template <Number N>
 void Motion<N>::note_pivots() {
   chosen_.clear();
-  if (pivots_) pivot_is_small(present());
+  if (leg_->pivots) pivot_is_small(present());
 }
 
 // Where the motion has come to; what leads it is a guess.
@@ -176,18 +183,24 @@ InitialState<double> Motion<N>::here() {
   return here;
 }
 
-// The equations with the dependent coordinates that are best at a point; null if they and their pivots are the present
-// ones, or the equations cannot be made.
+// Whether two eliminations, of two workspaces, have the same dependent coordinates and the same pivots.
+static bool same(const Elimination& a, const Elimination& b) {
+  if (a.dependent != b.dependent) return false;
+  Graph common;
+  return copied(a.pivots(), common) == copied(b.pivots(), common);
+}
+
+// The leg with the dependent coordinates that are best at a point; null if its equations cannot be made.
 template <Number N>
-std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialState<double>& here) {
-  const Model& model = *s_.model;
+std::unique_ptr<typename Motion<N>::Leg> Motion<N>::derived_at(const InitialState<double>& here) const {
   try {
+    auto own = std::make_shared<Workspace>(*base_);
+    const Mechanics& m = *own->mechanics;
     std::vector<double> now;
     for (const W& p : parameters_) now.push_back(to_double(p));
-    const auto at = std::make_shared<PointValues>(values_near(model, now, here));
-    const Elimination e(*s_.mechanics,
-                        choose_elimination(*s_.mechanics, s_.independent, s_.system.form->unknowns, {}, *at), at);
-    System system = implicit_system(s_.model, *s_.mechanics, *s_.system.form, s_.independent, e);
+    const auto at = std::make_shared<PointValues>(values_near(*own->model, now, here));
+    Elimination e(m, choose_elimination(m, own->independent, own->system.form->unknowns, {}, *at), at);
+    System system = implicit_system(own->model, m, *own->system.form, own->independent, e);
     Structure structure;
     ProbeHints hints;
     hints.t = here.t;
@@ -196,9 +209,7 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialSt
     hints.states = here.states;
     if (!analyse(system, now, hints, structure).ok() || structure.d != leg_->structure.d) return nullptr;
     drop_absent(system, structure);
-    const bool same = e.dependent == elimination_.dependent && e.pivots() == elimination_.pivots();
-    watch_pivots(e);
-    return same ? nullptr : std::make_unique<Leg>(*this, std::move(system), std::move(structure));
+    return std::make_unique<Leg>(*this, std::move(own), std::move(e), std::move(system), std::move(structure));
   } catch (const Failure&) {
     return nullptr;  // the present elimination goes on as far as it can
   }
@@ -207,12 +218,11 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::eliminate_at(const InitialSt
 // Another choice of dependent coordinates where the motion has come to; false if there is none better.
 template <Number N>
 bool Motion<N>::eliminate_again() {
-  const Elimination before = elimination_;
   choices_.push_back({here(), false});
-  auto next = eliminate_at(choices_.back().here);
+  auto next = derived_at(choices_.back().here);
+  if (next && same(next->elimination, leg_->elimination)) next = nullptr;
   if (next) accelerate(*next);
   const bool taken = next && next->stepper.take_over(leg_->stepper).ok();
-  if (next && !taken) watch_pivots(before);
   if (taken) {
     leg_ = std::move(next);
     choices_.back().taken = true;
@@ -258,11 +268,11 @@ void Motion<N>::save(SavedRun& to) const {
 
 template <Number N>
 Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
-  // As at the start, for what it leaves in the graph.
+  // The pivots of kernels are chosen there.
   if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
   if (const std::vector<W> modes = from.numbers<W>("modes", parameters_.size()); modes != parameters_) {
     set_modes(modes);
-    leg_ = std::make_unique<Leg>(*this, s_.system, s_.structure);
+    leg_ = same_leg();
   }
   const std::size_t n = s_.system.coordinates, states = s_.model->states.size(), length = 2 + n * levels() + 2 * states;
   const std::vector<double> choices = from.numbers<double>("eliminations");
@@ -281,15 +291,18 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
     for (std::size_t k = 2; k < levels(); ++k) c.here.higher.push_back({level(), {}});
     for (std::size_t i = 0; i < states; ++i) c.here.states.push_back(*at++);
     for (std::size_t i = 0; i < states; ++i) c.here.state_rates.push_back(*at++);
-    const Elimination before = elimination_;
-    auto next = eliminate_at(c.here);
-    if (c.taken && !next) SavedRun::unfit("eliminations");
-    if (next && !c.taken) watch_pivots(before);
-    if (c.taken) leg_ = std::move(next), ++eliminations_;
     choices_.push_back(std::move(c));
   }
+  eliminations_ = static_cast<std::size_t>(
+      std::count_if(choices_.begin(), choices_.end(), [](const Choice& c) { return c.taken; }));
+  const auto last = std::find_if(choices_.rbegin(), choices_.rend(), [](const Choice& c) { return c.taken; });
+  if (last != choices_.rend()) {
+    auto next = base_ ? derived_at(last->here) : nullptr;
+    if (!next) SavedRun::unfit("eliminations");
+    leg_ = std::move(next);
+  }
   const std::vector<double> pivots = from.numbers<double>("pivots");
-  if (!pivots.empty() && pivots.size() != elimination_.pivots().size()) SavedRun::unfit("pivots");
+  if (!pivots.empty() && pivots.size() != leg_->elimination.pivots().size()) SavedRun::unfit("pivots");
   chosen_ = pivots;
   mark_ = {choices_.size(), chosen_};
 
@@ -324,7 +337,7 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(static_cast<int>(to_double(side)));
   if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns()))
     SavedRun::unfit("direction");
-  if (!pivots_) effort_ = effort_after(b.steps);
+  if (!leg_->pivots) effort_ = effort_after(b.steps);
   accelerate(*leg_);
   return leg_->stepper.resume(b);
 }

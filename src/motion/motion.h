@@ -3,7 +3,8 @@
 //
 // A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the
 // equations are then made again with other dependent coordinates, and the motion goes on from the same state (theory:
-// elimination).
+// elimination). Each such leg is derived in a workspace of its own, a copy of that in which the motion was made: its bits
+// depend on the state where it begins, and not on the legs before it.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -38,7 +39,7 @@ class Motion {
 
   // `quadratures`: expressions to be integrated or watched along the motion. `stages`: how many orders beyond the
   // leading derivatives the points know.
-  Motion(const Scenario& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
+  Motion(Workspace& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
 
   // From the consistent state; on request from one that differs from it by some round-offs.
   void start_in_other_digits(bool other) { other_digits_ = other; }
@@ -79,19 +80,23 @@ class Motion {
  private:
   // A stretch of the motion with one elimination: its system and what steps through it.
   struct Leg {
-    Leg(const Motion& motion, System of, Structure structured);
+    // `own`: the workspace of the system and the elimination, null where it is that of the motion.
+    Leg(const Motion& motion, std::shared_ptr<Workspace> own, Elimination by, System of, Structure structured);
+    std::shared_ptr<Workspace> own;
+    Elimination elimination;
     System system;
     Structure structure;
+    std::vector<Expr> quadratures;  // those of the motion, events and bounds, in the workspace
     Program program;
     Stepper<N> stepper;
     Expansion<W> point, present;
     std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
     std::shared_ptr<const KernelPlan> unmapped_plan;
     Writing writing = Writing::derived;
+    std::unique_ptr<OutputTape<W>> pivots;  // of the elimination, where there are any
   };
 
-  // Every choice of dependent coordinates on the way. The graph grows with each of them, and the order of its nodes
-  // decides the order of sums: whoever resumes makes them all again.
+  // Every choice of dependent coordinates on the way: whoever resumes makes the last one that was taken again.
   struct Choice {
     InitialState<double> here;
     bool taken = false;
@@ -102,23 +107,26 @@ class Motion {
     std::vector<double> chosen;
   };
 
-  void watch_pivots(const Elimination& e);
+  Workspace& workspace(const Leg& leg) const { return leg.own ? *leg.own : s_; }
+  void watch_pivots(Leg& leg) const;
   void note_pivots();
   const Expansion<W>& present();
   InitialState<double> here();
   void accelerate(Leg& leg) const;
   void write_anew();
-  std::unique_ptr<Leg> eliminate_at(const InitialState<double>& here);
+  std::unique_ptr<Leg> same_leg() const;
+  std::unique_ptr<Leg> derived_at(const InitialState<double>& here) const;
   bool eliminate_again();
   std::size_t levels() const {
     return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0);
   }
 
-  const Scenario& s_;
+  Workspace& s_;
+  std::unique_ptr<const Workspace> base_;  // as `s_` was when the motion was made, where legs may be derived from it
   StepSettings settings_;
   void set_modes(const std::vector<W>& parameters);
   Outcome fire(const Event& event, std::vector<W>& state, std::vector<W>& parameters, Occurrence<W>& occurrence);
-  std::vector<Expr> with_events() const;
+  std::vector<Expr> with_events(Workspace& in) const;
   std::vector<WatchedSeries> watched() const;
 
   std::vector<Expr> quadratures_;
@@ -129,9 +137,7 @@ class Motion {
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;
   bool stepped_ = false, other_digits_ = false;
-  Elimination elimination_;                // the present one
-  std::unique_ptr<OutputTape<W>> pivots_;  // its pivots, and what they were when it was chosen
-  std::vector<double> chosen_;
+  std::vector<double> chosen_;  // what the pivots were when the elimination was chosen
   std::vector<Choice> choices_;
   Mark mark_;
   std::size_t eliminations_ = 0;
@@ -146,6 +152,6 @@ extern template class Motion<Multi>;
 
 // Says what the motion ran into: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.
 template <Number N>
-void explain_stop(const Scenario& scenario, const Motion<N>& motion, Outcome& outcome);
+void explain_stop(Workspace& scenario, const Motion<N>& motion, Outcome& outcome);
 
 }  // namespace anholon

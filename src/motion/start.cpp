@@ -7,7 +7,7 @@ namespace anholon {
 
 // Prepares, projects and solves at the start.
 template <Number N>
-static Outcome settle(const Scenario& s, Expansion<N>& point) {
+static Outcome settle(Workspace& s, Expansion<N>& point) {
   const Start<double> start = start_of(s);
   point.load(start.t, {start.state.begin(), start.state.end()}, {start.leading.begin(), start.leading.end()});
   if (Outcome o = point.prepare(); !o.ok()) return o;
@@ -15,8 +15,9 @@ static Outcome settle(const Scenario& s, Expansion<N>& point) {
   return point.solve();
 }
 
-Outcome regular_at_start(const Scenario& s) {
+Outcome regular_at_start(const Scenario& scenario) {
   using W = Wider<double>;
+  Workspace s(scenario);
   const Program p = program(s.system, s.structure);
   const std::vector<W> parameters = parameter_values<W>(*s.model);
   Expansion<double> point(p, parameter_values<double>(*s.model), 1);

@@ -46,7 +46,7 @@ static std::string unbounded(const Scenario& s, const Motion<N>& motion) {
 
 // The constraint whose row in Phi has vanished, or depends on the others, in comparison with the start; empty if none.
 template <Number N>
-static std::string lost_hold(const Scenario& s, const Motion<N>& motion) {
+static std::string lost_hold(Workspace& s, const Motion<N>& motion) {
   using W = Wider<N>;
   constexpr double kLost = 1e-2;
   const Mechanics& m = *s.mechanics;
@@ -90,7 +90,7 @@ static std::string where(const Scenario& s, const Motion<N>& motion) {
 }
 
 template <Number N>
-void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) {
+void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
   using W = Wider<N>;
   constexpr double kVanished = 1e-9, kUnbounded = 1e9, kFallen = 1e-3, kFaint = 1e-3;
   constexpr int kRecentSteps = 8;
@@ -152,9 +152,9 @@ void explain_stop(const Scenario& s, const Motion<N>& motion, Outcome& outcome) 
         "; the multipliers of " + joined(unbounded) + " grow without bound: the constraints lose their hold there";
 }
 
-template void explain_stop(const Scenario&, const Motion<double>&, Outcome&);
-template void explain_stop(const Scenario&, const Motion<long double>&, Outcome&);
-template void explain_stop(const Scenario&, const Motion<Quad>&, Outcome&);
-template void explain_stop(const Scenario&, const Motion<Multi>&, Outcome&);
+template void explain_stop(Workspace&, const Motion<double>&, Outcome&);
+template void explain_stop(Workspace&, const Motion<long double>&, Outcome&);
+template void explain_stop(Workspace&, const Motion<Quad>&, Outcome&);
+template void explain_stop(Workspace&, const Motion<Multi>&, Outcome&);
 
 }  // namespace anholon

@@ -68,7 +68,7 @@ Column AngleWatch<W>::expressions(const std::vector<AngleTriple>& triples) {
 }
 
 template <Number W>
-AngleWatch<W>::AngleWatch(const Scenario& s, const std::vector<W>& parameters)
+AngleWatch<W>::AngleWatch(Workspace& s, const std::vector<W>& parameters)
     : triples(angle_triples(*s.model)), least(triples.size()) {
   if (!triples.empty()) outputs_.emplace(s, expressions(triples), parameters);
 }

@@ -19,7 +19,7 @@ std::vector<AngleTriple> angle_triples(const Model& model);
 template <Number W>
 class AngleWatch {
  public:
-  AngleWatch(const Scenario& scenario, const std::vector<W>& parameters);
+  AngleWatch(Workspace& scenario, const std::vector<W>& parameters);
   void see(const Expansion<W>& point);
   void set_parameters(const std::vector<W>& parameters) {
     if (outputs_) outputs_->set_parameters(parameters);

@@ -36,7 +36,7 @@ bool reaches_beyond(const Ball& a, const Ball& b) { return a.symmetric().contain
 
 }  // namespace
 
-Defect::Defect(const Scenario& s, std::size_t times, const Ball& begin, const Ball& end, long significand)
+Defect::Defect(Workspace& s, std::size_t times, const Ball& begin, const Ball& end, long significand)
     : s_(s), times_(times), bits_(2 * significand + 32), begin_(begin), end_(end) {
   const BallScope precision(bits_);
   quiet_ = Ball(Rational(1, mpz_class(1) << static_cast<unsigned long>(significand)));

@@ -53,7 +53,7 @@ class Defect {
  public:
   // Bounds at `times` times, spread evenly from begin to end; at all times if 0. `significand`: bits of the numbers of
   // the motion.
-  Defect(const Scenario& scenario, std::size_t times, const Ball& begin, const Ball& end, long significand);
+  Defect(Workspace& scenario, std::size_t times, const Ball& begin, const Ball& end, long significand);
 
   // The steps of the motion, one after the other. REQUIRES: a coefficient at least for every derivative that belongs to
   // the state.

@@ -22,7 +22,7 @@ class SharperRun {
   using W = Wider<M>;
   using V = Wider<N>;
 
-  SharperRun(const Scenario& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<V>& run)
+  SharperRun(Workspace& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<V>& run)
       : s_(s), o_(o), motion_(s, settings, {}, orders_of_rows(s)), outputs_(s, motion_.parameters()),
         highest_(largest_order(s, motion_.program().d)), tolerance_(std::exp(settings.log_tolerance)), run_(run),
         rows_(run.rows.take()) {
@@ -267,7 +267,7 @@ class SharperRun {
 };
 
 template <Number M, Number N>
-void compare(const Scenario& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<Wider<N>>& run,
+void compare(Workspace& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<Wider<N>>& run,
              SimulationReport& report) {
   SharperRun<M, N> sharper(s, o, settings, run);
   const Outcome outcome = sharper.go();
@@ -353,8 +353,7 @@ double written_roundoff(const SimulationOptions& o) {
 }
 
 template <Number N>
-void estimate_error(const Scenario& s, const SimulationOptions& o, RunToJudge<Wider<N>>& run,
-                    SimulationReport& report) {
+void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N>>& run, SimulationReport& report) {
   const Rational tolerance = o.tolerance / kSharper;
   StepSettings settings{natural_logarithm(tolerance), 0, o.most_steps, o.cancelled};
   // A stiff motion that is short by another method is long for Taylor.
@@ -392,8 +391,7 @@ INSTANTIATE(Multi)
 #undef INSTANTIATE
 
 #define INSTANTIATE(N)                                                                                                 \
-  template void estimate_error<N>(const Scenario&, const SimulationOptions&, RunToJudge<Wider<N>>&,                    \
-                                  SimulationReport&);                                                                  \
+  template void estimate_error<N>(Workspace&, const SimulationOptions&, RunToJudge<Wider<N>>&, SimulationReport&);     \
   template double written_roundoff<N>(const SimulationOptions&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

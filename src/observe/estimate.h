@@ -63,7 +63,7 @@ struct RunToJudge {
 
 // N: the numbers of the run. Fills `error`, or `no_error`.
 template <Number N>
-void estimate_error(const Scenario& scenario, const SimulationOptions& options, RunToJudge<Wider<N>>& run,
+void estimate_error(Workspace& scenario, const SimulationOptions& options, RunToJudge<Wider<N>>& run,
                     SimulationReport& report);
 
 // The relative round-off of the numbers that a run writes.

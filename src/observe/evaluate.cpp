@@ -54,7 +54,7 @@ std::string text(const N& x, int digits) {
 }
 
 template <Number N>
-Outcome evaluate_in(const Scenario& s, const StateChoice& choice, int digits, StateReport& r) {
+Outcome evaluate_in(Workspace& s, const StateChoice& choice, int digits, StateReport& r) {
   const Model& model = *s.model;
   const Mechanics& m = *s.mechanics;
   const std::size_t n = m.q.size();
@@ -192,7 +192,9 @@ Outcome evaluate(const Scenario& s, const StateChoice& choice, int digits, State
   return evaluate(s, choice, digits <= 16 ? Precision::long_real : Precision::multi, digits, report);
 }
 
-Outcome evaluate(const Scenario& s, const StateChoice& choice, Precision precision, int digits, StateReport& report) {
+Outcome evaluate(const Scenario& scenario, const StateChoice& choice, Precision precision, int digits,
+                 StateReport& report) {
+  Workspace s(scenario);
   switch (precision) {
   case Precision::real:
   case Precision::long_real:

@@ -11,7 +11,7 @@ class Judge {
  public:
   using W = Wider<N>;
 
-  Judge(const Scenario& scenario, const SimulationOptions& options) : s_(scenario), o_(options) {}
+  Judge(Workspace& scenario, const SimulationOptions& options) : s_(scenario), o_(options) {}
 
   // The run goes on from here; what events did before is not known.
   void goes_on_from(const W& t) { run_.since = t; }
@@ -32,12 +32,12 @@ class Judge {
   }
   int highest(const Course<N>& course) const { return largest_order(s_, course.taylor().program().d); }
 
-  const Scenario& s_;
+  Workspace& s_;
   const SimulationOptions& o_;
   RunToJudge<W> run_;
   std::size_t resets_ = 0;  // how often events have changed the state
   struct Beside {
-    Beside(const Scenario& s, const std::vector<W>& parameters, RowComparison c)
+    Beside(Workspace& s, const std::vector<W>& parameters, RowComparison c)
         : outputs(s, parameters), comparison(std::move(c)) {}
     RowOutputs<W> outputs;
     RowComparison comparison;

@@ -63,7 +63,7 @@ std::vector<RunColumn> run_columns(const Scenario& s, int highest) {
 }
 
 template <Number W>
-RowOutputs<W>::RowOutputs(const Scenario& s, const std::vector<W>& parameters)
+RowOutputs<W>::RowOutputs(Workspace& s, const std::vector<W>& parameters)
     : s_(s), outputs_(s, expressions(), parameters), redundant_(s, parameters) {}
 
 // N, then the monitors, each followed by its terms where it is a sum.

@@ -38,7 +38,7 @@ std::vector<W> row_values(const Scenario& s, int highest, const Expansion<W>& he
 template <Number W>
 class RowOutputs {
  public:
-  RowOutputs(const Scenario& scenario, const std::vector<W>& parameters);
+  RowOutputs(Workspace& scenario, const std::vector<W>& parameters);
   void see(const Expansion<W>& point);
   void set_parameters(const std::vector<W>& parameters) {
     outputs_.set_parameters(parameters);

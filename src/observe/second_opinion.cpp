@@ -25,8 +25,8 @@ bool translate(const Program& from, const std::vector<double>& state, const std:
 
 }  // namespace
 
-SecondMotion::SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power,
-                           const SundialsSettings& settings, long double end)
+SecondMotion::SecondMotion(Workspace& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings,
+                           long double end)
     : model_(*scenario.model) {
   report_.integrator = settings.integrator;
   report_.of = model_.coordinates[0].name;
@@ -34,13 +34,15 @@ SecondMotion::SecondMotion(const Scenario& scenario, const StateChoice& choice, 
   start_ = start(scenario, choice, power, settings, end);
 }
 
-Outcome SecondMotion::start(const Scenario& scenario, const StateChoice& choice, Expr power,
+Outcome SecondMotion::start(Workspace& scenario, const StateChoice& choice, Expr power,
                             const SundialsSettings& settings, long double end) {
-  const Scenario* s = &scenario;
+  Workspace* s = &scenario;
   if (scenario.system.form->eliminates()) {
-    routh_ = std::make_unique<Scenario>();
-    if (Outcome o = make_scenario(scenario.model, *find_formulation("routh"), choice, *routh_); !o.ok()) return o;
+    Scenario routh;
+    if (Outcome o = make_scenario(scenario.model, *find_formulation("routh"), choice, routh); !o.ok()) return o;
+    routh_ = std::make_unique<Workspace>(routh);
     s = routh_.get();
+    power = s->graph().own(power);
   }
   report_.form = s->system.form->name;
   Start<double> at;

@@ -23,7 +23,7 @@ struct SecondOpinion {
 class SecondMotion {
  public:
   // Towards `end`; the power is integrated along.
-  SecondMotion(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings,
+  SecondMotion(Workspace& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings,
                long double end);
 
   // Its own point at t, given Taylor's: the state as integrated, not projected, and what the equations say there. Notes
@@ -36,11 +36,11 @@ class SecondMotion {
 
  private:
   Outcome put(long double t, const Expansion<long double>& taylor);
-  Outcome start(const Scenario& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings,
+  Outcome start(Workspace& scenario, const StateChoice& choice, Expr power, const SundialsSettings& settings,
                 long double end);
 
   const Model& model_;
-  std::unique_ptr<Scenario> routh_;  // where the form eliminates
+  std::unique_ptr<Workspace> routh_;  // where the form eliminates
   std::unique_ptr<Program> program_;
   std::unique_ptr<Sundials> motion_;
   std::optional<Expansion<long double>> point_;

@@ -23,7 +23,7 @@ constexpr double kSame = 1e-12;
 // expression is made.
 class Rates {
  public:
-  Rates(const Scenario& s, const std::vector<std::size_t>& constraints)
+  Rates(Workspace& s, const std::vector<std::size_t>& constraints)
       : s_(s), constraints_(constraints), tape_(compile(outputs())),
         machine_(tape_, 1, parameter_values<double>(*s.model)) {}
 
@@ -123,7 +123,8 @@ std::vector<Support> supports(const Scenario& s) {
   for (std::size_t r = 0; r < model.constraints.size(); ++r)
     if (model.constraints[r].order == 0) geometric.push_back(r);
   if (geometric.empty() || model.bodies.empty() || !model.unknown_functions.empty()) return {};
-  Rates rates(s, geometric);
+  Workspace own(s);
+  Rates rates(own, geometric);
   rates.go(0, 0);
   const Direction gravity = rates.gravity();
   if (!(norm(gravity) > 0)) return {};

@@ -7,7 +7,7 @@ namespace anholon {
 // The power of all forces for the energy balance. Constraints that do no work on the motion (first
 // order and homogeneous, holonomic without t) are left out: their power is zero, and its terms, which
 // are large and cancel, would only add round-off to the balance.
-static Expr balance_power(const Scenario& s, const Power& p) {
+static Expr balance_power(Workspace& s, const Power& p) {
   const Mechanics& m = *s.mechanics;
   Graph& g = m.graph();
   Expr total = p.noncons;
@@ -23,7 +23,7 @@ static Expr balance_power(const Scenario& s, const Power& p) {
   return total;
 }
 
-std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p) {
+std::vector<Expr> watched_quadratures(Workspace& s, const Power& p) {
   std::vector<Expr> es = {balance_power(s, p)};
   for (const VaryingMass& m : s.model->masses) es.push_back(m.value);
   return es;
@@ -63,7 +63,7 @@ void Track<W>::see(const W& value, const W& terms, MadeOf made_of) {
 }
 
 template <Number W>
-Watch<W>::Watch(const Scenario& s, const Power& power, const std::vector<Conserved>& conserved,
+Watch<W>::Watch(Workspace& s, const Power& power, const std::vector<Conserved>& conserved,
                 const std::vector<W>& parameters)
     : s_(s), outputs_(s, expressions(power, conserved), parameters), redundant_(s, parameters) {}
 

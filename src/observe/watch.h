@@ -17,7 +17,7 @@
 namespace anholon {
 
 // What has to be integrated for it: the power of all forces first, then the masses that vary.
-std::vector<Expr> watched_quadratures(const Scenario& s, const Power& p);
+std::vector<Expr> watched_quadratures(Workspace& s, const Power& p);
 
 // The constraints with a residual for each derivative that has to vanish, none seen yet.
 std::vector<ConstraintReport> constraint_reports(const Scenario& s);
@@ -42,7 +42,7 @@ struct Track {
 template <Number W>
 class Watch {
  public:
-  Watch(const Scenario& scenario, const Power& power, const std::vector<Conserved>& conserved,
+  Watch(Workspace& scenario, const Power& power, const std::vector<Conserved>& conserved,
         const std::vector<W>& parameters);
 
   // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows

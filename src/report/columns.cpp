@@ -95,7 +95,7 @@ class AtRows {
 
 class Plots {
  public:
-  Plots(const Scenario& s, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene)
+  Plots(Workspace& s, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene)
       : s_(s), model_(*s.model), run_(run), conserved_(conserved), scene_(scene),
         parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, read_report(run.report))) {}
 
@@ -328,7 +328,7 @@ bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>
   return true;
 }
 
-PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
+PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
                    const Scene& scene) {
   return Plots(scenario, conserved, run, scene).make();
 }

@@ -42,7 +42,7 @@ ColumnOf column_of(const Model& model, const RunTable& table);
 // does not hold.
 bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>& values);
 
-PlotData plot_data(const Scenario& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
+PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
                    const Scene& scene);
 
 // At most about `most` of the rows: of each stretch the least and the greatest, of all the first and the last, and

@@ -13,8 +13,8 @@ namespace anholon {
 
 // One scenario of the model with its motion.
 struct PageCase {
-  std::string name;  // of the scenario; empty without one
-  const Scenario* scenario = nullptr;
+  std::string name;               // of the scenario; empty without one
+  Workspace* scenario = nullptr;  // of all expressions of the case
   const Explanation* explanation = nullptr;
   std::vector<Conserved> conserved;
   RunFile run;

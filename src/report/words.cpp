@@ -35,11 +35,10 @@ std::vector<std::string> external_forces(const Model& model) {
 std::vector<StateEntry> higher_state(const Scenario& s) {
   std::vector<StateEntry> list;
   if (!s.routh) return list;
-  const Graph& g = *s.model->graph;
   for (int k = 0; k < *std::max_element(s.routh_structure.d.begin(), s.routh_structure.d.end()); ++k)
     for (std::size_t j = 0; j < s.routh->size(); ++j) {
       if (k >= s.routh_structure.d[j] || (j < s.routh->coordinates && k < 2)) continue;
-      const Node& n = g.node(s.routh->symbol(j, static_cast<unsigned>(k)).id);
+      const Node n = s.routh->symbol_node(j, static_cast<unsigned>(k));
       list.push_back({derivative_name(s.routh->variable_names[j], static_cast<unsigned>(k), Format::text),
                       *s.state.value(n), *s.state.origin(n), n.kind == Kind::multiplier});
     }
@@ -49,7 +48,9 @@ std::vector<StateEntry> higher_state(const Scenario& s) {
 }
 
 std::string power_text(const Scenario& s, const Explanation& x, std::size_t r) {
-  return print(s.mechanics->lambda[r] * x.constraints[r].power_factor, s.model->names, Format::text);
+  const Expr factor = x.constraints[r].power_factor;
+  const Expr lambda = factor.graph->multiplier(static_cast<std::uint32_t>(r), 0);
+  return print(lambda * factor, s.model->names, Format::text);
 }
 
 std::string description(const ConstraintClass& c, int order) {

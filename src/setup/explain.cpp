@@ -47,7 +47,7 @@ const char* name(Hypothesis h) {
   return "";
 }
 
-Explanation explain(const Scenario& s) {
+Explanation explain(Workspace& s) {
   Explanation x;
   PointValues at = values_near(*s.model, parameter_values<double>(*s.model), s.state);
   std::vector<std::size_t> linear;

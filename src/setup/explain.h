@@ -31,6 +31,7 @@ struct Explanation {
   std::vector<HiddenConstraint> hidden;
 };
 
-Explanation explain(const Scenario& scenario);
+// Its expressions are those of the workspace.
+Explanation explain(Workspace& scenario);
 
 }  // namespace anholon

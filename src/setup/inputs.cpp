@@ -47,7 +47,7 @@ std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::se
 
 }  // namespace
 
-OpenSystem open_inputs(const Scenario& s) {
+OpenSystem open_inputs(Workspace& s) {
   std::set<std::size_t> inputs;
   for (std::size_t k = 0; k < s.model->controls.size(); ++k)
     if (const Control& u = s.model->controls[k]; u.value && !u.constraint && known_before_solving(s, *u.value))

@@ -13,7 +13,8 @@ struct OpenSystem {
 // Not among them, and put in as formulas: inputs that hold accelerations or multipliers, that keep a constraint, that
 // stand in an equation which is differentiated (their rates would be inputs, too), or whose formula stands in a
 // potential, mass or constraint.
-OpenSystem open_inputs(const Scenario& scenario);
+// The system is of the workspace.
+OpenSystem open_inputs(Workspace& scenario);
 
 // Why the motion of the model cannot be written as a program: programs do not solve for what enters nonlinearly, and do
 // not start from more than positions and velocities. Returns nullopt if it can.

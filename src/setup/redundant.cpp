@@ -10,7 +10,7 @@ namespace anholon {
 static constexpr double kMiss = 1e-7;
 
 template <Number W>
-Redundant<W>::Redundant(const Scenario& s, const std::vector<W>& parameters) : s_(s) {
+Redundant<W>::Redundant(Workspace& s, const std::vector<W>& parameters) : s_(s) {
   if (!s.redundant.empty()) outputs_.emplace(s, expressions(), parameters);
 }
 

@@ -8,7 +8,7 @@ namespace anholon {
 template <Number W>
 class Redundant {
  public:
-  Redundant(const Scenario& scenario, const std::vector<W>& parameters);
+  Redundant(Workspace& scenario, const std::vector<W>& parameters);
 
   // Not ok if one no longer holds at a point of the motion; `worst` is the largest miss, in relation to the state.
   // Where the point is the start the constraints contradict one another.

@@ -92,12 +92,11 @@ int orders_beyond(const Scenario& s, const std::vector<int>& d) {
 // What the system's form asks for, out of the named values.
 template <Number N>
 static Start<N> start_of(const Scenario& s, const InitialState<N>& named) {
-  const Graph& g = *s.model->graph;
   // The multipliers of a variational principle are not those of the reactions.
   const bool reactions = s.system.form->unknowns != Unknowns::variational;
   const auto value = [&](std::size_t j, int k) {
     if (j >= s.system.coordinates && j < s.system.mechanical() && !reactions) return N(0);
-    const N* known = named.value(g.node(s.system.symbol(j, static_cast<unsigned>(k)).id));
+    const N* known = named.value(s.system.symbol_node(j, static_cast<unsigned>(k)));
     return known ? *known : N(0);
   };
   Start<N> start;
@@ -196,18 +195,19 @@ static void smooth_enough(const Scenario& s) {
   }
 }
 
-Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
-                      Scenario& s) {
+static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
+                       Scenario& s) {
   s.model = model;
+  s.given_nodes = model->graph->size();
   s.mechanics = std::make_unique<Mechanics>(mechanics(*model));
   s.classes = classify(*s.mechanics);
   s.notes = model->notes;
   const std::vector<double> parameters = parameter_values<double>(*model);
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
-  s.start = numbers ? std::make_shared<const StartPlan>(*s.mechanics, std::vector<StateOverride>{}) : nullptr;
-  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides, choice.t, nullptr,
-                                       s.start.get(),     true};
+  s.start = numbers ? std::make_shared<StartPlan>(*s.mechanics, std::vector<StateOverride>{}) : nullptr;
+  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides,
+                                       choice.t,          nullptr,    s.start.get()};
   Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
   if (initial.ok() && numbers) initial = admissible(*model, parameters, s.state);
   s.independent.clear();
@@ -244,10 +244,76 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   return initial;
 }
 
+Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
+                      Scenario& s) {
+  Outcome o = prepare(clone(*model), form, choice, s);
+  s.model->graph->freeze();
+  return o;
+}
+
+Workspace::Workspace(const Scenario& from) : own_model_(clone(*from.model)) {
+  const auto& [model_of, nodes, mechanics_of, classes_of, start_of, state_of, independent_of, redundant_of,
+               elimination_of, system_of, structure_of, routh_of, routh_structure_of, notes_of] = from;
+  static_cast<void>(model_of);
+  const auto own = [&](auto& part) {
+    for_each_expression(part, [&](Expr& e) {
+      if (e.graph) e = own_model_->graph->own(e);
+    });
+  };
+  const auto own_system = [&](const System& s) {
+    auto copy = std::make_shared<System>(s);
+    copy->model = own_model_;
+    own(*copy);
+    return copy;
+  };
+  model = own_model_;
+  given_nodes = nodes;
+  mechanics = std::make_unique<Mechanics>(*mechanics_of);
+  mechanics->model = own_model_.get();
+  own(*mechanics);
+  classes = classes_of;
+  if (start_of) {
+    auto plan = std::make_shared<StartPlan>(start_of->copy());
+    own(*plan);
+    start = std::move(plan);
+  }
+  state = state_of;
+  independent = independent_of;
+  redundant = redundant_of;
+  elimination = elimination_of.of(*mechanics);
+  own(elimination);
+  system = *own_system(system_of);
+  structure = structure_of;
+  if (routh_of) routh = own_system(*routh_of);
+  routh_structure = routh_structure_of;
+  notes = notes_of;
+}
+
+void Workspace::set_parameter(std::size_t parameter, const Rational& value) {
+  own_model_->parameters[parameter].value = graph().number(value);
+}
+
+void for_each_expression(Scenario& s, const ExprVisitor& f) {
+  auto& [model, given_nodes, mechanics, classes, start, state, independent, redundant, elimination, system, structure,
+         routh, routh_structure, notes] = s;
+  for_each_expression(const_cast<Model&>(*model), f);
+  for_each_expression(*mechanics, f);
+  if (start) for_each_expression(const_cast<StartPlan&>(*start), f);
+  for_each_expression(elimination, f);
+  for_each_expression(system, f);
+  if (routh) for_each_expression(const_cast<System&>(*routh), f);
+  // The others hold numbers and words.
+  static_cast<void>(given_nodes), static_cast<void>(classes), static_cast<void>(state);
+  static_cast<void>(independent), static_cast<void>(redundant), static_cast<void>(structure);
+  static_cast<void>(routh_structure), static_cast<void>(notes);
+}
+
+std::shared_ptr<Model> given_model(const Scenario& s) { return clone(*s.model, s.given_nodes); }
+
 template <Number N>
-Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start) {
-  const InitialProblem<N> problem{
-      s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr, s.start.get(), true};
+Outcome initial_state(Workspace& s, const StateChoice& choice, Start<N>& start) {
+  const InitialProblem<N> problem{s.mechanics.get(), parameter_values<N>(*s.model), choice.overrides, choice.t, nullptr,
+                                  s.start.get()};
   InitialState<N> named;
   if (Outcome o = consistent_state(problem, named); !o.ok()) return o;
   if (s.routh)
@@ -256,9 +322,19 @@ Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& st
   return {};
 }
 
+template <Number N>
+Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start) {
+  Workspace own(s);
+  return initial_state(own, choice, start);
+}
+
+template Outcome initial_state<double>(Workspace&, const StateChoice&, Start<double>&);
 template Outcome initial_state<double>(const Scenario&, const StateChoice&, Start<double>&);
+template Outcome initial_state<long double>(Workspace&, const StateChoice&, Start<long double>&);
 template Outcome initial_state<long double>(const Scenario&, const StateChoice&, Start<long double>&);
+template Outcome initial_state<Quad>(Workspace&, const StateChoice&, Start<Quad>&);
 template Outcome initial_state<Quad>(const Scenario&, const StateChoice&, Start<Quad>&);
+template Outcome initial_state<Multi>(Workspace&, const StateChoice&, Start<Multi>&);
 template Outcome initial_state<Multi>(const Scenario&, const StateChoice&, Start<Multi>&);
 
 int orders_needed(const Scenario& s, std::span<const Expr> es) {

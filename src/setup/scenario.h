@@ -27,8 +27,11 @@ struct StateChoice {
   std::vector<std::size_t> eliminate;  // coordinates to eliminate; empty: chosen
 };
 
+// A prepared system. Its graph is frozen and is its own, so reading a scenario never changes it and many threads may do
+// so at once; whoever has to build expressions does so in a Workspace.
 struct Scenario {
   std::shared_ptr<const Model> model;
+  std::size_t given_nodes = 0;  // those of the graph before the model was put into equations
   std::unique_ptr<Mechanics> mechanics;
   std::vector<ConstraintClass> classes;
   std::shared_ptr<const StartPlan> start;  // null without numbers
@@ -44,9 +47,35 @@ struct Scenario {
   std::vector<std::string> notes;
 };
 
+// A copy of a prepared system in which its holder may build expressions. Nodes have the ids that they would have got in
+// the graph of the original, so numbers that are computed in a workspace have the same bits in every other one made of
+// the same scenario.
+//
+// Functions that give numbers or text take a `const Scenario&` and build in a workspace of their own. Those that take or
+// give expressions, and the parts of a computation, take the `Workspace&` in which these are.
+struct Workspace : Scenario {
+  explicit Workspace(const Scenario& from);
+  explicit Workspace(const Workspace& from) : Workspace(static_cast<const Scenario&>(from)) {}
+  Workspace& operator=(const Workspace&) = delete;
+
+  Graph& graph() const { return *model->graph; }
+  // Puts another number in place of the value of a parameter.
+  void set_parameter(std::size_t parameter, const Rational& value);
+
+ private:
+  std::shared_ptr<Model> own_model_;  // the same as `model`
+};
+
+// The handles of a scenario (expr/handles.h), those of its model and all other parts among them.
+void for_each_expression(Scenario& s, const ExprVisitor& f);
+
+// The model as it was before it was put into equations, for another form or other numbers; its holder may build in it.
+std::shared_ptr<Model> given_model(const Scenario& scenario);
+
 // Classes of the constraints, by exact tests on their partial derivatives.
 std::vector<ConstraintClass> classify(const Mechanics& mechanics);
 
+// Prepares a clone of the model; the model itself is left as it is.
 // Diagnostics: what this model lacks for numbers (unknown functions).
 // The outcome tells of numbers: inconsistent data, a singular start.
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
@@ -80,6 +109,9 @@ Start<double> start_of(const Scenario& scenario);
 // The consistent state in the number type N.
 template <Number N>
 Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start);
+// The same, built in the workspace that is given.
+template <Number N>
+Outcome initial_state(Workspace& s, const StateChoice& choice, Start<N>& start);
 
 template <Scalar N>
 std::vector<N> parameter_values(const Model& model) {
@@ -92,7 +124,7 @@ std::vector<N> parameter_values(const Model& model) {
 template <Number N>
 class OutputTape {
  public:
-  OutputTape(const Scenario& s, const Column& es, const std::vector<N>& parameters)
+  OutputTape(Workspace& s, const Column& es, const std::vector<N>& parameters)
       : system_(s.system), tape_(compile(put(s, es))), machine_(tape_, 0, parameters) {}
   void evaluate(const Expansion<N>& point) {
     const Graph& g = *system_.model->graph;
@@ -119,7 +151,7 @@ class OutputTape {
   // Modes have changed.
   void set_parameters(const std::vector<N>& parameters) { machine_ = Machine<N>(tape_, 0, parameters); }
   // Multipliers of redundant constraints are zero.
-  static Column put(const Scenario& s, const Column& es) {
+  static Column put(Workspace& s, const Column& es) {
     Graph& g = *s.model->graph;
     return substitute(es, [&](NodeId id) {
       return g.node(id).kind == Kind::multiplier && !s.system.variable(id) ? g.zero() : Expr{};

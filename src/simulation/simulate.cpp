@@ -36,7 +36,7 @@ template <Number N>
 class Run {
  public:
   using W = Wider<N>;
-  Run(const Scenario& s, const SimulationOptions& o, RowSink& sink)
+  Run(Workspace& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), sink_(sink), power_(anholon::power(*s.mechanics)),
         course_(s, step_settings(o), method(o), watched_quadratures(s, power_),
                 std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
@@ -451,7 +451,7 @@ class Run {
   // The numbers written say more than doubles do.
   static constexpr bool kWide = !std::same_as<N, double>;
 
-  const Scenario& s_;
+  Workspace& s_;
   const SimulationOptions& o_;
   RowSink& sink_;
   std::vector<double> values_;  // of the row that is written, and its digits
@@ -484,8 +484,15 @@ class Run {
 
 }  // namespace
 
-SimulationReport simulate(const Scenario& s, const SimulationOptions& o, RowSink& sink) {
+SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink) {
+  Workspace own(scenario);
+  return simulate_in(own, options, sink);
+}
+
+SimulationReport simulate_in(Workspace& s, const SimulationOptions& options, RowSink& sink) {
   const auto start = std::chrono::steady_clock::now();
+  SimulationOptions o = options;
+  for (Conserved& c : o.conserved) for_each_expression(c, [&](Expr& e) { e = s.graph().own(e); });
   SimulationReport r;
   switch (o.precision) {
   case Precision::real:

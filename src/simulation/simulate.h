@@ -7,5 +7,7 @@
 namespace anholon {
 
 SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink);
+// The same in a workspace that the caller gives, and which has grown afterwards.
+SimulationReport simulate_in(Workspace& scenario, const SimulationOptions& options, RowSink& sink);
 
 }  // namespace anholon

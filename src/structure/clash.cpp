@@ -79,15 +79,15 @@ std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row,
                                   const std::vector<std::size_t>& released) const {
   constexpr std::size_t kMostUnknowns = 2, kLongest = 60;
   constexpr long kMostWork = 2000;
-  if (p_.plan && !p_.alone) return {};  // it would take an expression
   const Graph& g = m_.graph();
-  const Expr residual = stage.equation(row).residual;
+  const std::unique_ptr<Graph> own = g.clone();  // others may be reading the graph
+  const Expr residual = own->own(stage.equation(row).residual);
   std::size_t open = 0;
   bool valued = true;
   const auto number = [&](const N& value) {
     const std::optional<Rational> r = parse_rational(number_text(to_double(value), 6));
     valued = valued && r;
-    return m_.graph().number(r ? *r : Rational(0));
+    return own->number(r ? *r : Rational(0));
   };
   const auto free = [&](NodeId id) {
     for (std::size_t j = 0; j < stage.unknowns(); ++j)

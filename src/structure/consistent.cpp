@@ -70,7 +70,7 @@ StageEquations left_of(const StageEquations& equations, const Column& unknowns,
 
 StartPlan::Stages planned(const Mechanics& m, const StageEquations& equations, const Column& unknowns, unsigned metric,
                           const std::vector<Column>* mass) {
-  return equations.empty() ? nullptr : std::make_shared<const StagePlan>(m, equations, unknowns, metric, mass);
+  return equations.empty() ? nullptr : std::make_shared<StagePlan>(m, equations, unknowns, metric, mass);
 }
 
 }  // namespace
@@ -251,5 +251,19 @@ template Outcome consistent_state<double>(const InitialProblem<double>&, Initial
 template Outcome consistent_state<long double>(const InitialProblem<long double>&, InitialState<long double>&);
 template Outcome consistent_state<Quad>(const InitialProblem<Quad>&, InitialState<Quad>&);
 template Outcome consistent_state<Multi>(const InitialProblem<Multi>&, InitialState<Multi>&);
+
+StartPlan StartPlan::copy() const {
+  StartPlan p = *this;
+  for (Stages* stages : {&p.positions, &p.velocities, &p.kept_positions, &p.kept_velocities})
+    if (*stages) *stages = std::make_shared<StagePlan>(**stages);
+  return p;
+}
+
+void for_each_expression(StartPlan& p, const ExprVisitor& f) {
+  auto& [values, positions, velocities, kept, kept_positions, kept_velocities] = p;
+  static_cast<void>(values), static_cast<void>(kept);  // without handles
+  for (StartPlan::Stages* stages : {&positions, &velocities, &kept_positions, &kept_velocities})
+    if (*stages) for_each_expression(const_cast<StagePlan&>(**stages), f);
+}
 
 }  // namespace anholon

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/outcome.h"
+#include "expr/handles.h"
 #include "numeric/linear.h"
 #include "structure/stage.h"
 #include "structure/state.h"
@@ -36,7 +37,12 @@ struct StartPlan {
   Stages positions, velocities;            // null where there is nothing to solve
   bool kept = false;                       // made for overrides:
   Stages kept_positions, kept_velocities;  // without conditions that are only about what is overridden
+
+  // The same plan with stages of its own; the handles are left as they are.
+  StartPlan copy() const;
 };
+// The handles of a plan (expr/handles.h). REQUIRES: nobody else has its stages.
+void for_each_expression(StartPlan& p, const ExprVisitor& f);
 
 template <Number N>
 struct InitialProblem {
@@ -46,7 +52,6 @@ struct InitialProblem {
   std::optional<Rational> t;
   const std::vector<Column>* mass = nullptr;  // the mass matrix, where the caller solves for many states
   const StartPlan* plan = nullptr;
-  bool alone = false;  // nobody else has the plan: a message may make expressions
   const InitialState<double>* near =
       nullptr;  // a solution of the same or of a similar problem: searches begin there, and measure changes as ever
 };

@@ -282,4 +282,18 @@ template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, cons
 template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&,
                                           const InitialState<double>*);
 
+// A tape names the symbols of its inputs by their ids, which a clone of the graph has, too.
+template <>
+inline constexpr bool kHoldsNoExpressions<Tape> = true;
+
+static void for_each_expression(StageEquation& e, const ExprVisitor& f) {
+  auto& [residual, what, span, condition] = e;
+  for_each_expression_of(f, residual, what, span, condition);
+}
+
+void for_each_expression(StagePlan& p, const ExprVisitor& f) {
+  auto& [equations, unknowns, metric, linear, tape] = p;
+  for_each_expression_of(f, equations, unknowns, metric, linear, tape);
+}
+
 }  // namespace anholon

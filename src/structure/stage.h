@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/diagnostic.h"
+#include "expr/handles.h"
 #include "mechanics/mechanics.h"
 #include "structure/state.h"
 #include "tape/tape.h"
@@ -32,6 +33,9 @@ struct StagePlan {
   bool linear = false;  // every equation is, in the unknowns
   Tape tape;
 };
+
+// The handles of a plan (expr/handles.h).
+void for_each_expression(StagePlan& p, const ExprVisitor& f);
 
 // Such equations with their numbers. The metric of least change is the mass matrix at each order of the coordinates in
 // `metric` (bit k: order k); the other unknowns are found, not measured.

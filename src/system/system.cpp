@@ -11,6 +11,15 @@ Expr System::symbol(std::size_t j, unsigned k) const {
   return g.multiplier(static_cast<std::uint32_t>(constraints[j - coordinates]), k);
 }
 
+Node System::symbol_node(std::size_t j, unsigned k) const {
+  const auto node = [&](Kind kind, std::size_t index) {
+    return Node{kind, static_cast<std::uint8_t>(k), static_cast<std::uint32_t>(index)};
+  };
+  if (j < coordinates) return node(Kind::jet, j);
+  if (j >= mechanical()) return node(Kind::state, j - mechanical());
+  return node(Kind::multiplier, constraints[j - coordinates]);
+}
+
 std::optional<std::size_t> System::variable(NodeId symbol) const {
   const Node& n = model->graph->node(symbol);
   if (n.kind == Kind::jet) return n.index < coordinates ? std::optional<std::size_t>(n.index) : std::nullopt;
@@ -73,6 +82,12 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
       return out ? g.zero() : Expr{};
     });
   return s;
+}
+
+void for_each_expression(System& s, const ExprVisitor& f) {
+  auto& [model, form, coordinates, constraints, equations, of_motion, equation_names, variable_names, rates] = s;
+  static_cast<void>(model), static_cast<void>(form);
+  for_each_expression_of(f, coordinates, constraints, equations, of_motion, equation_names, variable_names, rates);
 }
 
 }  // namespace anholon

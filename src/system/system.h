@@ -25,11 +25,15 @@ struct System {
   std::size_t size() const { return equations.size(); }
   // Equations and unknowns below this are those of motion and constraints; z' - rate = 0 follow.
   std::size_t mechanical() const { return coordinates + constraints.size(); }
-  // The symbol of the k-th derivative of variable j.
+  // The symbol of the k-th derivative of variable j; as a node it need not be in the graph.
   Expr symbol(std::size_t variable, unsigned k) const;
+  Node symbol_node(std::size_t variable, unsigned k) const;
   // The variable of which a symbol is a derivative, or nothing (t, parameters).
   std::optional<std::size_t> variable(NodeId symbol) const;
 };
+
+// The handles of the system (expr/handles.h), without those of its model.
+void for_each_expression(System& s, const ExprVisitor& f);
 
 // Constraints that are left out (redundant ones) have their multipliers set to zero.
 // `elimination` is of these constraints, and is not looked at by forms with multipliers.

@@ -28,12 +28,13 @@ using namespace std::chrono_literals;
 
 struct Subject {
   explicit Subject(const std::string& name) {
-    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, scenario).ok())
+    if (!make_scenario(test::shipped(name), *find_formulation("routh"), {}, prepared).ok())
       throw std::runtime_error(name);
-    stepping = std::make_shared<const Program>(program(scenario.system, scenario.structure));
-    parameters = parameter_values<long double>(*scenario.model);
+    scenario.emplace(prepared);
+    stepping = std::make_shared<const Program>(program(scenario->system, scenario->structure));
+    parameters = parameter_values<long double>(*scenario->model);
     Start<long double> start;
-    if (!initial_state(scenario, {}, start).ok()) throw std::runtime_error(name);
+    if (!initial_state(*scenario, {}, start).ok()) throw std::runtime_error(name);
     state.assign(start.state.begin(), start.state.end());
     leading.assign(start.leading.begin(), start.leading.end());
   }
@@ -58,7 +59,8 @@ struct Subject {
     return {};
   }
 
-  Scenario scenario;
+  Scenario prepared;
+  std::optional<Workspace> scenario;
   std::shared_ptr<const Program> stepping;
   std::vector<long double> parameters;
   std::vector<double> state, leading;

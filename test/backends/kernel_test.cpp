@@ -50,11 +50,12 @@ struct Reference {
       : quasi(name.starts_with(kInQuasi)), why(set_up(test::shipped(quasi ? name.substr(kInQuasi.size()) : name))) {}
   std::string set_up(const std::shared_ptr<const Model>& model) {
     if (const auto diagnostic = not_integrated(*model)) return diagnostic->message;
-    Outcome o = make_scenario(model, *find_formulation("routh"), {}, scenario);
-    if (o.ok()) o = initial_state(scenario, {}, start);
+    Outcome o = make_scenario(model, *find_formulation("routh"), {}, prepared);
+    scenario.emplace(prepared);
+    if (o.ok()) o = initial_state(*scenario, {}, start);
     if (!o.ok()) return o.message;
-    stepping = std::make_shared<const Program>(program(scenario.system, scenario.structure));
-    parameters = parameter_values<long double>(*scenario.model);
+    stepping = std::make_shared<const Program>(program(scenario->system, scenario->structure));
+    parameters = parameter_values<long double>(*scenario->model);
     if (quasi) {
       motion_start = start;
       derived = std::exchange(stepping, nullptr);
@@ -78,13 +79,14 @@ struct Reference {
   std::vector<Representation> representations(const std::shared_ptr<const KernelPlan>& of, WritingEffort effort) const {
     const std::vector<double> state = narrow(quasi ? motion_start.state : start.state);
     return anholon::representations(
-        {of, scenario.structure, {}, parameters, static_cast<double>(start.t), state, scenario.mechanics.get()},
+        {of, scenario->structure, {}, parameters, static_cast<double>(start.t), state, scenario->mechanics.get()},
         effort);
   }
   static std::vector<double> narrow(const std::vector<long double>& v) { return {v.begin(), v.end()}; }
 
   bool quasi;
-  Scenario scenario;
+  Scenario prepared;
+  std::optional<Workspace> scenario;
   std::shared_ptr<const Program> stepping, derived;
   std::vector<long double> parameters;
   Start<long double> start, motion_start;
@@ -319,7 +321,7 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
     const Plan& p = plain->plan();
     for (std::size_t j = 0; j < p.x.size(); ++j)
       for (int k = 0; k <= p.stages + p.d[j]; ++k)
-        EXPECT_EQ(a.coefficient(j, k), b.coefficient(j, k)) << r.scenario.system.variable_names[j] << " order " << k;
+        EXPECT_EQ(a.coefficient(j, k), b.coefficient(j, k)) << r.scenario->system.variable_names[j] << " order " << k;
   }
 }
 

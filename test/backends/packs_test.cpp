@@ -21,11 +21,12 @@ constexpr unsigned kWidth = 4;
 
 struct Motion {
   explicit Motion(const std::shared_ptr<const Model>& model, int stages = 12) {
-    Outcome o = make_scenario(model, *find_formulation("routh"), {}, scenario);
-    if (o.ok()) o = initial_state(scenario, {}, start);
+    Outcome o = make_scenario(model, *find_formulation("routh"), {}, prepared);
+    scenario.emplace(prepared);
+    if (o.ok()) o = initial_state(*scenario, {}, start);
     if (!o.ok()) return;
-    parameters = parameter_values<long double>(*scenario.model);
-    plan = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), stages,
+    parameters = parameter_values<long double>(*scenario->model);
+    plan = KernelPlan::make(std::make_shared<const Program>(program(scenario->system, scenario->structure)), stages,
                             parameters, static_cast<double>(start.t), {start.state.begin(), start.state.end()});
   }
   void begin(Kernel& k) const {
@@ -34,7 +35,8 @@ struct Motion {
     k.set_time(0, static_cast<double>(start.t));
     k.begin();
   }
-  Scenario scenario;
+  Scenario prepared;
+  std::optional<Workspace> scenario;
   std::vector<long double> parameters;
   Start<long double> start;
   std::shared_ptr<const KernelPlan> plan;
@@ -98,7 +100,7 @@ TEST(Packs, FollowTheLinksOfAChain) {
   ASSERT_TRUE(m.plan);
   const std::vector<double> state(m.start.state.begin(), m.start.state.end());
   m.plan =
-      cheapest(representations({m.plan, m.scenario.structure, {}, m.parameters, 0, state, m.scenario.mechanics.get()},
+      cheapest(representations({m.plan, m.scenario->structure, {}, m.parameters, 0, state, m.scenario->mechanics.get()},
                                WritingEffort::very_long_motion))
           .plan;
   const jit::Packs packs = jit::choose_packs(m.plan->plan(), kWidth);

@@ -59,8 +59,9 @@ TEST(Bicycle, BasuMandalsAccelerations) {
 TEST(Bicycle, BasuMandalsRearWheel) {
   const auto model = shipped("zoo/whipple");
   const StateChoice choice = table_1(*model);
-  Scenario s;
-  ASSERT_TRUE(make_scenario(model, *find_formulation("routh"), choice, s).ok());
+  Scenario prepared;
+  ASSERT_TRUE(make_scenario(model, *find_formulation("routh"), choice, prepared).ok());
+  Workspace s(prepared);
   const Program p = program(s.system, s.structure);
   const std::vector<long double> parameters = parameter_values<long double>(*model);
   Expansion<long double> point(p, parameters, 1);
@@ -69,7 +70,7 @@ TEST(Bicycle, BasuMandalsRearWheel) {
   point.load(start.t, start.state, start.leading);
   ASSERT_TRUE(point.prepare().ok() && point.project().ok() && point.solve().ok());
   Column es;
-  for (int i = 0; i < 3; ++i) es.push_back(total_derivative(model->bodies[0].center[i], 2));
+  for (int i = 0; i < 3; ++i) es.push_back(total_derivative(s.model->bodies[0].center[i], 2));
   OutputTape<long double> out(s, es, parameters);
   out.evaluate(point);
   EXPECT_NEAR(static_cast<double>(out[0]), 0.5041626315047, 3 * kPrinted);

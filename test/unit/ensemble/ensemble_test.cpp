@@ -76,7 +76,6 @@ struct Sweep {
   explicit Sweep(std::string text, const char* form = "routh") : text_(std::move(text)) {
     EXPECT_TRUE(make_scenario(test::model_of(text_), *find_formulation(form), {}, scenario).ok());
     options.to = 1;
-    options.again = [text = text_] { return test::model_of(text); };
   }
   // One line of numbers for each case.
   void cases(const std::vector<std::vector<Rational>>& values) {
@@ -153,7 +152,7 @@ TEST(Ensemble, EveryCaseIsWhatSimulateMakesOfIt) {
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(list[k].last[i], row[1 + i]) << "the last bit";
     EXPECT_EQ(list[k].last[4], row.back()) << "derived parameters follow";
   }
-  EXPECT_EQ(run.report.again, 0U) << "nothing here needs a graph of its own";
+  EXPECT_EQ(run.report.in_workspaces, 0U) << "nothing here needs a workspace of its own";
 }
 
 // A kernel has the pivots of the start it was made at: of another one in an ensemble.
@@ -323,7 +322,7 @@ TEST(Ensemble, WhatOneCaseBuildsIsNotSeenByAnother) {
   for (int k = 0; k < 7; ++k) values.push_back({Rational(3 * k) / 2});
   run.cases(values);
   const auto one = run.go(1);
-  EXPECT_EQ(run.report.again, 7U);
+  EXPECT_EQ(run.report.in_workspaces, 7U);
   EXPECT_EQ(bits(run.go(3)) == bits(one), true);
   std::reverse(values.begin(), values.end());
   run.cases(values);
@@ -356,7 +355,7 @@ TEST(Ensemble, EventsEndAndAccumulateAsInSimulate) {
   const std::vector<double> row = simulated(kBall, {{"e", "0.8"}}, 1, true);
   EXPECT_EQ(list[1].last[0], row[1]);
   EXPECT_EQ(list[1].last[1], row[2]);
-  EXPECT_EQ(run.report.again, 2U);
+  EXPECT_EQ(run.report.in_workspaces, 2U);
 }
 
 // Without the coefficient of the file the equations have another structure: the case is derived anew.
@@ -395,7 +394,7 @@ x = 1
     const std::vector<double> row = simulated(text, {{"m", k == 1 ? "1" : "0"}}, 1);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(list[k].last[i], row[1 + i]) << k;
   }
-  EXPECT_EQ(run.report.again, 1U);
+  EXPECT_EQ(run.report.in_workspaces, 1U);
 }
 
 TEST(Ensemble, RowsAreThoseOfTheTimes) {
@@ -462,12 +461,11 @@ TEST(Ensemble, TheFileNeedsNoStartOfItsOwn) {
   EnsembleOptions o;
   o.to = 1;
   o.kernel = false;
-  o.again = [&] { return test::model_of(text); };
   o.varied = {initial(0, 0)};
   o.cases = 3;
   o.numbers = [](std::size_t k) { return EnsembleCase{{Rational(static_cast<long>(3 - k))}, {}}; };
-  ASSERT_TRUE(scenario_of_cases(*find_formulation("routh"), o, s).ok());
-  EXPECT_EQ(o.like, 1U);
+  ASSERT_TRUE(scenario_of_cases(o, s).ok());
+  EXPECT_EQ(s.state.q[0], 2) << "of the second case";
   Results results;
   ensemble(s, o, results);
   EXPECT_EQ(results.list[0].outcome.kind, OutcomeKind::inconsistent);

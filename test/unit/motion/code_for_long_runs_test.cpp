@@ -11,9 +11,10 @@ namespace anholon {
 namespace {
 
 std::shared_ptr<const KernelPlan> plan_of(const std::string& name, int stages) {
-  Scenario s;
-  if (!make_scenario(test::model_of(test::shipped_text(name)), *find_formulation("routh"), {}, s).ok())
+  Scenario prepared;
+  if (!make_scenario(test::model_of(test::shipped_text(name)), *find_formulation("routh"), {}, prepared).ok())
     throw std::runtime_error("no start");
+  Workspace s(prepared);
   Start<long double> start;
   if (!initial_state(s, {}, start).ok()) throw std::runtime_error("no start");
   return KernelPlan::make(std::make_shared<const Program>(program(s.system, s.structure)), stages,

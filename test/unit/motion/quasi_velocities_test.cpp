@@ -20,14 +20,14 @@ namespace {
 
 struct Found {
   explicit Found(const std::shared_ptr<const Model>& model) {
-    if (!make_scenario(model, *find_formulation("routh"), {}, scenario).ok() ||
-        !initial_state(scenario, {}, start).ok())
-      return;
-    const System& s = scenario.system;
+    if (!make_scenario(model, *find_formulation("routh"), {}, prepared).ok()) return;
+    scenario.emplace(prepared);
+    if (!initial_state(*scenario, {}, start).ok()) return;
+    const System& s = scenario->system;
     if (s.constraints.empty()) return;
-    parameters = parameter_values<long double>(*scenario.model);
+    parameters = parameter_values<long double>(*scenario->model);
     // A fixed point is as good as any: the choice of pivots alone depends on it.
-    q = quasi_velocities(s, *scenario.mechanics, {}, [&](const Node& n) {
+    q = quasi_velocities(s, *scenario->mechanics, {}, [&](const Node& n) {
       if (n.kind == Kind::time) return static_cast<double>(start.t);
       if (n.kind == Kind::parameter) return static_cast<double>(parameters[n.index]);
       return n.kind == Kind::jet && n.order < 2 ? static_cast<double>(start.state[2 * n.index + n.order]) : 0.0;
@@ -35,7 +35,8 @@ struct Found {
   }
   std::vector<std::string> of_state() const { return print(q->of_state, q->system.model->names, Format::text); }
 
-  Scenario scenario;
+  Scenario prepared;
+  std::optional<Workspace> scenario;
   Start<long double> start;
   std::vector<long double> parameters;
   std::optional<QuasiVelocities> q;
@@ -58,11 +59,13 @@ TEST(QuasiVelocities, AreThoseOfTheBooks) {
 }
 
 ExpansionWork work_in_quasi_velocities(const std::string& model, const Overrides& overrides = {}) {
-  Scenario s;
-  Start<long double> start;
-  if (!make_scenario(test::model_of(test::shipped_text(model), overrides), *find_formulation("routh"), {}, s).ok() ||
-      !initial_state(s, {}, start).ok())
+  Scenario prepared;
+  if (!make_scenario(test::model_of(test::shipped_text(model), overrides), *find_formulation("routh"), {}, prepared)
+           .ok())
     return {};
+  Workspace s(prepared);
+  Start<long double> start;
+  if (!initial_state(s, {}, start).ok()) return {};
   const std::vector<long double> parameters = parameter_values<long double>(*s.model);
   const std::vector<double> state(start.state.begin(), start.state.end());
   const double t = static_cast<double>(start.t);
@@ -105,7 +108,7 @@ TEST(QuasiVelocities, MakeTheEnergyASumOfSquares) {
   for (const std::string& name : with_quasi_velocities()) {
     ++models;
     const Found f(test::shipped(name));
-    const Mechanics& m = *f.scenario.mechanics;
+    const Mechanics& m = *f.scenario->mechanics;
     const std::size_t n = m.q.size(), l = f.q->count, others = f.q->system.size() - l;
     const StateMap map(*f.q);
     StateReader reader(map, f.parameters);
@@ -115,7 +118,7 @@ TEST(QuasiVelocities, MakeTheEnergyASumOfSquares) {
         if (s.kind == Kind::parameter) return static_cast<double>(f.parameters[s.index]);
         return static_cast<double>(s.kind == Kind::jet ? state[2 * s.index + s.order] : state[2 * n + s.index]);
       });
-      return at(put_masses(*f.scenario.model, e));
+      return at(put_masses(*f.scenario->model, e));
     };
     for (int sample = 0; sample < 3; ++sample) {
       std::vector<long double> own(map.own_size()), state, back;
@@ -140,7 +143,7 @@ TEST(QuasiVelocities, MakeTheEnergyASumOfSquares) {
         }
       }
       reader.motion(f.start.t, own, state);
-      for (std::size_t c : f.scenario.system.constraints)
+      for (std::size_t c : f.scenario->system.constraints)
         EXPECT_NEAR(value(m.phi[c], state), 0, 1e-12) << name << " " << c;
       reader.own(f.start.t, state, back);
       for (std::size_t i = 0; i < own.size(); ++i)
@@ -203,8 +206,9 @@ TEST(QuasiVelocities, OfOtherConstraints) {
 TEST(QuasiVelocities, WithoutAValueNothingIsLost) {
   const std::string text =
       particle(constraint("c*z' - (1 + y^2)*x' - (2 + z^2)*y' = 0")) + "\"x'\" = 0.5\n[parameters]\nc = 1\n";
-  Scenario s;
-  ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, s).ok());
+  Scenario prepared;
+  ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, prepared).ok());
+  Workspace s(prepared);
   const std::vector<long double> one = parameter_values<long double>(*s.model);
   Start<long double> start;
   ASSERT_TRUE(initial_state(s, {}, start).ok());

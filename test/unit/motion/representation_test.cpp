@@ -9,23 +9,25 @@ namespace {
 
 struct Written {
   explicit Written(const std::string& name, const Overrides& overrides = {}) {
-    if (!make_scenario(test::model_of(test::shipped_text(name), overrides), *find_formulation("routh"), {}, scenario)
+    if (!make_scenario(test::model_of(test::shipped_text(name), overrides), *find_formulation("routh"), {}, prepared)
              .ok())
       throw std::runtime_error("no start");
-    parameters = parameter_values<long double>(*scenario.model);
+    scenario.emplace(prepared);
+    parameters = parameter_values<long double>(*scenario->model);
     Start<long double> start;
-    if (!initial_state(scenario, {}, start).ok()) throw std::runtime_error("no start");
+    if (!initial_state(*scenario, {}, start).ok()) throw std::runtime_error("no start");
     state.assign(start.state.begin(), start.state.end());
     t = static_cast<double>(start.t);
-    derived = KernelPlan::make(std::make_shared<const Program>(program(scenario.system, scenario.structure)), 14,
+    derived = KernelPlan::make(std::make_shared<const Program>(program(scenario->system, scenario->structure)), 14,
                                parameters, static_cast<double>(start.t), state);
-    const std::size_t before = scenario.model->graph->size();
+    const std::size_t before = scenario->model->graph->size();
     list = representations(
-        {derived, scenario.structure, {}, parameters, static_cast<double>(start.t), state, scenario.mechanics.get()},
+        {derived, scenario->structure, {}, parameters, static_cast<double>(start.t), state, scenario->mechanics.get()},
         WritingEffort::long_motion);
-    grown = scenario.model->graph->size() != before;
+    grown = scenario->model->graph->size() != before;
   }
-  Scenario scenario;
+  Scenario prepared;
+  std::optional<Workspace> scenario;
   std::vector<long double> parameters;
   const Representation* by(Writing writing) const {
     for (const Representation& r : list)
@@ -172,7 +174,7 @@ TEST(Representation, ComesWithTheStepsMade) {
 }
 
 TEST(FormChoice, QuasiVelocitiesDecide) {
-  const auto disc = [] { return test::shipped("zoo/disc"); };
+  const auto disc = test::shipped("zoo/disc");
   const FormChoice c = choose_form(disc, {}), all = choose_form(disc, {}, Costs::all);
   EXPECT_EQ(c.costs.size(), 1U);
   EXPECT_EQ(all.costs.size(), 2U);
@@ -181,7 +183,7 @@ TEST(FormChoice, QuasiVelocitiesDecide) {
 }
 
 TEST(FormChoice, CountsBothForms) {
-  const FormChoice c = choose_form([] { return test::shipped("zoo/isokinetic"); }, {});
+  const FormChoice c = choose_form(test::shipped("zoo/isokinetic"), {});
   ASSERT_EQ(c.costs.size(), 2U);
   EXPECT_STREQ(c.costs[0].form->name, "routh");
   EXPECT_GT(c.costs[0].total, 0);

@@ -29,7 +29,8 @@ DenseStep step(const Rational& begin, const Rational& end, const std::vector<std
 }
 
 RigorousReport defect(const Scenario& s, const std::vector<DenseStep>& steps, std::size_t times) {
-  Defect d(s, times, steps.front().begin, steps.back().end, 64);
+  Workspace own(s);
+  Defect d(own, times, steps.front().begin, steps.back().end, 64);
   for (const DenseStep& x : steps) d.step(x);
   return d.report().value();
 }
@@ -79,7 +80,8 @@ TEST(Defect, IsNotOnlyThatOfTheMiddle) {
 
 TEST(Defect, CountsTheTimesThatTheMotionReached) {
   const auto s = scenario(test::model_of(kOscillator));
-  Defect d(*s, 10, Ball(0), Ball(4), 64);
+  Workspace own(*s);
+  Defect d(own, 10, Ball(0), Ball(4), 64);
   EXPECT_FALSE(d.report().has_value());
   d.step(step(0, Rational(1, 8), {{1, 0}}));
   EXPECT_FALSE(d.report().has_value()) << "the first time is 1/5";
@@ -193,7 +195,8 @@ TEST(Defect, OfADisturbedTrajectoryOrAWrongLawIsSeen) {
   settings.log_tolerance = natural_logarithm(Rational(1, mpz_class("1000000000000000")));
   Stepper<double> stepper(p, parameter_values<double>(*s->model), parameter_values<long double>(*s->model), settings);
   Start<long double> start;
-  ASSERT_TRUE(initial_state(*s, {}, start).ok());
+  Workspace own(*s);
+  ASSERT_TRUE(initial_state(own, {}, start).ok());
   ASSERT_TRUE(stepper.start(start.t, start.state).ok());
   ASSERT_TRUE(stepper.step(1.0L).ok());
   const DenseStep good = dense_step(stepper, stepper.time());
@@ -215,9 +218,9 @@ TEST(Defect, OfADisturbedTrajectoryOrAWrongLawIsSeen) {
       }
     }
   }
-  s->mechanics->Q[2] += s->mechanics->graph().number(1);
-  EXPECT_GT(number(defect(*s, {good}, 16).newton), 0.1) << "another torque";
-  EXPECT_GT(number(defect(*s, {good}, 0).projected), 0.1);
+  own.mechanics->Q[2] += own.graph().number(1);
+  EXPECT_GT(number(defect(own, {good}, 16).newton), 0.1) << "another torque";
+  EXPECT_GT(number(defect(own, {good}, 0).projected), 0.1);
 }
 
 }  // namespace

@@ -38,14 +38,15 @@ TEST(Packed, HoldsTheBitsOfTheNumbers) {
 
 // The mass doubles at an event: the kinetic energy of the rows after it is that of the new mass.
 TEST(Plots, KnowWhatEventsHaveSet) {
-  Scenario s;
+  Scenario prepared;
   ASSERT_TRUE(
       make_scenario(
           test::model_of(
               "coordinates = [\"x\"]\n[mode]\nn = 1\n[[particle]]\nname = \"p\"\nmass = \"n\"\nposition = \"x*ex\"\n"
               "[[event]]\nname = \"catch\"\nwhen = \"x - 1\"\nset = {n = \"2*n\"}\n[initial]\n\"x'\" = 2\n"),
-          *find_formulation("routh"), {}, s)
+          *find_formulation("routh"), {}, prepared)
           .ok());
+  Workspace s(prepared);
   RunFile run;
   run.table.set_columns({"t", "x", "x'"});
   for (const char* t : {"0", "0.25", "0.5", "0.75", "1"}) {

@@ -13,8 +13,9 @@ using Result = test::Motion;
 
 void run(const std::string& text, SimulationOptions o, Result& r, const char* form = "routh",
          bool with_integrals = true) {
-  Scenario s;
-  ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation(form), o.state, s).ok());
+  Scenario prepared;
+  ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation(form), o.state, prepared).ok());
+  Workspace s(prepared);
   if (with_integrals) o.conserved = conserved(*s.mechanics);
   r.report = simulate(s, o, r.rows);
 }

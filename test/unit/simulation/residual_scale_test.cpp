@@ -16,7 +16,8 @@ Scenario scenario(const std::string& text) {
   return s;
 }
 
-SimulationReport report(const Scenario& s, const Rational& to, const Rational& every = 0) {
+SimulationReport report(const Scenario& scenario, const Rational& to, const Rational& every = 0) {
+  Workspace s(scenario);
   SimulationOptions o;
   o.to = to;
   if (every > 0) o.every = every;
@@ -134,7 +135,7 @@ std::string pendulum(const char* mass) {
 // know better, whatever the units.
 TEST(ResidualScale, AWrongSignIsReportedLarge) {
   for (const char* mass : {"1", "1/1000000000", "1000000000"}) {
-    Scenario s = scenario(pendulum(mass));
+    Workspace s(scenario(pendulum(mass)));
     const SimulationReport right = report(s, 1, Rational(1, 10));
     EXPECT_LT(right.newton, kRoundoff) << mass;
     EXPECT_LT(right.power, 1e-10) << mass;

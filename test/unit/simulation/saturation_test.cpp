@@ -137,7 +137,6 @@ std::vector<CaseResult> swept(const Case& c, std::vector<Rational> masses) {
   EnsembleOptions o;
   o.to = c.to;
   o.threads = 1;
-  o.again = [t = text(c)] { return test::model_of(t); };
   o.varied = {{Varied::Kind::parameter, 0, 0, "a"}};
   o.cases = masses.size();
   o.numbers = [&](std::size_t k) { return EnsembleCase{{masses[k]}, {}}; };

@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Models, SecondOpinionOn, testing::ValuesIn(cases()), []
 // What the other integrator makes of the same motion with one parameter changed.
 double difference(Integrator integrator, double factor) {
   Motion motion(test::shipped_text("zoo/chaplygin-sleigh"));
-  const Scenario& s = motion.scenario;
+  Workspace s(motion.scenario);
   motion.by(Integrator::taylor);
   const Program p = program(s.system, s.structure);
   std::vector<double> parameters = parameter_values<double>(*s.model);
