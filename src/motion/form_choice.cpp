@@ -1,5 +1,5 @@
 #include "motion/form_choice.h"
-#include "integrate/taylor.h"
+#include "integrate/stepper.h"
 #include "motion/start.h"
 
 #include <algorithm>
