@@ -101,12 +101,15 @@ Outcome Motion<N>::step(const W& end) {
   if (leg_->stepper.expansions() != expansions) mark_ = before, begun_parameters_ = parameters_;
   // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
   if (!o.ok() && pivots_ && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
+  // The next step begins with the state as a sum in the wider type: a lane may have it as another sum of two doubles.
+  if (o.ok()) leg_->stepper.leave_kernel();
   stepped_ = true;
   return o;
 }
 
 template <Number N>
 Outcome Motion<N>::at(const W& t) {
+  leg_->stepper.leave_kernel();
   if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
     o.message += " at t = " + number_text(to_double(t), 12);
     return o;
@@ -150,6 +153,7 @@ void Motion<N>::note_pivots() {
 // Where the motion has come to; what leads it is a guess.
 template <Number N>
 const Expansion<typename Motion<N>::W>& Motion<N>::present() {
+  leg_->stepper.leave_kernel();
   leg_->present.load(leg_->stepper.time(), leg_->stepper.state(), leg_->stepper.leading());
   return leg_->present;
 }
@@ -218,8 +222,6 @@ bool Motion<N>::eliminate_again() {
     choices_.back().taken = true;
     ++eliminations_;
   }
-  // They are those of the motion where it is, outside of the kernel.
-  if (taken && pivots_) leg_->stepper.leave_kernel();
   note_pivots();
   if (taken) mark_ = {choices_.size(), chosen_};
   return taken;
