@@ -271,7 +271,16 @@ void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions,
   while (all([](Stepper<double>& s) { return s.begin_step(); })) {
     kernel.begin();
     all([&](Stepper<double>& s) { return s.aim(end); });
-    kernel.advance();
+    for (bool again = true; again;) {
+      kernel.advance();
+      kernel.start_next();
+      again = false;
+      all([&](Stepper<double>& s) {
+        const EndOfStep there = s.look_at_end(end);
+        again = again || there == EndOfStep::elsewhere;
+        return there != EndOfStep::failed;
+      });
+    }
     all([](Stepper<double>& s) { return s.finish_step(); });
     if (!last) continue;
     last->resize(motions.size());

@@ -19,7 +19,7 @@ LEVEL = {
     "modelfile/motion": 5.4, "modelfile/check": 5.5, "modelfile": 5.6, "mechanics": 5.7,
     "formulation": 6, "formulation/forms": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof": 8,
     "program": 9, "setup": 9.2, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
-    "integrate": 10, "result": 11, "motion": 11.5, "observe": 12, "linear": 12, "simulation": 12.2,
+    "integrate/series": 9.8, "integrate": 10, "integrate/states": 10.1, "result": 11, "motion": 11.5, "observe": 12, "linear": 12, "simulation": 12.2,
     "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "api": 13.8, "cli": 14, "python": 14,
 }  # fmt: skip
 
@@ -45,7 +45,9 @@ NOT = {
     "kernel/tiers": MODELFILE | {"proof", "setup"},
     "kernel": MODELFILE | {"proof", "setup"},
     "integrate": MODELFILE | {"proof", "setup"},
-    "report": {"jit", "integrate"},
+    "integrate/series": MODELFILE | {"proof", "setup"},
+    "integrate/states": MODELFILE | {"proof", "setup"},
+    "report": {"jit", "integrate", "integrate/series", "integrate/states"},
 }
 
 # The checker of certificates must not trust the simplifier: it and the format see numbers only.
@@ -64,7 +66,7 @@ OUTSIDE = [
     (r"(hdf5|H5\w*)(_hl)?\.h$", "HDF5", {"result"}, 1),
     (r"cairo(-\w+)?\.h$", "cairo", {"plot"}, 1),
     (r"sqlite3\.h$", "SQLite", {"result"}, 1),
-    (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate"}, 1),
+    (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate/states"}, 1),
     (r"(tbb|oneapi)/", "oneTBB", {"ensemble"}, 1),
     (r"pybind11/", "pybind11", {"python"}, None),
     (r"nlohmann/", "nlohmann-json", {"proof", "simulation"}, 1),
@@ -217,11 +219,11 @@ MUTANTS = {
     "across": ("src/mechanics/bad.cpp", '#include "modelfile/read.h"\n'),
     "across, below": ("src/formulation/forms/bad.cpp", '  #  include "modelfile/read.h"\n'),
     "result sees numbers only": ("src/result/bad.cpp", '#include "model/model.h"\n'),
-    "report does not integrate": ("src/report/bad.cpp", '#include "integrate/taylor.h"\n'),
+    "report does not integrate": ("src/report/bad.cpp", '#include "integrate/stepper.h"\n'),
     "the compiler sees kernels only": ("src/jit/bad.cpp", '#include "program/program.h"\n'),
     "the compiler has no functions of its own": ("src/jit/bad.cpp", '#include "expr/elementary.def"\n'),
     "kernels do without their compiler": ("src/kernel/bad.cpp", '#include "jit/emitter.h"\n'),
-    "kernels do not integrate": ("src/kernel/bad.cpp", '#include "integrate/taylor.h"\n'),
+    "kernels do not integrate": ("src/kernel/bad.cpp", '#include "integrate/stepper.h"\n'),
     "program does not prove": ("src/program/bad.cpp", '#include "proof/certificate.h"\n'),
     "verify trusts the simplifier": ("src/proof/verify.cpp", '#include "expr/graph.h"\n'),
     "verify trusts the prover": ("src/proof/verify_zero.cpp", '#include "proof/prove.h"\n'),

@@ -223,6 +223,7 @@ bool CaseWalk::rows() {
 // What is kept of the state at t, which lies in the last step.
 bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   const System& system = plan_->scenario.system;
+  stepper_->leave_kernel();  // as whoever reads a motion does (motion.cpp)
   if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
   for (const int k : {0, 1})
     for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));

@@ -14,8 +14,6 @@
 
 namespace anholon {
 
-enum class EndOfStep { good, elsewhere, failed };
-
 template <Number N>
 class EndCheck {
  public:

@@ -1,12 +1,10 @@
-// The part of the stepper that looks at the equations where a step is to end, and shortens it where they have become
-// others.
+#include "integrate/step_end.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "integrate/kink.h"
-#include "integrate/passed_over.h"
-#include "integrate/taylor.h"
-#include "kernel/kernel.h"
+#include "integrate/series/hidden_points.h"
+#include "integrate/series/kinks.h"
 
 namespace anholon {
 
@@ -21,6 +19,12 @@ constexpr int kMostShortKinks = 20;
 // A step of so many round-offs of the time is none.
 constexpr int kLeastRoundoffs = 64;
 
+template <Number N>
+Wider<N> least_step(const Wider<N>& t) {
+  using W = Wider<N>;
+  return convert<W>(unit_roundoff<N>()) * W(kLeastRoundoffs) * abs(t);
+}
+
 // Of the lengths that a step is shortened to, the largest surely below h: halves of what it would be without an end, so
 // that steps do not depend on where a run is to stop.
 template <Number W>
@@ -32,21 +36,44 @@ W shorter(W whole, const W& h) {
 
 }  // namespace
 
+template <Number N>
+StepEnd<N>::StepEnd(const Program& program, double log_tolerance, int order)
+    : program_(&program), log_tolerance_(log_tolerance), order_(order), check_(log_tolerance) {}
+
+template <Number N>
+void StepEnd<N>::set_slots(std::uint32_t end) {
+  slots_ = end;
+  hiding_.clear();
+  const Tape& tape = program_->tape;
+  for (std::uint32_t s = 0; s < end; ++s)
+    if (const auto function = may_hide(tape, tape.code[s])) hiding_.push_back({s, *function});
+}
+
+template <Number N>
+void StepEnd<N>::restart() {
+  short_kinks_ = 0;
+  finish();
+}
+
+template <Number N>
+void StepEnd<N>::finish() {
+  limit_ = W(0);
+  check_.forget();
+}
+
 // What Newton's method would change of the leading derivatives h beyond the expansion, in relation to the size of the
 // derivatives below them; with the LU of where the step begins, which does not lose more digits than the step itself.
 template <Number N>
-N Stepper<N>::defect_at(const W& h) {
+N StepEnd<N>::defect(PresentStep<N>& step, const W& h) {
   const Program& p = *program_;
-  std::vector<W> state, leading;
-  on_polynomial(h, state, leading);
-  Expansion<N>& there = loaded_ahead(t_ + h, state, leading);
+  Expansion<N>& there = step.load(h);
   there.evaluate();
-  there.equations(narrow_r_);
-  for (N& r : narrow_r_) {
+  there.equations(residual_);
+  for (N& r : residual_) {
     if (!is_finite(r)) return r;
     r = -r;
   }
-  expansion_.lu().solve_once(narrow_r_, narrow_y_);
+  step.series().lu().solve_once(residual_, change_);
   N worst(0);
   const int levels = *std::max_element(p.d.begin(), p.d.end());
   for (int d = 1; d <= levels; ++d) {
@@ -55,50 +82,42 @@ N Stepper<N>::defect_at(const W& h) {
       if (p.d[j] < d) continue;
       if (const N x = abs(there.derivative(j, d - 1)); x > size) size = x;
       if (p.d[j] > d) continue;
-      if (const N y = abs(narrow_y_[j]); !(y <= most)) most = y;
+      if (const N y = abs(change_[j]); !(y <= most)) most = y;
     }
     if (const N rate = most / size; !(rate <= worst)) worst = rate;
   }
   return worst;
 }
 
-template <Number N>
-void Stepper<N>::find_hiding(std::uint32_t end) {
-  hiding_.clear();
-  const Tape& tape = program_->tape;
-  for (std::uint32_t s = 0; s < end; ++s)
-    if (const auto function = may_hide(tape, tape.code[s])) hiding_.push_back({s, *function});
-}
-
 // Points within a step over h where a function may do what its series do not show.
 template <Number N>
-void Stepper<N>::find_hidden(const W& h) {
+void StepEnd<N>::find_hidden(PresentStep<N>& step, const W& h) {
   hidden_.clear();
   const N length = convert<N>(h);
-  if (by_kernel_)
-    find_hidden_by_kernel(length);
-  else
-    for (const auto& [slot, function] : hiding_) {
-      const Machine<N>& machine = expansion_.machine();
-      add_hidden(function, machine.series(hidden_argument(program_->tape.code[slot])), machine.series(slot), order_ - 1,
-                 length, hidden_);
-    }
+  if (const KernelExpansion* kernel = step.expander.kernel()) {
+    for (const double x : kernel->hidden_points(to_double(length))) hidden_.push_back(N(x));
+  } else {
+    const Machine<N>& machine = step.series().machine();
+    for (const auto& [slot, function] : hiding_)
+      add_hidden_points(function, machine.series(hidden_argument(program_->tape.code[slot])), machine.series(slot),
+                        order_ - 1, length, hidden_);
+  }
   std::sort(hidden_.begin(), hidden_.end(), [](const N& a, const N& b) { return abs(a) < abs(b); });
 }
 
 // Whether the equations hold at h beyond the expansion, and what is watched has the values of its series.
 template <Number N>
-bool Stepper<N>::may_end_at(const W& h) {
+bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h) {
   const N length = convert<N>(h);
-  find_hidden(h);
+  find_hidden(step, h);
   check_.begin(length, hidden_);
   for (;;) {
     const bool decides = check_.decides();
     const N where = check_.where();
-    auto next = check_.seen(defect_at(decides && where == length ? h : convert<W>(where)));
+    auto next = check_.seen(defect(step, decides && where == length ? h : convert<W>(where)));
     if (decides && next != EndCheck<N>::Next::shorten &&
-        !events_.as_foretold(expansion_, order_ - 1, where, settings_.log_tolerance,
-                             [this](std::size_t i) { return quadrature_there(i); }))
+        !events.as_foretold(step.series(), order_ - 1, where, log_tolerance_,
+                            [&](std::size_t i) { return step.look.quadrature(i); }))
       next = check_.refuse();
     switch (next) {
     case EndCheck<N>::Next::good:
@@ -111,109 +130,120 @@ bool Stepper<N>::may_end_at(const W& h) {
   }
 }
 
-// Shortens a step over h to what the equations hold for, and to its first kink. `whole`: what it would be without an
-// end.
 template <Number N>
-bool Stepper<N>::ends_as_foretold(W& h, const W& whole) {
+Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W& h, const W& whole) {
   const bool forward = h > W(0);
+  const W t = step.t(), last_step = step.track.now.record.last_step;
+  KernelExpansion* kernel = step.expander.kernel();
   // Where a formula that is watched has no series, its values are looked at, in a short step: then it has some, or none
   // at all.
   constexpr double kShort = 0x1p-10, kAsShort = 0x1p-8;
-  if (!events_.empty() && (record_.last_step == W(0) || record_.last_step > abs(h) * W(kAsShort)) &&
-      events_.without_series(expansion_, order_ - 1))
+  if (!events.empty() && (last_step == W(0) || last_step > abs(h) * W(kAsShort)) &&
+      events.without_series(step.series(), order_ - 1))
     h = shorter(whole, W(h * W(kShort)));
   Kink<N> kink;
   W where, past;
   // Where no length serves that the time can show, as a formula loses its value ahead, the step is made: that is what
   // ends the motion, and has a name.
-  const W first = h, least = convert<W>(unit_roundoff<N>()) * W(kLeastRoundoffs) * abs(t_);
+  const W first = h, least = least_step<N>(t);
   for (bool refused = false;; h = shorter(whole, h)) {
     if (refused && !(abs(h) > least))
       h = first;
     else
       refused = false;
-    if (!by_kernel_ || may_touch_zero_)
-      kink = first_kink<N>(expansion_.machine(), kinks_end(), order_ - 1, convert<N>(h));
+    if (!kernel || kernel->may_touch_zero())
+      kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h));
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
-    past = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t_) > abs(h) ? W(abs(t_)) : W(abs(h))) +
-           W(std::exp(settings_.log_tolerance)) * abs(h);
+    past = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t) > abs(h) ? W(abs(t)) : W(abs(h))) +
+           W(std::exp(log_tolerance_)) * abs(h);
     // Beyond a kink other functions hold.
     looked_ = kink.ahead ? W(where - (forward ? past : W(-past))) : where;
     if (!(abs(where) > past)) looked_ = W(0);
-    if (refused || by_kernel_ || looked_ == W(0) || may_end_at(looked_)) break;
+    if (refused || kernel || looked_ == W(0) || may_end_at(step, events, looked_)) break;
     refused = true;
   }
   at_kink_ = kink.at_start || kink.ahead;
-  if (!at_kink_) {
-    short_kinks_ = 0;
-    return true;
-  }
-  // At a kink functions are taken one-sided along the motion: a very short step finds the side.
-  short_kinks_ = !kink.at_start && !(abs(where) > past * W(4)) ? short_kinks_ + 1 : 0;
-  if (short_kinks_ > kMostShortKinks)
-    return fail({OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
-                 "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such "
-                 "as tanh(x/0.01) for sign(x)"});
+  if (Outcome o = note_kink(kink.at_start, where, past); !o.ok() || !at_kink_) return o;
   const W beyond = where + (forward ? past : W(-past));
   if (abs(beyond) < abs(h)) h = beyond, ++kinks_;
-  return true;
+  return {};
 }
 
-// The kernel goes so far beyond its expansion, to look at the equations there.
+// At a kink functions are taken one-sided along the motion: a very short step finds the side.
 template <Number N>
-void Stepper<N>::send_kernel(const W& h) {
+Outcome StepEnd<N>::note_kink(bool at_start, const W& where, const W& past) {
+  short_kinks_ = at_kink_ && !at_start && !(abs(where) > past * W(4)) ? short_kinks_ + 1 : 0;
+  if (short_kinks_ <= kMostShortKinks) return {};
+  return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
+          "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such "
+          "as tanh(x/0.01) for sign(x)"};
+}
+
+template <Number N>
+void StepEnd<N>::set_free(const W& h) {
+  looked_ = h;
+  at_kink_ = false;
+}
+
+template <Number N>
+void StepEnd<N>::set_one_sided() {
+  short_kinks_ = 0;
+  at_kink_ = true;
+  ++kinks_;
+}
+
+template <Number N>
+void StepEnd<N>::aim(PresentStep<N>& step, const W& t, bool arrives) {
+  aimed_ = t;
+  arrives_ = arrives;
+  KernelExpansion* kernel = step.expander.kernel();
+  if (!kernel) return;
+  const W h = t - step.t();
+  if (looked_ != W(0) && abs(h) < abs(looked_)) looked_ = h;
+  if (looked_ == W(0)) {
+    send(*kernel, step.t(), h);
+    return;
+  }
+  find_hidden(step, looked_);
+  check_.begin(convert<N>(looked_), hidden_);
+  send(*kernel, step.t(), convert<W>(check_.where()));
+}
+
+// The kernel goes h beyond its expansion at t, to look at the equations there.
+template <Number N>
+LookAtEnd StepEnd<N>::send(KernelExpansion& kernel, const W& t, const W& h) {
   sent_ = h;
-  const W t = h == aimed_ - t_ ? aimed_ : W(t_ + h);
-  kernel_->set_step(lane_, to_double(W(t - t_)));
-  kernel_->set_time(lane_, to_double(t));
+  const W to = h == aimed_ - t ? aimed_ : W(t + h);
+  kernel.send(to_double(W(to - t)), to_double(to));
+  return LookAtEnd::elsewhere;
 }
 
-// The kernel is where it was sent.
 template <Number N>
-EndOfStep Stepper<N>::looks_at_end(const W& end) {
-  if (!by_kernel_) return EndOfStep::good;
-  const W h = aimed_ - t_;
+LookAtEnd StepEnd<N>::look(KernelExpansion& kernel, const W& t, const N& horizon) {
+  const W h = aimed_ - t;
   const N length = convert<N>(looked_);
-  switch (looked_ == W(0) ? EndCheck<N>::Next::good : check_.seen(defect_by_kernel())) {
+  switch (looked_ == W(0) ? EndCheck<N>::Next::good : check_.seen(N(kernel.defect()))) {
   case EndCheck<N>::Next::good:
-    if (sent_ == h) return EndOfStep::good;
+    if (sent_ == h) return LookAtEnd::good;
     looked_ = W(0);
-    send_kernel(h);
-    return EndOfStep::elsewhere;
+    return send(kernel, t, h);
   case EndCheck<N>::Next::look:
-    send_kernel(check_.where() == length ? looked_ : convert<W>(check_.where()));
-    return EndOfStep::elsewhere;
+    return send(kernel, t, check_.where() == length ? looked_ : convert<W>(check_.where()));
   case EndCheck<N>::Next::shorten:
     break;
   }
-  const W limit = abs(shorter(convert<W>(horizon_), looked_));
-  if (!(limit > convert<W>(unit_roundoff<N>()) * W(kLeastRoundoffs) * abs(t_))) {
+  const W limit = abs(shorter(convert<W>(horizon), looked_));
+  if (!(limit > least_step<N>(t))) {
     looked_ = W(0);
-    send_kernel(h);
-    return EndOfStep::elsewhere;
+    return send(kernel, t, h);
   }
   limit_ = limit;
-  singular_ahead_ = false;
-  kinks_ = kinks_before_;
-  kernel_->show_advanced(false);
-  const bool good = aims(end);
-  if (!good) settle();
-  kernel_->show_advanced(true);
-  return good ? EndOfStep::elsewhere : EndOfStep::failed;
+  return LookAtEnd::shorten;
 }
 
-#define INSTANTIATE(N)                                                                                                 \
-  template N Stepper<N>::defect_at(const W&);                                                                          \
-  template bool Stepper<N>::may_end_at(const W&);                                                                      \
-  template void Stepper<N>::find_hiding(std::uint32_t);                                                                \
-  template void Stepper<N>::find_hidden(const W&);                                                                     \
-  template bool Stepper<N>::ends_as_foretold(W&, const W&);                                                            \
-  template void Stepper<N>::send_kernel(const W&);                                                                     \
-  template EndOfStep Stepper<N>::looks_at_end(const W&);
-INSTANTIATE(double)
-INSTANTIATE(long double)
-INSTANTIATE(Quad)
-INSTANTIATE(Multi)
-#undef INSTANTIATE
+template class StepEnd<double>;
+template class StepEnd<long double>;
+template class StepEnd<Quad>;
+template class StepEnd<Multi>;
 
 }  // namespace anholon

@@ -156,7 +156,7 @@ class Kernel {
   }
   void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
   void advance();
-  // e^-shrink of the radius of convergence is a step (integrate/taylor.h: step_size).
+  // e^-shrink of the radius of convergence is a step (integrate/step_control.h).
   void set_shrink(double shrink);
   double reach(int lane) const { return number(found().reach, lane); }
   // Whether the highest coefficients are numbers, and the largest number of a state after a step.

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrate/dormand_prince.h"
+#include "integrate/sigma_schedule.h"
+#include "integrate/states/dormand_prince.h"
 
 namespace anholon {
 
@@ -153,15 +154,16 @@ Outcome Course<N>::hand_over(const MotionPoint& p) {
   if constexpr (std::same_as<N, double>) {
     if (other_->steps() > 0) {
       StepperState<N> b = motion_.stepper().begun();
-      b.t = p.t;
-      b.state = p.state;
-      b.carry.assign(p.state.size(), 0);
-      b.leading = widened<W>(p.leading);
-      b.integrals = p.integrals;
-      b.integral_carry.assign(p.integrals.size(), 0);
-      b.branch_step = b.last_step = 0;
-      b.steps = motion_.stepper().steps();
-      b.careful = true;
+      MotionState<N>& m = b.motion;
+      m.t = p.t;
+      m.state = p.state;
+      m.carry.assign(p.state.size(), 0);
+      m.leading = widened<W>(p.leading);
+      m.integrals = p.integrals;
+      m.integral_carry.assign(p.integrals.size(), 0);
+      m.record.branch_step = m.record.last_step = 0;
+      m.record.steps = motion_.stepper().steps();
+      m.record.careful = true;
       if (Outcome o = motion_.go_on(b); !o.ok()) return o;
     }
     report_.refused += other_->refused();
@@ -199,7 +201,7 @@ template <Number N>
 void Course<N>::look() {
   if constexpr (std::same_as<N, double>) {
     const double health = other_->rate().pivots() ? other_->rate().pivots()->health : 1;
-    if (!due_for_a_look(other_->steps()) && !(health < least_health_ * kNewsOfPivots)) return;
+    if (!sigma_is_due(other_->steps()) && !(health < least_health_ * kPivotDropToRecheck)) return;
     least_health_ = std::min(least_health_, health);
     const MotionPoint& p = other_->before();
     look_->load(static_cast<double>(p.t), std::vector<double>(p.state.begin(), p.state.end()), p.leading);

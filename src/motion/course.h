@@ -5,7 +5,7 @@
 // a stretch of the motion itself and counted in operations, never measured in time, so the same motion always takes the
 // same course.
 #pragma once
-#include "integrate/state_rate.h"
+#include "integrate/states/state_rate.h"
 #include "motion/code_for_long_runs.h"
 #include "motion/methods.h"
 #include "motion/motion.h"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "integrate/bdf.h"
-#include "integrate/runge_kutta.h"
+#include "integrate/states/bdf.h"
+#include "integrate/states/runge_kutta.h"
 #include "kernel/kernel.h"
 #include "motion/course.h"
 

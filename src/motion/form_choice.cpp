@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrate/taylor.h"
+#include "integrate/stepper.h"
 #include "motion/start.h"
 
 namespace anholon {

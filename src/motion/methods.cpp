@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "integrate/sundials.h"
+#include "integrate/states/sundials.h"
 #include "numeric/number.h"
 
 namespace anholon {

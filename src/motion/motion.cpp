@@ -103,12 +103,15 @@ Outcome Motion<N>::step(const W& end) {
   if (leg_->stepper.expansions() != expansions) mark_ = before, begun_parameters_ = parameters_;
   // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
   if (!o.ok() && leg_->pivots && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
+  // The next step begins with the state as a sum in the wider type: a lane may have it as another sum of two doubles.
+  if (o.ok()) leg_->stepper.leave_kernel();
   stepped_ = true;
   return o;
 }
 
 template <Number N>
 Outcome Motion<N>::at(const W& t) {
+  leg_->stepper.leave_kernel();
   if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
     o.message += " at t = " + number_text(to_double(t), 12);
     return o;
@@ -157,6 +160,7 @@ void Motion<N>::note_pivots() {
 // Where the motion has come to; what leads it is a guess.
 template <Number N>
 const Expansion<typename Motion<N>::W>& Motion<N>::present() {
+  leg_->stepper.leave_kernel();
   leg_->present.load(leg_->stepper.time(), leg_->stepper.state(), leg_->stepper.leading());
   return leg_->present;
 }
@@ -235,19 +239,24 @@ bool Motion<N>::eliminate_again() {
 
 template <Number N>
 void Motion<N>::save(SavedRun& to) const {
-  const StepperState<N>& b = leg_->stepper.begun();
-  to.set_numbers<W>("t", {b.t});
-  to.set_numbers("state", b.state);
-  to.set_numbers("carry", b.carry);
-  to.set_numbers("leading", b.leading);
-  to.set_numbers("own", b.own);
-  to.set_numbers("own_leading", b.own_leading);
-  to.set_numbers("integrals", b.integrals);
-  to.set_numbers("integral_carry", b.integral_carry);
-  to.set_numbers<W>("stepper", {b.branch_step, b.worst_constraint, b.worst_equation, b.smallest_sigma_t, b.last_step});
-  to.set_numbers<N>("sigma", {b.first_sigma, b.smallest_sigma, b.sigma_before, b.least_health});
-  to.set_numbers("direction", b.direction);
-  to.set("counts", {std::to_string(b.steps), std::to_string(b.weakest), b.careful ? "1" : "0"});
+  // By structured bindings: a member that is added later and forgotten here does not compile.
+  const StepperState<N> begun = leg_->stepper.begun();
+  const auto& [motion, direction, sides] = begun;
+  const auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
+  const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, smallest_sigma, smallest_sigma_t,
+               weakest, sigma_before, last_step, least_health, careful] = record;
+  to.set_numbers<W>("t", {t});
+  to.set_numbers("state", state);
+  to.set_numbers("carry", carry);
+  to.set_numbers("leading", leading);
+  to.set_numbers("own", own);
+  to.set_numbers("own_leading", own_leading);
+  to.set_numbers("integrals", integrals);
+  to.set_numbers("integral_carry", integral_carry);
+  to.set_numbers<W>("stepper", {branch_step, worst_constraint, worst_equation, smallest_sigma_t, last_step});
+  to.set_numbers<N>("sigma", {first_sigma, smallest_sigma, sigma_before, least_health});
+  to.set_numbers("direction", direction);
+  to.set("counts", {std::to_string(steps), std::to_string(weakest), careful ? "1" : "0"});
   std::vector<double> choices;
   for (std::size_t i = 0; i < mark_.choices; ++i) {
     const Choice& c = choices_[i];
@@ -261,8 +270,7 @@ void Motion<N>::save(SavedRun& to) const {
   }
   to.set_numbers("eliminations", choices);
   to.set_numbers("pivots", mark_.chosen);
-  std::vector<W> sides(b.sides.begin(), b.sides.end());
-  to.set_numbers("sides", sides);
+  to.set_numbers("sides", std::vector<W>(sides.begin(), sides.end()));
   to.set_numbers("modes", begun_parameters_);
 }
 
@@ -312,32 +320,35 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   const std::vector<N> sigma = from.numbers<N>("sigma", 4);
   const std::vector<long double> counts = from.numbers<long double>("counts", 3);
   StepperState<N> b;
-  b.t = from.number<W>("t");
-  b.state = from.numbers<W>("state", size);
-  b.carry = from.numbers<W>("carry", size);
-  b.leading = from.numbers<W>("leading");
-  if (!b.leading.empty() && b.leading.size() != p.unknowns()) SavedRun::unfit("leading");
-  b.own = from.numbers<W>("own");
-  b.own_leading = from.numbers<W>("own_leading");
-  b.integrals = from.numbers<W>("integrals", p.quadratures);
-  b.integral_carry = from.numbers<W>("integral_carry", p.quadratures);
-  b.branch_step = more[0];
-  b.worst_constraint = more[1];
-  b.worst_equation = more[2];
-  b.smallest_sigma_t = more[3];
-  b.last_step = more[4];
-  b.first_sigma = sigma[0];
-  b.smallest_sigma = sigma[1];
-  b.sigma_before = sigma[2];
-  b.least_health = sigma[3];
-  b.steps = static_cast<std::size_t>(counts[0]);
-  b.weakest = static_cast<std::size_t>(counts[1]);
-  b.careful = counts[2] != 0;
-  b.direction = from.numbers<N>("direction");
-  for (const W& side : from.numbers<W>("sides", watched().size())) b.sides.push_back(static_cast<int>(to_double(side)));
-  if (b.weakest >= p.unknowns() || (!b.direction.empty() && b.direction.size() != p.unknowns()))
-    SavedRun::unfit("direction");
-  if (!leg_->pivots) effort_ = effort_after(b.steps);
+  auto& [motion, direction, sides] = b;
+  auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
+  auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, smallest_sigma, smallest_sigma_t, weakest,
+         sigma_before, last_step, least_health, careful] = record;
+  t = from.number<W>("t");
+  state = from.numbers<W>("state", size);
+  carry = from.numbers<W>("carry", size);
+  leading = from.numbers<W>("leading");
+  if (!leading.empty() && leading.size() != p.unknowns()) SavedRun::unfit("leading");
+  own = from.numbers<W>("own");
+  own_leading = from.numbers<W>("own_leading");
+  integrals = from.numbers<W>("integrals", p.quadratures);
+  integral_carry = from.numbers<W>("integral_carry", p.quadratures);
+  branch_step = more[0];
+  worst_constraint = more[1];
+  worst_equation = more[2];
+  smallest_sigma_t = more[3];
+  last_step = more[4];
+  first_sigma = sigma[0];
+  smallest_sigma = sigma[1];
+  sigma_before = sigma[2];
+  least_health = sigma[3];
+  steps = static_cast<std::size_t>(counts[0]);
+  weakest = static_cast<std::size_t>(counts[1]);
+  careful = counts[2] != 0;
+  direction = from.numbers<N>("direction");
+  for (const W& side : from.numbers<W>("sides", watched().size())) sides.push_back(static_cast<int>(to_double(side)));
+  if (weakest >= p.unknowns() || (!direction.empty() && direction.size() != p.unknowns())) SavedRun::unfit("direction");
+  if (!leg_->pivots) effort_ = effort_after(steps);
   accelerate(*leg_);
   return leg_->stepper.resume(b);
 }

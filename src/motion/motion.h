@@ -10,7 +10,7 @@
 #include <functional>
 #include <optional>
 
-#include "integrate/taylor.h"
+#include "integrate/stepper.h"
 #include "motion/code_for_long_runs.h"
 #include "motion/representation.h"
 #include "motion/saved.h"

@@ -1,6 +1,6 @@
 #include "motion/start.h"
 
-#include "integrate/taylor.h"
+#include "integrate/stepper.h"
 #include "setup/redundant.h"
 
 namespace anholon {

@@ -19,7 +19,7 @@
 //
 // All bounds are relative as those of the residual report: to the largest term, and at least to 1.
 #pragma once
-#include "integrate/taylor.h"
+#include "integrate/stepper.h"
 #include "numeric/ball.h"
 #include "setup/scenario.h"
 

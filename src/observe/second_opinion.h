@@ -4,7 +4,7 @@
 // Forms that eliminate coordinates are asked in Routh's equations: theirs hold on the constraints only, which SUNDIALS
 // leaves by its error, and where a pivot becomes small that error grows without bound (theory: second-opinion).
 #pragma once
-#include "integrate/sundials.h"
+#include "integrate/states/sundials.h"
 #include "setup/scenario.h"
 
 namespace anholon {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "integrate/crossing.h"
+#include "integrate/series/sign_change.h"
 
 namespace anholon {
 namespace {

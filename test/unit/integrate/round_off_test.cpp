@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "integrate/taylor.h"
+#include "integrate/stepper.h"
 #include "kernel/kernel.h"
 #include "structure/consistent.h"
 #include "support/models.h"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "integrate/dormand_prince.h"
+#include "integrate/states/dormand_prince.h"
 
 namespace anholon {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ensemble/ensemble.h"
-#include "integrate/taylor.h"
+#include "integrate/stepper.h"
 #include "simulation/simulate.h"
 #include "support/models.h"
 #include "support/rows.h"

@@ -9,8 +9,9 @@
 #include <memory>
 #include <optional>
 
-#include "integrate/taylor.h"
+#include "integrate/step_control.h"
 #include "kernel/kernel.h"
+#include "program/expansion.h"
 
 namespace anholon {
 

@@ -1,8 +1,8 @@
-#include "integrate/events.h"
+#include "integrate/series/events.h"
 
 #include <algorithm>
 
-#include "integrate/crossing.h"
+#include "integrate/series/sign_change.h"
 
 namespace anholon {
 

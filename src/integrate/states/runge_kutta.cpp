@@ -1,4 +1,4 @@
-#include "integrate/runge_kutta.h"
+#include "integrate/states/runge_kutta.h"
 
 #include <algorithm>
 #include <cmath>
@@ -240,21 +240,26 @@ void RungeKutta::advance(MotionPoint& to, std::vector<long double>& carry, doubl
   for (std::size_t i = 0; i < n; ++i) add(to.state[i], carry[i], h * change_[i]);
 }
 
-Outcome RungeKutta::step(long double end) {
+// Interrupted if the caller has cancelled the motion, or the end lies beyond the step limit.
+Outcome RungeKutta::may_go_on(long double left) const {
   if (settings_.cancelled && settings_.cancelled())
     return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   if (steps_ >= settings_.most_steps)
     return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
+  if (steps_ < kStepsToJudge) return {};
+  const double mean = static_cast<double>(std::abs(now_.t - started_)) / static_cast<double>(steps_);
+  if (static_cast<double>(std::abs(left)) > std::max(mean, h_) * static_cast<double>(settings_.most_steps - steps_))
+    return {OutcomeKind::interrupted,
+            "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " +
+                number_text(h_, 2) + " long",
+            "end the motion earlier, or take what is very fast or very stiff out of the model"};
+  return {};
+}
+
+Outcome RungeKutta::step(long double end) {
   const long double left = end - now_.t;
+  if (Outcome o = may_go_on(left); !o.ok()) return o;
   const double floor = 0x1p-53 * kCollapsedRoundoffs * static_cast<double>(std::abs(now_.t));
-  if (steps_ >= kStepsToJudge) {
-    const double mean = static_cast<double>(std::abs(now_.t - started_)) / static_cast<double>(steps_);
-    if (static_cast<double>(std::abs(left)) > std::max(mean, h_) * static_cast<double>(settings_.most_steps - steps_))
-      return {OutcomeKind::interrupted,
-              "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " +
-                  number_text(h_, 2) + " long",
-              "end the motion earlier, or take what is very fast or very stiff out of the model"};
-  }
   k_[0] = here_;
   narrow(now_.state, start_);
   level_sizes(rate_, start_, sizes_);

@@ -3,7 +3,7 @@
 #pragma once
 #include <optional>
 
-#include "integrate/sundials.h"
+#include "integrate/states/sundials.h"
 
 namespace anholon {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "integrate/crossing.h"
+#include "integrate/series/sign_change.h"
 #include "numeric/multi.h"
 
 namespace anholon {

@@ -5,8 +5,8 @@
 // constraints, by the first evaluation of the next one. Step sizes follow the error estimate by a PI controller
 // (theory: methods).
 #pragma once
-#include "integrate/dormand_prince.h"
-#include "integrate/state_rate.h"
+#include "integrate/states/dormand_prince.h"
+#include "integrate/states/state_rate.h"
 
 namespace anholon {
 
@@ -25,6 +25,7 @@ class RungeKutta final : public StateStepper {
  private:
   using Stages = std::array<std::vector<double>, dormand_prince::kStages>;
 
+  Outcome may_go_on(long double left) const;
   Outcome first_rate();
   double first_step(double direction);
   Outcome stages(const MotionPoint& from, double h);

@@ -1,8 +1,8 @@
-#include "integrate/kink.h"
+#include "integrate/series/kinks.h"
 
 #include <algorithm>
 
-#include "integrate/crossing.h"
+#include "integrate/series/sign_change.h"
 
 namespace anholon {
 

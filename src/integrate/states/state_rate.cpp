@@ -1,4 +1,4 @@
-#include "integrate/state_rate.h"
+#include "integrate/states/state_rate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "integrate/sundials.h"
+#include "integrate/states/sundials.h"
 
 #include <algorithm>
 #include <cmath>

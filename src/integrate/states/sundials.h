@@ -17,7 +17,7 @@
 #include <functional>
 #include <memory>
 
-#include "integrate/state_rate.h"
+#include "integrate/states/state_rate.h"
 #include "model/model.h"
 
 namespace anholon {

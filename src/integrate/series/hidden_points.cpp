@@ -1,9 +1,9 @@
-#include "integrate/passed_over.h"
+#include "integrate/series/hidden_points.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "integrate/crossing.h"
+#include "integrate/series/sign_change.h"
 
 namespace anholon {
 
@@ -41,8 +41,8 @@ N value_of(const Hiding& f, const N& u) {
 }  // namespace
 
 template <Number N>
-void add_hidden(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
-                std::vector<N>& points) {
+void add_hidden_points(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
+                       std::vector<N>& points) {
   const N length = abs(h);
   N moves(0);
   for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
@@ -114,10 +114,10 @@ void add_hidden(const Hiding& function, const N* argument, const N* value, int d
   }
 }
 
-template void add_hidden(const Hiding&, const double*, const double*, int, const double&, std::vector<double>&);
-template void add_hidden(const Hiding&, const long double*, const long double*, int, const long double&,
-                         std::vector<long double>&);
-template void add_hidden(const Hiding&, const Quad*, const Quad*, int, const Quad&, std::vector<Quad>&);
-template void add_hidden(const Hiding&, const Multi*, const Multi*, int, const Multi&, std::vector<Multi>&);
+template void add_hidden_points(const Hiding&, const double*, const double*, int, const double&, std::vector<double>&);
+template void add_hidden_points(const Hiding&, const long double*, const long double*, int, const long double&,
+                                std::vector<long double>&);
+template void add_hidden_points(const Hiding&, const Quad*, const Quad*, int, const Quad&, std::vector<Quad>&);
+template void add_hidden_points(const Hiding&, const Multi*, const Multi*, int, const Multi&, std::vector<Multi>&);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-#include "integrate/bdf.h"
+#include "integrate/states/bdf.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "integrate/crossing.h"
+#include "integrate/series/sign_change.h"
 
 #include <algorithm>
 #include <cmath>

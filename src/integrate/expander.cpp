@@ -1,0 +1,172 @@
+#include "integrate/expander.h"
+
+#include "integrate/sigma_schedule.h"
+
+namespace anholon {
+
+namespace {
+
+// Notes where an expansion is begun; with a kernel what is in its lane is read there later.
+template <Number N>
+void note_begun(MotionTrack<N>& track, const std::vector<Wider<N>>& guess, bool by_kernel, bool mapped) {
+  MotionState<N>& b = track.begun().at.motion;
+  const MotionState<N>& now = track.now;
+  track.begun().by_kernel = by_kernel;
+  b.t = now.t;
+  if (by_kernel && mapped) b.state.clear();
+  if (!by_kernel) {
+    b.state = now.state;
+    b.carry = now.carry;
+    b.carry.resize(now.state.size(), Wider<N>(0));
+    b.leading = guess;
+    b.own.clear();
+  }
+  if (!now.integrals.empty()) {
+    b.integrals = now.integrals;
+    b.integral_carry = now.integral_carry;
+  }
+  b.record = now.record;
+}
+
+// What the reference starts from.
+template <Number N>
+void note_reference(MotionTrack<N>& track, const Expansion<N>& series, const std::vector<int>& sides) {
+  track.begun().at.direction = series.weakest_direction();
+  track.begun().at.sides = sides;
+  track.now.own.clear();
+  if (track.now.carry.empty()) track.now.carry.assign(track.now.state.size(), Wider<N>(0));
+}
+
+// By the polynomials of the reference.
+template <Number N>
+void reference_state_at(const ReferenceExpansion<N>& reference, const Expansion<Wider<N>>& point, const Wider<N>& h,
+                        std::vector<Wider<N>>& state, std::vector<Wider<N>>& leading) {
+  std::vector<Wider<N>> increments;
+  reference.polynomial(h, point, increments, leading);
+  point.state(state);
+  for (std::size_t i = 0; i < state.size(); ++i) state[i] += increments[i];
+}
+
+}  // namespace
+
+template <Number N>
+void ReferenceExpander<N>::begin(MotionTrack<N>& track, const std::vector<W>& guess, bool again) {
+  if (!again) track.begin_next();
+  note_begun(track, guess, false, false);
+  track.now.record.careful = false;
+}
+
+template <Number N>
+Outcome ReferenceExpander<N>::prepare(MotionTrack<N>& track, const std::vector<W>& guess,
+                                      const std::vector<int>& sides) {
+  note_reference(track, series(), sides);
+  return reference_.prepare(track.now, guess);
+}
+
+template <Number N>
+void ReferenceExpander<N>::state_at(const MotionTrack<N>&, const W& h, std::vector<W>& state,
+                                    std::vector<W>& leading) const {
+  reference_state_at(reference_, point_, h, state, leading);
+}
+
+template class ReferenceExpander<long double>;
+template class ReferenceExpander<Quad>;
+template class ReferenceExpander<Multi>;
+
+GuardedExpander::GuardedExpander(const Program& program, const std::vector<double>& parameters,
+                                 const std::vector<W>& wide_parameters, const StepSettings& settings, int order)
+    : measure_(settings.measure), shrink_(step_shrink(settings.log_tolerance, order)),
+      reference_(program, parameters, order), point_{{program, wide_parameters, 1}, Point::Known::values} {}
+
+// The motion is another one.
+void GuardedExpander::restart() {
+  if (kernel_) kernel_->drop();
+  maker_ = Maker::reference;
+  point_.known = Point::Known::values;
+  awaits_kernel_ = false;
+}
+
+void GuardedExpander::reset() {
+  restart();
+  by_kernel_ = 0;
+  if (kernel_) kernel_->forget_suspicion();
+}
+
+bool GuardedExpander::kernel_serves(const StepRecord<double>& record) const {
+  const bool look = measure_ && (record.first_sigma == 0 || sigma_is_due(record.steps));
+  return kernel_ && !look && !record.careful;
+}
+
+// `again`: from where the present expansion was begun, or another place, in the same step. A kernel that belongs to
+// others, too, is then left in peace.
+void GuardedExpander::begin(MotionTrack<double>& track, const std::vector<W>& guess, bool again) {
+  awaits_kernel_ = kernel_serves(track.now.record) && (!again || alone());
+  if (!again) {
+    if (!awaits_kernel_) take_back(track, false);
+    track.begin_next();
+    if (kernel_) kernel_->forget_suspicion();
+  }
+  note_begun(track, guess, awaits_kernel_, kernel_ && kernel_->mapped());
+  track.now.record.careful = false;
+  if (awaits_kernel_) kernel_->load(track, guess);
+}
+
+bool GuardedExpander::end_by_kernel(MotionTrack<double>& track) {
+  if (!std::exchange(awaits_kernel_, false)) return false;
+  if (!kernel_->serves(track.now.record, measure_, maker_ == Maker::kernel)) {
+    kernel_->take_back_as_begun(track);
+    return false;
+  }
+  maker_ = Maker::kernel;
+  point_.known = Point::Known::nothing;
+  ++by_kernel_;
+  return true;
+}
+
+Outcome GuardedExpander::prepare(MotionTrack<double>& track, const std::vector<W>& guess,
+                                 const std::vector<int>& sides) {
+  note_reference(track, series(), sides);
+  maker_ = Maker::reference;
+  point_.known = Point::Known::values;
+  return reference_.prepare(track.now, guess);
+}
+
+MotionState<double> GuardedExpander::motion(const MotionTrack<double>& track, bool expanded) const {
+  MotionState<double> m = track.now;
+  if (kernel_) kernel_->read(m, expanded);
+  if (m.carry.empty()) m.carry.assign(m.state.size(), W(0));
+  return m;
+}
+
+// Expansions by the kernel change neither the direction nor the sides.
+StepperState<double> GuardedExpander::begun(const MotionTrack<double>& track, const std::vector<int>& sides) const {
+  if (!kernel_) return track.begun().at;
+  MotionTrack<double> all = track;
+  kernel_->read_begun(all);
+  if (kernel()) all.begun().at.direction = series().weakest_direction(), all.begun().at.sides = sides;
+  return all.begun().at;
+}
+
+const Expansion<GuardedExpander::W>& GuardedExpander::point(const MotionTrack<double>& track, bool values) const {
+  using Known = Point::Known;
+  if (point_.known == Known::nothing) {
+    const W& begun = track.begun().at.motion.t;
+    point_.solution.load(begun, kernel()->base(begun), kernel()->leading());
+    point_.known = Known::solution;
+    // The kernel knows no multipliers.
+    if (kernel()->mapped() && point_.solution.prepare().ok()) point_.solution.solve();
+  }
+  if (values && point_.known == Known::solution) {
+    point_.solution.evaluate();
+    point_.known = Known::values;
+  }
+  return point_.solution;
+}
+
+void GuardedExpander::state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state,
+                               std::vector<W>& leading) const {
+  if (kernel()) return kernel()->state_at(track.begun().at.motion.t, h, state, leading);
+  reference_state_at(reference_, point_.solution, h, state, leading);
+}
+
+}  // namespace anholon

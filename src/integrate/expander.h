@@ -1,0 +1,162 @@
+// What makes the Taylor expansions of a stepper: the reference, or, for doubles, a kernel while it is healthy and the
+// reference otherwise. Both have the same face; the number type chooses between them when the program is compiled.
+//
+// An expansion is made in parts, as a kernel may have motions of others in its other lanes:
+//   begin() -> the kernel is expanded, if it is awaited -> end_by_kernel(), and if that says no:
+//   prepare() -> solve() [-> extend(), or cut_to() where formulas have no derivatives]
+#pragma once
+#include "integrate/kernel_expansion.h"
+#include "integrate/reference_expansion.h"
+
+namespace anholon {
+
+template <Number N>
+class ReferenceExpander {
+ public:
+  using W = Wider<N>;
+  ReferenceExpander(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
+                    const StepSettings& settings, int order)
+      : shrink_(step_shrink(settings.log_tolerance, order)), reference_(program, parameters, order),
+        point_(program, wide_parameters, 1) {}
+
+  // The kernel that has made the present expansion; null if the reference has.
+  static constexpr KernelExpansion* kernel() { return nullptr; }
+  static constexpr bool accelerated() { return false; }
+  static constexpr bool alone() { return true; }
+  static constexpr bool suspected() { return false; }
+  static constexpr std::size_t expansions_by_kernel() { return 0; }
+  void restart() {}  // no expansion is made
+  void reset() {}    // nor counted
+
+  void begin(MotionTrack<N>& track, const std::vector<W>& guess, bool again);
+  static constexpr void expand_kernel() {}
+  static constexpr bool end_by_kernel(MotionTrack<N>&) { return false; }
+  Outcome prepare(MotionTrack<N>& track, const std::vector<W>& guess, const std::vector<int>& sides);
+  Outcome solve(MotionTrack<N>& track, const std::vector<W>& guess) {
+    return reference_.solve(track.now, guess, point_);
+  }
+  Outcome extend() { return reference_.extend(); }
+  void cut_to(const MotionState<N>& m, const std::vector<W>& leading) { reference_.cut_to(m, leading, point_); }
+  N reach() const { return reference_.reach(shrink_); }
+  // The present expansion is used up to there.
+  static constexpr void set_horizon(const N&) {}
+
+  bool advance(MotionTrack<N>& track, const W& h) { return reference_.advance(track.now, h, point_); }
+
+  // A motion that is in a kernel's lane is read, or taken out of it.
+  MotionState<N> motion(const MotionTrack<N>& track, bool) const { return track.now; }
+  StepperState<N> begun(const MotionTrack<N>& track, const std::vector<int>&) const { return track.begun().at; }
+  void take_back(MotionTrack<N>&, bool) {}
+
+  // The expansion of the reference: that of the present step if no kernel has made that.
+  Expansion<N>& series() { return reference_.series(); }
+  const Expansion<N>& series() const { return reference_.series(); }
+  N coefficient(std::size_t j, int k) const { return series().coefficient(j, k); }
+  N quadrature(std::size_t i, int k) const { return series().quadrature(i)[k]; }
+  const Expansion<W>& point(const MotionTrack<N>&, bool) const { return point_; }
+  // State and leading derivatives h beyond where the present expansion was made.
+  void state_at(const MotionTrack<N>&, const W& h, std::vector<W>& state, std::vector<W>& leading) const;
+
+ private:
+  double shrink_;
+  ReferenceExpansion<N> reference_;
+  Expansion<W> point_;
+};
+
+// Expansions by the kernel are those of the reference to round-off. The reference makes those that are asked for with
+// care, the first one and ever fewer others, to measure how regular J is, and all for which the kernel does not serve.
+class GuardedExpander {
+ public:
+  using N = double;
+  using W = Wider<double>;
+  GuardedExpander(const Program& program, const std::vector<double>& parameters, const std::vector<W>& wide_parameters,
+                  const StepSettings& settings, int order);
+
+  void accelerate(KernelExpansion kernel) { kernel_ = std::move(kernel); }
+  const std::vector<W>& wide_parameters() const { return point_.solution.parameters(); }
+
+  KernelExpansion* kernel() { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
+  const KernelExpansion* kernel() const { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
+  bool accelerated() const { return kernel_.has_value(); }
+  bool alone() const { return !kernel_ || kernel_->alone(); }
+  bool suspected() const { return kernel_ && kernel_->suspected(); }
+  std::size_t expansions_by_kernel() const { return by_kernel_; }
+  void restart();
+  void reset();
+
+  void begin(MotionTrack<double>& track, const std::vector<W>& guess, bool again);
+  void expand_kernel() {
+    if (awaits_kernel_) kernel_->expand();
+  }
+  bool end_by_kernel(MotionTrack<double>& track);
+  Outcome prepare(MotionTrack<double>& track, const std::vector<W>& guess, const std::vector<int>& sides);
+  Outcome solve(MotionTrack<double>& track, const std::vector<W>& guess) {
+    return reference_.solve(track.now, guess, point_.solution);
+  }
+  Outcome extend() { return reference_.extend(); }
+  void cut_to(const MotionState<double>& m, const std::vector<W>& leading) {
+    reference_.cut_to(m, leading, point_.solution);
+  }
+  double reach() const { return kernel() ? kernel()->reach() : reference_.reach(shrink_); }
+  void set_horizon(double horizon) {
+    if (kernel()) kernel()->show_roots(horizon, series());
+  }
+
+  bool advance(MotionTrack<double>& track, const W& h) {
+    return kernel() ? kernel()->follow(track, h) : reference_.advance(track.now, h, point_.solution);
+  }
+
+  MotionState<double> motion(const MotionTrack<double>& track, bool expanded) const;
+  StepperState<double> begun(const MotionTrack<double>& track, const std::vector<int>& sides) const;
+  void take_back(MotionTrack<double>& track, bool expanded) {
+    if (kernel_) kernel_->take_back(track, expanded);
+  }
+
+  Expansion<double>& series() { return reference_.series(); }
+  const Expansion<double>& series() const { return reference_.series(); }
+  double coefficient(std::size_t j, int k) const {
+    return kernel() ? kernel()->coefficient(j, k) : series().coefficient(j, k);
+  }
+  double quadrature(std::size_t i, int k) const {
+    return kernel() ? kernel()->quadrature(i, k) : series().quadrature(i)[k];
+  }
+  const Expansion<W>& point(const MotionTrack<double>& track, bool values) const;
+  void state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state, std::vector<W>& leading) const;
+
+ private:
+  bool kernel_serves(const StepRecord<double>& record) const;
+
+  bool measure_;
+  double shrink_;
+  ReferenceExpansion<double> reference_;
+  std::optional<KernelExpansion> kernel_;
+  enum class Maker : std::uint8_t { reference, kernel };
+  Maker maker_ = Maker::reference;  // of the present expansion
+  bool awaits_kernel_ = false;      // one is begun, and the kernel has not been looked at yet
+  std::size_t by_kernel_ = 0;
+  // The solution where the present expansion was made. After the kernel's it is computed when it is first asked for.
+  struct Point {
+    Expansion<W> solution;
+    enum class Known : std::uint8_t { nothing, solution, values } known;
+  };
+  mutable Point point_;
+};
+
+namespace expander_of {
+template <Number N>
+struct Type {
+  using type = ReferenceExpander<N>;
+};
+template <>
+struct Type<double> {
+  using type = GuardedExpander;
+};
+}  // namespace expander_of
+template <Number N>
+using Expander = typename expander_of::Type<N>::type;
+
+extern template class ReferenceExpander<long double>;
+extern template class ReferenceExpander<Quad>;
+extern template class ReferenceExpander<Multi>;
+
+}  // namespace anholon

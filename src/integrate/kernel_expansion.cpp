@@ -1,0 +1,236 @@
+#include "integrate/kernel_expansion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "integrate/series/hidden_points.h"
+#include "integrate/series/kinks.h"
+#include "integrate/sigma_schedule.h"
+#include "integrate/step_control.h"
+
+namespace anholon {
+
+// Who asks for the last digits gets them from the reference, which refines its solutions in wider numbers, where an
+// elimination begins to lose some.
+static double trusted_health(double log_tolerance, bool mapped) {
+  constexpr double kLosesNone = 0.25;
+  return asks_for_last_digits(log_tolerance) && !mapped ? kLosesNone : kHealthy;
+}
+
+KernelExpansion::KernelExpansion(std::shared_ptr<Kernel> kernel, int lane, const Program& motion, int order,
+                                 double log_tolerance)
+    : kernel_(std::move(kernel)), lane_(lane), program_(&motion), order_(order),
+      least_health_(trusted_health(log_tolerance, mapped())) {
+  kernel_->set_shrink(step_shrink(log_tolerance, order));
+  // The roots of a kernel with unknowns of its own are its own, too: of what J keeps from zero.
+  if (mapped()) return;
+  for (const auto& [slot, place] : kernel_->plan().plan().roots_of_even_powers) roots_.push_back({slot, place.at});
+}
+
+void KernelExpansion::load(MotionTrack<double>& track, const std::vector<W>& guess) {
+  MotionState<double>& m = track.now;
+  if (!holds_) {
+    for (std::size_t i = 0; i < m.carry.size(); ++i) m.state[i] += m.carry[i];
+    m.carry.clear();
+    if (!mapped()) {
+      kernel_->place(lane_, m.state, guess);
+    } else {
+      if (m.own.empty()) {
+        kernel_->reader(lane_).own(m.t, m.state, m.own);
+        m.own_leading.clear();
+      }
+      kernel_->place(lane_, m.own, m.own_leading);
+      // Where the map has no value, this is all that is left.
+      track.begun().at.motion.state = m.state;
+    }
+    holds_ = true;
+  }
+  kernel_->set_time(lane_, static_cast<double>(m.t));
+}
+
+bool KernelExpansion::serves(StepRecord<double>& record, bool measure, bool follows) {
+  const Pivots pivots = kernel_->pivots(lane_);
+  suspected_ = follows && may_have_vanished(pivots_, pivots);
+  pivots_ = pivots;
+  if (!(pivots.health > least_health_) || (measure && pivots.health < record.least_health * kPivotDropToRecheck) ||
+      !kernel_->reaches(lane_)) {
+    record.least_health = std::min(record.least_health, pivots.health);
+    return false;
+  }
+  if (const W drift(kernel_->drift(lane_)); record.worst_constraint < drift) record.worst_constraint = drift;
+  return true;
+}
+
+void KernelExpansion::show_roots(double horizon, Expansion<double>& series) {
+  may_touch_zero_ = false;
+  std::vector<double> c;
+  for (const auto& [slot, at] : roots_) {
+    c.resize(static_cast<std::size_t>(order_));
+    for (int k = 0; k < order_; ++k) c[static_cast<std::size_t>(k)] = kernel_->series({at, true}, k, lane_);
+    may_touch_zero_ = may_touch_zero_ || !stays_positive(c.data(), order_ - 1, horizon);
+  }
+  if (!may_touch_zero_) return;
+  for (const auto& [slot, at] : roots_)
+    for (int k = 0; k < order_; ++k) series.adopt_coefficient(slot, k, kernel_->series({at, true}, k, lane_));
+}
+
+void KernelExpansion::read(MotionState<double>& m, bool expanded) const {
+  if (!holds_) return;
+  if (mapped()) {
+    kernel_->fetch(lane_, Kernel::Moment::now, m.own, m.own_leading);
+    kernel_->reader(lane_).motion(m.t, m.own, m.state);
+  } else {
+    kernel_->fetch(lane_, Kernel::Moment::now, m.state, m.leading);
+  }
+  if (expanded || mapped()) m.leading = leading();
+}
+
+// While an expansion is being made, there is nothing to be read of it.
+void KernelExpansion::read_begun(MotionTrack<double>& track) const {
+  if (!holds_) return;
+  const auto put = [&](MotionTrack<double>::Begun& b, Kernel::Moment moment) {
+    MotionState<double>& m = b.at.motion;
+    if (!b.by_kernel) return;
+    if (mapped()) {
+      kernel_->fetch(lane_, moment, m.own, m.own_leading);
+      m.leading.assign(program_->unknowns(), W(0));
+      if (m.state.empty()) kernel_->reader(lane_).motion(m.t, m.own, m.state);
+    } else {
+      kernel_->fetch(lane_, moment, m.state, m.leading);
+    }
+    m.carry.assign(m.state.size(), W(0));
+  };
+  put(track.begun(), Kernel::Moment::begun);
+  put(track.previous(), Kernel::Moment::before);
+}
+
+void KernelExpansion::take_back(MotionTrack<double>& track, bool expanded) {
+  read(track.now, expanded);
+  read_begun(track);
+  holds_ = false;
+}
+
+void KernelExpansion::take_back_as_begun(MotionTrack<double>& track) {
+  take_back(track, false);
+  track.now.state = track.begun().at.motion.state;
+  track.now.leading = track.begun().at.motion.leading;
+  track.now.own.clear();
+}
+
+std::vector<KernelExpansion::W> KernelExpansion::base(const W& begun) const {
+  std::vector<W> own, state;
+  kernel_->fetch_base(lane_, own);
+  if (!mapped()) return own;
+  kernel_->reader(lane_).motion(begun, own, state);
+  return state;
+}
+
+std::vector<KernelExpansion::W> KernelExpansion::leading() const {
+  std::vector<W> leading(program_->unknowns());
+  kernel_->show_last();
+  for (std::size_t j = 0; j < leading.size(); ++j)
+    if (const auto own = own_unknown(j)) leading[j] = W(kernel_->derivative(*own, program_->d[j], lane_));
+  return leading;
+}
+
+// The kernel's unknown that is the motion's unknown j.
+std::optional<std::size_t> KernelExpansion::own_unknown(std::size_t j) const {
+  return mapped() ? kernel_->plan().map()->own(j, program_->unknowns()) : std::optional<std::size_t>(j);
+}
+
+double KernelExpansion::coefficient(std::size_t j, int k) const {
+  kernel_->show_last();
+  const auto own = own_unknown(j);
+  const Plan& plan = kernel_->plan().plan();
+  return own && k <= plan.stages + plan.d[*own] ? kernel_->coefficient(*own, k, lane_) : 0;
+}
+
+double KernelExpansion::quadrature(std::size_t i, int k) const {
+  kernel_->show_last();
+  return kernel_->quadrature(i, k, lane_);
+}
+
+std::vector<double> KernelExpansion::hidden_points(double h) const {
+  std::vector<double> points;
+  const Plan& plan = kernel_->plan().plan();
+  if (plan.hiding.empty()) return points;
+  kernel_->show_last();
+  std::vector<double> argument(static_cast<std::size_t>(order_)), value = argument;
+  for (const Plan::HidingSlot& slot : plan.hiding) {
+    for (int k = 0; k < order_; ++k) {
+      argument[static_cast<std::size_t>(k)] = kernel_->series(slot.argument, k, lane_);
+      value[static_cast<std::size_t>(k)] = kernel_->series(slot.value, k, lane_);
+    }
+    add_hidden_points(slot.function, argument.data(), value.data(), order_ - 1, h, points);
+  }
+  return points;
+}
+
+void KernelExpansion::state_at(const W& begun, const W& h, std::vector<W>& state, std::vector<W>& leading) const {
+  kernel_->set_step(lane_, static_cast<double>(h));
+  kernel_->change_over_step();
+  std::vector<W> from;
+  kernel_->fetch_base(lane_, from);
+  if (!mapped()) return advanced(h, from, state, leading);
+  std::vector<W> own, own_leading;
+  advanced(h, from, own, own_leading);
+  kernel_->reader(lane_).motion(begun + h, own, state);
+  leading = this->leading();
+}
+
+void KernelExpansion::send(double h, double t) {
+  kernel_->set_step(lane_, h);
+  kernel_->set_time(lane_, t);
+}
+
+bool KernelExpansion::follow(MotionTrack<double>& track, const W& h) {
+  MotionState<double>& m = track.now;
+  if (mapped()) holds_ = true;  // whoever has taken the state back has left it as it was
+  if (holds_) {
+    // So that a NaN is one, too.
+    if (kernel_->largest(lane_) < kBlowUp) return true;
+    take_back(track, true);
+    m.state = base(track.begun().at.motion.t);
+    m.leading = leading();
+    m.own.clear();
+    return false;
+  }
+  const std::vector<W> from = m.state;
+  advanced(h, from, m.state, m.leading);
+  if (std::all_of(m.state.begin(), m.state.end(), [](const W& x) { return abs(x) < W(kBlowUp); })) return true;
+  m.state = from;
+  return false;
+}
+
+// The solution h beyond where the expansion was made, in the unknowns of the kernel, by its increments. What the kernel
+// does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
+void KernelExpansion::advanced(const W& h, const std::vector<W>& base, std::vector<W>& state,
+                               std::vector<W>& leading) const {
+  kernel_->show_last();
+  const Program& p = kernel_->plan().program();
+  const std::size_t stride = static_cast<std::size_t>(kernel_->lanes());
+  const double *increment = kernel_->increments(lane_), *factorial = kernel_->plan().tables().factorial.data();
+  state.resize(base.size());
+  leading.resize(p.unknowns());
+  const W* from = base.data();
+  W* to = state.data();
+  for (std::size_t j = 0; j < p.unknowns(); ++j) {
+    const double* x = kernel_->unknown(j, lane_);
+    const int d = p.d[j];
+    for (int k = 0; k < d; ++k, increment += stride) {
+      W s = from[k] + *increment, power = h;
+      for (int i = k + 1; i < d; ++i) {
+        s += (from[i] - W(x[static_cast<std::size_t>(i) * stride] * factorial[i])) * power;
+        power *= h / W(i - k + 1);
+      }
+      to[k] = s;
+    }
+    leading[j] = x[static_cast<std::size_t>(d) * stride] * factorial[d] + *increment;
+    increment += stride;
+    from += d;
+    to += d;
+  }
+}
+
+}  // namespace anholon

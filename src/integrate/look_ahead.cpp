@@ -1,0 +1,33 @@
+#include "integrate/look_ahead.h"
+
+namespace anholon {
+
+template <Number N>
+Expansion<N>& LookAhead<N>::load(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+  if (!there_) there_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
+  convert_all(state, state_);
+  convert_all(leading, leading_);
+  there_->load(convert<N>(t), state_, leading_);
+  return *there_;
+}
+
+template <Number N>
+Expansion<N>* LookAhead<N>::prepare(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+  Expansion<N>& there = load(t, state, leading);
+  there.set_weakest_direction({});
+  return there.prepare().ok() ? &there : nullptr;
+}
+
+template <Number N>
+std::optional<N> LookAhead<N>::quadrature(std::size_t i) {
+  there_->evaluate_quadratures();
+  const N value = there_->quadrature(i)[0];
+  return value == value ? std::optional<N>(value) : std::nullopt;
+}
+
+template class LookAhead<double>;
+template class LookAhead<long double>;
+template class LookAhead<Quad>;
+template class LookAhead<Multi>;
+
+}  // namespace anholon

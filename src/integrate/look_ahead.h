@@ -1,0 +1,65 @@
+// The equations along the polynomial of the present step: their values, J and its LU at a point ahead.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "integrate/expander.h"
+
+namespace anholon {
+
+template <Number N>
+class LookAhead {
+ public:
+  using W = Wider<N>;
+  LookAhead(const Program& program, const std::vector<N>& parameters) : program_(&program), parameters_(parameters) {}
+
+  // The motion there, without any values.
+  Expansion<N>& load(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
+  // … with J and its LU; null if J has none. What was met elsewhere says nothing there: the iteration for the singular
+  // value starts anew, so that a run that goes on finds the same.
+  Expansion<N>* prepare(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
+  // A quadrature where the motion was loaded last, if it has a value there.
+  std::optional<N> quadrature(std::size_t i);
+
+ private:
+  const Program* program_;
+  std::vector<N> parameters_;
+  std::unique_ptr<Expansion<N>> there_;  // made when it is first asked for
+  std::vector<N> state_, leading_;
+};
+
+// What those who judge a step see of it.
+template <Number N>
+struct PresentStep {
+  using W = Wider<N>;
+  const MotionTrack<N>& track;
+  Expander<N>& expander;
+  LookAhead<N>& look;
+
+  const W& t() const { return track.now.t; }
+  const Expansion<N>& series() const { return expander.series(); }
+  // h beyond the expansion.
+  Expansion<N>& load(const W& h) {
+    std::vector<W> state, leading;
+    expander.state_at(track, h, state, leading);
+    return look.load(t() + h, state, leading);
+  }
+  Expansion<N>* prepare(const W& h) {
+    std::vector<W> state, leading;
+    expander.state_at(track, h, state, leading);
+    return look.prepare(t() + h, state, leading);
+  }
+  // Of the polynomial itself, in formulas that follow from it without derivatives beyond the leading ones; nullopt if
+  // it has no finite value.
+  std::optional<N> quadrature(std::size_t i, const N& h) {
+    const std::optional<N> value = prepare(convert<W>(h)) ? look.quadrature(i) : std::nullopt;
+    return value && is_finite(*value) ? value : std::nullopt;
+  }
+};
+
+extern template class LookAhead<double>;
+extern template class LookAhead<long double>;
+extern template class LookAhead<Quad>;
+extern template class LookAhead<Multi>;
+
+}  // namespace anholon

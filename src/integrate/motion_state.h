@@ -1,0 +1,93 @@
+// What a stepper carries from step to step: where the motion is, and what was met on the way.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "numeric/number.h"
+
+namespace anholon {
+
+// What has been met on the way so far.
+template <Number N>
+struct StepRecord {
+  using W = Wider<N>;
+  W branch_step{0};  // length of the last step that stayed on the branch of the solution
+  std::size_t steps = 0;
+  W worst_constraint{0}, worst_equation{0};
+  N first_sigma{0}, smallest_sigma{1};  // of the scaled system Jacobian J
+  W smallest_sigma_t{0};
+  std::size_t weakest = 0;  // the unknown that J determined least there
+  N sigma_before{0};        // where the last step began
+  W last_step{0};           // its length
+  N least_health{1};        // of a kernel's pivots
+  bool careful = false;     // the step that follows is made without a kernel
+};
+
+// The record of a stepper that goes on with other equations for the same motion: lengths of steps, pivots and values of
+// sigma before belong to the old ones.
+template <Number N>
+StepRecord<N> with_other_equations(const StepRecord<N>& record);
+
+// The motion at one time. A copy is all that the next steps depend on.
+template <Number N>
+struct MotionState {
+  using W = Wider<N>;
+  W t{0};
+  std::vector<W> state;             // x_j^(k), k < d_j
+  std::vector<W> carry;             // the round-off of its sums; empty if there is none
+  std::vector<W> leading;           // a first guess of x_j^(d_j)
+  std::vector<W> own, own_leading;  // the same in the unknowns of a kernel that has its own; else empty
+  std::vector<W> integrals;         // of the quadratures, since the start
+  std::vector<W> integral_carry;    // the round-off of their sums
+  StepRecord<N> record;
+};
+
+// A motion at its start: no round-off is carried, nothing has been met.
+template <Number N>
+MotionState<N> motion_from(const Wider<N>& t, const std::vector<Wider<N>>& state, const std::vector<Wider<N>>& leading,
+                           std::size_t quadratures);
+
+// A motion where an expansion of it was begun: from here the same steps follow, bit by bit.
+template <Number N>
+struct StepperState {
+  MotionState<N> motion;
+  std::vector<N> direction;  // of the iteration for sigma
+  std::vector<int> sides;    // of the series watched for events
+};
+
+// The motion as a stepper has it.
+template <Number N>
+struct MotionTrack {
+  struct Begun {
+    StepperState<N> at;
+    bool by_kernel = false;
+  };
+  MotionState<N> now;
+  // Where the present expansion was begun, and the one before.
+  Begun& begun() { return expansions[present]; }
+  const Begun& begun() const { return expansions[present]; }
+  Begun& previous() { return expansions[1 - present]; }
+  void begin_next() { present = 1 - present; }
+
+  std::array<Begun, 2> expansions;
+  std::size_t present = 0;
+};
+
+// A motion whose state grows beyond this is called a blow-up.
+inline constexpr double kBlowUp = 1e100;
+
+// s + x with the round-off kept in `carry`.
+template <Number N>
+void add_compensated(N& s, N& carry, const N& x) {
+  const N y = x + carry, sum = s + y;
+  carry = abs(s) >= abs(y) ? N(N(s - sum) + y) : N(N(y - sum) + s);
+  s = sum;
+}
+
+template <Number To, Number From>
+void convert_all(const std::vector<From>& from, std::vector<To>& to) {
+  to.resize(from.size(), To(0));
+  for (std::size_t i = 0; i < from.size(); ++i) to[i] = convert<To>(from[i]);
+}
+
+}  // namespace anholon

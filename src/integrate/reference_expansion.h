@@ -1,0 +1,54 @@
+// The Taylor expansion of a motion in any number type: the reference for expansions by kernels.
+//
+// Taylor coefficients are computed in N; the state, the projection on the constraints and the leading derivatives in
+// the wider type W, with the LU of N (mixed-precision refinement). A state rounded to N at every step would be projected
+// on the constraints of another point, which is what limits the energy of a fast spinning body over many steps.
+#pragma once
+#include "integrate/motion_state.h"
+#include "integrate/step_control.h"
+#include "program/expansion.h"
+
+namespace anholon {
+
+// An expansion is made in three parts: prepare() -> solve() -> extend().
+template <Number N>
+class ReferenceExpansion {
+ public:
+  using W = Wider<N>;
+  ReferenceExpansion(const Program& program, const std::vector<N>& parameters, int order);
+  ReferenceExpansion(ReferenceExpansion&&) = default;  // a copy would point into the original
+
+  // Values at the state, J and its LU.
+  Outcome prepare(const MotionState<N>& m, const std::vector<W>& guess);
+  // Projects the state on the constraints and solves for the leading derivatives. `point`: the solution in W.
+  Outcome solve(MotionState<N>& m, const std::vector<W>& guess, Expansion<W>& point);
+  Outcome extend() { return expansion_.extend(); }
+  // In place of extend(), where formulas have no derivatives: the polynomials end with these leading derivatives.
+  void cut_to(const MotionState<N>& m, const std::vector<W>& leading, Expansion<W>& point);
+
+  // The length of a step by the radius of convergence.
+  N reach(double shrink) const { return step_size<N>(unknowns_, order_, shrink); }
+  Expansion<N>& series() { return expansion_; }
+  const Expansion<N>& series() const { return expansion_; }
+  // The changes of the state over h, and the leading derivatives there. `point`: where the expansion was made.
+  void polynomial(const W& h, const Expansion<W>& point, std::vector<W>& increments, std::vector<W>& leading) const;
+  // Goes on by h. False if the motion grows beyond kBlowUp: then the state is as before.
+  bool advance(MotionState<N>& m, const W& h, const Expansion<W>& point);
+
+ private:
+  Outcome solve_wide(MotionState<N>& m, Expansion<W>& point);
+
+  const Program* program_;
+  int order_;
+  Expansion<N> expansion_;
+  std::vector<UnknownSeries<N>> unknowns_;
+  std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;
+  std::vector<W> change_, next_;
+};
+
+extern template class ReferenceExpansion<double>;
+extern template class ReferenceExpansion<long double>;
+extern template class ReferenceExpansion<Quad>;
+extern template class ReferenceExpansion<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,220 @@
+#include "integrate/regularity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace anholon {
+
+// A diagonal similarity by powers of 2 that brings rows and columns to like sizes (Osborne 1960): the norm of a matrix
+// in badly scaled unknowns says nothing about its spectral radius.
+template <Number N>
+static void balance(Matrix<N>& a) {
+  constexpr int kSweeps = 4;
+  const std::size_t n = a.rows;
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (std::size_t i = 0; i < n; ++i) {
+      double row = 0, column = 0;
+      for (std::size_t j = 0; j < n; ++j)
+        if (j != i) row += std::abs(to_double(a(i, j))), column += std::abs(to_double(a(j, i)));
+      if (!(row > 0) || !(column > 0) || !std::isfinite(row) || !std::isfinite(column)) continue;
+      const N factor(std::exp2(std::round(0.5 * std::log2(row / column))));
+      for (std::size_t j = 0; j < n; ++j) a(j, i) = a(j, i) * factor;
+      for (std::size_t j = 0; j < n; ++j) a(i, j) = a(i, j) / factor;
+    }
+}
+
+template <Number N>
+bool near(const Expansion<N>& p0, const Expansion<N>& p1) {
+  constexpr double kNear = 0.5;
+  const std::size_t n = p0.program().unknowns();
+  Matrix<N> a(n, n);
+  std::vector<N> column(n), y;
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < n; ++i) column[i] = p1.system_jacobian()(i, j) - p0.system_jacobian()(i, j);
+    p0.lu().solve_once(column, y);
+    for (std::size_t i = 0; i < n; ++i) a(i, j) = y[i];
+  }
+  balance(a);
+  for (int doubling = 0; doubling < 3; ++doubling) {
+    Matrix<N> square(n, n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < n; ++k)
+        for (std::size_t j = 0; j < n; ++j) addmul(square(i, j), a(i, k), a(k, j));
+    a = std::move(square);
+  }
+  double norm2 = 0;
+  for (const N& v : a.data) norm2 += to_double(v) * to_double(v);
+  return norm2 <= std::pow(kNear, 16);  // false for what is not a number
+}
+
+template <Number N>
+Mode<N> weakest_mode(const Expansion<N>& at, const N& sigma) {
+  const Matrix<N>& J = at.system_jacobian();
+  const std::size_t size = J.rows, n = at.program().system->coordinates;
+  Mode<N> m;
+  m.sigma = sigma;
+  m.v = at.weakest_direction();
+  m.image.assign(size, N(0));
+  m.reaction.assign(n, N(0));
+  for (std::size_t i = 0; i < size; ++i) {
+    N largest(0);
+    for (std::size_t j = 0; j < size; ++j) {
+      addmul(m.image[i], J(i, j), m.v[j]);
+      if (i < n && j >= n) addmul(m.reaction[i], J(i, j), m.v[j]);
+      if (N x = abs(J(i, j)); x > largest) largest = x;
+    }
+    if (largest > N(0)) m.image[i] = m.image[i] / largest;
+  }
+  return m;
+}
+
+// The cosine of the angle between parts of two vectors.
+template <Number N>
+static double cosine(const std::vector<N>& a, const std::vector<N>& b, std::size_t from = 0) {
+  double dot = 0, aa = 0, bb = 0;
+  for (std::size_t i = from; i < a.size(); ++i) {
+    const double x = to_double(a[i]), y = to_double(b[i]);
+    dot += x * y, aa += x * x, bb += y * y;
+  }
+  return aa > 0 && bb > 0 ? dot / std::sqrt(aa * bb) : 0;
+}
+
+template <Number N>
+bool crossed(const Mode<N>& a, const Mode<N>& b, std::size_t coordinates) {
+  constexpr double kSameDirection = 0.5;
+  const auto flipped = [](double x, double y) {
+    return std::abs(x) > kSameDirection && std::abs(y) > kSameDirection && x * y < 0;
+  };
+  return flipped(cosine(a.v, b.v), cosine(a.image, b.image)) ||
+         flipped(cosine(a.v, b.v, coordinates), cosine(a.reaction, b.reaction));
+}
+
+namespace {
+
+// A singular value of J may fall to so many round-offs of what it was at the start: below, fewer than six digits are
+// left of a solution.
+constexpr double kNoDigits = 1e6;
+
+template <Number N>
+std::optional<Mode<N>> mode_of(Expansion<N>* there) {
+  if (!there) return std::nullopt;
+  const N sigma = there->smallest_singular_value();
+  return weakest_mode(*there, sigma);
+}
+
+// Whether the weakest direction at one point is mapped to the opposite at another: where several singular values pass
+// zero together, the weakest direction there is any of theirs.
+template <Number N>
+bool reversed(const Mode<N>& from, const Expansion<N>& there) {
+  constexpr double kOpposite = -0.5;
+  const Matrix<N>& J = there.system_jacobian();
+  double dot = 0, before = 0, after = 0;
+  for (std::size_t i = 0; i < J.rows; ++i) {
+    N image(0), largest(0);
+    for (std::size_t j = 0; j < J.cols; ++j) {
+      addmul(image, J(i, j), from.v[j]);
+      if (N x = abs(J(i, j)); x > largest) largest = x;
+    }
+    const double a = to_double(from.image[i]), b = largest > N(0) ? to_double(N(image / largest)) : 0;
+    dot += a * b, before += a * a, after += b * b;
+  }
+  return dot < kOpposite * std::sqrt(before * after);
+}
+
+}  // namespace
+
+template <Number N>
+Outcome JacobianGuard<N>::check(Expansion<N>& at, const W& t, StepRecord<N>& record) {
+  sigma_ = at.smallest_singular_value();
+  const std::vector<N>& v = at.weakest_direction();
+  if (record.first_sigma == N(0)) record.first_sigma = sigma_;
+  if (sigma_ < record.smallest_sigma) {
+    record.smallest_sigma = sigma_;
+    record.smallest_sigma_t = t;
+    for (std::size_t j = record.weakest = 0; j < v.size(); ++j)
+      if (abs(v[j]) > abs(v[record.weakest])) record.weakest = j;
+  }
+  // Steps shrink towards where constraints lose their hold, and would come out on the other side, with one motion of
+  // several. Where coordinates are singular (Euler's angles) there is one.
+  const auto larger = [](const N& a, const N& b) { return abs(a) < abs(b); };
+  const bool of_constraints =
+      std::max_element(v.begin(), v.end(), larger) - v.begin() >= static_cast<std::ptrdiff_t>(coordinates_);
+  if (of_constraints && sigma_ < record.first_sigma * unit_roundoff<N>() * N(kNoDigits))
+    return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+  return {};
+}
+
+// Steps end where J may become singular, and shrink towards a singular point.
+template <Number N>
+typename JacobianGuard<N>::W JacobianGuard<N>::on_the_branch(PresentStep<N>& step, W h, StepRecord<N>& record) const {
+  // From a horizon of e^300 (a polynomial motion) to far below any step.
+  constexpr int kMostHalvings = 600;
+  if (record.branch_step > W(0) && abs(h) > record.branch_step * W(4))
+    h = h > W(0) ? record.branch_step * W(4) : record.branch_step * W(-4);
+  const auto on_it = [&](const W& part) {
+    const Expansion<N>* there = step.prepare(part);
+    return there && near(step.series(), *there);
+  };
+  for (int k = 0; k < kMostHalvings && !(on_it(h) && on_it(h * W(0.5))); ++k) h = h * W(0.5);
+  record.branch_step = abs(h);
+  return h;
+}
+
+template <Number N>
+std::optional<typename JacobianGuard<N>::W> JacobianGuard<N>::singular_within(PresentStep<N>& step, const W& h,
+                                                                              const W& last_step) const {
+  constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
+  constexpr int kBisections = 60, kRoundoffs = 4096;
+  const bool by_kernel = step.expander.kernel() != nullptr;
+  // A singular value that vanishes within the step has fallen by more than half in one as long; what it was is not
+  // known after steps by the kernel.
+  const bool suspected = by_kernel || step.expander.suspected() || last_step == W(0) ||
+                         sigma_ < step.track.now.record.sigma_before * N(kFaster) || abs(h) > last_step * W(kLonger);
+  if (!suspected) return std::nullopt;
+  const std::optional<Mode<N>> here =
+      by_kernel ? mode_of(step.look.prepare(step.t(), step.track.now.state, {})) : weakest_mode(step.series(), sigma_);
+  if (!here) return std::nullopt;
+  Mode<N> low = *here;
+  const N start = low.sigma;
+  const auto passed = [&](const Mode<N>& from, Expansion<N>* there, const std::optional<Mode<N>>& m) {
+    return crossed(from, *m, coordinates_) || reversed(from, *there);
+  };
+  Expansion<N>* end = step.prepare(h);
+  if (const std::optional<Mode<N>> m = mode_of(end); !m || !passed(low, end, m)) return std::nullopt;
+  W from(0), to = h;
+  for (int k = 0; k < kBisections; ++k) {
+    const W middle = from + (to - from) * W(0.5);
+    if (middle == from || middle == to) break;
+    Expansion<N>* there = step.prepare(middle);
+    std::optional<Mode<N>> m = mode_of(there);
+    if (!m) return middle;
+    if (passed(low, there, m))
+      to = middle;
+    else
+      from = middle, low = std::move(*m);
+  }
+  // A step that begins beside the singular point finds a value there that is round-off, however small it was.
+  const N roundoff = unit_roundoff<N>() * N(kRoundoffs);
+  return low.sigma < start * N(kVanished) || low.sigma < roundoff ? std::optional<W>(from) : std::nullopt;
+}
+
+template <Number N>
+bool JacobianGuard<N>::regular_between(LookAhead<N>& look, const MotionState<N>& before,
+                                       const MotionState<N>& after) const {
+  const std::optional<Mode<N>> from = mode_of(look.prepare(before.t, before.state, {})),
+                               to = mode_of(look.prepare(after.t, after.state, {}));
+  return from && to && !crossed(*from, *to, coordinates_);
+}
+
+#define INSTANTIATE(N)                                                                                                 \
+  template bool near(const Expansion<N>&, const Expansion<N>&);                                                        \
+  template Mode<N> weakest_mode(const Expansion<N>&, const N&);                                                        \
+  template bool crossed(const Mode<N>&, const Mode<N>&, std::size_t);                                                  \
+  template class JacobianGuard<N>;
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
+
+}  // namespace anholon

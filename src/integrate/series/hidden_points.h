@@ -1,0 +1,25 @@
+// Where on the way of a step a function may do what its Taylor series know nothing of: a pulse, a ramp, a wall that
+// lies wholly within the step. Its argument tells, whose series are good: the function is asked at the extrema and
+// zeros of its argument and at the ends of parts of the step. Where it differs from its own series, the equations are
+// to be looked at.
+#pragma once
+#include "kernel/plan.h"
+#include "numeric/number.h"
+
+namespace anholon {
+
+// For a quotient, a power of -1, these are points where the divisor is nearly zero. `argument` and `value`: the Taylor
+// coefficients of orders 0..degree of the argument and of the function. Adds the points, in (0, h).
+template <Number N>
+void add_hidden_points(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
+                       std::vector<N>& points);
+
+extern template void add_hidden_points(const Hiding&, const double*, const double*, int, const double&,
+                                       std::vector<double>&);
+extern template void add_hidden_points(const Hiding&, const long double*, const long double*, int, const long double&,
+                                       std::vector<long double>&);
+extern template void add_hidden_points(const Hiding&, const Quad*, const Quad*, int, const Quad&, std::vector<Quad>&);
+extern template void add_hidden_points(const Hiding&, const Multi*, const Multi*, int, const Multi&,
+                                       std::vector<Multi>&);
+
+}  // namespace anholon

@@ -1,0 +1,80 @@
+// Order and length of Taylor steps from the coefficients of the series (Jorba & Zou 2005; theory: taylor). Pure
+// functions.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <functional>
+#include <span>
+
+#include "numeric/number.h"
+
+namespace anholon {
+
+struct StepSettings {
+  double log_tolerance = -27.6310211159;  // natural logarithm: 1e-400 is a tolerance too
+  int order = 0;                          // of the Taylor polynomials; 0: from the tolerance
+  std::size_t most_steps = 50'000'000;
+  std::function<bool()> cancelled;  // asked between steps
+  bool kernel = true;               // where there is one
+  bool measure = true;              // how regular J is, where the kernel does not ask for it
+  std::size_t integrals =
+      0;  // so many of the first quadratures are integrated to the tolerance; the others as the motion's steps have it
+  bool multipliers = false;  // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
+};
+
+// ceil(-ln(tolerance)/2 + 1), and at least 4: the order of least work for the tolerance if that grows with the square
+// of the order (Jorba & Zou 2005).
+int least_work_order(double log_tolerance);
+// Four more: here it grows more slowly (measured, bench/RESULTS.md). Not where the last digits are asked for, which
+// longer steps would lose to round-off.
+int taylor_order(double log_tolerance);
+// Below 1e-14.
+bool asks_for_last_digits(double log_tolerance);
+// A step is e^-shrink of the radius of convergence rho. (h / rho)^order is then what e^-2 per order makes for the order
+// of Jorba & Zou, a whole number: tolerance / e^2 or less.
+double step_shrink(double log_tolerance, int order);
+
+// The Taylor series of one unknown: c_0, c_1, …, and the order d of its leading derivative.
+template <Number N>
+struct UnknownSeries {
+  const N* c;
+  int d;
+};
+
+// h = (rho / e^shrink) exp(-0.7/(p-1)), rho the smaller root of |x| / |x_k| for the last two orders k,
+// in the greatest norm, relative to the size of x but at least 1 (Jorba & Zou 2005). Positions,
+// velocities, … are measured each against their own size: an angle that has turned a thousand times
+// must not loosen the tolerance of the velocities. REQUIRES: the coefficients of x_j up to order - 1 + d_j.
+template <Number N>
+N step_size(std::span<const UnknownSeries<N>> x, int order, double shrink);
+
+// An integral along the motion carries no error on, but it is to be as good as the motion. A power is a product: where
+// the motion is smooth everywhere (an oscillator) its series converges much more slowly. Returns `h`, or less: the last
+// two terms of the integral over the step stay below the tolerance, in relation to the first three, to the integral so
+// far and to 1. `coefficient`: of the quadrature, orders 0..order-1.
+template <Number N, std::invocable<int> Coefficient>
+N limited_by_quadrature(const N& horizon, int order, double log_tolerance, double integral,
+                        const Coefficient& coefficient) {
+  const double h = to_double(horizon);
+  const auto size = [&](int k) { return std::abs(to_double(coefficient(k))); };
+  double power = 1, square = h;
+  for (int p = order - 1; p > 0; p >>= 1, square *= square)
+    if (p & 1) power *= square;
+  const double whole = std::max(1.0, std::abs(integral)),
+               tail = power * std::max(size(order - 1) * h / order, size(order - 2) / (order - 1));
+  const double first = h * std::max({size(0), size(1) * h / 2, size(2) * h * h / 3});
+  if (tail <= std::exp(log_tolerance) * std::max(whole, first)) return horizon;
+  // Closely; what leaves the range of double has a logarithm.
+  constexpr double kNothing = -1e300;
+  const double log_h = to_double(N(log(horizon)));
+  const auto term = [&](int k) {
+    const N c = abs(coefficient(k));
+    return c > N(0) ? to_double(N(log(c))) + (k + 1) * log_h - std::log(k + 1) : kNothing;
+  };
+  const double excess = std::max(term(order - 1), term(order - 2)) - log_tolerance -
+                        std::max({std::log(whole), term(0), term(1), term(2)});
+  return excess > 0 ? N(horizon * N(std::exp(-excess / order))) : horizon;
+}
+
+}  // namespace anholon

@@ -1,0 +1,89 @@
+// Where a step ends: before the first kink, at an event, where the equations hold that the series foretell, or where
+// the caller has set the end (theory: taylor).
+#pragma once
+#include "integrate/end_check.h"
+#include "integrate/look_ahead.h"
+#include "integrate/series/events.h"
+#include "kernel/plan.h"
+
+namespace anholon {
+
+// What is said of the end of a step after a look at the equations there: it is good, the next look is elsewhere, the
+// step has to be made shorter.
+enum class LookAtEnd : std::uint8_t { good, elsewhere, shorten };
+
+template <Number N>
+class StepEnd {
+ public:
+  using W = Wider<N>;
+  StepEnd(const Program& program, double log_tolerance, int order);
+  // Slots of the tape that may have kinks: those before `end`.
+  void set_slots(std::uint32_t end);
+  std::uint32_t slots() const { return slots_; }
+
+  // Another motion, or another state of it: the next step is not shortened for what was seen before.
+  void restart();
+  // A step begins: what it counts is taken back by `again`, if it has to be made shorter.
+  void begin() { kinks_before_ = kinks_; }
+  void again() { kinks_ = kinks_before_; }
+  // The step is made.
+  void finish();
+  // The length that a look at the end has left of the horizon.
+  W horizon(const N& of_series) const { return limit_ > W(0) ? limit_ : convert<W>(of_series); }
+
+  // Shortens a step over h to what the equations hold for, and to its first kink. `whole`: what it would be without an
+  // end. Not ok where the motion stays at a kink.
+  Outcome shorten(PresentStep<N>& step, const EventWatch<N>& events, W& h, const W& whole);
+  // Whether an ordinary step may follow, which nothing cuts short.
+  bool free_of_kinks() const { return short_kinks_ == 0; }
+  // The step has no kink; its end is looked at. Or it begins at one.
+  void set_free(const W& h);
+  void set_one_sided();
+  // Up to where series hold; nullopt if that is all of the step.
+  std::optional<N> kink() const { return at_kink_ ? std::optional<N>(convert<N>(looked_)) : std::nullopt; }
+
+  // The step ends at that time, which is where the caller's end is, or not. A kernel is sent there, or to where the
+  // equations are looked at before.
+  void aim(PresentStep<N>& step, const W& t, bool arrives);
+  // A kernel is where it was sent.
+  LookAtEnd look(KernelExpansion& kernel, const W& t, const N& horizon);
+
+  const W& time() const { return aimed_; }
+  bool arrives() const { return arrives_; }
+  std::size_t kinks() const { return kinks_; }  // that have cut a step short
+
+ private:
+  struct Hidden {
+    std::uint32_t slot;
+    Hiding function;
+  };
+  Outcome note_kink(bool at_start, const W& where, const W& past);
+  bool may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
+  N defect(PresentStep<N>& step, const W& h);
+  void find_hidden(PresentStep<N>& step, const W& h);
+  LookAtEnd send(KernelExpansion& kernel, const W& t, const W& h);
+
+  const Program* program_;
+  double log_tolerance_;
+  int order_;
+  EndCheck<N> check_;
+  std::uint32_t slots_ = 0;
+  std::vector<Hidden> hiding_;  // slots whose function may do what its series do not show
+  std::vector<N> hidden_;       // points within the step to be looked at
+  std::vector<N> residual_, change_;
+  W aimed_{0};            // the time where the step ends
+  bool arrives_ = false;  // where the caller has set the end
+  bool at_kink_ = false;  // it ends past a kink
+  W limit_{0};            // of its length, where a look at its end has shortened it; else 0
+  W looked_{0};  // how far the equations are looked at: to its end, or shortly before a kink; 0 where they are not
+  W sent_{0};    // how far the kernel was sent to look
+  std::size_t kinks_ = 0, kinks_before_ = 0;
+  int short_kinks_ = 0;  // steps in a row that were cut by a kink at their very start
+};
+
+extern template class StepEnd<double>;
+extern template class StepEnd<long double>;
+extern template class StepEnd<Quad>;
+extern template class StepEnd<Multi>;
+
+}  // namespace anholon

@@ -1,0 +1,525 @@
+#include "integrate/stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/assert.h"
+#include "integrate/series/kinks.h"
+
+namespace anholon {
+
+namespace {
+
+// Steps smaller than this many round-offs of the time are a collapse.
+constexpr int kCollapsedRoundoffs = 16;
+// So many steps tell how many more it will take.
+constexpr std::size_t kStepsToJudge = 1000;
+
+Outcome becomes_singular() {
+  return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+}
+
+// Functions that go on as others where their argument passes a point.
+bool may_turn(const Instruction& in) {
+  return in.op == Op::select || in.op == Op::lookup ||
+         (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) ||
+                                    in.index == static_cast<std::uint32_t>(Function::sign)));
+}
+
+}  // namespace
+
+template <Number N>
+Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, const std::vector<W>& wide_parameters,
+                    const StepSettings& settings)
+    : program_(&program), settings_(settings),
+      order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
+      expander_(program, parameters, wide_parameters, settings, order_), look_(program, parameters), guard_(program),
+      end_(program, settings.log_tolerance, order_) {
+  end_.set_slots(program.tape.main_end);
+}
+
+// ---- one step -------------------------------------------------------------------------------------------------------
+
+template <Number N>
+Outcome Stepper<N>::step(const W& end) {
+  if (!begin_step()) return trouble();
+  expander_.expand_kernel();
+  if (!aim(end)) return trouble();
+  if (KernelExpansion* kernel = expander_.kernel()) {
+    EndOfStep there = EndOfStep::elsewhere;
+    while (there == EndOfStep::elsewhere) {
+      kernel->advance();
+      there = look_at_end(end);
+    }
+    if (there == EndOfStep::failed) return trouble();
+  }
+  return finish_step() ? Outcome{} : trouble();
+}
+
+template <Number N>
+bool Stepper<N>::begin_step() {
+  if (settings_.cancelled && settings_.cancelled())
+    return fail({OutcomeKind::interrupted, "interrupted", "what was computed is kept"});
+  if (record().steps >= settings_.most_steps)
+    return fail({OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"});
+  if (phase_ != Phase::expanded) begin_expansion();
+  end_.begin();
+  return true;
+}
+
+template <Number N>
+bool Stepper<N>::aim(const W& end) {
+  if (phase_ == Phase::begun && !end_expansion()) return false;
+  ANHOLON_ASSERT(phase_ == Phase::expanded);
+  if (!aim_freely(end) && !aim_with_care(end)) return false;
+  phase_ = Phase::aimed;
+  return true;
+}
+
+// The kernel has gone where it was sent.
+template <Number N>
+EndOfStep Stepper<N>::look_at_end(const W& end) {
+  ANHOLON_ASSERT(phase_ == Phase::aimed);
+  KernelExpansion* kernel = expander_.kernel();
+  if (!kernel) return EndOfStep::good;
+  switch (end_.look(*kernel, time(), horizon_)) {
+  case LookAtEnd::good:
+    return EndOfStep::good;
+  case LookAtEnd::elsewhere:
+    return EndOfStep::elsewhere;
+  case LookAtEnd::shorten:
+    break;
+  }
+  guard_.set_singular_ahead(false);
+  end_.again();
+  phase_ = Phase::expanded;
+  kernel->show_advanced(false);
+  const bool good = aim(end);
+  if (!good) leave_kernel();
+  kernel->show_advanced(true);
+  return good ? EndOfStep::elsewhere : EndOfStep::failed;
+}
+
+template <Number N>
+bool Stepper<N>::finish_step() {
+  ANHOLON_ASSERT(phase_ == Phase::aimed);
+  MotionState<N>& m = track_.now;
+  const W h = end_.time() - m.t;
+  m.record.last_step = abs(h);
+  m.record.sigma_before = guard_.sigma();
+  if (!expander_.advance(track_, h))
+    return fail({OutcomeKind::blow_up, "the motion grows without bound",
+                 "look at the last good state: a velocity or position diverges"});
+  for (std::size_t i = 0; i < m.integrals.size(); ++i) {
+    W s(0);
+    for (int k = order_ - 1; k >= 0; --k) s = (s + convert<W>(expander_.quadrature(i, k)) / W(k + 1)) * h;
+    add_compensated(m.integrals[i], m.integral_carry[i], s);
+  }
+  before_ = m.t;
+  m.t = end_.time();
+  phase_ = Phase::advanced;
+  end_.finish();
+  ++m.record.steps;
+  // Others in the kernel go on while this one has arrived.
+  if (end_.arrives()) leave_kernel();
+  return true;
+}
+
+// Where the next expansion is made already, its polynomial is what is left, not that of the last step.
+template <Number N>
+bool Stepper<N>::fail(Outcome why) {
+  if (expanded()) {
+    before_ = time();
+    phase_ = Phase::expanded;
+  }
+  trouble_ = std::move(why);
+  return false;
+}
+
+// ---- the expansion --------------------------------------------------------------------------------------------------
+
+template <Number N>
+void Stepper<N>::begin_expansion() {
+  ANHOLON_ASSERT(phase_ == Phase::placed || phase_ == Phase::advanced);
+  expander_.begin(track_, track_.now.leading, false);
+  phase_ = Phase::begun;
+}
+
+template <Number N>
+bool Stepper<N>::end_expansion() {
+  ANHOLON_ASSERT(phase_ == Phase::begun);
+  const bool first = expansions_++ == 0;
+  Outcome o = end_by_kernel() ? Outcome{} : expand_by_reference(track_.now.leading);
+  if (o.ok() && expander_.suspected())
+    o = look_back();
+  else if (!o.ok() && !first)
+    expand_again(StepperState<N>(track_.previous().at));
+  if (o.ok()) return true;
+  phase_ = Phase::placed;
+  return fail(std::move(o));
+}
+
+template <Number N>
+bool Stepper<N>::end_by_kernel() {
+  if (!expander_.end_by_kernel(track_)) return false;
+  one_sided_.reset();
+  horizon_ = expander_.reach();
+  limit_by_quadratures();
+  expander_.set_horizon(horizon_);
+  phase_ = Phase::expanded;
+  return true;
+}
+
+template <Number N>
+Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
+  one_sided_.reset();
+  Outcome o = expand_regularly(guess);
+  return o.kind == OutcomeKind::not_a_number ? expand_one_sided(std::move(o)) : o;
+}
+
+template <Number N>
+Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
+  if (Outcome o = expander_.prepare(track_, guess, events_.sides()); !o.ok()) return o;
+  if (Outcome o = guard_.check(expander_.series(), time(), record()); !o.ok()) return o;
+  if (Outcome o = expander_.solve(track_, guess); !o.ok()) return o;
+  if (Outcome o = expander_.extend(); !o.ok()) return o;
+  horizon_ = expander_.reach();
+  // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
+  const Expansion<N>& series = expander_.series();
+  const double reach = std::min(kinks_log_reach<N>(series.machine(), end_.slots(), order_ - 1, settings_.log_tolerance),
+                                events_.log_reach(series, order_ - 1, settings_.log_tolerance));
+  if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
+  limit_by_quadratures();
+  phase_ = Phase::expanded;
+  return {};
+}
+
+template <Number N>
+void Stepper<N>::limit_by_quadratures() {
+  const std::vector<W>& integrals = track_.now.integrals;
+  for (std::size_t i = 0; i < std::min(settings_.integrals, integrals.size()); ++i)
+    horizon_ = limited_by_quadrature(horizon_, order_, settings_.log_tolerance, to_double(integrals[i]),
+                                     [&](int k) -> N { return expander_.quadrature(i, k); });
+}
+
+// Where there is no such step in either direction of time, the fault stands.
+template <Number N>
+Outcome Stepper<N>::expand_one_sided(Outcome fault) {
+  const std::vector<W>& state = track_.now.state;
+  if (!std::all_of(state.begin(), state.end(), [](const W& x) { return is_finite(x); })) return fault;
+  PresentStep<N> step = present();
+  one_sided_.emplace(step, std::move(fault));
+  const W h = OneSidedStart<N>::length(step, point(), settings_.log_tolerance);
+  if (!take_one_sided(h) && !take_one_sided(-h)) {
+    Outcome o = one_sided_->fault(step, h);
+    one_sided_.reset();
+    return o;
+  }
+  horizon_ = convert<N>(h);
+  phase_ = Phase::expanded;
+  return {};
+}
+
+template <Number N>
+bool Stepper<N>::take_one_sided(const W& h) {
+  PresentStep<N> step = present();
+  auto leading = one_sided_->take(step, h);
+  if (leading) track_.now.leading = *std::move(leading);
+  return leading.has_value();
+}
+
+// Outside of a step.
+template <Number N>
+Outcome Stepper<N>::expand() {
+  phase_ = Phase::placed;
+  if (!expander_.alone()) record().careful = true;  // those beside it in the kernel are left in peace
+  begin_expansion();
+  expander_.expand_kernel();
+  return end_expansion() ? Outcome{} : trouble();
+}
+
+// In place of the present expansion.
+template <Number N>
+Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
+  expander_.begin(track_, guess, true);
+  ++expansions_;
+  expander_.expand_kernel();
+  return end_by_kernel() ? Outcome{} : expand_by_reference(guess);
+}
+
+// After a failure: the polynomial of the last good step is still asked for.
+template <Number N>
+void Stepper<N>::expand_again(const StepperState<N>& last) {
+  MotionState<N> now = track_.now;
+  track_.now = last.motion;
+  track_.now.integrals = now.integrals;
+  track_.now.integral_carry = now.integral_carry;
+  track_.now.record = now.record;
+  before_ = last.motion.t;
+  expand_here(last.motion.leading);
+  leave_kernel();
+  track_.begun().at = last;
+  now.record = record();
+  now.carry.resize(now.state.size(), W(0));
+  track_.now = std::move(now);
+  phase_ = Phase::placed;
+}
+
+// Whether J was singular within the last step is asked of the reference: at both ends first.
+template <Number N>
+Outcome Stepper<N>::look_back() {
+  leave_kernel();
+  if (guard_.regular_between(look_, track_.previous().at.motion, track_.now)) return {};
+  const StepperState<N> now = track_.begun().at, last = track_.previous().at;
+  record().careful = true;
+  expand_again(last);
+  PresentStep<N> step = present();
+  const std::optional<W> met = guard_.singular_within(step, now.motion.t - last.motion.t, W(0));
+  if (met)
+    return {OutcomeKind::singular,
+            "the system Jacobian becomes singular at t = " + number_text(to_double(W(last.motion.t + *met)), 12),
+            "end the motion before"};
+  record().careful = true;
+  const Outcome o = expand_here(now.motion.leading);
+  track_.begun().at = now;
+  track_.previous().at = last;
+  return o;
+}
+
+// ---- the end of the step --------------------------------------------------------------------------------------------
+
+// An ordinary step of a kernel, of the length that the series allow. False if there may be something in the way.
+template <Number N>
+bool Stepper<N>::aim_freely(const W& end) {
+  const KernelExpansion* kernel = expander_.kernel();
+  if (!kernel || kernel->suspected() || guard_.singular_ahead() || kernel->may_touch_zero() || !end_.free_of_kinks() ||
+      !fired_.empty() || !events_.empty() ||
+      !(to_double(horizon()) > std::abs(to_double(time())) * (2 * kCollapsedRoundoffs * unit_roundoff<double>())))
+    return false;
+  const W left = end - time(), h = horizon();
+  if (!(h < abs(left)) || out_of_reach(h, left)) return false;
+  const W to = convert<W>(convert<N>(W(left > W(0) ? time() + h : time() - h)));
+  end_.set_free(to - time());
+  PresentStep<N> step = present();
+  end_.aim(step, to, false);
+  return true;
+}
+
+template <Number N>
+bool Stepper<N>::aim_with_care(const W& end) {
+  const W left = end - time();
+  const bool forward = left > W(0);
+  if (one_sided_) return aim_one_sided(left);
+  PresentStep<N> step = present();
+  W h = horizon();
+  // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from
+  // there.
+  if (program_->nonlinear) h = abs(guard_.on_the_branch(step, forward ? h : W(-h), record()));
+  const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(time());
+  if (!(h > floor))
+    return fail({OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
+                 "the motion approaches a singularity: stop before it, or look at the last good state"});
+  if (out_of_reach(h, left))
+    return fail({OutcomeKind::interrupted,
+                 "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " +
+                     number_text(to_double(h), 2) + " long",
+                 "end the motion earlier, or take what is very fast or very stiff out of the model"});
+  if (guard_.singular_ahead()) return fail(becomes_singular());
+  const W whole = h;
+  if (!(h < abs(left))) h = abs(left);
+  if (!forward) h = -h;
+  if (Outcome o = end_.shorten(step, events_, h, whole); !o.ok()) return fail(std::move(o));
+  if (!shorten_at_singular_point(h, floor)) return fail(becomes_singular());
+  shorten_at_event(h, end_.kink());
+  // The step that t can show exactly: otherwise the time loses a round-off at every step.
+  if (h == left)
+    end_.aim(step, end, true);
+  else
+    end_.aim(step, convert<W>(convert<N>(W(time() + h))), false);
+  return true;
+}
+
+// Up to where J is still regular. False if that is shorter than the floor.
+template <Number N>
+bool Stepper<N>::shorten_at_singular_point(W& h, const W& floor) {
+  constexpr double kShortOf = 1 - 1e-7;
+  if (expander_.kernel() && !expander_.suspected()) return true;
+  leave_kernel();
+  PresentStep<N> step = present();
+  const std::optional<W> met = guard_.singular_within(step, h, record().last_step);
+  if (!met) return true;
+  h = *met * W(kShortOf);
+  guard_.set_singular_ahead(true);
+  return abs(h) > floor;
+}
+
+template <Number N>
+void Stepper<N>::shorten_at_event(W& h, const std::optional<N>& kink) {
+  fired_.clear();
+  if (events_.empty()) return;
+  N to = convert<N>(h);
+  const N length = to;
+  PresentStep<N> step = present();
+  fired_ = events_.look(expander_.series(), order_ - 1, convert<N>(time()), to, kink,
+                        [&](std::size_t i, const N& where) { return step.quadrature(i, where); });
+  if (to == length) return;
+  h = convert<W>(to);
+  guard_.set_singular_ahead(false);
+}
+
+template <Number N>
+bool Stepper<N>::aim_one_sided(const W& left) {
+  PresentStep<N> step = present();
+  W h = convert<W>(horizon_);
+  if (!(h < abs(left))) h = abs(left);
+  if (left < W(0)) h = -h;
+  if (!take_one_sided(h)) return fail(one_sided_->fault(step, h));
+  guard_.set_singular_ahead(false);
+  end_.set_one_sided();
+  if (!events_.empty()) h = convert<W>(convert<N>(h));
+  shorten_at_event(h, std::nullopt);
+  const bool last = !(abs(h) < abs(left));
+  end_.aim(step, last ? W(time() + left) : convert<W>(convert<N>(W(time() + h))), last);
+  return true;
+}
+
+// At the present pace, and at that of the whole motion so far, the end lies beyond the step limit.
+template <Number N>
+bool Stepper<N>::out_of_reach(const W& h, const W& left) const {
+  const std::size_t steps = record().steps;
+  if (steps < kStepsToJudge) return false;
+  const double mean = std::abs(to_double(W(time() - started_))) / static_cast<double>(steps);
+  return std::abs(to_double(left)) > std::max(mean, to_double(h)) * static_cast<double>(settings_.most_steps - steps);
+}
+
+// ---- where it starts ------------------------------------------------------------------------------------------------
+
+template <Number N>
+void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
+  track_ = {motion_from<N>(t, state, leading, program_->quadratures), {}, 0};
+  started_ = before_ = t;
+  phase_ = Phase::placed;
+  expansions_ = 0;
+  expander_.reset();
+  expander_.series().set_weakest_direction({});
+  guard_.restart();
+  end_.restart();
+  events_.restart();
+  fired_.clear();
+}
+
+template <Number N>
+Outcome Stepper<N>::start(const W& t, const std::vector<W>& state, const std::vector<W>& leading, bool kernel) {
+  place(t, state, leading);
+  record().careful = !kernel;
+  return expand();
+}
+
+template <Number N>
+void Stepper<N>::adopt(const Stepper& other) {
+  track_.now = other.motion();
+  track_.now.own.clear();
+  record() = with_other_equations(other.record());
+  started_ = other.started_;
+  before_ = time();
+  events_ = other.events_;
+  phase_ = Phase::placed;
+  expander_.restart();
+  end_.finish();
+}
+
+template <Number N>
+Outcome Stepper<N>::take_over(const Stepper& other) {
+  adopt(other);
+  return expand();
+}
+
+template <Number N>
+Outcome Stepper<N>::restart(const std::vector<W>& state) {
+  leave_kernel();
+  before_ = time();  // the last step's polynomial is not this state's
+  track_.now.state = state;
+  track_.now.carry.assign(state.size(), W(0));
+  track_.now.own.clear();
+  events_.restart();
+  fired_.clear();
+  end_.restart();
+  // The correction of values set by an event is not drift from the constraints.
+  const W drift = record().worst_constraint;
+  Outcome o = expand();
+  record().worst_constraint = drift;
+  return o;
+}
+
+template <Number N>
+Outcome Stepper<N>::resume(const StepperState<N>& begun) {
+  track_.now = begun.motion;
+  started_ = before_ = time();
+  expander_.restart();
+  expander_.series().set_weakest_direction(begun.direction);
+  guard_.set_sigma(record().sigma_before);
+  if (!begun.sides.empty()) events_.set_sides(begun.sides);
+  end_.finish();
+  return expand();
+}
+
+template <Number N>
+void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan> plan)
+  requires std::same_as<N, double>
+{
+  if (!plan) return;
+  auto kernel = std::make_shared<Kernel>(std::move(plan));
+  kernel->set_parameters(0, expander_.wide_parameters());
+  accelerate(std::move(kernel), 0);
+}
+
+template <Number N>
+void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane)
+  requires std::same_as<N, double>
+{
+  const Tape& tape = program_->tape;
+  const bool kinks = std::any_of(tape.code.begin(), tape.code.begin() + end_.slots(),
+                                 [](const Instruction& in) { return !in.constant && may_turn(in); });
+  if (kinks || !events_.empty()) return;
+  leave_kernel();
+  track_.now.own.clear();
+  expander_.accelerate(KernelExpansion(std::move(kernel), lane, *program_, order_, settings_.log_tolerance));
+}
+
+template <Number N>
+void Stepper<N>::watch(std::vector<WatchedSeries> series) {
+  events_ = EventWatch<N>(std::move(series));
+  // What is watched may have kinks, too.
+  end_.set_slots(events_.empty() ? program_->tape.main_end : static_cast<std::uint32_t>(program_->tape.code.size()));
+}
+
+// ---- the dense output -----------------------------------------------------------------------------------------------
+
+template <Number N>
+typename Stepper<N>::W Stepper<N>::quadrature(std::size_t i, const W& dt) const {
+  W s(0);
+  for (int k = order_ - 1; k >= 0; --k) s = s * dt + convert<W>(expander_.quadrature(i, k));
+  return s;
+}
+
+template <Number N>
+Outcome Stepper<N>::at(const W& t, Expansion<W>& point, bool leading) const {
+  std::vector<W> state, guess;
+  expander_.state_at(track_, t - before_, state, guess);
+  point.load(t, state, guess);
+  Outcome o = point.prepare();
+  if (o.ok()) o = point.project();
+  if (o.ok() && leading) o = point.solve();
+  if (!one_sided_ || o.kind != OutcomeKind::not_a_number) return o;
+  // The equations have no value here: what the motion has right after the point stands for it.
+  point.load(t, state, guess);
+  point.evaluate();
+  return {};
+}
+
+template class Stepper<double>;
+template class Stepper<long double>;
+template class Stepper<Quad>;
+template class Stepper<Multi>;
+
+}  // namespace anholon
