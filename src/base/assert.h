@@ -1,10 +1,10 @@
-// ANHOLON_ASSERT: a condition that only a bug of ours can violate. Always checked.
+// ANHOLON_ASSERT: checks a condition that only a bug of this program can violate. It is checked in every build.
 #pragma once
 #include <stdexcept>
 
 namespace anholon {
 
-// Thrown by a violated assertion where nobody has chosen otherwise.
+// The exception that a violated assertion throws unless set_fault_handler has chosen another handler.
 struct InternalFault : std::logic_error {
   using std::logic_error::logic_error;
 };

@@ -1,5 +1,5 @@
-// What became of a numerical task. Never thrown: partial results are kept and sweeps go on.
-// The text of an outcome holds the remedy.
+// Outcome: how a numerical task ended. It is returned, never thrown: partial results are kept and sweeps go on. Its
+// text holds the remedy.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -16,7 +16,7 @@ enum class OutcomeKind : std::uint8_t {
   no_convergence,  // Newton's iteration for the leading derivatives failed
   inconsistent,    // no initial data satisfy the constraints with the values given
   interrupted,     // Ctrl-C, or the step limit of the caller
-  too_large,       // the work or the memory it would take is beyond all proportion
+  too_large,       // the work or the memory needed is out of proportion
 };
 
 struct Outcome {
