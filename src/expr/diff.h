@@ -34,7 +34,7 @@ Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds, std:
 // nullptr to keep the symbol.
 Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement);
 
-// The same for any nodes: those in the table are replaced, whatever they are made of.
+// As above for any nodes: replaces those in the table, whatever their operands.
 Column replace_nodes(std::span<const Expr> es, const std::unordered_map<NodeId, Expr>& replacement);
 
 // The symbols (leaves that are not numbers) on which the expressions depend, ascending.
