@@ -150,7 +150,7 @@ class Lexer {
   }
 
  private:
-  // Does a name end here? Then a '.' is followed by a member.
+  // Whether a name ends here, in which case a '.' is followed by a member.
   bool after_name(std::size_t offset) const {
     return !lexemes_.empty() && lexemes_.back().token == Token::name &&
            lexemes_.back().offset + lexemes_.back().length == offset;
