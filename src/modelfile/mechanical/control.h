@@ -9,13 +9,14 @@
 namespace anholon {
 
 void declare_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
-// After all names are declared, before constraints are read.
+// Call it after all names are declared and before constraints are read.
 void read_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
-// `by` of the constraints from `first` on: one input for each of them.
+// Reads `by` of the constraints from `first` on: one input for each of them.
 void keep_by(const Item& by, std::size_t first, const Scope& scope, Model& model);
-// An input without a formula is one that keeps a constraint.
+// Checks that an input without a formula maintains a constraint.
 void check_kept(const Model& model, Diagnostics& diagnostics);
-// Inputs whose formulas hold coordinates are put in: in a constraint or a potential they are no functions of time.
+// Substitutes the inputs whose formulas hold coordinates: in a constraint or a potential they are not functions of
+// time.
 Expr with_feedback(const Model& model, Expr e);
 
 void read_outputs(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);

@@ -6,7 +6,7 @@
 
 namespace anholon {
 
-// The shape with its sizes, numbers and formulas of parameters. Throws Failure.
+// Reads the shape with its sizes, which are numbers or formulas of parameters. Throws Failure.
 Shape read_shape(const Item& item, Scope& scope, Model& model);
 
 // Moments of inertia about x, y, z for the mass m.
