@@ -9,10 +9,10 @@ namespace anholon {
 
 namespace {
 
-// A row this near to the span of others is taken only if no better one is left.
+// A row this close to the span of others is taken only if no better one is left.
 constexpr double kNearlyDependent = 0.05;
 
-// A value that depends on the symbol alone, for what a rank must not depend on.
+// A value that depends only on the symbol, for symbols on which the rank must not depend.
 double arbitrary(const Node& n) { return 0.7 + 0.13 * static_cast<double>((n.index * 7 + n.order * 3) % 11); }
 
 double length(const std::vector<double>& v) {
@@ -24,7 +24,7 @@ double length(const std::vector<double>& v) {
 // An orthonormal basis that grows.
 class OrthonormalRows {
  public:
-  // What is left of v, twice orthogonalized.
+  // The component of v orthogonal to the basis, orthogonalized twice.
   std::vector<double> beyond(std::vector<double> v) const {
     for (int pass = 0; pass < 2; ++pass)
       for (const std::vector<double>& e : basis_) {
