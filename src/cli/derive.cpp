@@ -15,7 +15,7 @@ namespace anholon::cli {
 
 namespace {
 
-// --format, else what the end of the name says.
+// --format, else the format of the file's extension.
 std::string format_of_equations(const Options& o) {
   const std::string end = std::filesystem::path(o.output).extension().string();
   if (!o.format_given && !o.output.empty())
@@ -25,7 +25,7 @@ std::string format_of_equations(const Options& o) {
   return o.format;
 }
 
-// To the file, or to the standard output.
+// Writes to the file, or to the standard output.
 void deliver(const Options& o, const std::string& text) {
   if (o.output.empty() || o.output == "-") return hand_out(text);
   if (const std::string why = write_whole(o.output, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
@@ -59,7 +59,7 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   options.made_by = "anholon derive " + o.model + " --format " + o.format + (o.form_given ? " --form " + o.form : "");
   for (const std::string& set : o.set) options.made_by += " --set " + set;
   options.start = {s.state.t, s.state.q, s.state.qd};
-  // What constraints settle is solved for in wider numbers, as for a motion.
+  // Solves for the values that constraints determine in wider numbers, as for a motion.
   if (Start<long double> start; initial_state(s, choice, start).ok()) {
     const long double* x = start.state.data();
     for (std::size_t a = 0; a < s.system.coordinates; x += s.structure.d[a++]) {

@@ -1,4 +1,4 @@
-// The program anholon: the words of the command line, nothing else.
+// The program anholon: parses the command line, nothing else.
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -19,7 +19,7 @@ using namespace anholon::cli;
 
 namespace {
 
-// --q x=1 y=2 MODEL: a word without '=' that slipped into a list of assignments is the model.
+// --q x=1 y=2 MODEL: a word without '=' in a list of assignments is the model.
 void rescue_model(Options& o) {
   for (std::vector<std::string>* list : {&o.q, &o.qdot, &o.qddot, &o.qdddot, &o.lambda, &o.lambdadot, &o.set})
     for (auto it = list->begin(); it != list->end();) {
@@ -34,7 +34,7 @@ constexpr const char* kCommands[] = {"check",     "derive",  "evaluate", "simula
                                      "models",    "prove",   "compare",  "papers",   "verify", "new",       "fmt",
                                      "reference", "convert", "plot",     "report",   "render"};
 
-// A word that is no command gets an answer of its own.
+// Gives a word that is not a command its own message.
 void check_command(const char* word) {
   if (word[0] == '-') return;
   std::vector<std::string> known;
@@ -47,7 +47,7 @@ void check_command(const char* word) {
                    (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: anholon --help\n"};
 }
 
-// The words as they could be typed again.
+// The words in a form that can be typed again.
 std::string command_line(int argc, char** argv) {
   std::string line = "anholon";
   for (int i = 1; i < argc; ++i) {
@@ -63,10 +63,10 @@ std::string command_line(int argc, char** argv) {
   return line;
 }
 
-// What was printed has reached its reader; a full disk or a closed pipe is not success.
+// Returns an error if the printed output did not reach its reader: a full disk or a closed pipe is not success.
 int finish(int code) {
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (written || code != kOk) return code;  // what went wrong before was said already
+  if (written || code != kOk) return code;  // the earlier error was already printed
   say(stderr, "error: cannot write the output: %s\n", std::strerror(errno));
   return kBadInput;
 }
@@ -532,7 +532,7 @@ int main(int argc, char** argv) {
     say(stderr, "%s:%d: internal fault: %s\nplease report this with the model\n", file, line, condition);
     std::_Exit(kFault);
   });
-  // A limit of the size of files is an error like a full disk, with a message.
+  // A limit on the size of files is an error with a message, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     const int status = finish(run(argc, argv));
@@ -544,7 +544,7 @@ int main(int argc, char** argv) {
     say_lines(stderr, e.text);
     return kBadInput;
   } catch (const Failure& e) {
-    // Not met in one element of the file, but in the equations made of all of them.
+    // The failure does not concern one element of the file, but the equations made of all elements.
     std::fflush(stdout);
     say(stderr, "error: %s\n", e.what());
     if (!e.diagnostic.hint.empty()) say(stderr, "hint: %s\n", e.diagnostic.hint.c_str());
