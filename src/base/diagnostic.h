@@ -70,7 +70,7 @@ std::string print(const Diagnostic& d, const SourceText& source);
 // "line 12", and the file if it is not the main one.
 std::string line_of(Span span, const SourceText& source);
 
-// The candidate closest to `name` by edit distance if it is close enough to be a slip, else "".
+// The candidate closest to `name` by edit distance if it is close enough to be a typing error, else "".
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
 
 }  // namespace anholon

@@ -9,7 +9,7 @@ namespace anholon {
 enum class OutcomeKind : std::uint8_t {
   finished,
   singular,        // the system Jacobian lost rank: a singular configuration
-  step_collapse,   // the step size fell below what the time can resolve
+  step_collapse,   // the step size fell below the resolution of the time
   blow_up,         // a state grew without bound
   negative_mass,   // a given mass fell below zero
   not_a_number,    // a formula left its domain (root or logarithm of a negative number, 0/0)

@@ -21,7 +21,7 @@ std::string text(const Multi& x, int digits) {
   return digits > 16 ? number_text(x, digits) : number_text(to_double(x));
 }
 
-// ---- what is asked for -----------------------------------------------------------------------------
+// ---- options ----------------------------------------------------------------------------------------
 
 [[noreturn]] void wrong_range(const Options& o, const std::string& why) {
   throw UsageError{"error: --vary: " + why + "\nhint: a range NAME=FROM..TO:STEP such as " +
@@ -65,7 +65,7 @@ std::optional<ParameterRange> range(const Options& o, const Model& model) {
   return r;
 }
 
-// ---- what is printed -------------------------------------------------------------------------------
+// ---- output -----------------------------------------------------------------------------------------
 
 std::string motion_text(const LinearModel& m) {
   std::string cyclic;

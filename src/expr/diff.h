@@ -1,10 +1,9 @@
 // Differentiation and substitution on the expression graph. Each call is one sweep, O(nodes).
 //
-// Partial derivatives treat every symbol (t, each q_a^(k), lambda, mu) as independent.
-// The total derivative is
+// Partial derivatives treat every symbol (t, each q_a^(k), lambda, mu) as independent. The total derivative is
 //   D f = f_,t + sum_{a,k} f_,q_a^(k) q_a^(k+1) + (the same for lambda and given functions),
-// with frozen masses mu constant: before masses are put in for their symbols it is the frozen
-// derivative D/Dt of the papers, afterwards the ordinary d/dt  (theory: derivatives).
+// with frozen masses mu constant: before masses are substituted for their symbols it is the frozen derivative D/Dt of
+// the papers, afterwards the ordinary d/dt  (theory: derivatives).
 #pragma once
 #include <functional>
 #include <span>

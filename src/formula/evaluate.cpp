@@ -45,7 +45,7 @@ std::string body_hint(const Value& a, const Value& b, const Names& names) {
   return of_a.empty() ? body_hint(b, names) : of_a;
 }
 
-// The number 0 stands for the zero vector where the other side is a vector.
+// The number 0 denotes the zero vector if the other side is a vector.
 void lift_zero(Value& a, Value& b) {
   if (number(a) && vector(b) && is_zero(*number(a))) a = zero_vector(*vector(b)->x.graph);
   if (number(b) && vector(a) && is_zero(*number(b))) b = zero_vector(*vector(a)->x.graph);

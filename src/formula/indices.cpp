@@ -197,7 +197,7 @@ std::string equation_text(const FormulaText& text, const std::vector<Syntax>& si
   if (!indices || !indices->outer) return text.text();
   std::string out;
   for (const Syntax& s : sides) out += (out.empty() ? "" : " = ") + print(s);
-  constexpr std::size_t kLongest = 400;  // sums are written out
+  constexpr std::size_t kLongest = 400;  // sums are expanded
   if (out.size() <= kLongest) return out;
   std::string values;
   for (const auto& [letter, value] : indices->values)

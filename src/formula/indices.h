@@ -2,8 +2,8 @@
 // substituted.
 //
 // In a parsed formula an index integer or bound letter is a number, P[i-1] the name "P[2]", T[j](a, b) the call
-// "T[2]"(a, b), sum(k, e) and prod(k, e) are written out: one sum of all terms, one product. Over an empty range the
-// sum is 0 and the product 1.
+// "T[2]"(a, b), sum(k, e) and prod(k, e) are expanded to one sum of all terms, one product. Over an empty range the sum
+// is 0 and the product 1.
 #pragma once
 #include <map>
 #include <memory>

@@ -85,7 +85,7 @@ class Lexer {
         text = s.substr(i, j - i);
         push(Token::name, j - i, chars, normal_name(text));
       } else if (c == "\"") {
-        // "zxz": the axis letters of euler(…) may stand in quotes.
+        // "zxz": the axis letters of euler(…) may be quoted.
         const std::size_t close = s.find('"', i + 1);
         if (close == std::string::npos) throw Failure(source_.span(offset, 1), "this quote is not closed");
         const std::string text = s.substr(i + 1, close - i - 1);

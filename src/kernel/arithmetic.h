@@ -61,7 +61,7 @@ struct KernelTables {
   std::array<std::uint32_t, 3> motions{};
   std::uint32_t projected = 0;
   std::uint32_t margin =
-      0;  // the step in relation to the reach of its series (integrate/taylor.h: step_size), in powers of two
+      0;  // the ratio of the step to the reach of its series (integrate/taylor.h: step_size), in powers of two
   std::uint32_t inverse_pivots = 0;  // entries of `inverse` for the judged pivots
   Findings found;
   std::uint32_t size = 0;

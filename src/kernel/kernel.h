@@ -53,8 +53,8 @@ class KernelPlan {
     const Code* ready = c.ready.load(std::memory_order_acquire);
     return ready && c.lanes == lanes ? ready : nullptr;
   }
-  // `work` or `cost` of one expansion, in operations. For a motion alone, the cost counts the operations of a stage
-  // that wait for one another (latency.h).
+  // The cost of one expansion, and its number of operations. For a motion alone, the cost includes the operations of a
+  // stage that wait for one another (latency.h).
   double cost() const;
   double work() const {
     return plan_.work() + elimination_.work() * (plan_.stages + 2) +

@@ -4,8 +4,8 @@
 // A plan is made once per program and holds no numbers of a motion, so any number of kernels (one trajectory, or one in
 // each SIMD lane) and threads share it. Against the tape (tape/tape.h), which stays the reference:
 //   - sums of sums are one sum, factors constant in time are its coefficients, a sine and its cosine are one step;
-//   - only what a convolution needs keeps its series, all else is one number per stage;
-//   - what is zero in a sweep because the unknowns of the stage are not known yet is left out of the stages beyond 0;
+//   - only slots that a convolution needs store their series; all others are one number per stage;
+//   - terms that are zero in a sweep because the unknowns of the stage are not known yet are omitted beyond stage 0;
 //   - J is never formed: the linearized tape itself, one row for every slot that depends on the unknowns, is eliminated by a sparse
 //     LU (sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
 #pragma once

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMostNewton = 30;
 // pivots at least this large, relative to the largest, are taken in the order of the coordinates
 constexpr double kNearlyLargest = 0.5;
-constexpr double kPreferred = 0.02;  // … and preferred ones, or coordinates already taken, from this size on
+constexpr double kPreferred = 0.02;  // pivots of preferred or already taken coordinates: from this size on
 
 // 10^-(fraction of the working digits): a smaller number, relative to its neighbours, is round-off.
 Multi round_off(double part) {

@@ -10,8 +10,8 @@
 namespace anholon {
 
 // Independent functions f, each proved: X f = 0 for all X of `kernel`, the fields that the forms of all constraints
-// annul. `forms`: a basis of a span closed under d, in which the differentials of `holonomic` lie. `own`: further forms
-// of that span, which are tried first.
+// annul. `forms`: a basis of a span closed under d, which contains the differentials of `holonomic`. `own`: further
+// forms of that span, which are tried first.
 std::vector<Expr> first_integrals(const FormSpace& space, Rows forms, Rows own, const Column& holonomic,
                                   const Rows& kernel, FormPoint& at);
 

@@ -1,4 +1,4 @@
-// A real number known to lie in a ball: midpoint and radius (Arb), with the operators of a built-in number. The result
+// A real number enclosed in a ball: midpoint and radius (Arb), with the operators of a built-in number. The result
 // contains the exact result for all points of the operands.
 //
 // Every operation works with the precision of its thread, set by BallScope. If an operation is not defined on the whole

@@ -122,8 +122,7 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
   Matrix<Multi> moved = a;
   for (std::size_t i = 0; i < a.rows; ++i)
     for (std::size_t j = 0; j < a.cols; ++j)
-      moved(i, j) +=
-          change * Multi(2 * static_cast<int>((i * 37 + j * 53 + 11) % 17) - 17) / Multi(16);  // none of them 0
+      moved(i, j) += change * Multi(2 * static_cast<int>((i * 37 + j * 53 + 11) % 17) - 17) / Multi(16);  // all nonzero
   std::vector<Complex> values, others;
   std::vector<std::vector<Complex>> vectors;
   if (!solve(a, values, &vectors) || !solve(moved, others, nullptr)) return false;

@@ -1,10 +1,9 @@
-// Proof that a square system f(x) = 0 has exactly one root in a box: the interval Newton operator of
-// Krawczyk,
+// Proof that a square system f(x) = 0 has exactly one root in a box: the interval Newton operator of Krawczyk,
 //
 //     K(X) = m − Y f(m) + (I − Y f'(X)) (X − m),      m the center of X, Y near f'(m)^-1.
 //
-// Every root in X lies in K(X), and if K(X) lies in the interior of X there is exactly one. A double
-// root is never proved.
+// K(X) contains every root in X, and if K(X) is in the interior of X there is exactly one root. A double root is never
+// proved.
 #pragma once
 #include <cstddef>
 #include <functional>

@@ -24,7 +24,7 @@ struct Matrix {
   const N& operator()(std::size_t i, std::size_t j) const { return data[i * cols + j]; }
 };
 
-// P A = L U of a square matrix. The pivot in a column is the entry largest in relation to its row.
+// P A = L U of a square matrix. The pivot in a column is the entry that is largest relative to its row.
 template <Number N>
 class Lu {
  public:

@@ -12,7 +12,7 @@ __extension__ typedef __float128 Quad;
 
 inline constexpr int kQuadBits = 113;
 inline constexpr int kQuadDigits = 33;      // decimal digits that a Quad always holds
-inline constexpr int kQuadTextDigits = 36;  // that tell any two Quads apart
+inline constexpr int kQuadTextDigits = 36;  // digits that distinguish any two Quads
 
 // Stores x, exactly if `to` has at least 113 bits; the other function returns the Quad nearest to a number of at most
 // 113 bits.

@@ -34,7 +34,7 @@ struct SymbolNames {
 
 std::string print(Expr e, const SymbolNames& names, Format format);
 std::vector<std::string> print(std::span<const Expr> es, const SymbolNames& names, Format format);
-// Prints the expressions behind names: each named expression is written out, with its operands under their names.
+// Prints the expressions behind names: each named expression is printed in full, with its operands under their names.
 std::vector<std::string> print_contents(std::span<const Expr> es, const SymbolNames& names, Format format);
 // Gives names to all sums and products that occur more than once in `es`; the printed length is then proportional to
 // the size of the graph. The result is in the order of definition.

@@ -3,7 +3,7 @@
 // Every form is compared with Routh's equations a = E - G - N [L 2.7]:
 //   with multipliers      each residual is that of Routh's equations, identically in all derivatives;
 //   without               each residual is sum_s B_s,nu a_s, where B spans the kernel of dphi/dq^(m) on the manifold of the
-//                         constraints. N drops out, and B^T a = 0 says that a is a combination of constraint rows: the
+//                         constraints. N drops out, and B^T a = 0 means that a is a combination of constraint rows: the
 //                         multipliers exist, and the form has the solutions of Routh's equations.
 // Two forms that agree with Routh's agree with each other; if one does and the other does not, they differ.
 //

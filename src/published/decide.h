@@ -12,7 +12,7 @@ namespace anholon {
 struct Decision {
   const ClaimCheck* check = nullptr;
   Verdict verdict = Verdict::unknown;  // of the statement
-  Verdict mutant = Verdict::unknown;   // of its mutant, which has to be refuted for some checks
+  Verdict mutant = Verdict::unknown;   // of its mutant, if there is one, which must be refuted
   bool has_mutant = false;
   // the kind of a true statement; the counterexample of a false one; the reason if nothing is decided
   std::string detail;

@@ -30,7 +30,7 @@ void RunTable::set_columns(std::vector<std::string> names) {
 
 bool RunTable::add(std::size_t column, std::string_view written) {
   double value = std::numeric_limits<double>::quiet_NaN();
-  // Other programs leave such text for a missing number.
+  // Other programs leave an empty cell for a missing number.
   const bool number = written.empty() || parse_number(written, value);
   std::vector<std::string>& own = texts[column];
   if (!own.empty() || (!written.empty() && !says_all(written, value))) {

@@ -49,7 +49,7 @@ class StateSolver {
   Outcome attempt(const StartPlan::Stages& stages);
   void mark_derived(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
 
-  // Beyond velocities (completion.cpp).
+  // Completes the state beyond velocities (completion.cpp).
   void make_room(const System& s, const Structure& t);
   int level_of(Expr e, const System& s, const Structure& t) const;
   Outcome stage(const System& s, const Structure& t, int level);

@@ -44,7 +44,7 @@ class Compiler {
     };
     part(es.first(leads.size()));
     std::vector<std::uint32_t> roots;
-    // Each root has an alias of its own, so that its lead is exactly the one asked for.
+    // Each root has an alias of its own, so that its lead is exactly the given one.
     for (Expr e : es.first(leads.size())) roots.push_back(alias(e.id));
     tape_.main_end = static_cast<std::uint32_t>(tape_.code.size());
     part(es.subspan(leads.size()));

@@ -24,7 +24,7 @@ struct Motion {
   double last(const std::string& column) const { return number(rows.rows().size() - 1, column); }
 };
 
-// A saved run without the count of its rows, to which the end of the first part adds one.
+// A saved run without the count of its rows, which the end of the first part increases.
 inline std::string of_the_motion(const std::string& saved) {
   std::istringstream lines(saved);
   std::string kept;

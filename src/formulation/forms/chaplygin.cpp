@@ -1,5 +1,5 @@
-// Chaplygin's equations, generalized to constraints of order m [L 3.13]. With T~ = T^(m-1) where q_D^(m) = f is put in
-// before the partial derivatives are taken [L 3.12]:
+// Chaplygin's equations, generalized to constraints of order m [L 3.13]. With T~ = T^(m-1) where q_D^(m) = f is
+// substituted before the partial derivatives are taken [L 3.12]:
 //
 //   m D/Dt dT~/dq_nu^(m) - dT~/dq_nu^(m-1) - sum_b dT^(m-1)/dq_b^(m) (m d/dt df_b/dq_nu^(m) - df_b/dq_nu^(m-1))
 //     - sum_b dT^(m-1)/dq_b^(m-1) df_b/dq_nu^(m)  =  G_nu + sum_b G_b df_b/dq_nu^(m)

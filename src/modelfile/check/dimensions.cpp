@@ -251,7 +251,7 @@ class Elements {
 static void note_bare_numbers(const Scope& scope, Model& model) {
   const auto& names = model.names.parameters;
   std::map<std::string, std::string>
-      measured;  // the unit in SI: a parameter that is given with a unit, as it is written
+      measured;  // the unit in SI: a parameter that is given with a unit, in its written form
   std::vector<std::pair<std::size_t, std::string>> bare;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Scope::Declaration& d = scope.declarations().at(names[i]);

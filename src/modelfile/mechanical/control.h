@@ -1,8 +1,8 @@
-// [input] and [output]: what a control acts by, and what is recorded.
+// [input] and [output]: the inputs of a control, and recorded quantities.
 //
-// An input is a formula of anything, held as a symbol of its own while the equations are derived; it is put in when the
-// system is made. An input named in `by = "u"` of a constraint keeps that constraint: it is an unknown in the place of
-// lambda (servo constraint), and any formula it has is not used.
+// An input is a formula in any symbols. It is a symbol of its own while the equations are derived; its formula is
+// substituted when the system is made. An input named in `by = "u"` of a constraint maintains that constraint: the
+// input is an unknown in place of lambda (servo constraint), and its formula, if there is one, is not used.
 #pragma once
 #include "modelfile/names/names.h"
 

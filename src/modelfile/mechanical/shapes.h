@@ -1,6 +1,6 @@
 // shape = "disc(R)": homogeneous solids of mass m and their central moments of inertia about the body axes. Disc, ring
-// and cylinder are turned about z, a rod lies along x. torus(R, r): a full tube of radius r around the circle of radius
-// R.
+// and cylinder are turned about z, the axis of a rod is x. torus(R, r): a full tube of radius r around the circle of
+// radius R.
 #pragma once
 #include "modelfile/names/names.h"
 

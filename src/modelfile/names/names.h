@@ -90,7 +90,7 @@ class Scope final : public Names {
   };
   Vector gravity_at(const Vector& place, Span use);
   // The derivatives of the field of gravity by the three coordinates of the place; none if the field is uniform.
-  bool gravity_gradient = false;  // asked for by [gravity] gradient
+  bool gravity_gradient = false;  // set by [gravity] gradient
   std::vector<Vector> gravity_gradient_at(const Vector& place, Span use);
   std::vector<Diagnostic> failures;  // of declarations evaluated on demand
 

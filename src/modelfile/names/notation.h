@@ -5,8 +5,8 @@
 
 namespace anholon {
 
-// The same sign as MathML. Accepts letters, digits, Greek and some other letters by their commands, \mathrm{…},
-// accents, subscripts and superscripts. Throws Failure.
+// Converts a sign from LaTeX to MathML. Accepts letters, digits, Greek and some other letters by their commands,
+// \mathrm{…}, accents, subscripts and superscripts. Throws Failure.
 std::string mathml_of(const FormulaText& latex);
 
 // Reports names that the file does not declare.
