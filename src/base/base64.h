@@ -6,7 +6,7 @@
 namespace anholon {
 
 std::string to_base64(std::string_view bytes);
-// Empty where the text is no base64 of anything.
+// Returns an empty string if the text is not base64.
 std::string from_base64(std::string_view text);
 
 }  // namespace anholon

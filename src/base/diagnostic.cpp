@@ -46,7 +46,7 @@ static const char* word(Severity s) {
   return "";
 }
 
-// A source line is shown whole up to this many characters, else the part around the caret.
+// A source line of up to this many characters is shown whole; of a longer line the part around the caret is shown.
 static constexpr std::size_t kShownWidth = 160;
 
 std::string print(const Diagnostic& d, const SourceText& main) {
@@ -58,7 +58,7 @@ std::string print(const Diagnostic& d, const SourceText& main) {
     const std::string number = std::to_string(d.span.line);
     std::size_t column = d.span.column > 0 ? d.span.column - 1 : 0;
     std::string line = source.line(d.span.line);
-    // Of a line without end only what is shown is looked at; a character has four bytes at most.
+    // A line may be very long: only the part that is shown is read. A character has at most four bytes.
     const std::size_t needed = 4 * (column + kShownWidth + 1);
     if (line.size() > needed) line.resize(needed);
     if (utf8_length(line) > kShownWidth) {
@@ -94,7 +94,7 @@ std::string Diagnostics::print(const SourceText& source) const {
   });
   SourceText all = source;
   if (all.others.empty()) all.others = others;
-  // More than this nobody reads; each costs a walk to its line.
+  // At most this many reports are printed; each costs a search for its line.
   constexpr std::size_t kShown = 100;
   std::string out;
   for (std::size_t i = 0; i < sorted.size() && i < kShown; ++i) out += anholon::print(*sorted[i], all);

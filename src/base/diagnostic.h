@@ -1,8 +1,7 @@
-// What is wrong with the user's input: collected, positioned, with a hint that works if pasted.
+// Diagnostics: mistakes in the user's input, collected, with positions and with hints that work when pasted.
 //
-// A Diagnostic points into one source text. Code that finds something wrong inside one formula
-// throws it as a Failure, which the reader of the enclosing element catches and collects, so that
-// all errors of a file are reported at once.
+// A Diagnostic points into one source text. Code that finds something wrong inside one formula throws it as a Failure,
+// which the reader of the enclosing element catches and collects, so that all errors of a file are reported at once.
 #pragma once
 #include <cstdint>
 #include <exception>
@@ -40,8 +39,8 @@ struct Failure : std::exception {
 struct SourceText {
   std::string name;
   std::string text;
-  std::string path = {};                // where it lies, if that is not its name
-  std::vector<SourceText> others = {};  // the files it builds on
+  std::string path = {};                // the path of the file, if it differs from the name
+  std::vector<SourceText> others = {};  // the files that this text refers to
   std::string line(std::uint32_t number) const;
   const SourceText& of(Span span) const {
     return span.file == 0 || span.file > others.size() ? *this : others[span.file - 1];
@@ -55,12 +54,12 @@ class Diagnostics {
   void warning(Span span, std::string message, std::string hint = {});
   bool has_errors() const;
   const std::vector<Diagnostic>& list() const { return list_; }
-  // One report stands for all that differ in their place only, where `is_one` says so of the message: the first, which
-  // says how many there are.
+  // Replaces all reports whose message satisfies `is_one` and that differ only in their position by the first of them,
+  // which states their number.
   void gather(const std::function<bool(const std::string&)>& is_one);
   // `file:line:col: error: …`, the source line, a caret range, `hint: …`; in order of position.
   std::string print(const SourceText& source) const;
-  // The files beside the main one, where they were found by what reports here.
+  // The other files besides the main one, if the code that reports here has found them.
   std::vector<SourceText> others;
 
  private:
@@ -71,7 +70,7 @@ std::string print(const Diagnostic& d, const SourceText& source);
 // "line 12", and the file if it is not the main one.
 std::string line_of(Span span, const SourceText& source);
 
-// The candidate closest to `name` by edit distance if it is close enough to be a slip, else "".
+// The candidate closest to `name` by edit distance if it is close enough to be a typing error, else "".
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
 
 }  // namespace anholon

@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* kUnknown = "\uFFFD";
 
-// The character of these bytes; nothing where they are no UTF-8: too long, beyond U+10FFFF, a surrogate, a lonely byte.
+// The character of these bytes; nullopt if they are not UTF-8: too long, beyond U+10FFFF, a surrogate, or an incomplete
+// sequence.
 std::optional<std::uint32_t> code_point(std::string_view c) {
   const auto byte = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<unsigned char>(c[k])); };
   if (c.size() == 1) return byte(0) < 0x80 ? std::optional(byte(0)) : std::nullopt;
@@ -27,8 +28,7 @@ std::optional<std::uint32_t> code_point(std::string_view c) {
 
 bool is_control(std::uint32_t c) { return c < 0x20 || (c >= 0x7F && c < 0xA0); }
 
-// Characters that show nothing of themselves: marks of direction, no width, separators of lines, tags, what is no
-// character.
+// Characters without a visible sign: direction marks, zero width, line separators, tags, noncharacters.
 bool is_hidden(std::uint32_t c) {
   struct Range {
     std::uint32_t first, last;
@@ -50,7 +50,7 @@ std::string picture(std::uint32_t c) {
           static_cast<char>(0x80 | (code & 63))};
 }
 
-// f(bytes of the character, its code if it is one) gives what stands for it.
+// f(bytes of the character, its code if it is valid) returns the replacement.
 template <class F>
 std::string each(std::string_view text, F f) {
   std::string out;
@@ -58,7 +58,7 @@ std::string each(std::string_view text, F f) {
   for (std::size_t i = 0; i < text.size();) {
     const std::string_view bytes = text.substr(i, utf8_width(text, i));
     const auto code = code_point(bytes);
-    // Of bytes that are no character each stands for itself.
+    // A byte that is not part of a character is replaced by itself.
     const std::string_view c = code ? bytes : text.substr(i, 1);
     out += f(c, code);
     i += c.size();
@@ -74,7 +74,7 @@ std::string visible_lines(std::string_view c, std::optional<std::uint32_t> code)
   return c == "\n" ? "\n" : c == "\t" ? " " : visible(c, code);
 }
 
-// Lines that end with CR and LF end with LF.
+// Replaces CR LF by LF at the end of lines.
 std::string without_cr(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i)
@@ -97,7 +97,7 @@ std::string hexadecimal(const char* format, std::uint32_t code) {
   return buffer;
 }
 
-// JSON has four digits, and pairs for what needs more.
+// A JSON escape has four digits; a larger code needs a surrogate pair.
 std::string json_code(std::uint32_t c) {
   return c < 0x10000 ? hexadecimal("\\u%04x", c)
                      : hexadecimal("\\u%04x", 0xD800 + ((c - 0x10000) >> 10)) +

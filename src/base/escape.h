@@ -1,10 +1,10 @@
-// What each output format makes of text that others wrote: titles, names, file names, messages that quote them.
+// Escaping of foreign text (titles, names, file names, messages that quote them) for each output format.
 //
-// A person never gets what steers a terminal, ends a line or turns the direction of writing. Every control character
-// becomes the sign of its own (ESC as ␛, a line break as ␊); marks of direction, characters without width, line
-// separators, tags, surrogates and bytes that are no UTF-8 become �. One character stands for one, so that columns and
-// carets still fit. The joiners of Persian and of pictograms (U+200C, U+200D) stay: they neither hide nor move
-// anything, and names hold only A-Z a-z 0-9 _.
+// Text for a person never holds a character that controls a terminal, ends a line or changes the direction of writing.
+// Every control character becomes its Unicode picture (ESC as ␛, a line break as ␊); direction marks, zero-width
+// characters, line separators, tags, surrogates and bytes that are not UTF-8 become �. One character replaces one
+// character, so columns and carets still match. The joiners of Persian and of pictograms (U+200C, U+200D) stay: they
+// neither hide nor move anything, and names hold only A-Z a-z 0-9 _.
 #pragma once
 #include <string>
 #include <string_view>
@@ -16,21 +16,21 @@ std::string shown(std::string_view text);
 // Lines for a person: line breaks stay, a tab is a space.
 std::string shown_lines(std::string_view text);
 
-// Between the quotes of JSON, and of TOML: nothing is lost but bytes that are no UTF-8; what `shown` would replace is
-// written by its number.
+// Text between the quotes of JSON and of TOML. Only bytes that are not UTF-8 are lost; a character that shown() would
+// replace is written as a numeric escape.
 std::string json_escape(std::string_view text);
 std::string toml_escape(std::string_view text);
-// In HTML, MathML and SVG, as text or between the quotes of an attribute; XML allows no control character at all.
+// Text for HTML, MathML and SVG, as content or between the quotes of an attribute. XML allows no control characters.
 std::string markup_escape(std::string_view text);
-// The same of a text with lines: <pre>.
+// As markup_escape(), for a text of several lines: <pre>.
 std::string markup_lines(std::string_view text);
-// In LaTeX and pgfplots, outside mathematics and within \mathrm.
+// Text for LaTeX and pgfplots, outside mathematics and within \mathrm.
 std::string latex_escape(std::string_view text);
-// A line of a comment in C or Python: neither ends it nor goes on in the next line.
+// A line for a comment in C or Python: the text can neither end the comment nor continue it in the next line.
 std::string comment_line(std::string_view text);
-// Between the quotes of a string of C or Python, three quotes included.
+// Text between the quotes of a string of C or Python, triple quotes included.
 std::string code_string(std::string_view text);
-// A cell of CSV, in quotes where it needs them.
+// A cell of CSV, quoted if necessary.
 std::string csv_cell(std::string_view text);
 // A string of HDF5, which ends at the first NUL and is UTF-8.
 std::string hdf5_text(std::string_view text);

@@ -1,5 +1,5 @@
-// Hashes that do not depend on the machine: SHA-256 of texts, SipHash-2-4 as a keyed function of
-// words that nobody can foresee without the key.
+// Hashes that do not depend on the machine: SHA-256 of texts, and SipHash-2-4, a keyed function of words that cannot be
+// predicted without the key.
 #pragma once
 #include <array>
 #include <cstdint>

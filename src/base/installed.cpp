@@ -11,7 +11,7 @@ fs::path own_file() {
   std::error_code ignored;
   Dl_info info{};
   link_map* object = nullptr;
-  // The linker knows the file of a shared library. The main program has no name there, and the kernel knows its file.
+  // The linker knows the file of a shared library. For the main program the linker has no name, but the kernel has.
   if (dladdr1(reinterpret_cast<const void*>(&own_file), &info, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) !=
           0 &&
       object != nullptr && object->l_name[0] != '\0')

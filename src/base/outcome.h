@@ -1,5 +1,5 @@
-// What became of a numerical task. Never thrown: partial results are kept and sweeps go on.
-// The text of an outcome holds the remedy.
+// Outcome: how a numerical task ended. It is returned, never thrown: partial results are kept and sweeps go on. Its
+// text holds the remedy.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,14 +9,14 @@ namespace anholon {
 enum class OutcomeKind : std::uint8_t {
   finished,
   singular,        // the system Jacobian lost rank: a singular configuration
-  step_collapse,   // the step size fell below what the time can resolve
+  step_collapse,   // the step size fell below the resolution of the time
   blow_up,         // a state grew without bound
   negative_mass,   // a given mass fell below zero
   not_a_number,    // a formula left its domain (root or logarithm of a negative number, 0/0)
   no_convergence,  // Newton's iteration for the leading derivatives failed
   inconsistent,    // no initial data satisfy the constraints with the values given
   interrupted,     // Ctrl-C, or the step limit of the caller
-  too_large,       // the work or the memory it would take is beyond all proportion
+  too_large,       // the work or the memory needed is out of proportion
 };
 
 struct Outcome {

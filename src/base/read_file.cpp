@@ -17,7 +17,7 @@ bool read_file(const std::filesystem::path& path, std::string& text, std::string
     if (why) *why = std::strerror(errno);
     return false;
   }
-  // A device may have no end; what is longer than any model or certificate is cut, and refused by its reader.
+  // A device may be endless. A file longer than any model or certificate is cut, and its reader then rejects it.
   constexpr std::size_t kMostBytes = 64 << 20, kPiece = 1 << 16;
   text.clear();
   for (std::size_t got = kPiece; got == kPiece && text.size() < kMostBytes;) {

@@ -5,7 +5,7 @@
 
 namespace anholon {
 
-// False, and why, if it cannot be read.
+// Returns false if the file cannot be read, and stores the reason in `why`.
 bool read_file(const std::filesystem::path& path, std::string& text, std::string* why = nullptr);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// The little of UTF-8 that positions in a source text need. Invalid bytes count as one character.
+// The part of UTF-8 that positions in a source text need. An invalid byte counts as one character.
 #pragma once
 #include <cstddef>
 #include <string>

@@ -1,4 +1,4 @@
-// What `check` says, in its two dresses.
+// The report of `check`, as text and as JSON.
 #pragma once
 #include "report/words.h"
 

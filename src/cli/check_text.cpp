@@ -11,13 +11,13 @@ namespace anholon::cli {
 
 namespace {
 
-constexpr std::size_t kLongestPower = 120;  // what is longer is not read here; --json has it
+constexpr std::size_t kLongestPower = 120;  // a longer formula is not printed here; --json has it
 
 std::string counted(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-// The hypotheses on the reactions that occur, each with its constraints where there are several.
+// The hypotheses on the reactions that occur, each with its constraints if there are several.
 void reactions(const Scenario& s, const Explanation& x) {
   const auto with = [&](Hypothesis h) {
     std::vector<std::size_t> list;
@@ -40,9 +40,9 @@ void reactions(const Scenario& s, const Explanation& x) {
   line(Hypothesis::niu);
 }
 
-// Names by their units, where the file has any.
+// Prints names by their units, if the file has any.
 void units(const Model& model) {
-  std::vector<std::pair<std::string, std::string>> lists;  // in the order in which the units are met
+  std::vector<std::pair<std::string, std::string>> lists;  // in the order of first occurrence of the units
   const auto add = [&](const std::vector<std::string>& names, const std::vector<std::string>& of) {
     for (std::size_t k = 0; k < of.size(); ++k) {
       const std::string unit = of[k].empty() ? "not told" : of[k];
@@ -119,7 +119,7 @@ void structure(const Scenario& s, const Explanation& x) {
   if (x.blocks.size() > 1) say_lines(stdout, print(s.system, s.structure, x.blocks) + "\n");
   if (x.hidden.empty()) return;
   say(stdout, "what the state must satisfy (hidden constraints)\n");
-  // By the derivatives that they bind.
+  // Groups them by the derivatives that they restrict.
   std::map<int, std::string> on;
   for (const HiddenConstraint& h : x.hidden)
     for (std::size_t k = 0; k < h.orders.size(); ++k) {
@@ -130,9 +130,9 @@ void structure(const Scenario& s, const Explanation& x) {
   say(stdout, "\n");
 }
 
-// What initial data the structure asks for, and who said what.
+// Describes the initial data that the structure needs, and the origin of each value.
 std::string data_needed(const Scenario& s, const std::vector<StateEntry>& higher) {
-  constexpr std::size_t kNamed = 8;  // of more choices only the number is said: the table shows them
+  constexpr std::size_t kNamed = 8;  // of more choices only the number is printed: the table shows them
   const InitialState<double>& x = s.state;
   std::vector<std::string> chosen;
   std::size_t given = 0, derived = 0;
@@ -166,7 +166,7 @@ std::string data_needed(const Scenario& s, const std::vector<StateEntry>& higher
   return out + " (" + names + ")";
 }
 
-// A value that was found and is the round-off of others is 0 for the eye.
+// A computed value that is round-off of others is printed as 0.
 std::string value_text(double value, Origin origin, const InitialState<double>& x) {
   constexpr double kRoundOff = 1e-30;
   double largest = 0;
@@ -217,7 +217,7 @@ void check_text(Workspace& s, const Explanation& x, const Outcome& outcome) {
       redundant = x.constraints[r].follows_from.empty()
                       ? "; redundant here"
                       : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
-    // One component of a vector equation too many.
+    // A vector equation has one component too many.
     if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x')
       redundant += "; 'along' names the directions that count";
     say(stdout, "  %-14s %s; %s%s\n", "", description(s.classes[r], c.order).c_str(),

@@ -31,7 +31,7 @@ struct Pipe {
   int read = -1, write = -1;
   bool open() {
     std::array<int, 2> ends{};
-    // Not inherited by anybody else's child; posix_spawn's copy is.
+    // Other children do not inherit the pipe; posix_spawn's copy is inherited.
     if (pipe2(ends.data(), O_CLOEXEC) != 0) return false;
     read = ends[0], write = ends[1];
     return true;
@@ -65,7 +65,7 @@ int spawn(const std::vector<std::string>& arguments, const Pipe& out, const Pipe
   posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&files, out.write, 1);
   posix_spawn_file_actions_adddup2(&files, err.write, 2);
-  // Signals that we ignore or catch are as usual for the child.
+  // Signals that this program ignores or catches have their default action in the child.
   sigset_t usual, none;
   sigemptyset(&usual);
   sigemptyset(&none);
@@ -80,7 +80,8 @@ int spawn(const std::vector<std::string>& arguments, const Pipe& out, const Pipe
   return why;
 }
 
-// Processes whose parent ends become ours, to be waited for; where that is not known, init's.
+// Processes whose parent ends become children of this process, which waits for them; on systems without this option
+// they go to init.
 class Foster {
  public:
 #ifdef __linux__
@@ -124,7 +125,7 @@ Child run_child(const std::vector<std::string>& arguments, double seconds, const
     if (streams[0].revents != 0 && !take(out.read, child.out)) out.close_read();
     if (streams[1].revents != 0 && !take(err.read, child.err)) err.close_read();
     if (child.err.size() > 2 * kMostErrors) child.err.erase(0, child.err.size() - kMostErrors);
-    // Its own children may keep the streams open after it.
+    // Children of the child may keep the streams open after it ends.
     ended = waitpid(pid, &status, WNOHANG) == pid;
     if (ended) break;
     if (out.read < 0 && err.read < 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -140,7 +141,7 @@ Child run_child(const std::vector<std::string>& arguments, double seconds, const
   if (!ended)
     while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
   while (waitpid(-pid, nullptr, 0) > 0 || errno == EINTR) continue;
-  // What was printed before the end is in the pipes.
+  // Reads the output that the child printed before it ended; it is still in the pipes.
   for (Pipe* p : {&out, &err})
     if (p->read >= 0) {
       fcntl(p->read, F_SETFL, O_NONBLOCK);
@@ -190,7 +191,7 @@ TemporaryFolder::TemporaryFolder() {
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
-  // A browser's last process may have been writing.
+  // A browser's last process may still have been writing.
   if (std::filesystem::exists(path_, ignored)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     std::filesystem::remove_all(path_, ignored);

@@ -1,4 +1,4 @@
-// The commands: each takes its parsed options, calls one function of the house and prints.
+// The commands: each takes its parsed options, calls one function of the library and prints.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@ namespace anholon::cli {
 enum ExitCode : int { kOk = 0, kStopped = 1, kBadInput = 2, kFault = 3 };
 
 struct Options {
-  std::string command_line;  // as it could be typed again
+  std::string command_line;  // in a form that can be typed again
   std::string model;
   std::string equations;
   std::string form = "routh";
@@ -20,11 +20,11 @@ struct Options {
   std::string output;
   std::string numbers = "double";
   std::string method;      // of the motion; empty: auto
-  std::string integrator;  // empty: of the file, or Taylor series
+  std::string integrator;  // empty: that of the file, or Taylor series
   std::vector<std::string> set, cases, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
   std::string t, to, every, tolerance, rigorous;
   std::string save, resume;
-  std::string report, rows;  // a page of the motion; a run whose rows it shows
+  std::string report, rows;  // a page of the motion; a run whose rows the page shows
   bool no_proof = false;
   std::string vary, about;
   std::vector<std::string> varied;  // of sweep

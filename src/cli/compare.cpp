@@ -12,7 +12,7 @@ namespace anholon::cli {
 
 namespace {
 
-constexpr std::size_t kListed = 5;   // changes that are shown of many
+constexpr std::size_t kListed = 5;   // number of changes that are shown
 constexpr std::size_t kShown = 400;  // characters of a difference
 
 SourceText read_equation_text(const Options& o) {
@@ -48,7 +48,7 @@ std::string position(const ChangedPlace& c) {
   return std::to_string(c.span.line) + ":" + std::to_string(c.span.column);
 }
 
-// One place: with the term it stands in; one symbol at several places: with the places; else one after the other.
+// One place: with its term; one symbol at several places: with the places; else one after the other.
 std::string text(const Change& c) {
   const ChangedPlace& first = c.places[0];
   if (c.places.size() == 1) return position(first) + ": " + place(first) + ": " + first.from + " should be " + first.to;

@@ -15,7 +15,7 @@ namespace anholon::cli {
 
 namespace {
 
-// --format, else what the end of the name says.
+// --format, else the format of the file's extension.
 std::string format_of_equations(const Options& o) {
   const std::string end = std::filesystem::path(o.output).extension().string();
   if (!o.format_given && !o.output.empty())
@@ -25,7 +25,7 @@ std::string format_of_equations(const Options& o) {
   return o.format;
 }
 
-// To the file, or to the standard output.
+// Writes to the file, or to the standard output.
 void deliver(const Options& o, const std::string& text) {
   if (o.output.empty() || o.output == "-") return hand_out(text);
   if (const std::string why = write_whole(o.output, text); !why.empty()) throw UsageError{"error: " + why + "\n"};

@@ -39,7 +39,8 @@ std::string json(const Scenario& s, const StateReport& r) {
     j.close();
   }
   named(j, "derivatives", r.derivatives);
-  std::vector<std::pair<std::string, std::string>> multipliers = r.lambda;  // in "lambda" a constraint has its own name
+  // in "lambda" each constraint has its own name
+  std::vector<std::pair<std::string, std::string>> multipliers = r.lambda;
   for (auto& [name, value] : multipliers)
     if (name.rfind("lambda.", 0) == 0) name = name.substr(7);
   named(j, "lambda", multipliers);

@@ -164,7 +164,7 @@ Reader read(const Options& o, SourceText source) {
   return r;
 }
 
-// Forms whose motions are computed, or all that apply.
+// Forms whose motions can be computed, or all that apply.
 static std::string list_of_forms(const Mechanics& m, bool with_motions) {
   std::string list;
   for (const Formulation* f : formulations())
@@ -285,7 +285,7 @@ StateChoice state_choice(const Options& o, const Model& model) {
       auto [name, value] = assignment(s, option);
       unsigned primes = 0;
       while (!name.empty() && name.back() == '\'') name.pop_back(), ++primes;
-      const unsigned k = order == 0 ? primes : order;  // --qdot "x'=2" means x' too
+      const unsigned k = order == 0 ? primes : order;  // --qdot "x'=2" also means x'
       const auto it = std::find(model.names.coordinates.begin(), model.names.coordinates.end(), name);
       if (it == model.names.coordinates.end()) {
         const std::string near = did_you_mean(name, model.names.coordinates);

@@ -1,4 +1,4 @@
-// From the words of a command line to a model, a state and exact numbers.
+// Turns the words of a command line into a model, a state and exact numbers.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace anholon::cli {
 
-// Thrown for what the user must correct; the text is complete, exit code 2.
+// Thrown for mistakes of the user; the text is complete, the exit code is 2.
 struct UsageError {
   std::string text;
 };
@@ -26,29 +26,29 @@ struct Reader {
 std::string all_text(const SourceText& source);
 // Reads the model named by the options (a path, or the name of a shipped model) with --set applied.
 Reader read(const Options& o);
-// The same of a text that is at hand.
+// As above, from a text that is already in memory.
 Reader read(const Options& o, SourceText source);
 // The form asked for: --form, else [simulate] form, else Routh's; throws if it does not apply.
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics = nullptr);
-// The options with --form auto, or that of the file, replaced by the form it comes to; says which, unless quiet.
+// The options with --form auto, or that of the file, replaced by the selected form; prints it unless quiet.
 Options with_form(Options o, const Reader& in);
 StateChoice state_choice(const Options& o, const Model& model);
 Rational exact(const std::string& text, const std::string& option);
-// The numbers asked for by --numbers and --digits; `usual` where neither asks for others.
+// The numbers asked for by --numbers and --digits; `usual` if neither is given.
 Precision precision(const Options& o, Precision usual);
-// "a,b,c" and repeated words alike.
+// Splits "a,b,c" and repeated words alike.
 std::vector<std::string> split(const std::vector<std::string>& words);
 
-// The scenario of the model in the form asked for; throws what the user must correct.
+// Makes the scenario of the model in the form asked for; throws UsageError for mistakes of the user.
 Outcome ready(const Reader& in, const Formulation& form, const StateChoice& choice, Scenario& scenario);
 
-// Its elimination alone, for printing equations; lifted to --m where that is given.
+// Makes only the elimination, for printing equations; lifted to --m if it is given.
 Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& form, const StateChoice& choice,
                         unsigned order = 0);
-// Throws if the form does not have the order m.
+// Throws if the form is not available with the order m.
 void must_have_order(const Formulation& form, const Mechanics& mechanics, unsigned m);
 
-// Those on which forms are compared: constraints solved where they can be, and not solved.
+// The eliminations with which forms are compared: with the constraints solved, if they can be, and unsolved.
 std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice,
                                           unsigned order = 0);
 
@@ -59,7 +59,7 @@ struct ShippedModel {
   std::string name, path, title;
 };
 std::vector<ShippedModel> shipped_models();
-std::vector<ShippedModel> shipped_equations();  // published ones, *.eq
-std::vector<ShippedModel> templates();          // to start a model from
+std::vector<ShippedModel> shipped_equations();  // published equations, *.eq
+std::vector<ShippedModel> templates();          // templates of new models
 
 }  // namespace anholon::cli

@@ -16,12 +16,12 @@ namespace {
 constexpr std::size_t kMostValues = 10000;
 constexpr int kWorkingDigits = 36, kGuardDigits = 24;  // 36: two words of 64 bits, with which MPFR is fastest
 
-// Shortest text of the double nearest to x, or more digits where they were asked for.
+// The shortest text of the double nearest to x, or more digits if they were asked for.
 std::string text(const Multi& x, int digits) {
   return digits > 16 ? number_text(x, digits) : number_text(to_double(x));
 }
 
-// ---- what is asked for -----------------------------------------------------------------------------
+// ---- options ----------------------------------------------------------------------------------------
 
 [[noreturn]] void wrong_range(const Options& o, const std::string& why) {
   throw UsageError{"error: --vary: " + why + "\nhint: a range NAME=FROM..TO:STEP such as " +
@@ -65,7 +65,7 @@ std::optional<ParameterRange> range(const Options& o, const Model& model) {
   return r;
 }
 
-// ---- what is printed -------------------------------------------------------------------------------
+// ---- output -----------------------------------------------------------------------------------------
 
 std::string motion_text(const LinearModel& m) {
   std::string cyclic;
@@ -196,7 +196,7 @@ std::string pair_text(const Eigenvalue& e, int digits) {
   return (e.value.re == Multi(0) ? "" : text(e.value.re, digits) + " ") + "± " + text(abs(e.value.im), digits) + "i";
 }
 
-// The second of a pair, or a multiple eigenvalue again, which the first has told.
+// Whether an eigenvalue is the second of a pair, or a repeated multiple one, which is already printed.
 bool told(const std::vector<Eigenvalue>& list, std::size_t i) {
   for (std::size_t k = 0; k < i; ++k)
     if (list[k].value.re == list[i].value.re && abs(list[k].value.im) == abs(list[i].value.im)) return true;
@@ -275,7 +275,7 @@ void print_model(const LinearModel& m, int digits) {
   std::vector<std::vector<std::string>> rows{{""}};
   for (std::size_t i : m.core) rows[0].push_back(m.states[i]);
   for (const Eigenvalue& e : m.spectrum) {
-    if (e.value.im < Multi(0)) continue;  // the conjugate of one that is shown
+    if (e.value.im < Multi(0)) continue;  // the conjugate of a printed one
     rows.push_back({short_text(e.value.re) + (e.value.im > Multi(0) ? " + " + short_text(e.value.im) + "i" : "")});
     for (const Complex& z : e.vector) {
       const double im = to_double(z.im);
@@ -359,7 +359,7 @@ int linearize(const Options& o) {
     l = linearize(s, choice, values, signals);
   else
     l.results.push_back({"", start, {}});
-  Outcome failed;  // the first that did
+  Outcome failed;  // the first outcome that failed
   for (LinearResult& r : l.results) {
     if (o.about == "equilibrium") say_no_rest(r.outcome);
     if (failed.ok()) failed = r.outcome;

@@ -20,7 +20,7 @@ namespace {
 // What was printed has reached its reader; a full disk or a closed pipe is not success.
 int finish(int code) {
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (written || code != kOk) return code;  // what went wrong before was said already
+  if (written || code != kOk) return code;  // the earlier error was already printed
   say(stderr, "error: cannot write the output: %s\n", std::strerror(errno));
   return kBadInput;
 }
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     say(stderr, "%s:%d: internal fault: %s\nplease report this with the model\n", file, line, condition);
     std::_Exit(kFault);
   });
-  // A limit of the size of files is an error like a full disk, with a message.
+  // A limit on the size of files is an error with a message, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     const int status = finish(run_command_line(argc, argv));
@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
     say_lines(stderr, e.text);
     return kBadInput;
   } catch (const Failure& e) {
-    // Not met in one element of the file, but in the equations made of all of them.
+    // The failure does not concern one element of the file, but the equations made of all elements.
     std::fflush(stdout);
     say(stderr, "error: %s\n", e.what());
     if (!e.diagnostic.hint.empty()) say(stderr, "hint: %s\n", e.diagnostic.hint.c_str());

@@ -1,12 +1,12 @@
-// --method: by which method a motion is computed, and what was done about it.
+// --method: the choice of the method by which a motion is computed, and its report.
 #pragma once
 #include "cli/commands.h"
 #include "simulation/simulate.h"
 
 namespace anholon::cli {
 
-// After tolerance, precision and integrator are known; throws UsageError where the method asked for cannot do what else
-// is asked for.
+// Call it after tolerance, precision and integrator are known; throws UsageError if the requested method does not
+// support the other options.
 void choose_method(const Options& o, const Scenario& scenario, SimulationOptions& options);
 
 // What the options ask of a method.

@@ -30,7 +30,7 @@ int new_model(const Options& o) {
     hand_out(text);
     return kOk;
   }
-  // A file that is there stays as it is.
+  // An existing file is not overwritten.
   std::error_code none;
   const auto kind = std::filesystem::symlink_status(o.output, none).type();
   if (kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::symlink ||

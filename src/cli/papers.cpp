@@ -1,4 +1,4 @@
-// The papers behind the program: their claims, listed, shown and decided.
+// The papers on which the program is based: their claims, listed, shown and decided.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -49,7 +49,7 @@ std::vector<Paper> read_papers() {
   return papers;
 }
 
-// "papers/systems/order-3.toml" lies beside the tables; "papers/luo-zhao-example-1" is a shipped model.
+// "papers/systems/order-3.toml" is beside the tables; "papers/luo-zhao-example-1" is a shipped model.
 OpenModel load(const std::string& name) {
   std::string path;
   if (name.ends_with(".toml"))
@@ -78,7 +78,7 @@ std::string padded(const std::string& text, std::size_t width) {
   return length < width ? text + std::string(width - length, ' ') : text;
 }
 
-// What a check asks, in one line.
+// The question of a check, in one line.
 std::string question(const ClaimCheck& c) {
   switch (c.kind) {
   case ClaimCheck::Kind::equation:

@@ -41,7 +41,7 @@ struct Length {
   bool paper = false;  // in cm
 };
 
-// "8cm", "80"; nothing if it is no length.
+// Reads "8cm", "80"; nullopt if the text is not a length.
 std::optional<Length> length(const std::string& text) {
   Length l;
   const auto r = std::from_chars(text.data(), text.data() + text.size(), l.value);
@@ -89,7 +89,7 @@ bool colours() {
   return isatty(1) && !(no && *no) && !(kind && std::strcmp(kind, "dumb") == 0);
 }
 
-// Of the terminal, or of COLUMNS and LINES; rows: of the box of each of so many panels.
+// The size of the terminal, or COLUMNS x LINES; `rows` is the height of one of `panels` boxes.
 TerminalSize terminal_size(std::size_t panels) {
   TerminalSize size;
   int lines = 26;

@@ -18,7 +18,7 @@ static void request_stop(int) { stop_flag = 1; }
 void catch_stop(const std::string& output) {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
-  // What nohup has set stays.
+  // Keeps the handler that nohup has set.
   if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   if (!output.empty() && output != "-") std::signal(SIGPIPE, SIG_IGN);
 }

@@ -1,4 +1,4 @@
-// What long commands show on their way, and how they are told to stop.
+// Progress of long commands, and requests to stop them.
 #pragma once
 #include <chrono>
 #include <cstddef>
@@ -6,15 +6,15 @@
 
 namespace anholon::cli {
 
-// From here on Ctrl-C, a request of the system to end and a terminal that goes away are requests, which any thread may
-// ask about. Where the rows go to a file, nobody who leaves the other outputs ends the run.
+// From here on Ctrl-C, a termination request of the system and a closed terminal are stop requests, which any thread
+// may query. If the rows go to a file, a closed standard output or stderr does not end the run.
 void catch_stop(const std::string& output);
 bool stop_requested();
 
 // Progress on stderr: a bar on a terminal, a plain line each ten per cent elsewhere.
 class Progress {
  public:
-  // `where`: what the place is called ("t"); `unit`: what is counted ("steps").
+  // `where`: name of the position ("t"); `unit`: name of the counted things ("steps").
   Progress(bool quiet, const char* where, const char* unit);
   ~Progress();
   Progress(const Progress&) = delete;

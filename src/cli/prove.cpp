@@ -17,7 +17,7 @@ namespace {
 
 std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& m) {
   std::vector<const Formulation*> forms;
-  const auto order = static_cast<unsigned>(o.m);  // forms that do not depend on it are compared as they are
+  const auto order = static_cast<unsigned>(o.m);  // forms that do not depend on it are compared unchanged
   if (o.forms.empty()) {
     for (const Formulation* f : formulations())
       if (obstacle(*f, m).empty() && (!order || f->highest_m == 0 || order_obstacle(*f, m, order).empty()))
@@ -34,8 +34,8 @@ std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& 
   return forms;
 }
 
-// The points at which forms are told apart lie where all constraints hold, lifted to order m; so they must be, whatever
-// the forms.
+// The points at which forms are distinguished satisfy all constraints, lifted to order m; so the constraints must be
+// liftable for any forms.
 void must_lift(const Mechanics& m, unsigned order) {
   for (const Formulation* f : formulations())
     if (f->eliminates() && f->highest_m == kHighestM && obstacle(*f, m).empty()) must_have_order(*f, m, order);
@@ -72,7 +72,7 @@ void print_differences(const Proof& p, const SymbolNames& names) {
       say(stdout, "%s differs from routh in the equation of %s%s: %s\n", f.form->name, d.component.c_str(),
           d.verdict == Verdict::unknown ? " (perhaps)" : "", d.detail.c_str());
       if (d.witness) say(stdout, "  at %s\n", point_text(*d.witness, names).c_str());
-      if (d.verdict == Verdict::refuted) break;  // one point is enough
+      if (d.verdict == Verdict::refuted) break;  // one point suffices
     }
   for (const Difference& d : p.kernel)
     if (d.verdict != Verdict::proved)

@@ -15,7 +15,7 @@ namespace {
 constexpr int kLeastSize = 64, kMostSize = 7680;
 constexpr double kLeastFps = 1, kMostFps = 120;
 constexpr std::size_t kMostPictures = 20000;
-// A motion that lasts so long is shown as fast as it is.
+// A motion of a duration between these bounds is shown in real time.
 constexpr double kShortest = 2, kLongest = 20, kUsual = 10;
 
 double number(const std::string& text, const char* option) { return exact(text, option).get_d(); }
@@ -62,7 +62,7 @@ Recording recording(const Options& o) {
   r.kind = kind_of(r.output);
   if (r.kind == Record::gif) r.width = 640, r.height = 360, r.fps = 25;
   if (!o.size.empty()) take_size(o.size, r);
-  // Of a film with half the colours, two by two pixels share one.
+  // With half the colour resolution, two by two pixels of a film share a colour, so the sides are even.
   if (r.kind == Record::mp4) r.width += r.width % 2, r.height += r.height % 2;
   if (!o.fps.empty()) r.fps = number(o.fps, "--fps");
   if (!(r.fps >= kLeastFps && r.fps <= kMostFps))
@@ -93,7 +93,7 @@ Moments moments(const Recording& r, double start, double end) {
   const double least = std::min(start, end), most = std::max(start, end);
   const std::string range = "from t = " + number_text(start, 10) + " to " + number_text(end, 10);
   const auto inside = [&](double t, const char* option) {
-    // A time written in decimals may miss the end's double by its rounding.
+    // A time written in decimals may differ from the double of the end by rounding.
     const double slack = 1e-9 * std::max({std::abs(least), std::abs(most), most - least});
     if (t < least - slack || t > most + slack)
       throw UsageError{"error: " + std::string(option) + " " + number_text(t, 10) + " lies outside the motion, " +
@@ -110,7 +110,7 @@ Moments moments(const Recording& r, double start, double end) {
     return m;
   }
   m.first = r.from ? inside(*r.from, "--from") : start;
-  m.last = r.to ? std::clamp(*r.to, least, most) : end;  // a motion that stopped early is recorded as far as it went
+  m.last = r.to ? std::clamp(*r.to, least, most) : end;  // a motion that stopped early is recorded up to its end
   if (m.first == m.last)
     throw UsageError{"error: there is nothing to record between t = " + number_text(m.first, 10) + " and " +
                      number_text(m.last, 10) + "; the motion goes " + range + "\n"};
@@ -129,7 +129,7 @@ std::string record_script(const Recording& r, const Moments& m) {
   std::string out = "const asked = {first: " + number_text(m.first) + ", last: " + number_text(m.last) +
                     ", count: " + std::to_string(m.count) + ", width: " + std::to_string(r.width) +
                     ", height: " + std::to_string(r.height) + ", frame: \"" + r.frame + "\"};\n";
-  // All of it before the page counts as loaded: a browser that prints its text then has the pictures in it.
+  // All pictures are drawn before the page counts as loaded: a browser that prints its text then includes them.
   out += R"(
 function record() {
   const [a, b] = location.hash.slice(1).split('-').map(Number), {anholon} = window;
@@ -206,7 +206,7 @@ std::optional<std::pair<int, int>> png_size(const std::string& bytes) {
   constexpr std::size_t kSize = 16;  // signature, length and name of the first chunk
   if (bytes.size() < kSize + 8 || std::string_view(bytes).substr(0, 8) != kSignature || bytes.substr(12, 4) != "IHDR")
     return std::nullopt;
-  // Cut off in the middle is no picture: the last chunk says so.
+  // A truncated file is not a picture: the last chunk is missing then.
   if (bytes.find("IEND", bytes.size() - 12) == std::string::npos) return std::nullopt;
   const auto at = [&](std::size_t from) {
     int n = 0;

@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 struct Stopped {};
 
-// The last lines of what a program said.
+// The last lines of a program's messages.
 std::string said(const std::string& err) {
   std::size_t at = err.find_last_not_of("\n\r ");
   if (at == std::string::npos) return "it said nothing";
@@ -69,7 +69,7 @@ std::string film_maker(const Recording& r) {
   return found;
 }
 
-// Before anything is computed.
+// Checks the output before anything is computed.
 void check_place(const Recording& r) {
   if (r.kind == Record::folder) {
     std::error_code error;
@@ -90,11 +90,11 @@ int motion(const Options& o, Told& x) {
   Options one = o;
   one.at.clear();
   one.output.clear();
-  one.error_estimate = "never";  // nobody would read it
+  one.error_estimate = "never";  // the estimate is not printed
   return simulate_motion(one, nullptr, &x);
 }
 
-// One recording of one page: the browser is started for so many pictures at a time that its memory stays bounded.
+// One recording of one page: the browser is started for a limited number of pictures at a time, to bound its memory.
 class Browser {
  public:
   Browser(const Recording& r, const fs::path& folder, std::string program)
@@ -102,7 +102,7 @@ class Browser {
 
   std::vector<std::string> pictures(std::size_t first, std::size_t last) const {
     const double pixels = static_cast<double>(r_.width) * r_.height * static_cast<double>(last - first);
-    // Nothing of a working machine takes so long: start, and a software renderer at its slowest.
+    // An upper bound for a working machine, including start-up and the slowest software renderer.
     const double limit = 120 + 60 * static_cast<double>(last - first) + pixels / 1e5;
     const Child c =
         run_child(arguments(first, last), limit, stop_requested, static_cast<std::size_t>(8 * pixels) + 10'000'000);
@@ -153,7 +153,7 @@ class Browser {
                                   "--force-device-scale-factor=1",
                                   "--force-color-profile=srgb",
                                   "--user-data-dir=" + profile_.string()};
-    if (geteuid() == 0) a.emplace_back("--no-sandbox");  // root has no sandbox to start
+    if (geteuid() == 0) a.emplace_back("--no-sandbox");  // the sandbox does not start for root
     a.push_back("--window-size=" + std::to_string(std::min(r_.width, 1920)) + "," +
                 std::to_string(std::min(r_.height, 1080)));
     a.emplace_back("--dump-dom");
@@ -180,7 +180,7 @@ void write_picture(const fs::path& path, const std::string& png) {
   if (const std::string why = write_whole(path.string(), png); !why.empty()) refuse(why, "");
 }
 
-// All pictures into the folder, in batches of some seconds.
+// Records all pictures into the folder, in batches of some seconds.
 void record(const Browser& browser, const Recording& r, const Moments& m, const fs::path& into, bool quiet) {
   using Clock = std::chrono::steady_clock;
   constexpr double kSeconds = 8, kMostPixels = 1.2e8;
@@ -216,14 +216,14 @@ void make_film(const std::string& ffmpeg, const Recording& r, const Moments& m, 
   const auto run = [&](const std::vector<std::string>& rest) {
     std::vector<std::string> a = begin;
     a.insert(a.end(), rest.begin(), rest.end());
-    // file: so that no name is taken for an option or a protocol.
+    // The prefix "file:" prevents a name from being taken for an option or a protocol.
     a.push_back("file:" + beside);
     const double limit = 600 + static_cast<double>(m.count) * r.width * r.height / 2e5;
     return run_child(a, limit, stop_requested, 1'000'000);
   };
   std::vector<std::vector<std::string>> ways;
   if (r.kind == Record::gif) {
-    // Colours of the whole film, and only what changes is drawn anew.
+    // Uses one palette for the whole film, and redraws only changed parts.
     ways = {
         {"-filter_complex",
          "split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=bayer:bayer_scale=5:diff_mode=rectangle",
@@ -249,7 +249,7 @@ void make_film(const std::string& ffmpeg, const Recording& r, const Moments& m, 
          "-o frames/ for a picture of each moment");
 }
 
-// Pictures of a longer recording in the same folder.
+// Reports pictures of a longer recording in the same folder.
 void note_others(const Recording& r, const Moments& m) {
   std::size_t others = 0;
   std::error_code error;

@@ -21,7 +21,7 @@ namespace anholon::cli {
 
 namespace {
 
-// A proof of all forms takes its time; equations of so many coordinates nobody reads.
+// Limits: a proof of all forms takes long, and equations of more coordinates are too long to read.
 constexpr std::size_t kMostProved = 12, kMostNodesProved = 600, kMostRead = 24;
 
 void make_ready(const Options& o, Told& x) {
@@ -37,7 +37,7 @@ void make_ready(const Options& o, Told& x) {
   if (!reset) x.conserved = conserved(*x.scenario->mechanics);
 }
 
-// Routh's equations, those of the motion, and Maggi's where there is something to eliminate.
+// Routh's equations, those of the motion, and Maggi's if there are constraints to eliminate.
 std::vector<const Formulation*> shown_forms(const Options& o, const Told& x) {
   const Mechanics& m = *x.scenario->mechanics;
   std::vector<const Formulation*> list;
@@ -57,7 +57,8 @@ std::vector<const Formulation*> shown_forms(const Options& o, const Told& x) {
   return list;
 }
 
-// What is longer than this nobody reads as it stands; the way there is shown where the result is short.
+// Equations longer than kLong are not printed on the page; the steps of the derivation are shown if the result is
+// shorter than kShort.
 constexpr std::size_t kLong = 40000, kShort = 6000, kMostArranged = 320;
 
 std::size_t length(const Derivation& d) {
@@ -69,7 +70,7 @@ std::size_t length(const Derivation& d) {
   return n;
 }
 
-// How much there is to arrange and to prove.
+// The number of nodes to arrange and to prove.
 std::size_t nodes(const Mechanics& m, const Formulation& f, const Elimination& e) {
   const Equations raw = f.equations(m, e);
   Column all = raw.left;
@@ -133,7 +134,7 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     explanations.push_back(explain(*x.scenario));
     page.cases.push_back({x.name, x.scenario.get(), &explanations.back(), x.conserved, x.run});
   }
-  // Equations and proof ask for the eliminations at the state of the run.
+  // Equations and proof use the eliminations at the state of the run.
   const Options was = first.run.settings.empty() ? o : options_of(first.run, o);
   const StateChoice choice = state_choice(was, model);
   Arranger arranger("auto");
@@ -146,7 +147,7 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     if (page.equations.empty())
       first_size = size;
     else if (size > kMostArranged && o.forms.empty())
-      continue;  // nobody asked for it, and nobody could read it
+      continue;  // it was not asked for, and is too long to read
     page.equations.push_back(derived(m, *f, e, arranger));
     page.eliminations.push_back(f->eliminates() ? eliminated(e, model) : "");
   }
@@ -155,7 +156,7 @@ void write_page(const Options& o, std::deque<Told>& cases) {
   page.source = first.in.source;
   page.command = o.command_line;
   Proof proof;
-  std::shared_ptr<const Model> fresh;  // the proof's model
+  std::shared_ptr<const Model> fresh;  // the model of the proof
   if (o.no_proof || m.q.size() > kMostProved || first_size > kMostNodesProved) {
     page.no_proof = o.no_proof
                         ? "The proof was left out (--no-proof)."
@@ -181,7 +182,7 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     page.proof = &proof;
     page.hypotheses = c.hypotheses;
     page.meaning = c.meaning;
-    // As whoever gets it will check it: from its text.
+    // Checks the certificate like a recipient: from its text.
     page.certificate = to_json(c);
     const Verification checked = verify(read_certificate(page.certificate));
     page.claims = checked.claims.size();
@@ -206,7 +207,7 @@ int report(const Options& asked) {
     write_page(o, cases);
     return kOk;
   }
-  // Scenarios stand side by side; `all` means the file as it is, too.
+  // Cases are shown side by side; `all` includes the file without a case.
   std::vector<std::string> names = o.cases;
   if (names == std::vector<std::string>{"all"}) {
     Options plain = o;

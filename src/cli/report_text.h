@@ -1,4 +1,4 @@
-// How the report of a run says its numbers.
+// Texts for the numbers in the report of a run.
 #pragma once
 #include "cli/commands.h"
 #include "simulation/simulate.h"
@@ -8,10 +8,10 @@ namespace anholon::cli {
 // --error-estimate.
 ErrorEstimate error_estimate(const Options& o);
 
-// What a report says after "digits to trust".
+// The text that follows "digits to trust" in a report.
 std::string digits_to_trust(const ErrorReport& error);
 
-// A residual, in as many digits as it is worth.
+// A residual with its significant digits.
 std::string small(double x);
 
 }  // namespace anholon::cli

@@ -5,7 +5,7 @@
 
 namespace anholon::cli {
 
-// Throws UsageError with the place of what is wrong.
+// Throws UsageError with the position of the error.
 RunFile read_result(const std::string& path);
 
 }  // namespace anholon::cli

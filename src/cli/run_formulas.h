@@ -1,4 +1,4 @@
-// Formulas of its model, computed at the rows of a run.
+// Formulas of a run's model, computed at the rows of the run.
 #pragma once
 #include <string>
 
@@ -7,12 +7,12 @@
 
 namespace anholon::cli {
 
-// Adds a column for each of the options' columns (and their abscissa) that the run does not hold and that is a formula
-// of its model, as disc.center.z or norm(vel(P.center)). What is none is left to whoever looks for the columns; throws
-// what is a formula and has no value here.
+// Adds a column for each of the options' columns (and the abscissa) that the run does not hold and that is a formula of
+// its model, such as disc.center.z or norm(vel(P.center)). Other names are left to the later look-up of columns; throws
+// if a formula has no value here.
 void add_formulas(RunFile& run, const Options& o);
 
-// The model of a run with what was asked for when it was made.
+// The model of a run, with the options of its computation.
 Reader model_of(const RunFile& run, const Options& was);
 
 }  // namespace anholon::cli

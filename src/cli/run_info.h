@@ -1,4 +1,4 @@
-// What a result file holds of a run beside its rows: enough to build the model and to make the run again.
+// The parts of a result file beside its rows: enough to build the model and to repeat the run.
 #pragma once
 #include "cli/input.h"
 #include "result/run_file.h"
@@ -7,8 +7,7 @@
 namespace anholon::cli {
 
 RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const SimulationOptions& options);
-// The way back: the options with what was asked for when the run was made, so far as its start and its equations depend
-// on it.
+// The inverse: the options, with those settings of the run on which its start and its equations depend.
 Options options_of(const RunInfo& run, Options o);
 
 }  // namespace anholon::cli

@@ -30,7 +30,7 @@ void must_be_absent(bool given, const std::string& option) {
                      " out, or start a run of its own\n"};
 }
 
-// Calls f and turns what it finds wrong with the saved run into a message that names the file.
+// Calls f and turns its failure about the saved run into a message that names the file.
 template <class F>
 auto with_file(const std::string& path, F f) {
   try {
@@ -91,7 +91,7 @@ void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formu
 
 void beyond(const SavedRun& run, const Options& o, const Rational& end) {
   with_file(o.resume, [&] {
-    // Times of a saved run may be wider than double; what is compared is written by hand.
+    // Times of a saved run may be wider than double; the times compared with them are written by hand.
     const PrecisionScope precision(std::max(o.digits, kQuadTextDigits) + 12);
     const Multi start = run.number<Multi>("start"), done = run.number<Multi>("rows"), to(end);
     const bool forward = start < done || (start == done && start < to);

@@ -1,18 +1,18 @@
-// Runs that go on: what --save writes beside the state, and how --continue takes it up.
+// Continued runs: the data that --save writes beside the state, and how --continue reads them.
 #pragma once
 #include "cli/input.h"
 #include "simulation/simulate.h"
 
 namespace anholon::cli {
 
-// The options that decide the motion, taken from a saved run; throws where the command line gives them, too.
+// The options that determine the motion, taken from a saved run; throws if the command line gives them as well.
 SavedRun continued(Options& o);
-// Throws if the saved run is of another model.
+// Throws if the saved run belongs to another model.
 void same_model(const SavedRun& run, const Reader& in);
-// Adds what `continued` needs.
+// Adds the data that `continued` needs.
 void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formulation& form,
                   const SimulationOptions& options);
-// Throws if the rows asked for are not all beyond those of the saved run.
+// Throws if not all requested rows are beyond those of the saved run.
 void beyond(const SavedRun& run, const Options& o, const Rational& end);
 
 }  // namespace anholon::cli

@@ -1,22 +1,22 @@
-// What the commands print. No other file of cli/ writes to the standard output or to stderr, so that no text of others
-// reaches a terminal as it is.
+// All output of the commands. No other file of cli/ writes to stdout or stderr, so foreign text never reaches a
+// terminal unescaped.
 #pragma once
 #include <cstdio>
 #include <string>
 
 namespace anholon::cli {
 
-// As printf: the format is ours and stays as it is; what is put into it is shown (base/escape.h), one line for each %s.
-// Widths count characters.
+// As printf: the format comes from this program and is not changed; its arguments are passed through shown()
+// (base/escape.h), one line for each %s. Widths count characters.
 [[gnu::format(printf, 2, 3)]] void say(std::FILE* to, const char* format, ...);
-// The same as a text.
+// As say(), but returns the text.
 [[gnu::format(printf, 1, 2)]] std::string said(const char* format, ...);
-// Lines that hold text of others.
+// Prints lines that contain foreign text.
 void say_lines(std::FILE* to, const std::string& text);
-// For a program on the other side of the standard output: JSON, equations, the text of a file, byte by byte. On a
-// terminal as `say_lines` does it.
+// For a program that reads the standard output: JSON, equations, the text of a file, byte by byte. On a terminal it
+// prints like say_lines().
 void hand_out(const std::string& data);
-// A drawing of ours, whose colours are sequences of the terminal; its labels are shown already.
+// Prints a drawing of this program, whose colours are terminal sequences; its labels are already escaped.
 void draw(const std::string& picture);
 
 }  // namespace anholon::cli

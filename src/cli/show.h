@@ -1,4 +1,4 @@
-// --show: a look at one stage of the main line.
+// --show: prints one stage of the derivation.
 #pragma once
 #include "cli/input.h"
 
@@ -7,7 +7,7 @@ namespace anholon::cli {
 // Prints the stage named by o.show: mechanics, system, structure or program.
 int show(const Options& o, const Scenario& s);
 
-// What an expansion costs in the forms and writings that come into question (of check).
+// Prints the cost of an expansion in each form and writing (`check --show cost`).
 int show_cost(const Options& o, const Reader& in);
 
 }  // namespace anholon::cli

@@ -25,7 +25,7 @@ namespace anholon::cli {
 
 namespace {
 
-// More rows than this are refused before they fill memory or disk; JSON, which is held in memory, has less room.
+// More rows are refused before they fill memory or disk; JSON, which is held in memory, has a lower limit.
 constexpr long kMostRows = 5'000'000, kMostJsonNumbers = 5'000'000;
 
 bool is_hdf5(const std::string& path) {
@@ -33,7 +33,7 @@ bool is_hdf5(const std::string& path) {
   return format_of(path, format) && format == RunFormat::hdf5;
 }
 
-// drawn: the motion is for a page or a film, which has an end of its own where nobody says one.
+// drawn: the motion is for a page or a film, which has a default end.
 Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s, bool drawn) {
   const Model& model = *scenario.model;
   const SimulationSettings& file = model.simulate;
@@ -50,7 +50,7 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s,
   else if (o.every.empty())
     s.at = file.at;
   std::sort(s.at.begin(), s.at.end());
-  // With --at these rows and no more; the end in the file is for runs without.
+  // With --at only these rows are computed; the end in the file is for runs without --at.
   if (!o.at.empty() && o.to.empty()) s.to.reset();
   Rational start(scenario.state.t);
   if (s.state.t)
@@ -88,7 +88,7 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s,
 }
 
 void accuracy(const Options& o, const Model& model, SimulationOptions& s) {
-  // The tolerance of quad without --digits: some digits stay for what round-off takes.
+  // The tolerance of quad without --digits: it leaves some digits for round-off.
   constexpr int kQuadTolerance = 32;
   s.digits = o.digits;
   s.precision = precision(o, Precision::real);
@@ -120,7 +120,7 @@ std::optional<std::size_t> rigorous(const std::string& text) {
   return n->get_num().get_ui();
 }
 
-// SUNDIALS computes in double, and not below a tolerance of its own.
+// SUNDIALS computes in double, and not below its own least tolerance.
 void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   s.integrator = model.simulate.integrator.value_or(Integrator::taylor);
   if (!o.integrator.empty()) {
@@ -148,7 +148,7 @@ void integrator(const Options& o, const Model& model, SimulationOptions& s) {
   say_raised(method, s);
 }
 
-// "blade'" for the first derivative of the constraint that holds worst.
+// "blade'" for the first derivative of the constraint with the largest residual.
 std::string worst_constraint(const SimulationReport& r) {
   std::string name;
   double worst = 0;
@@ -159,7 +159,7 @@ std::string worst_constraint(const SimulationReport& r) {
   return name.empty() ? "" : ", worst '" + name + "'";
 }
 
-// What a second opinion is compared with.
+// Names the motion with which a second opinion is compared.
 std::string beside(const SimulationReport& r) {
   return r.method.steps > 0 ? "the motion by method " + std::string(name(r.method.last)) : "Taylor's motion";
 }
@@ -192,7 +192,7 @@ void events(const SimulationReport& r) {
 
 void report(const Scenario& s, const SimulationReport& r) {
   std::fflush(stdout);
-  // What is known of the model, whatever the run, `check` says.
+  // `check` prints the notes that concern the model itself; here only those of the state follow.
   for (const std::string& n : s.state.notes) say(stderr, "note: %s\n", n.c_str());
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
   say(stderr,
@@ -227,7 +227,7 @@ void report(const Scenario& s, const SimulationReport& r) {
   for (const Warning& w : r.warnings) say(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
 }
 
-// Writes the runs that --save asks for; the first failure ends it and is kept.
+// Writes the saved runs that --save asks for; stops at the first failure and keeps its message.
 class Saver {
  public:
   Saver(const Options& o, const Reader& in, const Formulation& form, const SimulationOptions& options)
@@ -257,7 +257,7 @@ SimulationReport run(Workspace& s, const SimulationOptions& options, RowSink& ro
   }
 }
 
-// A run that goes on into its own file adds its rows to those that are there; any other file is replaced.
+// A run that continues in its own file appends its rows to the existing ones; any other file is replaced.
 void go_on(Hdf5Sink& rows, const Options& o, const SavedRun& resume, const Reader& in) {
   std::error_code none;
   if (!rows.error().empty() || !resume.has("given") || !std::filesystem::is_regular_file(o.output, none)) return;
@@ -272,11 +272,11 @@ void go_on(Hdf5Sink& rows, const Options& o, const SavedRun& resume, const Reade
     rows.go_on(before, count, static_cast<std::size_t>(given[1]));
     if (!o.quiet) say(stderr, "note: rows are added to the first %zu of %s\n", count, o.output.c_str());
   } catch (const Failure&) {
-    // It holds no run, or is damaged.
+    // The file holds no run, or is damaged.
   }
 }
 
-// Rows of a motion that is drawn, where nobody says how many: as many as a page holds whole.
+// The default number of rows for a drawn motion: as many as a page holds without reduction.
 int rows_to_look_at(const Mechanics& m) {
   constexpr std::size_t kNumbers = 22000;
   return static_cast<int>(std::clamp<std::size_t>(kNumbers / (4 * m.q.size() + 3 * m.phi.size() + 6), 250, 1000));

@@ -21,7 +21,7 @@ namespace anholon::cli {
 
 namespace {
 
-// Cases that ended in the same way, of which the first is told.
+// Cases that ended in the same way; the first of them is printed.
 struct Stopped {
   std::size_t count = 0, first = 0;
   Outcome outcome;
@@ -38,16 +38,16 @@ class Output : public CaseSink {
     write(r);
     failed_ = !error().empty();
   }
-  // Asked by all threads.
+  // Called by all threads.
   bool failed() const { return failed_; }
   const std::map<OutcomeKind, Stopped>& stopped() const { return stopped_; }
-  // Empty, or why the file could not be written.
+  // Returns an empty string, or the reason why the file could not be written.
   virtual std::string close(const EnsembleReport& report) = 0;
   virtual const std::string& error() const = 0;
 
  protected:
   virtual void write(const CaseResult& r) = 0;
-  // The numbers of a line after its outcome; those that there are not are not-a-number.
+  // The numbers of a line after its outcome; missing ones are NaN.
   std::vector<double> numbers(const CaseResult& r) const {
     std::vector<double> list = {r.t};
     list.insert(list.end(), r.last.begin(), r.last.end());
@@ -63,7 +63,7 @@ class Output : public CaseSink {
 
 std::vector<std::string> header(const Variation& v, const std::vector<std::string>& columns) {
   std::vector<std::string> names = {"case"};
-  // An initial value that is varied is not the final one.
+  // A varied initial value is not the final value.
   for (const Varied& each : v.varied())
     names.push_back(each.kind == Varied::Kind::initial ? each.name + "(0)" : each.name);
   names.insert(names.end(), {"outcome", "t"});
@@ -255,7 +255,7 @@ int sweep(const Options& asked) {
     out = std::make_unique<Json>(o.output, s, variation, columns);
   else
     out = std::make_unique<Csv>(o.output, variation, columns);
-  // Nobody waits for rows that have no place.
+  // Stops if the rows cannot be written.
   options.cancelled = [&] { return stop_requested() || out->failed(); };
   EnsembleReport r;
   {

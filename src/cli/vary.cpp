@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostPoints = 1'000'000;  // of one grid
 constexpr std::size_t kMostCases = 1'000'000'000'000;
 
-// The word after --vary with a part of it marked, as positioned errors of files are shown.
+// The word after --vary with a part of it marked, like positioned errors of files.
 [[noreturn]] void wrong(const std::string& word, std::size_t at, std::size_t length, const std::string& message,
                         const std::string& hint) {
   const SourceText source{"--vary", word};
@@ -41,7 +41,7 @@ std::vector<Part> parts(const std::string& word, std::size_t from, std::size_t t
 
 constexpr const char* kHint = "--vary m=1:3:5 (from, to, how many), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
 
-// A number, a formula of numbers and pi, or a number with a unit, which is that of what is varied.
+// A number, a formula of numbers and pi, or a number with a unit, which must be that of the varied quantity.
 Rational number(const std::string& word, const Part& p, const std::string& unit) {
   std::size_t skip = 0;
   while (skip < p.text.size() && p.text[skip] == ' ') ++skip;
@@ -64,7 +64,7 @@ Rational number(const std::string& word, const Part& p, const std::string& unit)
   return c.value;
 }
 
-// The unit in SI of what is varied; empty where nothing tells.
+// The SI unit of the varied quantity; empty if it is unknown.
 std::string unit_of(const Varied& v, const Model& model) {
   const std::vector<std::string>& units =
       v.kind == Varied::Kind::parameter ? model.parameter_units : model.coordinate_units;

@@ -1,4 +1,4 @@
-// anholon verify: a certificate is read and checked by src/proof/verify.h, and nothing else of the house.
+// anholon verify: src/proof/verify.h reads and checks a certificate; no other part of the program takes part.
 #include "proof/verify.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Count {
   double log2_chance = -INFINITY;  // of the weakest claim
 };
 
-// "8.7e-19" from its binary logarithm, which may be far below what a double holds; rounded upwards.
+// "8.7e-19" from its binary logarithm, which may be far below the range of a double; rounded upwards.
 std::string chance_text(double log2_chance) {
   if (!std::isfinite(log2_chance)) return "0";
   const double decimal = log2_chance * 0.30102999566398120;
@@ -53,7 +53,7 @@ void text(const Certificate& c, const Verification& v) {
   for (const std::string& h : c.hypotheses) say(stdout, "  %s\n", h.c_str());
   if (!c.meaning.empty()) say(stdout, "\nmeaning\n  %s\n", c.meaning.c_str());
 
-  // In the order of the certificate.
+  // The counts in the order of the certificate.
   std::vector<std::pair<std::string, Count>> table;
   std::map<std::string, std::size_t> row;
   double weakest = -INFINITY;

@@ -1,4 +1,4 @@
-// Sines and cosines in sums of monomials: sin^2 + cos^2 = 1 and the addition theorems, backwards.
+// Sines and cosines in sums of monomials: applies sin^2 + cos^2 = 1 and the addition theorems backwards.
 #include <algorithm>
 
 #include "expr/monomial_sums.h"
@@ -29,7 +29,7 @@ void shorten_squares(Sum& s, std::size_t kept, std::size_t other) {
   }
 }
 
-// All even powers of one generator in terms of the other: s^2k = (1 - c^2)^k.
+// Writes all even powers of one generator in terms of the other: s^2k = (1 - c^2)^k.
 Sum without_square(const Sum& s, std::size_t gone, std::size_t other) {
   Sum result;
   for (const auto& [exponents, c] : s) {
@@ -47,7 +47,7 @@ Sum without_square(const Sum& s, std::size_t gone, std::size_t other) {
   return result;
 }
 
-// cos a cos b + sin a sin b = cos(a - b) and its three sisters, for pairs of terms with equal cofactors.
+// Applies cos a cos b + sin a sin b = cos(a - b) and its three variants to pairs of terms with equal cofactors.
 class SumsOfAngles {
  public:
   SumsOfAngles(Written& w, Sum& s) : w_(w), s_(s) {}
@@ -63,7 +63,7 @@ class SumsOfAngles {
   }
 
  private:
-  // r X u v + r' X y z with r' = r or -r.
+  // Joins r X u v + r' X y z with r' = r or -r.
   void join(std::size_t u, std::size_t v, std::size_t y, std::size_t z, const Angle& a, const Angle& b, bool cosine) {
     std::vector<Exponents> candidates;
     for (const auto& [exponents, c] : s_)
@@ -121,8 +121,8 @@ class SumsOfAngles {
 
 }  // namespace
 
-// For each angle the shorter of three: squares of the sine gone, of the cosine gone, or as it is; pairs
-// that make one square of the other are joined.
+// Chooses for each angle the shortest of three forms: without squares of the sine, without squares of the cosine, or
+// unchanged; joins pairs of terms that make one square of the other function.
 void choose_squares(Sum& s, const std::vector<Angle>& angles) {
   for (const Angle& a : angles) {
     if (std::none_of(s.begin(), s.end(),

@@ -8,7 +8,7 @@ namespace anholon {
 
 namespace {
 
-// An expression of more nodes than this is not integrated: no reader would want the result.
+// An expression of more nodes than this is not integrated: the result would be too long to read.
 constexpr std::size_t kLongest = 200;
 constexpr int kMostParts = 20;  // the highest power that is integrated by parts
 
@@ -143,7 +143,7 @@ Split split(Expr term, Expr z) {
   return s;
 }
 
-// The terms of a sum; those of a product with a sum in it, once multiplied out.
+// The terms of a sum, or of a product that contains a sum, multiplied out once.
 std::vector<Expr> terms_of(Expr e, Expr z) {
   Graph& g = *e.graph;
   const auto of_sum = [&](NodeId sum, Expr rest) {
@@ -174,7 +174,7 @@ std::optional<Expr> of_term(Expr term, Expr z, int parts) {
     Expr rest = s.constant;
     for (std::size_t j = 0; j < s.factors.size(); ++j)
       if (j != i) rest = rest * s.factors[j].value();
-    // The derivative of the base divides.
+    // The derivative of the base divides e.
     if (const Expr d = partial(f.base, z); !is_zero(d))
       if (const std::optional<Expr> c = without(divided(rest, d), z)) {
         const Rational up = f.exponent + 1;
@@ -182,7 +182,7 @@ std::optional<Expr> of_term(Expr term, Expr z, int parts) {
       }
     if (f.exponent == -1 && !holds(rest, z))
       if (const std::optional<Expr> F = arctangent(f.base, z)) return rest * *F;
-    // That of its argument.
+    // The derivative of the function's argument divides e.
     const Node& n = g.node(f.base.id);
     if (n.kind != Kind::function) continue;
     const Expr u{&g, g.terms(f.base.id)[0].node};
@@ -192,7 +192,7 @@ std::optional<Expr> of_term(Expr term, Expr z, int parts) {
     if (!c) continue;
     if (const std::optional<Expr> F = of_function(static_cast<Function>(n.index), u, f.exponent)) return *c * *F;
   }
-  // By parts: a power of z goes down.
+  // By parts: the power of z decreases.
   if (parts >= kMostParts) return std::nullopt;
   for (const Factor& f : s.factors) {
     if (!(f.base == z) || f.exponent.get_den() != 1 || f.exponent < 1) continue;

@@ -3,9 +3,10 @@
 //   of each term c w^k w' :    c w^(k+1)/(k+1),  c log w
 //   of each term c f(u)^k u' : the table of elementary functions f
 //   of c/(a z^2 + b) :         the arc tangent
-//   of z^n g(z) :              by parts, where g is in the table
+//   of z^n g(z) :              by parts, if g is in the table
 //
-// What comes back was differentiated again and proved equal. Nothing says only that it is not in the table.
+// Each result is differentiated again and proved equal. nullopt means that the integral is not in the table; it may
+// exist nevertheless.
 #pragma once
 #include <optional>
 
@@ -16,10 +17,10 @@ namespace anholon {
 // F with dF/dz = e, all other symbols held.
 std::optional<Expr> antiderivative(Expr e, Expr z);
 
-// f with df/dz_a = form_a for all a, where there is one (the form is closed) and it is elementary.
+// f with df/dz_a = form_a for all a; nullopt if there is none (the form is not closed) or it is not elementary.
 std::optional<Expr> potential(const Column& form, const Column& z);
 
-// exp(e), with logarithms in e made powers: exp(2*log(x) - y) is x^2*exp(-y).
+// exp(e), with logarithms in e turned into powers: exp(2*log(x) - y) is x^2*exp(-y).
 Expr exponential(Expr e);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// Homogeneous functions, told by how an expression is built: no polynomials are multiplied out.
+// Homogeneous functions, recognized by the structure of an expression: polynomials are not multiplied out.
 #pragma once
 #include <functional>
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace anholon {
 
-// The degree k of e in the symbols x for which `in` holds, so that sum x de/dx = k e by Euler's theorem. Nothing where
-// the structure does not show it: another writing of e may.
+// The degree k of e in the symbols x for which `in` holds, so that sum x de/dx = k e by Euler's theorem. nullopt if the
+// structure does not show it; another form of e may.
 std::optional<Rational> homogeneous_degree(Expr e, const std::function<bool(const Node&)>& in);
 
 }  // namespace anholon

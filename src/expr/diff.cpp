@@ -161,7 +161,7 @@ Column total_derivative(std::span<const Expr> es) {
       continue;
     }
     if (n.kind == Kind::select) {
-      // Branch by branch: what has no value beside its branch must not enter.
+      // The rate is taken branch by branch: an expression must not be evaluated outside its own branch.
       g.set_rate(id, select(Expr{&g, terms[0].node}, g.rate(terms[1].node), g.rate(terms[2].node)).id);
       continue;
     }
@@ -249,7 +249,7 @@ Column gradient(Expr e, std::span<const Expr> wanted) {
 
 Expr partial(Expr e, Expr symbol) { return gradient(e, {&symbol, 1})[0]; }
 
-// `replacement(id)` of any node: a handle with graph == nullptr keeps it.
+// `replacement(id)` of any node returns the new expression; a handle with graph == nullptr keeps the node.
 static Column rebuild(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement) {
   if (es.empty()) return {};
   Graph& g = *es[0].graph;

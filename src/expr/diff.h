@@ -1,10 +1,9 @@
 // Differentiation and substitution on the expression graph. Each call is one sweep, O(nodes).
 //
-// Partial derivatives treat every symbol (t, each q_a^(k), lambda, mu) as independent.
-// The total derivative is
+// Partial derivatives treat every symbol (t, each q_a^(k), lambda, mu) as independent. The total derivative is
 //   D f = f_,t + sum_{a,k} f_,q_a^(k) q_a^(k+1) + (the same for lambda and given functions),
-// with frozen masses mu constant: before masses are put in for their symbols it is the frozen
-// derivative D/Dt of the papers, afterwards the ordinary d/dt  (theory: derivatives).
+// with frozen masses mu constant: before masses are substituted for their symbols it is the frozen derivative D/Dt of
+// the papers, afterwards the ordinary d/dt  (theory: derivatives).
 #pragma once
 #include <functional>
 #include <span>
@@ -34,7 +33,7 @@ Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds, std:
 // nullptr to keep the symbol.
 Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement);
 
-// The same for any nodes: those in the table are replaced, whatever they are made of.
+// As above for any nodes: replaces those in the table, whatever their operands.
 Column replace_nodes(std::span<const Expr> es, const std::unordered_map<NodeId, Expr>& replacement);
 
 // The symbols (leaves that are not numbers) on which the expressions depend, ascending.

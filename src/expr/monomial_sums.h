@@ -1,4 +1,4 @@
-// Sums of monomials as maps, for those who arrange them for print.
+// Sums of monomials as maps, for the arrangement of expressions in print.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -67,14 +67,14 @@ struct Angle {
   Expr value;
 };
 
-// A sum of monomials with what its generators stand for: grows sines and cosines of sums of angles.
+// A sum of monomials with the expressions of its generators; it grows by sines and cosines of sums of angles.
 struct Written {
   std::vector<Expr> generators;
   std::vector<Angle> angles;
   Sum numerator, denominator;
 };
 
-// Squares of sines and cosines in the shorter way, and products as sines and cosines of sums of angles, where that
+// Writes squares of sines and cosines in the shorter way, and products as sines and cosines of sums of angles if that
 // joins terms.
 void choose_squares(Sum& s, const std::vector<Angle>& angles);
 void join_angles(Written& w, Sum& s);

@@ -27,8 +27,8 @@ using Angle = std::vector<std::pair<NodeId, Rational>>;
 
 class Normalizer {
  public:
-  // `split_given`: also expand the sine of a sum that depends on t and parameters only (a proof needs
-  // that, a reader does not).
+  // `split_given`: also expands the sine of a sum that depends on t and parameters only (a proof needs it, a reader
+  // does not).
   Normalizer(Expr root, bool split_given, const Whole& whole = {}, long most_work = kMostWork)
       : g_(*root.graph), root_(root), whole_(whole), split_given_(split_given) {
     find_nodes();
@@ -79,7 +79,7 @@ class Normalizer {
     return p.terms();
   }
 
-  // What each generator stands for.
+  // The expression of each generator.
   std::vector<Expr> meanings() {
     std::vector<std::pair<NodeId, unsigned long>> roots;
     std::vector<Expr> meaning(static_cast<std::size_t>(std::max<long>(1, generators_)), g_.one());
@@ -96,7 +96,7 @@ class Normalizer {
       at(cosine_.at(node)) = cos(angle);
     }
     for (const auto& [node, k] : generator_) at(k) = Expr{&g_, node};
-    // The generator of x^(1/k) with x = n/d stands for d x^(1/k). Roots may hold earlier roots in d.
+    // The generator of x^(1/k) with x = n/d denotes d x^(1/k). Roots may contain earlier roots in d.
     std::sort(roots.begin(), roots.end());
     for (const auto& root : roots)
       at(root_generator_.at(root)) =
@@ -106,7 +106,7 @@ class Normalizer {
 
   bool whole(NodeId id) const { return whole_.names && whole_.names->count(id) > 0; }
 
-  // The nodes that matter, ascending: nothing below a function or what stays whole.
+  // Collects the relevant nodes, ascending: none below a function or below a part that is not expanded.
   void find_nodes() {
     std::vector<bool> seen(g_.size(), false);
     ids_.push_back(root_.id);
@@ -138,8 +138,8 @@ class Normalizer {
     return a;
   }
 
-  // Names the generators: reciprocals that stay whole, roots (later ones, which may contain earlier
-  // ones, leading), then sines, cosines, and all else.
+  // Names the generators: reciprocals that are not expanded, roots (later ones, which may contain earlier ones, lead),
+  // then sines, cosines, and all others.
   void collect() {
     std::vector<std::pair<NodeId, unsigned long>> roots, reciprocals;
     std::map<NodeId, mpz_class> angles;
@@ -195,7 +195,7 @@ class Normalizer {
 
   Fraction power(const Fraction& x, long n) const {
     if (n < 0) {
-      if (x.num.zero()) throw TooLarge{};  // 1/0: no statement
+      if (x.num.zero()) throw TooLarge{};  // 1/0: nothing is proved
       return power({x.den, x.num}, -n);
     }
     Fraction r = plain(constant(1));
@@ -238,7 +238,7 @@ class Normalizer {
     return {r, x.den};
   }
 
-  // 1/x^(1/k) as a generator; where x is a monomial m, their product is 1.
+  // 1/x^(1/k) as a generator; if x is a monomial m, the product of both generators is 1.
   Fraction reciprocal(NodeId node, unsigned long k) {
     const Poly r = generator(reciprocal_.at({node, k}));
     const Fraction& x = fractions_.at(node);

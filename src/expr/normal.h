@@ -2,9 +2,9 @@
 //   symbols, sin and cos (tan = sin/cos) of independent angles, roots, exponentials and other functions,
 // reduced by sin^2 + cos^2 = 1 and root^2 = radicand. Angle sums and multiples are expanded.
 //
-// "Zero" is a proof: each step is an identity wherever all parts of the expression are defined.
-// "Not shown" says nothing; a fraction that stays may still vanish by a relation that is not known
-// here (or the polynomials grew beyond the term limit).
+// "Zero" is a proof: each step is an identity wherever all parts of the expression are defined. "Not shown" proves
+// nothing: a fraction that remains may still vanish by a relation that is not known here, or the polynomials exceeded
+// the term limit.
 #pragma once
 #include <optional>
 
@@ -14,9 +14,8 @@ namespace anholon {
 
 bool proved_zero(Expr e);
 
-// The same expression written out as a reduced sum of monomials (over a denominator, where it has
-// one); nothing if that leads beyond the term limit, or takes more than `most_work` products of terms. Equal to e
-// wherever e is defined.
+// Writes e as a reduced sum of monomials (over a denominator, if it has one). Returns nullopt if that exceeds the term
+// limit or `most_work` products of terms. Equal to e wherever e is defined.
 std::optional<Expr> expanded(Expr e);
 std::optional<Expr> expanded(Expr e, long most_work);
 
@@ -28,22 +27,22 @@ struct Monomial {
 using Monomials = std::vector<Monomial>;
 
 struct NormalForm {
-  std::vector<Expr> generators;                             // what each stands for
+  std::vector<Expr> generators;                             // the expression of each generator
   std::vector<std::pair<std::size_t, std::size_t>> angles;  // generators that are sine and cosine of one angle
   Monomials numerator, denominator;                         // in lowest terms, if short
 };
 
-// What is left as the user wrote it: sines of sums (and tangents), denominators, named subexpressions.
+// Which subexpressions stay as the user wrote them: sines of sums (and tangents), denominators, named subexpressions.
 struct Whole {
   bool angles = false, fractions = false;
   const std::unordered_map<NodeId, std::string>* names = nullptr;
 };
 
-// The expression as a fraction; nothing if that takes more than `most_work` products of terms.
+// The expression as a fraction; nullopt if that takes more than `most_work` products of terms.
 std::optional<NormalForm> normal_form(Expr e, const Whole& whole, long most_work);
 
 Expr expression(const Monomials& terms, const std::vector<Expr>& generators);
-// The fraction itself; nothing if it is longer than anybody reads.
+// The fraction as an expression; nullopt if it is longer than anybody reads.
 std::optional<Expr> expression(const NormalForm& f);
 
 // A product of polynomials with more terms than this ends the test without a result.

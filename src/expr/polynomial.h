@@ -1,5 +1,5 @@
-// Polynomials over Q with exact arithmetic, on FLINT: what the normal form and the arrangement of
-// expressions for print are made of. Every product is paid for, so that no expression takes long.
+// Polynomials over Q with exact arithmetic, on FLINT, for the normal form and for the arrangement of expressions in
+// print. Every product counts towards a limit, so that no expression takes long.
 #pragma once
 #include <algorithm>
 #include <cstdlib>
@@ -15,9 +15,9 @@ namespace anholon {
 
 struct TooLarge {};
 
-// Coefficients of more bits than this end the test.
+// Coefficients of more bits end the test.
 inline constexpr long kLargestCoefficient = 4000;
-// Products of terms in one test.
+// The limit of products of terms in one test.
 inline constexpr long kMostWork = 10'000'000;
 
 // Polynomials over Q in a fixed number of generators, lexicographic, earlier generators first.
@@ -166,7 +166,7 @@ class Relations {
   Poly remainder(const Poly& p) const;
 
  private:
-  // What the leading monomial demands of a term that it divides, and which generators the tail brings in.
+  // The condition of the leading monomial on a term that it divides, and the generators that the tail introduces.
   struct Rule {
     Poly relation;
     std::size_t generator;

@@ -14,9 +14,11 @@ namespace {
 
 using Word = PrimeField::Word;
 
-// p = 2r + 1 with r prime: half the field are squares, of which each has one root of any degree that is a square.
+// p = 2r + 1 with r prime: half the field are squares, each of which has exactly one root of any degree that is a
+// square.
 constexpr Word kPrime = 2305843009213057079;
-// Points that are tried until roots and reciprocals have values: each even root has one at half of them.
+// The number of points that are tried until roots and reciprocals have values: each even root has one at half of the
+// points.
 constexpr int kMostPoints = 24;
 
 struct NoValue {};
@@ -30,7 +32,7 @@ class FieldPoint {
         for (const auto& [atom, c] : angle(id)) q_ = lcm(q_, c.get_den());
   }
 
-  // Throws where a part has no value.
+  // Throws if a part has no value.
   bool zero_at(std::uint32_t point) {
     point_ = point;
     values_.resize(ids_.size());
@@ -44,7 +46,7 @@ class FieldPoint {
     Word sin, cos;
   };
 
-  // Ascending, with the root last; nothing below a function.
+  // Collects the nodes ascending, with the root last, and none below a function.
   void find_nodes() {
     ids_.push_back(root_.id);
     at_.emplace(root_.id, 0);
@@ -90,7 +92,7 @@ class FieldPoint {
     return {f_.add(f_.multiply(a.sin, b.cos), f_.multiply(a.cos, b.sin)),
             f_.subtract(f_.multiply(a.cos, b.cos), f_.multiply(a.sin, b.sin))};
   }
-  // Of the atom divided by q.
+  // The point of the circle for the atom divided by q.
   Circle base(NodeId atom) {
     const auto [it, fresh] = circle_.try_emplace(atom);
     if (fresh) {

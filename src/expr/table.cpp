@@ -13,8 +13,8 @@ namespace {
 
 using Numbers = std::vector<Rational>;
 
-// Second derivatives at the knots: tridiagonal, diagonally dominant. Their digits would grow with every knot; a hundred
-// are kept.
+// Second derivatives at the knots, from a tridiagonal, diagonally dominant system. Their digits would grow with every
+// knot, so a hundred are kept.
 Numbers natural_spline(const Numbers& x, const Numbers& y) {
   const std::size_t n = x.size();
   const auto rounded = [](const Rational& r) {
@@ -35,7 +35,7 @@ Numbers natural_spline(const Numbers& x, const Numbers& y) {
   return m;
 }
 
-// Slopes at the knots that keep every stretch monotone.
+// Slopes at the knots that keep the function monotone in every interval.
 Numbers monotone_slopes(const Numbers& x, const Numbers& y) {
   const std::size_t n = x.size();
   Numbers m, d(n, 0);
@@ -46,13 +46,13 @@ Numbers monotone_slopes(const Numbers& x, const Numbers& y) {
     const Rational w1 = 2 * after + before, w2 = after + 2 * before;
     d[i] = (w1 + w2) / (w1 / m[i - 1] + w2 / m[i]);
   }
-  // At the ends the slope of the stretch, which cannot overshoot.
+  // At the ends the slope of the interval is used; it cannot overshoot.
   d[0] = m[0];
   d[n - 1] = m[n - 2];
   return d;
 }
 
-// c0..c3 of the stretch i, measured from its left knot.
+// c0..c3 of the interval i, measured from its left knot.
 using Cubic = std::vector<Rational>;
 
 std::vector<Cubic> stretches(const Table& t) {

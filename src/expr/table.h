@@ -2,7 +2,7 @@
 //
 //   f(x) = c0(x) + d (c1(x) + d (c2(x) + d c3(x))),  d = x - knot(x)
 //
-// so that differentiation, Taylor arithmetic and kinks are those of step functions. All coefficients are exact
+// so differentiation, Taylor arithmetic and kinks reduce to those of step functions. All coefficients are exact
 // rationals.
 #pragma once
 #include <optional>
@@ -17,7 +17,7 @@ enum class Fit : std::uint8_t {
   monotone,  // cubic, one continuous derivative, no overshoot (Fritsch & Carlson 1980, Butland's harmonic mean)
   spline,    // cubic, two continuous derivatives, natural (second derivative 0 at the ends)
 };
-// Beyond the first and the last knot: the value there, the tangent there, or not to be used.
+// The value beyond the first and the last knot: the value there, the tangent there, or an error.
 enum class Outside : std::uint8_t { hold, linear, error };
 
 struct Table {
@@ -27,7 +27,7 @@ struct Table {
   Outside outside = Outside::hold;
 };
 
-// The coefficients laid down in a graph.
+// A table whose coefficients are stored in a graph.
 class TableFunction {
  public:
   TableFunction(Graph& g, const Table& table);
@@ -38,11 +38,11 @@ class TableFunction {
   std::vector<std::uint32_t> coefficients_;
 };
 
-// How many continuous derivatives a fit has; -1: it jumps.
+// The number of continuous derivatives of a fit; -1 if the fit jumps.
 int smoothness(Fit fit);
 
-// The name of a table in e whose derivative of this order would be wrong, as it is not continuous below it; nothing if
-// there is none.
+// The name of a table in e whose derivative of this order would be wrong because lower ones are not continuous; nullopt
+// if there is none.
 std::optional<std::string> too_rough(Expr e, int derivative);
 
 }  // namespace anholon

@@ -28,7 +28,7 @@ const char* type_name(const Value& v) {
 
 namespace {
 
-// Derivatives of higher order than this are refused.
+// Derivatives of higher order are refused.
 constexpr int kHighestDerivative = 20;
 
 Expr* number(Value& v) { return std::get_if<Expr>(&v); }
@@ -39,13 +39,13 @@ Rotation* rotation(Value& v) { return std::get_if<Rotation>(&v); }
   throw Failure(at, std::string(what) + " of " + type_name(a) + " and " + type_name(b), std::move(hint));
 }
 
-// The hint about whichever of both is a body.
+// The hint for the one of both values that is a body.
 std::string body_hint(const Value& a, const Value& b, const Names& names) {
   const std::string of_a = body_hint(a, names);
   return of_a.empty() ? body_hint(b, names) : of_a;
 }
 
-// The number 0 stands for the zero vector where the other side is a vector.
+// The number 0 denotes the zero vector if the other side is a vector.
 void lift_zero(Value& a, Value& b) {
   if (number(a) && vector(b) && is_zero(*number(a))) a = zero_vector(*vector(b)->x.graph);
   if (number(b) && vector(a) && is_zero(*number(b))) b = zero_vector(*vector(a)->x.graph);
@@ -69,7 +69,7 @@ Value divide(Value a, Value b, Span at, Names& names) {
   mismatch("quotient", a, b, at, body_hint(a, names));
 }
 
-// A product of more different factors is refused: its derivative has as many terms, each as long.
+// A product of more different factors is refused: its derivative has as many terms, each of that length.
 constexpr std::uint32_t kMostFactors = 500;
 
 Value multiply(Value a, Value b, Syntax::Op sign, Span at, Names& names) {
@@ -181,7 +181,7 @@ struct Arguments {
   }
 };
 
-// a where s >= 0, else b: of two numbers or two vectors.
+// a if s >= 0, else b, for two numbers or two vectors.
 Value branch(Expr s, Value a, Value b, Span at, Names& names) {
   a = as_point(std::move(a), names, at);
   b = as_point(std::move(b), names, at);
@@ -215,7 +215,8 @@ Value piecewise(const Syntax& call, Names& names) {
   return value;
 }
 
-// choose(k, v1, v2, …): v_k, k a mode or another whole number; the first below 1, the last above their number.
+// choose(k, v1, v2, …): v_k, with k a mode or another whole number; the first value for k below 1, the last value for k
+// above their number.
 Value choose(const Arguments& in) {
   const std::size_t n = in.values.size();
   if (n < 2)
@@ -228,7 +229,7 @@ Value choose(const Arguments& in) {
   return value;
 }
 
-// A call of what does not exist, as other systems write it: diff(x, t), if(x > 0, a, b), x(t).
+// Rejects a call of an unknown function in the notation of other systems: diff(x, t), if(x > 0, a, b), x(t).
 void answer_habits(const Syntax& s, Names& names) {
   if (const std::string habit = habit_of_call(s); !habit.empty())
     throw Failure(s.span, "unknown function '" + s.text + "'", habit);
@@ -237,7 +238,7 @@ void answer_habits(const Syntax& s, Names& names) {
   try {
     value = names.name(s.text, s.span);
   } catch (const Failure&) {
-    return;  // no name either
+    return;  // nor a name
   }
   if (!number(*value)) return;
   const bool of_time = s.args[0].op == Syntax::Op::name && s.args[0].text == "t";
@@ -258,7 +259,7 @@ Value call(const Syntax& s, Names& names) {
   Graph& g = names.graph();
   const std::string& f = s.text;
   if (f == "piecewise") return piecewise(s, names);
-  if (f == "sum" || f == "prod")  // over a declared range it is written out by the parser
+  if (f == "sum" || f == "prod")  // the parser expands it over a declared range
     throw Failure(s.span, f + " runs over a range of [index]", f + "(k, …) with k = \"1..n\" under [index]");
   if (f == "matrix") return rotation_matrix(s, names);
   std::vector<Value> values;
@@ -268,7 +269,7 @@ Value call(const Syntax& s, Names& names) {
     for (std::size_t i = 1; i < s.args.size(); ++i) values.push_back(evaluate(s.args[i], names));
     return euler(s, values, g);
   }
-  // Conditions stand among the arguments of an "if" from elsewhere.
+  // The arguments of an "if" of another language are conditions.
   if (std::any_of(s.args.begin(), s.args.end(), [](const Syntax& a) { return a.op == Syntax::Op::compare; }) &&
       !is_built_in(f))
     answer_habits(s, names);
@@ -450,7 +451,7 @@ std::string body_hint(const Value& v, const Names& names) {
   return b ? "a body is not a point: write " + names.body_name(*b) + ".center" : std::string();
 }
 
-// What fails below without a place of its own (a division by zero, a number too long) failed here.
+// A failure below without a position of its own (division by zero, too long a number) gets this one.
 Value evaluate(const Syntax& s, Names& names) {
   try {
     return value_of(s, names);

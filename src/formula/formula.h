@@ -1,10 +1,10 @@
 // Typed formulas: text -> syntax tree -> number, vector or rotation.
 //
-// The grammar (format.md): + - * / ^ with the usual strength (^ binds to the right and before a
-// leading minus), postfix ' for the total derivative, calls f(a, b), members P.x, arrays [a, b, c],
-// one or more `=` in an equation. A number may carry a unit, `30 deg`, `9.81 m/s^2`, after a blank and without blanks
-// in it. Names are letters, digits and _; a Greek letter is the same name as its spelling; superscript 2 3, ·, ×, − and
-// other dashes are accepted. `#` starts a comment.
+// The grammar (doc/language.md, Formulas): + - * / ^ with the usual strength (^ binds to the right and before a leading
+// minus), postfix ' for the total derivative, calls f(a, b), members P.x, arrays [a, b, c], one or more `=` in an
+// equation. A number may carry a unit, `30 deg`, `9.81 m/s^2`, after a blank and without blanks in it. Names are
+// letters, digits and _; a Greek letter is the same name as its spelling; superscript 2 3, ·, ×, − and other dashes are
+// accepted. `#` starts a comment.
 #pragma once
 #include <array>
 #include <memory>
@@ -22,8 +22,8 @@ namespace anholon {
 
 struct Indices;  // formula/indices.h
 
-// Maps an offset (in characters) of a formula to its place in the file: the text of a TOML string
-// may start anywhere, hold escapes or run over several lines.
+// Maps an offset (in characters) of a formula to its position in the file: the text of a TOML string may start
+// anywhere, hold escapes or span several lines.
 class FormulaText {
  public:
   FormulaText() = default;
@@ -34,7 +34,7 @@ class FormulaText {
   const std::string& text() const { return text_; }
   Span span(std::size_t offset, std::size_t length) const;  // in characters
   Span whole() const;
-  // What the letters of [index] mean in it; nothing where there are none.
+  // The meanings of the letters of [index] in the formula; null if there are none.
   const std::shared_ptr<const Indices>& indices() const { return indices_; }
   void set_file(std::uint32_t file);
   void set_indices(std::shared_ptr<const Indices> indices) { indices_ = std::move(indices); }
@@ -58,14 +58,14 @@ struct Syntax {
     power,
     prime,
     index,
-    apply,  // P[i-1], and T[i](a, b) (args[0] is T[i]): in a parsed formula names and calls have taken their place
+    apply,  // P[i-1], and T[i](a, b) (args[0] is T[i]); a parsed formula holds names and calls instead
     add,    // args joined by operators add, subtract
     subtract,
     multiply,  // args joined by operators multiply, divide, dot, cross
     divide,
-    compare,  // one of > < >= <= (in text) between two: a condition of piecewise
+    compare,  // one of > < >= <= (in text) between two operands: a condition of piecewise
     dot,
-    cross,  // the signs · and ×: of two vectors these products, of numbers the ordinary one
+    cross,  // the signs · and ×: these products for two vectors, the ordinary product for numbers
   };
   struct Operator {
     Op op;
@@ -74,15 +74,15 @@ struct Syntax {
   Op op;
   std::string text;                 // name, number or member
   std::vector<Syntax> args;         // operands; of a call or index the arguments (callee in text)
-  Span span;                        // of the operator or name itself
+  Span span;                        // place of the operator or name itself
   std::size_t offset = 0, end = 0;  // the whole subformula, in characters
-  std::vector<Operator> operators;  // of add and multiply: before args[1], args[2], …
+  std::vector<Operator> operators;  // for add and multiply: the operators before args[1], args[2], …
 };
 
-// Parses one formula; the sides of an equation with parse_equation. Throws Failure.
+// Parses one formula; parse_equation parses the sides of an equation. Throws Failure.
 Syntax parse_formula(const FormulaText& text);
 std::vector<Syntax> parse_equation(const FormulaText& text);  // one side or two
-std::vector<Syntax> parse_plain(const FormulaText& text);     // the same, as written: indices are not put in
+std::vector<Syntax> parse_plain(const FormulaText& text);     // as parse_equation(), without substituting indices
 
 // The formula again, with brackets where they are needed.
 std::string print(const Syntax& s);
@@ -99,13 +99,13 @@ struct Vector {
   const Expr& operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
 };
 
-// A rotation with its angular velocity relative to the observer, in the observer's axes and in its
-// own; both are built up turn by turn, which keeps them as short as a person would write them.
+// A rotation with its angular velocity relative to the observer, in the observer's axes and in its own. Both are built
+// up turn by turn, so they stay short.
 struct Rotation {
   Vector columns[3];     // the new axes in the observer's axes
   Vector rate;           // angular velocity, components along the observer's axes
   Vector own_rate;       // the same vector, components along the new axes
-  bool by_turns = true;  // orthonormal identically (a quaternion is so only on its unit sphere)
+  bool by_turns = true;  // orthonormal identically (a quaternion is orthonormal only on its unit sphere)
   const Vector& operator[](int k) const { return columns[k]; }
 };
 
@@ -135,8 +135,8 @@ Rotation turn(const Vector& unit_axis, Expr angle);
 // The rotation with the given axes; its rate is 1/2 sum_k u_k x u_k' (theory: weighted-points).
 Rotation rotation_from_axes(const Vector& x, const Vector& y, const Vector& z);
 
-// A body named in a formula. Where a point is wanted a particle is one, and where a frame is wanted a body with an
-// orientation is one (Names::point, Names::frame); of all bodies there are `B.center`, `B.x`, vel(B, P), ….
+// A body named in a formula. A particle can be used as a point, and a body with an orientation as a frame
+// (Names::point, Names::frame). Every body has `B.center`, `B.x`, vel(B, P), ….
 struct BodyName {
   std::size_t index;
 };
@@ -145,32 +145,33 @@ struct InertialName {};
 using Value = std::variant<Expr, Vector, Rotation, BodyName, InertialName>;
 const char* type_name(const Value& v);
 
-// What names mean. Lookups throw Failure for unknown names (with `span` for the position).
+// The meaning of names. Lookups throw Failure for unknown names (`span` gives the position).
 struct Names {
   virtual ~Names() = default;
   virtual Graph& graph() = 0;
   virtual Value name(const std::string& name, Span span) = 0;
-  // Functions beyond the built-in ones (velocity of a point, given functions); false if unknown.
+  // Evaluates functions beyond the built-in ones (velocity of a point, given functions); returns false for an unknown
+  // one.
   virtual bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax,
                     Value& result) = 0;
   virtual Value member(const Value& object, const Syntax& syntax) = 0;
   virtual std::vector<std::string> functions() const = 0;  // for "did you mean"
-  // What a body is where a point or a frame is wanted; nothing where it is none.
+  // The point, or the frame, that a body stands for; nullopt if the body has none.
   virtual std::optional<Vector> point(const BodyName& /*body*/, Span /*use*/) { return std::nullopt; }
   virtual std::optional<Rotation> frame(const BodyName& /*body*/, Span /*use*/) { return std::nullopt; }
   virtual std::string body_name(const BodyName& /*body*/) const { return "B"; }
-  // Whether a name has a meaning of its own in the model.
+  // Whether the model declares this name.
   virtual bool declares(const std::string& /*name*/) const { return false; }
-  // What varies with time when a formula is differentiated by it.
+  // The expression as a function of time, before a formula is differentiated by time.
   virtual Expr in_time(Expr e) { return e; }
-  // Told of each quat(…): it is a rotation only where its norm is 1.
+  // Is called for each quat(…): it is a rotation only if its norm is 1.
   virtual void quaternion(const std::array<Expr, 4>& /*components*/, const Syntax& /*call*/) {}
 };
 
-// A vector or rotation in place of a body that is one there; other values as they are.
+// Replaces a body by its point (or frame), if it has one; other values are unchanged.
 Value as_point(Value v, Names& names, Span use);
 Value as_frame(Value v, Names& names, Span use);
-// What to write in place of a body that is no point, and no frame: "write shell.center for its point".
+// The hint for a body that is neither point nor frame: "write shell.center for its point".
 std::string body_hint(const Value& v, const Names& names);
 
 Value evaluate(const Syntax& s, Names& names);

@@ -1,5 +1,5 @@
-// The functions of formulas as a table: what they are called with, what they mean, an example. Those of one argument
-// with a derivative of their own come from elementary.def.
+// The functions of formulas as a table: call, meaning, an example. Functions of one argument with an explicit
+// derivative come from elementary.def.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ struct FunctionRow {
   std::string example;  // in a model with the coordinates x, y, theta, the frame B, the point P, the body plate
 };
 
-// Pure mathematics: they need no model.
+// The functions of pure mathematics, which need no model.
 const std::vector<FunctionRow>& function_table();
 std::vector<std::string> function_names();
 

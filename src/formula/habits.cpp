@@ -26,7 +26,7 @@ Syntax joined(Syntax::Op op, Syntax a, Syntax b) {
 
 Syntax number(const char* text) { return {Syntax::Op::number, text, {}, {}, 0, 0, {}}; }
 
-// The same function under another name.
+// Other names of functions that exist here.
 const std::map<std::string, const char*>& other_names() {
   static const std::map<std::string, const char*> list = {{"arcsin", "asin"},   {"arccos", "acos"},
                                                           {"arctan", "atan"},   {"arctan2", "atan2"},
@@ -49,7 +49,7 @@ const std::map<std::string, const char*>& other_names() {
   return list;
 }
 
-// The order of diff(x, t, 2) and diff(x, t, t); 0 where it is no derivative by time.
+// The order of diff(x, t, 2) and diff(x, t, t); 0 if the call is not a derivative by time.
 int order_of(const Syntax& call) {
   const std::vector<Syntax>& a = call.args;
   const auto is_time = [](const Syntax& s) { return s.op == Syntax::Op::name && s.text == "t"; };
@@ -60,7 +60,7 @@ int order_of(const Syntax& call) {
   return std::all_of(a.begin() + 1, a.end(), is_time) ? static_cast<int>(a.size()) - 1 : 0;
 }
 
-// What takes the place of a call with these arguments.
+// The formula that replaces a call with these arguments.
 std::string rewritten(const Syntax& s) {
   const std::string& f = s.text;
   const std::vector<Syntax>& a = s.args;

@@ -7,7 +7,7 @@ namespace anholon {
 
 namespace {
 
-// Index values beyond this are a slip, and their products would not fit.
+// A larger index value is a mistake, and products of such values would overflow.
 constexpr long kLargestIndex = 1'000'000;
 
 Syntax number(long value, const Syntax& at) {
@@ -41,7 +41,7 @@ std::string letters(const Indices* indices) {
   return list;
 }
 
-// sum(k, e): k is a letter with a range; e once for each of its values.
+// sum(k, e): k is a letter with a range; returns e once for each value of k.
 Syntax repeated(const Syntax& s, const Indices* indices) {
   const bool sum = s.text == "sum";
   const std::string usage = s.text + "(k, …) with k = \"1..n\" under [index]";
@@ -67,7 +67,7 @@ Syntax repeated(const Syntax& s, const Indices* indices) {
   }
   Syntax list{sum ? Syntax::Op::add : Syntax::Op::multiply, sum ? "+" : "*", {}, s.span, s.offset, s.end, {}};
   Indices bound;
-  bound.outer = {std::shared_ptr<const Indices>(), indices};  // it lives as long as this call
+  bound.outer = {std::shared_ptr<const Indices>(), indices};  // `indices` outlives this call
   for (long k = range->first; k <= range->last; ++k) {
     bound.values[letter.text] = k;
     list.args.push_back(with_indices(s.args[1], &bound));
@@ -143,7 +143,7 @@ Syntax with_indices(Syntax s, const Indices* indices) {
   switch (s.op) {
   case Syntax::Op::name:
     if (const long* v = indices ? indices->value(s.text) : nullptr) return number(*v, s);
-    if (indices && indices->range(s.text)) index_value(s, indices);  // says what is wrong
+    if (indices && indices->range(s.text)) index_value(s, indices);  // throws with the reason
     return s;
   case Syntax::Op::index:
     s.text = element(s, indices);
@@ -197,7 +197,7 @@ std::string equation_text(const FormulaText& text, const std::vector<Syntax>& si
   if (!indices || !indices->outer) return text.text();
   std::string out;
   for (const Syntax& s : sides) out += (out.empty() ? "" : " = ") + print(s);
-  constexpr std::size_t kLongest = 400;  // sums are written out
+  constexpr std::size_t kLongest = 400;  // sums are expanded
   if (out.size() <= kLongest) return out;
   std::string values;
   for (const auto& [letter, value] : indices->values)

@@ -85,7 +85,7 @@ class Lexer {
         text = s.substr(i, j - i);
         push(Token::name, j - i, chars, normal_name(text));
       } else if (c == "\"") {
-        // "zxz": the axis letters of euler(…) may stand in quotes.
+        // "zxz": the axis letters of euler(…) may be quoted.
         const std::size_t close = s.find('"', i + 1);
         if (close == std::string::npos) throw Failure(source_.span(offset, 1), "this quote is not closed");
         const std::string text = s.substr(i + 1, close - i - 1);
@@ -150,7 +150,7 @@ class Lexer {
   }
 
  private:
-  // Does a name end here? Then a '.' is followed by a member.
+  // Whether a name ends here, in which case a '.' is followed by a member.
   bool after_name(std::size_t offset) const {
     return !lexemes_.empty() && lexemes_.back().token == Token::name &&
            lexemes_.back().offset + lexemes_.back().length == offset;

@@ -1,4 +1,4 @@
-// The signs of a formula, in order: names with Greek letters written out, numbers, operators in all their spellings.
+// The tokens of a formula, in order: names with Greek letters written out, numbers, operators in all their spellings.
 #pragma once
 #include "formula/formula.h"
 
@@ -33,7 +33,7 @@ struct Lexeme {
   std::size_t offset = 0, length = 1;  // in characters
 };
 
-// The last one is Token::end. Throws Failure where a character means nothing.
+// The last one is Token::end. Throws Failure at a character without meaning.
 std::vector<Lexeme> lexemes(const FormulaText& source);
 
 }  // namespace anholon

@@ -25,7 +25,7 @@ class Parser {
     lexemes_ = lexemes(source);
   }
 
-  // In the formula stand brackets after names: P[2].
+  // Whether the formula contains brackets after names: P[2].
   bool indexed() const { return indexed_; }
 
   Syntax formula() {
@@ -54,7 +54,7 @@ class Parser {
     throw Failure(source_.span(at.offset, at.length), std::move(message), std::move(hint));
   }
 
-  // "x <= c" where an equation should be.
+  // Reports "x <= c" in the place of an equation.
   [[noreturn]] void inequality(const Syntax& left) {
     const Lexeme sign = next();
     const Syntax right = expression(0);
@@ -118,7 +118,7 @@ class Parser {
         left = make(op, at, two(std::move(left), std::move(right)));
         continue;
       }
-      // a + b - c + … and a * b / c … are one node each, however long: no depth to recurse into.
+      // a + b - c + … and a * b / c … are one node each, however long, so the recursion is not deep.
       const Syntax::Op chain = power == 1 ? Syntax::Op::add : Syntax::Op::multiply;
       if (left.op != chain) left = make(chain, at, one(std::move(left)));
       left.end = std::max(left.end, right.end);
@@ -215,12 +215,12 @@ class Parser {
            after.token != Token::left;
   }
 
-  // Within a unit there are no blanks: "2 m/s * t" is a product with t.
+  // A unit contains no blanks: "2 m/s * t" is a product with t.
   bool touches(std::size_t k) const {
     return k > 0 && k < lexemes_.size() && lexemes_[k - 1].offset + lexemes_[k - 1].length == lexemes_[k].offset;
   }
 
-  // The number and the unit behind it: names of units with whole powers, joined by * · and /.
+  // The number and the unit after it: names of units with whole powers, joined by * · and /.
   Syntax quantity(Syntax number) {
     const std::size_t first = at_;
     constexpr std::size_t kLongestUnit = 200;
@@ -325,7 +325,7 @@ class Parser {
     }
   }
 
-  // "x'(t)": a coordinate and its derivatives stand for their values at t.
+  // Reports "x'(t)": coordinates and their derivatives are written without an argument.
   [[noreturn]] void argument_of_derivative(const Syntax& s) const {
     const auto token = [&](std::size_t k) { return lexemes_[std::min(at_ + k, lexemes_.size() - 1)]; };
     const bool of_time = token(1).token == Token::name && token(1).text == "t" && token(2).token == Token::close;
@@ -333,7 +333,7 @@ class Parser {
     fail(peek(), "an operator is missing before '('", "write " + print(s) + "*(…) for a product");
   }
 
-  // What to write where an operator is missing.
+  // The hint for a missing operator.
   std::string hint_for_missing(const Lexeme& before, const Lexeme& at) const {
     if (before.token == Token::prime && at_ > 1)
       return "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product";

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// Throws if e is a constant other than `value`. (What varies may have this value on the constraints.)
+// Throws if e is a constant other than `value`. (A varying expression may have this value on the constraints.)
 void must_be(Expr e, int value, Span at) {
   const std::optional<Expr> constant = expanded(e - value);
   if (constant && is_number(*constant) && !is_zero(*constant))
@@ -17,7 +17,8 @@ void must_be(Expr e, int value, Span at) {
 }  // namespace
 
 Rotation quaternion(Expr e0, Expr e1, Expr e2, Expr e3) {
-  // One product after the other: nodes are numbered in the order of their making, by every compiler alike.
+  // Products are made one after the other: nodes are numbered in the order of their creation, so that all compilers
+  // number them alike.
   const Expr e00 = e0 * e0, e11 = e1 * e1, e22 = e2 * e2, e33 = e3 * e3;
   const Expr e01 = e0 * e1, e02 = e0 * e2, e03 = e0 * e3, e12 = e1 * e2, e13 = e1 * e3, e23 = e2 * e3;
   Vector columns[3];

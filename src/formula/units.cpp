@@ -29,7 +29,7 @@ Rational integer_power(const Rational& base, long n) {
   return n < 0 ? Rational(1 / out) : out;
 }
 
-// What a mechanician calls a quantity of this dimension.
+// The usual name of a quantity of this dimension.
 struct Named {
   const char* unit;
   const char* name;
@@ -189,7 +189,7 @@ std::string print(const Dimension& d) {
   for (const Named& q : kQuantities)
     if (const auto u = read_unit(q.unit); u && u->dimension == d) return q.unit;
   std::string top, bottom;
-  // kg first, as in kg*m.
+  // The order of print: kg first, as in kg*m.
   for (const std::size_t k : {1U, 0U, 2U, 3U, 4U, 5U, 6U}) {
     if (d[k] == 0) continue;
     std::string& list = d[k] > 0 ? top : bottom;
@@ -207,7 +207,7 @@ std::string describe(const Dimension& d) {
   if (std::all_of(d.begin(), d.end(), [](const Rational& r) { return r == 0; })) return "a pure number";
   const std::string unit = print(d);
   for (const Named& q : kQuantities) {
-    // "1/s" is no unit of the table.
+    // "1/s" is not a unit of the table.
     if (unit == q.unit) return std::string(q.name) + " (" + unit + ")";
   }
   return "a quantity in " + unit;

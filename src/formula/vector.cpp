@@ -1,4 +1,4 @@
-// Vectors by their components along the observer's axes, and rotations built turn by turn.
+// Vectors by their components along the observer's axes, and rotations composed turn by turn.
 #include "formula/formula.h"
 
 namespace anholon {
@@ -11,7 +11,7 @@ Expr dot(const Vector& a, const Vector& b) {
   return sum(parts);
 }
 Vector cross(const Vector& a, const Vector& b) {
-  // Operands are made one after the other: the order in which a compiler evaluates them would number the nodes.
+  // Operands are created one after the other: otherwise the compiler's order of evaluation would number the nodes.
   const auto difference = [](Expr p, Expr q, Expr r, Expr s) {
     const Expr second = r * s, first = p * q;
     return first - second;

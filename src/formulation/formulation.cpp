@@ -16,7 +16,7 @@ unsigned order_of(const Mechanics& M, const Elimination& E) { return E.asked ? E
 
 Expr T(const Mechanics& M, unsigned k) { return total_derivative(M.T, k); }
 
-// Operands are made one after the other: nodes then have the same order with every compiler.
+// Operands are created one after the other: nodes then have the same order with every compiler.
 Column lagrange_operator(const Mechanics& M) {
   const Column by_q = gradient(M.T, M.q);
   return total_derivative(gradient(M.T, M.qd)) - by_q;

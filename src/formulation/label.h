@@ -1,4 +1,4 @@
-// What a quantity is called, in each format of output: "d T/d x'", \frac{\partial T}{\partial \dot{x}}.
+// The name of a quantity in each output format: "d T/d x'", \frac{\partial T}{\partial \dot{x}}.
 #pragma once
 #include "mechanics/elimination.h"
 
@@ -9,15 +9,14 @@ struct Label {
 };
 using Labels = std::vector<Label>;
 
-// What stands over a letter: T~ is reduced by coordinates, T* by quasi-velocities, Tbar by solved constraints of
-// order 1.
+// The accent of a letter: T~ is reduced by coordinates, T* by quasi-velocities, Tbar by solved constraints of order 1.
 enum class Over : std::uint8_t { nothing, tilde, star, bar };
 
-// A letter, or a word that stands for one, as SymbolNames would write it.
+// A letter, or a word used as one, as SymbolNames would write it.
 Label letter(const std::string& name);
-// T~^(2): the second derivative of T, reduced. Without an order where k = 0.
+// T~^(2): the second derivative of T, reduced. For k = 0 without an order.
 Label energy(const std::string& name, unsigned k = 0, Over over = Over::nothing);
-// Q.x, phi.edge, v.bead.y: a letter without one gets a subscript, whose parts stand apart.
+// Q.x, phi.edge, v.bead.y: a letter without a subscript gets one; its parts are written separately.
 Label indexed(const Label& of, const std::string& text, const std::vector<Label>& parts);
 // f^k: "QR", Q^R.
 Label with_superscript(const std::string& text, const Label& base, const Label& upper);
@@ -25,7 +24,7 @@ Label minus(const Label& of);
 Label operator-(const Label& a, const Label& b);
 
 Label name_of(const Model& model, const std::string& name);
-// The derivative of order k of what is called `name`.
+// The derivative of order k of the quantity called `name`.
 Label derivative_of(const Model& model, const std::string& name, unsigned k);
 // q^(k) of all coordinates.
 Labels jet_labels(const Mechanics& M, unsigned k);

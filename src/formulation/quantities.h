@@ -1,8 +1,8 @@
-// What the equations of a form are made of, each quantity with its name: the lines that `derive --steps` prints before
-// them.
+// The quantities from which a form's equations are built, each with its name: the lines that `derive --steps` prints
+// before the equations.
 //
-// A form lists what its own equation names, in the order in which it would be computed by hand. What all forms have in
-// common is listed elsewhere: the generalized forces, the constraints, and what the elimination puts in.
+// A form lists the quantities that its own equation names, in the order of a computation by hand. The quantities common
+// to all forms are listed elsewhere: the generalized forces, the constraints, and the substitutions of the elimination.
 #pragma once
 #include <initializer_list>
 
@@ -16,18 +16,18 @@ struct Quantity {
 };
 using Quantities = std::vector<Quantity>;
 
-// One after the other; they are made in this order, too.
+// Joins the lists in order. Their elements are created in this order as well.
 Quantities listed(std::initializer_list<Quantities> lists);
 
 Quantities named(const Label& name, Expr value);
-// Entry by entry, zero or not.
+// All entries, including zeros.
 Quantities named(const Labels& names, const Column& values);
-// d of/d by, those that are not zero.
+// d of/d by, without zeros.
 Quantities partials(const Labels& of, const Labels& by, const Rows& values);
-// The same of d/dt d of/d by.
+// As partials(), for d/dt d of/d by.
 Quantities rates_of_partials(const Labels& of, const Labels& by, const Rows& values);
 
-// D/Dt of each, with these values.
+// D/Dt of each quantity, with these values.
 Quantities frozen_rates(const Quantities& of, const Column& values);
 
 // F, and its derivatives by q^(k).
@@ -45,9 +45,9 @@ Quantities of_mangeron_deleanu(const Mechanics& M, unsigned m);
 // S with its derivatives by q''
 Quantities of_appell(const Mechanics& M);
 
-// What the forms without multipliers share.
+// Quantities that the forms without multipliers share.
 //
-// F on the manifold of the constraints, under the name that it has there: T~, S*.
+// , S*.~, S*.
 Quantities reduced(const Elimination& E, const Label& name, Expr F);
 // dF/dq_b^(k) of the dependent coordinates, F not reduced.
 Quantities dependent_partials(const Mechanics& M, const Elimination& E, const Label& name, Expr F, unsigned k);
@@ -55,12 +55,12 @@ Quantities dependent_partials(const Mechanics& M, const Elimination& E, const La
 Quantities f_by_lower(const Mechanics& M, const Elimination& E);
 Quantities rates_of_f_by_u(const Mechanics& M, const Elimination& E);
 Quantities f_rate_by_u(const Mechanics& M, const Elimination& E);
-// The velocities (or what f says) of all weighted points, component by component: v.NAME.x, of the axes of a body
-// v.NAME.1.x.
+// The velocities (or the quantity `of`) of all weighted points, component by component: v.NAME.x; for the axes of a
+// body v.NAME.1.x.
 Labels point_labels(const Mechanics& M, const Label& of);
 // sum_s G_s B_sa, the forces along the constraints: G.x, G.u1
 Quantities forces_along(const Mechanics& M, const Elimination& E);
-// The same of any column of forces.
+// As above, for any column of forces.
 Quantities along(const Mechanics& M, const Elimination& E, const Label& of, const Column& X);
 
 }  // namespace anholon

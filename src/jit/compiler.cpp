@@ -1,4 +1,4 @@
-// The module behind kernel/code.h: LLVM IR by the Emitter, machine code by ORC, kept on disk between runs.
+// The module behind kernel/code.h: LLVM IR from the Emitter, machine code from ORC, stored on disk between runs.
 #include <cmath>
 #include <mutex>
 
@@ -25,7 +25,8 @@ using Builder = llvm::orc::JITTargetMachineBuilder;
 
 std::string text_of(llvm::Error error) { return llvm::toString(std::move(error)); }
 
-// Which build of a library holds an address: the note that the linker made of its contents. Empty if it made none.
+// The build ID of the library that contains an address: the note that the linker made of its contents. Empty if there
+// is none.
 std::string build_of(const void* address) {
   struct Question {
     std::uintptr_t address;
@@ -59,8 +60,8 @@ std::string build_of(const void* address) {
   return question.answer;
 }
 
-// All that decides the code: this compiler, LLVM, the machine, the plan. Nothing if the builds have no names: no code
-// of another one, then.
+// Names all inputs of the code: this compiler, LLVM, the machine, the plan. Returns false if the builds have no IDs;
+// stored code is then not used.
 bool name(const KernelTables& tables, int lanes, int several_sines, const Builder& builder, Key& key) {
   static const std::string ours = build_of(&anholon_compiler),
                            llvms = build_of(reinterpret_cast<const void*>(&llvm::xxh3_128bits));
@@ -94,14 +95,14 @@ std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lan
 
 Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, int levels,
             const CalledFunctions& called, std::string& message) {
-  // No platform: there are no initializers to run, and the general one compiles a module of its own.
+  // No platform is set: there are no initializers to run, and the general platform compiles a module of its own.
   auto jit = llvm::orc::LLJITBuilder()
                  .setJITTargetMachineBuilder(builder)
                  .setPlatformSetUp(llvm::orc::setUpInactivePlatform)
                  .create();
   if (!jit) return message = text_of(jit.takeError()), Code{};
   (*jit)->getExecutionSession().setErrorReporter(
-      [](llvm::Error error) { llvm::consumeError(std::move(error)); });  // what fails, fails at lookup
+      [](llvm::Error error) { llvm::consumeError(std::move(error)); });  // a failure shows at lookup
   llvm::orc::SymbolMap symbols;
   const auto add = [&](const char* symbol, auto* function) {
     symbols[(*jit)->mangleAndIntern(symbol)] = {llvm::orc::ExecutorAddr::fromPtr(function),
@@ -145,19 +146,18 @@ void compile(const KernelTables& tables, int lanes, const CalledFunctions& calle
   std::call_once(once, [] {
     llvm::InitializeNativeTarget();
     llvm::InitializeNativeTargetAsmPrinter();
-    // The order of operations is ours; what reorders them looks at every pair of loads and stores.
+    // The emitter fixes the order of operations; passes that reorder them would examine every pair of loads and stores.
     const auto& options = llvm::cl::getRegisteredOptions();
     if (const auto o = options.find("enable-misched"); o != options.end())
       o->second->addOccurrence(1, o->first(), "false");
   });
   auto builder = Builder::detectHost();
   if (!builder) return void(message = text_of(builder.takeError()));
-  // Twice as fast to compile as Default where that takes long, and no slower to run; a simpler register allocator gains
+  // Compiles twice as fast as Default for long code, and the code is as fast; a simpler register allocator gains
   // nothing more.
   builder->setCodeGenOptLevel(llvm::CodeGenOptLevel::Less);
   builder->setRelocationModel(llvm::Reloc::PIC_);
-  // What is called lies anywhere and is called by stubs; constants lie beside the code, each an operand and not an
-  // address first.
+  // Called functions may be anywhere and are reached by stubs; constants are beside the code and are operands.
   builder->setCodeModel(llvm::CodeModel::Small);
 
   Key key;
@@ -171,7 +171,7 @@ void compile(const KernelTables& tables, int lanes, const CalledFunctions& calle
   try {
     object = compiled(tables, lanes, called.several, *builder, message);
   } catch (const std::exception& error) {
-    message = error.what();  // the tables go on
+    message = error.what();  // the tables are used instead
   }
   if (!object) return;
   store.write(key, *object);

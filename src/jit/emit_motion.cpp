@@ -1,5 +1,5 @@
-// What motions need between expansions: where one begins, how well its pivots serve, how far its series reach, where
-// the state goes on.
+// Code between expansions: the start of an expansion, the health of its pivots, the reach of its series, the next
+// state.
 #include <limits>
 
 #include <llvm/IR/Intrinsics.h>
@@ -9,7 +9,7 @@
 namespace anholon::jit {
 
 namespace {
-// The increments of few states are added as they are made; those of many are not worth a second copy of that code.
+// The increments of few states are added as they are computed; for many states a second copy of that code does not pay.
 constexpr std::size_t kFewStates = 32;
 }  // namespace
 
@@ -21,7 +21,7 @@ llvm::Value* Emitter::pattern(std::uint64_t x) {
   return llvm::ConstantInt::get(lane_->getWithNewType(b_.getInt64Ty()), x);
 }
 llvm::Value* Emitter::magnitude(Value* v) { return b_.CreateIntrinsic(llvm::Intrinsic::fabs, {lane_}, {v}); }
-// What is multiplied by one is as it was.
+// A product with one is the factor itself.
 llvm::Value* Emitter::times(Value* v, double x) { return x == 1 ? v : b_.CreateFMul(v, number(x)); }
 llvm::Value* Emitter::coefficient_of(std::size_t j, int order) { return load(std::int64_t{p_.x[j]} + order); }
 double Emitter::factorial(int k) const { return k_.factorial[static_cast<std::size_t>(k)]; }
@@ -134,13 +134,13 @@ llvm::Value* Emitter::exp2(Value* x) {
       b_.CreateAdd(bits(cubic(kExp2, f)), b_.CreateShl(b_.CreateSub(bits(n), bits(number(kInteger))), pattern(52))));
 }
 
-// An error of a sum, rounded to what a long double keeps of both.
+// The error of a sum, rounded to the digits that a long double keeps of sum and error.
 llvm::Value* Emitter::rest(Value* sum, Value* error) {
   Value* grid = b_.CreateFMul(of_bits(b_.CreateAnd(bits(sum), pattern(0x7ff0000000000000ULL))), number(1.5 * 0x1p-11));
   return b_.CreateFSub(b_.CreateFAdd(error, grid), grid);
 }
 
-// Over the step, by the increments.
+// Advances the state over the step, by the increments.
 void Emitter::go_on() {
   begin("go_on", 2);
   std::vector<Value*> added;

@@ -1,5 +1,4 @@
-// What isomorphic steps of one motion do in lanes (packs.h): their histories, their part of a stage, the memory that
-// serves them.
+// Code for isomorphic steps of one motion in lanes (packs.h): histories, their part of a stage, packed memory.
 #include <set>
 
 #include "jit/emitter.h"
@@ -12,7 +11,7 @@ llvm::Value* Emitter::sum_before(const Convolution& c, int order, bool new_of_a)
   return noted(b_.CreateAlignedLoad(lane_, own(at), align()), {Origin::Kind::own, at});
 }
 
-// What is known before a block.
+// Emits the part of the sums that is known before a block.
 void Emitter::pack_histories() {
   const std::vector<Packs::Pack>& packs = memory_->packs().packs;
   if (packs.empty()) return;
@@ -25,7 +24,7 @@ void Emitter::pack_histories() {
                        own(memory_->sums_of_pack(i))});
     }
     known_before_in_lanes(lane, packs[from].lead, group);
-    // The first place in a block has nothing new.
+    // At the first place in a block there are no new coefficients.
     for (std::size_t i = from; i < to; ++i)
       b_.CreateAlignedStore(llvm::ConstantAggregateZero::get(lane),
                             own(memory_->sums_of_pack(i) + kBlock * memory_->width()),
@@ -33,8 +32,8 @@ void Emitter::pack_histories() {
   });
 }
 
-// The block that was just written: histories in lanes, to be kept if that is all it makes, else the newest coefficients
-// of the series.
+// For the block just emitted: stores histories in lanes if these are all it computes, else the newest coefficients of
+// the series.
 void Emitter::pack_stage() {
   const Packs& packs = memory_->packs();
   if (packs.packs.empty()) return;
@@ -69,7 +68,7 @@ void Emitter::pack_stage() {
   packer.run();
 }
 
-// Before the stages: the coefficients that are known, and what stays as it is.
+// Before the stages: stores the known coefficients and the constants.
 void Emitter::fill_packed_memory() {
   const unsigned width = memory_->width();
   const auto fill = [&](const Packs::Lanes& from, int order, std::uint32_t to) {
@@ -85,7 +84,7 @@ void Emitter::fill_packed_memory() {
   for (const auto& [slots, to] : memory_->constants()) fill(slots, 0, to);
 }
 
-// Series that only vectors read any more need not lie in the arena.
+// Omits the stores of series that only vectors read.
 void Emitter::leave_out_what_nobody_reads(const std::vector<llvm::Function*>& parts) {
   std::set<std::uint32_t> read(p_.x.begin(), p_.x.end());
   for (const Convolution& c : memory_->alone()) read.insert({c.a, c.b});

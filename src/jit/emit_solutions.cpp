@@ -4,7 +4,8 @@
 namespace anholon::jit {
 
 namespace {
-// So many unknowns are worth vectors of four: of fewer the sums are done before the vectors are taken apart.
+// From this number of unknowns on, vectors of four pay; with fewer, the sums are finished before vectors are taken
+// apart.
 constexpr std::size_t kManyUnknowns = 8;
 }  // namespace
 
@@ -63,7 +64,7 @@ void Emitter::invert(const std::vector<Value*>& lu, const std::vector<Value*>& r
   }
 }
 
-// Without what is always zero. Right sides may be vectors of several.
+// Omits entries that are always zero. Right sides may be vectors of several.
 std::vector<llvm::Value*> Emitter::solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu,
                                                 const std::vector<Value*>& reciprocal) {
   const SparseLu& e = *k_.elimination;
@@ -97,7 +98,7 @@ void Emitter::invert_sides_at_once(const std::vector<Value*>& lu, const std::vec
     rank[p_.sides[r]] = r;
   }
   const std::vector<Value*> y = solution_for(rhs, lu, reciprocal);
-  // Where the inverse is full, squares of four columns and sides are turned as a whole.
+  // A full inverse is transposed in squares of four columns and sides.
   const std::size_t n = p_.x.size(), m = p_.sides.size(), full = e.influences.size() == n * m ? 4 : 0;
   const auto turned = [&](std::size_t count) { return full ? count / full * full : 0; };
   for (std::size_t column = 0; column < turned(n); column += full)
@@ -118,7 +119,7 @@ void Emitter::invert_sides_at_once(const std::vector<Value*>& lu, const std::vec
   }
 }
 
-// Of as many vectors as each has elements, a power of two: halves of ever larger squares change places.
+// Transposes as many vectors as each has elements, a power of two, by swapping halves of ever larger squares.
 void Emitter::transpose(std::vector<Value*>& rows) {
   const std::size_t n = rows.size();
   for (std::size_t step = 1; step < n; step *= 2)
@@ -135,7 +136,7 @@ void Emitter::transpose(std::vector<Value*>& rows) {
     }
 }
 
-// Side by side, by a function of its own: in many lanes they would be most of the code.
+// Solves side by side in a function of its own: in many lanes the solutions would be most of the code.
 void Emitter::invert_sides_by_call() {
   const SparseLu& e = *k_.elimination;
   for (const std::uint32_t side : p_.sides) {
@@ -177,7 +178,7 @@ void Emitter::sides() {
 void Emitter::solve() {
   if (const SparseLu& e = *k_.elimination; !e.influences.empty()) {
     solution_.assign(p_.rows, nullptr);
-    std::uint32_t from = 0;  // columns before are solved for
+    std::uint32_t from = 0;  // the columns before are solved
     if (lanes_ == 1 && p_.x.size() >= kManyUnknowns && e.influences.size() == p_.x.size() * p_.sides.size())
       from = multiply_by_inverse();
     for (std::size_t i = 0; i < e.influences.size(); ++i) {
@@ -207,7 +208,7 @@ void Emitter::solve() {
   for (std::uint32_t j = 0; j < p_.rows; ++j) solution_.push_back(asked_[j] ? load(k_.solution + j) : nullptr);
 }
 
-// Four columns of a full inverse at once; how many that are.
+// Multiplies by four columns of a full inverse at once; returns the number of columns done.
 std::uint32_t Emitter::multiply_by_inverse() {
   auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), 4);
   const std::size_t n = p_.x.size(), whole = n / 4 * 4;
@@ -223,7 +224,7 @@ std::uint32_t Emitter::multiply_by_inverse() {
   return static_cast<std::uint32_t>(whole);
 }
 
-// s - an entry of the linearized tape times x; by 1 and -1 it is exact without the product.
+// s - an entry of the linearized tape times x; for an entry 1 or -1 it is exact without the product.
 llvm::Value* Emitter::minus_entry(std::uint32_t entry, Value* x, Value* s) {
   if (!s) s = number(0);
   if (!unit(entry)) return fma(b_.CreateFNeg(constant(k_.entries + std::int64_t{entry})), x, s);
@@ -236,7 +237,7 @@ bool Emitter::unit(std::uint32_t entry) const {
   return from < p_.coefficients.size() && (p_.coefficients[from].one() || p_.coefficients[from].minus_one());
 }
 
-// Forward and backward, from side_ to solution_.
+// Forward and backward substitution, from side_ to solution_.
 void Emitter::substitute(bool all_sides) {
   const SparseLu& e = *k_.elimination;
   for (Value*& v : side_)
@@ -261,7 +262,7 @@ void Emitter::substitution() {
   std::vector<Value*> left = side_;
   substitute();
   if (k_.refine) {
-    // For what the solution leaves of the sides.
+    // Solves again for the residual of the solution.
     const std::vector<Value*> first = solution_;
     for (Value*& v : left)
       if (!v) v = number(0);

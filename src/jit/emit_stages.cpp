@@ -1,4 +1,4 @@
-// Stages in blocks of four, and what is known before a block.
+// Stages in blocks of four, and the sums known before a block.
 #include <set>
 
 #include <llvm/IR/Intrinsics.h>
@@ -10,11 +10,11 @@ namespace anholon::jit {
 namespace {
 // Convolutions summed side by side: enough to hide the latency of a fused multiplication, few enough for the registers.
 constexpr std::size_t kSideBySide = 8;
-// So many numbers of isomorphic steps are a vector. Eight, where the machine has such vectors, are not faster: more
-// lanes stay empty.
+// The number of isomorphic steps in a vector. Eight are not faster on machines with such vectors: more lanes stay
+// empty.
 constexpr unsigned kWidth = 4;
-// So few steps are written out for the first four stages and for every place in a block: of one motion, what is packed
-// in parts is faster.
+// Up to these numbers of steps, code is unrolled for the first four stages and for every place in a block: for a single
+// motion, packed code in parts is faster.
 constexpr std::size_t kFewSteps = 16, kFewStepsInLanes = 64;
 }  // namespace
 
@@ -30,7 +30,7 @@ void Emitter::stage(const std::vector<Step>& steps, bool solved) {
 std::vector<llvm::Value*>
 Emitter::over_known(std::uint8_t lead, const std::vector<Value*>& sums,
                     const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body) {
-  // A block begins at stage 5 or later, so there is at least one.
+  // A block begins at stage 5 or later, so the loop runs at least once.
   llvm::BasicBlock* before = b_.GetInsertBlock();
   auto* loop = llvm::BasicBlock::Create(m_.getContext(), "known", function_);
   auto* after = llvm::BasicBlock::Create(m_.getContext(), "new", function_);
@@ -53,7 +53,7 @@ Emitter::over_known(std::uint8_t lead, const std::vector<Value*>& sums,
   return next_sums;
 }
 
-// For the four orders of a block at once: sum over j of a_j b_(p-j) with both known before the block.
+// For the four orders of a block at once: the sum over j of a_j b_(p-j) with both known before the block.
 void Emitter::known_before(const Convolution* group, std::size_t count) {
   auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock);
   const std::uint8_t l = group[0].lead;
@@ -72,7 +72,7 @@ void Emitter::known_before(const Convolution* group, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) r.push_back(fma(a_at(group[k].a, j), b_at(group[k].b, j), so_far[k]));
     return r;
   });
-  // The nearest ones last: only the first j orders of the block have both.
+  // The nearest orders last: only the first j orders of the block have both factors.
   for (int j = kBlock - 1; j >= 1; --j)
     for (std::size_t k = 0; k < count; ++k) {
       std::vector<int> mask;
@@ -84,7 +84,7 @@ void Emitter::known_before(const Convolution* group, std::size_t count) {
     b_.CreateAlignedStore(sums[k], own(place_of_sum(group[k], 0, false)), llvm::Align(32));
 }
 
-// The same where every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move on by one with j.
+// As above if every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move by one with j.
 void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const std::vector<InLanes>& group) {
   constexpr std::size_t n = kBlock;
   const std::size_t count = group.size();
@@ -148,7 +148,7 @@ std::uint32_t Emitter::place_of_sum(const Convolution& c, int order, bool new_of
   return sums.at + sums.step * static_cast<std::uint32_t>(order + kBlock * new_of_a);
 }
 
-// Scratch memory for the sums of all convolutions, and for what is packed.
+// Scratch memory for the sums of all convolutions, and for packed numbers.
 llvm::AllocaInst* Emitter::scratch_memory() {
   llvm::BasicBlock& entry = function_->getEntryBlock();
   llvm::IRBuilder<> top(&entry, entry.begin());
@@ -201,7 +201,7 @@ void Emitter::stages(const std::vector<Step>& steps, bool solved) {
   forget();
 }
 
-// What is new of a block stays in registers.
+// Keeps the new coefficients of a block in registers.
 void Emitter::stages_in_line(const std::vector<Step>& steps, bool solved) {
   for (stage_ = 1; stage_ <= std::min(p_.stages, kBlock); ++stage_) stage(steps, solved);
   if (p_.stages <= kBlock) return;
@@ -219,8 +219,8 @@ void Emitter::begin_block(Value* k0) {
   forget();
 }
 
-// A function for each place in a block. That of the first place serves the first block as well, whose histories are
-// made stage by stage.
+// Makes a function for each place in a block. The function of the first place also serves the first block, whose
+// histories are computed stage by stage.
 void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
   const std::string list = solved ? "stage" : "after";
   llvm::Function* const whole = function_;

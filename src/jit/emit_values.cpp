@@ -1,4 +1,4 @@
-// What is known at the point of an expansion: values, partial derivatives, coefficients that no unknown enters.
+// Code for the values at the point of an expansion: values, partial derivatives, coefficients without unknowns.
 #include <set>
 
 #include <llvm/IR/Intrinsics.h>
@@ -17,7 +17,7 @@ void Emitter::values() {
   end();
 }
 
-// Sines are left until nothing else can be done without them, and then done several at once.
+// Sines are delayed until nothing else can be computed without them; then several are computed at once.
 void Emitter::values_of_stage() {
   std::vector<const Step*> left;
   for (const Step& s : p_.point)
@@ -60,7 +60,7 @@ void Emitter::several_sines(const std::vector<const Step*>& steps) {
       for (std::size_t i = from; i < from + count; ++i) value(*steps[i]);
       continue;
     }
-    // Angles, what they are beyond their doubles, sines, cosines.
+    // Angles, their parts beyond their doubles, sines, cosines.
     if (!sines_) {
       llvm::IRBuilder<> top(&function_->getEntryBlock(), function_->getEntryBlock().begin());
       auto* memory = top.CreateAlloca(lane_, top.getInt32(static_cast<std::uint32_t>(4 * most)));
@@ -68,7 +68,7 @@ void Emitter::several_sines(const std::vector<const Step*>& steps) {
       sines_ = memory;
     }
     const auto row = [&](std::size_t r) { return b_.CreateConstInBoundsGEP1_64(lane_, sines_, r * most); };
-    // Whole vectors: what is written by parts waits when it is read at once.
+    // Stores whole vectors: a load of a vector waits if its parts have just been stored.
     auto* all = llvm::FixedVectorType::get(lane_, several_sines_);
     Value *angles = llvm::ConstantAggregateZero::get(all), *beyond = angles;
     for (std::size_t i = 0; i < count; ++i) {
@@ -165,7 +165,7 @@ void Emitter::value(const Step& s) {
     break;
   }
   case Act::lookup:
-    break;  // refused before
+    break;  // refused earlier
   }
 }
 

@@ -7,7 +7,7 @@
 namespace anholon::jit {
 
 namespace {
-// A longer elimination than this is a function of its own: it would be most of the code of every stage.
+// A longer elimination is a function of its own: it would be most of the code of every stage.
 constexpr double kLongElimination = 100;
 }  // namespace
 
@@ -47,7 +47,7 @@ void Emitter::begin(const char* name, unsigned places, bool answers) {
   forget();
 }
 
-// Functions of moderate size: what the compiler does grows faster than they.
+// Functions are of moderate size: the work of the compiler grows faster than their length.
 llvm::Function* Emitter::begin_part(const std::string& name) {
   auto* type = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt64Ty()}, false);
   function_ = llvm::Function::Create(type, llvm::Function::PrivateLinkage, name, m_);
@@ -105,21 +105,21 @@ void Emitter::put(const Place& place, int lead, Value* v) {
   if (place.series) {
     llvm::StoreInst* const made = store(v, std::int64_t{place.at} + stage_ + lead, relative_);
     puts_.emplace_back(place.at, made);
-    // Nobody has read what an earlier one of the same stage left there.
+    // No load has read the value that an earlier store of the same stage wrote.
     if (relative_ || stage_ > 0) {
       llvm::StoreInst*& before = stores_[{place.at, stage_ + lead}];
       if (before) before->eraseFromParent();
       before = made;
     }
   }
-  // Beyond stage 0 nobody asks for it again.
+  // Beyond stage 0 the value is not needed again.
   else if (!relative_ && stage_ <= 0)
     store(v, place.at);
 }
 
-// Of a divisor, as kernel/tiers/lanes.h has it.
+// The quotient by a whole number, as in kernel/tiers/lanes.h.
 llvm::Value* Emitter::quotient(Value* x, Value* reciprocal, Value* beyond) {
-  // Where nothing is known before.
+  // The known part is zero.
   if (const auto* nothing = llvm::dyn_cast<llvm::Constant>(x); nothing && nothing->isZeroValue()) return x;
   return fma(x, reciprocal, b_.CreateFMul(x, beyond));
 }
@@ -192,7 +192,7 @@ void Emitter::complete() {
     put(c.out, c.lead, start || !c.fresh ? b_.CreateFAdd(get(c.out, c.lead), change) : change);
   }
   for (const Step& s : p_.weigh_again) {
-    if (start && s.lead == 0) continue;  // order 0 weighs nothing
+    if (start && s.lead == 0) continue;  // the weight of order 0 is zero
     coefficient(s);
   }
 }
@@ -217,7 +217,7 @@ void Emitter::level(int level) {
                                               number(-k_.factorial[static_cast<std::size_t>(order)])));
   }
   solve();
-  // All are asked for: they are looked at before they are used.
+  // All are needed: callers examine them before their use.
   for (std::uint32_t j = 0; j < p_.x.size(); ++j) store(solution_[j], k_.solution + j);
   end(displaced(level));
 }
@@ -229,12 +229,12 @@ void Emitter::advance() {
   advance_ = function_;
 }
 
-// Alone, four orders are a vector.
+// For a single motion, four orders are a vector.
 std::vector<llvm::Value*> Emitter::increments() {
   const int most = p_.stages + p_.largest_d, groups = (most + kBlock - 1) / kBlock;
   const bool alone = lanes_ == 1;
   auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock);
-  // weights[k]: those of the orders i = 1.., or of four orders at once.
+  // weights[k]: the weights of the orders i = 1.., or of four orders at once.
   std::vector<std::vector<Value*>> weights(static_cast<std::size_t>(p_.largest_d) + 1);
   Value *h = load(k_.step), *square = b_.CreateFMul(h, h), *fourth = b_.CreateFMul(square, square);
   std::vector<Value*> powers{h, square, b_.CreateFMul(square, h), fourth};

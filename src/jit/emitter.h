@@ -1,12 +1,12 @@
-// LLVM IR for a kernel of one lane or several: the arithmetic of kernel/tiers/sweep.h, operation by operation in the same
-// order, so the bits are the same.
+// LLVM IR for a kernel of one lane or several: the arithmetic of kernel/tiers/sweep.h, operation by operation in the
+// same order, so the bits are the same.
 //
-// Shape of the code: blocks of four stages. What a convolution knows before a block is summed for its four orders at
-// once, several convolutions side by side; what is new in the block is added stage by stage. Few steps are written out
-// for each of the first four stages and for each place in a block, so that what is new stays in registers; of many,
-// each place in a block is a function, and the first block, where little is known, uses that of the first place. Where
-// the elimination is long it is a function of its own. Of one motion with many steps, those that do the same are lanes
-// of vectors (packs.h).
+// The code consists of blocks of four stages. Products of coefficients known before a block are summed for its four
+// orders at once, several convolutions side by side; products with new coefficients are added stage by stage. If there
+// are few steps, they are unrolled for each of the first four stages and for each place in a block, so that new
+// coefficients stay in registers; if there are many, each place in a block is a function, and the first block, where
+// little is known, uses the function of the first place. A long elimination is a function of its own. For a single
+// motion with many steps, isomorphic steps are lanes of vectors (packs.h).
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -24,10 +24,10 @@
 
 namespace anholon::jit {
 
-// So many convolutions are summed side by side where four orders of one are four sums of lanes.
+// The number of convolutions that are summed side by side if four orders of each are four sums of lanes.
 inline constexpr std::size_t kSideBySideInLanes = 3;
 
-// `body` for runs [from, to) of at most so many with the same lead.
+// Calls `body` for runs [from, to) of at most this length with the same lead.
 template <class List, class Body>
 void for_runs(const List& list, std::size_t most, const Body& body) {
   for (std::size_t from = 0, to; from < list.size(); from = to) {
@@ -39,10 +39,10 @@ void for_runs(const List& list, std::size_t most, const Body& body) {
 
 class Emitter {
  public:
-  // `several_sines`: that anholon_several_sines takes.
+  // `several_sines`: the number of angles that anholon_several_sines takes.
   Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines);
-  // The parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend", "measure",
-  // "advance", "begin", "go_on", and "level1", …: the solution for the residuals of hidden constraints.
+  // Emits the parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend",
+  // "measure", "advance", "begin", "go_on", and "level1", …: the solution for the residuals of hidden constraints.
   void run();
   static int levels(const KernelTables& tables) {
     return *std::max_element(tables.plan->c.begin(), tables.plan->c.end());
@@ -51,15 +51,15 @@ class Emitter {
 
  private:
   using Value = llvm::Value;
-  // Series and sums of a convolution where orders are vectors: of the first factor from order 0 on, of the second from
-  // that of the block.
+  // Series and sums of a convolution if orders are vectors: of the first factor from order 0 on, of the second from the
+  // order of the block.
   struct InLanes {
     Value *a, *b, *sums;
   };
 
-  // Of the arena, and so many places in it.
+  // Begins a function of the arena and of `places` places in it; `answers`: it returns a value.
   void begin(const char* name, unsigned places = 0, bool answers = false);
-  // A part of another function: of the arena, the scratch memory and a stage.
+  // Begins a part of another function; its arguments are the arena, the scratch memory and a stage.
   llvm::Function* begin_part(const std::string& name);
   void end(Value* answer = nullptr);
   void values();
@@ -80,13 +80,13 @@ class Emitter {
   void advance();
   std::vector<Value*> increments();
   void extend();
-  // All stages from 1 of a list, in blocks.
+  // Emits all stages from 1 on of a list, in blocks.
   void stages(const std::vector<Step>& steps, bool solved);
   void stages_in_line(const std::vector<Step>& steps, bool solved);
   void stages_in_parts(const std::vector<Step>& steps, bool solved);
   void begin_block(Value* k0);
   void stage(const std::vector<Step>& steps, bool solved);
-  // A loop over the blocks after the first; `body` is for stage k0 + i.
+  // Emits a loop over the blocks after the first; `body` is for stage k0 + i.
   void over_blocks(const std::function<void(Value* k0)>& before, const std::function<void(Value* k0, int i)>& body);
   void bulk();
   llvm::AllocaInst* scratch_memory();
@@ -96,7 +96,7 @@ class Emitter {
   void pack_stage();
   void fill_packed_memory();
   void leave_out_what_nobody_reads(const std::vector<llvm::Function*>& parts);
-  // A loop over j = 4 .. order of the block - 1; `body` takes j and the sums so far, and gives the new ones.
+  // Emits a loop over j = 4 .. order of the block - 1; `body` takes j and the sums so far, and returns the new ones.
   std::vector<Value*> over_known(std::uint8_t lead, const std::vector<Value*>& sums,
                                  const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body);
 
@@ -105,7 +105,8 @@ class Emitter {
   void partial(const Partial& d);
   Value* sum(const Step& s, std::uint32_t count);
   Value* beyond_of_sum(const Step& s);
-  // Its sums over what is older than the newest coefficients, those that end with what is new of a in a block apart.
+  // The sum over all products older than the newest coefficients; within a block, the products that end with new
+  // coefficients of a are a separate sum.
   std::pair<Value*, Value*> history(const Convolution& c);
   Value* whole_history(std::uint32_t a, std::uint32_t b, std::uint8_t lead);
   Value* convolution(std::uint32_t a, std::uint32_t b, std::uint8_t lead, bool first, bool last, bool b_later = false);
@@ -137,7 +138,7 @@ class Emitter {
   Value* coefficient_of(std::size_t j, int order);
   double factorial(int k) const;
 
-  // Orders are of the present stage: absolute, or relative to it.
+  // Orders are given for the present stage: absolute, or relative to it.
   Value* number(double x) { return llvm::ConstantFP::get(lane_, x); }
   Value* address(std::int64_t slot, bool relative);
   Value* load(std::int64_t slot, bool relative = false) {
@@ -154,7 +155,7 @@ class Emitter {
     b_.CreateAlignedStore(v, b_.CreateConstInBoundsGEP1_64(lane_, place, static_cast<std::uint64_t>(i)), align());
   }
   llvm::Align align() const { return llvm::Align(8 * static_cast<std::uint64_t>(lanes_)); }
-  // Loads of which it is noted what they read.
+  // Loads, with a record of the place that each reads.
   Value* constant(std::int64_t slot);
   Value* read(std::uint32_t at, int order, bool relative);
   Value* sum_before(const Convolution& c, int order, bool new_of_a);
@@ -162,12 +163,12 @@ class Emitter {
   Value* own(std::uint32_t at) { return b_.CreateConstInBoundsGEP1_64(lane_, scratch_, at); }
   std::uint32_t place_of_sum(const Convolution& c, int order, bool new_of_a) const;
   void forget();
-  // The coefficient of order stage + lead; of an order counted as `stage_` is.
+  // The coefficient of order stage + lead, or of an order counted like `stage_`.
   Value* get(const Place& place, int lead);
   Value* earlier(std::uint32_t at, int order);
   void put(const Place& place, int lead, Value* v);
   Value* newest(std::uint32_t at, int lead) { return get({at, true}, lead); }
-  // Element stage + offset of a table; of row m of several.
+  // Element stage + offset of a table, or of row m of several.
   Value* table(const char* name, const std::vector<double>& row, int offset);
   Value* row(const char* name, const std::vector<double>& rows, int m, int offset);
   Value* order(int offset);
@@ -176,7 +177,7 @@ class Emitter {
   Value* over_order(Value* x, int offset);
   Value* over_rising(Value* x, int m);
   Value* fma(Value* a, Value* b, Value* c);
-  // A function of doubles, lane by lane.
+  // Calls a function of doubles, lane by lane.
   Value* call(const char* name, const std::vector<Value*>& arguments);
   Value* call_scalar(const char* name, const std::vector<Value*>& arguments, llvm::Type* result);
   Value* of_lane(Value* v, int lane) {
@@ -196,18 +197,17 @@ class Emitter {
   Value *w_ = nullptr, *block_ = nullptr, *k0_ = nullptr, *scratch_ = nullptr,
         *sines_ = nullptr;  // arena; arena + stage; that stage, or the first of a block
   bool relative_ = false;
-  int stage_ = 0;  // absolute, or from the first of its block
-  bool history_is_whole_ =
-      false;  // in the scratch memory lies all that a convolution sums before the newest coefficients
-  // What need not be loaded, by its order, counted as `stage_` is.
+  int stage_ = 0;                  // absolute, or counted from the first stage of its block
+  bool history_is_whole_ = false;  // the scratch memory holds all sums of a convolution before the newest coefficients
+  // Values that need not be loaded, by order, counted like `stage_`.
   static constexpr int kNoOrder = -1000;
   std::map<std::pair<std::uint32_t, int>, Value*> known_;
-  std::map<std::pair<std::string, int>, Value*> elements_;  // of tables, by what is added to the stage
-  std::optional<PackedMemory> memory_;                      // where in the scratch memory
+  std::map<std::pair<std::string, int>, Value*> elements_;  // elements of tables, by the offset added to the stage
+  std::optional<PackedMemory> memory_;                      // places in the scratch memory
   std::unordered_map<Value*, Origin> origins_;
   std::map<Convolution, std::pair<Value*, Value*>> histories_;        // of the present stage
   std::map<std::pair<std::uint32_t, int>, llvm::StoreInst*> stores_;  // of coefficients, by their order
-  // Of all parts, by series.
+  // Loads and stores of all parts, by series.
   std::vector<std::pair<std::uint32_t, llvm::WeakVH>> reads_;
   std::vector<std::pair<std::uint32_t, llvm::WeakVH>> puts_;
   std::map<std::string, llvm::GlobalVariable*> tables_;

@@ -18,7 +18,7 @@ Key hash(llvm::StringRef bytes) {
   return {{h.low64, h.high64}};
 }
 
-// By structured bindings: a member that is added later and forgotten here does not compile.
+// Uses structured bindings: a member that is added later and forgotten here does not compile.
 
 void Writer::add(const Place& place) {
   const auto& [at, series] = place;
@@ -37,7 +37,7 @@ void Writer::add(const PlanTerm& term) {
   all(coefficient, x);
 }
 
-// Values are numbers of the arena; the code knows only which of them are 1 and -1.
+// Values are numbers of the arena; the code depends only on which of them are 1 and -1.
 void Writer::add(const Coefficient& coefficient) { all(coefficient.one(), coefficient.minus_one()); }
 
 void Writer::add(const Partial& partial) {
@@ -60,7 +60,7 @@ void Writer::add(const Completion& completion) {
   all(out, lead, column, fresh);
 }
 
-// The values at the samples have chosen the pivots and are not looked at again.
+// The values at the samples only serve the choice of the pivots.
 void Writer::add(const SparseLu::Pivot& pivot) {
   [[maybe_unused]] const auto& [row, column, entry, one, minus_one, first_scaled, scaled, first_update, updates,
                                 value] = pivot;
@@ -97,14 +97,14 @@ void Writer::add(const SparseLu::Term& term) {
   all(entry, column);
 }
 
-// What a pivot was is a number of the arena.
+// The former value of a pivot is a number of the arena, so the code does not depend on it.
 void Writer::add(const JudgedPivot& pivot) {
   [[maybe_unused]] const auto& [at, inverse] = pivot;
   all(at);
 }
 
 void Writer::add(const Findings& found) {
-  // The defect is found by the tables alone.
+  // Only the tables compute the defect.
   [[maybe_unused]] const auto& [health, determinant, drift, weight, moved, reach, unfit, largest, defect] = found;
   all(health, determinant, drift, weight, moved, reach, unfit, largest);
 }
@@ -115,8 +115,8 @@ void Writer::add(const KernelTables::Divisors& divisors) {
 }
 
 void Writer::add(const Plan& plan) {
-  // What roots of even powers and functions that hide are is for whoever chooses steps; the determinant is among what
-  // is judged.
+  // Roots of even powers and hiding functions concern only the choice of steps; the determinant is among the judged
+  // numbers.
   [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again,
                                 entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
                                 roots_of_even_powers, hiding, rows, largest_lead, largest_d, c, d, apart, determinant] =
@@ -133,8 +133,8 @@ void Writer::add(const SparseLu& elimination) {
 }
 
 void Writer::add(const KernelTables& tables) {
-  // Knots: models that look tables up are not compiled. The code is told which places of motions it is to read and
-  // write.
+  // Knots are omitted: models with tables are not compiled. The places of motions to read and write are arguments of
+  // the code.
   [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined,
                                 entries, step, weights, increments, motions, projected, margin, inverse_pivots, found,
                                 size, state_size, judged, refine, factorial, inverse_factorial, order, rising, orders] =

@@ -1,5 +1,5 @@
-// What names compiled code on disk: a hash of all that decides it. The plan's numbers and not the IR, which takes long
-// to build and to print.
+// The name of compiled code on disk: a hash of everything that determines the code. It hashes the plan's numbers
+// instead of the IR, which takes long to build and print.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Key {
 
 Key hash(llvm::StringRef bytes);
 
-// Numbers one after the other.
+// Collects numbers one after the other.
 class Writer {
  public:
   template <class T>

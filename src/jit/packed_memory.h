@@ -1,15 +1,15 @@
-// The machine code's own memory for numbers that vectors take side by side: the sums of histories, copies of series,
-// copies of what is constant while an expansion is extended. Places are counted in numbers from its beginning, those
-// for vectors multiples of the width.
+// Memory of the machine code for numbers that vectors load side by side: sums of histories, copies of series, and
+// copies of numbers that are constant while an expansion is extended. Places are counted in numbers from the beginning;
+// those for vectors are multiples of the width.
 #pragma once
 #include "jit/packs.h"
 
 namespace anholon::jit {
 
-// Where a number of the stages' code was read.
+// The place from which the code of the stages reads a number.
 struct Origin {
   enum class Kind : std::uint8_t { constant, series, own } kind;
-  std::uint32_t at = 0;   // in the arena; of a series, its begin; of own memory, the place
+  std::uint32_t at = 0;   // in the arena; for a series, its begin; for own memory, the place
   int order = 0;          // of a coefficient
   bool relative = false;  // counted from the first stage of the block
   bool operator==(const Origin& o) const {
@@ -25,10 +25,10 @@ class PackedMemory {
   };
   struct Sums {
     std::uint32_t at,
-        step;  // of the order i of a block at + step i, what is new of the first factor kBlock steps further
+        step;  // order i of a block is at + step i; new coefficients of the first factor are kBlock steps further
   };
 
-  // For the histories of these, as packs and alone.
+  // Makes the memory for the histories of these convolutions, in packs and single.
   PackedMemory(const Plan& plan, Packs packs, unsigned width, const std::vector<Convolution>& all);
 
   unsigned width() const { return width_; }
@@ -38,9 +38,9 @@ class PackedMemory {
   const std::vector<Convolution>& alone() const { return alone_; }
   Place coefficient(std::size_t bundle, int order, bool relative) const;
 
-  // Where all these lie side by side, null where a lane has none. Constants are given a place.
+  // The place at which all these numbers are side by side; a lane without a number is null. Constants get a place.
   std::optional<Place> find(const std::vector<const Origin*>& lanes);
-  // Constants with a place, and where.
+  // Constants with their places.
   const std::map<Packs::Lanes, std::uint32_t>& constants() const { return constants_; }
   std::uint32_t size() const { return size_; }
 
@@ -52,7 +52,7 @@ class PackedMemory {
   std::uint32_t size_ = 0;
   std::map<Convolution, Sums> sums_;
   std::vector<Convolution> alone_;
-  std::vector<std::uint32_t> sums_of_packs_, bundles_;  // where
+  std::vector<std::uint32_t> sums_of_packs_, bundles_;  // places
   std::map<Packs::Lanes, std::uint32_t> constants_;
 };
 

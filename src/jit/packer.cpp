@@ -30,7 +30,7 @@ bool calculates(const llvm::Instruction& i) {
 
 unsigned operand_count(const llvm::Instruction& i) { return is_fma(i) ? 3 : i.getNumOperands(); }
 
-// What is called may read and write anything; fused multiplications do not.
+// A called function may read and write anything; fused multiplications do not.
 bool is_call(const llvm::Instruction& i) { return llvm::isa<llvm::CallInst>(i) && !llvm::isa<llvm::IntrinsicInst>(i); }
 
 }  // namespace
@@ -49,8 +49,8 @@ void Packer::run() {
   clear();
 }
 
-// The instructions before the end of the block and what each has to wait for: its operands, and of memory what was
-// written or called before.
+// Collects the instructions before the end of the block, and the instructions for which each has to wait: its operands
+// and, for memory, earlier stores and calls.
 void Packer::read() {
   for (Instruction& i : block_)
     if (!i.isTerminator()) {
@@ -61,7 +61,7 @@ void Packer::read() {
   users_.resize(code_.size());
   group_.assign(code_.size(), kNone);
   seen_.assign(code_.size(), 0);
-  // Places as base and offset; stores to others do not matter.
+  // Places as base and offset; stores to other bases do not matter.
   using Address = std::pair<const Value*, std::int64_t>;
   const auto address = [](const Value* pointer) -> Address {
     const auto* at = llvm::dyn_cast<llvm::GetElementPtrInst>(pointer);
@@ -70,7 +70,7 @@ void Packer::read() {
         return {at->getPointerOperand(), offset->getSExtValue()};
     return {pointer, 0};
   };
-  std::map<Address, std::vector<int>> touched;  // since it was written, and that
+  std::map<Address, std::vector<int>> touched;  // accesses since the last store, and that store
   int last_call = kNone;
   std::vector<int> since_call;
   for (int i = 0; i < static_cast<int>(code_.size()); ++i) {
@@ -114,7 +114,7 @@ int Packer::group_of(const Value* v) const {
   return it == index_.end() ? kNone : group_[it->second];
 }
 
-// One value in all lanes, constants, or the members of a group in their lanes.
+// Whether the values are one value in all lanes, constants, or the members of a group in their lanes.
 bool Packer::ready(const Lanes& values) const {
   const Value* first = nullptr;
   int group = kNone;
@@ -144,7 +144,7 @@ bool Packer::same_operation(const std::vector<Instruction*>& members) const {
   return count >= fewest_lanes(width_);
 }
 
-// No member waits for another, over groups neither.
+// Whether no member waits for another, directly or through groups.
 bool Packer::independent(const std::vector<Instruction*>& members) {
   ++search_;
   std::vector<int> open;
@@ -221,15 +221,15 @@ bool Packer::form(const Lanes& values) {
     if (!form(operands(g, k))) ++by_hand;
   if (by_hand <= (some.getOpcode() == Instruction::FNeg ? 0U : 1U)) return true;
   put(kNone);
-  groups_[number].lanes.assign(width_, nullptr);  // nobody's
+  groups_[number].lanes.assign(width_, nullptr);  // the group is dissolved
   return false;
 }
 
-// What is computed from a group in the same way in its lanes.
+// Adds the operations that use a group in the same way in all its lanes.
 void Packer::grow(std::size_t number) {
-  // Operation, which operand, what the others are.
+  // Key: operation, index of the operand, the other operands.
   using Use = std::vector<unsigned>;
-  std::map<Use, std::vector<std::vector<Instruction*>>> uses;  // the n-th of each lane
+  std::map<Use, std::vector<std::vector<Instruction*>>> uses;  // the n-th use of each lane
   for (unsigned l = 0; l < width_; ++l) {
     const Instruction* member = groups_[number].lanes[l];
     if (!member) continue;
@@ -253,7 +253,7 @@ void Packer::grow(std::size_t number) {
     for (const std::vector<Instruction*>& lanes : list) form(Lanes(lanes.begin(), lanes.end()));
 }
 
-// All in an order in which nothing waits: as it was, but members of a group together.
+// Writes all instructions in an order in which none waits: the old one, but with the members of a group together.
 void Packer::write() {
   const int groups = static_cast<int>(groups_.size());
   const auto unit = [&](int i) { return group_[i] == kNone ? groups + i : group_[i]; };

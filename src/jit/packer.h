@@ -1,9 +1,9 @@
-// Straight code made vectors: operations of a block of scalar code that do the same, each on numbers of its own lane,
-// become one. Nothing else changes, so neither do the bits.
+// Vectorizes straight-line code: isomorphic operations of a block of scalar code, each on numbers of its own lane,
+// become one operation. Nothing else changes, so the bits stay the same.
 //
-// It starts from values that are wanted side by side (of one kind, for isomorphic steps), takes in what they are
-// computed from and what is computed from them as long as each lane does the same, and leaves the rest as it is: a
-// chain along the mechanism, say, where every link waits for the one before.
+// It starts from values that are needed side by side (of one kind, for isomorphic steps), adds their operands and their
+// users as long as all lanes perform the same operation, and leaves the rest scalar, for instance a chain along the
+// mechanism, in which every link waits for the one before.
 #pragma once
 #include <unordered_map>
 
@@ -15,9 +15,9 @@ namespace anholon::jit {
 
 class Packer {
  public:
-  // One value in each lane, null where there is none.
+  // One value in each lane; null for an empty lane.
   using Lanes = std::vector<llvm::Value*>;
-  // `address` gives where in the packed memory a place is; `origins` says of loads what they read.
+  // `address` returns the address of a place in the packed memory; `origins` tells from which places loads read.
   Packer(llvm::BasicBlock& block, llvm::IRBuilder<>& builder, PackedMemory& memory,
          const std::unordered_map<llvm::Value*, Origin>& origins,
          std::function<llvm::Value*(PackedMemory::Place)> address);
@@ -32,7 +32,7 @@ class Packer {
   struct Group {
     std::vector<Instruction*> lanes;
     std::optional<PackedMemory::Place> place;  // of loads
-    bool parts = false;                        // the elements of a vector, one after the other
+    bool parts = false;                        // the elements of a vector, in order
     Value* vector = nullptr;
     std::vector<Value*> scalars;
   };
@@ -77,7 +77,7 @@ class Packer {
   std::map<Lanes, Value*> gathered_;
 };
 
-// What has no effect and whose value nobody uses.
+// Removes instructions without effect whose value is unused.
 void erase_dead(llvm::BasicBlock& block);
 
 }  // namespace anholon::jit

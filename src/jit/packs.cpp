@@ -42,7 +42,8 @@ std::vector<Convolution> convolutions(const Step& s) {
 
 namespace {
 
-// So few sums that a stage waits for the newest of its numbers and not for their count: gathering them takes time.
+// Up to this number of sums, a stage waits for the newest of its numbers, not for the number of operations: gathering
+// sums into vectors takes time.
 constexpr std::size_t kFewSums = 16;
 
 class Chooser {
@@ -85,11 +86,11 @@ class Chooser {
   };
   struct Seat {
     std::size_t row;
-    int port;  // which of the results of that row
+    int port;  // which result of that row
     std::size_t lane;
   };
 
-  // What the steps of a row have in common, and in which row they find their lanes.
+  // The common properties of the steps of a row; they decide in which row steps find their lanes.
   using Kind = std::vector<std::int64_t>;
 
   void place(const Step& s) {
@@ -103,7 +104,7 @@ class Chooser {
     for (const Convolution& c : sums)
       for (const std::uint32_t x : {c.a, c.b}) {
         const auto newest = newest_.find(x);
-        if (newest == newest_.end()) return;  // nothing that stages make
+        if (newest == newest_.end()) return;  // the stages do not compute it
         kind.push_back(newest->second);
         const auto it = seats_.find(x);
         if (!seat && it != seats_.end()) seat = &it->second, found_at = position;
@@ -149,12 +150,12 @@ class Chooser {
     out_.packs.push_back({lanes, lead, first, second});
   }
 
-  // Of what is too little of its kind, the histories at least are packed.
+  // Packs at least the histories of steps that are too few of their kind.
   void leave(const Step& s) {
     for (const Convolution& c : convolutions(s)) left_[{c.lead, newest_.at(c.a), newest_.at(c.b)}].push_back(c);
   }
 
-  // One that has all of these in their lanes, or room for them.
+  // A bundle that has all of these in their lanes, or room for them.
   std::size_t bundle(const Packs::Lanes& at) {
     int newest = 0;
     for (const std::uint32_t x : at)
@@ -185,7 +186,7 @@ class Chooser {
   std::map<std::uint32_t, Seat> seats_;
   std::map<Kind, std::size_t> open_;  // rows that are not full
   std::vector<Row> rows_;
-  std::set<Convolution> seen_;  // two steps may ask for the same
+  std::set<Convolution> seen_;  // two steps may need the same one
   std::map<std::array<int, 3>, std::vector<Convolution>> left_;
 };
 

@@ -19,11 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMost = 256U << 20,
-                         kEnough = kMost / 4 * 3;  // bytes; removing goes on until there is room for a while
+                         // bytes; entries are removed down to this size, so that there is room for a while
+    kEnough = kMost / 4 * 3;
 constexpr char kPrefix[] = "kernel-";
-// A part of an entry this old belongs to a process that was killed.
+// A partial entry this old belongs to a process that was killed.
 constexpr std::chrono::hours kAbandoned{1};
-// The time of last use is written down no more often.
+// The time of last use is updated at most this often.
 constexpr std::chrono::hours kUsed{24};
 
 struct Descriptor {
@@ -35,7 +36,7 @@ struct Descriptor {
   int number;
 };
 
-// Behind the object file: what says that all of it was written, for this key.
+// The seal after the object file shows that the file was written completely, for this key.
 Key seal(const Key& key, llvm::StringRef object) {
   Writer w;
   w.add(key);
@@ -60,14 +61,14 @@ fs::path path_of(const std::string& folder, const Key& key) { return fs::path(fo
 std::unique_ptr<llvm::MemoryBuffer> Store::read(const Key& key) const {
   if (folder_.empty()) return nullptr;
   const fs::path path = path_of(folder_, key);
-  // Whatever lies there: a pipe must not make us wait, and a link may lead to what others put there.
+  // The entry may be anything: a pipe must not block, and a link may lead to files of others.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
   struct stat about;
   if (file.number < 0 || fstat(file.number, &about) != 0 || !trusted(about, geteuid())) return nullptr;
   const auto size = static_cast<std::uint64_t>(about.st_size);
   if (size <= sizeof(Key) || size > kMost) return nullptr;
-  // Volatile and with a zero at its end: otherwise it is mapped if it is large, and a file that is cut short while
-  // mapped kills the reader.
+  // The file is read as volatile and with a zero at its end: otherwise a large file is mapped, and if a mapped file is
+  // truncated the reader is killed.
   auto all = llvm::MemoryBuffer::getOpenFile(file.number, path.c_str(), size, true, true);
   if (!all || (*all)->getBufferSize() != size) return nullptr;
   const llvm::StringRef object = (*all)->getBuffer().drop_back(sizeof(Key));
@@ -113,7 +114,7 @@ void Store::bound() const {
   std::error_code none, bad;
   const auto now = fs::file_time_type::clock::now();
   for (fs::directory_iterator it(folder_, none), end; !none && it != end; it.increment(none)) {
-    // What is not ours is not counted and not touched.
+    // Foreign files are neither counted nor touched.
     const std::string name = it->path().filename().string();
     if (name.rfind(kPrefix, 0) != 0 || !it->is_regular_file(bad)) continue;
     const auto used = it->last_write_time(bad);

@@ -1,8 +1,8 @@
 // Compiled kernels on disk, between runs.
 //
-// Whatever happens to the folder costs time and nothing else: an entry is taken only if it is whole, ours, and made for
-// this key; it appears under its name by one rename, so any number of processes may write it, and be killed while they
-// do. Nothing here reports an error.
+// Trouble with the folder costs only time: an entry is used only if it is complete, trusted (trust.h), and made for
+// this key; a single rename gives it its name, so any number of processes may write it, and be killed while writing. No
+// function here reports an error.
 #pragma once
 #include <memory>
 #include <string>
@@ -15,10 +15,10 @@ namespace anholon::jit {
 
 class Store {
  public:
-  // An empty folder: nothing is kept.
+  // An empty folder name: nothing is stored.
   explicit Store(const std::string& folder) : folder_(folder) {}
   std::unique_ptr<llvm::MemoryBuffer> read(const Key& key) const;
-  // Also removes what was used longest ago, where the folder has grown too large.
+  // Writes an entry, and removes the least recently used ones if the folder has become too large.
   void write(const Key& key, const llvm::MemoryBuffer& object) const;
 
  private:

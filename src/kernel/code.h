@@ -1,5 +1,5 @@
-// Machine code for a kernel of one lane or several, made while the program runs, and what makes it: a module that is
-// loaded when it is first asked for, as the compiler behind it is large. Without it everything works, slower.
+// Machine code for a kernel of one lane or several, made at run time by a module that is loaded at the first request,
+// because the compiler in it is large. Without the module everything works, only slower.
 #pragma once
 #include <memory>
 #include <string>
@@ -8,42 +8,42 @@
 
 namespace anholon {
 
-// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. What they point to lives as long as
-// `keeper`.
+// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. The code exists as long as `keeper`.
 struct Code {
   using Part = void (*)(double*);
   Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr, measure = nullptr,
-       advance = nullptr;  // `factor` judges, too
+       advance = nullptr;  // `factor` also judges the pivots
   void (*begin)(double*, const double* from) = nullptr;
-  void (*go_on)(double*, const double* base, double* to) = nullptr;  // and advances before
-  std::vector<int (*)(double*)> level;  // [l - 1]: the solution for the residuals at derivative order c_i - l, and
-                                        // whether a state is displaced by it
+  void (*go_on)(double*, const double* base, double* to) = nullptr;  // and executes `advance` first
+  // [l - 1]: solves for the residuals at derivative order c_i - l; returns whether a state is displaced
+  std::vector<int (*)(double*)> level;
+  // whether a state is displaced by it
   std::shared_ptr<void> keeper;
 };
 
-// What compiled code calls: the functions that the tiers call (arithmetic.h), so that the bits are theirs.
+// Functions that compiled code calls: those of the tiers (arithmetic.h), so that the bits are the same.
 struct CalledFunctions {
   decltype(&power_of) power;
   decltype(&function_of) function;
-  SinesOfLanes sines;  // for so many lanes as the code has
+  SinesOfLanes sines;  // for the number of lanes of the code
   SinesOfLanes several_sines;
-  int several;  // at once
+  int several;  // number of lanes
 };
 
-// What the module exports, under the name anholon_compiler.
+// The interface that the module exports as anholon_compiler.
 struct CompilerModule {
   int version;  // of this interface
-  // Empty `code.values` and a message where it fails. `cache`: a folder for compiled code, or empty.
+  // Leaves `code.values` empty and gives a message on failure. `cache`: a folder for compiled code, or empty.
   void (*compile)(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache,
                   Code& code, std::string& message);
 };
 inline constexpr int kCompilerVersion = 6;
 
-// The module beside the program; null where there is none, or this machine cannot run what it makes.
+// The module beside the program; null if there is none, or if this machine cannot run its code.
 const CompilerModule* compiler();
 
-// The folder where compiled code is kept between runs: $ANHOLON_CACHE, else anholon in $XDG_CACHE_HOME or ~/.cache;
-// empty if there is none, or ANHOLON_CACHE is empty.
+// The folder that stores compiled code between runs: $ANHOLON_CACHE, else anholon in $XDG_CACHE_HOME or ~/.cache; empty
+// if there is none, or if ANHOLON_CACHE is empty.
 std::string code_cache();
 
 }  // namespace anholon

@@ -9,7 +9,8 @@
 
 namespace anholon {
 
-// Beside the program or library, in the folder above it (a build tree), or among the libraries of an installation.
+// Looks beside the program or library, in the folder above it (a build tree), and among the libraries of an
+// installation.
 static const CompilerModule* load() {
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return nullptr;
   std::error_code none;
@@ -21,7 +22,7 @@ static const CompilerModule* load() {
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) continue;
     const auto* module = static_cast<const CompilerModule*>(dlsym(library, "anholon_compiler"));
-    // It reads our plans: one that was built from other headers is left alone.
+    // The module reads plans of this program: one that was built from other headers is not used.
     const auto* layout = static_cast<const char*>(dlsym(library, "anholon_compiler_layout"));
     if (module && module->version == kCompilerVersion && layout && std::strcmp(layout, ANHOLON_KERNEL_LAYOUT) == 0)
       return module;
@@ -41,7 +42,7 @@ std::string code_cache() {
     return std::string(value ? value : "");
   };
   if (std::getenv("ANHOLON_CACHE")) return set("ANHOLON_CACHE");
-  // A relative path there is to be ignored (XDG Base Directory Specification).
+  // A relative path in XDG_CACHE_HOME is ignored (XDG Base Directory Specification).
   if (const std::string cache = set("XDG_CACHE_HOME"); cache.rfind('/', 0) == 0) return cache + "/anholon";
   if (const std::string home = set("HOME"); !home.empty()) return home + "/.cache/anholon";
   return {};

@@ -7,7 +7,7 @@ namespace anholon {
 std::optional<Hiding> may_hide(const Tape& tape, const Instruction& in) {
   if (in.constant) return std::nullopt;
   if (in.op == Op::power) {
-    // A wall; lower powers show from afar.
+    // A power this steep acts like a wall; lower powers are visible from afar.
     constexpr double kSteep = 6;
     const double exponent = tape.rationals[in.index].get_d();
     return std::abs(exponent) < kSteep ? std::nullopt : std::optional(Hiding{std::nullopt, exponent});

@@ -13,19 +13,21 @@ namespace anholon {
 
 namespace {
 
-// The samples for the choice of pivots lie so far around the state given: an angle may take any value.
+// The samples for the choice of pivots are within this distance of the given state: an angle may take any value.
 constexpr double kAround = 3.3;
-// An operation that waits for the one before costs so many that do not: measured on small systems and chains.
+// An operation that waits for the previous one costs as much as this number of others: measured on small systems and
+// chains.
 constexpr double kWaiting = 5;
-// Steps of a stage, operations of the elimination: more would be compiled for more than some five seconds.
+// The limits of steps of a stage and of operations of the elimination: beyond them the compilation would take more than
+// some five seconds.
 constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 12000;
-// The inverse of J takes the place of an elimination while it has so few entries: more operations, that do not wait for
-// each other. First all that a stage asks for, then the unknowns alone.
+// The inverse of J replaces an elimination if it has at most this number of entries: it has more operations, but they
+// do not wait for each other. It is tried first for all that a stage needs, then for the unknowns alone.
 constexpr std::size_t kMostInfluences = 64;
 constexpr std::size_t kMostInfluencesOfUnknowns = 48 * 48, kMostInLanes = 100;
-// Solutions are refined where that changes them by more. Below, at the tightest tolerance, motions are nearer to their
-// references for it by a factor of two at most, mostly not at all (chains of 8 to 64 links, whose solutions it changes
-// by 8 to 360 round-offs: bench/RESULTS.md).
+// Solutions are refined if that changes them by more than this. Below, at the tightest tolerance, refinement improves
+// motions by a factor of two at most, mostly not at all (chains of 8 to 64 links, whose solutions it changes by 8 to
+// 360 round-offs: bench/RESULTS.md).
 constexpr double kRefined = 512 * 0x1p-53;
 
 // Numbers in [-1, 1) from a counter (a step of splitmix64).
@@ -156,7 +158,7 @@ std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program
     state.assign(own.begin(), own.end());
   }
   std::shared_ptr<KernelPlan> p(new KernelPlan(std::move(program), std::move(map), judged, stages, company));
-  // Whether solutions need a second look is seen at the state itself.
+  // The state itself decides whether solutions need refinement.
   p->tables_.refine = true;
   const Sampled sampled = p->choose_pivots(parameters, t, state);
   if (sampled.elimination.lu.pivots.empty()) return nullptr;
@@ -170,7 +172,7 @@ std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program
   return p;
 }
 
-// At the state and at some around it, so that a pivot is not one that vanishes when the machine has moved on.
+// Samples the state and points around it, so that no pivot is chosen that vanishes later in the motion.
 KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& parameters, double t,
                                               const std::vector<double>& state) {
   lay_out();
@@ -210,7 +212,7 @@ KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& pa
       return out;
     if (attempt == 0 && plan_.determinant) out.determinant = arena[plan_.determinant->at];
   }
-  // Samples may lie where the system is singular: fewer, then.
+  // The system may be singular at a sample: use fewer samples then.
   for (; samples > 0; --samples) {
     out.elimination = eliminate_sparse(plan_.rows, entries, samples);
     if (!out.elimination.lu.pivots.empty()) break;
@@ -220,7 +222,7 @@ KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& pa
   return out;
 }
 
-// Solutions by these pivots, refined or not: by the inverse where it is small.
+// Prepares solutions with these pivots, refined or not; by the inverse if it is small.
 void KernelPlan::solve_by(const Sampled& sampled) {
   std::vector<bool> needed(plan_.rows, tables_.refine);
   for (std::size_t j = 0; j < plan_.d.size(); ++j) needed[j] = true;
@@ -299,7 +301,7 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
   for (const Plan::HidingSlot& slot : p.hiding)
     for (const Place& place : {slot.argument, slot.value})
       low_orders_.push_back({place.at, static_cast<std::uint32_t>(p.largest_lead) + 1});
-  // Without overlaps.
+  // Removes overlaps.
   std::sort(low_orders_.begin(), low_orders_.end(), [](const LowOrders& a, const LowOrders& b) { return a.at < b.at; });
   std::size_t numbers = 0;
   std::uint32_t end = 0;
@@ -337,7 +339,7 @@ bool Kernel::expand(const Code* code, bool projected) {
   return moved;
 }
 
-// Up to the leading derivatives.
+// Computes an expansion up to the leading derivatives.
 bool Kernel::solve(const Code* code, bool projected) {
   if (code) {
     code->values(arena_);
@@ -377,7 +379,7 @@ double Kernel::correction_of_solution() {
   return size > 0 ? change / size : 0;
 }
 
-// Whether that has moved a state.
+// Projects the states; returns whether a state has moved.
 bool Kernel::project(const Code* code) {
   bool moved = false;
   for (int level = plan_->levels(); level >= 1; --level) {

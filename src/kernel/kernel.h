@@ -1,8 +1,8 @@
 // Taylor expansions of a motion in doubles, fast: one trajectory, or one in each SIMD lane.
 //
-// What is shared (the plan, the order of pivots, tables) is made once per program; a Kernel is the workspace of one
-// thread. Against Expansion<double>, the reference: the same expansion to round-off, without refinement. The pivots are
-// static: `health` says whether they still serve; where it is small, the reference takes the step.
+// The plan, the order of pivots and the tables are made once per program and shared; a Kernel is the workspace of one
+// thread. It computes the expansion of Expansion<double>, the reference, to round-off, without refinement. Pivots are
+// static: if `health` is small, the reference makes the step.
 #pragma once
 #include <atomic>
 #include <optional>
@@ -14,19 +14,19 @@
 
 namespace anholon {
 
-// What a plan is laid out for: one motion, where operations wait for each other, or many side by side, where their
-// number and the memory they touch count.
+// The use of a plan: one motion, whose operations wait for each other, or many lanes, where the number of operations
+// and memory count.
 enum class Company { alone, in_lanes };
 
 class KernelPlan {
  public:
-  // `state`: where the pivots are chosen, and around it. Nothing if the program has no plan, or the equations are
-  // singular there.
+  // `state`: the state at and around which the pivots are chosen. Returns null if the program has no plan, or the
+  // equations are singular there.
   static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, int stages,
                                                 const std::vector<long double>& parameters, double t,
                                                 const std::vector<double>& state, Company company = Company::alone);
-  // Of a program for other unknowns than those of the motion; `judged`: its last quadrature is the determinant of the
-  // motion's J, up to a factor.
+  // For a program in other unknowns than those of the motion. `judged`: its last quadrature is the determinant of the
+  // motion's J up to a factor.
   static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program,
                                                 std::shared_ptr<const StateMap> map, bool judged, int stages,
                                                 const std::vector<long double>& parameters, double t,
@@ -39,21 +39,22 @@ class KernelPlan {
   const KernelTables& tables() const { return tables_; }
   const Program& program() const { return *program_; }
   std::size_t state_size() const { return tables_.state_size; }
-  // To the state of the motion, where the kernel has unknowns of its own; else null.
+  // The map to the state of the motion if the kernel has unknowns of its own; else null.
   const StateMap* map() const { return map_.get(); }
   Company company() const { return company_; }
   int waits() const { return waits_; }
   int levels() const { return levels_; }  // of hidden constraints
-  // Makes machine code for one lane, or for so many, with the same bits; such kernels take it up at their next
-  // expansion. At most once for each, from any thread. Why there is none, or nothing.
+  // Makes machine code for one lane, or for this number of lanes, with the same bits; kernels use it from their next
+  // expansion on. Each code is made at most once, from any thread. Returns the reason if there is no code, else an
+  // empty string.
   std::string compile(const std::string& cache, int lanes = 1) const;
   const Code* code(int lanes = 1) const {
     const Compiled& c = lanes == 1 ? one_ : several_;
     const Code* ready = c.ready.load(std::memory_order_acquire);
     return ready && c.lanes == lanes ? ready : nullptr;
   }
-  // Operations of one expansion; and what it costs, in operations: alone, it counts how many a stage makes one after
-  // the other (latency.h).
+  // The cost of one expansion, and its number of operations. For a motion alone, the cost includes the operations of a
+  // stage that wait for one another (latency.h).
   double cost() const;
   double work() const {
     return plan_.work() + elimination_.work() * (plan_.stages + 2) +
@@ -89,13 +90,13 @@ class KernelPlan {
 
 class Kernel {
  public:
-  // `lanes`: 1, or what the tier has. Without a tier: the best of this machine.
+  // `lanes`: 1, or the number of the tier. Without a tier: the best tier of this machine.
   explicit Kernel(std::shared_ptr<const KernelPlan> plan, int lanes = 1, const Tier* tier = nullptr);
 
   int lanes() const { return lanes_; }
   const KernelPlan& plan() const { return *plan_; }
   void set_parameters(int lane, const std::vector<long double>& parameters);
-  // Between the kernel's state and that of the motion, with the parameters of a lane; where the plan has a map.
+  // Converts between the kernel's state and that of the motion, with the parameters of a lane, if the plan has a map.
   StateReader& reader(int lane) { return readers_[static_cast<std::size_t>(lane)]; }
   // A state for `expand`: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
   template <class State>
@@ -113,23 +114,23 @@ class Kernel {
     for (const Beyond& b : p.beyond_double) number(b.at, lane) = 0;
     set_time(lane, t);
   }
-  // Projects the state on the hidden constraints where it has left them (or leaves it as it is), solves for the leading
-  // derivatives, and computes all coefficients.
+  // Projects the state on the hidden constraints if it violates them (unless `projected` is false), solves for the
+  // leading derivatives, and computes all coefficients.
   void expand(bool projected = true) { expand(code(), projected); }
 
-  // By how much refinement changes the solution for the leading derivatives, in relation to it.
+  // The change of the leading derivatives by refinement, relative to their size.
   double correction_of_solution();
 
-  // Of the last expansion.
+  // Pivots of the last expansion.
   Pivots pivots(int lane) const { return {number(found().health, lane), number(found().determinant, lane)}; }
   bool finite(int lane) const;
-  // How far the state was from the hidden constraints, in relation to its size, and whether it was moved.
+  // The distance of the state from the hidden constraints, relative to its size, and whether the state was moved.
   double drift(int lane) const { return number(found().drift, lane); }
   bool moved(int lane) const { return number(found().moved, lane) > 0; }
 
-  // Motions, step by step, in all lanes at once. The kernel keeps their states in the width of long double: they are
-  // placed there where they come from elsewhere; then `begin` (the expansions at the times set) and, over the steps
-  // set, `advance` follow each other.
+  // Motions, step by step, in all lanes at once. The kernel keeps their states in the width of long double. `place`
+  // loads states that come from elsewhere; then `begin` (the expansions at the set times) and `advance` (over the set
+  // steps) alternate.
   void place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading);
   void set_time(int lane, double t) {
     double& now = number(plan_->plan().time, lane);
@@ -138,19 +139,18 @@ class Kernel {
     number(plan_->plan().time + 1, lane) = 1;
   }
   void begin();
-  // After `advance`, at the times set: the part of `begin` that solves for the leading derivatives, which says how well
-  // the series have foretold them
-  // (`defect`). Until `begin` goes on from there, or another `advance` takes it back, series are those of the last
-  // expansion; on request, see below.
+  // After `advance`, at the set times: the part of `begin` that solves for the leading derivatives; `defect` then tells
+  // how well the series predicted them. Until `begin` continues, or another `advance` replaces it, the last expansion's
+  // series remain available; for reading them see show_last().
   void start_next();
   double defect(int lane) const { return number(found().defect, lane); }
-  // Whether motions are seen as they are after `advance`, or where the last expansion was made, as before: by who is to
-  // choose another end.
+  // Selects the states that are shown: those after `advance`, or those of the last expansion, for a caller that chooses
+  // another end.
   void show_advanced(bool advanced) {
     show_last();
     gone_on_ = advanced;
   }
-  // Whoever reads series of the last expansion after `start_next` says so first.
+  // Call this before reading series of the last expansion after `start_next`.
   void show_last() const {
     if (!shows_last_) swap_low_orders();
   }
@@ -159,17 +159,17 @@ class Kernel {
   // e^-shrink of the radius of convergence is a step (integrate/step_control.h).
   void set_shrink(double shrink);
   double reach(int lane) const { return number(found().reach, lane); }
-  // Whether the highest coefficients are numbers, and the largest number of a state after a step.
+  // Whether the highest coefficients are finite, and the largest number of a state after a step.
   bool reaches(int lane) const { return number(found().unfit, lane) == 0; }
   double largest(int lane) const { return number(found().largest, lane); }
-  // The state and the first guess of the leading derivatives as they are, as the present expansion was begun, the one
+  // The state and the first guess of the leading derivatives: now, at the start of the present expansion, of the one
   // before.
   enum class Moment { now, begun, before };
   void fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const;
-  // The state where the expansion was made that the last step followed.
+  // The state at the expansion from which the last step started.
   void fetch_base(int lane, std::vector<long double>& state) const;
 
-  // The series of unknown j in a lane: number k lies k * lanes() further on.
+  // The series of unknown j in a lane; element k is at offset k * lanes().
   const double* unknown(std::size_t j, int lane) const {
     return arena_ + plan_->plan().x[j] * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
   }
@@ -187,9 +187,9 @@ class Kernel {
   double series(const Place& place, int order, int lane = 0) const {
     return number(place.at + static_cast<std::uint32_t>(order), lane);
   }
-  // The changes of x_j^(k), k = 0..d_j, one after the other, over the steps set.
+  // Computes the changes of x_j^(k), k = 0..d_j, one after the other, over the set steps.
   void change_over_step();
-  // Number i lies i * lanes() further on.
+  // Element i is at offset i * lanes().
   const double* increments(int lane) const {
     return arena_ + plan_->tables().increments * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
   }
@@ -226,17 +226,17 @@ class Kernel {
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
   std::vector<StateReader> readers_;
-  // Places of motions (KernelTables): where the next expansion begins, the present one was begun, the one before; where
-  // that was made.
+  // Places of motions (KernelTables): the start of the next expansion, of the present one, of the one before; the state
+  // of that expansion.
   std::uint32_t next_, begun_, before_, base_;
-  bool gone_on_ = true;  // or placed, since the present one was made
-  // What solving for the leading derivatives writes over of the series: so many numbers from each of these places on.
+  bool gone_on_ = true;  // advanced or placed since the present expansion was made
+  // Parts of the series that solving for the leading derivatives overwrites: places and lengths.
   struct LowOrders {
     std::uint32_t at, count;
   };
   std::vector<LowOrders> low_orders_;
-  mutable std::vector<double> aside_;     // those of the last expansion, or of the next one
-  bool started_ = false, moved_ = false;  // the next expansion; and moved a state by that
+  mutable std::vector<double> aside_;     // the saved numbers of the last expansion, or of the next one
+  bool started_ = false, moved_ = false;  // `started_`: the next expansion; `moved_`: its projection moved a state
   mutable bool shows_last_ = true;
 };
 

@@ -1,4 +1,4 @@
-// Motions of a kernel, step by step: where they are placed, expanded, go on and are fetched.
+// Motions of a kernel, step by step: they are loaded, expanded, advanced and read.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -22,7 +22,7 @@ void Kernel::place(int lane, const std::vector<long double>& state, const std::v
     put(next_ + n + i, static_cast<double>(state[i] - high));
   }
   for (std::uint32_t j = 0; j < m; ++j) put(next_ + 2 * n + j, leading.empty() ? 0 : static_cast<double>(leading[j]));
-  // What was read and is put back has not moved.
+  // A state that was read and written back unchanged keeps the next expansion.
   if (!same) drop_next();
   gone_on_ = true;
 }
@@ -49,7 +49,7 @@ void Kernel::begin() {
     arithmetic_->measure();
 }
 
-// The expansion at the next place.
+// Starts the expansion at the next place.
 void Kernel::start(const Code* code) {
   if (code)
     code->begin(arena_, slot(next_));

@@ -7,7 +7,7 @@ namespace anholon {
 
 namespace {
 
-// A quotient (lanes.h).
+// The latency of a quotient (lanes.h).
 constexpr int kQuotient = 2;
 
 class Clock {
@@ -31,7 +31,7 @@ class Clock {
     int order, at;
   };
 
-  // When the coefficient of order stage + `order` is there: at once, if an earlier stage has made it.
+  // The time at which the coefficient of order stage + `order` is known: 0 if an earlier stage has computed it.
   int ready(const Place& x, int order) const {
     const auto it = made_.find(x.at);
     return it != made_.end() && (!x.series || it->second.order == order) ? it->second.at : 0;
@@ -41,13 +41,13 @@ class Clock {
     return at;
   }
 
-  // What a sum of two products waits for, the later operand last.
+  // The latency of a sum of two products; the later operand comes last.
   int product(const Step& s) const {
     const int a = s.a_unknown ? 0 : ready(s.a, s.lead), b = s.b_unknown ? 0 : ready(s.b, s.lead);
     return std::max(std::min(a, b) + 1, std::max(a, b)) + 1;
   }
 
-  // What was known before, divided by the order, and the newest coefficient added to it.
+  // The latency of the known part, divided by the order, plus the newest coefficient.
   int newest(int before, const Place& x, int lead, bool missing) const {
     return missing ? before + kQuotient : std::max(before + kQuotient, ready(x, lead)) + 1;
   }

@@ -1,15 +1,15 @@
-// How long one stage of a plan waits for itself.
+// The latency of one stage of a plan.
 //
-// Every stage needs what the one before has solved for: along that chain one operation waits for the other, however
-// many a processor can make side by side. Of a small system computed alone that is most of the time; in many lanes the
-// number of operations is (Plan::work).
+// Every stage needs the solution of the stage before: along that chain operations wait for one another, however many a
+// processor can execute in parallel. For a single small system the latency is most of the time; in many lanes the
+// number of operations (Plan::work) is.
 #pragma once
 #include "kernel/plan.h"
 #include "kernel/sparse_lu.h"
 
 namespace anholon {
 
-// In operations that wait for one another.
+// The length of the chain, in operations.
 int latency(const Plan& plan, const SparseLu& elimination);
 
 }  // namespace anholon

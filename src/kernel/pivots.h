@@ -1,18 +1,19 @@
-// What the pivots of a kernel say of how regular J is (theory: kernels, health).
+// The regularity of J as the pivots of a kernel show it (theory: kernels, health).
 #pragma once
 #include <cmath>
 
 namespace anholon {
 
-// The pivots of a kernel at a point, in relation to those where they were chosen.
+// The pivots of a kernel at a point, relative to their values at the choice of pivots.
 struct Pivots {
-  double health = 0;       // the smallest, by its absolute value
-  double determinant = 0;  // their product: that of J
+  double health = 0;       // the smallest ratio, by absolute value
+  double determinant = 0;  // the product of the ratios: the ratio of det J
 };
-// Below this health they are no longer trusted.
+// Pivots of smaller health are not trusted.
 inline constexpr double kHealthy = 2e-3;
-// Whether J may have been singular between two points: its determinant has another sign, or has shrunk by much together
-// with a pivot (a square keeps its sign). A pivot alone says nothing: as one passes zero, the next one passes infinity.
+// Whether J may have been singular between two points: its determinant has changed its sign, or has become much smaller
+// together with a pivot (a square keeps its sign). A single pivot proves nothing: if one passes zero, the next one
+// passes infinity.
 inline bool may_have_vanished(const Pivots& before, const Pivots& after) {
   constexpr double kMuch = 0.6;
   if ((before.determinant < 0) != (after.determinant < 0)) return true;

@@ -11,7 +11,7 @@ namespace anholon {
 namespace {
 
 constexpr std::uint32_t kNone = Slots::kNone;
-// The tables of a kernel reach so far (arithmetic.h: kMostRising).
+// The limit of the tables of a kernel (arithmetic.h: kMostRising).
 constexpr int kHighestOrder = 12;
 
 class Planner {
@@ -53,7 +53,8 @@ class Planner {
     int beyond = std::max(plan_.largest_lead, plan_.largest_d);
     for (const ProgramInput& in : p_.inputs) beyond = std::max(beyond, in.order);
     plan_.stride = static_cast<std::uint32_t>(stages_ + beyond + 2) | 1U;
-    // Coefficients first: their number is known when all steps are made, so make the sums' now.
+    // Coefficients come first in the arena: their number must be known before the steps are made, so make those of the
+    // sums now.
     coefficient({Rational(1), {}});
     coefficient({Rational(-1), {}});
     for (std::uint32_t s = 0; s < code_.size(); ++s) {
@@ -94,7 +95,7 @@ class Planner {
   }
   bool value_only(std::uint32_t s) const { return judged_ && value_only_[s]; }
 
-  // What only the last root needs, of which nothing is asked but its value.
+  // Finds the slots that only the last root needs; only their values are computed.
   void find_values_only() {
     value_only_.assign(code_.size(), true);
     std::fill(value_only_.begin(), value_only_.begin() + tape_.main_end, false);
@@ -130,7 +131,7 @@ class Planner {
     return it->second;
   }
 
-  // What the value of a slot is beyond its double: of a coordinate, or of a sum with coordinates in it.
+  // The part of a slot's value beyond its double, for a coordinate or a sum with coordinates.
   Place beyond_double(std::uint32_t s) {
     if (const auto it = beyond_.find(s); it != beyond_.end()) return it->second;
     Place& out = beyond_[s];
@@ -161,7 +162,7 @@ class Planner {
   }
 
   void emit_sum(std::uint32_t s) {
-    // Those known early first, so that the sum waits for the last only.
+    // Sorts terms that are known early to the front, so that the sum waits for the last one only.
     std::vector<Slots::Summand> terms = slots_.sums[s];
     std::stable_sort(terms.begin(), terms.end(), [&](const Slots::Summand& x, const Slots::Summand& y) {
       return x.slot != kNone && y.slot != kNone ? depth_[x.slot] < depth_[y.slot] : x.slot != kNone && y.slot == kNone;
@@ -187,7 +188,7 @@ class Planner {
     }
   }
 
-  // What a stage has computed before is there first.
+  // The time at which a coefficient is known; coefficients of earlier stages come first.
   int arrival(std::uint32_t s, std::uint8_t lead) const {
     return code_[s].constant || code_[s].lead > lead ? -1 : depth_[s];
   }
@@ -251,7 +252,7 @@ class Planner {
         if (slots_.sine_of.count(s) || slots_.cosine_of.count(s)) {
           const std::uint32_t sine = slots_.sine_of.count(s) ? slots_.sine_of.at(s) : s,
                               cosine = slots_.cosine_of.at(sine);
-          if (std::max(sine, cosine) == s) continue;  // made with the first of the two
+          if (std::max(sine, cosine) == s) continue;  // made together with the first of the two
           ANHOLON_ASSERT(code_[cosine].lead == code_[sine].lead && slots_.in_main(sine) == slots_.in_main(cosine));
           step.act = Act::sine_cosine;
           step.b = weighted(slots_.same_as(in.a), after);
@@ -448,7 +449,7 @@ class Planner {
   std::map<std::string, std::uint32_t> coefficient_;
   std::map<std::uint32_t, std::uint32_t> reciprocal_, derivative_;  // of divisors, of powers
   std::map<std::pair<std::uint32_t, bool>, Place> weighted_;
-  std::map<std::uint32_t, Place> beyond_;                 // what slots are beyond their doubles, if that is known
+  std::map<std::uint32_t, Place> beyond_;                 // the parts of slots beyond their doubles, if known
   std::map<std::uint32_t, Step> sums_;                    // of slots
   std::map<std::uint32_t, std::uint32_t> coordinate_at_;  // slots of coordinates by their places
   std::uint32_t zero_ = 0;

@@ -1,11 +1,11 @@
-// The stepping program laid out for speed: what one Taylor expansion in doubles computes, step by step, over one arena
-// of numbers.
+// The stepping program laid out for speed: the computation of one Taylor expansion in doubles, step by step, over one
+// arena of numbers.
 //
 // A plan is made once per program and holds no numbers of a motion, so any number of kernels (one trajectory, or one in
 // each SIMD lane) and threads share it. Against the tape (tape/tape.h), which stays the reference:
 //   - sums of sums are one sum, factors constant in time are its coefficients, a sine and its cosine are one step;
-//   - only what a convolution needs keeps its series, all else is one number per stage;
-//   - what is zero in a sweep because the unknowns of the stage are not known yet is left out of the stages beyond 0;
+//   - only slots that a convolution needs store their series; all others are one number per stage;
+//   - terms that are zero in a sweep because the unknowns of the stage are not known yet are omitted beyond stage 0;
 //   - J is never formed: the linearized tape itself, one row for every slot that depends on the unknowns, is eliminated by a sparse
 //     LU (sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
 #pragma once
@@ -17,10 +17,10 @@
 
 namespace anholon {
 
-// Orders are computed in blocks of so many (sweep.h: convolution).
+// Orders are computed in blocks of this size (sweep.h: convolution).
 inline constexpr int kBlock = 4;
 
-// A value in the arena; of a series: its coefficient of order p lies at `at` + p.
+// A value in the arena; for a series, the coefficient of order p is at `at` + p.
 struct Place {
   std::uint32_t at = 0;
   bool series = false;
@@ -29,18 +29,20 @@ struct Place {
 enum class Act : std::uint8_t {
   input,   // x^(k): a = series of x, index = k
   linear,  // sum of coefficient * value
-  beyond,  // of such a sum, what it is beyond its double; the terms from `index` on: its coefficients, what its values
-           // are beyond their doubles
+  // the part of a linear sum beyond its double; the terms from `index` on: coefficients and the parts of the values
+  // beyond their doubles
+  beyond,
+  // are beyond their doubles
   multiply,     // a * b
   square,       // a^2
   divide,       // a / b; c: 1 / b_0
   square_root,  // sqrt(a)
   power,  // a^value; b: 1 / a_0, c, d = weighted series of a and of itself, e: its derivative value * a_0^value / a_0
-  sine_cosine,  // out = sin a, c = cos a; b = weighted series of a; d: what a is beyond its double, where that is known
+  sine_cosine,  // out = sin a, c = cos a; b = weighted series of a; d: the part of a beyond its double, if known
   function,     // elementary function `index` of a; b = its derivative, c = weighted series of a
   arctan2,      // atan2(a, b); c, d = derivatives by a and b; e, f = weighted series of a and b
   weigh,        // order * a
-  select,       // a where c_0 >= 0, else b
+  select,       // a if c_0 >= 0, else b
   lookup,       // step function `index` of a
 };
 
@@ -49,7 +51,7 @@ struct Step {
   std::uint8_t lead = 0;
   bool a_constant = false, b_constant = false;  // only the coefficient of order 0 is not zero
   bool a_unknown = false, b_unknown = false;    // the newest coefficient is an unknown of the stage, zero in the sweep
-  bool b_later = false;                         // that of b is known later than that of a
+  bool b_later = false;                         // the newest coefficient of b is known later than that of a
   Place out, a, b, c, d, e, f;
   std::uint32_t first = 0, count = 0;  // terms
   std::uint32_t constants = 0;         // terms after those, constant in time
@@ -83,7 +85,7 @@ struct Entry {
   double sign;
 };
 
-// What becomes known when a stage is solved.
+// Coefficients that become known when a stage is solved.
 struct Completion {
   Place out;
   std::uint8_t lead;
@@ -91,43 +93,44 @@ struct Completion {
   bool fresh;  // out is zero before (beyond stage 0)
 };
 
-// The state is kept in more digits than a double has. An angle that has turned often would lose those of its sine: `at`
-// gets what number `index` of the state (x_j^(k), k < d_j, one after the other) is beyond its double.
+// The state is stored with more digits than a double has. The sine of an angle of many turns needs them: `at` gets the
+// part of entry `index` of the state (x_j^(k), k < d_j, one after the other) beyond its double.
 struct Beyond {
   std::uint32_t at, index;
 };
 
-// A function of one argument that may be all but constant far from where it is not; not a sine, whose series show what
-// it does.
+// A function of one argument that may be almost constant far from its variation. (A sine is not one: its series show
+// its variation.)
 struct Hiding {
-  std::optional<Function> function;  // else a power
+  std::optional<Function> function;  // nullopt: a power
   double exponent = 0;
 };
-// What an instruction is of that, and its argument: of a quotient, a power of -1, the divisor.
+// The function or power that an instruction computes if it may hide its variation, and its argument; for a quotient, a
+// power of -1 of the divisor.
 std::optional<Hiding> may_hide(const Tape& tape, const Instruction& in);
 inline std::uint32_t hidden_argument(const Instruction& in) { return in.op == Op::divide ? in.b : in.a; }
 
 struct Plan {
   int stages = 0;
   std::uint32_t stride = 0;
-  std::uint32_t arena = 0;  // its size
+  std::uint32_t arena = 0;  // size of the arena
 
   std::vector<Coefficient> coefficients;  // arena [0, size)
   std::vector<Step> point, stage, after;  // stages up to 0; beyond; quadratures
   std::vector<PlanTerm> terms;
   std::vector<Partial> partials;
-  std::vector<Step> weigh_again;  // weighted series of what the unknowns of the stage change
+  std::vector<Step> weigh_again;  // weighted series of the series that depend on the unknowns of the stage
   std::vector<Entry> entries;
   std::vector<Completion> completions;
   std::vector<std::uint32_t> x;      // series of every unknown
   std::uint32_t time = 0;            // series of t
   std::vector<Place> roots;          // of the equations; the right side of row i is that of root i
   std::vector<char> root_is_zero;    // beyond stage 0, before the unknowns of the stage are known
-  std::vector<std::uint32_t> sides;  // roots as they become known in a stage
+  std::vector<std::uint32_t> sides;  // roots in the order in which a stage computes them
   std::vector<Place> quadratures;
   std::vector<Beyond> beyond_double;  // of the angles of sines
   std::vector<std::pair<std::uint32_t, Place>>
-      roots_of_even_powers;  // slot of the tape of what roots are taken of: they may pass zero
+      roots_of_even_powers;  // slots of the tape of the radicands of roots: they may pass zero
   struct HidingSlot {
     Hiding function;
     Place argument, value;
@@ -136,20 +139,21 @@ struct Plan {
   std::uint32_t rows = 0;  // of the linearized tape
   int largest_lead = 0, largest_d = 0;
   std::vector<int> c, d;
-  std::size_t apart = 0;  // the unknowns from here on are measured against their own size when a step is chosen
-  std::optional<Place> determinant;  // to be judged with the pivots
+  std::size_t apart = 0;  // the unknowns from here on are measured relative to their own size when a step is chosen
+  std::optional<Place> determinant;  // judged together with the pivots
 
-  // For choices of representation: multiplications and additions of one expansion (without the elimination).
+  // For choices of representation: the number of multiplications and additions of one expansion (without the
+  // elimination).
   double work() const;
 };
 
-// Why a program has no plan, or nothing.
+// The reason why a program has no plan; else an empty string.
 std::string no_plan(const Program& program);
 // REQUIRES: no_plan(program).empty()
 // `judged`: the last quadrature is the plan's `determinant`, known at the point of expansion only.
 Plan plan(const Program& program, int stages, bool judged = false);
 
-// The coefficients' values; the slots' in long double, rounded once.
+// The values of the coefficients; the values of slots are given in long double and rounded once.
 std::vector<double> coefficient_values(const Plan& plan, const Program& program,
                                        const std::vector<long double>& parameters);
 

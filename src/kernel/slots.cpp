@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// A sum takes in the sums it is made of up to so many terms.
+// A sum absorbs the sums among its terms, up to this number of terms.
 constexpr std::size_t kLongestSum = 48;
 
 bool is(const Instruction& in, Function f) {
@@ -137,8 +137,8 @@ static bool same_up_to_sign(const Coefficient& a, const Coefficient& b, int sign
   return a.slots == b.slots && a.rational == sign * b.rational;
 }
 
-// Where all terms of `part` are in `whole`, with the same sign or the opposite one: which. Else 0. Terms are ordered by
-// their slots.
+// Returns 1 or -1 if all terms of `part` are in `whole` with the same or the opposite sign, else 0. Terms are ordered
+// by slots.
 static int contained(const std::vector<Slots::Summand>& part, const std::vector<Slots::Summand>& whole) {
   int sign = 0;
   std::size_t at = 0;
@@ -151,8 +151,8 @@ static int contained(const std::vector<Slots::Summand>& part, const std::vector<
   return sign;
 }
 
-// A sum takes over what an earlier one has added already, the longest first: along a chain of links every sum is the
-// last one and a term.
+// A sum uses an earlier sum that it contains, the longest first: along a chain of links every sum is the previous one
+// and a term.
 void Slots::share_sums() {
   std::map<std::uint32_t, std::vector<std::uint32_t>> sums_with;  // by their first term
   for (std::uint32_t s = 0; s < code.size(); ++s) {
@@ -232,7 +232,8 @@ void Slots::inline_sums() {
   }
 }
 
-// Whose newest coefficient depends on the unknowns of the stage; purely: is zero without them.
+// Marks slots whose newest coefficient depends on the unknowns of the stage (tainted) and those for which it is zero
+// without them (pure).
 void Slots::taint() {
   tainted.assign(code.size(), false);
   pure.assign(code.size(), false);

@@ -1,5 +1,5 @@
-// What a plan makes of the slots of a tape before it lays them out: which are needed, which are sums and of what, which
-// keep their series, and which depend on the unknowns of a stage.
+// Analysis of a tape's slots before layout: which slots are needed, which are sums of which terms, which store their
+// series, and which depend on the unknowns of a stage.
 #pragma once
 #include <map>
 
@@ -12,18 +12,20 @@ class Slots {
   explicit Slots(const Program& program);
 
   static constexpr std::uint32_t kNone = 0xffffffffU;
-  static constexpr std::uint32_t kReciprocal = 0x80000000U;  // in the slots of a coefficient: a divisor
+  static constexpr std::uint32_t kReciprocal = 0x80000000U;  // in the slots of a coefficient: marks a divisor
   struct Summand {
     Coefficient c;
-    std::uint32_t slot;  // kNone: constant in time
+    std::uint32_t slot;  // kNone if constant in time
   };
 
   const Tape& tape;
   const std::vector<Instruction>& code;
-  std::vector<const ProgramInput*> inputs;                    // null for other slots
-  std::map<std::uint32_t, std::uint32_t> cosine_of, sine_of;  // of a sine, a cosine of the same argument; and back
+  std::vector<const ProgramInput*> inputs;  // null for other slots
+  // for a sine, a cosine of the same argument; and the reverse
+  std::map<std::uint32_t, std::uint32_t> cosine_of, sine_of;
   std::vector<bool> live, series;
-  std::vector<bool> tainted, pure;  // the newest coefficient depends on the unknowns of the stage; is zero without them
+  // the newest coefficient depends on the unknowns of the stage; it is zero without them
+  std::vector<bool> tainted, pure;
   std::vector<std::vector<Summand>> sums;
 
   bool sum_like(std::uint32_t s) const {
@@ -32,9 +34,9 @@ class Slots {
   }
   bool in_main(std::uint32_t s) const { return s < tape.main_end; }
   bool unknown(std::uint32_t s, std::uint8_t lead) const { return tainted[s] && code[s].lead == lead; }
-  // The slot whose value this one repeats.
+  // The slot with the same value, if this one repeats it.
   std::uint32_t same_as(std::uint32_t s) const;
-  // The operands of a slot, with repeats seen through.
+  // The operands of a slot, with repeats replaced.
   std::vector<std::uint32_t> operands(std::uint32_t s) const;
 
  private:

@@ -9,19 +9,19 @@ namespace anholon {
 
 namespace {
 
-// A pivot is at least this part of the largest entry of its row.
+// A pivot is at least this fraction of the largest entry of its row.
 constexpr double kThreshold = 0.05;
 constexpr double kVanishes = 1e-12;
 constexpr int kScalings = 3;
 
-// Many pivots cost the same, and which of them is taken decides how much is filled in later.
+// A rule for ties: many pivots cost the same, and the choice decides about later fill.
 struct Order {
-  int candidates;  // so many of the shortest rows and columns are looked at for the next pivot, at most
+  int candidates;  // the maximal number of shortest rows and columns that are searched for the next pivot
   enum class Tie { largest, first_row, last_column } tie;
 };
 constexpr Order kUsual{6, Order::Tie::largest};
-// Where that fills in more for each row, on matrices that are not large, others are tried as well: no rule was found
-// that knows before.
+// If the elimination fills in more per row than this, other orders are tried, for matrices that are not large; no rule
+// is known that predicts the best order.
 constexpr std::size_t kMuchFill = 5, kLarge = 1000;
 constexpr int kAll = 2 * static_cast<int>(kLarge);
 constexpr Order kOthers[] = {{kAll, Order::Tie::first_row}, {kAll, Order::Tie::last_column}};
@@ -45,7 +45,7 @@ class Matrix {
     out_.place.push_back(it->second);
   }
 
-  // By powers of 2, so that a large entry is one that matters.
+  // Scales by powers of 2, so that large entries are significant ones.
   void scale() {
     row_scale_.assign(n_, {});
     column_scale_.assign(n_, {});
@@ -87,7 +87,7 @@ class Matrix {
         if (best_.found) ++looked;
       }
       if (!best_.found && one_sign_) {
-        // Any that is not small, then, although it passes through zero somewhere.
+        // Then takes any pivot that is not small, even if it passes through zero somewhere.
         one_sign_ = false;
         --k;
         continue;
@@ -224,10 +224,10 @@ class Matrix {
   std::vector<std::map<std::uint32_t, std::uint32_t>> rows_, upper_;
   std::vector<std::set<std::uint32_t>> columns_;
   std::vector<Values> row_scale_, column_scale_;
-  std::vector<std::optional<Values>> largest_;  // of a row as it is, scaled
+  std::vector<std::optional<Values>> largest_;  // of a row in its present state, scaled
   std::set<std::pair<std::size_t, std::uint32_t>> short_rows_, short_columns_;
   Best best_;
-  bool one_sign_ = true;  // pivots of the same sign at all samples
+  bool one_sign_ = true;  // only pivots of the same sign at all samples
 };
 
 std::size_t operations(const SparseElimination& e) { return e.lu.update_list.size() + e.lu.scaled_entries.size(); }
@@ -258,7 +258,7 @@ SparseElimination eliminate_sparse(std::uint32_t rows, std::span<const SampledEn
 SparseLu solver(const SparseElimination& e, std::uint32_t sides, const std::vector<bool>& needed) {
   SparseLu out = e.lu;
   const std::size_t rows = needed.size();
-  // Where a right side can be other than zero.
+  // Marks the rows whose right side may be nonzero.
   std::vector<bool> side(rows, false);
   std::fill(side.begin(), side.begin() + sides, true);
   std::vector<SparseLu::Forward> forward;
@@ -272,7 +272,7 @@ SparseLu solver(const SparseElimination& e, std::uint32_t sides, const std::vect
 
   std::vector<bool> wanted = needed;
   std::vector<bool> kept(rows, false);
-  // A column is wanted by the rows of pivots before its own.
+  // A column is needed by the rows of the pivots before its own.
   for (std::size_t k = 0; k < out.pivots.size(); ++k) {
     kept[k] = wanted[out.pivots[k].column];
     if (kept[k])
@@ -292,7 +292,7 @@ SparseLu solver(const SparseElimination& e, std::uint32_t sides, const std::vect
 
 namespace {
 
-// A number that is the same at every expansion, if it is one.
+// A number that is the same at every expansion, if known.
 using Known = std::optional<double>;
 
 Known product(const Known& a, const Known& b) {
@@ -304,7 +304,7 @@ Known difference(const Known& a, const Known& b) { return a && b ? Known(*a - *b
 
 Known reciprocal(const SparseLu::Pivot& p) { return p.one ? Known(1) : p.minus_one ? Known(-1) : std::nullopt; }
 
-// Of the factors: whole numbers, made of exact entries and pivots of 1 and -1.
+// The factors that are known whole numbers, from exact entries and pivots of 1 and -1.
 std::vector<Known> known_factors(const SparseLu& e, std::span<const SampledEntry> entries) {
   std::vector<Known> lu(e.entries, 0.0);
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -322,7 +322,7 @@ std::vector<Known> known_factors(const SparseLu& e, std::span<const SampledEntry
   return lu;
 }
 
-// The solution for a side of one.
+// The solution for a unit side.
 std::vector<Known> known_solution(const SparseLu& e, const std::vector<Known>& lu, std::uint32_t side,
                                   std::size_t rows) {
   std::vector<Known> rhs(rows, 0.0), y(rows, 0.0);

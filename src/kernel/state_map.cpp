@@ -13,7 +13,7 @@ StateMap::StateMap(const QuasiVelocities& q)
     : coordinates_(q.system.coordinates), states_(q.system.size() - q.system.coordinates - q.count),
       velocities_(q.count), to_own_(compiled(q.of_state, q)), to_motion_(compiled(q.velocities, q)),
       of_own_(inputs(to_own_, q)), of_motion_(inputs(to_motion_, q)) {
-  // Series that velocities are made of are in both tapes; p are none of what p are made of.
+  // The series from which velocities are computed are in both tapes; p is not needed for computing p.
   std::erase_if(of_own_, [&](const Input& in) { return in.from == From::other && in.index >= states_; });
 }
 

@@ -1,6 +1,6 @@
-// A kernel may have other unknowns than the motion it serves: coordinates, the model's states and quasi-velocities p,
-// all of first order (lowering/quasi_velocities.h), where the motion's state is q, q', z. From one to the other, in the
-// width of the motion's state.
+// A map between states. A kernel may have other unknowns than the motion it serves: coordinates, the model's states and
+// quasi-velocities p, all of first order (lowering/quasi_velocities.h), while the motion's state is q, q', z. The map
+// converts one state to the other, in the width of the motion's state.
 #pragma once
 #include <optional>
 
@@ -16,7 +16,7 @@ class StateMap {
   std::size_t coordinates() const { return coordinates_; }
   std::size_t velocities() const { return velocities_; }
   std::size_t own_size() const { return coordinates_ + states_ + velocities_; }
-  // The kernel's unknown that is the motion's unknown j, of `count`; multipliers are none.
+  // The kernel's unknown that equals the motion's unknown j, of `count`; nullopt for multipliers.
   std::optional<std::size_t> own(std::size_t j, std::size_t count) const {
     if (j < coordinates_) return j;
     return j + states_ < count ? std::nullopt : std::optional<std::size_t>(coordinates_ + j + states_ - count);
@@ -28,7 +28,7 @@ class StateMap {
   struct Input {
     From from;
     std::uint32_t slot;
-    std::size_t index;  // other: of a state among the kernel's, z before p
+    std::size_t index;  // other: index of a state among the kernel's unknowns, z before p
   };
   static std::vector<Input> inputs(const Tape& tape, const QuasiVelocities& q);
 
@@ -43,7 +43,7 @@ class StateReader {
   using Numbers = std::vector<long double>;
   StateReader(const StateMap& map, const Numbers& parameters)
       : map_(&map), to_own_(map.to_own_, 0, parameters), to_motion_(map.to_motion_, 0, parameters) {}
-  // State of the motion: q_a, q_a', one after the other, then z. Of the kernel: q, z, p.
+  // Converts the state of the motion (q_a, q_a', one after the other, then z) to that of the kernel (q, z, p).
   void own(long double t, const Numbers& state, Numbers& own);
   void motion(long double t, const Numbers& own, Numbers& state);
 

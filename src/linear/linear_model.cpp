@@ -9,19 +9,20 @@ namespace anholon {
 namespace {
 
 constexpr int kMostNewton = 30;
-constexpr double kNearlyLargest = 0.5;  // pivots as large as that are taken in the order of the coordinates
-constexpr double kPreferred = 0.02;     // … and those that were asked for, or are taken already, from this size on
+// pivots at least this large, relative to the largest, are taken in the order of the coordinates
+constexpr double kNearlyLargest = 0.5;
+constexpr double kPreferred = 0.02;  // pivots of preferred or already taken coordinates: from this size on
 
-// 10^-(part of the working digits): what is smaller, in relation to its neighbours, is round-off.
+// 10^-(fraction of the working digits): a smaller number, relative to its neighbours, is round-off.
 Multi round_off(double part) {
   Multi u(1);
   mpfr_div_2ui(u.raw(), u.raw(), static_cast<unsigned long>(part * static_cast<double>(Multi::working_bits())),
                MPFR_RNDN);
   return u;
 }
-constexpr double kZeroPart = 0.7;    // of a matrix made by two solutions of linear equations
-constexpr double kNewtonPart = 0.9;  // of an iteration that has arrived
-constexpr double kEntryPart = 0.85;  // of one entry among those of A
+constexpr double kZeroPart = 0.7;    // for a matrix made by two solutions of linear equations
+constexpr double kNewtonPart = 0.9;  // for a converged iteration
+constexpr double kEntryPart = 0.85;  // for one entry among those of A
 
 Multi largest(const std::vector<Multi>& v) {
   Multi m(0);
@@ -62,7 +63,7 @@ Linearizer::Linearizer(Workspace& scenario, const StateChoice& choice, Signals s
       rows_.push_back({i, k});
       es.push_back(total_derivative(s_.system.equations[i], static_cast<unsigned>(k)));
     }
-  // An input on which a hidden constraint depends would come with its rate.
+  // An input on which a hidden constraint depends would enter with its rate.
   for (std::size_t u = signals_.u.size(); u-- > 0;) {
     bool hidden = false;
     for (std::size_t r = 0; r < rows_.size(); ++r)
@@ -104,13 +105,13 @@ std::string Linearizer::entry_name(std::size_t e) const {
                          Format::text);
 }
 
-// One point of a motion: the entries there, and how their variations hang together.
+// One point of a motion: its entries, and the relations between their variations.
 class LinearPoint {
  public:
   LinearPoint(const Linearizer& l, const std::vector<Multi>& parameters)
       : l_(l), machine_(l.tape_, 0, parameters), x(l.entries_.size(), Multi(0)) {}
 
-  // The state as it was found, with the leading derivatives where they are known.
+  // Loads the computed state, with the leading derivatives if they are known.
   void load(const InitialState<Multi>& state) {
     t = state.t;
     for (std::size_t e = 0; e < x.size(); ++e)
@@ -141,8 +142,9 @@ class LinearPoint {
            std::all_of(jacobian.data.begin(), jacobian.data.end(), good);
   }
 
-  // Which entries of the state follow from the others: level by level, from positions to velocities and on, so that a
-  // velocity depends where its coordinate does. False if the hidden constraints are not independent here.
+  // Chooses the entries of the state that follow from the others: level by level, from positions to velocities and on,
+  // so that a velocity is dependent if its coordinate is. Returns false if the hidden constraints are not independent
+  // here.
   bool choose() {
     const Structure& t_ = l_.s_.structure;
     follows.assign(x.size(), false);
@@ -161,7 +163,7 @@ class LinearPoint {
     return true;
   }
 
-  // Newton's method for all that follows from the independent entries.
+  // Newton's method for all entries that depend on the independent ones.
   bool settle() {
     const Multi small = round_off(kNewtonPart);
     for (int k = 0; k < kMostNewton; ++k) {
@@ -170,7 +172,7 @@ class LinearPoint {
       for (const Multi& r : residual) minus.push_back(-r);
       lu_.solve(minus, step);
       for (std::size_t i = 0; i < step.size(); ++i) x[dependent_[i]] += step[i];
-      if (largest(step) <= small * (Multi(1) + largest(x))) return true;  // J is that of a point as good as the same
+      if (largest(step) <= small * (Multi(1) + largest(x))) return true;  // J is that of a practically equal point
       if (!evaluate()) return false;
     }
     return false;
@@ -179,15 +181,15 @@ class LinearPoint {
   // z' = A z, and z' on the motion.
   void linear(LinearModel& out) const {
     std::vector<std::size_t> where(x.size(), x.size()),
-        independent;  // of an entry among the dependent or independent ones
+        independent;  // index of an entry among the dependent or independent ones
     for (std::size_t i = 0; i < dependent_.size(); ++i) where[dependent_[i]] = i;
     for (std::size_t e = 0; e < x.size(); ++e)
       if (where[e] == x.size()) independent.push_back(e);
-    // Positions before velocities, as one reads them.
+    // Sorts positions before velocities, the usual order.
     std::stable_sort(independent.begin(), independent.end(),
                      [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
     const std::size_t n = independent.size(), inputs = l_.signals_.u.size(), outputs = l_.signals_.y.size();
-    // What follows from each independent entry, and from each input.
+    // Dependent entries as functions of independent ones and of inputs.
     Matrix<Multi> follow(dependent_.size(), n + inputs);
     std::vector<Multi> column(l_.rows_.size(), Multi(0)), solution;
     for (std::size_t c = 0; c < n + inputs; ++c) {
@@ -201,7 +203,7 @@ class LinearPoint {
     out.states.clear(), out.dependent.clear(), out.values.clear(), out.rates.clear();
     out.inputs = l_.signals_.inputs, out.outputs = l_.signals_.outputs, out.notes = l_.notes_;
     for (std::size_t r = 0; r < n; ++r) {
-      const std::size_t next = independent[r] + 1;  // entries of a variable stand side by side
+      const std::size_t next = independent[r] + 1;  // entries of a variable are adjacent
       const bool free = where[next] == x.size();
       for (std::size_t c = 0; c < n; ++c)
         out.A(r, c) = free ? Multi(independent[c] == next ? 1 : 0) : follow(where[next], c);
@@ -303,7 +305,7 @@ class LinearPoint {
     return true;
   }
 
-  // The factors of the columns that belong to what follows.
+  // Factorizes the columns of the dependent entries.
   bool solve_for_dependent() {
     dependent_.clear();
     for (std::size_t e = 0; e < x.size(); ++e)
@@ -330,7 +332,7 @@ bool no_influence(const LinearModel& m, std::size_t column, const std::vector<bo
   return true;
 }
 
-// Drops coordinates without influence on what is kept, until none is left.
+// Drops coordinates without influence on the remaining ones, until none is left.
 std::vector<bool> without_cyclic(const LinearModel& m, const LinearPoint& p, std::vector<bool> may, const Multi& zero) {
   std::vector<bool> kept(m.states.size(), true);
   for (bool again = true; again;) {
@@ -348,7 +350,8 @@ void tell(LinearModel& m, LinearModel::Motion motion, std::string why) {
 
 }  // namespace
 
-// Which coordinates have no influence, here and at a point where they are others; and whether all else rests.
+// Finds the coordinates that have no influence, here and at a point with other values of them, and whether all others
+// rest.
 static void look_for_steadiness(const LinearPoint& point, bool check, LinearModel& out) {
   const std::size_t n = out.states.size();
   const Multi zero = round_off(kZeroPart) * (Multi(1) + largest(out.A.data)),
@@ -380,7 +383,7 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
   if (largest(out.rates) > still) out.motion = LinearModel::Motion::steady;
   if (!moved) tell(out, LinearModel::Motion::unchecked, "no other point of the motion was found");
   for (std::size_t i : out.core) {
-    // The rate of a coordinate is a velocity, which a state names already or follows.
+    // The rate of a coordinate is a velocity, which is a state itself or follows from states.
     if (abs(out.rates[i]) > still) {
       tell(out, LinearModel::Motion::unsteady,
            "the rate of " + out.states[i] + " is " + number_text(to_double(out.rates[i]), 6));

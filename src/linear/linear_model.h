@@ -1,22 +1,22 @@
 // The linear model of a motion at one of its points: z' = A z in independent coordinates and velocities.
 //
-// With the offsets c, d of the structure, all that is known of the motion near a point is
+// With the offsets c, d of the structure, the motion near a point is determined by
 //   E_i^(k) = 0,  k = 0..c_i,   in the entries  x_j^(k),  k = 0..d_j        (theory: dae-view)
-// and nothing else: equations of motion, constraints and their derivatives. Differentiated by the entries they give as
-// many linear equations as there are entries that do not belong to a choice of independent ones z. So every variation
-// follows from those of z, and z' consists of entries again. This holds for constraints of any order; what the
-// multipliers contribute to the stiffness (lambda d^2 phi/dq dq) stands in dE/dq (theory: linear-models).
+// alone: equations of motion, constraints and their derivatives. Differentiated with respect to the entries they give
+// as many linear equations as there are entries beside a choice of independent ones z. So every variation follows from
+// those of z, and z' consists of entries again. This holds for constraints of any order; dE/dq contains the
+// contribution of the multipliers to the stiffness (lambda d^2 phi/dq dq) (theory: linear-models).
 //
 // A steady motion is one in which the coordinates that move have no influence on the others: x, y, heading and spin of
-// a disc that rolls in a circle. They are found, and the eigenvalues are those of the others.
+// a disc that rolls in a circle. These coordinates are found, and the eigenvalues are those of the others.
 #pragma once
 #include "numeric/eigen.h"
 #include "setup/scenario.h"
 
 namespace anholon {
 
-// What acts on a system besides its own motion, and what is observed of it: symbols u and formulas y. A symbol stands
-// in the equations as a constant; B and D tell what a change of it does while all formulas of the model go on to hold.
+// Inputs u and outputs y of a linear model. A symbol u is a constant of the equations; B and D are derivatives with
+// respect to it while all formulas of the model stay valid.
 struct Signals {
   std::vector<std::string> inputs, outputs;
   Column u, y;
@@ -26,26 +26,26 @@ struct Signals {
 struct LinearModel {
   enum class Motion : std::uint8_t {
     equilibrium,
-    steady,     // coordinates without influence move, all else rests, and A stays as it is
-    unsteady,   // A holds for an instant, its eigenvalues tell nothing of stability
+    steady,     // coordinates without influence move, all others rest, and A is constant
+    unsteady,   // A holds for an instant only; its eigenvalues do not decide stability
     unchecked,  // perhaps steady; the check found no other point of the motion
   };
   Motion motion = Motion::unchecked;
-  std::string why;  // unsteady, unchecked: what tells so
+  std::string why;  // unsteady, unchecked: the reason
   Multi t{0};
   std::vector<std::string> states;     // names of z: x, …, x', …
   std::vector<std::string> dependent;  // entries of the state that follow from z
   std::vector<Multi> values, rates;    // z and z' on the motion
   Matrix<Multi> A, B, C, D;
   std::vector<std::string> inputs, outputs;
-  std::vector<std::string> notes;    // signals that have no place in the model
+  std::vector<std::string> notes;    // signals that do not occur in the model
   std::vector<std::size_t> cyclic;   // indices of states: coordinates that influence neither the others nor themselves
   std::vector<std::size_t> core;     // the others
   std::vector<Eigenvalue> spectrum;  // of A over the core; vectors over the core
 };
 const char* name(LinearModel::Motion motion);
 
-// Derivatives and their tape, once for all parameter values. The precision of the thread must be that of its
+// Derivatives and their tape, made once for all parameter values. The precision of the thread must be that of its
 // construction.
 class Linearizer {
  public:

@@ -7,7 +7,7 @@ namespace anholon {
 namespace {
 
 constexpr int kMostSteps = 200;
-constexpr int kExactDigits = 40;  // of a parameter value between those that were given
+constexpr int kExactDigits = 40;  // digits of a parameter value between the given ones
 
 Rational rational_of(const Multi& x) { return *parse_rational(number_text(x, kExactDigits)); }
 
@@ -22,8 +22,8 @@ int zeros(const LinearModel& m) {
   }));
 }
 
-// The m-th largest real part (m = 1, 2, …), leaving out the `always` eigenvalues nearest to 0, which are 0 all along
-// the range.
+// The m-th largest real part (m = 1, 2, …), without the `always` eigenvalues nearest to 0, which are 0 over the whole
+// range.
 const Eigenvalue& ranked(const LinearModel& m, int rank, int always) {
   std::vector<const Eigenvalue*> list;
   for (const Eigenvalue& e : m.spectrum) list.push_back(&e);
@@ -73,7 +73,7 @@ class Search {
                             " an eigenvalue crosses the imaginary axis where the motion could not be followed");
         continue;
       }
-      if (c.frequency > Multi(0)) ++m, c.eigenvalues = 2;  // the two of a pair cross at once
+      if (c.frequency > Multi(0)) ++m, c.eigenvalues = 2;  // both eigenvalues of a pair cross at once
       out.crossings.push_back(c);
     }
     std::stable_sort(
@@ -82,13 +82,14 @@ class Search {
   }
 
  private:
-  // The zero of f(p), the m-th largest real part, between a and b, by false position that halves a value which stays
-  // (Illinois); by bisection where f does not change its sign but leaves 0, as undamped systems do.
+  // The zero of f(p), the m-th largest real part, between a and b, by false position with halving of a retained value
+  // (Illinois); by bisection if f does not change its sign but leaves 0, as for undamped systems.
   bool root(const LinearModel& from, const LinearModel& to, Multi a, Multi b, int m, int always, Crossing& c) const {
     Multi fa = ranked(from, m, always).value.re, fb = ranked(to, m, always).value.re;
     const bool leaves_zero = fa == Multi(0) || fb == Multi(0);
     const bool a_positive = fa > Multi(0);
-    Eigenvalue e = ranked(a_positive ? from : to, m, always);  // the one that crosses, where it is on the right
+    // the crossing eigenvalue, at the end where it is on the right
+    Eigenvalue e = ranked(a_positive ? from : to, m, always);
     Multi p = b, last = a;
     const Multi narrow = Multi(1e-20) * (Multi(1) + abs(a) + abs(b));
     for (int step = 0, stayed = 0; step < kMostSteps; ++step) {

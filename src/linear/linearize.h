@@ -1,10 +1,10 @@
-// Linear models at one value of the parameters or over a range of one of them, and where along the range an eigenvalue
-// crosses the imaginary axis.
+// Linear models at one value of the parameters or over a range of one of them, and the values of the range at which an
+// eigenvalue crosses the imaginary axis.
 //
 // Between neighbouring values p_k, p_(k+1) at which the number u of eigenvalues with a positive real part differs, the
 // m-th largest real part changes its sign for each m between the two u. As ordered real parts are continuous in p, its
-// zero is bracketed. Two crossings between neighbours that undo each other are not seen: the values should lie near
-// enough.
+// zero is bracketed. Two opposite crossings between neighbours are not detected: the values must be close enough
+// together.
 #pragma once
 #include "linear/linear_model.h"
 
@@ -23,9 +23,9 @@ struct LinearResult {
 
 struct Crossing {
   Multi value{0};             // of the parameter
-  Multi frequency{0};         // of the eigenvalue there; 0: it is real
-  int eigenvalues = 1;        // that cross: 2 for a pair
-  bool destabilizes = false;  // for growing values of the parameter it goes to the right
+  Multi frequency{0};         // of the eigenvalue there; 0: the eigenvalue is real
+  int eigenvalues = 1;        // number that crosses: 2 for a pair
+  bool destabilizes = false;  // for growing values of the parameter the eigenvalue moves to the right
 };
 
 struct Linearization {

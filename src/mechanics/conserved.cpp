@@ -12,13 +12,14 @@ namespace anholon {
 
 namespace {
 
-// Fields with all affine terms are looked for up to so many coordinates, beyond that constant ones only.
+// Affine fields are searched for up to this number of coordinates; beyond it, only constant ones.
 constexpr std::size_t kMostAffine = 8;
 constexpr std::size_t kMostConstant = 60;
-// Linear algebra in double at random points of order 1: a field is a solution to this, and a number a fraction to that.
+// Thresholds of linear algebra in double at random points of order 1: for the rank, and for a number to be taken as a
+// fraction.
 constexpr double kRankThreshold = 1e-8, kFraction = 1e-6;
 constexpr int kLargestDenominator = 12;
-// Sums of terms of order 1 to 1e6 that vanish, after round-off.
+// The threshold for sums of terms of order 1 to 1e6 that vanish, after round-off.
 constexpr double kVanishing = 1e-6;
 
 bool free_of(Expr e, std::initializer_list<Kind> kinds) {
@@ -58,8 +59,8 @@ bool small_at_points(Expr e) {
   return true;
 }
 
-// Far from zero at a point, where it has a value: many roots defeat the exact refutation, and the normal form of what
-// is not zero may be long.
+// Whether e is far from zero at a point where it has a value: many roots defeat the exact refutation, and the normal
+// form of a nonzero expression may be long.
 bool nonzero_at_a_point(Expr e) {
   constexpr double kFar = 1e-3;
   for (std::uint64_t k = 1; k <= 3; ++k) {
@@ -73,8 +74,8 @@ bool vanishes(Expr e) { return is_zero(e) || (!nonzero_at_a_point(e) && proved_z
 
 // ---- energy ------------------------------------------------------------------------------------
 
-// A potential of a force F that is homogeneous of degree k in the place r it depends on: U = -F.r/(k + 1). Tried are
-// constant forces, springs and inverse squares; the proof is power + dU/dt = 0.
+// A potential of a force F that is homogeneous of degree k in its position r: U = -F.r/(k + 1). Constant forces,
+// springs and inverse squares are tried; the proof is power + dU/dt = 0.
 std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
   for (const Rational& factor : {Rational(-1), Rational(-1, 2), Rational(1)}) {
     const Expr u = factor * product;
@@ -83,8 +84,8 @@ std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
   return std::nullopt;
 }
 
-// On the motion, of the reaction N of constraint r: its power is lambda times dphi/dt where phi depends on q alone, and
-// times degree * phi where phi is homogeneous in q'.
+// Whether the reaction N of constraint r has no power on the motion: its power is lambda times dphi/dt if phi depends
+// on q alone, and times degree * phi if phi is homogeneous in q'.
 bool without_power(const Mechanics& m, std::size_t r) {
   if (m.order[r] == 0 && free_of(m.phi[r], {Kind::time, Kind::given, Kind::state, Kind::control, Kind::mass}))
     return true;
@@ -117,7 +118,7 @@ bool add_force(const Mechanics& m, const Force& f, Column& potentials) {
     if (f.from && model.bodies[f.from->body].orientation) rate = rate - model.bodies[f.from->body].orientation->rate;
     return each(rate, free_of_time) && vanishes(dot(f.vector, rate));
   }
-  // Elsewhere the velocity of the material point is not that of the place.
+  // At another point of application the velocity of the material point differs from that of the point.
   if (!f.on.at_center || (f.from && !f.from->at_center)) return false;
   Vector place = model.bodies[f.on.body].center;
   if (f.from) place = place - model.bodies[f.from->body].center;
@@ -159,8 +160,8 @@ bool add_gravity(const Body& body, Column& potentials) {
   return u.has_value();
 }
 
-// The torque of a field that varies over the body has the potential -1/2 sum e u.(dg/dr u) where the centre does not
-// move through the field.
+// The torque of a field that varies over the body has the potential -1/2 sum e u.(dg/dr u) if the centre does not move
+// through the field.
 bool add_gravity_gradient(const Body& body, Column& potentials) {
   if (body.gravity_gradient.empty()) return true;
   Graph& g = *body.mass.graph;
@@ -187,7 +188,7 @@ bool add_observer(const Mechanics& m, Column& potentials) {
   if (!is_zero(m.V_O)) potentials.push_back(m.V_O);
   if (is_zero(o.spin)) return true;
   potentials.push_back(m.V_omega);
-  // Coriolis forces have no power where the places are free of t.
+  // Coriolis forces have no power if the positions do not depend on t.
   return std::all_of(m.points.begin(), m.points.end(),
                      [](const WeightedPoint& p) { return each(p.place, free_of_time); });
 }
@@ -210,7 +211,7 @@ std::optional<Conserved> energy(const Mechanics& m) {
     if (!add_gravity(body, parts) || !add_gravity_gradient(body, parts)) return std::nullopt;
   for (const Force& f : model.forces)
     if (!add_force(m, f, parts)) return std::nullopt;
-  // A force that is none of these would show here.
+  // Any other force would make the balance fail.
   const Power balance = power(m);
   const Expr rate =
       balance.noncons + total_derivative(put_masses(model, sum(parts.empty() ? Column{m.graph().zero()} : parts)));
@@ -230,9 +231,9 @@ std::optional<Conserved> energy(const Mechanics& m) {
 
 // ---- momenta -----------------------------------------------------------------------------------
 
-// dT/dq' and dT/dq + G + sum mdot d(dT/dq')/dm, and Phi; masses put in. Where the observer turns, the momentum is that
-// of the velocities v + omega x rho, which is what a symmetry keeps: Coriolis forces are then the rate of its second
-// part.
+// dT/dq' and dT/dq + G + sum mdot d(dT/dq')/dm, and Phi, with masses substituted. If the observer rotates, the momentum
+// is that of the velocities v + omega x rho, which a symmetry conserves: Coriolis forces are then the rate of its
+// second part.
 struct Rates {
   Column momentum, rate;
   std::vector<Column> phi;
@@ -276,7 +277,7 @@ Expr rate_along(const Mechanics& m, const Rates& r, const Column& field) {
   return terms.empty() ? m.graph().zero() : sum(terms);
 }
 
-// Solutions x of A x = 0, one for each column that is no combination of those before it; its entries in later such
+// Solutions x of A x = 0, one for each column that is a combination of the columns before it; its entries in other such
 // columns are 0.
 std::vector<std::vector<double>> kernel(std::vector<std::vector<double>> a, std::size_t columns) {
   std::vector<std::size_t> pivots, free;
@@ -328,12 +329,12 @@ std::optional<Rational> as_fraction(double x) {
   return std::nullopt;
 }
 
-// The affine fields that come into question.
+// The affine fields that are candidates.
 std::vector<Column> fields(const Mechanics& m, const Rates& r) {
   const std::size_t n = m.q.size();
   Graph& g = m.graph();
   if (n > kMostConstant) return {};
-  // The term (a, b) is q_b d/dq_a, (a, n) is d/dq_a; those come last, and are then the free ones.
+  // The term (a, b) is q_b d/dq_a, (a, n) is d/dq_a; the latter come last, so they are the free ones.
   std::vector<std::pair<std::size_t, std::size_t>> terms;
   if (n <= kMostAffine)
     for (std::size_t a = 0; a < n; ++a)
@@ -348,7 +349,7 @@ std::vector<Column> fields(const Mechanics& m, const Rates& r) {
     const auto add = [&](const auto& coefficient) {
       std::vector<double> line;
       for (const auto& [a, b] : terms) line.push_back(coefficient(a, b));
-      // A point outside the domain of a formula says nothing.
+      // A point outside the domain of a formula gives no condition.
       if (std::all_of(line.begin(), line.end(), [](double v) { return std::isfinite(v); }))
         lines.push_back(std::move(line));
     };

@@ -1,16 +1,16 @@
-// Integrals of the motion that can be read off the model, each with its proof (theory: integrals).
+// Integrals of the motion that follow from the form of the model, each with its proof (theory: integrals).
 //
-// Energy: h + U is constant where every force is one of
+// Energy: h + U is constant if every force is one of
 //   a potential free of t, uniform or homogeneous gravity, a constant or homogeneous force, a force without power,
 //   V^O' and V^omega of an observer with constant a0 and omega, a reaction without power (theory: certificate),
 // masses are constant and T is free of t. By the power identity d(h + U)/dt = 0.
 //
 // Momenta: for a field xi_a(q) the quantity p = sum xi_a dT/dq_a' has
 //   dp/dt = sum xi_a (dT/dq_a + G_a + sum mdot dp_a/dm) + sum xi_a' p_a + sum_r lambda_r sum_a Phi_ra xi_a,
-// (where the observer turns, with dT/dq' + sum m (omega x rho).drho/dq for dT/dq' and its rate added), so p is constant
-// where the first two sums cancel and xi is admissible, Phi xi = 0, for every constraint. The fields tried are those
-// affine in q: cyclic coordinates, translations and rotations of the whole or of parts are among them. Which ones come
-// into question is found by linear algebra at random points; what is given back is proved by the exact zero test.
+// (if the observer rotates, with dT/dq' + sum m (omega x rho).drho/dq for dT/dq' and its rate added), so p is constant
+// if the first two sums cancel and xi is admissible, Phi xi = 0, for every constraint. The search covers fields affine
+// in q, which include cyclic coordinates, translations and rotations of the whole or of parts. Candidates are found by
+// linear algebra at random points; each result is proved by the exact zero test.
 #pragma once
 #include "mechanics/mechanics.h"
 
@@ -19,8 +19,8 @@ namespace anholon {
 struct Conserved {
   std::string name;     // "energy", "Jacobi integral", "momentum of phi", "momentum along -y*d/dx + x*d/dy + d/dpsi"
   std::string because;  // in words
-  Expr value;           // masses put in
-  Column terms;         // it is the sum of these
+  Expr value;           // masses substituted
+  Column terms;         // the terms of the sum
 };
 
 std::vector<Conserved> conserved(const Mechanics& m);

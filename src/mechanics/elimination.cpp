@@ -11,17 +11,16 @@ namespace anholon {
 
 namespace {
 
-// In large matrices, which nobody reads, only shorter expressions are rewritten.
+// In large matrices, which are not for readers, only shorter expressions are rewritten.
 constexpr std::size_t kShortInLarge = 40, kLarge = 5;
-// What becomes short on the way is short without more products of terms than this.
+// The limit of the work for simplifying intermediate expressions, in products of terms.
 constexpr long kShortWork = 20'000;
-// A pivot is at least this part of the largest candidate.
+// A pivot is at least this fraction of the largest candidate.
 constexpr double kPivot = 1e-3;
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
 
-// e as short as a person would write it: common factors of fractions cancelled, also those that sin^2 + cos^2 = 1
-// hides.
+// A short form of e: common factors of fractions are cancelled, also those hidden by sin^2 + cos^2 = 1.
 Expr shortest(Expr e) {
   const std::size_t size = nodes(e);
   if (size <= 3 || size > kShortEnough) return e;
@@ -184,7 +183,7 @@ void Elimination::by_coordinates(bool solve) {
   for (std::size_t a : independent) names.push_back(mechanics_->model->coordinates[a].name);
   orders.assign(names.size(), m);
   g = top_;
-  // Linear in q_D^(m): the coefficients do not hold it.
+  // If phi is linear in q_D^(m), the coefficients do not contain q_D^(m).
   solved = solve;
   const Column top_D = D(top_);
   for (const Column& row : Phi_D)
@@ -265,7 +264,7 @@ void Elimination::finish() {
   }
   for (const Column& row : W_inverse_)
     B_.push_back(Column(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(free)));
-  // W q^(m+1) + (the rest of dw/dt) = (u', 0).
+  // W q^(m+1) + (the remaining terms of dw/dt) = (u', 0).
   Column all = u_value_;
   all.insert(all.end(), phi.begin(), phi.end());
   const Column rest = put(total_derivative(all), next_, Column(n, gr.zero()));

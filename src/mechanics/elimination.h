@@ -1,6 +1,6 @@
 // The constraints solved for highest derivatives (theory: elimination).
 //
-// All constraints are lifted to one order m, the highest among them or a higher one that was asked for (N does not
+// All constraints are lifted to one order m, the highest among them or a higher one that is asked for (N does not
 // change). On their manifold the highest derivatives are functions of the lower ones and of n - s free quantities u:
 //
 //   q^(m) = g(q, …, q^(m-1), u, t)
@@ -8,10 +8,10 @@
 // where u are the highest derivatives of the independent coordinates, u = q_I^(m), so that g_b = f_b of [L 3.8] for the
 // dependent ones, or quasi-velocities u = pi^(m) as in [N 4.2].
 //
-// Constraints that can be solved are: then `on` puts g in for q^(m) and its derivative for q^(m+1). The others are not
-// solved: q^(m) stands for its own value on the manifold, `on` changes nothing, and derivatives along the manifold
-// follow from the implicit function theorem, dg/dy = -W^-1 dw/dy with w = (u, phi) and W = dw/dq^(m). One or the other,
-// a formulation writes the same: it differentiates along the manifold with the operators below.
+// Constraints are solved if they can be: then `on` substitutes g for q^(m) and the derivative of g for q^(m+1).
+// Otherwise q^(m) denotes its own value on the manifold, `on` changes nothing, and derivatives along the manifold
+// follow from the implicit function theorem, dg/dy = -W^-1 dw/dy with w = (u, phi) and W = dw/dq^(m). A formulation
+// does not distinguish both cases: it differentiates along the manifold with the operators below.
 #pragma once
 #include <memory>
 
@@ -24,28 +24,28 @@ using Rows = std::vector<Column>;
 
 // An expression of more nodes than this is not rewritten.
 inline constexpr std::size_t kShortEnough = 200;
-// e, or its expanded form where that is shorter.
+// e, or its expanded form if that is shorter.
 Expr shorter(Expr e, std::size_t longest = kShortEnough);
 
-// A^-1 by elimination on the graph, each entry in the shorter of its forms; pivots are entries that are not small at
-// the point. Those that can vanish elsewhere are added to `pivots`. `readable`: the result is to be read, and worth
-// more work.
+// A^-1 by elimination on the graph, each entry in the shorter of its forms. Pivots are entries that are not small at
+// the point; pivots that can vanish elsewhere are added to `pivots`. `readable`: the result is for a reader, and is
+// simplified with more work.
 Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable);
 
-// What is eliminated and which free quantities are used instead.
+// The choice of eliminated and of free quantities.
 struct EliminationChoice {
-  std::vector<std::size_t> constraints;  // those that take part: independent ones
+  std::vector<std::size_t> constraints;  // the constraints that take part; they are independent
   std::vector<std::size_t> dependent;    // as many coordinates, dphi/dq_D^(m) regular
   bool by_quasi = false;                 // u are quasi-velocities, n - s of them; else u = q_I^(m)
   std::vector<QuasiVelocity> quasi;
-  bool solve = true;  // where the constraints can be solved
-  unsigned m = 0;     // the common order asked for; 0: the highest of the constraints and quasi-velocities
+  bool solve = true;  // if the constraints can be solved
+  unsigned m = 0;     // the common order asked for; 0: the highest order of the constraints and quasi-velocities
 };
 
 class Elimination {
  public:
-  Elimination() = default;  // of nothing
-  // Of nothing, for a form with multipliers of the order that was asked for.
+  Elimination() = default;  // eliminates nothing
+  // An elimination that eliminates nothing, for a form with multipliers of order `asked`.
   static Elimination of_order(unsigned asked);
   // `at`: values near the state, by which pivots are chosen.
   Elimination(const Mechanics& mechanics, const EliminationChoice& choice, std::shared_ptr<PointValues> at);
@@ -53,15 +53,16 @@ class Elimination {
   unsigned m = 1;      // common order of the lifted constraints, at least 1
   unsigned asked = 0;  // m, if it was asked for
   std::vector<std::size_t> constraints, dependent, independent;
-  Column phi;                      // lifted constraints, masses put in
+  Column phi;                      // lifted constraints, masses substituted
   Rows Phi_D, Phi_D_inverse;       // dphi/dq_D^(m), s x s
-  std::vector<std::string> names;  // of u: coordinates or quasi-velocities
-  std::vector<unsigned> orders;    // u is the derivative of this order of what has the name
-  bool solved = false;             // g is known as a formula
+  std::vector<std::string> names;  // names of u: coordinates or quasi-velocities
+  // u_k is the derivative of order orders[k] of the coordinate or quasi-velocity names[k]
+  std::vector<unsigned> orders;
+  bool solved = false;  // g is known as a formula
   bool quasi = false;
 
-  Column u;  // as symbols where solved, else as functions of q, …, q^(m)
-  Column g;  // n; where not solved, q^(m) itself
+  Column u;  // symbols if solved, else functions of q, …, q^(m)
+  Column g;  // n entries; q^(m) itself if not solved
 
   // X on the manifold.
   Expr on(Expr X) const;
@@ -70,15 +71,15 @@ class Elimination {
   // d/dt along the manifold (frozen masses stay frozen).
   Column rate(const Column& X) const { return on(total_derivative(X)); }
   Rows rate(const Rows& X) const;
-  // Partial derivatives of X, on the manifold and with the other free quantities held, by
+  // Partial derivatives of X, on the manifold and with the other free quantities held, with respect to
   Column by_u(Expr X) const;            // u                    (n - s)
   Column by_u_rate(Expr X) const;       // u'                   (n - s)
   Column by(unsigned k, Expr X) const;  // q^(k), k < m         (n)
-  // The same of g and of its derivative g' = dg/dt: row s is the gradient of g_s.
+  // As above for g and g' = dg/dt: row s is the gradient of g_s.
   const Rows& g_by_u() const { return B_; }  // B of [N 4.3], n x (n - s)
   const Rows& g_by(unsigned k) const;        // n x n
   const Rows& g_rate_by_u() const { return g_rate_by_u_; }
-  // f_b,nu and the like: the rows of the dependent coordinates, the columns of the independent ones.
+  // f_b,nu and similar derivatives: the rows of the dependent coordinates, the columns of the independent ones.
   Rows f_by_u() const;
   Rows f_by(unsigned k) const;
   Rows f_rate_by_u() const;
@@ -87,7 +88,7 @@ class Elimination {
   Rows C() const;
   // A^-1, with pivots that are not small near the state.
   Rows inverted(const Rows& A) const { return inverse(A, *at_, pivots_, false); }
-  // What was divided by: near a zero of one of them another elimination serves better.
+  // The divisors; near a zero of one of them another elimination is better.
   const Column& pivots() const { return pivots_; }
   // sum_s X_s B_sa: X_nu + sum_b X_b f_b,nu.
   Column contract(const Column& X) const;
@@ -99,7 +100,7 @@ class Elimination {
   Column w;
   Rows chi_by_u;  // n x n
 
-  // Quasi-velocities written out in coordinates again.
+  // Writes quasi-velocities in coordinates again.
   Column in_coordinates(const Column& X) const;
 
   // The same of `copy`, a copy of the mechanics, with values of its own near the state; the handles are left as they

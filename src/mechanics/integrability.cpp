@@ -13,7 +13,7 @@ namespace anholon {
 
 namespace {
 
-// A vector field of more nodes is not differentiated: the flag is given up.
+// A vector field of more nodes is not differentiated: the flag is then undecided.
 constexpr std::size_t kLongestField = 1'200;
 
 struct GaveUp {
@@ -23,20 +23,20 @@ struct GaveUp {
 // The forms of a model, and a basis of their kernel.
 struct Pfaffian {
   FormSpace space;
-  Rows forms;  // holonomic first, then those of `constraints`
+  Rows forms;  // of holonomic constraints first, then of `constraints`
   std::size_t holonomic = 0;
   std::vector<std::size_t> constraints;
   std::vector<std::size_t> pivots;  // as many columns as forms
-  Rows inverse;                     // of the pivot columns
+  Rows inverse;                     // inverse of the pivot columns
   Rows kernel;                      // vector fields X with w(X) = 0
-  Column phi;                       // of the holonomic ones
+  Column phi;                       // the holonomic constraints
 
   std::size_t s() const { return constraints.size(); }
   Column of(std::size_t i) const { return forms[holonomic + i]; }
 };
 
-// (A, b) of a linear constraint. A does not depend on velocities; where its formula holds them all the same, they may
-// have any values, but not 0, with which the formula may be 0/0.
+// (A, b) of a linear constraint. A does not depend on velocities; if its formula contains them all the same, they may
+// have any values except 0, for which the formula may be 0/0.
 Column coefficients(const Mechanics& m, std::size_t r) {
   Graph& g = m.graph();
   Column row = put_masses(*m.model, m.Phi[r]);
@@ -60,8 +60,8 @@ Column coefficients(const Mechanics& m, std::size_t r) {
   return row;
 }
 
-// Pivots among the coordinates: constant columns before others, columns of few entries before others, and then the
-// large, or those of the first or the last coordinates.
+// The order of pivots among the coordinates: constant columns first, columns of few entries first, then the large ones,
+// or those of the first or the last coordinates.
 enum class Prefer : std::uint8_t { large, early, late };
 
 std::vector<std::size_t> pivots_of(const Pfaffian& p, FormPoint& at, Prefer prefer) {
@@ -111,7 +111,7 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
                   FormPoint& generic, bool& special) {
   const Model& model = *m.model;
   Graph& g = m.graph();
-  // Rows (A, b) of all constraints that matter, and phi of the holonomic ones.
+  // Rows (A, b) of all relevant constraints, and phi of the holonomic ones.
   Rows rows;
   Column phi;
   std::vector<std::size_t> from;
@@ -140,7 +140,7 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
     if (!time) row.pop_back();
     p.forms.push_back(row);
   }
-  // Independent ones, the holonomic first.
+  // Independent rows, the holonomic ones first.
   Rows kept;
   std::vector<std::size_t> kept_from;
   for (std::size_t i = 0; i < p.forms.size(); ++i) {
@@ -156,8 +156,8 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
       p.constraints.push_back(from[i]);
   }
   p.forms = kept;
-  // Of several choices of pivots the one with the shortest kernel: brackets of brackets grow with it.
-  constexpr std::size_t kShortKernel = 500;  // characters: shared nodes hide how long a formula is
+  // Of several choices of pivots the one with the shortest basis of ker I is taken: brackets of brackets grow with it.
+  constexpr std::size_t kShortKernel = 500;  // characters: sharing of nodes hides the length of a formula
   std::optional<Pfaffian> best;
   std::size_t shortest = SIZE_MAX;
   for (const Prefer prefer : {Prefer::large, Prefer::early, Prefer::late}) {
@@ -197,8 +197,8 @@ std::vector<Multi> on_bracket(const Matrix<Multi>& forms, const FieldValues& x, 
   return out;
 }
 
-// V less what it shares with the fields before it, 1 in the component that becomes its pivot: the same span with short
-// formulas, which brackets of brackets need.
+// V reduced by the fields before it, with 1 in the component that becomes its pivot: the same span with short formulas,
+// which brackets of brackets need.
 Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, FormPoint& at) {
   for (std::size_t k = 0; k < before.size(); ++k) {
     const Expr factor = V[pivots[k]];
@@ -207,7 +207,7 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
       if (!is_zero(before[k][a]))
         V[a] = a == pivots[k] ? factor.graph->zero() : simplified(V[a] - factor * before[k][a]);
   }
-  // The shortest of the components that are not small.
+  // Takes the shortest of the components that are not small.
   constexpr double kPivot = 1e-3;
   const Matrix<Multi> v = values_at({V}, at);
   Multi largest(0);
@@ -226,8 +226,8 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
   return V;
 }
 
-// D^(0), D^(1), … until stable: the flag's dimensions, and the brackets that were independent of the kernel, in reduced
-// echelon form with their pivots. Only these become formulas; of the others the values at the point are enough.
+// D^(0), D^(1), … until stable: the dimensions of the flag, and the brackets independent of the kernel, in reduced
+// echelon form with their pivots. Only these brackets become formulas; for the others values at the point suffice.
 Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag,
                   std::vector<std::size_t>& pivots, bool& special) {
   const std::size_t s = p.s();
@@ -237,7 +237,7 @@ Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vec
   std::vector<VectorField> fields;
   std::vector<FieldValues> here, elsewhere;
   Rows fresh = p.kernel, formulas;
-  std::vector<std::pair<std::size_t, std::size_t>> found;  // independent brackets [i, j] that are no formulas yet
+  std::vector<std::pair<std::size_t, std::size_t>> found;  // independent brackets [i, j] that have no formulas yet
   while (span.dimension() < s) {
     const std::size_t first_new = fields.size();
     for (const auto& [i, j] : found) {
@@ -260,7 +260,7 @@ Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vec
     if (found.empty()) break;
     flag.push_back(static_cast<int>(s - span.dimension()));
   }
-  if (span.dimension() == s) return {};  // nothing is integrable, and nobody asks for formulas
+  if (span.dimension() == s) return {};  // nothing is integrable, so no formulas are needed
   special = special || span_elsewhere.dimension() > span.dimension();
   for (std::size_t k = formulas.size(); k-- > 0;)
     for (std::size_t i = 0; i < k; ++i) {
@@ -272,8 +272,9 @@ Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vec
   return formulas;
 }
 
-// The forms that annul the kernel and the brackets V, in reduced echelon form: with w_s = dz_s - sum_i X_i,s dz_i of
-// the pivot columns, those of them that are pivots of no V, less V_k,s times that of the pivot of V_k.
+// The forms that annul the kernel and the brackets V, in reduced echelon form. They are built from w_s = dz_s - sum_i
+// X_i,s dz_i of the pivot columns: for each s that is not the pivot of a V_k, w_s less V_k,s times the form of the
+// pivot of V_k.
 Rows annihilator(const Pfaffian& p, const Rows& brackets, const std::vector<std::size_t>& pivots) {
   Graph& g = *p.space.z[0].graph;
   const auto unit = [&](std::size_t s) {
@@ -315,7 +316,7 @@ void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointVal
     return;
   }
   if (out.integrable() == 0) return;
-  // The forms of I^(p), then functions whose differentials they are. The user's own forms may be more readable.
+  // The forms of I^(p), then functions with these differentials. The user's own forms may be more readable.
   const Rows forms = annihilator(p, brackets, pivots);
   Rows own;
   for (std::size_t r = 0; r < p.s(); ++r) {
@@ -323,7 +324,7 @@ void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointVal
     for (const Column& V : brackets) on_brackets.push_back(applied(p.of(r), V));
     if (on_brackets.empty() || rank(values_at({on_brackets}, at)) == 0) own.push_back(p.of(r));
   }
-  // The coefficients with which the constraints make a form of their span.
+  // The coefficients of w as a combination of the constraints.
   const auto made_of = [&](const Column& w) {
     Column on_pivots, all(m.phi.size(), m.graph().zero());
     for (std::size_t c : p.pivots) on_pivots.push_back(w[c]);
@@ -339,7 +340,7 @@ void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointVal
     out.combinations.push_back({made_of(found.back()), f});
   }
   if (found.size() == forms.size()) return;
-  // Those that are left are integrable by Frobenius, without a formula.
+  // The remaining forms are integrable by Frobenius' theorem, without a formula.
   out.proved = proved_closed(p.space, forms, p.kernel, brackets);
   for (const Column& w : forms) {
     Rows more = found;

@@ -11,17 +11,17 @@ namespace anholon {
 
 namespace {
 
-// Longer expressions are not proved, nor integrated.
+// Longer expressions are neither proved nor integrated.
 constexpr std::size_t kLongestProof = 2000;
-// Echelon forms that are tried.
+// The number of echelon forms that are tried.
 constexpr std::size_t kMostChoices = 12;
-// Levels of integrals stand as symbols that no model has.
+// Symbols that no model has represent the levels of integrals.
 constexpr std::uint32_t kLevels = 100'000;
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
 bool proved(Expr e) { return is_zero(e) || (nodes(e) <= kLongestProof && proved_zero(e)); }
 
-// A form with its values and those of its derivatives: they tell what is worth trying.
+// A form with its values and those of its derivatives, by which candidates are selected.
 struct Tried {
   Rows d;  // dw_a/dz_b
   Matrix<Multi> w, v;
@@ -32,7 +32,7 @@ struct Tried {
     v = values_at(d, at);
   }
   Multi curl(std::size_t a, std::size_t b) const { return v(a, b) - v(b, a); }
-  // dw = 0 in all variables but z_a; a = n: in all.
+  // Whether dw = 0 in all variables but z_a; a = n: in all.
   bool closed_without(std::size_t a) const {
     for (std::size_t b = 0; b < v.rows; ++b)
       for (std::size_t c = 0; c < b; ++c)
@@ -41,7 +41,7 @@ struct Tried {
   }
 };
 
-// exp of the integral of mu'/mu over one variable, if that depends on it alone.
+// exp of the integral of mu'/mu over one variable; nullopt if mu'/mu depends on others.
 std::optional<Expr> integrating_factor(const FormSpace& space, const Column& w, const Tried& t, std::size_t a) {
   if (!t.closed_without(a)) return std::nullopt;
   std::optional<Multi> ratio;
@@ -80,7 +80,7 @@ std::optional<Expr> integral_of(const FormSpace& space, const Column& w, FormPoi
   const auto integrated = [&](const Column& form) -> std::optional<Expr> {
     std::optional<Expr> f = potential(form, space.z);
     if (!f) return f;
-    // A product of powers has a value on both sides of zero.
+    // A product of powers is defined on both sides of zero.
     const Expr power = exponential(*f);
     return holds_logarithm(*f) && !holds_logarithm(power) ? power : *f;
   };
@@ -98,8 +98,7 @@ std::optional<Expr> integral_of(const FormSpace& space, const Column& w, FormPoi
   return std::nullopt;
 }
 
-// Goes through the forms, and then through their reduced echelon forms with several choices of pivots, until one
-// serves.
+// Tries the forms, and then their reduced echelon forms with several choices of pivots, until `serves` accepts one.
 bool any_form(const Rows& forms, FormPoint& at, const std::function<bool(const Column&)>& serves) {
   if (std::any_of(forms.begin(), forms.end(), serves)) return true;
   const std::size_t p = forms.size(), n = forms[0].size();
@@ -130,12 +129,12 @@ bool any_form(const Rows& forms, FormPoint& at, const std::function<bool(const C
   return false;
 }
 
-// f = c solved for one variable, f being linear in it, and put into the forms.
+// f = c solved for one variable in which f is linear, and substituted in the forms.
 class Level {
  public:
   Level(const FormSpace& space, Expr f, Expr c, FormPoint& at) {
     const Column df = space.differential(f);
-    for (int pass = 0; pass < 2 && !found_; ++pass)  // a constant factor first
+    for (int pass = 0; pass < 2 && !found_; ++pass)  // variables with a constant factor first
       for (std::size_t a = space.z.size() - (space.time ? 1 : 0); a-- > 0 && !found_;) {
         if (is_zero(df[a]) || (pass == 0 && !is_number(df[a]))) continue;
         if (const std::vector<NodeId> in = symbols({&df[a], 1});
@@ -176,7 +175,7 @@ class Level {
   Expr symbol_, value_;
 };
 
-// As many of the forms as are independent.
+// A maximal independent subset of the forms.
 Rows independent_of(const Rows& forms, FormPoint& at) {
   Rows out;
   for (std::size_t i : choose_rows(values_at(forms, at), Multi(kIndependent)).independent) out.push_back(forms[i]);
@@ -189,7 +188,7 @@ std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, Rows own, 
                                   const Rows& kernel, FormPoint& at) {
   Graph& g = *whole.z[0].graph;
   FormSpace space = whole;
-  // What the symbols c_k stand for: everywhere, and where the holonomic constraints hold.
+  // The values of the symbols c_k: everywhere, and where the holonomic constraints hold.
   Column levels, levels_on_surface;
   const auto written_out = [&](Expr e, const Column& levels_of) {
     return substitute({&e, 1}, [&](NodeId id) {
@@ -229,7 +228,7 @@ std::vector<Expr> first_integrals(const FormSpace& whole, Rows forms, Rows own, 
       return false;
     differentials = more;
     out.push_back(on_surface);
-    return restrict_to(*on_level, f, on_surface);  // else it stays with the others
+    return restrict_to(*on_level, f, on_surface);  // else it is kept with the others
   };
   while (!forms.empty()) {
     const Rows now = forms, own_now = own;
@@ -258,7 +257,7 @@ Expr readable(const FormSpace& space, Expr f, const SymbolNames& names) {
   }
   f = arranged(f, names);
   const auto length = [&](Expr e) { return print(e, names, Format::text).size(); };
-  // Exponentials do not cancel in a normal form: then it is no improvement.
+  // Exponentials do not cancel in a normal form, which may then be longer.
   if (2 * length(f) > 3 * length(as_found)) f = as_found;
   return print(f, names, Format::text)[0] == '-' ? arranged(-f, names) : f;
 }

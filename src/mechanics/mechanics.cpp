@@ -21,8 +21,8 @@ std::vector<WeightedPoint> weighted_points(const Model& model) {
         p.speed2 = norm2(v);
         p.acceleration2 = norm2(a);
       } else {
-        // u fixed in the body: u' = Omega x u and u'' = Omega' x u + Omega x (Omega x u), whose
-        // squares are the same in body axes, where they are short.
+        // u fixed in the body: u' = Omega x u and u'' = Omega' x u + Omega x (Omega x u). Their squares are the same in
+        // body axes, in which they are short.
         const Vector u{axis.own[0], axis.own[1], axis.own[2]}, omega = body.orientation->own_rate;
         const Vector v = cross(omega, u);
         p.speed2 = norm2(v);
@@ -60,7 +60,7 @@ class Pull {
   Column outputs_, seeds_;
 };
 
-// Forces at mass centres work through rho_C,q; torques through dOmega/dq' (theory: weighted-points).
+// Forces at mass centres act through rho_C,q, torques through dOmega/dq' (theory: weighted-points).
 Column generalized_forces(const Mechanics& m, const std::vector<Load>& loads) {
   Pull positions, rates;
   for (std::size_t b = 0; b < loads.size(); ++b) {
@@ -118,7 +118,7 @@ Mechanics mechanics(const Model& model) {
     m.order.push_back(c.order);
     m.lambda.push_back(g.multiplier(static_cast<std::uint32_t>(r), 0));
     m.Phi.push_back(gradient(c.phi, jets(model, static_cast<unsigned>(c.order))));
-    if (c.by) continue;  // kept by a force of its own, not by an ideal reaction
+    if (c.by) continue;  // maintained by a force of its own, not by an ideal reaction
     for (std::size_t a = 0; a < m.q.size(); ++a)
       if (!is_zero(m.Phi[r][a])) m.N[a] += m.lambda[r] * m.Phi[r][a];
   }
@@ -127,8 +127,8 @@ Mechanics mechanics(const Model& model) {
 
 Column forces(const Mechanics& m) { return m.Q + m.QR + m.QD + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma; }
 
-// The partial derivative by explicit time, coordinates, velocities and masses held; an unknown given
-// function f(t), a state and an input are explicit time, too.
+// The partial derivative by explicit time, with coordinates, velocities and masses held; unknown given functions f(t),
+// states and inputs count as explicit time.
 static Expr by_time(Expr e) {
   Graph& g = *e.graph;
   Expr rate = partial(e, g.time());

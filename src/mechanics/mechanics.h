@@ -1,8 +1,8 @@
 // Kinetic quantities and generalized forces of a model, by weighted points (theory: weighted-points, forces).
 //
-// Masses stand as frozen symbols mu in everything here: a total derivative of T, S, V is the frozen
-// derivative D/Dt of the papers. After the last differentiation put_masses puts m(t, q, q') in.
-// mdot inside QR is the full total derivative of the mass, as it must be.
+// All masses here are frozen symbols mu: a total derivative of T, S, V is the frozen derivative D/Dt of the papers.
+// After the last differentiation put_masses substitutes m(t, q, q'). mdot inside QR is the full total derivative of the
+// mass.
 #pragma once
 #include "model/loads.h"
 
@@ -12,7 +12,7 @@ namespace anholon {
 struct WeightedPoint {
   Expr weight;         // frozen mass or axis weight
   Vector place;        // rho (or the axis vector u_k)
-  bool uniform_field;  // feels a0 and gravity: true for mass points, false for axes
+  bool uniform_field;  // whether a0 and gravity act on it: true for mass points, false for axes
   std::size_t body;
   Expr speed2, acceleration2;  // |v|^2, |a|^2
 };
@@ -36,7 +36,7 @@ struct Mechanics {
   Column Gamma;          // -2 m omega x v
 
   Column phi;               // constraints
-  std::vector<int> order;   // m of each
+  std::vector<int> order;   // m of each constraint
   std::vector<Column> Phi;  // dphi/dq^(m), one row per constraint
   Column lambda;            // multipliers
   Column N;                 // sum lambda Phi
@@ -52,7 +52,7 @@ void for_each_expression(Mechanics& m, const ExprVisitor& f);
 // Q + QR + QD + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces.
 Column forces(const Mechanics& m);
 
-// Energy and its rate (theory: certificate). Masses put in.
+// Energy and its rate, with masses substituted (theory: certificate).
 struct Power {
   Expr h;           // q' dT/dq' - T
   Expr noncons;     // right side of the power identity without the constraints
@@ -61,7 +61,7 @@ struct Power {
 };
 Power power(const Mechanics& m);
 
-// d^2 T / dq' dq', masses put in; row by row.
+// d^2 T / dq' dq', masses substituted; row by row.
 std::vector<Column> mass_matrix(const Mechanics& m);
 
 // Newton's left side sum m a . drho/dq by the points themselves, independent of T and S.

@@ -29,7 +29,7 @@ VectorField::VectorField(const FormSpace& space, Column components) : X(std::mov
 }
 
 Expr simplified(Expr e) {
-  constexpr long kMostWork = 100'000;  // products of terms: a formula that takes more is not worth it here
+  constexpr long kMostWork = 100'000;  // products of terms: a formula that takes more work is not simplified
   const std::size_t size = reachable({&e, 1}).size();
   if (size <= 3 || size > kShortEnough) return e;
   const std::optional<NormalForm> form = normal_form(e, {}, kMostWork);
@@ -48,7 +48,7 @@ Column bracket(const VectorField& X, const VectorField& Y) {
   return b;
 }
 
-// A number in [0, 1) that depends on the symbol and the seed alone.
+// A number in [0, 1) that depends only on the symbol and the seed.
 static double arbitrary(const Node& n, std::uint64_t seed) {
   std::uint64_t h =
       seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order;
@@ -112,7 +112,7 @@ bool Echelon::add(std::vector<Multi> v) {
 }
 
 Expr parameters_put(const Model& model, Expr e) {
-  // Values of parameters may hold other parameters.
+  // Values of parameters may contain other parameters.
   for (std::size_t k = 0; k <= model.parameters.size(); ++k) {
     const Expr next = substitute({&e, 1}, [&](NodeId id) {
       const Node& n = e.graph->node(id);

@@ -23,7 +23,7 @@ struct FormSpace {
 // w(X), or X f with w = df.
 Expr applied(const Column& w, const Column& X);
 
-// e, or its normal form where that is shorter and found with little work.
+// e, or its normal form if that is shorter and found with little work.
 Expr simplified(Expr e);
 
 // A vector field with the differentials of its components.
@@ -34,20 +34,21 @@ struct VectorField {
 };
 Column bracket(const VectorField& X, const VectorField& Y);
 
-// Numbers of kFormDigits digits decide ranks: round-off lies far below what counts as zero, and that below any true
-// value.
+// Ranks are decided with numbers of kFormDigits digits: round-off is far below the threshold for zero, and the
+// threshold is far below any true value.
 inline constexpr int kFormDigits = 60;
 inline constexpr double kFormZero = 1e-35, kIndependent = 1e-25;
 
-struct NoValue {};  // a formula has none at the point
+struct NoValue {};  // a formula has no value at the point
 
 // A random point near a state. REQUIRES: a PrecisionScope of kFormDigits.
 class FormPoint {
  public:
-  // The seed moves the point; `other_parameters`: they have random values, too, instead of their own.
+  // The seed determines the point; with `other_parameters` the parameters have random values as well, instead of their
+  // own.
   FormPoint(const Mechanics& m, PointValues& near, std::uint64_t seed, bool other_parameters);
   Multi operator()(Expr e) { return (*values_)(e); }
-  // The same point in double, for the choice of pivots.
+  // The point in double, for the choice of pivots.
   PointValues rough() const;
 
  private:
@@ -55,14 +56,14 @@ class FormPoint {
   std::unique_ptr<ValuesAt<Multi>> values_;
 };
 
-// Entries that are round-off are zero. Throws NoValue.
+// The values of the rows; entries that are round-off are set to zero. Throws NoValue.
 Matrix<Multi> values_at(const Rows& rows, FormPoint& at);
 std::size_t rank(const Matrix<Multi>& a);
 
-// A space spanned by vectors that come one after the other.
+// A space spanned by vectors that are added one after the other.
 class Echelon {
  public:
-  // True if v was independent of those before; then it is one of them.
+  // Adds v if it is independent of the vectors before; returns whether it is.
   bool add(std::vector<Multi> v);
   std::size_t dimension() const { return rows_.size(); }
 
@@ -71,7 +72,7 @@ class Echelon {
   std::vector<std::size_t> pivots_;
 };
 
-// e with the values of the parameters put in.
+// e with the values of the parameters substituted.
 Expr parameters_put(const Model& model, Expr e);
 
 }  // namespace anholon

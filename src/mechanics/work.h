@@ -1,9 +1,9 @@
 // The power of the reactions of each constraint, P_c = sum_r lambda_r sum_a Phi_ra q_a' (theory: certificate), written
-// for a motion that obeys the constraint:
+// for a motion that satisfies the constraint:
 //
-//   holonomic            -lambda df/dt                     nothing if f does not hold t
-//   order 1, degree d    lambda (sum Phi q' - d phi)       nothing if homogeneous; affine: -lambda b; v^2 = c^2: 2 lambda c^2
-//   order 2 and more     lambda sum Phi q'                 in general not nothing, linear or not
+//   holonomic            -lambda df/dt                     0 if f does not depend on t
+//   order 1, degree d    lambda (sum Phi q' - d phi)       0 if homogeneous; affine: -lambda b; v^2 = c^2: 2 lambda c^2
+//   order 2 and more     lambda sum Phi q'                 in general not 0, linear or not
 #pragma once
 #include "mechanics/mechanics.h"
 

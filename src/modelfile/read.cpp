@@ -30,13 +30,13 @@ namespace anholon {
 
 namespace {
 
-// Where something is missing that may stand anywhere.
+// The position of an error about something missing that has no place of its own.
 constexpr Span kTop{1, 1, 1};
 
-// What making the expressions of a file may cost: a formula that unfolds without end is refused where it stands. The
-// chain of a thousand links takes a tenth of this.
+// The limit of the work that a file's expressions may cost: a formula that expands without end is refused at its place.
+// The chain of a thousand links takes a tenth of this.
 constexpr std::size_t kWork = 700'000, kWorkPerByte = 1000, kWorkPerMember = 1000, kWorkLater = std::size_t{1} << 48;
-class Reader {  // what it refers to is asked only while it runs
+class Reader {  // its references are used only while it runs
  public:
   Reader(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides,
          const std::vector<std::string>& cases)
@@ -56,7 +56,7 @@ class Reader {  // what it refers to is asked only while it runs
     if (!read) return false;
     scenarios(root);
     const Families families = write_out_families(root, overrides_, diagnostics_);
-    // One slip in an index or a scenario would show in every element.
+    // One mistake in an index or a case would be repeated in every element.
     if (diagnostics_.has_errors()) return false;
     scope_.reserve(families.letters);
     index_overrides_ = families.used;
@@ -64,7 +64,7 @@ class Reader {  // what it refers to is asked only while it runs
     for (const SourceText& s : model_.source_text.others) bytes += s.text.size();
     model_.graph->allow(kWork + kWorkPerByte * bytes + kWorkPerMember * families.members);
     sections(root);
-    // Without coordinates every formula would fail after this one error.
+    // Without coordinates every formula would fail as well.
     if (!guard([&] { coordinates(root); })) return false;
     parameters(root);
     declare_hybrid(root, scope_, model_, diagnostics_);
@@ -75,14 +75,14 @@ class Reader {  // what it refers to is asked only while it runs
     named(root, "frame", Scope::Role::frame);
     named(root, "point", Scope::Role::point);
     named(root, "quasi", Scope::Role::define);
-    // Bodies are declared before anything is evaluated, their parts read when the masses are.
+    // Bodies are declared before any evaluation; their parts are read together with the masses.
     BodyReader bodies(scope_, model_, diagnostics_);
     bodies.declare(root);
     if (const Item* o = table(root, "observer"))
       guard([&] { read_observer(*o, scope_, model_, diagnostics_); }, o->span);
     read_gravity(root, scope_, diagnostics_);
     read_controls(root, scope_, model_, diagnostics_);
-    // A name that does not stand for a value is worth one report, at the place of its use.
+    // A name that does not denote a value is reported once, at its use.
     bodies.read();
     bodies.read_forces(root);
     read_potentials(root, scope_, model_, diagnostics_);
@@ -113,7 +113,7 @@ class Reader {  // what it refers to is asked only while it runs
     });
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
-    // What is made of the model from here on grows in proportion to it.
+    // From here on, expressions grow in proportion to the model.
     model_.graph->allow(kWorkLater);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
       diagnostics_.error(kTop, "the model has no body",
@@ -325,12 +325,12 @@ class Reader {  // what it refers to is asked only while it runs
   const Overrides& overrides_;
   const std::vector<std::string>& cases_;
   std::set<std::string> index_overrides_;
-  Item root_;  // what the scope looks up stays
+  Item root_;  // referenced by the scope
   Model model_;
   Scope scope_;
 };
 
-// The names of the file, and those that belong to the derived equations.
+// The names of the file, and those of the derived equations.
 class DerivedNames final : public Names {
  public:
   explicit DerivedNames(std::shared_ptr<Reader> reader) : reader_(std::move(reader)), scope_(reader_->scope()) {}

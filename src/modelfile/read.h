@@ -1,4 +1,4 @@
-// TOML -> Model: names resolved, formulas typed, constraints classified, every error collected.
+// TOML -> Model: names are resolved, formulas typed, constraints classified, all errors collected.
 #pragma once
 #include <map>
 #include <optional>
@@ -8,18 +8,18 @@
 
 namespace anholon {
 
-// Values of parameters and index integers given from outside (--set M=3): name -> exact formula.
+// Values of parameters and index integers given on the command line (--set M=3): name -> exact formula.
 using Overrides = std::map<std::string, std::string>;
 
-// Reads the text of a model file, and the files that it builds on, with these scenarios one after the other. Nothing on
-// errors, which are then in `diagnostics`.
+// Reads the text of a model file and of its base files, with these cases applied in order. Returns nullopt on errors,
+// which are then in `diagnostics`.
 std::optional<Model> read_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides = {},
                                 const std::vector<std::string>& cases = {});
 
-// A model whose names can still be asked what they mean, for formulas beyond its file.
+// A model with its names, for formulas beyond its file.
 struct OpenModel {
   std::shared_ptr<const Model> model;
-  std::shared_ptr<Names> names;  // those of the file; lambda, lambda.NAME and m_NAME
+  std::shared_ptr<Names> names;  // the names of the file; lambda, lambda.NAME and m_NAME
 };
 std::optional<OpenModel> open_model(const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides = {},
                                     const std::vector<std::string>& cases = {});

@@ -1,9 +1,9 @@
-// Factors of rows and columns that bring all entries of a matrix to like sizes: the largest entry of each row and of
-// each column is then about 1 (Ruiz 2001: all rows and columns at once are divided by the root of their largest entry,
-// again and again).
+// Factors of rows and columns that scale the entries of a matrix to similar sizes: the largest entry of each row and of
+// each column is then about 1 (Ruiz 2001: all rows and columns at once are divided by the square root of their largest
+// entry, repeatedly).
 //
-// Rows of a system mean forces, torques, accelerations, its unknowns metres, angles, newtons. Balanced, they compare,
-// whatever the units.
+// The rows of a system are forces, torques, accelerations; its unknowns are metres, angles, newtons. After balancing
+// they are comparable, whatever the units.
 #pragma once
 #include <cmath>
 

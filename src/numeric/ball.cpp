@@ -11,7 +11,7 @@ slong& Ball::working_bits() {
 
 namespace {
 
-// GMP's fractions as FLINT's.
+// Converts a fraction of GMP into one of FLINT.
 struct Fraction {
   fmpq_t v;
   explicit Fraction(const Rational& r) { fmpq_init(v), fmpq_set_mpq(v, r.get_mpq_t()); }
@@ -20,7 +20,7 @@ struct Fraction {
   Fraction& operator=(const Fraction&) = delete;
 };
 
-// A dyadic number of an exponent within this many bits is written out.
+// A dyadic number is written out if its exponent is within this many bits.
 constexpr slong kLargestExponent = 1 << 20;
 
 std::optional<Rational> exactly(const arf_t x) {
@@ -206,7 +206,7 @@ Ball pow(const Ball& x, const Rational& exponent) {
 }
 
 Ball atan2(const Ball& y, const Ball& x) {
-  // Not defined at the origin, where Arb says 0.
+  // atan2 is not defined at the origin, where Arb returns 0.
   if (y.contains_zero() && x.contains_zero()) return Ball::unknown();
   Ball r;
   arb_atan2(r.raw(), y.raw(), x.raw(), Ball::working_bits());

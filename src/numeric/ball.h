@@ -1,9 +1,8 @@
-// A real number known to lie in a ball: midpoint and radius (Arb), with the operators of a built-in
-// number. Whatever lies in the operands, the result of the exact operation lies in the result.
+// A real number enclosed in a ball: midpoint and radius (Arb), with the operators of a built-in number. The result
+// contains the exact result for all points of the operands.
 //
-// Every operation works with the precision of its thread, set by BallScope. Where an operation is not
-// defined on the whole ball the result is not finite; comparisons are therefore questions
-// (contains_zero), never operators.
+// Every operation works with the precision of its thread, set by BallScope. If an operation is not defined on the whole
+// ball, the result is not finite. Comparisons are therefore functions (contains_zero), not operators.
 #pragma once
 #include <optional>
 #include <string>
@@ -75,7 +74,7 @@ class Ball {
   }
 
   static Ball pi();
-  // Everything: what is known of a value that is not defined.
+  // The whole real line: the enclosure of an undefined value.
   static Ball unknown();
 
   bool is_finite() const { return arb_is_finite(v_) != 0; }
@@ -91,18 +90,18 @@ class Ball {
   Ball spread() const;
   // The ball around 0 that holds this one and its mirror image.
   Ball symmetric() const;
-  // Exactly, as dyadic numbers; nothing if not finite or of an absurd exponent.
+  // The exact value as a dyadic number; nullopt if it is not finite or its exponent is out of bounds.
   std::optional<Rational> midpoint() const;
   std::optional<Rational> radius() const;
   Multi midpoint_multi() const;  // rounded to Multi's precision
   // "0.3333", "1.2e-30"; the radius is rounded upwards.
   std::string midpoint_text(int digits = 16) const;
   std::string radius_text() const;
-  // A bound of the absolute value, rounded upwards: "3.14e-15", "0", or "inf" where nothing is known.
+  // A bound of the absolute value, rounded upwards: "3.14e-15", "0", or "inf" for an unbounded ball.
   std::string bound_text() const;
 
-  // Balls whose exponent outgrows a machine word become unknown, so that no chain of operations can
-  // exhaust the memory.
+  // Replaces a ball whose exponent exceeds a machine word by unknown(), so that no chain of operations can exhaust the
+  // memory.
   Ball& settle();
   arb_ptr raw() { return v_; }
   arb_srcptr raw() const { return v_; }
@@ -153,8 +152,8 @@ inline void addmul(Ball& acc, const Ball& a, const Ball& b) {
   arb_addmul(acc.raw(), a.raw(), b.raw(), Ball::working_bits());
   acc.settle();
 }
-Ball sign(const Ball& x);                           // -1, 0, 1, or a ball that holds what is possible
-Ball pow(const Ball& x, const Rational& exponent);  // of a negative number: integer exponents only
+Ball sign(const Ball& x);                           // -1, 0, 1, or a ball that holds the possible values
+Ball pow(const Ball& x, const Rational& exponent);  // a negative base needs an integer exponent
 Ball atan2(const Ball& y, const Ball& x);           // in (-pi, pi]
 
 }  // namespace anholon

@@ -8,8 +8,8 @@ namespace anholon {
 
 namespace {
 
-constexpr long kGuardBits = 40;  // of the working precision, that the entries of A have lost
-constexpr int kSpread = 64;      // eigenvalues nearer together than so many times their motion are one
+constexpr long kGuardBits = 40;  // bits of the working precision that the entries of A have lost
+constexpr int kSpread = 64;      // eigenvalues closer together than this many times their motion count as one
 
 Multi multi_of(const arb_t x) {
   Multi m;
@@ -27,7 +27,7 @@ Multi least_change_of(const Multi& largest) {
 
 Complex minus(const Complex& a, const Complex& b) { return {a.re - b.re, a.im - b.im}; }
 
-// Eigenvalues, and eigenvectors where they are asked for, in the order in which the iteration finds them.
+// Eigenvalues, and eigenvectors if `vectors` is given, in the order of the iteration.
 bool solve(const Matrix<Multi>& a, std::vector<Complex>& values, std::vector<std::vector<Complex>>* vectors) {
   const auto n = static_cast<slong>(a.rows);
   const slong bits = Multi::working_bits() + 16;
@@ -55,7 +55,7 @@ bool solve(const Matrix<Multi>& a, std::vector<Complex>& values, std::vector<std
   return found;
 }
 
-// Largest entry 1; the first of those that are as large.
+// Scales the vector to largest entry 1; among equally large entries the first counts.
 void normalise(std::vector<Complex>& x) {
   Multi largest(0);
   for (const Complex& z : x)
@@ -74,7 +74,7 @@ void normalise(std::vector<Complex>& x) {
   }
 }
 
-// The mean of each cluster stands for its members.
+// Replaces the members of each cluster by their mean.
 void gather(std::vector<Eigenvalue>& list) {
   std::vector<std::size_t> cluster(list.size());
   std::iota(cluster.begin(), cluster.end(), std::size_t{0});
@@ -122,13 +122,12 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
   Matrix<Multi> moved = a;
   for (std::size_t i = 0; i < a.rows; ++i)
     for (std::size_t j = 0; j < a.cols; ++j)
-      moved(i, j) +=
-          change * Multi(2 * static_cast<int>((i * 37 + j * 53 + 11) % 17) - 17) / Multi(16);  // none of them 0
+      moved(i, j) += change * Multi(2 * static_cast<int>((i * 37 + j * 53 + 11) % 17) - 17) / Multi(16);  // all nonzero
   std::vector<Complex> values, others;
   std::vector<std::vector<Complex>> vectors;
   if (!solve(a, values, &vectors) || !solve(moved, others, nullptr)) return false;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    // The nearest of the others that no one has taken yet.
+    // Finds the nearest of the other eigenvalues that is not taken yet.
     std::size_t nearest = 0;
     Multi distance(-1);
     for (std::size_t k = 0; k < others.size(); ++k)
@@ -147,7 +146,7 @@ bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out) {
     for (Complex& z : e.vector)
       for (Multi* part : {&z.re, &z.im})
         if (!(abs(*part) > Multi(kSpread) * e.radius)) *part = Multi(0);
-  // A is real: eigenvalues that are not come in pairs, and a pair has one real part.
+  // A is real: its non-real eigenvalues come in pairs, and a pair has one real part.
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (!(out[i].value.im > Multi(0))) continue;
     for (Eigenvalue& e : out)

@@ -1,11 +1,11 @@
-// Eigenvalues and right eigenvectors of a real matrix in multiprecision, with what each can be trusted.
+// Eigenvalues and right eigenvectors of a real matrix in multiprecision, each with an error estimate.
 //
 //   A x = mu x,  by the QR algorithm (Arb's acb_mat_approx_eig_qr) at the working precision.
 //
 // A rounding of size u moves an eigenvalue of multiplicity m by u^(1/m). So A is solved a second time with its entries
-// changed in their last digits: the eigenvalues that lie nearer together than they moved are one multiple eigenvalue,
-// for which their mean stands (it moves by u only), and `radius` says how far its members were spread. What is smaller
-// than the radius is zero.
+// changed in their last digits: eigenvalues that are closer together than they moved are one multiple eigenvalue. It is
+// replaced by their mean, which moves by u only, and `radius` is the spread of its members. A value smaller than the
+// radius is zero.
 #pragma once
 #include <string>
 #include <vector>
@@ -25,8 +25,8 @@ struct Eigenvalue {
   std::vector<Complex> vector;  // largest entry 1
 };
 
-// By falling real part, then rising frequency, + before -. As many as A has rows: a multiple one stands several times.
-// False if the iteration does not converge, or A holds what is no number.
+// Sorted by decreasing real part, then by increasing frequency, + before -. There are as many eigenvalues as A has
+// rows: a multiple one is listed several times. Returns false if the iteration does not converge or A holds a NaN.
 bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out);
 
 Multi modulus(const Complex& z);

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// The precision of balls, for the floating-point numbers between them.
+// Gives the floating-point numbers between balls the precision of the balls.
 struct SamePrecision : PrecisionScope {
   SamePrecision() : PrecisionScope(static_cast<int>(static_cast<double>(Ball::working_bits()) * 0.30103) + 1) {}
 };
@@ -76,7 +76,7 @@ std::optional<Box> krawczyk(const SquareSystem& f, const Box& box) {
 std::optional<Box> prove_root(const SquareSystem& f, const Box& box) {
   std::optional<Box> inner = krawczyk(f, box);
   if (!inner || !inside(*inner, box)) return std::nullopt;
-  // The root is in K(X), so in K(K(X)), and so on as long as the boxes shrink.
+  // A root in K(X) lies in K(K(X)) as well, and so on as long as the boxes shrink.
   for (int sweep = 0; sweep < 60; ++sweep) {
     const std::optional<Box> next = krawczyk(f, *inner);
     if (!next || !inside(*next, *inner)) break;
@@ -89,7 +89,7 @@ std::optional<Box> enclose_root(const SquareSystem& f, const std::vector<Multi>&
   const SamePrecision precision;
   const std::size_t n = f.size;
   std::vector<Multi> x = approximate, step(n);
-  // Newton's iteration on the centers; its last correction tells how large a box to try.
+  // Newton's iteration on the centers; the last correction gives the size of the box to try.
   for (int sweep = 0; sweep < 60; ++sweep) {
     Box center;
     for (const Multi& v : x) center.emplace_back(v);

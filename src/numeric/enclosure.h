@@ -1,10 +1,9 @@
-// Proof that a square system f(x) = 0 has exactly one root in a box: the interval Newton operator of
-// Krawczyk,
+// Proof that a square system f(x) = 0 has exactly one root in a box: the interval Newton operator of Krawczyk,
 //
 //     K(X) = m − Y f(m) + (I − Y f'(X)) (X − m),      m the center of X, Y near f'(m)^-1.
 //
-// Every root in X lies in K(X), and if K(X) lies in the interior of X there is exactly one. A double
-// root is never proved.
+// K(X) contains every root in X, and if K(X) is in the interior of X there is exactly one root. A double root is never
+// proved.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -25,13 +24,13 @@ struct SquareSystem {
   std::function<std::vector<Ball>(const Box&)> jacobian;  // row-major, encloses all derivatives on the box
 };
 
-// K(X), or nothing where the derivatives are not defined on all of X, or no inverse is at hand.
+// K(X); nullopt if the derivatives are not defined on all of X, or if no approximate inverse is found.
 std::optional<Box> krawczyk(const SquareSystem& f, const Box& box);
 
-// If there is exactly one root in the box: a box around it, as small as the precision allows.
+// If the box contains exactly one root: a box around the root, as small as the precision allows.
 std::optional<Box> prove_root(const SquareSystem& f, const Box& box);
 
-// A box that is proved to hold exactly one root, near an approximate one.
+// A box with a proof that it contains exactly one root, near an approximate root.
 std::optional<Box> enclose_root(const SquareSystem& f, const std::vector<Multi>& approximate);
 std::optional<Box> enclose_root(const SquareSystem& f, const std::vector<long double>& approximate);
 

@@ -24,11 +24,11 @@ struct Matrix {
   const N& operator()(std::size_t i, std::size_t j) const { return data[i * cols + j]; }
 };
 
-// P A = L U of a square matrix. The pivot in a column is the entry largest in relation to its row.
+// P A = L U of a square matrix. The pivot in a column is the entry that is largest relative to its row.
 template <Number N>
 class Lu {
  public:
-  // False if a pivot vanishes, or is not a number; the factors are then unusable.
+  // Returns false if a pivot vanishes or is NaN; the factors are then unusable.
   bool factor(const Matrix<N>& a) {
     original_ = a;
     lu_ = a;
@@ -113,7 +113,7 @@ class Lu {
     const std::size_t n = size();
     if (n == 0) return N(1);
     if (direction.size() != n) {
-      // Uneven on purpose: no kernel of a mechanical system is orthogonal to it by symmetry.
+      // The entries are uneven on purpose: no kernel of a mechanical system is orthogonal to them by symmetry.
       direction.assign(n, N(1));
       for (std::size_t i = 0; i < n; ++i) direction[i] += N(static_cast<int>((i * 37 + 11) % 17)) / N(23);
     }
@@ -146,7 +146,7 @@ template <Number N>
 struct RowChoice {
   std::vector<std::size_t> independent;  // ascending
   std::vector<std::size_t> dependent;    // ascending
-  std::vector<std::size_t> vanishing;    // those of the dependent rows that are zero themselves
+  std::vector<std::size_t> vanishing;    // the dependent rows that are zero
   std::vector<std::size_t> pivot_columns;
   N smallest_pivot{1};
 };

@@ -1,7 +1,7 @@
 // One trait for all number types on which the numerics run: double, long double, Quad, Multi.
 //
-// Algorithms are written once, as templates over N, with unqualified sin, sqrt, … found for each
-// type, and the functions below for what the built-in types lack.
+// Algorithms are written once, as templates over N, with unqualified sin, sqrt, … found for each type; the functions
+// below supply what the built-in types lack.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -108,7 +108,7 @@ N pi() {
   }
 }
 
-// acc += a * b, rounded after the product and after the sum, in every type alike.
+// acc += a * b, rounded after the product and after the sum in every type.
 template <Number N>
 inline void addmul(N& acc, const N& a, const N& b) {
   if constexpr (std::same_as<N, Multi>) {
@@ -121,8 +121,8 @@ inline void addmul(N& acc, const N& a, const N& b) {
   }
 }
 
-// The type in which a state is kept while its Taylor coefficients are computed in N: the next wider
-// one that the machine computes with as fast, else N itself.
+// The type in which a state is stored while its Taylor coefficients are computed in N: the next wider type if the
+// machine computes with it as fast, else N.
 template <Number N>
 struct WiderType {
   using type = N;
@@ -153,7 +153,8 @@ std::string number_text(double x, int digits = 0);
 std::string number_text(long double x, int digits = 0);
 std::string number_text(Quad x, int digits = 0);
 std::string number_text(const Multi& x, int digits = 0);
-// As the user asked: digits and two more, as far as a Quad has them; all where no more than 16 were asked for.
+// The number of digits that the user asked for, plus two, up to the digits of a Quad; all digits if at most 16 were
+// asked for.
 std::string quad_text(Quad x, int digits);
 
 }  // namespace anholon

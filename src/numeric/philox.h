@@ -1,4 +1,4 @@
-// Random numbers by number: the n-th draw of a stream follows from n alone, so draws do not depend on their order.
+// Counter-based random numbers: the n-th draw of a stream is a function of n, so draws do not depend on their order.
 //
 // Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy as 1, 2, 3, SC 2011): ten rounds of two
 // 32-bit products and Weyl keys on a counter of 128 bits.
@@ -32,7 +32,7 @@ class Draw {
 
   // In (0, 1), all 53 bits random.
   double uniform() const { return open(0); }
-  // Mean 0, deviation 1, by the polar angle and radius of two (Box and Muller).
+  // A standard normal number, by the polar method of Box and Muller.
   double normal() const { return std::sqrt(-2 * std::log(open(0))) * std::cos(2 * std::numbers::pi * open(2)); }
 
  private:

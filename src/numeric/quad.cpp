@@ -49,7 +49,7 @@ Quad quad_of(mpfr_srcptr x) {
   mpfr_sub(rest, x, rest, MPFR_RNDN);
   const long double low = mpfr_get_ld(rest, MPFR_RNDN);
   mpfr_clear(rest);
-  // Where low is 0, high is x with its sign: -0 stays -0.
+  // If low is 0, high is x with its sign: -0 stays -0.
   return low == 0 ? static_cast<Quad>(high) : static_cast<Quad>(high) + low;
 }
 

@@ -1,8 +1,8 @@
-// Quadruple precision: the compiler's number of 113 bits, with the functions that the language does not give it.
+// Quadruple precision: the compiler's number of 113 bits, with the functions that the language lacks for it.
 //
-// Sums, products and quotients are the compiler's own (whole numbers underneath, correctly rounded).
-// Elementary functions go through MPFR: correctly rounded too, the same bits with every compiler, and
-// a motion needs them at order 0 of its Taylor series only.
+// Sums, products and quotients are the compiler's own (whole numbers underneath, correctly rounded). Elementary
+// functions go through MPFR: correctly rounded too, the same bits with every compiler, and a motion needs them at order
+// 0 of its Taylor series only.
 #pragma once
 #include <mpfr.h>
 
@@ -12,9 +12,10 @@ __extension__ typedef __float128 Quad;
 
 inline constexpr int kQuadBits = 113;
 inline constexpr int kQuadDigits = 33;      // decimal digits that a Quad always holds
-inline constexpr int kQuadTextDigits = 36;  // that tell any two Quads apart
+inline constexpr int kQuadTextDigits = 36;  // digits that distinguish any two Quads
 
-// x, exactly where `to` has 113 bits or more; and the Quad nearest to a number of at most 113 bits.
+// Stores x, exactly if `to` has at least 113 bits; the other function returns the Quad nearest to a number of at most
+// 113 bits.
 void set_mpfr(mpfr_ptr to, Quad x);
 Quad quad_of(mpfr_srcptr x);
 

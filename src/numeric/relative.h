@@ -1,18 +1,17 @@
-// How far something that has to vanish is from zero, in relation to what it is the sum of.
+// The size of a residual, a sum that should vanish, relative to the terms of the sum.
 //
-// Where all terms of a sum are round-off themselves (a motion at rest, a velocity that has to be zero and is), their
-// ratio means nothing. So what does not exceed the round-off of the numbers that the terms come from counts in relation
-// to those.
+// If all terms of a sum are round-off themselves (a motion at rest), their ratio means nothing. A residual within the
+// round-off of the numbers behind the terms is therefore measured relative to those numbers.
 #pragma once
 #include "numeric/number.h"
 
 namespace anholon {
 
-// A sum is known to so many round-offs of what it is made of: some hundred operations lead to it.
+// The error of a sum in units of the round-off of its terms: some hundred operations lead to it.
 inline constexpr int kRoundoffsOfSum = 256;
 
-// `made_of`: a function that gives the size of the numbers the terms come from; it is asked only where the terms alone
-// do not show that `miss` is small.
+// `made_of`: a function that returns the size of the numbers behind the terms. It is called only if the terms alone do
+// not show that `miss` is small.
 template <Number N, class MadeOf>
 N relative_miss(const N& miss, const N& terms, MadeOf made_of) {
   constexpr int kFew = 4;

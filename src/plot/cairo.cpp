@@ -1,4 +1,4 @@
-// The only file that knows cairo.
+// The only file that uses cairo.
 #include "plot/drawing.h"
 
 #ifdef ANHOLON_CAIRO
@@ -61,7 +61,7 @@ void font(cairo_t* c, const Word& w, const TextPiece& p) {
   cairo_set_font_size(c, p.sub ? 0.7 * w.size : w.size);
 }
 
-// Dots are drawn: where a mark that combines with the letter would come to stand differs with the font.
+// Draws the dots: the position of a combining mark depends on the font.
 void dots(cairo_t* c, const Word& w, double x, double y, const cairo_text_extents_t& letter, unsigned count) {
   const double radius = 0.055 * w.size, apart = 0.2 * w.size;
   const double middle = x + letter.x_bearing + letter.width / 2 + 0.04 * w.size,
@@ -102,7 +102,7 @@ void word(cairo_t* c, const Word& w) {
 }  // namespace
 
 std::string draw_cairo(const Figure& figure, CairoFormat format, const std::string& path) {
-  // cairo tells neither why a file cannot be written nor that its last bytes were not: it draws into memory.
+  // cairo reports neither why a file cannot be written nor that its last bytes are missing, so it draws into memory.
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return std::strerror(errno);
   std::string bytes;
@@ -118,7 +118,7 @@ std::string draw_cairo(const Figure& figure, CairoFormat format, const std::stri
     if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
       if (!figure.title.empty())
         cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, figure.title.c_str());
-      // The same figure makes the same bytes.
+      // Without a creation date the same figure has the same bytes.
       cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
     }
   } else {

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kPointsPerCm = 72 / 2.54;
 constexpr double kSize = 9, kSmall = 8;  // of words
-constexpr double kLetter = 0.62;         // mean width of a letter, of its size
+constexpr double kLetter = 0.62;         // mean width of a letter, relative to its size
 constexpr double kTick = 3, kGap = 4,
-                 kEntry = 18;  // marks at ticks; between things; the line of an entry of the legend
+                 kEntry = 18;  // marks at ticks; gaps; the line of an entry of the legend
 
 double width_of(const std::string& text, double size) {
   return kLetter * size * static_cast<double>(shown_width(text));
@@ -53,10 +53,10 @@ class Layout {
     tick_line_ = bottom;
     bottom -= kSmall + kTick + 0.5;
 
-    // All panels begin under each other.
+    // All panels start at the same left edge, below one another.
     const double each = (bottom - top) / static_cast<double>(f_.panels.size());
     std::vector<Ticks> y_ticks = scales(each);
-    // The box is as wide as the labels of its ticks let it be, which the first round shows.
+    // The box is as wide as the labels of its ticks allow; the first round determines their width.
     for (int round = 0; own_ && round < 2; ++round) {
       make_equal(*own_, right_ - left_, box_ = box_height(each));
       const double left = left_;
@@ -76,7 +76,7 @@ class Layout {
   }
 
  private:
-  // What is surely left of the height of a panel under its legend.
+  // The height of a panel that is certainly left under its legend.
   double box_height(double each) const {
     std::size_t most = 1;
     for (const Panel& p : f_.panels) most = std::max(most, p.series.size());
@@ -85,7 +85,7 @@ class Layout {
     return std::max(10.0, each - (lines + 1) * (kSmall + kGap) - 3.5 * kGap);
   }
 
-  // The ticks of all panels, and where their boxes begin and end.
+  // The ticks of all panels, and the left and right ends of their boxes.
   std::vector<Ticks> scales(double each) {
     std::vector<Ticks> y_ticks;
     double labels = 0;
@@ -102,7 +102,7 @@ class Layout {
 
   void line(Point a, Point b, Role role) { d_.strokes.push_back({{a, b}, role, 0}); }
 
-  // One line of entries, or more where they are long; returns where the box begins.
+  // One line of entries, or more for long ones; returns the top of the box.
   double legend(const Panel& p, double top) {
     double x = left_, y = top + kSmall;
     for (const Series& s : p.series) {
@@ -150,18 +150,18 @@ class Layout {
     }
     d_.strokes.push_back(
         {{{left_, top}, {right_, top}, {right_, bottom}, {left_, bottom}, {left_, top}}, Role::axis, 0});
-    // Four points of the decimation on a point of paper: finer than print.
+    // Points of the decimation per point of paper: finer than print.
     constexpr double kFiner = 4;
     for (const Series& s : p.series)
       for (auto& piece : curve(f_, p, s, kFiner * width, kFiner * height)) {
         for (Point& q : piece) q = {left_ + q.x / kFiner, bottom - q.y / kFiner};
-        // A point alone is seen as a dot.
+        // A single point is drawn as a dot.
         if (piece.size() == 1) piece.push_back({piece[0].x + 0.01, piece[0].y});
         d_.strokes.push_back({std::move(piece), Role::series, s.number});
       }
   }
 
-  std::optional<Figure> own_;  // whose axes are made equal
+  std::optional<Figure> own_;  // a copy with equal axes
   const Figure& f_;
   Drawing d_;
   Ticks x_ticks_;

@@ -1,5 +1,5 @@
-// A figure laid out on paper: lines and words with their places, in points of 1/72 inch, y downwards. What draws it
-// needs to know nothing of axes.
+// A figure laid out on paper: lines and words with their positions, in points of 1/72 inch, y downwards. The drawing
+// functions know nothing of axes.
 #pragma once
 #include "plot/figure.h"
 
@@ -11,7 +11,7 @@ enum class Anchor : std::uint8_t { start, middle, end };
 struct Stroke {
   std::vector<Point> points;
   Role role = Role::axis;
-  std::size_t series = 0;  // which colour
+  std::size_t series = 0;  // index of the colour
 };
 
 struct Word {
@@ -30,12 +30,12 @@ struct Drawing {
 
 Drawing lay_out(const Figure& figure);
 
-// Colours that also colour-blind readers tell apart (Okabe and Ito); they repeat, then dashed.
+// Colours that colour-blind readers can distinguish (Okabe and Ito); they repeat with dashed lines.
 inline constexpr std::size_t kColours = 8;
 extern const char* const kColour[kColours];
 
-// An SVG of its own, on which a page can set colours: classes s0 … s7, axis, grid, words; variables --s0 …, --ink,
-// --grid, --paper.
+// A complete SVG whose colours a page can set: classes s0 … s7, axis, grid, words; variables --s0 …, --ink, --grid,
+// --paper.
 std::string draw_svg(const Figure& figure);
 // An axis of pgfplots, to be \input.
 std::string draw_tex(const Figure& figure);
@@ -43,7 +43,7 @@ std::string draw_tex(const Figure& figure);
 enum class CairoFormat { pdf, png };
 bool has_cairo();
 extern const char* const kNoCairo;
-// Empty, or why the file could not be written.
+// Returns an empty string, or the reason why the file could not be written.
 std::string draw_cairo(const Figure& figure, CairoFormat format, const std::string& path);
 
 }  // namespace anholon::plot

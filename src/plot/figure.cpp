@@ -28,7 +28,7 @@ std::string list_of(const std::vector<std::string>& names) {
                 "the columns are " + list_of(table.columns));
 }
 
-// Those that have a derivative beside them, or all where none has.
+// Columns that have a derivative beside them; all columns if none has.
 std::vector<std::size_t> coordinates(const RunTable& table, std::size_t x) {
   constexpr std::size_t kMost = 8;
   std::vector<std::size_t> list;
@@ -48,8 +48,8 @@ struct Range {
   bool empty() const { return least > greatest; }
 };
 
-// The slopes of a column at its rows: the derivative, where there is a column of it, or those of a curve that stays
-// between the rows (Fritsch and Carlson).
+// The slopes of a column at its rows: the derivative if it is a column, else those of a curve that stays between the
+// rows (Fritsch and Carlson).
 std::vector<double> slopes(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> s(y.size(), 0);
   for (std::size_t i = 1; i + 1 < y.size(); ++i) {
@@ -62,8 +62,8 @@ std::vector<double> slopes(const std::vector<double>& x, const std::vector<doubl
   return s;
 }
 
-// Rows at the ends of steps are far apart: between them the curve is the cubic of both slopes. Where these do not fit
-// to the rows, something has jumped in between, and the line stays straight.
+// Rows at the ends of steps are far apart: between them the curve is the cubic with both slopes. If the slopes do not
+// fit the rows, there is a jump in between, and the line stays straight.
 void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
   constexpr std::size_t kPoints = 1000, kMost = 20;
   const std::size_t n = f.x.size(), parts = n < 2 ? 1 : std::min(kMost, kPoints / n);
@@ -224,7 +224,7 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
 
 namespace {
 
-// Keeps what is seen of points that come in order of columns.
+// Keeps the visible part of points that come in order of columns.
 class ByColumns {
  public:
   explicit ByColumns(std::vector<Point>& out) : out_(out) {}
@@ -255,8 +255,8 @@ class ByColumns {
   Point first_{}, last_{}, least_{}, greatest_{};
 };
 
-// Leaves out points of a path that lie on a straight way between others, within what can be seen: from the last point
-// that was kept, all since lie in a narrow cone.
+// Omits points of a path that are, within visible accuracy, on a straight line between others: all points since the
+// last kept one are in a narrow cone.
 class AlongAPath {
  public:
   explicit AlongAPath(std::vector<Point>& out) : out_(out) {}
@@ -280,9 +280,9 @@ class AlongAPath {
   }
 
  private:
-  static constexpr double kSeen = 0.3;  // of a point of the output
+  static constexpr double kSeen = 0.3;  // in points of the output
 
-  // Makes the cone narrower by p; false if p lies outside or comes back.
+  // Narrows the cone by p; returns false if p is outside or turns back.
   bool narrow(const Point& p) {
     const double dx = p.x - out_.back().x, dy = p.y - out_.back().y, d = std::hypot(dx, dy);
     if (d <= kSeen) return !open_;

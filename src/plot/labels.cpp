@@ -87,7 +87,7 @@ std::string superscript(unsigned n) {
   return "⁽" + out + "⁾";
 }
 
-// Digits have small signs of their own.
+// Digits have their own subscript characters.
 std::string subscript(const std::string& sub) {
   static const char* const kDigits[] = {"₀", "₁", "₂", "₃", "₄", "₅", "₆", "₇", "₈", "₉"};
   if (sub.empty()) return {};
@@ -97,7 +97,7 @@ std::string subscript(const std::string& sub) {
   return out;
 }
 
-// Behind a letter: dots above it; behind a word: primes.
+// The marks after a letter are dots above it; after a word they are primes.
 std::string marks(unsigned order, bool letter) {
   static const char* const kDots[] = {"", "\u0307", "\u0308", "\u20DB"};
   static const char* const kPrimes[] = {"", "′", "″", "‴"};
@@ -133,7 +133,7 @@ std::string latex_label(const std::string& column, const std::string& unit) {
   if (s.root == column && utf8_length(column) != 1 && !is_identifier(column))
     return latex_escape(column + in_unit(unit));
   std::string name = s.name;
-  // A point makes a subscript, as an underscore does.
+  // A point makes a subscript, like an underscore.
   if (const std::size_t point = name.find('.'); point != std::string::npos && name.find('_') > point) name[point] = '_';
   return "$" + derivative_name(latex_name(name), s.order, Format::latex) + "$" +
          (in_unit(unit).empty() ? "" : " (" + latex_escape(unit) + ")");

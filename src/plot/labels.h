@@ -1,4 +1,4 @@
-// How the name of a column is written: theta' as θ̇ or $\dot{\theta}$, lambda.blade as λ_blade, D(x,4) as x⁽⁴⁾.
+// The label of a column: theta' as θ̇ or $\dot{\theta}$, lambda.blade as λ_blade, D(x,4) as x⁽⁴⁾.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@ namespace anholon::plot {
 
 enum class LabelStyle { unicode, latex, plain };
 
-// A piece of a label for what can set type; dots stand above its only letter.
+// A piece of a label for output with fonts; dots are set above its only letter.
 struct TextPiece {
   std::string text;
   bool italic = false, sub = false;
@@ -17,11 +17,11 @@ using RichText = std::vector<TextPiece>;
 
 // The unit may be empty.
 RichText rich_label(const std::string& column, const std::string& unit, LabelStyle style);
-// The same in one line of a terminal.
+// As above, in one line of a terminal.
 std::string text_label(const std::string& column, const std::string& unit, LabelStyle style);
 std::string latex_label(const std::string& column, const std::string& unit);
 
-// How wide it is on a terminal: what combines with the letter before has no width.
+// The width on a terminal: combining characters have none.
 std::size_t shown_width(const std::string& text);
 std::string plain_text(const RichText& text);
 

@@ -11,7 +11,8 @@ namespace anholon::plot {
 namespace {
 
 constexpr const char* kInk[] = {"36", "33", "32", "35",
-                                "31", "34", "37", "90"};  // of ANSI: readable on light and dark ground
+                                // ANSI colours that are readable on light and dark backgrounds
+                                "31", "34", "37", "90"};
 constexpr std::size_t kInks = std::size(kInk);
 
 std::string braille(std::uint8_t dots) {
@@ -20,7 +21,7 @@ std::string braille(std::uint8_t dots) {
           static_cast<char>(0x80 | (code & 63))};
 }
 
-// Dots, two by four to a character; a character has the colour of who drew there last.
+// A canvas of dots, two by four per character; a character has the colour of the curve drawn there last.
 class Canvas {
  public:
   Canvas(int columns, int rows)
@@ -29,7 +30,7 @@ class Canvas {
   int width() const { return 2 * columns_; }
   int height() const { return 4 * rows_; }
 
-  // y upwards.
+  // y points upwards.
   void dot(int x, int y, std::size_t owner) {
     if (x < 0 || y < 0 || x >= width() || y >= height()) return;
     static constexpr std::uint8_t kBit[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
@@ -44,7 +45,7 @@ class Canvas {
     for (int k = 0; k <= n; ++k) dot(n ? x0 + (x1 - x0) * k / n : x0, n ? y0 + (y1 - y0) * k / n : y0, owner);
   }
 
-  // A letter where the curve was drawn, near this column; where others have none.
+  // Puts a letter on the curve near this column, at a place without letters of other curves.
   void mark(int column, std::size_t owner, char letter) {
     for (int d = 0; d < columns_ / 8; ++d) {
       const int c = column + (d % 2 ? -1 : 1) * (d + 1) / 2;
@@ -103,7 +104,7 @@ class Terminal {
 
   std::string draw() {
     std::vector<Ticks> y_ticks = scales();
-    // Dots are as wide as they are high.
+    // Dots are as wide as high.
     for (int round = 0; own_ && round < 2; ++round) {
       make_equal(*own_, 2 * columns_ - 1, 4 * size_.rows - 1);
       const int columns = columns_;
@@ -172,7 +173,7 @@ class Terminal {
       }
     for (int r = 0; r < size_.rows; ++r) {
       std::string label, edge = "│";
-      // The tick whose dot lies in this row.
+      // Finds the tick whose dot is in this row.
       for (std::size_t k = 0; k < y_ticks.at.size(); ++k)
         if (const int y = static_cast<int>(std::lround(p.y.place(y_ticks.at[k]) * h)); (h - y) / 4 == r)
           label = y_ticks.labels[k], edge = "┤";
@@ -193,7 +194,7 @@ class Terminal {
     for (std::size_t k = 0; k < x_ticks_.at.size(); ++k) {
       const std::string& l = x_ticks_.labels[k];
       const int begin = static_cast<int>(margin_) + 2 + column(x_ticks_.at[k]) - static_cast<int>(shown_width(l)) / 2;
-      // Labels that would touch are left out.
+      // Omits labels that would touch.
       if (begin < static_cast<int>(width) + (width > 0 ? 1 : 0) ||
           begin + static_cast<int>(shown_width(l)) > size_.columns)
         continue;
@@ -206,7 +207,7 @@ class Terminal {
     stripped(out_, padded(name, margin_ + 2 + (static_cast<std::size_t>(columns_) + shown_width(name)) / 2));
   }
 
-  std::optional<Figure> own_;  // whose axes are made equal
+  std::optional<Figure> own_;  // a copy with equal axes
   const Figure& f_;
   TerminalSize size_;
   std::string out_;

@@ -5,8 +5,8 @@
 namespace anholon::plot {
 
 struct TerminalSize {
-  int columns = 80, rows = 20;  // rows: of the box of one panel
-  bool colours = false;         // without, letters on the curves tell them apart
+  int columns = 80, rows = 20;  // rows: height of the box of one panel
+  bool colours = false;         // if false, letters distinguish the curves
 };
 
 std::string draw_terminal(const Figure& figure, const TerminalSize& size);

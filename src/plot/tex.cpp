@@ -14,7 +14,7 @@ std::string number(double x) {
   return std::string(buffer, r.ptr);
 }
 
-// TeX computes with few digits: the rows come as they are, by a decimation that print does not show.
+// TeX computes with few digits: rows are written unchanged, after a decimation that is invisible in print.
 void series(std::string& out, const Figure& f, const Panel& p, const Series& s, std::size_t number_of) {
   constexpr double kDots = 1200;
   const auto back = [](const Axis& a, double place) {

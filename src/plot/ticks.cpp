@@ -18,10 +18,10 @@ std::string fixed(double x, int decimals) {
   return s;
 }
 
-// k m 10^e, rounded once where that is possible.
+// k m 10^e, rounded once if possible.
 double multiple(double k, int m, int e) { return e < 0 ? k * m / std::pow(10.0, -e) : k * m * std::pow(10.0, e); }
 
-constexpr double kNear = 1e-9;  // of a step: what round-off adds to an axis
+constexpr double kNear = 1e-9;  // fraction of a step: the round-off of an axis
 
 Ticks linear(const Axis& axis, int most) {
   Ticks t;
@@ -31,7 +31,7 @@ Ticks linear(const Axis& axis, int most) {
     const double by = multiple(1, mantissa, exponent);
     return std::floor(axis.to / by + kNear) - std::ceil(axis.from / by - kNear) + 1;
   };
-  // The shortest of the round steps that makes about `most` ticks; the one before, where that leaves a single tick.
+  // The shortest round step that makes about `most` ticks; the previous one if only a single tick is left.
   int e = static_cast<int>(std::floor(std::log10(length / most))) - 1, m = 1;
   for (int last_e = e, last_m = m; count(m, e) > most + 1 || count(m, e) < 2;) {
     if (count(m, e) < 2) {
@@ -45,8 +45,8 @@ Ticks linear(const Axis& axis, int most) {
       m = m == 1 ? 2 : 5;
   }
   const double step = multiple(1, m, e), largest = std::max(std::abs(axis.from), std::abs(axis.to));
-  if (!(largest / step < 1e15)) return t;  // ticks a double cannot tell apart
-  // Where the numbers differ in late digits only, the labels are what is beyond a round number.
+  if (!(largest / step < 1e15)) return t;  // a double cannot distinguish the ticks
+  // If the numbers differ in late digits only, labels show the difference from a round number.
   constexpr double kLateDigits = 1e-4;
   const double offset = length < kLateDigits * largest ? std::round(axis.from / step / 100) * 100 : 0;
   const double beyond = std::max(std::abs(axis.from - offset * step), std::abs(axis.to - offset * step));
@@ -101,7 +101,7 @@ Axis axis_for(double least, double greatest, bool log, bool tight) {
     const double room = tight ? 1 : std::pow(greatest / least, kRoom);
     return {least / room, greatest * room, true};
   }
-  // Numbers that are equal, or as good as equal, to a double: what is seen would be round-off of the plot.
+  // Numbers that are equal up to the round-off of a double: a plot would show only round-off.
   const double size = std::max(std::abs(least), std::abs(greatest));
   if (!(greatest - least > 32 * 2.3e-16 * size)) {
     const double around = size > 0 ? 0.1 * size : 1;

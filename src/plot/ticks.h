@@ -8,21 +8,21 @@ namespace anholon::plot {
 struct Axis {
   double from = 0, to = 1;
   bool log = false;
-  // Where a number lies: 0 at the beginning, 1 at the end.
+  // The position of a number on the axis: 0 at the beginning, 1 at the end.
   double place(double x) const;
 };
 
 struct Ticks {
   std::vector<double> at;
   std::vector<std::string> labels;
-  // What the labels are multiplied by and what is added to them: "×10⁻⁶ + 11.598", or empty.
+  // Factor and offset of the labels: "×10⁻⁶ + 11.598", or empty.
   std::string note;
 };
 
-// At most about `most` of them, at least two where the axis has a length.
+// At most about `most` ticks, at least two if the axis has a length.
 Ticks ticks(const Axis& axis, int most);
 
-// The axis that shows numbers between these, with some room beside them; the numbers are finite, and positive for log.
+// The axis for numbers in this range, with some margin; the numbers are finite, and positive for log.
 Axis axis_for(double least, double greatest, bool log, bool tight);
 
 std::string power_of_ten(int exponent);

@@ -13,11 +13,11 @@ namespace {
 
 using namespace arrangement;
 
-// Bounds on the effort for one expression. All are far above what a person reads.
+// Bounds on the effort for one expression. All are far above the size that a person reads.
 constexpr long kMostProducts = 300'000;      // products of terms in one normal form
-constexpr std::size_t kArrangedTerms = 800;  // monomials that are grouped at all
+constexpr std::size_t kArrangedTerms = 800;  // monomials that are grouped
 
-// What of an expression can be left whole or not.
+// Which parts of an expression can be left whole.
 struct Features {
   bool sums_of_angles = false, fractions = false, names = false;
 };

@@ -10,7 +10,7 @@ namespace anholon::arrangement {
 
 namespace {
 
-// Bounds on the effort for one expression. All are far above what a person reads.
+// Bounds on the effort for one expression. All are far above the size that a person reads.
 constexpr std::size_t kFactoredTerms = 64;      // monomials of a polynomial that FLINT factors,
 constexpr std::size_t kFactoredVariables = 12;  // its variables
 constexpr unsigned long kFactoredDegree = 10;   // and its total degree
@@ -24,8 +24,8 @@ constexpr int kDeepest = 12;           // groups within groups
 
 using Mask = std::vector<bool>;
 
-// An expression with an estimate of its length in print, to which brackets within brackets add, and the
-// same acceleration in two places of a sum.
+// An expression with an estimate of its printed length; nested brackets, and an acceleration that occurs in two places
+// of a sum, add to it.
 struct Built {
   Expr e;
   std::size_t length;
@@ -112,8 +112,8 @@ class Grouping {
     return t;
   }
 
-  // The shortest arrangement that is found, alone or as a factor of a product, where a sum needs brackets.
-  // Groups lie within groups at most kDeepest times.
+  // The shortest arrangement that is found, as a sum or, with brackets, as a factor of a product. Groups are nested at
+  // most kDeepest deep.
   Built build(const Sum& s, int depth, bool factor) {
     if (s.size() == 1) return monomial(s.begin()->first, s.begin()->second);
     if (depth > kDeepest || ++steps_ > kMostSteps) return flat(s);
@@ -139,7 +139,7 @@ class Grouping {
     return times(build(a, depth + 1, !one(b)), build(b, depth + 1, !one(a)));
   }
 
-  // The common factor of all terms.
+  // Takes out the common factor of all terms.
   std::optional<Built> in_front(const Sum& s, int depth) {
     Exponents front = s.begin()->first;
     for (const auto& [exponents, c] : s) front = common(std::move(front), exponents);
@@ -150,10 +150,10 @@ class Grouping {
     return times(monomial(front, c), build(rest, depth + 1, true));
   }
 
-  // Products of irreducible factors; nothing if there is one only.
+  // A product of irreducible factors; nullopt if there is only one.
   std::optional<Built> factored(const Sum& s, int depth) {
     if (s.size() > kFactoredTerms) return std::nullopt;
-    // In the generators that occur.
+    // The polynomial is taken in the generators that occur.
     std::vector<std::size_t> used;
     for (std::size_t k = 0; k < w_.generators.size(); ++k)
       if (std::any_of(s.begin(), s.end(), [&](const auto& term) { return term.first[k] > 0; })) used.push_back(k);
@@ -192,8 +192,8 @@ class Grouping {
     return product;
   }
 
-  // sum_k C_k (sum_j r_kj M_j): the monomials M in the generators of the mask that have the same
-  // coefficient C up to a number stand together. `swapped`: in the generators outside of it.
+  // sum_k C_k (sum_j r_kj M_j): monomials M in the generators of the mask with the same coefficient C, up to a number,
+  // form one group. `swapped`: M is in the generators outside the mask.
   std::optional<Built> gathered(const Sum& s, const Mask& mask, bool swapped, int depth) {
     std::map<Exponents, Sum, std::greater<>> coefficients;
     for (const auto& [exponents, c] : s) {
@@ -207,17 +207,17 @@ class Grouping {
       const Rational c = take_content(coefficient);
       groups[coefficient].emplace(in, c);
     }
-    // Each term alone, or all together as they were.
+    // Each term would be alone, or all terms together as before.
     if (groups.size() == s.size() || groups.begin()->second.size() == s.size()) return std::nullopt;
     std::vector<Built> parts;
     for (const auto& [coefficient, monomials] : groups) parts.push_back(product(coefficient, monomials, depth));
     return total(parts);
   }
 
-  // Takes out the common factor of several terms that saves most, again and again.
+  // Repeatedly takes out the common factor of several terms that saves most.
   std::optional<Built> greedy(const Sum& s, int depth) {
     if (s.size() > kComparedTerms) return std::nullopt;
-    std::map<Sum, Sum> groups;  // what is in brackets -> its factors
+    std::map<Sum, Sum> groups;  // the sum in brackets -> its factors
     Sum rest = s;
     while (rest.size() > 1 && comparisons_ < kMostComparisons) {
       std::map<Exponents, std::size_t> shared;  // factor -> terms that hold it
@@ -227,7 +227,7 @@ class Grouping {
           if (!trivial(factor)) shared.emplace(std::move(factor), 0);
         }
       const Exponents* best = nullptr;
-      std::pair<std::size_t, int> most{3, -1};  // less does not pay for the brackets
+      std::pair<std::size_t, int> most{3, -1};  // a smaller saving does not pay for the brackets
       for (auto& [factor, count] : shared) {
         for (const auto& [exponents, c] : rest) count += divides(factor, exponents);
         int order = -1;

@@ -1,5 +1,5 @@
-// Sums of monomials in groups: the shortest arrangement that is found with common factors in front, factors by FLINT,
-// and equal coefficients gathered.
+// Groups sums of monomials: searches for the shortest arrangement with common factors in front, factors from FLINT, and
+// equal coefficients gathered.
 #pragma once
 #include "expr/monomial_sums.h"
 #include "print/print.h"

@@ -1,4 +1,4 @@
-// Names for what occurs more than once.
+// Names for subexpressions that occur more than once.
 #include <algorithm>
 #include <cctype>
 

@@ -14,7 +14,7 @@ enum Strength : int { kSum = 1, kProduct = 2, kPower = 3, kAtom = 4 };
 struct Printed {
   std::string text;
   int strength = kAtom;
-  std::string opposite = {};  // of -e, where the text starts with a minus sign
+  std::string opposite = {};  // the text of -e, if the text of e starts with a minus sign
   int opposite_strength = kAtom;
 };
 
@@ -64,7 +64,7 @@ class Printer {
     for (NodeId id : ids) {
       done_[id] = node(id);
       if (names_.defined.count(id)) continue;
-      // The text of an operand goes with its last use: a deep formula needs no more than its length.
+      // The text of an operand is released at its last use: a deep formula needs no more memory than its length.
       for (const Term& t : operands(id))
         if (--uses_[t.node] == 0) done_.erase(t.node);
     }
@@ -101,7 +101,7 @@ class Printer {
   bool latex() const { return format_ == Format::latex; }
   bool mathml() const { return format_ == Format::mathml; }
 
-  // The place of a node among its neighbours.
+  // The sort key of a node among its neighbours.
   struct Rank {
     int kind, order;       // highest derivative
     bool inside = false;   // it stands within brackets
@@ -152,7 +152,7 @@ class Printer {
       break;
     }
     r.constant = r.kind <= 2 || r.kind >= 7;
-    // Operands were ranked before (ids ascend), so this does not go deep.
+    // Operands have been ranked before (ids ascend), so the recursion is not deep.
     for (const Term& t : g_.terms(id))
       if (const auto o = rank_.find(t.node); o != rank_.end()) {
         if (o->second.order > r.order) r.order = o->second.order, r.inside = true;
@@ -171,7 +171,7 @@ class Printer {
     return mathml() ? "<mtext>…</mtext>" : "…";
   }
 
-  // As [notation] says, or by the rules for names.
+  // The spelling given by [notation], or by the rules for names.
   std::string written(const std::string& name) const {
     const auto chosen = names_.notation.find(name);
     if (chosen == names_.notation.end() || format_ == Format::text) return written_name(name, format_);
@@ -311,13 +311,13 @@ class Printer {
 
   Printed sum(NodeId id) {
     std::vector<Term> terms(operands(id).begin(), operands(id).end());
-    // Highest derivatives first; of accelerations those that stand alone before those in brackets.
+    // Highest derivatives come first; single accelerations come before accelerations in brackets.
     std::stable_sort(terms.begin(), terms.end(), [&](const Term& a, const Term& b) {
       const Rank ra = rank(a.node), rb = rank(b.node);
       if (ra.order != rb.order) return ra.order > rb.order;
       return ra.order >= 2 && !ra.inside && rb.inside;
     });
-    // Of the first terms, alike in that, a positive one leads where there is one.
+    // Among equal first terms, a positive one comes first if there is one.
     const auto below_zero = [&](const Term& t) {
       const Printed& p = done_.at(t.node);
       return (g_.rational(t.weight) < 0) == p.opposite.empty();

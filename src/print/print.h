@@ -1,9 +1,9 @@
 // Expressions as text (which the formula parser reads back), as LaTeX and as presentation MathML.
 //
-// The order of terms is fixed: in a sum, terms with the highest derivatives first; in a product,
-// parameters, then symbols, then functions, then sums. A sum in brackets that would start with a minus
-// gives it to its product. Printing sweeps the graph upwards, so depth
-// does not matter; a result beyond kLongestPrint characters is cut to "…".
+// The order of terms is fixed: in a sum, terms with the highest derivatives first; in a product, parameters, then
+// symbols, then functions, then sums. If a sum in brackets would start with a minus sign, the sign moves to its
+// product. Printing sweeps the graph from the leaves up, so the depth is not limited; a result beyond kLongestPrint
+// characters is cut to "…".
 #pragma once
 #include <functional>
 #include <map>
@@ -24,8 +24,8 @@ struct SymbolNames {
   // Names given to subexpressions ([define]): node -> name.
   std::unordered_map<NodeId, std::string> defined;
   std::vector<std::string> quasi, states, controls;
-  bool short_sums = false;  // long sums by the short way (expr.h), which may stand under names of its own
-  // [notation]: how a name is written instead of as latex_name and mathml_name would.
+  bool short_sums = false;  // long sums in the short form (expr.h), which may have names of their own
+  // [notation]: the spelling of a name, instead of latex_name and mathml_name.
   struct Written {
     std::string latex, mathml;
   };
@@ -34,11 +34,10 @@ struct SymbolNames {
 
 std::string print(Expr e, const SymbolNames& names, Format format);
 std::vector<std::string> print(std::span<const Expr> es, const SymbolNames& names, Format format);
-// What stands behind names: expressions that have one in `names.defined` are written out, their operands stand under
-// theirs.
+// Prints the expressions behind names: each named expression is printed in full, with its operands under their names.
 std::vector<std::string> print_contents(std::span<const Expr> es, const SymbolNames& names, Format format);
-// Gives names to all sums and products that occur more than once in `es`: with them, everything is as long as the graph
-// is large. In the order in which they can be read.
+// Gives names to all sums and products that occur more than once in `es`; the printed length is then proportional to
+// the size of the graph. The result is in the order of definition.
 std::vector<Expr> name_parts(std::span<const Expr> es, SymbolNames& names);
 
 // "theta" -> "\theta", "x1" -> "x_{1}", "front_wheel" -> "\mathrm{front\_wheel}".

@@ -32,7 +32,7 @@ std::string latex_name(const std::string& name) {
   if (const auto indexed = indexed_name(name)) {
     const auto& [base, index] = *indexed;
     const std::string written = latex_name(base);
-    // One subscript holds what the name had and the index: x_{1,3}.
+    // One subscript holds the subscript of the name and the index: x_{1,3}.
     if (written.find("_{") != std::string::npos && written.back() == '}')
       return written.substr(0, written.size() - 1) + "," + index + "}";
     return written + "_{" + index + "}";
@@ -58,7 +58,7 @@ std::string mathml_name(const std::string& name) {
     const std::string written = mathml_name(base), open = "<msub>", close = "</msub>";
     if (written.rfind(open, 0) != 0)
       return open + written + (index.find(',') == std::string::npos ? own : row(own)) + close;
-    // Its second child, the subscript, goes before the index.
+    // The second child, which is the subscript, comes before the index.
     const std::size_t underscore = base.find('_'), digit = base.find_last_not_of("0123456789") + 1;
     const std::string root = mathml_name(base.substr(0, underscore != std::string::npos ? underscore : digit));
     const std::size_t start = open.size() + root.size();

@@ -10,7 +10,7 @@ namespace anholon::emit {
 
 namespace {
 
-// Words of C, of Python, and what the texts use themselves.
+// Words of C, of Python, and of the generated texts.
 constexpr const char* kReserved[] = {"auto",
                                      "break",
                                      "case",
@@ -138,7 +138,7 @@ std::string identifier(const std::string& text, const std::string& otherwise) {
   for (char c : text)
     if (c != ']') out += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';  // th[3] is th_3
   if (out.empty() || out.find_first_not_of('_') == std::string::npos) return otherwise;
-  // LocalNames that begin with _ belong to the compilers.
+  // Names that begin with _ are reserved for compilers.
   if (!std::isalpha(static_cast<unsigned char>(out[0]))) out = otherwise + (out[0] == '_' ? "" : "_") + out;
   return out;
 }
@@ -148,7 +148,7 @@ std::string number(const Rational& r) {
   if (num == 0) return "0.0";
   const mpz_class exact_limit = mpz_class(1) << std::numeric_limits<double>::digits;
   if (den == 1 && abs(num) < 1000000000) return num.get_str() + ".0";
-  // Decimal digits d with r = ±0.d * 10^exponent; 25 of them are more than enough for one rounding.
+  // Decimal digits d with r = ±0.d * 10^exponent; 25 digits are more than enough for one rounding.
   constexpr std::size_t kDigits = 25;
   const auto ten = [](unsigned long n) {
     mpz_class p;
@@ -176,7 +176,7 @@ std::string number(const Rational& r) {
                   "a number near " + sign + digits.substr(0, 1) + "e" + std::to_string(exponent - 1) +
                       " occurs: double cannot hold it",
                   "choose units in which numbers lie between 1e-300 and 1e300");
-  // A short decimal as one, a quotient of exact numbers as such: either is rounded once.
+  // A short decimal is written as such, and so is a quotient of exact numbers: either is rounded once.
   if (!(terminates && digits.size() <= 17) && abs(num) < exact_limit && den < exact_limit)
     return num.get_str() + ".0/" + den.get_str() + ".0";
   if (exponent > 9 || exponent < -3) {
@@ -217,7 +217,7 @@ Motion motion(const System& s, const Structure& structure, const EmitOptions& op
                     "a program needs one: [functions] " + model.unknown_functions[node.index] + " = \"…\"");
     ANHOLON_ASSERT(node.kind != Kind::mass);
   }
-  // What is not truly there is set to zero before it can be differentiated further.
+  // Derivatives that do not truly occur are set to zero before further differentiation.
   const auto up_to = [&](const Column& es, int below) {
     return substitute(es, [&](NodeId id) {
       const auto j = s.variable(id);
@@ -249,7 +249,7 @@ Motion motion(const System& s, const Structure& structure, const EmitOptions& op
       leading.push_back(structure.sigma[i][j] != kAbsent && structure.sigma[i][j] == structure.d[j] - c
                             ? s.symbol(j, static_cast<unsigned>(structure.sigma[i][j]))
                             : g.zero());
-    // A symbol that is no leading one stands in `leading` as 0, on which nothing depends.
+    // A symbol that is not a leading derivative is 0 in `leading`, on which nothing depends.
     Column row = gradient(e[0], leading);
     for (std::size_t j = 0; j < n; ++j)
       if (is_zero(leading[j])) row[j] = g.zero();
@@ -275,7 +275,7 @@ Motion motion(const System& s, const Structure& structure, const EmitOptions& op
     free.push_back(symbols({&m.parameters[i], 1}).empty());
     if (!free.back()) m.derived.push_back(i);
   }
-  // Parameters may refer to each other in any order: put values in until only free ones are left.
+  // Parameters may refer to each other in any order: values are substituted until only free parameters are left.
   for (std::size_t depth = 0; depth < m.parameters.size(); ++depth)
     m.parameters = substitute(m.parameters, [&](NodeId id) {
       const Node& node = g.node(id);
@@ -297,7 +297,7 @@ std::vector<double> start_state(const System& s, const Motion& m, const EmitOpti
 
 std::string LocalNames::fresh(const std::string& wanted) {
   std::string name = identifier(wanted, "x");
-  // Capitals only may be a macro of math.h.
+  // A name in capitals may be a macro of math.h.
   if (name.size() > 2 && std::none_of(name.begin(), name.end(), [](unsigned char c) { return std::islower(c); }))
     name += '_';
   while (!taken_.insert(name).second) name += '_';

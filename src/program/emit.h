@@ -1,15 +1,15 @@
-// The motion as source text: a C99 file, or a Python module, that computes the right side of
-// x' = f(t, x) and stands alone (math.h; NumPy).
+// The motion as source text: a C99 file, or a Python module, that computes the right side of x' = f(t, x) and needs
+// only math.h or NumPy.
 //
-// Equation i is differentiated c_i times, by symbols this time; the result is linear in the leading
-// derivatives x_j^(d_j), or solved for them by Newton's method, with the system Jacobian
+// Equation i is differentiated c_i times, here symbolically; the result is linear in the leading derivatives x_j^(d_j),
+// or solved for them by Newton's method, with the system Jacobian
 //   J_ij = dE_i^(c_i) / dx_j^(d_j) = dE_i / dx_j^(d_j - c_i)    (theory: dae-view).
-// The state is x_j^(k), k < d_j, all of order 0 first; the hidden constraints E_i^(k), k < c_i, are a
-// function of their own, so that an integrator that does not know them can be watched.
+// The state is x_j^(k), k < d_j, all of order 0 first; the hidden constraints E_i^(k), k < c_i, are a function of their
+// own, so that an integrator that ignores them can be checked.
 //
 // Inputs are an array u of their own: without one, the formulas of the model give them.
 //
-// A derivative that occurs and yet does not count (structure.h: "truly") is set to zero.
+// A derivative that does not truly occur (structure.h) is set to zero.
 #pragma once
 #include <optional>
 #include <string>
@@ -18,24 +18,24 @@
 
 namespace anholon {
 
-// An input that stands as a symbol in the equations, and its formula, of t, state and parameters.
+// An input, which is a symbol in the equations, and its formula in t, state and parameters.
 struct InputFormula {
   std::size_t control;
   Expr value;
 };
 
 struct EmitOptions {
-  std::string name = "motion";  // begins the name of everything in C
-  std::string made_by;          // how the text was made, for its head
+  std::string name = "motion";  // prefix of all names in C
+  std::string made_by;          // the command line, for the head of the text
   struct Start {
     double t = 0;
     std::vector<double> q, qd;  // by coordinate
   };
-  std::optional<Start> start;  // a state to begin with
+  std::optional<Start> start;  // an initial state
   std::vector<InputFormula> inputs;
 };
 
-// Throw Failure for what has no text: an unknown function of time, a number beyond double.
+// Both throw Failure for an expression that cannot be written: an unknown function of time, a number beyond double.
 std::string emit_c(const System& system, const Structure& structure, const EmitOptions& options);
 std::string emit_python(const System& system, const Structure& structure, const EmitOptions& options);
 

@@ -10,7 +10,7 @@ namespace {
 
 using namespace emit;
 
-// $ stands for the name the user gave. The tolerances are those of program/expansion.cpp.
+// `$` marks the name that the user gave. The tolerances are those of program/expansion.cpp.
 constexpr const char* kSolver = R"(
 /* Factors a (row by row), its rows and columns divided by their largest entries, with partial
    pivoting. Returns 1 if a pivot is no more than round-off, 3 if an entry is not a number. */
@@ -73,7 +73,8 @@ static void $_solve(const double *a, const int *order, const double *row, const 
 }
 )";
 
-// The jacobian @ONCE or in @EACH round; @SETTLED: a step that no longer shrinks, and how small it must be.
+// The Jacobian is computed once (@ONCE) or in each round (@EACH); @SETTLED: the step no longer shrinks, and the bound
+// on its size.
 constexpr const char* kNewton = R"(
 int $_leading(double t, const double *state, const double *p, double *lead)
 {
@@ -135,7 +136,7 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
   Writer writer(system, structure, m, names, Language::c);
   const std::size_t n = system.size(), parameters = system.model->parameters.size();
 
-  // Where there are inputs they follow the parameters.
+  // Inputs follow the parameters.
   const bool inputs = !m.inputs.empty();
   const auto with_inputs = [&](std::string text) {
     if (!inputs) return text;
@@ -143,14 +144,14 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
     return replaced(replaced(replaced(std::move(text), "p, f)", "p, u, f)"), "p, a)", "p, u, a)"), "p, lead)",
                     "p, u, lead)");
   };
-  // In front of statements that read u.
+  // Precedes statements that read u.
   const auto own_inputs = [&](const Statements& s) {
     return !inputs    ? std::string()
            : s.inputs ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n"
                       : "  (void)u;\n";
   };
   const auto not_read = [](const Statements& s) {
-    const bool all = s.inputs;  // handed on to the formulas of the inputs
+    const bool all = s.inputs;  // passed on to the formulas of the inputs
     return unused({{"t", all || s.time}, {"state", all || s.state}, {"lead", s.lead}, {"p", all || s.parameters}});
   };
   const std::string arguments =
@@ -252,7 +253,7 @@ std::string emit_c(const System& system, const Structure& structure, const EmitO
       out += "  state[" + std::to_string(i) + "] = " + number_text(state[i]) + ";\n";
     out += "}\n";
   }
-  // A title may hold a $ of its own.
+  // A title may contain a $.
   return "/*\n" + lines(head(system, structure, m, options), " * ") +
          replaced(out, "$", identifier(options.name, "motion"));
 }

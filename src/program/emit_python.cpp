@@ -10,7 +10,7 @@ namespace {
 
 using namespace emit;
 
-// The marks are those of emit_c.cpp.
+// The placeholders are those of emit_c.cpp.
 constexpr const char* kNewton = R"(
 def _scaled(a):
     """a with rows and columns divided by their largest entries, and these"""
@@ -96,7 +96,7 @@ std::string emit_python(const System& system, const Structure& structure, const 
     parameter_names.push_back(system.model->parameters[i].name);
   }
 
-  // Where there are inputs they come last, and are handed on.
+  // Inputs are the last argument and are passed on.
   const bool inputs = !m.inputs.empty();
   const std::string u_argument = inputs ? ", u=None" : "", u = inputs ? ", u" : "";
 

@@ -1,4 +1,4 @@
-// Expressions as statements: one sweep upwards, no recursion, so depth does not matter.
+// Expressions as statements, by one sweep from the leaves up without recursion, so the depth is not limited.
 #include <algorithm>
 #include <functional>
 
@@ -9,12 +9,12 @@ namespace anholon::emit {
 
 namespace {
 
-// A node used once is written where it is used, up to this length.
+// A node that is used once is written inline, up to this length.
 constexpr std::size_t kLongestInline = 72;
 // Longer sums and products are computed in parts: compilers recurse over their terms.
 constexpr std::size_t kMostPieces = 24;
 constexpr std::size_t kLineWidth = 100;
-// Whole powers up to this one are products.
+// Whole powers up to this exponent are products.
 constexpr int kLargestProduct = 4;
 constexpr int kSum = 1, kProduct = 2, kPower = 3, kAtom = 4;
 
@@ -57,7 +57,7 @@ const char* function_name(Function f, Language language) {
   return "";
 }
 
-// How often the text of a power holds its base.
+// The number of times that the text of a power contains its base.
 std::size_t bases(const Rational& exponent) {
   const Rational r = abs(exponent);
   if (r.get_den() == 1 && r <= kLargestProduct) return r.get_num().get_ui();
@@ -99,7 +99,7 @@ Writer::Text Writer::power(NodeId base, const Rational& exponent) const {
 std::vector<Writer::Piece> Writer::product(NodeId id) {
   std::vector<Text> bottom;
   std::vector<Piece> out;
-  // x*x may stand among other factors as it is, a quotient of numbers not.
+  // x*x needs no brackets among other factors, a quotient of numbers does.
   const auto factor = [](const Text& x) {
     return x.s.find('/') == std::string::npos ? wrapped(x, kProduct) : wrapped(x, kPower);
   };
@@ -162,7 +162,7 @@ std::string Writer::call(NodeId id) {
     };
     if (language_ == Language::python)
       return "np.take(" + list(f.values) + ", np.searchsorted(" + list(f.knots) + ", " + x + ", side='right'))";
-    // By halves: compilers recurse over what is nested.
+    // Splits in halves, because compilers recurse over nested expressions.
     const std::function<std::string(std::size_t, std::size_t)> among = [&](std::size_t from, std::size_t to) {
       if (from == to) return number(f.values[from]);
       const std::size_t middle = from + (to - from) / 2;
@@ -215,7 +215,7 @@ std::string Writer::assign(const std::string& name, const std::vector<Piece>& al
       }
     }
     text += line;
-    // What a line break would end in Python, brackets hold together.
+    // A line break would end a statement in Python, so broken lines are put in brackets.
     if (!c && broken) {
       if (from > 0)
         out += begin.substr(0, begin.size() - name.size()) + "(" + name + text + ")\n";

@@ -1,4 +1,4 @@
-// What the writers of C and of Python share: the motion as expressions, names, statements, the head.
+// Parts that the writers of C and Python share: the motion as expressions, names, statements, the head.
 #pragma once
 #include <set>
 #include <string>
@@ -11,7 +11,7 @@ namespace anholon::emit {
 
 enum class Language : std::uint8_t { c, python };
 
-// One number of the state: the derivative of this order of a variable.
+// One entry of the state: the derivative of this order of a variable.
 struct StateEntry {
   std::size_t variable;
   unsigned order;
@@ -20,25 +20,25 @@ struct StateEntry {
 struct Motion {
   std::vector<StateEntry> state;     // by order, then by variable
   Column residual;                   // E_i^(c_i)
-  std::vector<Column> jacobian;      // by the leading derivatives
+  std::vector<Column> jacobian;      // with respect to the leading derivatives
   Column hidden;                     // E_i^(k), k < c_i
-  std::vector<std::size_t> derived;  // parameters whose values depend on those of others
+  std::vector<std::size_t> derived;  // parameters whose values depend on other parameters
   std::vector<std::size_t> inputs;   // controls of the model
   Column input_values;               // by their formulas
-  Column parameters;                 // values in terms of the parameters that are not derived
-  bool linear = true;                // in the leading derivatives
+  Column parameters;                 // values in terms of the independent parameters
+  bool linear = true;                // the equations are linear in the leading derivatives
   std::vector<std::string> state_names, leading_names, equation_names, hidden_names, input_names;
 
-  // Where x_j^(k) stands in the state (k < d_j).
+  // The index of x_j^(k), k < d_j, in the state.
   std::size_t place(std::size_t variable, unsigned order) const;
 };
 
 Motion motion(const System& system, const Structure& structure, const EmitOptions& options);
 
-// The start in the order of the state; multipliers begin with zero.
+// The initial state in the order of the state; multipliers begin with zero.
 std::vector<double> start_state(const System& system, const Motion& motion, const EmitOptions::Start& start);
 
-// A name as an identifier of both languages that none of them uses itself.
+// Turns names into identifiers that neither language reserves.
 class LocalNames {
  public:
   LocalNames(const System& system, const Structure& structure, const Motion& motion);
@@ -54,14 +54,14 @@ class LocalNames {
 // An identifier like this text; empty text gives `otherwise`.
 std::string identifier(const std::string& text, const std::string& otherwise);
 
-// A number of the house as a number of both languages: 2.5, 2.0/3.0, 1e-9.
+// A rational number as a number of both languages: 2.5, 2.0/3.0, 1e-9.
 std::string number(const Rational& r);
 
-// The statements of one function. Where a name that C gives the file is needed stands $. A node that is used more than
-// once, or long, gets a variable.
+// The statements of one function. `$` marks the place of the prefix of names in C. A node that is used more than once,
+// or is long, gets a variable.
 struct Statements {
   std::string text;
-  bool time = false, state = false, lead = false, parameters = false, inputs = false;  // what it reads
+  bool time = false, state = false, lead = false, parameters = false, inputs = false;  // the arguments that it reads
 };
 
 class Writer {
@@ -105,7 +105,7 @@ class Writer {
   bool used_sign_ = false;
 };
 
-// The lines that say what the arrays hold, for a comment.
+// The lines of a comment that describe the arrays.
 std::vector<std::string> head(const System& system, const Structure& structure, const Motion& motion,
                               const EmitOptions& options);
 

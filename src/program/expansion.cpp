@@ -10,10 +10,10 @@ namespace anholon {
 
 namespace {
 constexpr int kMostProjections = 4;
-// An LU whose smallest scaled singular value is below this many round-offs is singular.
+// An LU is singular if its smallest scaled singular value is below this many round-offs.
 constexpr int kSingularRoundoffs = 50;
 
-// to! / from!. A quotient of factorials is rounded, and in the same way at every step, so that the errors of a motion
+// to! / from!. A quotient of factorials would be rounded in the same way at every step, and the errors of a motion
 // would add up; this product is exact.
 template <Number N>
 N rising(std::size_t from, std::size_t to) {
@@ -158,7 +158,7 @@ void Expansion<N>::jacobian() {
     }
     partials_[k] = machine_.partials(t.slot);
     if (in.op == Op::select) {
-      // Not the other branch, which may have no value.
+      // The other branch is not evaluated; it may have no value.
       if (const bool first = partials_[k].a > N(0); first ? t.a : t.b) add(first ? in.a : in.b, N(1));
       continue;
     }
@@ -182,7 +182,7 @@ Outcome Expansion<N>::prepare() {
   return {};
 }
 
-// Which constraint has lost its hold, or which coordinate its inertia.
+// Names the constraint that has become singular, or the coordinate that has lost its inertia.
 template <Number N>
 Outcome Expansion<N>::singular() const {
   const System& s = *program_->system;
@@ -218,7 +218,8 @@ Outcome Expansion<N>::singular() const {
           "at theta = 0)"};
 }
 
-// The sizes of the terms of equation i at derivative order c_i - level, those that J makes of the unknowns included.
+// The sizes of the terms of equation i at derivative order c_i - level, including those that result from the unknowns
+// by J.
 template <Number N>
 N Expansion<N>::terms_of(std::size_t i, int level) const {
   const Program& p = *program_;
@@ -229,8 +230,8 @@ N Expansion<N>::terms_of(std::size_t i, int level) const {
   return moved > scale ? moved : scale;
 }
 
-// The greatest x_j^(d_j - level), or force that makes one, as J balanced measures them. Where a whole level is
-// round-off of what those above and below make of it (the velocities of a motion at rest), that counts.
+// The largest x_j^(d_j - level), or the largest force that causes one, as measured by the balanced J. If a whole level
+// is round-off of the levels above and below (the velocities of a motion at rest), the size of that round-off counts.
 template <Number N>
 const N& Expansion<N>::balanced_size(int level) const {
   const Program& p = *program_;
@@ -288,8 +289,8 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
   return any;
 }
 
-// How far the state lies from the hidden constraints of a level, in relation to its size: residuals r in relation to
-// their rows of J.
+// The distance of the state from the hidden constraints of a level, relative to its size: residuals r relative to their
+// rows of J.
 template <Number N>
 N Expansion<N>::displacement(int level, const std::vector<N>& r) const {
   const Program& p = *program_;
@@ -351,11 +352,11 @@ void Expansion<N>::measure() {
   for (int level = *std::max_element(program_->c.begin(), program_->c.end()); level >= 1; --level) {
     N worst(0);
     residual(level, r_, worst);
-    if (!(worst <= constraint_residual_)) constraint_residual_ = worst;  // what is not a number, too
+    if (!(worst <= constraint_residual_)) constraint_residual_ = worst;  // true for NaN as well
   }
 }
 
-// Adds the effect of the coefficients just found to all slots that depend on them.
+// Adds the effect of the new coefficients to all slots that depend on them.
 template <Number N>
 void Expansion<N>::add_leading(int stage) {
   const Program& p = *program_;
@@ -395,16 +396,16 @@ void Expansion<N>::add_leading(int stage) {
 template <Number N>
 Outcome Expansion<N>::extend() {
   const Program& p = *program_;
-  // J and the partial derivatives at the leading derivatives found (they may enter nonlinearly).
+  // J and the partial derivatives at the computed leading derivatives (they may enter nonlinearly).
   jacobian();
   if (!lu_.factor(j_)) return singular();
   for (int stage = 1; stage <= stages_; ++stage) {
     for (std::size_t j = 0; j < p.unknowns(); ++j) x_[j * stride_ + static_cast<std::size_t>(p.d[j] + stage)] = N(0);
     sweep(stage);
     const std::size_t s = static_cast<std::size_t>(stage);
-    // The second pass is the step of iterative refinement. Its residual comes from the tape itself,
-    // not from J: where J is nearly singular (Euler angles near their singularity) the tape still
-    // knows the small difference of two rates whose squares J has rounded away.
+    // The second pass is the step of iterative refinement. Its residual comes from the tape itself, not from J: if J is
+    // nearly singular (Euler angles near their singularity), the tape still contains the small difference of two rates
+    // whose squares J has rounded away.
     for (int pass = 0; pass < 2; ++pass) {
       for (std::size_t i = 0; i < p.unknowns(); ++i) {
         const std::size_t order = s + static_cast<std::size_t>(p.c[i]);
@@ -440,7 +441,7 @@ void Expansion<N>::cut_to(const std::vector<N>& leading) {
     if (in.constant) continue;
     N* series = machine_.series(slot);
     std::fill(series + in.lead + 1, series + stages_ + in.lead + 1, N(0));
-    // What is integrated or watched and has no value at the point itself counts as nothing in so short a step.
+    // An integrated or watched formula without a value at the point counts as zero in so short a step.
     if (slot >= p.tape.main_end && !is_finite(series[0])) series[0] = N(0);
   }
 }

@@ -20,7 +20,7 @@ inline constexpr int kQuietRoundoffs = 6;
 template <Number N>
 class Expansion {
  public:
-  // stages: how many orders beyond the leading derivatives are computed.
+  // stages: the number of orders beyond the leading derivatives that are computed.
   Expansion(const Program& program, const std::vector<N>& parameters, int stages);
 
   std::size_t state_size() const { return offset_.back(); }
@@ -39,7 +39,7 @@ class Expansion {
   // Corrects the state by least change so that all hidden constraints hold to round-off.
   Outcome project();
   Outcome project(const Solver& solver);
-  // Only looks how well they hold, after prepare().
+  // Only measures the residuals of the hidden constraints, after prepare().
   void measure();
   // Newton's method for the leading derivatives.
   Outcome solve();
@@ -49,9 +49,8 @@ class Expansion {
     for (std::size_t k = 0; k < j.data.size(); ++k) j_.data[k] = convert<N>(j.data[k]);
     balance_.reset();
   }
-  // Takes over the point from a wider expansion, every value correctly rounded: the coefficients of
-  // higher order then start from values without round-off of their own (an angle that has turned
-  // often has lost digits in N that its sine still needs).
+  // Copies the point from a wider expansion, every value correctly rounded: the coefficients of higher order then start
+  // from values without round-off of their own (an angle of many turns has lost digits in N that its sine still needs).
   template <Number M>
   void adopt_values(const Expansion<M>& wide) {
     t_ = convert<N>(wide.time());
@@ -64,7 +63,7 @@ class Expansion {
       for (int p = 0; p <= in.lead; ++p) machine_.series(s)[p] = convert<N>(wide.machine().series(s)[p]);
     }
   }
-  // A coefficient that was computed elsewhere, for those who look at slots.
+  // Stores a coefficient that was computed elsewhere, for readers of slots.
   void adopt_coefficient(std::uint32_t slot, int order, const N& value) { machine_.series(slot)[order] = value; }
   const std::vector<N>& parameters() const { return parameters_; }
   const Machine<N>& machine() const { return machine_; }
@@ -72,27 +71,27 @@ class Expansion {
   const Lu<N>& lu() const { return lu_; }
   // Coefficients of all stages 1..stages().
   Outcome extend();
-  // In place of extend(), where formulas have no derivatives: the polynomials end with these leading derivatives, and
-  // all other series with the coefficients of stage 0.
+  // Replaces extend() if formulas have no derivatives: the polynomials end with these leading derivatives, and all
+  // other series with the coefficients of stage 0.
   void cut_to(const std::vector<N>& leading);
 
-  // Worst hidden-constraint residual |E_i^(k)| (k < c_i) in relation to its terms (numeric/relative.h), at the state as
-  // measured or projected last.
+  // Worst hidden-constraint residual |E_i^(k)| (k < c_i) relative to its terms (numeric/relative.h), at the state as
+  // last measured or projected.
   const N& constraint_residual() const { return constraint_residual_; }
-  // How far project() found the state from the hidden constraints, in relation to the state's size.
+  // The distance of the state from the hidden constraints found by project(), relative to the size of the state.
   const N& drift() const { return drift_; }
-  // That of derivative k < c_i of equation i alone.
+  // The residual of derivative k < c_i of equation i alone.
   const N& hidden_residual(std::size_t i, int k) const {
     return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)];
   }
-  // Residual of the equations at the leading derivatives found, in relation to their terms.
+  // Residual of the equations at the computed leading derivatives, relative to their terms.
   const N& equation_residual() const { return equation_residual_; }
-  // The greatest of all terms at derivative order c_i - level, in the units of equation i, after prepare(). Round-off
-  // of that is what its residual may be, even where all its own terms vanish: it comes with the numbers that were
-  // solved for together.
+  // The largest of all terms at derivative order c_i - level, in the units of equation i, after prepare(). The residual
+  // may be of the size of its round-off, even if all terms of equation i vanish: the error comes from the other numbers
+  // of the same solution.
   N size_of_level(int level, std::size_t i) const;
   N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
-  // The unknowns' change that J shows least; its iteration goes on from here.
+  // The change of the unknowns to which J is least sensitive; the next call continues its iteration.
   const std::vector<N>& weakest_direction() const { return direction_; }
   void set_weakest_direction(const std::vector<N>& direction) { direction_ = direction; }
 
@@ -102,14 +101,14 @@ class Expansion {
   const N& coefficient(std::size_t j, int k) const { return x_[j * stride_ + static_cast<std::size_t>(k)]; }
   void state(std::vector<N>& out) const;
   void leading(std::vector<N>& out) const;
-  // E_i^(c_i) at the leading derivatives as loaded, after evaluate(): what solve() makes zero.
+  // E_i^(c_i) at the loaded leading derivatives, after evaluate(): the residual that solve() makes zero.
   void equations(std::vector<N>& out) const;
-  // The quadratures at the point itself, order 0; extend() does it for all orders.
+  // The quadratures at the point itself, order 0; extend() computes all orders.
   void evaluate_quadratures() { sweep_quadratures(0); }
   // The Taylor series (ascending) of quadrature i, orders 0..stages().
   const N* quadrature(std::size_t i) const { return machine_.series(program_->tape.roots[program_->unknowns() + i]); }
 
-  // The magnitude of the terms of its value.
+  // The magnitude of the terms of the quadrature's value.
   N quadrature_terms(std::size_t i) const { return machine_.magnitude(program_->tape.roots[program_->unknowns() + i]); }
 
  private:
@@ -144,7 +143,7 @@ class Expansion {
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
   std::vector<N> hidden_;                       // residuals of the hidden constraints, equation by equation
   mutable std::optional<Balance> balance_;      // of J
-  mutable std::vector<std::optional<N>> size_;  // of each level, balanced, as the point is
+  mutable std::vector<std::optional<N>> size_;  // of each level, balanced, at the current point
   std::vector<std::size_t> hidden_offset_;
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kLongestFormula = 120;
 
-// Long formulas are cut, so that a message stays one sentence.
+// Long formulas are cut to keep the message one sentence long.
 std::string short_text(const Program& p, std::uint32_t slot) {
   const NodeId node = p.tape.nodes[slot];
   if (node == Tape::kNoNode) return {};

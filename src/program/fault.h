@@ -1,4 +1,4 @@
-// Which formula of a program has no value, or no derivatives, where a Taylor expansion was tried.
+// Finds the formula of a program that has no value, or no derivatives, at the point of a Taylor expansion.
 #pragma once
 #include <string>
 
@@ -7,9 +7,9 @@
 
 namespace anholon {
 
-// The first slot whose coefficients, up to those of stage `last_stage`, are not finite, in the order in which they are
-// computed; nullopt if all are finite. REQUIRES: all stages up to `last_stage` have been swept, or the sweep ended at
-// one that is not finite.
+// The first slot, in the order of computation, whose coefficients up to those of stage `last_stage` are not finite;
+// nullopt if all are finite. REQUIRES: all stages up to `last_stage` have been swept, or the sweep ended at a
+// coefficient that is not finite.
 template <Number N>
 std::optional<std::uint32_t> first_fault(const Program& program, const Machine<N>& machine, int last_stage);
 

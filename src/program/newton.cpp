@@ -19,8 +19,8 @@ Outcome Expansion<N>::solve(const Solver& solver) {
   return newton(solver, false);
 }
 
-// Whether no residual of the equations exceeds what the rounding of its evaluation may leave. Terms that vanish
-// together count where they are made: a small factor may stand before a difference of large accelerations.
+// Whether no residual of the equations exceeds the rounding error of its evaluation. Terms that vanish together count
+// with the size at which they were computed: a small factor may precede a difference of large accelerations.
 template <Number N>
 bool Expansion<N>::left_is_roundoff() const {
   const Program& p = *program_;
@@ -60,9 +60,9 @@ bool Expansion<N>::left_is_roundoff() const {
   return true;
 }
 
-// A step from where all residuals are round-off of their terms is round-off itself, however large: J^-1 times that. It
-// leads to a solution as good as any, and no further step gains. Nothing is asked of the sizes of steps: where J is
-// nearly singular, or masses are very different, they do not shrink.
+// If all residuals are round-off of their terms, the next step is J^-1 times round-off, however large. It leads to a
+// solution as good as any other, and further steps do not improve it. The sizes of steps are not tested: if J is nearly
+// singular, or masses are very different, they do not shrink.
 template <Number N>
 Outcome Expansion<N>::newton(const Solver& solver, bool own) {
   const Program& p = *program_;
@@ -74,7 +74,7 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     if (!is_finite(worst)) return fault_outcome(*program_, machine_, 0);
     equation_residual_ = worst;
     const bool holds = !(worst > eps * N(kQuietRoundoffs));
-    // They no longer shrink.
+    // The steps no longer shrink.
     const bool stalls = !holds && left >= N(0) && !(worst < left * N(0.5)) && left_is_roundoff();
     left = worst;
     solver(r_, y_);
@@ -87,14 +87,13 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
       if (abs(y_[j]) > step) step = abs(y_[j]);
       if (N v = abs(x) * factorial_[static_cast<std::size_t>(p.d[j])]; v > size) size = v;
     }
-    // What is left is below the range of the numbers that solve for it: a function that all but vanishes, the only
-    // force.
+    // The residual is below the range of the numbers: the only force is a function that almost vanishes.
     if (!(step > N(0))) return {};
     sweep(0);
     // The terms of a guess may be larger than those of the solution.
     if (stalls || (holds && (k > 0 || !(step > eps * N(kQuietRoundoffs) * size)))) return {};
     if (own && k >= 2 && last >= N(0) && step > last * N(0.1)) {
-      // Slow: the Jacobian has changed with the leading derivatives.
+      // Convergence is slow: the Jacobian has changed with the leading derivatives.
       jacobian();
       if (!lu_.factor(j_)) return unsolved();
     }

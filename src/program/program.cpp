@@ -71,7 +71,7 @@ Program program(const System& system, const Structure& structure, std::span<cons
       break;
     }
     if (!t.a && !t.b) continue;
-    // At higher orders of the series (leads above 0) they enter linearly whatever the operation.
+    // At higher orders of the series (leads above 0) they enter linearly for every operation.
     const bool product = in.op == Op::multiply || in.op == Op::scale;
     if (in.lead == 0 && in.op != Op::linear && in.op != Op::select && in.op != Op::rate &&
         (product ? t.a && t.b : in.op != Op::divide || t.b))

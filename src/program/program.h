@@ -1,9 +1,9 @@
-// The stepping program: what one Taylor expansion of the motion computes, order by order.
+// The stepping program: the computation of one Taylor expansion of the motion, order by order.
 //
-// At stage k >= 1 the coefficients of order k + d_j of every unknown enter all equations (at order
-// k + c_i) linearly and with the same matrix, the system Jacobian J. So a stage is one sweep over
-// the tape with those coefficients zero, one back-substitution, and one pass that adds their effect
-// to the slots that depend on them (the tainted ones). One LU serves all stages.
+// At stage k >= 1 the coefficients of order k + d_j of every unknown enter all equations (at order k + c_i) linearly
+// and with the same matrix, the system Jacobian J. A stage is therefore one sweep over the tape with these coefficients
+// zero, one back-substitution, and one pass that adds the effect of the coefficients to the slots that depend on them
+// (the tainted ones). One LU serves all stages.
 #pragma once
 #include "structure/structure.h"
 #include "tape/tape.h"
@@ -21,7 +21,7 @@ struct ProgramInput {
 struct TaintedSlot {
   std::uint32_t slot;
   std::uint32_t row;  // its row in the tangent matrix
-  bool a, b;          // which operands are tainted (of a linear slot: see its terms)
+  bool a, b;          // which operands are tainted (for a linear slot: see its terms)
 };
 
 struct Program {
@@ -29,7 +29,7 @@ struct Program {
   std::vector<int> c, d;
   Tape tape;
   std::vector<ProgramInput> inputs;
-  std::vector<TaintedSlot> tainted;        // ascending, leading inputs not among them
+  std::vector<TaintedSlot> tainted;        // ascending, without the leading inputs
   std::vector<std::uint32_t> tangent_row;  // slot -> row, or kUntainted
   std::size_t tangent_rows = 0;
   std::size_t quadratures = 0;  // roots after the equations
@@ -39,9 +39,8 @@ struct Program {
   std::size_t unknowns() const { return d.size(); }
 };
 
-// `quadratures`: expressions whose Taylor series follow from the solution (powers to integrate,
-// energies to watch).
-// `shared`: of the tape (tape/tape.h).
+// `quadratures`: expressions whose Taylor series follow from the solution (powers to integrate, energies to monitor).
+// `shared`: the option of the tape (tape/tape.h).
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {},
                 bool shared = false);
 

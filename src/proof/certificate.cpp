@@ -128,7 +128,7 @@ std::string in_quotes(const std::string& s) {
   return "'" + json_escape(s.size() > 60 ? s.substr(0, 60) + "…" : s) + "'";
 }
 
-// Depth and repeated keys are refused while the text is parsed, before anything is built of them.
+// Excessive depth and repeated keys are refused during parsing, before anything is built from them.
 Json parse(std::string_view text) {
   if (text.size() > kLongestText)
     fail("", "the certificate is longer than " + std::to_string(kLongestText >> 20) + " MiB");

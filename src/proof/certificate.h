@@ -1,13 +1,12 @@
-// A certificate: what a proof that forms of the equations agree leaves behind, for a checker that
-// trusts nobody.
+// A certificate: the record of a proof that forms of the equations agree, for an independent checker.
 //
-// It is a straight-line program (each node uses earlier ones only) and claims about its nodes. Every
-// claim speaks of one expression, its difference
+// It is a straight-line program (each node uses earlier ones only) and claims about its nodes. Every claim is about one
+// expression, the difference
 //
 //     left − Σ coefficient · node                 (the pairs of `right`)
 //
-// and says either that it is zero, identically in all symbols and wherever it is defined, or that it
-// is not zero at a point, the witness. The text is JSON; numbers are exact rationals as text.
+// and states either that it is zero, identically in all symbols and wherever it is defined, or that it is not zero at a
+// point, the witness. The text is JSON; numbers are exact rationals as text.
 //
 //   { "format": "anholon-certificate", "version": 1,
 //     "program": "anholon 0.1.0", "model": "disc", "source_hash": "…",
@@ -54,8 +53,8 @@ struct Certificate {
   enum class ClaimKind : std::uint8_t {
     agree,   // zero: the equation `left` of form a is the combination `right` of those of form b
     differ,  // not zero at the witness: form b lacks the component of form a
-    kernel,  // zero: Σ_s Φ[r][s] B[s][a], what the combinations rest on
-    pivot,   // not zero at the witness: a minor by which something was solved
+    kernel,  // zero: Σ_s Φ[r][s] B[s][a], on which the combinations are based
+    pivot,   // not zero at the witness: a minor that was used as a divisor
   };
 
   struct Pair {
@@ -70,7 +69,7 @@ struct Certificate {
     Index symbol = 0;
     Rational midpoint, radius;  // radius > 0
   };
-  // A point: some symbols have exact values; the others are the one root of the equations in the box.
+  // A point: some symbols have exact values; the values of the others are the only root of the equations in the box.
   struct Witness {
     std::vector<Value> values;
     std::vector<Enclosed> enclosed;
@@ -83,7 +82,7 @@ struct Certificate {
     std::string component;  // "x", "u1"
     Index left = 0;
     std::vector<Pair> right;
-    std::optional<Witness> witness;  // of differ and pivot
+    std::optional<Witness> witness;  // for differ and pivot
 
     bool says_zero() const { return kind == ClaimKind::agree || kind == ClaimKind::kernel; }
   };
@@ -95,7 +94,7 @@ struct Certificate {
   std::vector<Node> nodes;
   std::vector<Claim> claims;
 
-  // The names a function node may have.
+  // The permitted names of a function node.
   static const std::vector<std::string>& functions();
   static bool has_function(std::string_view name);
 };
@@ -104,8 +103,8 @@ const char* name(Certificate::ClaimKind kind);
 
 std::string to_json(const Certificate& c);
 
-// Safe on any bytes: throws Failure with the place inside the JSON ("nodes[3]: …"), and reads only
-// what satisfies everything said above.
+// Is safe for any bytes: throws Failure with the place inside the JSON ("nodes[3]: …"), and accepts only certificates
+// that satisfy all conditions above.
 Certificate read_certificate(std::string_view text);
 
 }  // namespace anholon

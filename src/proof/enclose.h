@@ -9,7 +9,8 @@ namespace anholon {
 
 using BallPoint = std::unordered_map<NodeId, Ball>;  // symbol -> value
 
-// A value that is not defined on all of the balls is not finite. Every symbol of the expressions is in `at`.
+// The values of expressions as balls; a value that is not defined on all of the balls is not finite. `at` holds every
+// symbol of the expressions.
 std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at);
 
 }  // namespace anholon

@@ -11,8 +11,8 @@ namespace anholon {
 namespace {
 
 constexpr int kPoints = 3, kAttempts = 60, kNewtonSteps = 60;
-constexpr double kSingular = 1e-7;  // a pivot, in relation to its row
-constexpr double kFollows = 1e-6;   // what is left out holds up to this
+constexpr double kSingular = 1e-7;  // a pivot, relative to its row
+constexpr double kFollows = 1e-6;   // the omitted equations hold up to this residual
 
 std::uint64_t key(const Node& n) {
   return (static_cast<std::uint64_t>(n.kind) << 40) | (static_cast<std::uint64_t>(n.order) << 32) | n.index;
@@ -23,11 +23,11 @@ double arbitrary(const Node& n, int attempt) {
   for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
   const double r = 0.3 + 1.1 * static_cast<double>(h >> 40) / 16777216.0;
   if (n.kind != Kind::jet || n.order == 0) return r;
-  // Small velocities now and then: a bounded speed leaves room for them.
+  // Every third attempt has small velocities: a bounded speed leaves room for them.
   return (h & 1 ? -r : r) / (1 << (attempt % 3));
 }
 
-// `above`: the same for accelerations, higher derivatives and multipliers.
+// `above`: the attempt for accelerations, higher derivatives and multipliers.
 PointValues values_of(std::unordered_map<std::uint64_t, double> known, int attempt, int above) {
   return PointValues([known = std::move(known), attempt, above](const Node& n) {
     const auto it = known.find(key(n));
@@ -201,7 +201,7 @@ void EquationsOfMotion::solve_lower() {
     for (std::size_t j : s.chosen_symbols) open.push_back(s.symbols[j]);
     for (std::size_t i : s.chosen_rows) {
       const Expr psi = put(s.rows[i].residual);
-      // Affine before quadratic: a root makes everything after it longer.
+      // Affine equations come before quadratic ones: a root makes all later expressions longer.
       std::size_t best = open.size();
       std::optional<Expr> value;
       for (std::size_t j = 0; j < open.size(); ++j) {

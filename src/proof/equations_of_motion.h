@@ -1,8 +1,8 @@
-// The motion as equations in one place: the constraints with their derivatives, and Routh's equations [L 2.7]; and
-// points at which all of them hold.
+// The motion as equations: the constraints with their derivatives, Routh's equations [L 2.7], and points at which all
+// of them hold.
 //
-// What is solved at order k = 0, 1, 2, …, h: the constraints' derivatives of order k for some of the q^(k); from k = 2
-// on Routh's equations, differentiated k - 2 times, with them for q^(k) and lambda^(k-2).
+// At order k = 0, 1, 2, …, h the constraints' derivatives of order k are solved for some of the q^(k); from k = 2 on
+// together with Routh's equations, differentiated k - 2 times, for q^(k) and lambda^(k-2).
 #pragma once
 #include <unordered_map>
 
@@ -11,43 +11,43 @@
 
 namespace anholon {
 
-// A derived equation, left side - right side, masses put in.
+// A derived equation, left side - right side, with masses substituted.
 struct DerivedEquation {
   bool constraint = false;
-  std::size_t index = 0;  // coordinate, or constraint
-  unsigned times = 0;     // differentiated
+  std::size_t index = 0;  // of a coordinate or constraint
+  unsigned times = 0;     // number of differentiations
   Expr residual;
 };
 
-// Values of all symbols, none of them near 0: another point for each attempt.
+// Values of all symbols, none of them near 0; each attempt gives another point.
 PointValues arbitrary_values(int attempt);
 
 class EquationsOfMotion {
  public:
-  // `preferred`: coordinates for which constraints are solved where they can be.
+  // `preferred`: coordinates for which constraints are solved if possible.
   EquationsOfMotion(const Mechanics& M, unsigned highest, const std::vector<std::size_t>& preferred);
 
   unsigned highest = 2;
   std::vector<DerivedEquation> lower;  // constraints and their derivatives of orders 0 and 1
-  std::vector<DerivedEquation> rows;   // of orders 2 and more: independent ones
+  std::vector<DerivedEquation> rows;   // of orders 2 and more: independent equations
   Column top;                          // q'', …, q^(h), lambda, …: the rows are affine in these, if the constraints are
   // As many equations as unknowns: those of all orders.
   Column equations, unknowns;
-  bool regular = false;  // the equations determine their unknowns, and what is left out follows from them
+  bool regular = false;  // the equations determine their unknowns, and the omitted equations follow from them
 
-  // Values in double: on the motion; with the constraints of orders 0 and 1 only; anywhere. As many of each, unless
-  // none was found.
+  // Points in double: on the motion; with only the constraints of orders 0 and 1 satisfied; arbitrary. There are
+  // equally many of each, unless none was found.
   std::vector<PointValues>& on_motion() { return on_motion_; }
   std::vector<PointValues>& on_constraints() { return on_constraints_; }
   std::vector<PointValues>& anywhere() { return anywhere_; }
 
-  // e with the constraints of orders 0 and 1 solved; nothing if they cannot be. Roots stand for either sign.
+  // e with the constraints of orders 0 and 1 solved; nullopt if they cannot be solved. A root represents either sign.
   std::optional<Expr> reduced(Expr e);
 
  private:
   struct Stage {
     std::vector<DerivedEquation> rows;
-    Column symbols;  // for which they might be solved
+    Column symbols;  // the symbols for which they might be solved
     std::vector<std::vector<Expr>> jacobian;
     std::vector<std::size_t> chosen_rows, chosen_symbols, dropped_rows;
   };

@@ -1,4 +1,4 @@
-// From expressions to the straight-line program of a certificate.
+// Converts expressions to the straight-line program of a certificate.
 #include <unordered_map>
 
 #include "base/assert.h"
@@ -87,7 +87,7 @@ class Exporter {
     case Kind::quasi:
     case Kind::state:
     case Kind::control:
-    // Of what has branches a proof uses only that equal ones are equal.
+    // A branching function is a symbol: a proof uses only that equal arguments give equal values.
     case Kind::select:
     case Kind::lookup:
       out.operation = Certificate::Operation::symbol;

@@ -10,8 +10,8 @@ namespace anholon {
 
 namespace {
 
-constexpr long double kVanishes = 1e-9L;       // of the largest term on the way
-constexpr std::size_t kShort = 12;             // nodes: a subexpression not longer than this stays
+constexpr long double kVanishes = 1e-9L;       // relative to the largest intermediate term
+constexpr std::size_t kShort = 12;             // nodes: a shorter subexpression is not replaced
 constexpr std::size_t kMostWork = 40'000'000;  // node evaluations
 
 long double arbitrary(std::uint64_t seed) {
@@ -52,7 +52,7 @@ class Values {
 
   std::size_t count() const { return ids_.size(); }
   NodeId id(std::size_t i) const { return ids_[i]; }
-  std::size_t size(std::size_t i) const { return size_[i]; }  // as a tree
+  std::size_t size(std::size_t i) const { return size_[i]; }  // size as a tree
   void set_free(std::size_t i, bool free) { free_[i] = free; }
   bool vanishes() const { return std::abs(value_.back()) <= kVanishes * scale_.back(); }
 

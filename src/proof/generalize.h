@@ -1,16 +1,16 @@
-// The general statement behind an identity: what makes it true is often that a long subexpression cancels, whatever it
-// is.
+// The general statement behind an identity: an identity often holds because a long subexpression cancels, whatever its
+// value.
 #pragma once
 #include "expr/expr.h"
 
 namespace anholon {
 
-// Whether e vanishes at a random point, as far as its round-off tells.
+// Whether e vanishes at a random point up to round-off.
 bool seems_zero(Expr e);
 
-// e with subexpressions replaced by fresh symbols, the longest first, as long as the result still seems to vanish:
-// judged by numbers at a random point, so what comes back is a guess. If it is zero for all values of its symbols, so
-// is e. The fresh symbols are quasi-velocities with numbers from `first` on.
+// e with subexpressions replaced by new symbols, the longest first, as long as the result still seems to vanish at a
+// random point; the result is therefore a guess. If it is zero for all values of its symbols, so is e. The new symbols
+// are quasi-velocities numbered from `first`.
 Expr generalized(Expr e, std::uint32_t first = 1000);
 
 }  // namespace anholon

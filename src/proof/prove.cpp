@@ -36,7 +36,7 @@ bool shown_zero(Expr e, Effort effort) {
 
 namespace {
 
-// Zero by algebra, or not zero at a point.
+// Shows by algebra that a difference is zero, or finds a point at which it is not.
 void decide(Difference& d, const Elimination& e, const Model& model, Effort effort, long bits) {
   const Expr x = d.expression();
   const bool likely = seems_zero(x);
@@ -61,7 +61,7 @@ Verdict of_all(const std::vector<Difference>& list) {
   return v;
 }
 
-// Phi B = 0 on the manifold, and the solved constraints satisfied.
+// Claims that Phi B = 0 on the manifold, and that the solved constraints are satisfied.
 void kernel_claims(const Mechanics& M, const Elimination& e, long bits, std::vector<Difference>& out) {
   Graph& g = M.graph();
   const Model& model = *M.model;
@@ -110,7 +110,8 @@ FormProof against_routh(const Mechanics& M, const Formulation& form, const Equat
   } else {
     const Column a = e.on(lagrange_operator(M) - forces(M));
     const bool along =
-        residual.size() == M.q.size() && !e.constraints.empty();  // n equations: what they say along the constraints
+        // n equations without multipliers: take their projection along the constraints
+        residual.size() == M.q.size() && !e.constraints.empty();
     const Column contracted = along ? e.contract(residual) : residual;
     for (std::size_t nu = 0; nu < contracted.size(); ++nu) {
       Difference d{e.names[nu], contracted[nu], {}, {}, {}, {}};

@@ -3,16 +3,16 @@
 // Every form is compared with Routh's equations a = E - G - N [L 2.7]:
 //   with multipliers      each residual is that of Routh's equations, identically in all derivatives;
 //   without               each residual is sum_s B_s,nu a_s, where B spans the kernel of dphi/dq^(m) on the manifold of the
-//                         constraints. N drops out, and B^T a = 0 says that a is a combination of constraint rows: the
+//                         constraints. N drops out, and B^T a = 0 means that a is a combination of constraint rows: the
 //                         multipliers exist, and the form has the solutions of Routh's equations.
 // Two forms that agree with Routh's agree with each other; if one does and the other does not, they differ.
 //
-// proved   the difference is zero in the exact algebra (expr/normal.h): for all values of all symbols
-// refuted  a point of the manifold with rational free coordinates, where a ball that holds the difference excludes zero
-// unknown  neither was found within the limits; with the size of the difference at some points
+// proved   the difference is zero in the exact algebra (expr/normal.h): for all values of all symbols refuted  a point
+// of the manifold with rational free coordinates, where a ball that holds the difference excludes zero unknown  neither
+// was found within the limits; with the size of the difference at some points
 //
-// What is proved: the forms follow from each other given the same T, forces and constraints. Nothing is said about
-// whether these describe the machine.
+// A proof states that the forms follow from each other given the same T, forces and constraints. It does not state that
+// these describe the machine.
 #pragma once
 #include <functional>
 #include <optional>
@@ -22,15 +22,16 @@
 
 namespace anholon {
 
-enum class Verdict : std::uint8_t { unknown, proved, refuted };  // nothing said means unknown
+enum class Verdict : std::uint8_t { unknown, proved, refuted };  // a missing verdict means unknown
 const char* name(Verdict v);
 
-// How much is tried: a long expression in its general form only, which is far shorter; or all there is.
+// The effort: brief tries the general form of a long expression only, which is far shorter; full tries everything.
 enum class Effort : std::uint8_t { brief, full };
-// Zero by algebra (expr/normal.h), of the general statement behind it or of e itself.
+// Whether algebra (expr/normal.h) shows that e, or the general statement behind it, is zero.
 bool shown_zero(Expr e, Effort effort);
 
-// A point of the manifold: rational values of the free symbols, and boxes proved to hold the one root of the equations.
+// A point of the manifold: rational values of the free symbols, and boxes proved to contain exactly one root of the
+// equations.
 struct WitnessPoint {
   std::vector<std::pair<Expr, Rational>> values;
   struct Enclosed {
@@ -41,14 +42,14 @@ struct WitnessPoint {
   Column equations;
 };
 
-// left - sum coefficient * term, of which zero is claimed, or the contrary.
+// left - sum coefficient * term, which is claimed to be zero or not zero.
 struct Difference {
   std::string component;
   Expr left;
   std::vector<std::pair<Expr, Expr>> right;
   Verdict verdict = Verdict::unknown;
-  std::optional<WitnessPoint> witness;  // refuted
-  std::string detail;                   // the value at the witness; the bound that was reached
+  std::optional<WitnessPoint> witness;  // if refuted
+  std::string detail;                   // the value at the witness, or the bound reached
 
   Expr expression() const;
 };
@@ -57,13 +58,13 @@ struct FormProof {
   const Formulation* form = nullptr;
   Verdict verdict = Verdict::unknown;
   std::vector<Difference> differences;
-  std::size_t elimination = 0;  // which of those offered served
+  std::size_t elimination = 0;  // index of the elimination that was used
 };
 
 struct Proof {
-  std::vector<FormProof> forms;    // against Routh's equations
-  std::vector<Difference> kernel;  // that B spans the kernel, and that the solved constraints satisfy the constraints
-  std::vector<Difference> pivots;  // that what was divided by is not zero identically
+  std::vector<FormProof> forms;    // comparisons with Routh's equations
+  std::vector<Difference> kernel;  // B spans the kernel, and the solved constraints satisfy the constraints
+  std::vector<Difference> pivots;  // no divisor is identically zero
   Verdict between(std::size_t a, std::size_t b) const;
 };
 
@@ -74,19 +75,19 @@ struct Eliminations {
 
 struct ProofOptions {
   std::function<void(const Formulation&)> progress;
-  int digits = 308;  // of the balls at witnesses, at most: what is smaller than they resolve is not told from zero
+  int digits = 308;  // maximal precision of the balls at witnesses: a smaller difference is not distinguished from zero
   long bits() const { return static_cast<long>(digits * 3.3219281) + 1; }
 };
 
-// One form's equations against Routh's. Several eliminations may be offered, which say the same in other words
-// (constraints solved or not): a form is proved with the first that serves.
+// Compares one form's equations with Routh's. Several equivalent eliminations may be offered (with constraints solved
+// or not): a form is proved with the first one that succeeds.
 using EquationsOf = std::function<Equations(const Mechanics&, const Elimination&)>;
 FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations,
                      const std::vector<Eliminations>& eliminations, const ProofOptions& options = {});
 Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms,
             const std::vector<Eliminations>& eliminations, const ProofOptions& options = {});
 
-// Everything that was found, for a checker that trusts nobody.
+// All results, for an independent checker.
 Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations,
                         const std::string& program, const std::string& source_hash);
 

@@ -18,13 +18,13 @@ using verification::RealProgram;
 using verification::Work;
 using Index = Certificate::Index;
 
-constexpr int kRealPoints = 3;     // that a claim of zero must survive
-constexpr int kRealAttempts = 64;  // to find them, or one that contradicts
+constexpr int kRealPoints = 3;     // real points that a claim of zero must survive
+constexpr int kRealAttempts = 64;  // attempts to find these points, or one that contradicts
 constexpr std::array<slong, 2> kRealBits = {128, 512};
 constexpr std::size_t kMostEnclosed = 64;
 
 std::string text(const Ball& b) {
-  // A radius that the digits shown do not resolve is left out.
+  // A radius that the printed digits do not resolve is omitted.
   const bool negligible = !(b.center() + Ball(1 << 30) * b.spread()).contains_zero();
   return b.midpoint_text(8) + (negligible || b.radius() == Rational(0) ? "" : " ± " + b.radius_text());
 }
@@ -38,7 +38,7 @@ std::string text(const Certificate& c, const std::vector<Index>& symbols, const 
   return s;
 }
 
-// Small numbers with few digits, positive at every other attempt: roots and logarithms like them.
+// Small numbers with few digits, positive at every other attempt: roots and logarithms need positive arguments.
 std::vector<Rational> real_point(const Certificate& c, const HashKey& key, int attempt) {
   std::vector<Rational> point(c.symbols.size());
   for (std::size_t s = 0; s < point.size(); ++s) {
@@ -51,7 +51,7 @@ std::vector<Rational> real_point(const Certificate& c, const HashKey& key, int a
   return point;
 }
 
-// Claims of zero, after the test modulo primes: real points contradict, or fail to.
+// Tests claims of zero at real points, after the test modulo primes: a point may contradict a claim.
 void real_points(const Certificate& c, const HashKey& key, Work& work, std::vector<ClaimFinding>& findings) {
   for (const slong bits : kRealBits) {
     const BallScope precision(bits);
@@ -91,7 +91,7 @@ void real_points(const Certificate& c, const HashKey& key, Work& work, std::vect
   }
 }
 
-// A claim of not zero: enclosures at the witness, with more and more bits.
+// Tests a claim of not zero by enclosures at the witness, with increasing precision.
 ClaimFinding at_witness(const Certificate& c, const Certificate::Claim& claim, slong most_bits, Work& work) {
   const auto unchecked = [](std::string why) { return ClaimFinding{Finding::unchecked, false, 0, std::move(why)}; };
   const Certificate::Witness& w = *claim.witness;

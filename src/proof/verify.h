@@ -1,16 +1,16 @@
-// The checker of certificates. It sees numbers and the format only: no expression is simplified, and
-// nothing of the program that wrote the certificate is used.
+// The checker of certificates. It uses only the numbers and the format: it simplifies no expression, and it shares no
+// code with the program that wrote the certificate.
 //
-// What a verified certificate means: the forms named in it are equivalent, given the same kinetic
-// energy, forces and constraints. Each equation of one form is that combination of the equations of the
-// other, as an identity in all symbols. It does not prove that the model describes the machine, nor that
-// its energy, forces, constraints and the postulate on reactions were put into the nodes correctly.
+// A verified certificate means that the forms named in it are equivalent, given the same kinetic energy, forces and
+// constraints. Each equation of one form is the stated combination of the equations of the other, as an identity in all
+// symbols. It does not prove that the model describes the machine, nor that its energy, forces, constraints and the
+// postulate on reactions were translated to nodes correctly.
 //
-// "zero" is tested modulo primes at random points (verify_modular.h), with a bound on the chance that a
-// false claim passes; the points depend on the text of the certificate, so none can be made to fit
-// them, and on the seed. At some real points the difference is enclosed as well: a claim is called
-// contradicted only if a real point shows it. "not zero" is a proof: at a rational point, or at the
-// one root, shown to exist, of the witness's equations.
+// "zero" is tested modulo primes at random points (verify_modular.h), with a bound on the probability that a false
+// claim passes. The points depend on the seed and on the text of the certificate, so no certificate can be fitted to
+// them. At some real points the difference is enclosed as well: a claim is called contradicted only if a real point
+// shows it. "not zero" is a proof: at a rational point, or at the only root, proved to exist, of the witness's
+// equations.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -21,9 +21,9 @@
 namespace anholon {
 
 struct VerifyOptions {
-  int points = 6;  // modulo each of two primes; more where signs have to be tried
+  int points = 6;  // modulo each of two primes; more if signs have to be tried
   std::uint64_t seed = 0;
-  int digits = 308;  // of the balls at witnesses, at most
+  int digits = 308;  // maximal precision of the balls at witnesses
 };
 
 enum class Finding : std::uint8_t { confirmed, contradicted, unchecked };
@@ -31,8 +31,8 @@ const char* name(Finding f);
 
 struct ClaimFinding {
   Finding finding = Finding::unchecked;
-  bool proved = false;     // confirmed without any chance
-  double log2_chance = 0;  // confirmed: log2 of a bound on the chance that it is false all the same
+  bool proved = false;     // confirmed with certainty
+  double log2_chance = 0;  // confirmed: log2 of a bound on the probability that it is false
   std::string detail;      // contradicted: the point and the value; unchecked: why
 };
 

@@ -9,7 +9,7 @@
 
 namespace anholon::verification {
 
-constexpr double kLargestChance = -40;  // log2; a weaker bound confirms nothing
+constexpr double kLargestChance = -40;  // log2 of the probability; a larger bound confirms nothing
 constexpr int kMostBranches = 8;
 
 std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) {
@@ -43,7 +43,7 @@ std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) 
     std::uint64_t draws = 0;
     int accepted = 0;
 
-    // One more point over a field; false if the prime does not serve.
+    // Tests one more point over a field; returns false if the prime is unsuitable.
     const auto one_point = [&](const Field& f, const Reduced& r) {
       for (int attempt = 0;; ++attempt) {
         if (!work_.spend(cost_)) throw Unable{"the limit of work is reached"};
@@ -92,8 +92,8 @@ std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) 
         findings[k].is = ModularFinding::Is::nonzero;
         continue;
       }
-      // Per point: of degree d over p, for all conjugates, given that the roots exist; and two
-      // arguments that are not equal may look equal.
+      // Probability per point: degree d over p, for all conjugates, given that the roots exist; and two different
+      // arguments may have equal values.
       const double zeros = degree[k] + keyed_ * keyed_ * largest_key_;
       double chance = std::exp2(std::log2(std::max(zeros, 1.0)) + log2_conjugates_ + roots - 60.99);
       if (const int m = branches(); m > 0) chance += 1 - std::exp2(-m);
@@ -114,8 +114,8 @@ std::vector<ModularFinding> ModularProgram::run(const HashKey& key, int points) 
 std::vector<ModularFinding> test_zero(const Certificate& c, const HashKey& key, int points, Work& work) {
   std::vector<ModularFinding> findings(c.claims.size());
   std::vector<std::uint32_t> scratch(c.nodes.size(), ~std::uint32_t{0});
-  // Claims whose signs are chosen at the same places can share their points: no root of one claim
-  // keeps another from a point it should see.
+  // Claims whose signs are chosen at the same nodes can share their points: no root of one claim then excludes a point
+  // that another claim needs.
   std::map<std::vector<std::pair<Index, bool>>, std::vector<std::size_t>> groups;
   for (std::size_t k = 0; k < c.claims.size(); ++k) {
     if (!c.claims[k].says_zero()) continue;
@@ -135,7 +135,7 @@ std::vector<ModularFinding> test_zero(const Certificate& c, const HashKey& key, 
   };
   for (const auto& [sites, claims] : groups) {
     settle(claims);
-    // One that cannot be treated must not spoil the others.
+    // A claim that cannot be checked must not affect the others.
     if (claims.size() == 1) continue;
     for (const std::size_t k : claims)
       if (findings[k].is == ModularFinding::Is::unknown && !work.done()) settle({k});

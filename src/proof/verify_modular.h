@@ -1,5 +1,5 @@
-// Is an expression identically zero? Asked of a finite field: the nodes are evaluated modulo a prime
-// at random points, where a polynomial of degree d that is not zero vanishes with chance d/p at most.
+// Tests whether an expression is identically zero, in a finite field: the nodes are evaluated modulo a prime at random
+// points, where a nonzero polynomial of degree d vanishes with probability d/p at most.
 //
 // The primes are p = 2r + 1 with r prime, near 2^61, and all primes up to 47 are squares modulo p:
 //   - half the field are squares, −1 is none, and every square has one root that is itself a square.
@@ -11,13 +11,13 @@
 //     with a random square that is not 0 for each atom.
 //   - of log, asin, atan, … only this is used: equal arguments have equal values, the value of −u is
 //     that of an odd function, acos u = π/2 − asin u. sign and abs follow whether u is a square.
-// Every rule is true of the real functions, so what is identically zero only by the rules is zero, and
-// what is not zero is found out by chance 1 − d/p, except for branches: √(x²) is x at half of the
-// points, as for real x. Where roots may hide squares (no point was seen at which the radicand was
-// none), and for sign and abs, so many points are taken that each choice of signs has its turn.
+// Every rule is true of the real functions, so an expression that is identically zero by the rules is zero, and one
+// that is not zero is detected with probability 1 − d/p, except for branches: √(x²) is x at half of the points, as for
+// real x. For roots that may hide squares (the radicand was a square at all points seen), and for sign and abs, the
+// number of points is large enough for each choice of signs to occur.
 //
-// What is zero by no such rule (log(ab) = log a + log b) is called nonzero here; the caller asks real
-// numbers before he believes it.
+// An expression that is zero by another rule (log(ab) = log a + log b) is called nonzero here; the caller checks such a
+// result with real numbers.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -31,7 +31,7 @@
 
 namespace anholon::verification {
 
-// The operations left to a verification: a hostile certificate must not run for ever.
+// The number of operations left to a verification, so that a hostile certificate cannot run for ever.
 class Work {
  public:
   bool spend(std::uint64_t n) { return (left_ -= n < left_ ? n : left_) > 0; }
@@ -51,11 +51,11 @@ using Field = PrimeField;
 
 struct ModularFinding {
   enum class Is : std::uint8_t { zero, nonzero, unknown } is = Is::unknown;
-  double log2_chance = 0;  // zero: log2 of a bound on the chance that it is not
-  std::string detail;      // unknown: why
+  double log2_chance = 0;  // zero: log2 of a bound on the probability that it is not zero
+  std::string detail;      // unknown: the reason
 };
 
-// For each claim that says zero; `unknown` for the others.
+// A finding for each claim of zero; `unknown` for the others.
 std::vector<ModularFinding> test_zero(const Certificate& c, const HashKey& key, int points, Work& work);
 
 }  // namespace anholon::verification

@@ -11,7 +11,7 @@ bool ModularProgram::reduce(const Field& f, Reduced& r) const {
   r.weights.assign(steps_.size(), {});
   r.factors.assign(steps_.size(), {});
   r.turns.assign(steps_.size(), {});
-  // a/b modulo the order of a cyclic group; b is prime to it.
+  // a/b modulo the order of a cyclic group, to which b is coprime.
   const auto modulo = [](const Rational& e, Word order) {
     mpz_class m, inverse;
     mpz_import(m.get_mpz_t(), 1, 1, sizeof order, 0, 0, &order);

@@ -71,7 +71,7 @@ std::size_t ModularProgram::site(std::uint32_t local, bool root) {
   return it->second;
 }
 
-// From the largest node down: all ways into a node are added up before it is opened.
+// Starts at the largest node: all paths to a node are added up before it is expanded.
 Angle ModularProgram::flatten(Index argument, bool circle) {
   Angle angle;
   Rational ones = 0, pis = 0;
@@ -268,7 +268,7 @@ void ModularProgram::degrees() {
     if (std::isnan(d.numerator)) d.numerator = kInfinity;
     if (work_.done()) throw Unable{"the limit of work is reached"};
   }
-  // The norm down to the field without roots: one factor for each choice of all roots.
+  // The norm to the field without roots: one factor for each choice of all roots.
   std::map<std::uint32_t, mpz_class> order;
   for (const auto& [local, q] : roots) {
     mpz_class& n = order.emplace(local, 1).first->second;

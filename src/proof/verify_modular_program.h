@@ -1,6 +1,6 @@
 // The nodes that claims need, compiled for evaluation in finite fields (verify_modular.h): angles as combinations of
-// atoms and bounds on degrees (verify_modular_program.cpp), values at random points (verify_modular_points.cpp), what
-// follows from them (verify_modular.cpp).
+// atoms and bounds on degrees (verify_modular_program.cpp), values at random points (verify_modular_points.cpp), the
+// conclusions (verify_modular.cpp).
 #pragma once
 #include <cstdint>
 #include <map>
@@ -16,7 +16,7 @@ using Word = Field::Word;
 using Index = Certificate::Index;
 using Operation = Certificate::Operation;
 
-// What cannot be treated, with its reason.
+// Thrown for a construct that cannot be checked, with the reason.
 struct Unable {
   std::string reason;
 };
@@ -29,36 +29,36 @@ struct Part {
 };
 struct Angle {
   std::vector<Part> parts;
-  unsigned twelfths = 0;  // of π, exactly; circle functions only
+  unsigned twelfths = 0;  // multiple of π/12, exactly; circle functions only
 };
 
 enum class Family : std::uint8_t { none, circle, exponential };
 
 struct Step {
   const Certificate::Node* node = nullptr;
-  std::vector<std::uint32_t> operands;  // local
+  std::vector<std::uint32_t> operands;  // local indices
   Angle angle;
   Family family = Family::none;
   std::uint64_t name = 0;  // of the function, for its key
   bool constant = false;   // the same number at all points
 };
 
-// A place where the sign of a root, or of a number, has to be chosen.
+// A place at which the sign of a root, or of a number, has to be chosen.
 struct Site {
   std::uint32_t local = 0;
   bool root = false;  // the argument must be a square
   bool constant = false;
-  bool failed = false;  // it was seen not to be a square: its root is in no smaller field
+  bool failed = false;  // the argument was not a square at some point: its root is in no smaller field
 };
 
-// Degrees as rational functions of everything that is drawn at random. The denominators are kept
-// apart by what they come from, so that sums over a common denominator do not count it twice.
+// Degrees as rational functions of all random numbers. Denominators are stored separately by their origin, so that sums
+// over a common denominator do not count it twice.
 struct Degree {
   double numerator = 0;
   std::vector<std::pair<std::uint64_t, double>> denominators;  // base, exponent; ascending
 };
 
-// The nodes that some claims need, to be evaluated together.
+// The nodes that some claims need, evaluated together.
 class ModularProgram {
  public:
   ModularProgram(const Certificate& c, std::vector<std::size_t> claims, std::vector<std::uint32_t>& scratch, Work& work)
@@ -71,7 +71,7 @@ class ModularProgram {
   ModularProgram(const ModularProgram&) = delete;
   ModularProgram& operator=(const ModularProgram&) = delete;
 
-  // Where signs are chosen: nodes of the certificate, and whether a root is taken of them.
+  // The choices of signs: nodes of the certificate, and whether a root is taken of them.
   std::vector<std::pair<Index, bool>> sites() const {
     std::vector<std::pair<Index, bool>> list;
     for (const Site& s : sites_) list.emplace_back(nodes_[s.local], s.root);
@@ -136,7 +136,7 @@ class ModularProgram {
 
   std::vector<Degree> degree_;
   std::map<std::uint64_t, double> base_degree_;
-  double keyed_ = 0, largest_key_ = 0;  // arguments told apart by their values, and their degree
+  double keyed_ = 0, largest_key_ = 0;  // number of arguments distinguished by their values, and their degree
   double log2_conjugates_ = 0;
 };
 

@@ -46,7 +46,7 @@ const Function& function(const std::string& name) {
         [](const Ball& u, const Ball&) { return Ball(1) / (Ball(1) - u * u); }}},
       {"exp", {[](const Ball& u) { return exp(u); }, [](const Ball&, const Ball& v) { return v; }}},
       {"log", {[](const Ball& u) { return log(u); }, [](const Ball& u, const Ball&) { return Ball(1) / u; }}},
-      // At the edge itself there is no derivative.
+      // There is no derivative at the edge itself.
       {"abs",
        {[](const Ball& u) { return abs(u); },
         [](const Ball& u, const Ball&) { return u.contains_zero() ? Ball::unknown() : sign(u); }}},
@@ -166,7 +166,7 @@ std::vector<Ball> RealProgram::jacobian(const std::vector<Index>& nodes, const s
       break;
     case Operation::atan2: {
       const Ball &y = value_[operand(0)], &x = value_[operand(1)], scale = Ball(1) / (x * x + y * y);
-      // Across the cut it is not even continuous.
+      // Across the cut the function is not continuous.
       const bool cut = !x.is_positive() && y.contains_zero();
       add_to(cut ? Ball::unknown() : x * scale, tangent[operand(0)]);
       add_to(cut ? Ball::unknown() : -y * scale, tangent[operand(1)]);

@@ -1,4 +1,4 @@
-// The nodes of a certificate as real functions: enclosed by balls, with their derivatives.
+// The nodes of a certificate as real functions: balls enclose their values and derivatives.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace anholon::verification {
 
-// What some claims and equations need, in order.
+// The nodes that some claims and equations need, in order.
 class RealProgram {
  public:
   using Index = Certificate::Index;
   RealProgram(const Certificate& c, const std::vector<const Certificate::Claim*>& claims,
               const std::vector<Index>& others = {});
 
-  // Values of symbols by their index, those of nodes by number of node. A node that is not defined on
-  // all of the balls is not finite.
+  // Computes the values of nodes, by their numbers, from the values of symbols, by their indices. The value of a node
+  // that is not defined on all of the balls is not finite.
   void evaluate(const std::vector<Ball>& symbols);
   const Ball& value(Index node) const { return value_[local_[node]]; }
   Ball difference(const Certificate::Claim& claim) const;
@@ -26,7 +26,7 @@ class RealProgram {
   // The derivatives of `nodes` with respect to some symbols, row by row, after evaluate.
   std::vector<Ball> jacobian(const std::vector<Index>& nodes, const std::vector<Index>& symbols) const;
 
-  const std::vector<Index>& symbols() const { return symbols_; }  // those that occur, ascending
+  const std::vector<Index>& symbols() const { return symbols_; }  // indices of the symbols that occur, ascending
   std::size_t size() const { return nodes_.size(); }
 
  private:

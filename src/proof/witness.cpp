@@ -10,10 +10,10 @@ namespace anholon {
 
 namespace {
 
-constexpr int kPoints = 40;  // tried before the search ends
-constexpr int kSizes = 4;    // of the free derivatives: 1, 1/2, 1/4, …
+constexpr int kPoints = 40;  // points tried before the search ends
+constexpr int kSizes = 4;    // sizes of the free derivatives: 1, 1/2, 1/4, …
 constexpr slong kFirstBits = 64;
-constexpr slong kRootBits = 256;  // of the box of a root, where no more than usual are asked for
+constexpr slong kRootBits = 256;  // precision of the box of a root, unless more is asked for
 constexpr int kNewtonSteps = 60;
 
 // A rational in (1/5, 8/5) that depends on the symbol and the attempt.
@@ -33,7 +33,7 @@ std::vector<std::optional<Rational>> rational_parameters(const Model& model) {
   Graph& g = *model.graph;
   std::vector<std::optional<Rational>> values;
   for (const Parameter& p : model.parameters) {
-    // A value may refer to parameters before or after it: put in what is known until nothing changes.
+    // A value may refer to parameters before or after it: known values are substituted until nothing changes.
     Expr e = p.value;
     for (std::size_t k = 0; k <= model.parameters.size() && !is_number(e) && !symbols({&e, 1}).empty(); ++k)
       e = substitute({&e, 1}, [&](NodeId id) {
@@ -47,7 +47,7 @@ std::vector<std::optional<Rational>> rational_parameters(const Model& model) {
 
 class Search {
  public:
-  // Parameters have the values of the model, or any.
+  // Parameters have the values of the model, or arbitrary ones.
   Search(const Difference& d, const Column& equations, const Column& unknowns, const Model& model, bool of_the_model)
       : e_(d.expression()), g_(*e_.graph), parts_{d.left}, equations_(equations), unknowns_(unknowns) {
     if (of_the_model) parameters_ = rational_parameters(model);
@@ -55,9 +55,9 @@ class Search {
   }
   Search(const Difference& d, const Elimination& elimination, const Model& model) : Search(d, {}, {}, model, true) {
     if (elimination.phi.empty()) return;
-    // The constraints and their derivatives, as far as the dependent derivatives occur. Of solved constraints the first
-    // two are put in already, except in differences that were never brought to the manifold: those of forms with
-    // multipliers.
+    // The constraints and their derivatives, up to the highest dependent derivatives that occur. The first two
+    // derivatives of solved constraints are substituted already, except in differences that are not restricted to the
+    // manifold: those of forms with multipliers.
     Graph& g = *e_.graph;
     unsigned highest = 0;
     bool put_in = elimination.solved;
@@ -111,7 +111,8 @@ class Search {
   // Values of the free symbols, and a verified root for the others.
   bool place(int attempt, WitnessPoint& w) {
     Column all = equations_;
-    all.insert(all.end(), parts_.begin(), parts_.end());  // what cancels in the difference has its value too
+    // operands that cancel in the difference must have values as well
+    all.insert(all.end(), parts_.begin(), parts_.end());
     std::unordered_map<NodeId, Rational> value;
     for (NodeId id : symbols(all)) {
       if (is_unknown(id)) continue;

@@ -8,16 +8,16 @@ inline constexpr long kWitnessBits = 1024;
 
 struct WitnessSearch {
   std::optional<WitnessPoint> witness;
-  std::string detail;  // the value there; or how small the expression is at the points that were tried
+  std::string detail;  // the value there; or the size of the expression at the points tried
 };
 
-// Free symbols get pseudo-random rational values, parameters those of the model where these are rational. Constraints
-// that the elimination has not solved are satisfied by a verified root in the dependent derivatives. `bits`: of the
-// balls by which the difference is told from zero, at most.
+// Free symbols get pseudo-random rational values, parameters those of the model if these are rational. Constraints that
+// the elimination has not solved are satisfied by a verified root in the dependent derivatives. `bits`: maximal
+// precision of the balls that distinguish the difference from zero.
 WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model,
                            long bits = kWitnessBits);
 
-// The same at a root of other equations, as many as unknowns.
+// As above, at a root of other equations, as many as unknowns.
 WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model);
 
 }  // namespace anholon

@@ -13,7 +13,7 @@ namespace {
 
 const char* const kKinds[] = {"definition", "identity", "constraint", "equation of motion", "equivalence", "claim"};
 
-// What may be written before a tag for each paper, in small letters without signs between them.
+// Prefixes of a tag for each paper, in small letters, without signs between them.
 struct Spelling {
   const char* key;
   std::vector<std::string> names;
@@ -162,7 +162,7 @@ class TableReader {
   Diagnostics& diagnostics_;
 };
 
-// Small letters and digits, dots and primes; nothing else.
+// Keeps only small letters and digits, dots and primes.
 std::string plain(const std::string& spelling) {
   std::string out;
   for (std::size_t i = 0; i < spelling.size();) {
@@ -216,7 +216,7 @@ std::vector<FoundClaim> find_claims(const std::vector<Paper>& papers, const std:
     for (const Claim& c : p.claims)
       if (plain(c.tag) == tag) found.push_back({&p, &c});
   };
-  // The name of a paper, then a tag of it.
+  // The name of a paper, then a tag of that paper.
   for (std::size_t n = wanted.size() - 1; n > 0 && found.empty(); --n) {
     const std::string name = letters_only(wanted.substr(0, n));
     std::string tag = wanted.substr(n);

@@ -1,5 +1,5 @@
-// The claims of a paper, one for each numbered equation and each displayed formula, and how the machine decides each.
-// They stand in papers/*.toml.
+// The claims of a paper, one for each numbered equation and each displayed formula, and the check that decides each.
+// The claims are in papers/*.toml.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace anholon {
 
-// Where what is read in a paper differs from what holds, and why.
+// The cause of a difference between the text of a paper as read and the correct formula.
 enum class DifferenceBy : std::uint8_t { none, reading, text, undecidable };
 
 // One decision about a claim, on one model.
@@ -31,7 +31,7 @@ struct ClaimCheck {
 };
 
 struct Claim {
-  std::string tag;  // "3.13"; of an unnumbered formula a short name
+  std::string tag;  // "3.13"; for an unnumbered formula a short name
   bool numbered = true;
   std::string title, kind, formula, hypotheses;
   std::string difference, corrected;
@@ -40,7 +40,7 @@ struct Claim {
   Span span;
   std::vector<ClaimCheck> checks;
 
-  // Whether the statement as restored is true; one that is false has a corrected version.
+  // Whether the statement as restored is true; a false one has a corrected version.
   bool holds() const { return corrected.empty(); }
 };
 
@@ -55,17 +55,17 @@ struct Paper {
 // "a loss of the machine reading", "an error of the text", "undecidable without the scan".
 const char* in_words(DifferenceBy d);
 
-// All errors are collected in `diagnostics`, which then speak of `source`.
+// All errors are collected in `diagnostics`, whose positions refer to `source`.
 std::optional<Paper> read_paper(const SourceText& source, Diagnostics& diagnostics);
 
-// A claim that somebody names.
+// A claim that matches a spelling.
 struct FoundClaim {
   const Paper* paper;
   const Claim* claim;
 };
-// All claims that a spelling may mean: L3.13, "[L 3.13]", "Luo-Zhao (3.13)", 3.13, Gamma.
+// All claims that a spelling may denote: L3.13, "[L 3.13]", "Luo-Zhao (3.13)", 3.13, Gamma.
 std::vector<FoundClaim> find_claims(const std::vector<Paper>& papers, const std::string& spelling);
-// The tag that is spelt most like it; empty if none is near.
+// The tag with the most similar spelling; empty if none is similar.
 std::string nearest_tag(const std::vector<Paper>& papers, const std::string& spelling);
 
 }  // namespace anholon

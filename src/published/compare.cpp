@@ -13,13 +13,13 @@ namespace anholon {
 
 namespace {
 
-constexpr double kVanishes = 1e-8;  // in relation to the size of the terms
+constexpr double kVanishes = 1e-8;  // relative to the size of the terms
 constexpr long kWorkOfCount = 200'000;
 constexpr std::size_t kLongestCounted = 800;  // nodes
 constexpr std::size_t kLongestFactor = 40;    // nodes
 constexpr std::size_t kPrinted = 5;           // differences that are arranged for a choice
 constexpr const char* kIdentity = "an identity, no equation of motion";
-constexpr std::size_t kMostCombined = 6;  // equations in a combination that is written out
+constexpr std::size_t kMostCombined = 6;  // equations in a combination that is printed
 
 std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
 
@@ -30,19 +30,19 @@ bool vanishes(Expr e, std::vector<PointValues>& points) {
 
 bool is_not_zero(Expr e, PointValues& at) { return std::abs(at(e)) > 1e-9 * (1e-6 + size_at(e, at)); }
 
-// How long an expression is in print.
+// The length of an expression in print.
 std::size_t monomials(Expr e, const SymbolNames& names) {
   if (is_zero(e)) return 0;
   std::size_t least = 1000 + nodes(e);
   if (least > 1000 + kLongestCounted) return least;
-  // Sines of sums and tangents as they stand, or written out.
+  // Tries sines of sums and tangents unexpanded, then expanded.
   for (const bool angles : {true, false})
     if (const auto form = normal_form(e, Whole{angles, angles, &names.defined}, kWorkOfCount))
       least = std::min(least, form->numerator.size() * (form->denominator.size() > 1 ? 2 : 1));
   return least;
 }
 
-// The number that two expressions have as their ratio at all points, if it is a short fraction.
+// The constant ratio of two expressions at all points, if it is a short fraction.
 std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>& points) {
   constexpr int kLongest = 720;
   const double ratio = points[0](a) / points[0](b);
@@ -57,7 +57,7 @@ std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>&
   return std::nullopt;
 }
 
-// Zero by algebra; where the whole is too much, its coefficients by the symbols in which it is affine.
+// Whether e is zero by algebra; if the whole is too large, by its coefficients of the symbols in which it is affine.
 bool zero_by_parts(Expr e, const Column& symbols) {
   if (shown_zero(e, Effort::brief)) return true;
   Graph& g = *e.graph;
@@ -175,8 +175,7 @@ bool Comparer::directly(Expr P, const DerivedEquation& e, EquationsOfMotion& mot
   return true;
 }
 
-// The coefficients of a combination of rows that has the same derivatives by q'', lambda as P, and what is then left of
-// P.
+// The coefficients of a combination of rows that has the same derivatives by q'', lambda as P, and the remainder of P.
 std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
                                           std::vector<std::pair<std::size_t, Expr>>& terms) {
   std::vector<PointValues>& points = motion.on_constraints();
@@ -186,7 +185,7 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
   Rows K;
   for (const DerivedEquation& e : motion.rows) {
     K.push_back(gradient(e.residual, motion.top));
-    // What cancels is not to be taken for a pivot.
+    // An entry that cancels must not become a pivot.
     for (Expr& entry : K.back())
       if (!is_zero(entry) && vanishes(entry, points)) entry = M_.graph().zero();
   }
@@ -234,7 +233,7 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
     if (choose_rows(a, 1e-7).independent.size() == columns.size() + 1) columns.push_back(j);
   }
   if (columns.size() < support.size()) return std::nullopt;
-  // (c, d) K = p: one unknown after the other where the columns allow it, by the inverse.
+  // (c, d) K = p: solved for one unknown after the other if the columns allow it, else by the inverse.
   Rows square;
   for (std::size_t i : support) {
     square.emplace_back();
@@ -312,7 +311,7 @@ bool Comparer::combined(Expr P, EquationsOfMotion& motion, Comparison& out) {
   return true;
 }
 
-// A misprint that is found says what was meant: of several the one that differs in the least.
+// A misprint that is found shows the intended equation: of several, the one with the smallest change.
 void Comparer::nearest_of(const std::vector<Change>& changes, Expr P, Comparison& out) const {
   std::size_t shortest = SIZE_MAX;
   for (std::size_t k = 0; k < changes.size() && k < kPrinted; ++k) {
@@ -327,7 +326,7 @@ bool Comparer::without_motion(Expr P, EquationsOfMotion& motion) const {
   return std::all_of(p.begin(), p.end(), [&](Expr x) { return is_zero(x) || vanishes(x, motion.anywhere()); });
 }
 
-// What is left of P, less the derived equation that leaves the least.
+// The remainder of P less the derived equation that leaves the shortest one.
 void Comparer::nearest(Expr P, Comparison& out) {
   EquationsOfMotion& motion = this->motion(order_of_motion(P));
   std::vector<PointValues>& points = motion.anywhere();
@@ -338,15 +337,15 @@ void Comparer::nearest(Expr P, Comparison& out) {
     std::string what;
   };
   std::vector<Offer> offers;
-  std::size_t of = 0;  // the derived equation whose multiples are offered
-  // What says less counts as longer: a combination, a constraint beside an equation of motion.
+  std::size_t of = 0;  // index of the derived equation whose multiples are offered
+  // Weaker statements count as longer: a combination, a constraint beside an equation of motion.
   const auto offer = [&](Expr difference, const std::string& what, std::size_t weight) {
     offers.push_back({weight * monomials(difference, names_), weight, of, difference, what});
   };
   std::vector<DerivedEquation> candidates = motion.rows;
   candidates.insert(candidates.begin(), motion.lower.begin(), motion.lower.end());
   const Expr one = M_.graph().one();
-  // Where all accelerations are lost, parameters show the factor.
+  // If all accelerations are lost, parameters show the factor.
   Column by = motion.top;
   const Column p_top = gradient(P, motion.top);
   if (std::all_of(p_top.begin(), p_top.end(), [](Expr x) { return is_zero(x); }))
@@ -369,7 +368,7 @@ void Comparer::nearest(Expr P, Comparison& out) {
   for (const DerivedEquation& e : candidates) {
     ++of;
     if (e.constraint) {
-      // In its own leading derivatives.
+      // Compares in the equation's own leading derivatives.
       const Column symbols = leading(e, motion), q = gradient(P, symbols), f = gradient(e.residual, symbols);
       for (std::size_t j = 0; j < symbols.size(); ++j)
         if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0]) && is_not_zero(q[j], points[0]))
@@ -379,7 +378,7 @@ void Comparer::nearest(Expr P, Comparison& out) {
       offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : is_number(factor) ? 2 : 3);
   }
   if (!elimination_.dependent.empty() && !elimination_.quasi) {
-    // Along the directions that the constraints leave free.
+    // Projects on the directions that the constraints leave free.
     Column routh;
     for (const DerivedEquation& e : motion.rows)
       if (!e.constraint && e.times == 0) routh.push_back(e.residual);
@@ -411,7 +410,7 @@ void Comparer::nearest(Expr P, Comparison& out) {
   }
   const std::size_t identity = ++of;
   if (without_motion(P, motion)) offer(P, kIdentity, 8);
-  // Of the best few the shortest in print.
+  // Of the best few, takes the shortest in print.
   std::stable_sort(offers.begin(), offers.end(), [](const Offer& x, const Offer& y) { return x.length < y.length; });
   std::size_t shortest = SIZE_MAX;
   std::vector<std::size_t> seen;

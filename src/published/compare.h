@@ -5,7 +5,7 @@
 //   P = sum_a c_a r_a + sum_r d_r phi_r^(k),
 //
 // identically, or on the manifold of the constraints. c and d follow from dP/d(q'', lambda) = (c, d) K, where K are the
-// same derivatives of the derived equations; numbers at points of the motion say which of them are not zero, so that
+// same derivatives of the derived equations; numbers at points of the motion show which of them are not zero, so that
 // only a small system is solved on the graph. It is false if it does not vanish at a point at which all derived
 // equations hold.
 #pragma once
@@ -18,32 +18,32 @@
 
 namespace anholon {
 
-// One place of an equation that reads otherwise.
+// One changed place of an equation.
 struct ChangedPlace {
   int side = 0;          // 0 left, 1 right
   std::size_t term = 0;  // of the side, from 0
-  std::string from, to;  // the smallest term around the place; where several places change, a symbol
+  std::string from, to;  // the smallest term around the place; if several places change, a symbol
   Span span;
 };
 
-// What a misprint has changed: one place, or several that change together, of which it is the first.
+// The change of a misprint: one place, or several that change together; this one is the first.
 struct Change : ChangedPlace {
   std::vector<ChangedPlace> places;
-  std::string equation;  // as it then reads
-  Expr difference;       // left - right, as it then reads
-  std::string what;      // what it then is
+  std::string equation;  // the changed equation
+  Expr difference;       // left - right of the changed equation
+  std::string what;      // the kind of the changed equation
   bool proved = false;
-  bool identity = false;  // it then holds whatever the motion
+  bool identity = false;  // the changed equation holds for every motion
 };
 
 struct Comparison {
   Verdict verdict = Verdict::unknown;
-  std::string what;                     // what a true equation is; to what a false one comes nearest
-  std::optional<Expr> difference;       // false: left - right less what it comes nearest to
-  std::optional<WitnessPoint> witness;  // false
+  std::string what;                     // true: the kind of the equation; false: the nearest true one
+  std::optional<Expr> difference;       // false: left - right less the nearest true equation
+  std::optional<WitnessPoint> witness;  // if false
   std::string detail;
   std::vector<Change> changes;  // each of them makes it true
-  bool identity = false;        // false: it is meant as an identity, no equation of motion
+  bool identity = false;        // false: the equation is meant as an identity, not as an equation of motion
   bool trivial = false;         // true of every motion of every system
   bool of_constraints = false;  // true by the constraints alone
 };
@@ -52,17 +52,17 @@ class Comparer {
  public:
   Comparer(const Mechanics& M, const Elimination& elimination, SymbolNames names);
 
-  // Of left - right.
+  // Decides whether left - right = 0 holds.
   Comparison judge(Expr published);
-  // The same without a word on what a false equation comes nearest to.
+  // As above, without the nearest equation if it is false.
   Comparison decide(Expr published);
-  // With the changes that would make it true, if it is false.
+  // As judge(), with the changes that would make the equation true, if it is false.
   Comparison compare(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet);
 
   EquationsOfMotion& motion(unsigned highest);
-  // Of an equation that may have lost its highest derivatives.
+  // For an equation that may have lost its highest derivatives.
   EquationsOfMotion& motion_for_changes(Expr published);
-  // Neither accelerations nor multipliers are in left - right, or they cancel.
+  // Returns true if left - right contains neither accelerations nor multipliers, or they cancel.
   bool without_motion(Expr published, EquationsOfMotion& motion) const;
   const SymbolNames& names() const { return names_; }
 
@@ -86,10 +86,10 @@ class Comparer {
   std::optional<Column> contractions_;
 };
 
-// The highest derivative of which the equations of the motion must speak.
+// The highest derivative that the equations of the motion must contain.
 unsigned order_of_motion(Expr e);
 
-// Size at a point: of a sum, the sum of the sizes of its terms.
+// Size at a point; for a sum, the sum of the sizes of its terms.
 double size_at(Expr e, PointValues& at);
 
 // The changes that make a false equation true: of one place, else the fewest of up to four places.

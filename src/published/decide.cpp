@@ -16,7 +16,7 @@ Comparison judged(Subject& subject, const std::string& text) {
   const std::vector<PublishedEquation> list = subject.read(source, diagnostics);
   if (diagnostics.has_errors())
     throw Failure({}, diagnostics.list().front().message + " in: " + text, diagnostics.list().front().hint);
-  // Of vectors each component: one that is false decides, then one that is unknown.
+  // A vector equation is decided by its components: by a false one, then by an unknown one.
   std::optional<Comparison> all;
   for (const PublishedEquation& e : list) {
     Comparison c = subject.judge(e);
@@ -39,8 +39,8 @@ std::string said(const Comparison& c) {
   return c.detail;
 }
 
-// All constraints with their derivatives, and Routh's equations, up to derivatives of the order `highest`; masses put
-// in.
+// All constraints with their derivatives, and Routh's equations, up to derivatives of the order `highest`, with masses
+// substituted.
 Column all_equations(const Mechanics& M, unsigned highest) {
   Column all;
   for (std::size_t r = 0; r < M.phi.size(); ++r) {
@@ -139,8 +139,8 @@ void Decider::forms(const ClaimCheck& check, Decision& out) {
                                                   : ": not decided";
 }
 
-// Exactly: rational values put into every equation. The mutant is a point that is none of the motion: its first value
-// has moved.
+// Checks exactly: rational values are substituted in every equation. The mutant is a point that does not belong to the
+// motion: its first value is changed.
 void Decider::points(const ClaimCheck& check, Decision& out) {
   Subject& s = subject(check);
   const Mechanics& M = s.mechanics();

@@ -1,5 +1,4 @@
-// Claims of papers decided by the machine: what is true is proved, what is false is refuted, and a mutant of what is
-// true is refuted.
+// Decides claims of papers: true ones are proved, false ones are refuted, and a mutant of each true one is refuted.
 #pragma once
 #include <functional>
 #include <map>
@@ -9,16 +8,17 @@
 
 namespace anholon {
 
-// What came out of one check.
+// The result of one check.
 struct Decision {
   const ClaimCheck* check = nullptr;
   Verdict verdict = Verdict::unknown;  // of the statement
-  Verdict mutant = Verdict::unknown;   // of its mutant; refuted where it must be
+  Verdict mutant = Verdict::unknown;   // of its mutant, if there is one, which must be refuted
   bool has_mutant = false;
-  std::string detail;  // what a true statement is; the counterexample of a false one; why nothing was decided
+  // the kind of a true statement; the counterexample of a false one; the reason if nothing is decided
+  std::string detail;
   double seconds = 0;
 
-  // As the table says, and not for a reason that lets anything pass.
+  // Whether the result is that of the table, and the mutant, if there is one, is refuted.
   bool as_expected() const {
     return verdict == (check->expected ? Verdict::proved : Verdict::refuted) &&
            (!has_mutant || mutant == Verdict::refuted);
@@ -27,7 +27,7 @@ struct Decision {
 
 class Decider {
  public:
-  // The model of a name that a table gives; throws Failure if there is none.
+  // Loads the model with the name that a table gives; throws Failure if there is none.
   using Load = std::function<OpenModel(const std::string& name)>;
   explicit Decider(Load load) : load_(std::move(load)) {}
 
@@ -40,7 +40,8 @@ class Decider {
   void points(const ClaimCheck& check, Decision& out);
 
   Load load_;
-  std::map<std::string, std::unique_ptr<Subject>> subjects_;  // by the model's name and the definitions of the check
+  // by the name of the model and the definitions of the check
+  std::map<std::string, std::unique_ptr<Subject>> subjects_;
 };
 
 }  // namespace anholon

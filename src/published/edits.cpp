@@ -36,7 +36,7 @@ Syntax whole(long n) {
   return n < 0 ? with(Syntax::Op::negate, {number(std::to_string(-n))}) : number(std::to_string(n));
 }
 
-// The factor in place k of a product taken out.
+// The product without its factor k.
 Syntax without(const Syntax& s, std::size_t k) {
   Syntax out = s;
   if (k == 0) {
@@ -111,7 +111,7 @@ Syntax after(const Syntax& s, const Edit& e) {
   return multiplied(e.with, s);
 }
 
-// The groups of which any word may stand for another one.
+// Groups of names in which any name may be mistaken for another.
 const Words kAlike[] = {
     {"Q", "QR", "QD", "Qomega", "minus_dVO", "minus_dVomega", "Gamma", "G"},
     {"T_r", "S_r"},
@@ -148,7 +148,7 @@ class Search {
   void add(Edit::Kind kind, Effect effect, Syntax with) {
     list_.push_back({path_, kind, effect, std::move(with), in_function_ > 0});
   }
-  // At a node below the one that is visited.
+  // Adds an edit at a node below the visited one.
   void add_at(std::initializer_list<std::size_t> below, Edit::Kind kind, Effect effect, Syntax with) {
     for (std::size_t i : below) path_.push_back(static_cast<std::uint32_t>(i));
     add(kind, effect, std::move(with));
@@ -163,7 +163,7 @@ class Search {
     for (std::size_t i = 0; i < s.args.size(); ++i) visit_at(s, i, true);
   }
 
-  // A sum in a product, an argument, … and what stands between its signs is a term.
+  // In a sum within a product, an argument, …, each part between the signs is a term.
   void visit(const Syntax& s, bool term, bool base_of_power = false) {
     if (term && s.op != Syntax::Op::add && s.op != Syntax::Op::array) {
       add(Edit::Kind::coefficient, Effect::multiplies, number("2"));
@@ -172,7 +172,7 @@ class Search {
       for (const Words* group : {&alphabet_.coordinates, &alphabet_.others})
         for (const std::string& n : *group) add(Edit::Kind::factor, Effect::multiplies, named(n));  // a factor is lost
     }
-    // The base of a power has its exponent changed instead.
+    // For the base of a power the exponent is changed instead.
     const auto square = [&] {
       if (!base_of_power) add(Edit::Kind::exponent, Effect::squares, number("2"));
     };
@@ -275,14 +275,14 @@ class Search {
         dotted = with(Syntax::Op::prime, {dotted});
         add(Edit::Kind::dots, Effect::replaces, dotted);
       }
-    } catch (const Failure&) {  // no number
+    } catch (const Failure&) {  // not a number
     }
     if (s.op != Syntax::Op::prime) return;
     add(Edit::Kind::spare_dots, Effect::replaces, s.args[0]);
     if (s.args[0].op == Syntax::Op::prime) add(Edit::Kind::spare_dots, Effect::replaces, s.args[0].args[0]);
   }
 
-  // What stands before the dots of a derivative.
+  // The symbol before the dots of a derivative.
   void undotted(const Syntax& s) {
     if (s.op == Syntax::Op::prime) {
       path_.push_back(0);
@@ -319,7 +319,7 @@ class Search {
     return out;
   }
 
-  // The names for which a name may stand; of Q.x another member, or another force.
+  // The names that may replace a name; for Q.x another member, or another force.
   Words exchanged(const std::string& name) const {
     Words out = alike(name);
     const auto put = [&](std::size_t from, std::size_t length, const Words& list) {
@@ -338,7 +338,7 @@ class Search {
       return out;
     }
     for (const std::string& n : alike(name.substr(0, first))) out.push_back(n + name.substr(first));
-    // A name of the model may hold dots itself.
+    // A name of the model may contain dots.
     for (std::size_t from = first; from != std::string::npos; from = name.find('.', from + 1)) {
       for (const Words* list : lists) put(from + 1, std::string::npos, *list);
       for (std::size_t to = name.find('.', from + 1); to != std::string::npos; to = name.find('.', to + 1))
@@ -381,7 +381,7 @@ std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Al
   return Search(words, alphabet, most_dots).of(difference);
 }
 
-// A minus is taken from the first factor of a product.
+// The minus of a product is taken from its first factor.
 Syntax opposite(const Syntax& s) {
   if (s.op == Syntax::Op::negate) return s.args[0];
   if (s.op == Syntax::Op::multiply) {
@@ -413,7 +413,7 @@ Syntax edited(const Syntax& s, std::size_t depth, const std::vector<const Edit*>
     out.args[i] = edited(s.args[i], depth + 1, below);
     ones[i] = is_one(out.args[i]);
   }
-  // A factor that has become 1 is not printed, nor is an exponent.
+  // A factor or an exponent that becomes 1 is not printed.
   if (out.op == Syntax::Op::multiply) {
     std::size_t left = out.args.size();
     for (std::size_t i = left; i-- > 0 && left > 1;)

@@ -1,6 +1,5 @@
-// The changes of single places by which a misprint may have come about.
-//
-// An equation is taken as one formula, left - right: the first step of a path is the side.
+// The changes of single places that a misprint may consist of. An equation is taken as one formula, left - right: the
+// first step of a path is the side.
 #pragma once
 #include "formula/formula.h"
 #include "published/equation.h"
@@ -9,12 +8,12 @@ namespace anholon {
 
 class Vocabulary;
 
-// Names that may stand for each other in a misprint.
+// Names that a misprint may exchange.
 struct Alphabet {
   std::vector<std::string> coordinates, others, constraints, masses, free;  // free: quasi-velocities
 };
 
-using Path = std::vector<std::uint32_t>;  // of a node: its place among the arguments, from the whole down
+using Path = std::vector<std::uint32_t>;  // of a node: its indices among the arguments, from the root down
 
 struct Edit {
   enum class Kind : std::uint8_t {
@@ -31,7 +30,7 @@ struct Edit {
   Path path;
   Kind kind;
   Effect effect;
-  Syntax with;               // instead of the node; the factor that multiplies it
+  Syntax with;               // the replacement of the node; or its new factor
   bool in_function = false;  // the place is in the argument of an elementary function, or in an exponent
 };
 
@@ -40,15 +39,16 @@ Syntax difference_of(const PublishedEquation& equation);
 
 const Syntax& node_at(const Syntax& s, const Path& path, std::size_t length);
 inline const Syntax& node_at(const Syntax& s, const Path& path) { return node_at(s, path, path.size()); }
-// How much of the path leads to the innermost term that holds its end: an operand of a sum, or a side.
+// The length of the part of the path that leads to the innermost term that contains its end: an operand of a sum, or a
+// side.
 std::size_t innermost_term(const Syntax& difference, const Path& path);
 
-// All changes of one place; a symbol may have lost so many dots. What they make of the formula need not mean anything.
+// All changes of one place; a symbol may have lost up to `most_dots` dots. The changed formula may be meaningless.
 std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet, unsigned most_dots);
 
 // `s`, the node at `depth` on the paths of the edits, with all of them made.
 Syntax edited(const Syntax& s, std::size_t depth, const std::vector<const Edit*>& edits);
-// -x for x and the other way round.
+// -x for x, and x for -x.
 Syntax opposite(const Syntax& s);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// An equation that somebody published, read in the names of a model.
+// A published equation, read in the names of a model.
 #pragma once
 #include <string>
 

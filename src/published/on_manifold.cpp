@@ -1,6 +1,6 @@
-// Equations without multipliers on the manifold of the constraints, where these are solved: the dependent derivatives
-// are put in, and what is left is compared with the contractions B^T (E - G) = 0. That serves constraints of order 2
-// and more that are nonlinear in their highest derivatives: of those Routh's equations are no linear equations for the
+// Equations without multipliers on the manifold of the constraints, if these are solved: the dependent derivatives are
+// substituted, and the remainder is compared with the contractions B^T (E - G) = 0. This serves constraints of order 2
+// and more that are nonlinear in their highest derivatives, for which Routh's equations are not linear in the
 // accelerations and multipliers.
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace anholon {
 namespace {
 
 constexpr int kPoints = 3;
-constexpr double kVanishes = 1e-8;  // in relation to the size of the terms
+constexpr double kVanishes = 1e-8;  // relative to the size of the terms
 
 bool vanishes(Expr e, std::vector<PointValues>& points) {
   for (PointValues& at : points)
@@ -23,7 +23,7 @@ bool vanishes(Expr e, std::vector<PointValues>& points) {
 
 }  // namespace
 
-// The contractions on the manifold, one for each independent coordinate, masses put in.
+// The contractions on the manifold, one for each independent coordinate, masses substituted.
 const Column& Comparer::contractions() {
   if (!contractions_) {
     const Column a = put_masses(*M_.model, lagrange_operator(M_) - forces(M_));
@@ -71,8 +71,9 @@ bool Comparer::on_manifold(Expr P, bool regular, Comparison& out) {
     }
   }
   if (regular) return false;
-  // A point at which all contractions hold is one of a motion, if they determine the highest independent derivatives,
-  // and if every constraint is put in as it is: a lifted one holds where the constraint itself does not.
+  // A point at which all contractions hold belongs to a motion if they determine the highest independent derivatives,
+  // and if every constraint is substituted in its own order: a lifted constraint holds at points where the constraint
+  // itself does not.
   for (int order : M_.order)
     if (order != static_cast<int>(E.m)) return false;
   if (E.constraints.size() != M_.phi.size()) return false;

@@ -6,9 +6,9 @@ namespace anholon {
 
 namespace {
 
-// One equation or definition: its label, and the text after it with the place of each character.
+// One equation or definition: its label, and the text after it with the position of each character.
 struct FileEntry {
-  std::string label;  // of a definition its name
+  std::string label;  // for a definition, its name
   Span span;
   std::string text;
   std::vector<Span> places;
@@ -79,7 +79,7 @@ class Lines {
     entries.back().add(line.substr(colon + 1), {number, static_cast<std::uint32_t>(before + 1), 1});
   }
 
-  // The name and the place of the '=' of `let NAME = …`; no place where the line is no definition.
+  // The name and the position of the '=' of `let NAME = …`; npos if the line is not a definition.
   static std::pair<std::string_view, std::size_t> definition(std::string_view line) {
     constexpr std::string_view kLet = "let";
     const std::size_t equals = line.find('='), colon = line.find(':');
@@ -94,7 +94,7 @@ class Lines {
   }
 
   void refuse(std::uint32_t line, std::size_t column, std::size_t length, std::string message, std::string hint = {}) {
-    refused_ = true;  // and with it the lines that continue it
+    refused_ = true;  // together with the lines that continue it
     diagnostics_.error({line, static_cast<std::uint32_t>(column + 1), static_cast<std::uint32_t>(length)},
                        std::move(message), std::move(hint));
   }

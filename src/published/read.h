@@ -1,4 +1,4 @@
-// Published equations in a file of their own, over the names of a model and of what is derived from it
+// Published equations in a file of their own, over the names of a model and of quantities derived from it
 // (published/vocabulary.h):
 //
 //   # comment
@@ -14,7 +14,8 @@
 
 namespace anholon {
 
-// All errors are collected in `diagnostics`, which then speak of `equations`. Definitions are added to the vocabulary.
+// All errors are collected in `diagnostics`, whose positions refer to `equations`. Definitions are added to the
+// vocabulary.
 std::vector<PublishedEquation> read_equations(const SourceText& equations, Vocabulary& words, Diagnostics& diagnostics);
 
 }  // namespace anholon

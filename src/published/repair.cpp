@@ -1,7 +1,7 @@
 // Misprints: changes of one place of an equation, and of several places at once, that make a false equation true.
 //
-// They are tried in numbers at points of the motion (published/trial.h, together.h); what survives there is judged like
-// any other equation. Fewer changes come first: more are looked for only where fewer do not serve.
+// They are tried numerically at points of the motion (published/trial.h, together.h); survivors are judged like any
+// other equation. More changes are tried only if fewer do not make the equation true.
 #include <algorithm>
 #include <cmath>
 
@@ -13,8 +13,8 @@ namespace anholon {
 
 namespace {
 
-constexpr double kNothing = 1e-9;        // in relation to the size of the terms
-constexpr std::size_t kMostJudged = 24;  // survivors that are proved or refuted, of each number of changes
+constexpr double kNothing = 1e-9;        // relative to the size of the terms
+constexpr std::size_t kMostJudged = 24;  // survivors that are proved or refuted, for each number of changes
 
 class Repair {
  public:
@@ -37,7 +37,7 @@ class Repair {
     Change change;
   };
 
-  // The likely ones; others only where none of these is accepted.
+  // Judges the likely changes; the others only if none of these is accepted.
   void judge(const std::vector<Misprint>& list) {
     std::size_t left = kMostJudged;
     for (std::size_t from = 0; from < list.size() && left > 0 && changes_.empty();) {
@@ -53,7 +53,7 @@ class Repair {
       if (std::any_of(changes_.begin(), changes_.end(), which))
         std::erase_if(changes_, [&](const Change& c) { return !which(c); });
     };
-    // What is not proved counts only where nothing is.
+    // Unproved changes count only if no change is proved.
     keep([](const Change& c) { return c.proved; });
     const bool quantities =
         speaks_of_quantities(equation_.left, words_) || speaks_of_quantities(equation_.right, words_);
@@ -95,9 +95,9 @@ class Repair {
     changes_.push_back(std::move(s.change));
   }
 
-  // Whether `a` says the same as `b` in a better way. Of an equation with two terms either may be changed: the shorter
-  // way, else the right side. Of several terms it is the first one; of several factors the last ones have the dots, as
-  // in m*x'' and r*r'.
+  // Whether `a` is a better form of the same change as `b`. In an equation with two terms either may be changed: the
+  // shorter form is better, else the change of the right side. Among several terms the first is changed; among several
+  // factors the last ones have the dots, as in m*x'' and r*r'.
   static bool better(const Change& a, const Change& b) {
     const auto added = [](const Change& c) {
       return static_cast<long>(c.to.size()) - static_cast<long>(c.from.size());
@@ -118,7 +118,7 @@ class Repair {
     return lateness(a) > lateness(b);
   }
 
-  // Equal up to a number; identities, if their left sides are.
+  // Whether both are equal up to a constant factor; for identities, whether their left sides are.
   bool same(Expr a, Expr b, Expr left_a, Expr left_b) {
     std::vector<PointValues>& points = motion_.anywhere();
     const auto nothing = [&](Expr e) {
@@ -139,7 +139,7 @@ class Repair {
 
   // ---- words ---------------------------------------------------------------------------------
 
-  // By the smallest term around each place; of several terms a symbol by itself.
+  // Describes a change by the smallest term around each place; a change of several terms by the symbol alone.
   Change worded(const std::vector<const Edit*>& edits) {
     std::map<Path, std::vector<const Edit*>> terms;
     for (const Edit* e : edits)
@@ -182,7 +182,7 @@ class Repair {
     return placed(p, s, (minus ? "- " : "+ ") + text(s), (minus ? "+ " : "- ") + text(after));
   }
 
-  // The component of a vector equation that stands for the side.
+  // Whether s is the component of a vector equation that represents a side.
   static bool is_component(const Syntax& s) {
     return s.op == Syntax::Op::member && s.args[0].offset == s.offset && s.args[0].end == s.end;
   }

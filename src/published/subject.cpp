@@ -8,7 +8,7 @@ namespace anholon {
 
 namespace {
 
-// Masses have the names under which equations may speak of them.
+// Masses get the names that equations use for them.
 SymbolNames names_of(const Model& model) {
   SymbolNames names = model.names;
   for (std::size_t i = 0; i < model.masses.size(); ++i) names.masses[i] = "m_" + model.masses[i].name;

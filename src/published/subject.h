@@ -1,5 +1,5 @@
-// A model as published equations speak about it: its derived equations, its words, and the names that a misprint may
-// exchange.
+// A model as the subject of published equations: its derived equations, its vocabulary, and the names that a misprint
+// may exchange.
 #pragma once
 #include <memory>
 
@@ -11,8 +11,8 @@ namespace anholon {
 
 class Subject {
  public:
-  // `choice`: which coordinates are eliminated, near which state. What depends on it throws Failure if that is
-  // impossible.
+  // `choice`: the eliminated coordinates, and the state near which they are eliminated. Functions that depend on it
+  // throw Failure if it is impossible.
   explicit Subject(OpenModel open, StateChoice choice = {});
   Subject(const Subject&) = delete;
   Subject& operator=(const Subject&) = delete;
@@ -27,7 +27,7 @@ class Subject {
   }
   // Whether the equation is true; with the changes that would make it true, if it is false.
   Comparison compare(const PublishedEquation& equation) { return comparer_.compare(equation, words_, alphabet_); }
-  // The same without a search for changes, and for what a false equation comes nearest to.
+  // As above, without a search for changes and for the nearest equation.
   Comparison judge(const PublishedEquation& equation) { return comparer_.decide(difference(equation)); }
   Expr difference(const PublishedEquation& equation) {
     return words_.number(equation.left) - words_.number(equation.right);

@@ -8,11 +8,11 @@ namespace anholon {
 namespace {
 
 constexpr std::size_t kMostDots = 700;      // places that may have lost dots
-constexpr std::size_t kMostTried = 60'000;  // sets that are tried as one, of each number of changes
+constexpr std::size_t kMostTried = 60'000;  // combined sets that are tried, for each number of changes
 constexpr std::size_t kMostLookedUp = 2'000'000;
-constexpr std::size_t kMostCompared = 4'000'000;  // pairs of which it is asked whether they add
+constexpr std::size_t kMostCompared = 4'000'000;  // pairs that are tested for adding up
 constexpr std::size_t kMostFound = 200;
-// A lost dot, another change; a symbol everywhere.
+// The costs of a lost dot, of another change, of a symbol that changes everywhere.
 constexpr int kDots = 10, kOther = 12, kEverywhere = 4;
 
 Numbers sizes(const Numbers& a) {
@@ -123,7 +123,7 @@ bool Together::independent(const Items& a, const Items& b) const {
   return true;
 }
 
-// Items that do not add, tried as one.
+// Items that do not add up, tried as one.
 std::optional<Together::Sum> Together::joined(const Items& items) {
   if (++tried_ > kMostTried) return std::nullopt;
   std::vector<std::uint32_t> edits;
@@ -163,8 +163,8 @@ void Together::prepare_pairs() {
   std::stable_sort(pairs_.begin(), pairs_.end(), [](const Sum& a, const Sum& b) { return before(a.change, b.change); });
 }
 
-// Sets of single lost dots of which none adds with all the others, each once. `set` and `open` count the lost dots;
-// those that are open come after the first of the set and may be joined.
+// Sets of lost dots that are connected by bound pairs (pairs whose effects do not add up), each set once. `set` and
+// `open` are indices of lost dots; those in `open` come after the first of the set and may be joined.
 void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::uint32_t>& open, unsigned count,
                        std::vector<Sum>& out) {
   const std::size_t n = dot_items_.size();
@@ -181,7 +181,7 @@ void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::u
                     [&](std::uint32_t i) { return of_dots_[i * n + next] == Relation::impossible; }))
       continue;
     std::vector<std::uint32_t> further(open.begin() + static_cast<std::ptrdiff_t>(k + 1), open.end());
-    // Bound to the new one, and to none before it: those are open already, or have been.
+    // Bound to the new one, and to none before it: the others are in `open` already, or were.
     for (std::uint32_t i = set[0] + 1; i < single_dots_; ++i)
       if (bound(next, i) &&
           std::none_of(set.begin(), set.end(), [&](std::uint32_t j) { return j == i || bound(j, i); }))
@@ -219,12 +219,12 @@ void Together::check(const Sum& s) {
   if (!is_new) place->second = std::min(place->second, cost);
 }
 
-// Each of `sums` with one of `sorted` that adds with it.
+// Matches each of `sums` with one of `sorted` whose effect adds up with it.
 void Together::find(const std::vector<Sum>& sums, const std::vector<Sum>& sorted) {
   for (const Sum& s : sums) {
     if (++looked_up_ > kMostLookedUp || found_.size() > kMostFound) return;
     const double wanted = -trial_.value()[0] - s.change[0];
-    // The sizes of the terms of the other are not known yet: they are not much larger than itself.
+    // The sizes of the terms of the other sum are not known yet: they are not much larger than the sum itself.
     const double window = 4 * trial_.tolerance(0, s.extent[0] + std::abs(wanted));
     auto it = std::lower_bound(sorted.begin(), sorted.end(), wanted - window,
                                [](const Sum& a, double v) { return a.change[0] < v; });
@@ -239,7 +239,8 @@ void Together::find(const std::vector<Sum>& sums, const std::vector<Sum>& sorted
   }
 }
 
-// Two changes that do not add, of which one at most is a lost dot. Other names come beside a lost dot only.
+// Tries two changes that do not add up, at most one of them a lost dot. Exchanged names are tried only beside a lost
+// dot.
 void Together::try_bound_pairs() {
   std::vector<bool> plain;
   for (const Item& item : items_) plain.push_back(trial_.edit(item.edits[0]).kind < Edit::Kind::name);
@@ -265,7 +266,7 @@ std::vector<Misprint> Together::sets_of(unsigned count) {
   prepare_singles();
   if (count == 1) {
     for (const Sum& s : singles_) check(s);
-    // A single change of any kind is as good as another one.
+    // A single change of any kind has the same cost.
     for (auto& [edits, cost] : found_)
       if (edits.size() == 1) cost = 0;
   } else if (count == 2) {
@@ -285,7 +286,7 @@ std::vector<Misprint> Together::sets_of(unsigned count) {
     find(pairs_, pairs_);
     find(triples_, singles_);
     find(bound_, pairs_);
-    // One more change beside three lost dots.
+    // Adds one more change to three lost dots.
     for (const Sum& other : singles_) {
       if (items_[other.items.list[0]].dots) continue;
       std::vector<Sum> with_dot;

@@ -1,15 +1,15 @@
-// Changes of several places that let left - right vanish together.
+// Changes of several places that together make left - right vanish.
 //
-// Where changes add (published/trial.h), the sum of their growths must be what left - right lacks: sets of up to four
-// are two halves of up to two, of which one is looked up among the others by its number at a point. Changes in factors
-// of one product are tried together first, as one. Of changes other than lost dots a set holds one, or two. The numbers
-// of pairs and of connected sets are bounded; what lies beyond is not found.
+// If changes add up (published/trial.h), the sum of their effects must equal the error of left - right. Sets of up to
+// four changes are two halves of up to two; one half is looked up among the others by its value at a point. Changes in
+// factors of one product are first combined and tried as one. A set holds at most one change other than lost dots, or
+// two of them. The numbers of pairs and of connected sets are bounded; sets beyond these bounds are not found.
 #pragma once
 #include "published/trial.h"
 
 namespace anholon {
 
-// Changes that are made together, and how unlikely they are as a misprint.
+// Changes that are made together, and their cost: a measure of how unlikely they are as a misprint.
 struct Misprint {
   std::vector<std::uint32_t> edits;  // of the trial
   int cost = 0;
@@ -20,8 +20,8 @@ class Together {
   static constexpr unsigned kMost = 4;
 
   Together(Trial& trial, const Syntax& difference);
-  // The sets of `count` changes by which left - right vanishes, the likely ones first. What one misprint changes in
-  // several places counts once: a symbol that lost its dots or was mistaken for another one everywhere, an exponent
+  // The sets of `count` changes by which left - right vanishes, the likely ones first. A misprint that changes several
+  // places in one way counts once: a symbol that lost its dots or was mistaken for another one everywhere, an exponent
   // that moved to another factor.
   std::vector<Misprint> sets_of(unsigned count);
 
@@ -32,7 +32,7 @@ class Together {
     bool dots;
     Numbers change;
   };
-  struct Items {  // up to four, in the order in which they were put in
+  struct Items {  // up to four, in the order of insertion
     std::array<std::uint32_t, kMost> list{};
     std::uint32_t size = 0;
     Items(std::initializer_list<std::uint32_t> items = {}) {
@@ -66,8 +66,8 @@ class Together {
   std::vector<Item> items_;
   std::vector<Sum> singles_, dots_;       // of one item; sorted
   std::vector<Sum> pairs_;                // of lost dots; sorted
-  std::vector<Sum> bound_;                // a lost dot and another change that do not add
-  std::vector<Sum> triples_;              // of lost dots that do not add
+  std::vector<Sum> bound_;                // of a lost dot and another change that do not add up
+  std::vector<Sum> triples_;              // of lost dots that do not add up
   std::vector<std::uint32_t> dot_items_;  // those of one place first
   std::uint32_t single_dots_ = 0;
   std::vector<Relation> of_dots_;  // of two of them

@@ -7,9 +7,9 @@ namespace anholon {
 
 namespace {
 
-constexpr double kVanishes = 1e-9;            // in relation to the size of the terms
-constexpr double kChanges = 1e-13;            // less is a rounding error
-constexpr std::size_t kMostFormulas = 6'000;  // evaluations of a formula with changes in it
+constexpr double kVanishes = 1e-9;            // relative to the size of the terms
+constexpr double kChanges = 1e-13;            // a smaller change is a rounding error
+constexpr std::size_t kMostFormulas = 6'000;  // evaluations of formulas that contain changes
 
 struct Elementary {
   const char* name;
@@ -35,7 +35,7 @@ Numbers operator*(const Numbers& a, const Numbers& b) {
   return each([&](std::size_t k) { return a[k] * b[k]; });
 }
 
-// Whether the growth of the whole is linear in the argument i of s, the others being as they are.
+// Whether the value of s is linear in the argument i, with the others held.
 bool linear_in(const Syntax& s, std::size_t i) {
   switch (s.op) {
   case Syntax::Op::add:
@@ -88,18 +88,18 @@ std::optional<Trial::Amount> Trial::evaluated(const Syntax& s) {
           each([&](std::size_t k) { return points_[std::min(k, points_.size() - 1)](e); });
     }
     place->second = out;
-  } catch (const Failure&) {  // no number and no vector
+  } catch (const Failure&) {  // neither a number nor a vector
   }
   return place->second;
 }
 
 // ---- the equation as it stands -----------------------------------------------------------------
 
-// The way in which the node follows from its arguments; none, if not in one of these.
+// Reads how the node is computed from its arguments; false if it is not one of these operations.
 bool Trial::read_parts(Node& n) {
   const Syntax& s = *n.syntax;
   using Way = Node::Way;
-  bool vectors = false;  // are wanted as arguments
+  bool vectors = false;  // vectors are expected as arguments
   switch (s.op) {
   case Syntax::Op::add:
     n.way = Way::sum;
@@ -285,7 +285,7 @@ void Trial::add(Edit edit) {
   Tried t{std::move(edit), {}, 0, {}};
   const Node* node = &root_;
   const Syntax* s = &syntax_;
-  bool inside = false;  // of a node that is evaluated as a whole
+  bool inside = false;  // inside a node that is evaluated as a whole
   bool linear = true;
   for (std::size_t d = 0; d < t.edit.path.size(); ++d) {
     const std::uint32_t i = t.edit.path[d];
@@ -311,7 +311,7 @@ void Trial::add(Edit edit) {
   }
   if (changes && finite) return;
   edits_.pop_back();
-  formulas_.erase({static_cast<std::uint32_t>(edits_.size())});  // the number is given to the next one
+  formulas_.erase({static_cast<std::uint32_t>(edits_.size())});  // the number is reused for the next edit
 }
 
 Numbers Trial::change(std::vector<std::uint32_t> edits) {
@@ -321,7 +321,7 @@ Numbers Trial::change(std::vector<std::uint32_t> edits) {
   return with(root_, 0, edits).c[0] - root_.value.c[0];
 }
 
-// `edits` are in the order of their paths: those of one argument stand together, after those of the node itself.
+// `edits` are in the order of their paths: those of the node itself first, then those of each argument together.
 Trial::Amount Trial::with(const Node& n, std::size_t depth, std::span<const std::uint32_t> edits) {
   std::size_t own = 0;
   while (own < edits.size() && edits_[edits[own]].edit.path.size() == depth) ++own;
@@ -417,7 +417,7 @@ bool Trial::independent(std::size_t a, std::size_t b) const {
   const std::size_t shorter = std::min(x.size(), y.size());
   std::size_t common = 0;
   while (common < shorter && x[common] == y[common]) ++common;
-  if (common == shorter) return false;  // one of them holds the other
+  if (common == shorter) return false;  // one of the places contains the other
   const Syntax& meets = node_at(syntax_, x, common);
   return (meets.op == Syntax::Op::add || meets.op == Syntax::Op::array) && edits_[a].linear >= common &&
          edits_[b].linear >= common;

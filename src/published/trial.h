@@ -1,11 +1,11 @@
-// An equation in numbers, with changes tried in it: left - right at some points, and what becomes of it.
+// Numerical trials of changes in an equation: left - right at some points, and its value after changes.
 //
-// Only what stands above a changed place is computed again. Sums, products, powers, elementary functions and products
-// of vectors are computed from numbers; what surrounds a place otherwise (a derivative, the velocity of a point, …) is
-// evaluated as a formula once for each set of changes in it, so many of them at most.
+// Only the nodes above a changed place are computed again. Sums, products, powers, elementary functions and products of
+// vectors are computed from numbers; another operation around a place (a derivative, the velocity of a point, …) is
+// evaluated as a formula once for each set of changes in it, up to a bounded number of sets.
 //
-// Changes add where nothing but sums lie around both: two operands of one sum, as long as all around it is linear.
-// Others, in two factors of a product, have to be tried together.
+// The effects of two changes add up if they are in two operands of one sum and everything around the sum is linear.
+// Other changes, in two factors of a product, have to be tried together.
 #pragma once
 #include <array>
 #include <map>
@@ -18,7 +18,8 @@
 namespace anholon {
 
 inline constexpr std::size_t kTrialPoints = 3;
-using Numbers = std::array<double, kTrialPoints>;  // at the points; where there are fewer, the last one again
+// values at the points; if there are fewer points, the last one is repeated
+using Numbers = std::array<double, kTrialPoints>;
 
 class Trial {
  public:
@@ -26,23 +27,23 @@ class Trial {
   Trial(const Trial&) = delete;
   Trial& operator=(const Trial&) = delete;
 
-  // Edits that mean something and change something at the points; others are left out.
+  // Adds an edit if the edited formula has a meaning and another value at the points.
   void add(Edit edit);
   std::size_t size() const { return edits_.size(); }
   const Edit& edit(std::size_t i) const { return edits_[i].edit; }
 
-  // By which left - right grows.
+  // The increase of left - right by edit i.
   const Numbers& change_of(std::size_t i) const { return edits_[i].change; }
   Numbers change(std::vector<std::uint32_t> edits);
-  // What counts as nothing at a point, beside changes of that size.
+  // The tolerance below which a value at a point counts as zero beside changes of that size.
   double tolerance(std::size_t point, double extent) const;
-  // With growths that add up to `change`, the sum of their sizes being `extent`.
+  // Whether left - right vanishes after changes with the effect `change`, with `extent` the sum of their sizes.
   bool vanishes(const Numbers& change, const Numbers& extent) const;
   bool vanishes(const Numbers& change) const { return vanishes(change, change); }
   const Numbers& value() const { return root_.value.c[0]; }
 
-  bool possible(std::size_t a, std::size_t b) const;     // both at once
-  bool independent(std::size_t a, std::size_t b) const;  // possible, and the changes add
+  bool possible(std::size_t a, std::size_t b) const;     // both edits can be made at once
+  bool independent(std::size_t a, std::size_t b) const;  // possible, and the effects add up
 
  private:
   // A number, or the components of a vector.
@@ -54,16 +55,16 @@ class Trial {
     enum class Way : std::uint8_t { whole, sum, negative, product, power, function, component, entries, dot, cross };
     const Syntax* syntax = nullptr;
     Way way = Way::whole;
-    bool known = false;  // a number or a vector
+    bool known = false;  // the value is a number or a vector
     std::vector<Node> args;
     Amount value;
-    Numbers extent{};  // of a sum, the sum of the sizes of its terms
+    Numbers extent{};  // for a sum, the sum of the sizes of its terms
     double (*function)(double) = nullptr;
   };
   struct Tried {
     Edit edit;
-    std::optional<Amount> amount;  // what stands there then, or the factor
-    std::size_t linear = 0;        // nodes on the path from which on its changes add with others
+    std::optional<Amount> amount;  // the new value, or the factor
+    std::size_t linear = 0;        // depth on the path from which on the effects of changes add up
     Numbers change{};
   };
 

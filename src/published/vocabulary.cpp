@@ -39,7 +39,7 @@ std::string joined(const std::vector<std::string>& parts) {
   return path;
 }
 
-// The path of a chain of members of a name; empty if it is none.
+// The path of a chain of members of a name; empty if s is not one.
 std::string path_of(const Syntax& s) {
   if (s.op == Syntax::Op::name) return s.text;
   if (s.op != Syntax::Op::member) return {};
@@ -218,7 +218,7 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
     return first == "h" ? p.h : first == "power_noncons" ? p.noncons : p.constraint;
   }
   if (const Column* c = column(first)) {
-    if (rest.empty()) return InertialName{};  // means something in along(Q, x) and Q(x) only
+    if (rest.empty()) return InertialName{};  // has a meaning in along(Q, x) and Q(x) only
     return (*c)[coordinate(joined(rest), span)];
   }
   if (first == "phi" || first == "mu") {
@@ -315,7 +315,7 @@ Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>
   return left ? e.left[k] : right ? e.right[k] : e.left[k] - e.right[k];
 }
 
-// Where the constraints are not solved, the derivative itself stands for its value on the manifold.
+// If the constraints are not solved, the derivative represents its value on the manifold.
 Expr Vocabulary::solved(const std::string& y, Span span) {
   const Elimination& E = elimination_(false);
   const std::size_t s = coordinate(y, span);
@@ -378,7 +378,7 @@ Expr Vocabulary::along(const Column& c, const std::string& direction, Span span)
 
 // ---- partial derivatives -----------------------------------------------------------------------
 
-// What reduced(…) or star(…) is taken of, where s is that, or a definition that is that.
+// The argument of reduced(…) or star(…) if s is such a call, or a definition that is one; else null.
 const Syntax* Vocabulary::reduced_argument(const Syntax& s, bool& quasi) const {
   if (s.op == Syntax::Op::name) {
     const auto it = lets_.find(s.text);
@@ -389,7 +389,7 @@ const Syntax* Vocabulary::reduced_argument(const Syntax& s, bool& quasi) const {
   return &s.args[0];
 }
 
-// Whether something in s stands on the manifold of the constraints: reduced(…), f.y, C.y.x, or star(…), g.x, B.x.u.
+// Whether a part of s is taken on the manifold of the constraints: reduced(…), f.y, C.y.x, or star(…), g.x, B.x.u.
 bool Vocabulary::holds_reduced(const Syntax& s, bool quasi) const {
   if (s.op == Syntax::Op::name) {
     if (const auto it = lets_.find(s.text); it != lets_.end()) return holds_reduced(it->second.syntax, quasi);
@@ -402,7 +402,7 @@ bool Vocabulary::holds_reduced(const Syntax& s, bool quasi) const {
   return std::any_of(s.args.begin(), s.args.end(), [&](const Syntax& a) { return holds_reduced(a, quasi); });
 }
 
-// In the second argument quasi-velocities are symbols, where the constraints are solved.
+// In the second argument quasi-velocities are symbols if the constraints are solved.
 Value Vocabulary::partial_of(const Syntax& s, const Value& what) {
   by_symbols_ = true;
   Value by;
@@ -440,7 +440,7 @@ Expr Vocabulary::partial_by(Expr e, Expr by, Span span) {
   const Graph& g = graph();
   switch (g.node(by.id).kind) {
   case Kind::quasi:
-    // What is not in quasi-velocities does not hold them, and depends on them all the same.
+    // A formula that is not written in quasi-velocities depends on them all the same.
     if (jet_order(e) >= static_cast<int>(elimination_(true).m))
       throw Failure(span, "what is differentiated by a quasi-velocity is not expressed in quasi-velocities",
                     "partial(star(T_r), u), partial(g.x, u)");
@@ -454,7 +454,7 @@ Expr Vocabulary::partial_by(Expr e, Expr by, Span span) {
   case Kind::control:
     return partial(e, by);
   case Kind::time: {
-    // Functions of time alone vary with it.
+    // Functions of time alone vary with t.
     Expr rate = partial(e, by);
     for (NodeId id : symbols({&e, 1}))
       if (g.node(id).kind == Kind::given) rate = rate + partial(e, {e.graph, id}) * total_derivative(Expr{e.graph, id});
@@ -466,7 +466,7 @@ Expr Vocabulary::partial_by(Expr e, Expr by, Span span) {
   }
 }
 
-// Where the constraints are not solved: by the implicit function theorem.
+// If the constraints are not solved, uses the implicit function theorem.
 Expr Vocabulary::partial_along(Expr e, Expr by, bool quasi, Span span) {
   const Elimination& E = elimination_(quasi);
   if (quasi) used_quasi_ = true;

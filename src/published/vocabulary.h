@@ -3,7 +3,7 @@
 //   T_r, S_r, V_O, V_omega           energies of the relative motion, with frozen masses      [L 2.7, 3.18]
 //   Q.x, QR.x, QD.x, Qomega.x, minus_dVO.x, minus_dVomega.x, Gamma.x, G.x                      generalized forces of x; G is their sum
 //   inertia_term.x, N.x              sum m a . dr/dx and sum lambda dphi/dx^(m)                [L 2.2, 2.6]
-//   phi.NAME, lambda.NAME            a constraint (left - right) and its multiplier; phi and lambda, where there is one
+//   phi.NAME, lambda.NAME            a constraint (left - right) and its multiplier; phi and lambda, if there is only one
 //   f.y, C.y.x                       y^(m) = f.y solved from the constraints, and df.y/dx^(m)  [L 3.8]
 //   g.x, B.x.u                       x^(m) as a function of quasi-velocities, and dg.x/du      [N 4.2]
 //   mu.NAME, m_NAME                  the frozen mass of a body, and its mass
@@ -11,11 +11,11 @@
 //   partial(e, v)                    the partial derivative by a derivative of a coordinate, by t, or by another symbol
 //   Dt(e), Dt(e, k)                  the total derivative with masses regarded as constant (D/Dt of the papers)
 //   frozen(e)                        e with frozen masses
-//   reduced(e), star(e)              e with the constraints put in: in f [L 3.11, N 3.9], and in quasi-velocities [N 4.6]
+//   reduced(e), star(e)              e with the constraints substituted: by f [L 3.11, N 3.9], and in quasi-velocities [N 4.6]
 //   along(Q, x)                      Q.x + sum over the dependent y of Q.y C.y.x; for a quasi-velocity u: sum over all x of Q.x B.x.u
 //
-// The names of the model come first; derived.NAME is the derived quantity in any case. Local definitions (let) come
-// before both.
+// The names of the model take precedence; derived.NAME always is the derived quantity. Local definitions (let) take
+// precedence over both.
 #pragma once
 #include <map>
 
@@ -26,16 +26,18 @@ namespace anholon {
 
 class Vocabulary final : public Names {
  public:
-  // The elimination of coordinates, or (true) of quasi-velocities; asked for when a word needs it. May throw Failure.
+  // The elimination of coordinates, or (true) of quasi-velocities; called when a word needs it. May throw Failure.
   using EliminationOf = std::function<const Elimination&(bool quasi)>;
   Vocabulary(const Mechanics& mechanics, std::shared_ptr<Names> model, EliminationOf elimination);
 
-  // Dotted names of this vocabulary put together into one: what a formula must go through once before it is evaluated.
+  // Joins dotted names of this vocabulary into one name each: every formula must pass through it once before it is
+  // evaluated.
   void join(Syntax& s) const;
   // Throws Failure if the name is taken. `value` is joined.
   void let(const std::string& name, Syntax value, Span span);
 
-  // What a joined formula means for the motion: masses put in, quasi-velocities written out.
+  // The value of a joined formula along the motion, with masses substituted and quasi-velocities expressed in
+  // coordinates.
   Expr number(const Syntax& s);
   Value value(const Syntax& s);
 
@@ -78,7 +80,7 @@ class Vocabulary final : public Names {
   std::shared_ptr<Names> model_;
   EliminationOf elimination_;
   bool used_quasi_ = false;
-  bool by_symbols_ = false;  // while what is differentiated by is read
+  bool by_symbols_ = false;  // while the second argument of partial(e, v) is read
   std::map<std::string, Let> lets_;
   std::map<std::string, Column> columns_;
   std::map<std::string, Equations> forms_;

@@ -1,11 +1,11 @@
-// Files that the build puts into the program: the style of pages, the viewer, the literature.
+// Files that the build embeds in the program: the style of pages, the viewer, the literature.
 #pragma once
 #include <string_view>
 
 namespace anholon {
 
 std::string_view page_style();
-std::string_view viewer_script();  // empty where the viewer was not built
+std::string_view viewer_script();  // empty if the viewer was not built
 std::string_view viewer_style();
 std::string_view literature();  // refs.bib
 

@@ -14,7 +14,7 @@ namespace {
 
 using Fields = std::map<std::string, std::string>;
 
-// {\`A}, {\"u}, {\o}, \v{s}: what occurs in refs.bib, as characters.
+// Converts {\`A}, {\"u}, {\o}, \v{s}, as they occur in refs.bib, to characters.
 std::string plain(std::string s) {
   static const std::pair<const char*, const char*> marks[] = {
       {"{\\`A}", "À"}, {"{\\\"u}", "ü"}, {"{\\\"o}", "ö"}, {"{\\\"a}", "ä"}, {"{\\o}", "ø"},

@@ -15,7 +15,7 @@ namespace anholon {
 
 namespace {
 
-// A page stays small: numbers in plots and in the picture, columns in plots.
+// Limits that keep a page small: numbers in plots and in the picture, columns in plots.
 constexpr std::size_t kMostNumbers = 28000, kMostFrameNumbers = 18000, kMostColumns = 96;
 constexpr std::size_t kLeastRows = 200, kMostFrames = 2000;
 
@@ -39,7 +39,7 @@ const std::vector<PlotGroup>& all_groups() {
   return list;
 }
 
-// What an event has set of a mode, which no column holds.
+// The new value of a mode after an event; no column holds it.
 struct ModeChange {
   double t;
   std::size_t parameter;
@@ -66,7 +66,7 @@ class AtRows {
     const ColumnOf column = column_of(model, table);
     for (const Input& in : tape_.inputs) columns_.push_back(column(model.graph->node(in.symbol)));
   }
-  // Every input is a column.
+  // Whether every input is a column.
   bool possible() const {
     return std::all_of(columns_.begin(), columns_.end(), [](const auto& c) { return c.has_value(); });
   }
@@ -121,7 +121,7 @@ class Plots {
 
   std::string math_of(Expr symbol) const { return print(symbol, model_.names, Format::mathml); }
 
-  // The columns of the run, in its order (the scene knows them by it).
+  // Adds the columns of the run, in its order (the scene refers to them by index).
   void given() {
     const RunTable& t = run_.table;
     std::map<std::string, std::pair<std::string, std::string>> known;  // name -> group, math
@@ -169,8 +169,8 @@ class Plots {
     for (std::size_t k = 0; k < es.size(); ++k) add(what[k][0], what[k][1], what[k][2], std::move(values[k]));
   }
 
-  // |phi^(k)| of what must vanish at every row, and how far integrals have gone from their first value in relation to
-  // their terms.
+  // |phi^(k)| for all derivatives that must vanish at every row, and the deviation of integrals from their first value,
+  // relative to their terms.
   void residuals() {
     constexpr std::size_t kMost = 40;
     const Mechanics& m = *s_.mechanics;
@@ -236,7 +236,7 @@ class Plots {
     add("h", "<mi>h</mi>", "steps", std::move(h)).t = std::move(t);
   }
 
-  // Of every group as many columns as there is room for.
+  // Keeps as many columns of every group as there is room for.
   void fewer_columns() {
     if (data_.columns.size() <= kMostColumns) return;
     std::map<std::string, std::size_t> size;
@@ -250,7 +250,7 @@ class Plots {
   void shorten() {
     const ColumnOf column = column_of(model_, run_.table);
     std::vector<int> needed = columns_of(scene_, *model_.graph, column);
-    for (int& k : needed) --k;  // t is no column of the page
+    for (int& k : needed) --k;  // t is not a column of the page
     fewer_columns();
     const auto plotted = static_cast<std::size_t>(std::count_if(data_.columns.begin(), data_.columns.end(),
                                                                 [](const PlotColumn& c) { return !c.group.empty(); }));
@@ -296,7 +296,7 @@ class Plots {
   std::vector<double> parameters_;
   std::vector<ModeChange> modes_;
   PlotData data_;
-  std::size_t most_kept_ = 0;  // rows of the column that keeps most
+  std::size_t most_kept_ = 0;  // rows of the column with the most rows
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ class Derive {
     d_.m = form.highest_m ? e.asked : 0;
     d_.names = m.model->names;
     for (std::size_t i = 0; i < m.model->masses.size(); ++i) {
-      // After the last differentiation a mass stands under its own name again, if it has one.
+      // After the last differentiation a mass has its own name again, if it has one.
       const Expr value = m.model->masses[i].value;
       const auto named = d_.names.defined.find(value.id);
       d_.names.masses[i] = named != d_.names.defined.end()                ? named->second
@@ -28,7 +28,7 @@ class Derive {
     }
     if (e.quasi) {
       d_.names.quasi = e.names;
-      // The quasi-velocities are symbols of the equations, no abbreviations in them.
+      // The quasi-velocities are symbols of the equations, not abbreviations in them.
       for (const QuasiVelocity& u : m.model->quasi) d_.names.defined.erase(u.value.id);
     }
   }
@@ -70,7 +70,7 @@ class Derive {
     d_.parts = name_parts(all, d_.names);
   }
 
-  // Zero or not.
+  // Adds a line even if e is zero.
   void add(std::vector<Line>& lines, const Label& name, Expr e) {
     lines.push_back({name.text, std::nullopt, arranged(e), name.latex, name.mathml});
   }
@@ -131,7 +131,7 @@ class Derive {
     std::vector<Line> lines;
     const Column top = jets(*d_.model, e_.m), next = jets(*d_.model, e_.m + 1);
     const Labels top_names = jet_labels(m_, e_.m), next_names = jet_labels(m_, e_.m + 1), free = free_labels(m_, e_);
-    // A quasi-velocity of lower order than the constraints is lifted: its derivative is what stays free.
+    // A quasi-velocity of lower order than the constraints is lifted: its derivative is the free quantity.
     if (e_.quasi)
       for (std::size_t a = 0; a < free.size(); ++a) add(lines, free[a], e_.w[a]);
     for (std::size_t s = 0; s < top.size(); ++s) {
@@ -194,7 +194,7 @@ class Derive {
         for (int i = 0; i < 3 && (turns || !torque); ++i) {
           const std::string axis(1, "xyz"[i]);
           Label of = indexed(letter(torque ? "tau" : "R"), axis, {name_of(model, name), letter(axis)});
-          of.text = (torque ? "reaction_torque(" : "reaction(") + name + ")." + axis;  // as formulas call it
+          of.text = (torque ? "reaction_torque(" : "reaction(") + name + ")." + axis;  // the call in formulas
           add(lines, of, (torque ? r.loads[b].torque : r.loads[b].force)[i]);
         }
     }
@@ -215,7 +215,7 @@ class Derive {
 
 }  // namespace
 
-// Equations of so many coordinates nobody reads: written out they grow with the square of their number.
+// Equations of more coordinates are too long to read: expanded, they grow with the square of that number.
 constexpr std::size_t kManyCoordinates = 24;
 
 bool Arranger::in_parts(std::size_t coordinates) const {

@@ -1,5 +1,4 @@
-// The equations of a form as they are printed: arranged, named, with the steps that lead to them and the reactions that
-// follow.
+// The equations of a form in printed form: arranged, named, with the steps of their derivation and the reactions.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,7 +10,7 @@ namespace anholon {
 
 struct Line {
   std::string name;          // "x", "blade_edge", "d T/d x'"
-  std::optional<Expr> left;  // none: the name itself is the left side
+  std::optional<Expr> left;  // nullopt: the name itself is the left side
   Expr right;
   std::string latex = {}, mathml = {};  // the name in these formats; empty: as text
 };
@@ -20,19 +19,18 @@ using Section = std::pair<std::string, std::vector<Line>>;  // heading, lines
 struct Derivation {
   const Formulation* form = nullptr;
   const Model* model = nullptr;
-  unsigned m = 0;     // the order that was asked for; 0: none was
-  SymbolNames names;  // masses, quasi-velocities under their own names
+  unsigned m = 0;     // the order asked for; 0: none
+  SymbolNames names;  // masses and quasi-velocities under their own names
   std::vector<Section> steps, reactions;
   std::vector<Line> equations, constraints;
-  std::vector<Expr> parts;  // named in `names`, where the equations stand in parts
+  std::vector<Expr> parts;  // named in `names`, if the equations are printed in parts
 };
 
-// Arranges expressions, each only once: many forms have equations in common, or equations that are the same written
-// out.
+// Arranges expressions, each only once: many forms share equations, or have equations that are equal when expanded.
 class Arranger {
  public:
-  // auto or paper (grouped), none, full (written out), parts (as they stand, with names for what occurs more than
-  // once); auto means parts where there are many coordinates.
+  // auto or paper (grouped), none, full (expanded), parts (unchanged, with names for repeated subexpressions); auto
+  // means parts if there are many coordinates.
   explicit Arranger(std::string expand) : expand_(std::move(expand)) {}
   Expr operator()(Expr e, const SymbolNames& names);
   bool in_parts(std::size_t coordinates) const;
@@ -42,15 +40,15 @@ class Arranger {
   std::unordered_map<NodeId, Expr> known_, of_written_out_;
 };
 
-// `of_reactions`: an elimination of the ideal constraints by coordinates, if the reactions are wanted; for a form
-// without multipliers its own.
+// `of_reactions`: an elimination of the ideal constraints by coordinates, if the reactions are needed; for a form
+// without multipliers its own elimination.
 Derivation derivation(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger, bool steps,
                       const Elimination* of_reactions = nullptr);
 
-// Lines of steps for who reads them: of one family those that vanish stand together, "Q.x = Q.y" = 0.
+// Lines of steps for a reader: of one family the vanishing lines are joined, "Q.x = Q.y" = 0.
 std::vector<Line> joined(const std::vector<Line>& lines);
 
-// One derivation after the other. JSON: an object, or with `list` {"forms": [objects]}.
+// Prints one derivation after the other. JSON: an object, or with `list` {"forms": [objects]}.
 std::string as_text(const std::vector<Derivation>& list);
 std::string as_latex(const std::vector<Derivation>& list);
 std::string as_mathml(const std::vector<Derivation>& list);

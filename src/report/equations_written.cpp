@@ -1,4 +1,4 @@
-// Derivations in the formats of output.
+// Derivations in the output formats.
 #include "base/escape.h"
 #include "base/json.h"
 #include "report/equations.h"
@@ -7,7 +7,7 @@ namespace anholon {
 
 namespace {
 
-// What a mass is, under the name it has in the equations.
+// The formula of a mass under the name it has in the equations.
 std::string mass_text(const Derivation& d, std::size_t i, Format format) {
   SymbolNames plain = d.model->names;
   plain.defined.erase(d.model->masses[i].value.id);
@@ -16,9 +16,9 @@ std::string mass_text(const Derivation& d, std::size_t i, Format format) {
 
 std::string with_order(const Derivation& d) { return d.m ? ", taken with m = " + std::to_string(d.m) : ""; }
 
-// Both sides of lines, all in one go.
+// Both sides of lines, printed in one call.
 struct Sides {
-  std::vector<std::string> left, right;  // the left sides where there are any
+  std::vector<std::string> left, right;  // the left sides, if there are any
 };
 Sides printed(const Derivation& d, const std::vector<Line>& lines, Format format) {
   Column left, right;
@@ -32,7 +32,7 @@ Sides printed(const Derivation& d, const std::vector<Line>& lines, Format format
   return s;
 }
 
-// The named parts: their names and what they are.
+// The named parts: names and formulas.
 std::vector<std::pair<std::string, std::string>> parts(const Derivation& d, Format format) {
   std::vector<std::pair<std::string, std::string>> list;
   const std::vector<std::string> texts = print_contents(d.parts, d.names, format);
@@ -65,7 +65,7 @@ std::string label(const Line& l, Format format) {
   return l.name;
 }
 
-// Lines as pairs of sides, the names on the left.
+// Lines as pairs of sides, with the name as the left side if there is no other.
 std::vector<std::pair<std::string, std::string>> rows(const Derivation& d, const std::vector<Line>& of, Format format) {
   const std::vector<Line> lines = joined(of);
   const Sides s = printed(d, lines, format);

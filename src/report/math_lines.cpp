@@ -7,10 +7,11 @@ namespace anholon {
 
 namespace {
 
-constexpr std::size_t kLongBrackets = 8;   // signs; what is longer is broken within its brackets
-constexpr std::size_t kLongFraction = 24;  // a longer numerator is taken out of it: a browser cannot break a fraction
+constexpr std::size_t kLongBrackets = 8;  // signs; a longer bracket is broken inside
+// a longer numerator is taken out of its fraction: a browser cannot break a fraction
+constexpr std::size_t kLongFraction = 24;
 
-// The elements that stand side by side in `row`.
+// The elements of `row`, in order.
 std::vector<std::string_view> elements(std::string_view row) {
   std::vector<std::string_view> list;
   std::size_t at = 0;
@@ -19,7 +20,7 @@ std::vector<std::string_view> elements(std::string_view row) {
     int depth = 0;
     do {
       const std::size_t open = row.find('<', at), close = row.find('>', open);
-      if (open == std::string_view::npos || close == std::string_view::npos) return {row};  // not ours
+      if (open == std::string_view::npos || close == std::string_view::npos) return {row};  // not made by print()
       if (row[open + 1] == '/')
         --depth;
       else if (row[close - 1] != '/')
@@ -31,7 +32,7 @@ std::vector<std::string_view> elements(std::string_view row) {
   return list;
 }
 
-// How many signs a reader sees, about.
+// The approximate number of visible signs.
 std::size_t width(std::string_view s) {
   std::size_t n = 0;
   bool tag = false, entity = false;
@@ -47,7 +48,7 @@ std::size_t width(std::string_view s) {
 
 constexpr std::string_view kOpen = "<mo>(</mo>", kClose = "<mo>)</mo>", kRow = "<mrow>", kRowEnd = "</mrow>";
 
-// What stands between brackets that are an element of their own; empty if it is none.
+// The content of a bracketed element; empty if it is none.
 std::string_view bracketed(std::string_view e) {
   if (e.substr(0, kRow.size()) != kRow) return {};
   e = e.substr(kRow.size(), e.size() - kRow.size() - kRowEnd.size());
@@ -58,9 +59,9 @@ std::string_view bracketed(std::string_view e) {
 }
 
 struct Fraction {
-  std::string_view top, bottom;  // bottom as an element, top as a row
+  std::string_view top, bottom;  // bottom is an element, top a row
 };
-// A fraction with a long numerator; an empty top if it is none.
+// A fraction with a long numerator; an empty top for other elements.
 Fraction long_fraction(std::string_view e) {
   constexpr std::string_view open = "<mfrac>", close = "</mfrac>";
   if (e.substr(0, open.size()) != open) return {};
@@ -77,10 +78,10 @@ class Breaker {
     bool first = true;
     for (std::string_view e : elements(s)) {
       if (is_sign(e)) {
-        // A leading sign belongs to what it stands before; the others stand at the head of a piece, spaced as between
-        // two terms.
+        // A leading sign belongs to its operand; other signs are at the head of a piece, spaced like a sign between two
+        // terms.
         if (!first) next();
-        // The blank between two pieces is the space on its left.
+        // The blank between two pieces is the space to the left of the sign.
         piece_ += first ? "<mo form=\"prefix\">" : "<mo form=\"infix\" lspace=\"0\">";
         piece_ += e.substr(4);
       } else if (const std::string_view inner = bracketed(e); !inner.empty() && width(inner) > kLongBrackets) {
@@ -116,8 +117,7 @@ class Breaker {
   std::vector<std::string> pieces_;
 };
 
-// A name of several letters keeps a distance from its neighbours in a product, which MathML Core does not give it: m
-// sin, flow u.
+// A name of several letters is spaced from its neighbours in a product, which MathML Core does not do: m sin, flow u.
 std::string spaced(std::string s) {
   constexpr std::string_view times = "<mo>&#x2062;</mo>", open = "<mi>", close = "</mi>",
                              space = "<mspace width=\"0.1667em\"/>";

@@ -1,17 +1,17 @@
-// MathML that wraps: a long formula as many short ones on a line of text, between which a browser may begin a new line.
+// MathML that wraps: a long formula is written as many short ones in a line of text, between which a browser may break
+// the line.
 //
-// MathML Core has no line breaking. A formula of ours is a row of elements; it may be broken before every + and − that
-// stands free, and, where what stands in brackets is long, within them. A long numerator is taken out of its fraction:
-// a/b = (1/b)(a).
+// MathML Core has no line breaking. A formula of this program is a row of elements; it may be broken before every + and
+// − outside brackets, and within long brackets. A long numerator is taken out of its fraction: a/b = (1/b)(a).
 #pragma once
 #include <string>
 #include <vector>
 
 namespace anholon {
 
-// The pieces of a row of presentation MathML as print() makes it, without <math> round them.
+// The pieces of a row of presentation MathML from print(), without the enclosing <math>.
 std::vector<std::string> math_pieces(const std::string& row);
-// All of them in <math> elements, with places to break between them.
+// All pieces in <math> elements, with places for line breaks between them.
 std::string wrapping_math(const std::string& row);
 
 }  // namespace anholon

@@ -9,9 +9,9 @@ namespace anholon {
 
 namespace {
 
-constexpr double kAngle = 0.02;  // of a step, at most
+constexpr double kAngle = 0.02;  // maximal angle of a step
 constexpr int kStepsToTheStart = 1000, kStepsBetweenRows = 4;
-constexpr double kShortest = 1e-5;     // of the time between rows: a spin without bounds must not take forever
+constexpr double kShortest = 1e-5;     // fraction of the time between rows: an unbounded spin must not take forever
 using State = std::array<double, 10>;  // quaternion, origin, its velocity
 
 class Path {
@@ -36,7 +36,7 @@ class Path {
     return out;
   }
 
-  // In `steps` steps at least: what turns later may be at rest now.
+  // Takes at least `steps` steps: an observer that turns later may be at rest now.
   void go(double& t, State& x, double end, int steps, double shortest) {
     const double longest = std::abs(end - t) / steps;
     while (t != end) {

@@ -17,7 +17,7 @@ namespace anholon {
 
 namespace {
 
-// The comment at the head of a model file that says what it is.
+// The comment at the head of a model file that describes the model.
 std::string picture_in_words(const std::string& source) {
   std::string out;
   bool begun = false;
@@ -30,7 +30,7 @@ std::string picture_in_words(const std::string& source) {
     if (line.rfind('#', 0) == 0) {
       const std::string text = line.substr(std::min<std::size_t>(line.size(), line.rfind("# ", 0) == 0 ? 2 : 1));
       if (text.empty() || text[0] == ' ') {
-        if (begun) break;  // the first paragraph; lists say more than a page needs
+        if (begun) break;  // only the first paragraph; lists are longer than a page needs
       } else {
         out += (begun ? " " : "") + text, begun = true;
       }
@@ -113,7 +113,7 @@ class Writer {
     return p_.cases.size() > 1 ? "<div class=\"cases\">\n" + out + "</div>\n" : out;
   }
 
-  // The page still says where the motion begins and ends when nothing draws it.
+  // Without a drawing the page still shows the start and the end of the motion.
   std::string table_of_rows(const PageCase& c) const {
     const RunTable& t = c.run.table;
     if (t.rows() == 0) return "";
@@ -224,7 +224,7 @@ class Writer {
 
   // ---- equations --------------------------------------------------------------------------------
 
-  // One equation: wraps, is read out as text, copied as LaTeX.
+  // One equation: it wraps, is read out as text, and is copied as LaTeX.
   static std::string equation(const std::string& label, const std::string& left, const std::string& right,
                               const std::string& latex, const std::string& text) {
     std::string out = "<div class=\"equation\"" + attribute("data-latex", latex) + ">";
@@ -391,7 +391,7 @@ class Writer {
     return out + certificate();
   }
 
-  // In the page itself, if it is not too long.
+  // The certificate in the page itself, if it is not too long.
   std::string certificate() const {
     constexpr std::size_t kMost = 240'000;
     if (p_.certificate.empty()) return "";
@@ -526,7 +526,7 @@ class Writer {
 
   const Page& p_;
   const Model& model_;
-  std::vector<std::optional<SimulationReport>> reports_;  // of the cases; nullopt where a run was not finished
+  std::vector<std::optional<SimulationReport>> reports_;  // of the cases; nullopt for an unfinished run
   Bibliography literature_;
   std::string contents_;
 };

@@ -1,7 +1,7 @@
-// A run as one page of HTML: self-contained, readable without scripts, prints; the viewer brings plots and picture to
-// life.
+// A run as one page of HTML: self-contained, readable without scripts, and printable; the viewer adds plots and
+// picture.
 //
-// Whatever a model or a run holds is text on the page, never markup or program.
+// Text of a model or a run is shown as text, never as markup or script.
 #pragma once
 #include "mechanics/conserved.h"
 #include "proof/prove.h"
@@ -11,7 +11,7 @@
 
 namespace anholon {
 
-// One scenario of the model with its motion.
+// One case of the model with its motion.
 struct PageCase {
   std::string name;               // of the scenario; empty without one
   Workspace* scenario = nullptr;  // of all expressions of the case
@@ -21,24 +21,24 @@ struct PageCase {
 };
 
 struct Page {
-  std::vector<PageCase> cases;  // one at least; the equations are those of the first
+  std::vector<PageCase> cases;  // at least one; the equations are those of the first case
   std::vector<Derivation> equations;
-  std::vector<std::string> eliminations;  // of each derivation, in words; empty where nothing is eliminated
+  std::vector<std::string> eliminations;  // of each derivation, in words; empty if nothing is eliminated
   const Proof* proof = nullptr;
-  std::string no_proof;                   // why there is none
+  std::string no_proof;                   // the reason if there is none
   std::vector<std::string> hypotheses;    // of the proof's certificate
-  std::string meaning;                    // what is proved
+  std::string meaning;                    // the statement proved
   std::string certificate;                // JSON
-  std::size_t claims = 0, confirmed = 0;  // of the certificate, by the checker
-  std::string command;                    // that makes this page again
+  std::size_t claims = 0, confirmed = 0;  // claims of the certificate, and those that the checker confirmed
+  std::string command;                    // command that makes this page again
   std::string version, model_hash;
   SourceText source;
 };
 
 std::string html(const Page& page);
 
-// The picture of the first case alone, for whoever records it: `script` runs after the viewer's. Needs no explanation
-// and no equations.
+// The picture of the first case alone, for a recording: `script` runs after the viewer's script. It needs no
+// explanation and no equations.
 std::string stage_html(const Page& page, bool dark, const std::string& script);
 
 }  // namespace anholon

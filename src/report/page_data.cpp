@@ -86,7 +86,7 @@ void one_case(JsonWriter& j, const PageCase& c) {
   frames(j, d);
   events(j, read_report(c.run.report));
   j.key("scene");
-  // In the page the time is no column.
+  // In the page the time is not a column.
   const ColumnOf in_table = column_of(model, c.run.table);
   const ColumnOf column = [&](const Node& n) -> std::optional<int> {
     const auto k = in_table(n);

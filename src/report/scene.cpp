@@ -75,11 +75,11 @@ class SceneMaker {
 
   void shape(SceneItem& i, const Shape& s) {
     i.shape = s.kind;
-    // Sizes are numbers and parameters: their values are taken when these are known.
+    // Sizes are numbers and parameters: their values are substituted when these are known.
     for (const Expr& e : s.sizes) sizes_.push_back({scene_.items.size() - 1, root(e)});
   }
 
-  // A body without a shape is drawn as the homogeneous box that has its moments of inertia: along its axis k, with the
+  // A body without a shape is drawn as the homogeneous box with its moments of inertia: along its axis k, with the
   // second moment E_k, it is sqrt(12 E_k/m) long.
   void inertia_box(SceneItem& i, const Body& b) {
     i.shape = "point";
@@ -132,7 +132,7 @@ class SceneMaker {
     if (e.kind == View::Kind::trace) i.of = e.name;
   }
 
-  // Without any asked for: of particles, then of points, as far as they move.
+  // Default traces: of particles, else of points, if they move.
   void traces() {
     constexpr std::size_t kMost = 6;
     std::size_t count = 0;
@@ -176,7 +176,7 @@ class SceneMaker {
     }
   }
 
-  // Every place lies in one plane z = const of the observer.
+  // Whether all places are in one plane z = const of the observer.
   bool flat() const {
     const auto fixed = [&](const Vector& v) { return is_zero(v.z); };
     return std::all_of(model_.bodies.begin(), model_.bodies.end(),
@@ -188,7 +188,7 @@ class SceneMaker {
            std::all_of(view_.points.begin(), view_.points.end(), [&](const auto& p) { return fixed(p.second); });
   }
 
-  // There is a level that things rest on: a named point stays in the plane z = 0.
+  // Whether there is a ground level: a named point stays in the plane z = 0.
   bool level() const {
     return std::any_of(view_.points.begin(), view_.points.end(), [](const auto& p) { return is_zero(p.second.z); });
   }
@@ -204,7 +204,8 @@ class SceneMaker {
       for (std::size_t k = 0; k < 3; ++k) scene_.up[k] = machine.value((*up_)[k]);
     for (const auto& [i, root] : sizes_) {
       const double size = machine.value(root);
-      scene_.items[i].sizes.push_back(std::isfinite(size) ? size : 0);  // a moment rounded below 0 has no root
+      // a moment that rounding made negative has no root
+      scene_.items[i].sizes.push_back(std::isfinite(size) ? size : 0);
     }
   }
 
@@ -265,7 +266,7 @@ class SceneWriter {
         higher.order = static_cast<std::uint8_t>(n.order + by);
         return n.kind == Kind::time ? -1 : column_(higher).value_or(-1);
       };
-      // A row without the column shows nothing that needs it.
+      // A row without the column omits the items that need it.
       j_.open_object()
           .key("column")
           .integer(column_(n).value_or(-2))
@@ -334,7 +335,7 @@ class SceneWriter {
         break;
       case Op::rate:
         operation("c"), j_.null();
-        break;  // not made without rates
+        break;  // does not occur without rates
       }
       j_.close();
     }

@@ -1,8 +1,9 @@
-// The picture of a motion as data: what is drawn, and the straight-line program that places it from a row of the run.
+// The picture of a motion as data: the drawn items, and the straight-line program that computes their places from a row
+// of the run.
 //
-// Positions are computed where they are shown, from coordinates that are interpolated between rows: so a rolling wheel
-// rolls at every moment, and the page carries formulas instead of poses. Lengths as in the model; vectors and axes in
-// the observer's axes.
+// The viewer computes positions from coordinates that are interpolated between rows: so a rolling wheel rolls at every
+// moment, and the page contains formulas instead of poses. Lengths as in the model; vectors and axes in the observer's
+// axes.
 #pragma once
 #include <array>
 #include <functional>
@@ -37,14 +38,16 @@ struct Scene {
   std::string follow;
 };
 
-// Without [view]: bodies, points, tensions; the velocity of every mass centre, the reaction on every body that has one.
+// The default without [view]: bodies, points, tensions; the velocity of every mass centre, the reaction on every body
+// that has one.
 Scene scene(const Mechanics& mechanics);
 
-// Which column of a table holds a symbol; no value: none, -1: it is the time.
+// Returns the index of the column that holds a symbol; -1: the time; nullopt: no column.
 using ColumnOf = std::function<std::optional<int>(const Node& symbol)>;
-// The columns that the scene's inputs stand in, without the time.
+// The columns of the scene's inputs, without the time.
 std::vector<int> columns_of(const Scene& scene, const Graph& graph, const ColumnOf& column);
-// As the viewer reads it (viewer/CONTRACT.md); `observer` is written by the caller's function, null without one.
+// Writes the format of the viewer (viewer/CONTRACT.md); `observer` is written by the caller's function, null without
+// one.
 void write_scene(JsonWriter& json, const Scene& scene, const Graph& graph, const ColumnOf& column,
                  const std::function<void(JsonWriter&)>& observer);
 

@@ -1,20 +1,20 @@
-// What is said of a system, in words: for the terminal and for pages alike.
+// Descriptions of a system in words, for terminal and pages.
 #pragma once
 #include "setup/explain.h"
 
 namespace anholon {
 
-// What the model contains beyond classical mechanics.
+// The parts of the model beyond classical mechanics.
 std::vector<std::string> effects(const Model& model);
 std::vector<std::string> external_forces(const Model& model);
 
 // "order 1, linear homogeneous"
 std::string description(const ConstraintClass& c, int order);
-// "does no work", "may do work, of power …", "servo"; what is longer than `longest` is not said.
+// "does no work", "may do work, of power …", "servo"; a formula longer than `longest` is omitted.
 std::string work(const Scenario& s, const Explanation& x, std::size_t constraint, std::size_t longest);
-// Names of constraints in a row.
+// Names of constraints as a list.
 std::string listed(const Model& model, const std::vector<std::size_t>& constraints);
-// What is supposed of the reactions: "ideal, no work in virtual displacements (d'Alembert, Lagrange)".
+// The hypothesis on the reactions: "ideal, no work in virtual displacements (d'Alembert, Lagrange)".
 const char* in_words(Hypothesis hypothesis);
 
 // An entry of the state beyond positions and velocities.

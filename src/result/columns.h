@@ -1,4 +1,4 @@
-// The schema of the rows of a run: what each column holds.
+// The schema of the rows of a run: the meaning of each column.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// Columns of one kind are computed in the same way from a state, so their errors are of one size.
+// Columns of one kind are computed in the same way from a state, so their errors have the same size.
 enum class ColumnKind : std::uint8_t {
   time,
   coordinate,
@@ -20,7 +20,7 @@ enum class ColumnKind : std::uint8_t {
   state,
   reaction,
   monitor,
-  event_time  // of no column of a row: the kind of error of the moments of events
+  event_time  // not a column: the kind of error of the times of events
 };
 // "coordinates", "velocities", …
 const char* name(ColumnKind kind);
@@ -30,7 +30,7 @@ struct RunColumn {
   ColumnKind kind = ColumnKind::time;
   std::size_t index = 0;  // of the coordinate, constraint, state or monitor in the model
   unsigned order = 0;     // of the derivative
-  std::string unit;       // empty where the model names none
+  std::string unit;       // empty if the model gives none
 };
 
 std::vector<std::string> names_of(const std::vector<RunColumn>& columns);

@@ -21,12 +21,12 @@ class CsvReader {
     header(next());
     while (!text_.empty()) {
       const std::string_view line = next();
-      // At the end there may be an empty line.
+      // The last line may be empty.
       if (line.empty() && (text_.empty() || table_.columns.size() > 1)) {
         if (text_.find_first_not_of("\r\n") == std::string_view::npos) break;
         fail(line, 0, "an empty line between the rows", "take it out");
       }
-      // A run that was killed ends in the middle of a row.
+      // The file of a killed run ends in the middle of a row.
       const bool cut = text_.empty() && text_end_ != '\n';
       if (cut && std::count(line.begin(), line.end(), ',') + 1 < static_cast<long>(table_.columns.size())) {
         run_.notes.push_back("the file ends in the middle of line " + std::to_string(number_) + ", which is left out");
@@ -65,7 +65,7 @@ class CsvReader {
     for (; column < columns && from <= line.size(); ++column) {
       const std::size_t comma = std::min(line.find(',', from), line.size());
       const std::string_view cell = line.substr(from, comma - from);
-      // A column that begins with a word is one of words, as the outcomes of a sweep.
+      // A column whose first cell is a word is a column of words, like the outcomes of a sweep.
       if (!table_.add(column, cell) && !words_[column]) {
         if (table_.values[column].size() > 1) fail(line, from, "'" + std::string(cell) + "' is not a number", {}, cell);
         words_[column] = true;

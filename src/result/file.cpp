@@ -25,7 +25,7 @@ static std::string cannot_write(const std::string& path, int why) {
 
 static std::string part_of(const std::string& path) { return path + ".part"; }
 
-// A link stays one; what it leads to is written.
+// A link is kept; its target is written.
 std::string target_of_link(const std::string& path) {
   std::error_code none;
   if (!fs::is_symlink(path, none)) return path;
@@ -38,7 +38,8 @@ static bool is_other_kind(const std::string& path) {
   return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
-// Why a file of this name cannot be replaced; 0 if it can. Whether the folder lets one in shows when the part is made.
+// The reason why a file of this name cannot be replaced; 0 if it can. Missing rights on the folder show when the part
+// is created.
 static int obstacle(const std::string& path) {
   struct stat info{};
   if (::stat(path.c_str(), &info) != 0) return 0;
@@ -46,7 +47,7 @@ static int obstacle(const std::string& path) {
   return ::access(path.c_str(), W_OK) == 0 ? 0 : errno;
 }
 
-// The part, empty, with the mode of what it will replace. A link that lies there is not followed.
+// Opens the part, empty, with the mode of the file that it will replace. A link of that name is not followed.
 static int open_part(const std::string& target, int flags) {
   const std::string beside = part_of(target);
   const int fd = ::open(beside.c_str(), flags | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -55,22 +56,22 @@ static int open_part(const std::string& target, int flags) {
   return fd;
 }
 
-// A socket in the abstract name space, named by the folder and the name: taken by one process at a time, freed by the
-// kernel.
+// A socket in the abstract name space, named by the folder and the file: only one process at a time can bind it, and
+// the kernel frees it.
 WritingClaim::WritingClaim(const std::string& path, double seconds) {
   if (path.empty()) return;
   std::error_code none;
   const fs::path name = target_of_link(path);
   const fs::path folder = name.has_parent_path() ? name.parent_path() : fs::path(".");
   struct stat info{};
-  if (::stat(folder.c_str(), &info) != 0) return;  // the part will not be made, which says why
+  if (::stat(folder.c_str(), &info) != 0) return;  // the part cannot be created either, and reports the reason
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string key = "anholon-" + sha256_text(std::to_string(info.st_dev) + "/" + std::to_string(info.st_ino) +
                                                    "/" + name.filename().string());
   std::memcpy(address.sun_path + 1, key.data(), std::min(key.size(), sizeof address.sun_path - 1));
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + key.size());
-  // Where there are no sockets, nobody claims anything.
+  // Without sockets there are no claims.
   socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket_ < 0) return;
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
@@ -132,7 +133,7 @@ std::string GrowingFile::close() {
   if (!file_) return error_;
   flush();
   if (error_.empty() && std::ferror(file_)) fail(EIO);
-  // The bytes are on disk before the name is.
+  // The bytes are on disk before the name appears.
   if (error_.empty() && !beside_.empty() && ::fsync(::fileno(file_)) != 0) fail(errno);
   if (file_ != stdout && std::fclose(file_) != 0) fail(errno);
   file_ = nullptr;
@@ -146,7 +147,7 @@ void GrowingFile::remove() {
   if (!beside_.empty()) std::remove(beside_.c_str());
 }
 
-// Others write for a moment only.
+// Other processes write only for a moment.
 static constexpr double kPatience = 20;
 
 std::string write_whole_by_name(const std::string& path,
@@ -169,7 +170,7 @@ std::string write_whole(const std::string& path, const std::function<bool(std::F
   return write_whole_by_name(path, [&](const std::string& beside) -> std::string {
     std::FILE* file = std::fopen(beside.c_str(), "w");
     if (!file) return cannot_write(path, errno);
-    // What is no regular file has no disk to wait for.
+    // Only a regular file has a disk to wait for.
     const bool written =
         write(file) && std::fflush(file) == 0 && (::fsync(::fileno(file)) == 0 || errno == EINVAL || errno == EROFS);
     const int why = errno;

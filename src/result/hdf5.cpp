@@ -84,10 +84,9 @@ namespace {
 
 constexpr const char* kFormat = "anholon run";
 constexpr int kVersion = 1;
-constexpr hsize_t kChunkNumbers = 8192;  // 64 KB: what a small file is long, and a large one is read by
+constexpr hsize_t kChunkNumbers = 8192;  // 64 KB: the size of a small file, and the unit in which a large one is read
 
-// Texts of a column that has some: /text is as long as /rows from then on, and its attribute `columns` says which
-// columns it holds.
+// Texts of columns: from the first text on /text is as long as /rows, and its attribute `columns` lists the columns.
 void extend_texts(hid_t file, hsize_t before, const RowBlock& block) {
   std::vector<std::uint32_t> held;
   if (exists(file, "text")) {
@@ -165,7 +164,7 @@ class Hdf5Reader {
   }
   static Handle open(const std::string& path) { return {open_file(path), H5Fclose}; }
 
-  // More numbers than this are no run, but a file that somebody made up.
+  // A file with more numbers is forged, not a run.
   static std::vector<hsize_t> limited(std::vector<hsize_t> size, std::size_t rank) {
     constexpr double kMost = 4e9;
     double product = 1;
@@ -192,7 +191,7 @@ class Hdf5Reader {
     return value;
   }
 
-  // A list, or a single one.
+  // Reads a list, or a single text.
   std::vector<std::string> texts(const std::string& name) {
     if (!exists(file_, name)) return {};
     const Handle set = open_dataset(file_, name);
@@ -310,8 +309,8 @@ std::string extend_hdf5(const std::string& path, const RowBlock& block) {
   });
 }
 
-// HDF5 follows what stands in a file, and crashes where a damaged one leads it astray. So a child goes there first;
-// whether it comes back is all it says.
+// HDF5 follows addresses in a file, and a damaged file may crash it. A child process therefore reads the file first;
+// its exit status tells whether it survived.
 static bool is_passable(const std::string& path) {
   std::fflush(nullptr);
   const pid_t child = fork();
@@ -320,12 +319,12 @@ static bool is_passable(const std::string& path) {
     const rlimit no_core{0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     for (const int s : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) std::signal(s, SIG_DFL);
-    // What a C library says of itself as it ends is not for the user.
+    // Hides the messages that a C library prints when it ends.
     if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
     try {
       Hdf5Reader(path).read();
     } catch (...) {
-      // Said again by whoever reads it next.
+      // The next reader reports the error again.
     }
     ::_exit(0);
   }

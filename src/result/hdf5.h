@@ -1,7 +1,7 @@
-// Runs in HDF5. The only layer of ours that knows HDF5 is behind these functions; the schema is in doc/results.md.
+// Runs in HDF5. Only the files behind these functions use HDF5; the schema is in doc/results.md.
 //
-// HDF5 has no notion of a file that is whole at every moment, so a file that somebody may read is never changed: a copy
-// of it is extended and takes its place (Hdf5Sink). These functions work on a file that nobody else has seen yet.
+// HDF5 does not keep a file complete at every moment, so a file that others may read is never changed: a copy of it is
+// extended and replaces it (Hdf5Sink). These functions work on a file that no other process has opened yet.
 #pragma once
 #include <cstddef>
 #include <map>
@@ -13,19 +13,20 @@
 
 namespace anholon {
 
-// Whether this build can read and write HDF5, and what to say where it cannot.
+// Whether this build can read and write HDF5, and the message if it cannot.
 bool has_hdf5();
 extern const char* const kNoHdf5;
 extern const char* const kNoHdf5Hint;
 
-// Whether a file that begins so is one of HDF5.
+// Whether a file with this beginning is an HDF5 file.
 bool looks_like_hdf5(std::string_view beginning);
 
-// Rows that go to the end of a file together.
+// Rows that are appended to a file together.
 struct RowBlock {
   std::size_t columns = 0;
-  std::vector<double> numbers;                            // row after row
-  std::map<std::size_t, std::vector<std::string>> texts;  // by column: one per row, empty where the number says it all
+  std::vector<double> numbers;  // row after row
+  // by column: one per row, empty if the number's own text suffices
+  std::map<std::size_t, std::vector<std::string>> texts;
   std::vector<double> steps;
   std::optional<std::string> report;
 
@@ -37,7 +38,7 @@ struct RowBlock {
   std::size_t text_bytes = 0;
 };
 
-// A file without rows. Empty, or what went wrong.
+// Creates a file without rows. Returns an empty string, or the reason of a failure.
 std::string create_hdf5(const std::string& path, const RunInfo& info, const std::vector<std::string>& columns);
 std::string extend_hdf5(const std::string& path, const RowBlock& block);
 // Throws Failure.

@@ -10,14 +10,14 @@ namespace anholon::hdf5 {
 
 namespace {
 
-// Why an object could not be closed, since `done` began: the last of what was written to it goes to the disk then.
+// The reason why an object could not be closed since `done` began: its last data go to the disk then.
 std::string& lost() {
   static thread_local std::string why;
   return why;
 }
 
-// In groups that are made on the way; in chunks, if it is to grow. Without times of its own: the same run makes the
-// same bytes.
+// Creates missing groups; uses chunks if the data set may grow. It has no time stamps: the same run gives the same
+// bytes.
 Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
                    const std::vector<hsize_t>& chunk = {}) {
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -33,7 +33,7 @@ Handle::~Handle() {
   if (id_ >= 0 && close_(id_) < 0 && lost().empty()) lost() = cause();
 }
 
-// What it would do when the program ends crashes where a file could not be written; all our files are closed by then.
+// Disables HDF5's own clean-up at exit, which crashes after a failed write; all our files are closed by then.
 void quietly() {
   static const herr_t without_exit = H5dont_atexit();
   static_cast<void>(without_exit);

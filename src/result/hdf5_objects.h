@@ -1,5 +1,5 @@
-// The objects of HDF5 in the words that results need: what is open closes itself, what fails says why. Included only
-// where HDF5 is there.
+// RAII wrappers of HDF5 objects for results: an open object closes itself, a failed call gives its reason. Included
+// only if HDF5 is available.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace anholon::hdf5 {
 
-// A call of HDF5 that failed, and why.
+// A failed call of HDF5, with the reason.
 struct Trouble {
   std::string message;
 };
 
-// The first cause that HDF5 reports, with the words of the operating system where it quotes them.
+// The first cause that HDF5 reports, with the message of the operating system if HDF5 quotes it.
 std::string cause();
 
 template <class T>
@@ -23,7 +23,7 @@ T checked(T result) {
   return result;
 }
 
-// An object of HDF5, closed with whoever holds it.
+// An object of HDF5, which is closed with its owner.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*closing)(hid_t)) : id_(checked(id)), close_(closing) {}
@@ -31,7 +31,7 @@ class Handle {
   Handle& operator=(Handle&&) = delete;
   ~Handle();
   operator hid_t() const { return id_; }
-  // Closing a file is where its last bytes are written.
+  // Closing a file writes its last bytes.
   void close() {
     const hid_t id = id_;
     id_ = -1;
@@ -43,11 +43,11 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-// Called before anything else of HDF5, and by `done`: errors are for `cause`, not for the terminal.
+// Call it before any other function of HDF5; `done` does so: errors are for `cause`, not for the terminal.
 void quietly();
 
-// Calls f, which may throw Trouble. Returns why it failed, or why an object could not be closed (the last of what was
-// written to it goes to the disk then); an empty text if all went well.
+// Calls f, which may throw Trouble. Returns the reason why f failed, or why an object could not be closed (its last
+// data go to the disk then); an empty text on success.
 std::string done_by(void (*f)(void*), void* with);
 
 template <class F>

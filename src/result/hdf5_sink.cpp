@@ -11,7 +11,7 @@
 
 namespace anholon {
 
-// Of all steps of a run; those beyond are not written.
+// The limit of stored steps of a run; later steps are not written.
 static constexpr std::size_t kMostSteps = 5'000'000;
 
 Hdf5Sink::Hdf5Sink(std::string path, RunInfo info, Pace pace)
@@ -69,7 +69,7 @@ bool Hdf5Sink::fail(const std::string& why) {
   return false;
 }
 
-// Room for what will be added is taken before HDF5 sees the file: it does not end well on a full disk.
+// Space for the new data is allocated before HDF5 opens the file: HDF5 does not handle a full disk well.
 bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
   const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (out < 0) return fail(std::strerror(errno));
@@ -92,7 +92,7 @@ bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
         at = in;
         continue;
       }
-      // Between some file systems, and on old kernels, it cannot.
+      // Between some file systems, and on old kernels, the call is not supported.
       if (n < 0 && errno == ENOSPC) return failed();
       by_kernel = false;
     }
@@ -115,7 +115,7 @@ bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
 void Hdf5Sink::checkpoint() {
   if (!error_.empty() || !begun_) return;
   const auto start = std::chrono::steady_clock::now();
-  // Chunks of every data set that are begun, the directory of chunks, and the texts.
+  // New chunks of every data set, the directory of chunks, and the texts.
   constexpr std::size_t kMargin = 1u << 20;
   std::size_t texts = 0;
   for (const RunInfo::File& f : info_.model) texts += f.text.size();
@@ -127,7 +127,7 @@ void Hdf5Sink::checkpoint() {
   if (const std::string why = extend_hdf5(beside_, block_); !why.empty()) return static_cast<void>(fail(why));
   const int fd = ::open(beside_.c_str(), O_RDWR | O_CLOEXEC);
   struct stat info{};
-  // What was taken and not used goes back; the bytes are on disk before the name is.
+  // Gives back unused space; the bytes are on disk before the name appears.
   if (fd < 0 || ::fstat(fd, &info) != 0 || ::ftruncate(fd, info.st_size) != 0 || ::fdatasync(fd) != 0 ||
       std::rename(beside_.c_str(), target_.c_str()) != 0) {
     const int why = errno;

@@ -1,11 +1,11 @@
-// Rows on their way into an HDF5 file that can be read at any moment, also after the program was killed.
+// Writes rows to an HDF5 file that can be read at any moment, also after the program was killed.
 //
-// What has a name is never changed. A checkpoint copies the last complete file, extends the copy and renames it;
-// between checkpoints rows wait in memory. The first one comes before the first row, the last with `close`.
+// A complete file is never changed. A checkpoint copies the last complete file, extends the copy and renames it;
+// between checkpoints rows wait in memory. The first checkpoint is before the first row, the last in `close`.
 //
-// Checkpoints cost a copy of the file: they wait 20 times as long as the last one took, and at least two seconds; or
-// until the rows in memory are 32 MB, and a quarter of what was written, so that all copies together stay within a few
-// times the size of the result.
+// Checkpoints cost a copy of the file: a checkpoint waits 20 times as long as the last one took, and at least two
+// seconds; or until the rows in memory are 32 MB, and a quarter of the data written, so that all copies together stay
+// within a few times the size of the result.
 #pragma once
 #include <chrono>
 #include <optional>
@@ -19,33 +19,33 @@ namespace anholon {
 struct CheckpointPace {
   std::size_t bytes = 32u << 20;
   double seconds = 2;
-  double share = 20;  // of the time of the last checkpoint
+  double share = 20;  // multiple of the time of the last checkpoint
 };
 
 class Hdf5Sink final : public RowSink {
  public:
   using Pace = CheckpointPace;
-  // Check `error` before use: whether the folder can be written to is tried at once.
+  // Check `error` before use: the constructor tries at once to write to the folder.
   Hdf5Sink(std::string path, RunInfo info, Pace pace = Pace());
   ~Hdf5Sink() override;
   Hdf5Sink(const Hdf5Sink&) = delete;
   Hdf5Sink& operator=(const Hdf5Sink&) = delete;
 
-  // Before `columns`: the first rows and steps of a run, which the rows to come follow; left out where that has other
-  // columns.
+  // Call it before `columns`: the first rows and steps of a run, before the rows to come; they are omitted if that run
+  // has other columns.
   void go_on(const RunFile& before, std::size_t rows, std::size_t steps);
   void columns(const std::vector<RunColumn>& columns) override;
   void row(const Row& row) override;
   void step(double t) override;
-  // The JSON of the whole run; with it the file is complete.
+  // Stores the JSON of the whole run; with it the file is complete.
   void report(std::string json) { block_.report = std::move(json); }
 
-  // The rows so far are in the file, whatever happens to the program.
+  // After this call, the rows so far are in the file, whatever happens to the program.
   void flush();
-  // Empty, or why the file could not be written: then the last one that could be is there.
+  // Returns an empty string, or the reason why the file could not be written: the last complete file is kept then.
   std::string close();
   const std::string& error() const { return error_; }
-  // Rows in the file that is there.
+  // Number of rows in the complete file.
   std::size_t written() const { return written_; }
 
  private:
@@ -61,7 +61,7 @@ class Hdf5Sink final : public RowSink {
   RowBlock block_;
   std::vector<std::string> names_before_;
   std::size_t written_ = 0, steps_ = 0, size_ = 0;
-  int last_ = -1;  // the last complete file, also where its name was taken away
+  int last_ = -1;  // the last complete file, even if its name was removed
   bool begun_ = false, closed_ = false;
   std::chrono::steady_clock::time_point next_;
 };

@@ -1,5 +1,5 @@
-// Rows from the JSON of `simulate`. Numbers are taken as they are written, and what stands beside the rows stays the
-// same text: a general reader would round the numbers and arrange the rest anew.
+// Rows from the JSON of `simulate`. Numbers are taken as written, and the text beside the rows is kept: a general
+// reader would round the numbers and reformat the rest.
 #include "base/diagnostic.h"
 #include "base/utf8.h"
 #include "result/run_file.h"
@@ -194,7 +194,7 @@ class JsonReader {
     });
   }
 
-  // Any value.
+  // Skips any value.
   void skip(int depth) {
     if (depth > kDeepest) fail("nested too deeply");
     space();

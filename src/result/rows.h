@@ -1,5 +1,5 @@
-// Rows of a result on their way to a file or to the standard output: columns once, then rows of
-// numbers. Writing stops at the first failure of the file, which `close` reports.
+// Sinks for the rows of a result, to a file or the standard output: columns once, then rows of numbers. Writing stops
+// at the first failure of the file, which `close` reports.
 #pragma once
 #include <chrono>
 #include <span>
@@ -11,14 +11,14 @@
 
 namespace anholon {
 
-// One row of a run: a double for every column. A number that is wider than a double, or a time that is to be printed as
-// it was given, has its digits beside it.
+// One row of a run: a double for every column. A number wider than a double, or a time that is printed as given, has
+// its digits beside it.
 struct Row {
   std::span<const double> values;
-  // Of the first columns; an empty text, and every column beyond, is what number_text(value) writes.
+  // Texts of the first columns; for an empty text, and for every further column, number_text(value) is written.
   std::span<const std::string> texts = {};
 };
-// Appends the number of column k as it is written.
+// Appends the number of column k in its written form.
 void append_number(std::string& to, const Row& row, std::size_t k);
 
 class RowSink {
@@ -27,11 +27,11 @@ class RowSink {
   // Called once, before the first row.
   virtual void columns(const std::vector<RunColumn>& columns) = 0;
   virtual void row(const Row& row) = 0;
-  // A step of the motion that was accepted ends at t.
+  // Called when an accepted step of the motion ends at t.
   virtual void step(double) {}
 };
 
-// CSV with one header row. Rows go to the file whole: on a terminal one by one, else many together or those of half a
+// CSV with one header row. Rows are written whole: on a terminal one by one, else many together or those of half a
 // second.
 class CsvSink final : public RowSink {
  public:
@@ -42,11 +42,11 @@ class CsvSink final : public RowSink {
   CsvSink& operator=(const CsvSink&) = delete;
   void columns(const std::vector<RunColumn>& columns) override;
   void row(const Row& row) override;
-  // A line of words and numbers as they stand: a sweep has outcomes among its numbers.
+  // Writes a line of words and numbers unchanged: a sweep has outcomes among its numbers.
   void cells(const std::vector<std::string>& texts);
-  // Puts the rows so far into the file, where they stay whatever happens to the program.
+  // After this call, the rows so far are in the file, whatever happens to the program.
   void flush();
-  // Empty, or why the file could not be written.
+  // Returns an empty string, or the reason why the file could not be written.
   std::string close();
   const std::string& error() const { return file_.error(); }
   std::string part() const { return file_.part(); }
@@ -59,7 +59,7 @@ class CsvSink final : public RowSink {
   std::chrono::steady_clock::time_point next_{};
 };
 
-// To two places.
+// Passes rows to two sinks.
 class TwoSinks final : public RowSink {
  public:
   TwoSinks(RowSink& first, RowSink& second) : first_(first), second_(second) {}

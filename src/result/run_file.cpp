@@ -14,7 +14,7 @@ namespace anholon {
 
 namespace {
 
-// Columns and rows, as they stand within the JSON of `simulate`.
+// Columns and rows, in the form that they have within the JSON of `simulate`.
 std::string json_rows(const RunTable& table) {
   JsonWriter j;
   j.open_object().key("columns").open_array();
@@ -32,7 +32,7 @@ std::string json_rows(const RunTable& table) {
 std::string json_text(const RunFile& run) {
   const std::string& report = run.report;
   if (report.size() < 2) return "{" + json_rows(run.table) + "\n}\n";
-  // Where `simulate` has them: behind the model and the form.
+  // At the place where `simulate` writes them: after the model and the form.
   const std::size_t place = report.find("\n  \"residuals\":");
   if (place == std::string::npos) return "{" + json_rows(run.table) + "," + report.substr(1) + "\n";
   return report.substr(0, place) + json_rows(run.table) + "," + report.substr(place) + "\n";
@@ -99,7 +99,7 @@ RunFile read_run(const std::string& path, SourceText* source) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(in ? "/dev/stdin" : path.c_str(), "rb"),
                                                              std::fclose);
   std::string text;
-  constexpr std::size_t kPart = 1u << 20, kMost = std::size_t{16} << 30;  // beyond every run there is room for
+  constexpr std::size_t kPart = 1u << 20, kMost = std::size_t{16} << 30;  // far beyond the size of any run
   for (std::size_t n = 1; file && n > 0;) {
     const std::size_t before = text.size();
     text.resize(before + kPart);

@@ -1,6 +1,7 @@
-// The file of a run: its rows, and what is needed to know where they come from.
+// The file of a run: its rows, and the data that identify their origin.
 //
-// Which format a file has is told by its content. HDF5 holds everything, JSON the rows and the report, CSV the rows.  (doc/results.md)
+// The content determines the format. HDF5 holds everything, JSON the rows and the report, CSV the rows.
+// (doc/results.md)
 #pragma once
 #include <map>
 #include <string>
@@ -12,23 +13,24 @@
 
 namespace anholon {
 
-// What is known of a run before its first row.
+// Information about a run before its first row.
 struct RunInfo {
   struct File {
     std::string name, text;
   };
   std::string title, command, created_by;
-  std::vector<File> model;  // the file that was named, then those it builds on, in turn
-  // What was asked for, by the names of the options: "tolerance" -> {"1e-9"}, "set" -> {"m=2", "J=1"}.
+  std::vector<File> model;  // the named file, then its base files, in turn
+  // The settings of the run by names of options: "tolerance" -> {"1e-9"}, "set" -> {"m=2", "J=1"}.
   std::map<std::string, std::vector<std::string>> settings;
-  std::map<std::string, std::string> units;  // of columns, where they are known
+  std::map<std::string, std::string> units;  // of columns, if they are known
 };
 
 struct RunFile : RunInfo {
   RunTable table;
-  std::string report;              // the JSON of `simulate` without its columns and rows; empty while the run goes on
-  std::vector<double> steps;       // when the accepted steps end
-  std::vector<std::string> notes;  // what the reader had to leave out
+  // the JSON of `simulate` without its columns and rows; empty before the end of the run
+  std::string report;
+  std::vector<double> steps;       // end times of the accepted steps
+  std::vector<std::string> notes;  // the parts that the reader had to omit
 };
 
 // Keeps a run in memory.
@@ -44,16 +46,16 @@ class RunSink final : public RowSink {
 };
 
 enum class RunFormat { csv, json, hdf5 };
-// By the end of the name.
+// The format is determined by the extension of the name.
 bool format_of(const std::string& path, RunFormat& format);
 
-// "-" is the standard input. Throws Failure; where its span is a place in the file, `source` gets the text.
+// "-" is the standard input. Throws Failure; if its span is a place in the file, `source` gets the text.
 RunFile read_run(const std::string& path, SourceText* source = nullptr);
-// Empty, or why it could not be written. The file is there as a whole or stays as it was; "-" is the standard output
-// (CSV, JSON).
+// Returns an empty string, or the reason why the run could not be written. The file is written completely or not
+// changed; "-" is the standard output (CSV, JSON).
 std::string write_run(const std::string& path, RunFormat format, const RunFile& run);
 
-// The formats one by one, from and to texts.
+// The single formats, from and to texts.
 RunFile read_csv(std::string_view text);
 RunFile read_json_run(std::string_view text);
 

@@ -30,7 +30,7 @@ void RunTable::set_columns(std::vector<std::string> names) {
 
 bool RunTable::add(std::size_t column, std::string_view written) {
   double value = std::numeric_limits<double>::quiet_NaN();
-  // What a program without a number leaves there.
+  // Other programs leave an empty cell for a missing number.
   const bool number = written.empty() || parse_number(written, value);
   std::vector<std::string>& own = texts[column];
   if (!own.empty() || (!written.empty() && !says_all(written, value))) {
@@ -61,7 +61,7 @@ bool parse_number(std::string_view written, double& value) {
   const char* end = written.data() + written.size();
   const auto r = std::from_chars(written.data(), end, value);
   if (r.ptr == end && r.ec == std::errc()) return true;
-  // Beyond the range of a double: 0 or infinity.
+  // A number beyond the range of a double becomes 0 or infinity.
   if (r.ptr == end && r.ec == std::errc::result_out_of_range) {
     value = std::strtod(std::string(written).c_str(), nullptr);
     return true;

@@ -1,8 +1,7 @@
 // A table of numbers with names, column by column.
 //
-// A number is held as a double. Where the digits it was written with are more, or others, than the shortest ones that
-// read back to that double (30-digit runs, times printed as they were given), they are kept beside it: no table loses
-// anything on its way through formats.
+// A number is held as a double. If its written digits differ from the shortest ones that read back to that double
+// (30-digit runs, times printed as given), they are kept beside it: conversion between formats loses nothing.
 #pragma once
 #include <cstddef>
 #include <limits>
@@ -14,7 +13,7 @@
 
 namespace anholon {
 
-// A number as a double, and its digits where these say more than the double: of a run in wider numbers.
+// A number as a double, with its digits if these hold more than the double: in a run with wider numbers.
 struct WrittenNumber {
   double value = std::numeric_limits<double>::quiet_NaN();
   std::string digits;
@@ -25,28 +24,28 @@ struct RunTable {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> values;  // one vector per column
   std::vector<std::vector<std::string>>
-      texts;  // per column: nothing, or one per row, empty where the number says it all
+      texts;  // per column: empty, or one text per row, which is empty if the number's own text suffices
 
   std::size_t rows() const { return values.empty() ? 0 : values[0].size(); }
-  // The number as it was written.
+  // The number in its written form.
   std::string text(std::size_t row, std::size_t column) const;
   void set_columns(std::vector<std::string> names);
-  // Adds a number at the end of a column as it was written; false if it is none: then it is kept as a text beside a
-  // NaN.
+  // Adds a written number at the end of a column; returns false if it is not a number: it is then kept as a text beside
+  // a NaN.
   bool add(std::size_t column, std::string_view written);
   // Adds a row that has a number for every column.
   void add_row(const Row& row);
-  // The place of a column, or columns.size().
+  // The index of a column, or columns.size().
   std::size_t find(std::string_view name) const;
 };
 
-// A written number as a double: decimals, fractions such as 1/3, nan, inf. False if it is none of these.
+// Converts a written number to a double: decimals, fractions such as 1/3, nan, inf. Returns false for other texts.
 bool parse_number(std::string_view written, double& value);
-// Whether `written` is what a double with this value is written as.
+// Whether `written` is the text that is written for a double of this value.
 bool says_all(std::string_view written, double value);
-// The digits of column k, where they say more than its double; else empty.
+// The digits of column k if they hold more than its double; else empty.
 std::string_view digits_beside(const Row& row, std::size_t k);
-// The same number as JSON has it: .5 and 1/3 are none there.
+// The number in JSON's syntax, which has neither .5 nor 1/3.
 std::string json_number(std::string_view written);
 
 // The names in the first row of a CSV file. A comma in brackets or quotes belongs to a name: P[1,2], D(x,4).

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// Strongly connected components by Tarjan's algorithm, without recursion; each comes after those it needs.
+// Strongly connected components by Tarjan's algorithm, without recursion; each comes after the components it needs.
 std::vector<std::vector<std::size_t>> components(const std::vector<std::vector<std::size_t>>& needs) {
   constexpr std::size_t kUnseen = SIZE_MAX;
   const std::size_t n = needs.size();
@@ -51,7 +51,7 @@ std::vector<std::vector<std::size_t>> components(const std::vector<std::vector<s
 
 std::vector<Block> blocks(const Structure& t) {
   const std::size_t n = t.c.size();
-  std::vector<std::size_t> owner(n, 0);  // of an unknown: the equation that the transversal gives it
+  std::vector<std::size_t> owner(n, 0);  // for an unknown: the equation that the transversal assigns to it
   for (std::size_t i = 0; i < n; ++i) owner[static_cast<std::size_t>(t.transversal[i])] = i;
   std::vector<std::vector<std::size_t>> needs(n);
   for (std::size_t i = 0; i < n; ++i)

@@ -43,7 +43,7 @@ namespace {
 
 constexpr int kMostNewton = 60, kRandomStarts = 8;
 constexpr std::size_t kFlipsUpTo = 8;  // coordinates whose signs are flipped one by one
-constexpr double kSame = 1e-6;         // solutions nearer than this are one
+constexpr double kSame = 1e-6;         // solutions at a smaller distance count as one
 constexpr double kSingular = 1e-9;     // smallest scaled singular value
 
 unsigned orders(const System& s, const Structure& t) {
@@ -118,7 +118,7 @@ class Search {
     return size;
   }
 
-  // Accelerations with the multipliers of the nonlinear constraints zero: Gauss measures from there.
+  // Accelerations with zero multipliers of the nonlinear constraints: Gauss' principle measures from them.
   void without_nonlinear_constraints() {
     if (metric_ != 1U << 2 || guessed()) return;
     std::vector<StageEquation> rows = part(equations_, 0, n_);
@@ -133,7 +133,8 @@ class Search {
     if (!find_by_least_change(free, state_, every)) state_ = before;
   }
 
-  // Onto the constraints by least change, the best multipliers there, and Newton's method from there.
+  // Projects the start onto the constraints by least change, finds the best multipliers there, and continues with
+  // Newton's method.
   void try_from(const std::vector<N>& start) {
     const InitialState<N> before = state_;
     std::vector<std::size_t> every;
@@ -154,7 +155,7 @@ class Search {
         addmul(rhs[j], N(-motion_.jacobian(i, j)), motion_.residual[i]);
       }
     Lu<N> lu;
-    if (!lu.factor(normal)) return true;  // Newton may know better
+    if (!lu.factor(normal)) return true;  // Newton's method may still converge
     lu.solve(rhs, y);
     for (std::size_t j = 0; j < s; ++j) motion_.x(state_, j) += y[j];
     return true;
@@ -195,7 +196,7 @@ class Search {
       x.push_back(all_.x(state_, j));
       if (abs(x[j]) > size) size = abs(x[j]);
     }
-    // What the start has left in a number that is zero.
+    // Clears the residue of the start in numbers that are zero.
     for (N& v : x)
       if (abs(v) < size * unit_roundoff<N>() * N(0.001)) v = N(0);
     for (const std::vector<N>& other : out_.found) {
@@ -209,7 +210,7 @@ class Search {
     out_.found.push_back(x);
   }
 
-  // q^(m) along and against the reaction E - G, as in [theory: initial-data].
+  // q^(m) along and against the reaction E - G (theory: initial-data).
   void along_the_reaction(const N& size) {
     const InitialState<N> before = state_;
     for (std::size_t j = 0; j < motion_.unknowns(); ++j) motion_.x(state_, j) = N(0);
@@ -243,7 +244,7 @@ class Search {
     };
     std::stable_sort(out_.found.begin(), out_.found.end(),
                      [&](const std::vector<N>& x, const std::vector<N>& y) { return distance(x) < distance(y); });
-    // Of those equally near, the one that pushes.
+    // Of equally near solutions, takes the one with the larger multipliers.
     std::size_t best = 0;
     for (std::size_t k = 1; k < out_.found.size() && distance(out_.found[k]) <= distance(out_.found[0]) * (1 + kSame);
          ++k)

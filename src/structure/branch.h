@@ -1,4 +1,4 @@
-// The leading derivatives at a state where they enter nonlinearly: all solutions that several starts lead to.
+// The leading derivatives at a state in which they enter nonlinearly: all solutions found from several starts.
 #pragma once
 #include "structure/stage.h"
 #include "structure/structure.h"
@@ -12,21 +12,21 @@ bool may_branch(const Mechanics& m, const System& s);
 
 template <Number N>
 struct LeadingSolutions {
-  // x_j^(d_j) in the order of the system's variables; those nearest to the guess in the mass norm come first, of two
-  // that are equally near the one with the larger multipliers.
+  // x_j^(d_j) in the order of the system's variables. Solutions are sorted by their distance from the guess in the mass
+  // norm; of two equally near ones the one with the larger multipliers comes first.
   std::vector<std::vector<N>> found;
-  bool singular = false;  // one was met at which the equations do not determine the motion
+  bool singular = false;  // a start led to a point at which the equations do not determine the motion
 };
 
 // Equation i of the system, differentiated k times.
 StageEquation law(const System& s, std::size_t i, unsigned k);
-// Equations of motion and constraints, each differentiated as often as the structure says, and what they are solved
-// for.
+// Equations of motion and constraints, each differentiated as often as the structure requires, and the unknowns for
+// which they are solved.
 std::vector<StageEquation> leading_equations(const System& s, const Structure& t);
 Column leading_unknowns(const System& s, const Structure& t);
 
-// `state` holds the state and, where the leading derivatives belong, the guess: that of the user, or zeros, which are
-// replaced by the accelerations without the nonlinear constraints where these are of order 2.
+// `state` holds the state and, as leading derivatives, the guess: that of the user, or zeros. Zeros are replaced by the
+// accelerations without the nonlinear constraints, if these are of order 2.
 template <Number N>
 LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const Structure& t,
                                       const std::vector<N>& parameters, InitialState<N> state);

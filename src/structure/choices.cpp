@@ -1,10 +1,11 @@
-// Entries that no equation determines, or that a reaction nobody asked for would: what is chosen, and how it is said.
+// Entries that no equation determines, or that only an unneeded reaction would determine: the choice of their values,
+// and its note.
 #include "structure/state_solver.h"
 
 namespace anholon {
 
-// Where linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the
-// guess is the acceleration without them. (A nonlinear one must have a reaction; there 0 is as good as any.)
+// If linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the
+// guess is the acceleration without them. (A nonlinear one must have a reaction; there 0 is as good as any value.)
 template <Number N>
 void StateSolver<N>::start_with_free_accelerations(const System& s) {
   StageEquations laws;
@@ -33,7 +34,7 @@ void StateSolver<N>::start_with_free_accelerations(const System& s) {
   keep_said(before, unknowns);
 }
 
-// Values given or guessed stay what they were.
+// Keeps given and guessed values.
 template <Number N>
 void StateSolver<N>::keep_said(const InitialState<N>& before, const Column& unknowns) {
   for (Expr u : unknowns)
@@ -41,7 +42,8 @@ void StateSolver<N>::keep_said(const InitialState<N>& before, const Column& unkn
       *state_.value(n) = *before.value(n);
 }
 
-// The same for rates of multipliers and what goes with them: the guess for the other entries is what follows from none.
+// As above for rates of multipliers and the other entries of their stage: the guess for those entries is their value
+// without these multipliers.
 template <Number N>
 void StateSolver<N>::start_unconstrained(const StageEquations& laws, const Column& unknowns, unsigned metric) {
   if (std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return free_multiplier(node(u)); })) return;
@@ -57,7 +59,7 @@ void StateSolver<N>::start_unconstrained(const StageEquations& laws, const Colum
   keep_said(before, unknowns);
 }
 
-// What no equation determines is a choice.
+// Marks values that no equation determines as chosen.
 template <Number N>
 void StateSolver<N>::mark_choices(const StageEquations& equations, const Column& unknowns, unsigned metric) {
   std::vector<std::size_t> free;

@@ -1,4 +1,4 @@
-// Why there are no consistent initial data, in words.
+// Messages that explain why there are no consistent initial data.
 #include <utility>
 
 #include "expr/normal.h"
@@ -73,7 +73,7 @@ std::string StateSolver<N>::equation_text(const StageEquation& e) const {
   return e.what + (e.span.line ? " (" + line_of(e.span, model_.source_text) + ")" : "");
 }
 
-// What an equation asks of the unknowns that are free or released, the values of the others put in: "x'^2 + 1 = 0".
+// The equation with the known values substituted, as a condition on the free or released unknowns: "x'^2 + 1 = 0".
 template <Number N>
 std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row,
                                   const std::vector<std::size_t>& released) const {
@@ -117,7 +117,7 @@ static std::string listed(const std::vector<std::string>& parts, const char* las
   return text;
 }
 
-// Two numbers with as many digits as tell one from the other.
+// Two numbers with enough digits to distinguish them.
 static std::pair<std::string, std::string> told_apart(double a, double b) {
   for (int digits : {6, 9, 12, 17})
     if (std::pair text(number_text(a, digits), number_text(b, digits)); text.first != text.second || digits == 17)
@@ -125,7 +125,7 @@ static std::pair<std::string, std::string> told_apart(double a, double b) {
   return {};
 }
 
-// The values given and the equations that cannot hold together, in words.
+// A message with the given values and the equations that contradict each other.
 template <Number N>
 Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& c,
                                  const InitialState<N>& before) const {

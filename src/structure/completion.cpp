@@ -1,4 +1,4 @@
-// What the structure asks for beyond positions and velocities.
+// Consistent values beyond positions and velocities.
 #include "structure/state_solver.h"
 
 namespace anholon {
@@ -36,7 +36,7 @@ void StateSolver<N>::make_room(const System& s, const Structure& t) {
   state_.multipliers.assign(static_cast<std::size_t>(multipliers) + 1, level(m_.phi.size()));
 }
 
-// How far below the leading derivatives the highest entry of e lies; 0: e holds leading ones.
+// The number of orders between the highest entry of e and the leading derivatives; 0: e contains leading ones.
 template <Number N>
 int StateSolver<N>::level_of(Expr e, const System& s, const Structure& t) const {
   int level = 1000;
@@ -67,7 +67,7 @@ Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
     const int k = t.c[i] - level;
     if (k < 0) continue;
     const Expr e = total_derivative(s.equations[i], static_cast<unsigned>(k));
-    if (!holds_higher(e)) continue;  // a matter of positions and velocities
+    if (!holds_higher(e)) continue;  // concerns positions and velocities only
     if (i < s.coordinates)
       laws.push_back({e, "the equation of motion of '" + s.equation_names[i] + "'", {}});
     else if (i < s.mechanical())
@@ -88,8 +88,9 @@ Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
   return {};
 }
 
-// A servo constraint that its actuator does not act against asks for velocities by the equations of motion. They move
-// along with what else is of this level, on all that holds them. False where there are none.
+// A servo constraint whose input does not act against it restricts velocities through the equations of motion. They are
+// changed together with the other entries of this level, subject to all equations on these. Returns false if there are
+// none.
 template <Number N>
 bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int level, StageEquations& equations,
                                     Column& unknowns, unsigned& metric) const {
@@ -110,7 +111,7 @@ bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int lev
   return true;
 }
 
-// Values given for derivatives that the state does not hold are conditions on it.
+// Values given for derivatives that the state does not hold are conditions on the state.
 template <Number N>
 Outcome StateSolver<N>::given_beyond_the_state(const System& s, const Structure& t, StageEquations& late) {
   Outcome refused;
@@ -189,7 +190,7 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
   for (const StageEquation& e : conditions())
     if (!holds_higher(e.residual) || level_of(e.residual, s, t) > 0) equations.push_back(e);
   equations.insert(equations.end(), late.begin(), late.end());
-  {  // They may hold already: a value that follows from the others was given too.
+  {  // The conditions may hold already: a value that follows from the others may be given as well.
     Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
     if (!said.evaluate(state_)) return no_value(said);
     if (to_double(said.worst()) <= kRounded && all_given(s, t)) return {};
@@ -206,13 +207,13 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
         unknowns.push_back(s.symbol(j, static_cast<unsigned>(k)));
         if (j < s.coordinates && k < t.d[j]) metric |= 1U << k;
       }
-    // Where every value of the state is held, the leading derivatives have been found already.
+    // If every value of the state is held, the leading derivatives are known already.
     const bool may_move = std::any_of(unknowns.begin(), unknowns.end(), [&](Expr u) {
       const auto j = s.variable(u.id);
       return static_cast<int>(node(u).order) < t.d[*j] && *state_.origin(node(u)) != Origin::given;
     });
     if (!may_move && p_.overrides.empty()) continue;
-    for (Expr u : unknowns)  // values that followed may follow anew
+    for (Expr u : unknowns)  // derived values may be derived anew
       if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j])
         *state_.origin(node(u)) = Origin::derived;
     clash_is_told_ = false;

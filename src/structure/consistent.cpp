@@ -52,7 +52,7 @@ Tape values_of(const Model& model) {
   return compile(es);
 }
 
-// Of equations, those that overrides leave: all laws, and the conditions that say something about what is still open.
+// The equations that overrides leave: all laws, and conditions that concern unknowns that are still open.
 StageEquations left_of(const StageEquations& equations, const Column& unknowns,
                        const std::vector<StateOverride>& overrides, Graph& g) {
   StageEquations list;
@@ -93,7 +93,7 @@ Outcome StateSolver<N>::positions_and_velocities() {
   return solve(plan.velocities, [&] { return plan.kept ? plan.kept_velocities : kept_of(plan.velocities); });
 }
 
-// The model's states start where the file says.
+// The model's states start with the values of the file.
 template <Number N>
 void StateSolver<N>::states() {
   const std::size_t n = model_.states.size();
@@ -103,7 +103,7 @@ void StateSolver<N>::states() {
   state_.state_rates_origin.assign(n, Origin::derived);
 }
 
-// Guesses, then values of the file, then those that override them; the model's states start where the file says.
+// Guesses, then values of the file, then the overrides; the model's states start with the values of the file.
 template <Number N>
 void StateSolver<N>::start_values(const std::function<bool(const Node&)>& wanted) {
   const InitialData& in = model_.initial;
@@ -129,8 +129,8 @@ void StateSolver<N>::start_values(const std::function<bool(const Node&)>& wanted
   }
 }
 
-// As the data say; where overrides clash with values or conditions of the file, the overrides hold
-// and the file's values are only where the least change starts from.
+// Solves for the data as given. If overrides contradict values or conditions of the file, the overrides hold, and the
+// file's values are only the start of the least change.
 template <Number N>
 Outcome StateSolver<N>::solve(const StartPlan::Stages& stages, const std::function<StartPlan::Stages()>& without) {
   const InitialState<N> before = state_;
@@ -174,7 +174,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
   N miss = stage.worst(&worst);
   if (!(miss > stage_rounding<N>())) return {};
   if (to_double(miss) <= kRounded) {
-    // Rounded numbers: all may move a little.
+    // The given values are rounded numbers: all may change a little.
     if (find_by_least_change(stage, state_, all) && !(stage.worst(&worst) > stage_rounding<N>())) {
       for (std::size_t j : all)
         if (Origin& origin = *state_.origin(stage.unknown(j)); origin == Origin::given)
@@ -189,8 +189,8 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
   return clash(stage, worst, before);
 }
 
-// What the equations hold is derived from them, and so is what they move along through the mass matrix. Round-off of
-// that is none.
+// Marks values that occur in an equation as derived, and so values that these move through the mass matrix by more than
+// round-off.
 template <Number N>
 void StateSolver<N>::mark_derived(const Stage<N>& stage, const InitialState<N>& before,
                                   const std::vector<std::size_t>& free) {

@@ -1,9 +1,9 @@
-// Consistent initial data in stages: positions first, then velocities, then what the structure asks for beyond them.
+// Consistent initial data in stages: positions first, then velocities, then the further derivatives that the structure
+// requires.
 //
-// What the user gave holds as given; what is missing is found from the constraints and the conditions
-// by least change from the guess (0 where there is none) in the mass norm. Where the given values
-// miss a constraint by no more than 1e-8 of its scale they are taken as rounded numbers and
-// corrected by least change; by more, it is an error that names the constraint.
+// Given values hold as given. Missing ones follow from constraints and conditions by least change from the guess (0 by
+// default) in the mass norm. Given values that miss a constraint by at most 1e-8 of its scale are taken for rounded
+// numbers and corrected by least change; a larger residual is an error that names the constraint.
 #pragma once
 #include <memory>
 #include <optional>
@@ -21,13 +21,13 @@ namespace anholon {
 // Values that override those of the model: q_a^(k), or lambda_r^(k).
 struct StateOverride {
   unsigned order;
-  std::size_t coordinate;  // or constraint
+  std::size_t coordinate;  // or the index of a constraint
   Rational value;
   bool multiplier = false;
 };
 
-// All that positions and velocities need of the expressions, made once for many states: with a plan `consistent_state`
-// builds none, as long as the overrides are those of the plan, with other values; many threads may then ask at the same
+// The expressions needed for positions and velocities, built once for many states: with a plan, `consistent_state`
+// builds none if the overrides are those of the plan, with other values; many threads may then call it at the same
 // time.
 struct StartPlan {
   StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass = nullptr);
@@ -50,22 +50,24 @@ struct InitialProblem {
   std::vector<N> parameters;
   std::vector<StateOverride> overrides;
   std::optional<Rational> t;
-  const std::vector<Column>* mass = nullptr;  // the mass matrix, where the caller solves for many states
+  const std::vector<Column>* mass = nullptr;  // the mass matrix, if the caller solves for many states
   const StartPlan* plan = nullptr;
   const InitialState<double>* near =
-      nullptr;  // a solution of the same or of a similar problem: searches begin there, and measure changes as ever
+      // a solution of the same or of a similar problem: searches begin there, but measure changes from the guess
+      nullptr;
 };
 
 // Positions and velocities, from the constraints of orders 0 and 1 and the conditions on them.
 template <Number N>
 Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& state);
 
-// True if the state holds more than positions and velocities, or if there are conditions that hold accelerations or
+// True if the state holds more than positions and velocities, if there are conditions that contain accelerations or
 // multipliers, or if the equations may have several solutions: complete_state is then needed.
 bool needs_completion(const Mechanics& m, const System& s, const Structure& t);
 
-// Completes a state of positions and velocities by all that the structure of `s`, a system with multipliers, asks for,
-// and by the leading derivatives; conditions on accelerations and multipliers are solved with the equations of motion.
+// Completes a state of positions and velocities by all values that the structure of `s`, a system with multipliers,
+// requires, and by the leading derivatives; conditions on accelerations and multipliers are solved together with the
+// equations of motion.
 template <Number N>
 Outcome complete_state(const InitialProblem<N>& problem, const System& s, const Structure& t, InitialState<N>& state);
 

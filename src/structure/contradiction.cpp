@@ -43,7 +43,7 @@ class Circuits {
  private:
   static std::size_t members(const Contradiction<N>& c) { return c.equations.size() + c.given.size(); }
 
-  // Of row r with its combination of the basis; nothing where the combination holds.
+  // The contradiction of row r with its combination of the basis; nullopt if the combination holds.
   std::optional<Contradiction<N>> circuit(const Matrix<N>& a, std::size_t r, const std::vector<N>& c) const {
     std::vector<N> part(c.size(), N(0));
     N largest(0);
@@ -89,7 +89,7 @@ class Circuits {
 
 // ---- nonlinear equations ---------------------------------------------------------------------
 
-constexpr std::size_t kMostMembers = 40;  // each is a search for a solution
+constexpr std::size_t kMostMembers = 40;  // each costs a search for a solution
 constexpr std::size_t kMostUnknowns = 60;
 
 template <Number N>
@@ -121,7 +121,7 @@ class DeletionFilter {
     }
     members += static_cast<std::size_t>(std::count(rows.begin(), rows.end(), true));
     if (members > kMostMembers || unknowns > kMostUnknowns || solvable(rows, fixed)) return std::nullopt;
-    // Equations that contradict each other do so whatever is given.
+    // Equations that contradict each other do so for any given values.
     if (const std::vector<bool> none(given_.size(), false); !solvable(rows, none)) fixed = none;
     for (std::vector<bool>* list : {&rows, &fixed})
       for (std::size_t k = 0; k < list->size(); ++k) {
@@ -146,7 +146,7 @@ class DeletionFilter {
     return false;
   }
 
-  // The equations that are tied to this one through free unknowns.
+  // The equations coupled with this one through free unknowns.
   std::vector<bool> neighbours(std::size_t row) const {
     std::vector<bool> rows(s_.size(), false);
     std::vector<std::size_t> open = {row};
@@ -163,7 +163,7 @@ class DeletionFilter {
     return rows;
   }
 
-  // Is there a solution of these equations with these values given?
+  // Whether these equations have a solution with these values given.
   bool solvable(const std::vector<bool>& rows, const std::vector<bool>& fixed) {
     state_ = start_;
     s_.keep(rows);
@@ -177,7 +177,7 @@ class DeletionFilter {
   InitialState<N>& state_;
   const InitialState<N> start_;
   const std::vector<bool>& given_;
-  std::vector<std::vector<bool>> holds_;  // equation by unknown
+  std::vector<std::vector<bool>> holds_;  // whether equation i contains unknown j
 };
 
 }  // namespace

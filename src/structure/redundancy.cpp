@@ -10,7 +10,7 @@ namespace anholon {
 
 namespace {
 
-// A row this near to the span of others is taken only if no better one is left.
+// A row this close to the span of others is taken only if no better one is left.
 constexpr double kNearlyDependent = 0.05;
 
 // The value of a symbol that the state does not hold: in (0.5, 1.5), different for each symbol, so that rows of
@@ -26,7 +26,7 @@ double length(const std::vector<double>& v) {
 // An orthonormal basis that grows.
 class OrthonormalRows {
  public:
-  // What is left of v, twice orthogonalized.
+  // The component of v orthogonal to the basis, orthogonalized twice.
   std::vector<double> beyond(std::vector<double> v) const {
     for (int pass = 0; pass < 2; ++pass)
       for (const std::vector<double>& e : basis_) {

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 constexpr int kMostIterations = 60;
-// So many searches along a step may find nothing better, one after the other: the iteration leads nowhere from there.
+// After this number of line searches in a row without improvement the iteration is given up.
 constexpr int kMostInVain = 3;
 }  // namespace
 
@@ -79,7 +79,7 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
       if (!is_finite(mass(a, b))) return false;
       if (a == b && abs(mass(a, b)) > largest) largest = abs(mass(a, b));
     }
-  // A coordinate without inertia still has a least change.
+  // A coordinate without inertia still needs a metric.
   if (!(largest > N(0))) largest = N(1);
   const auto measured = [&](const Node& u) { return u.kind == Kind::jet && (plan_->metric >> u.order & 1U) != 0; };
   for (std::size_t i = 0; i < n; ++i) {
@@ -120,7 +120,7 @@ class Iteration {
     for (const N* v : x_) p.push_back(*v);
     return p;
   }
-  // False: no value there.
+  // Returns false if the equations have no value there.
   bool go_to(const std::vector<N>& point) {
     for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = point[j];
     return s_.evaluate(state_);
@@ -136,7 +136,8 @@ class Iteration {
     return sum;
   }
 
-  // Towards the solution nearest to the guess, or, `nearest` being false, to any: every step is then the least one.
+  // Goes towards the solution nearest to the guess or, if `nearest` is false, to any solution: every step is then the
+  // least one.
   bool run(bool nearest) {
     in_vain_ = 0;
     const N rounding = stage_rounding<N>();
@@ -149,7 +150,7 @@ class Iteration {
         for (std::size_t j = 0; j < free_.size(); ++j) a(i, j) = s_.jacobian(i, free_[j]);
       const RowChoice<N> rows = choose_rows(a, N(kDependent));
       if (rows.dependent.size() && !nudged && s_.worst() > rounding && k == 0) {
-        // The guess may be a place where a constraint is flat (the centre of a circle): leave it.
+        // The guess may be a stationary point of a constraint (the centre of a circle): move away from it.
         nudged = true;
         if (flat(rows)) {
           for (std::size_t j = 0; j < free_.size(); ++j) *x_[j] += N(0.1) + N(0.037) * N(static_cast<int>(j % 7));
@@ -200,9 +201,9 @@ class Iteration {
     return true;
   }
 
-  // Goes along the step as far as it helps; `step` is then what was gone.
+  // Goes along the step as long as the residual decreases; `step` is then the step made.
   bool search(std::vector<N>& step) {
-    // Progress is measured against the scales where the step begins: those at its end grow with it.
+    // Progress is measured relative to the scales at the start of the step: those at its end grow with it.
     const std::vector<N> scale = s_.scale, old = point();
     const N now = s_.worst(scale);
     N fraction(1);
@@ -224,10 +225,10 @@ class Iteration {
   const std::vector<std::size_t>& free_;
   std::vector<N*> x_;
   std::vector<N> guess_;
-  int in_vain_ = 0;  // searches one after the other that have found nothing better along their step
+  int in_vain_ = 0;  // searches in a row that found no improvement along their step
 };
 
-// The k-th point around the guess, farther and farther away.
+// The k-th point around the guess, at increasing distance.
 template <Number N>
 std::vector<N> around(const std::vector<N>& guess, int k) {
   std::vector<N> p = guess;

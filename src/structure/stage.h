@@ -1,5 +1,4 @@
-// One stage of consistent initial data: equations in some entries of the state, and how these are found by least
-// change.
+// One stage of consistent initial data: equations in some entries of the state, and their solution by least change.
 #pragma once
 #include <memory>
 
@@ -15,22 +14,22 @@ struct StageEquation {
   Expr residual;
   std::string what;  // "constraint 'blade'"
   Span span;
-  bool condition = false;  // of the file's initial data, not a law of the system
+  bool condition = false;  // a condition of the file's initial data, not a law of the system
 };
 
 // Rows of a constraint Jacobian count as dependent below this fraction of their size.
 inline constexpr double kDependent = 1e-9;
 
-// Equations in chosen unknowns with their partial derivatives, compiled: whoever has one needs to build no expressions.
+// Equations in chosen unknowns with their partial derivatives, compiled: its users build no expressions.
 struct StagePlan {
-  // `mass`: the mass matrix, where the caller has it already.
+  // `mass`: the mass matrix, if the caller has it already.
   StagePlan(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric,
             const std::vector<Column>* mass = nullptr);
 
   std::vector<StageEquation> equations;
   Column unknowns;
   unsigned metric;
-  bool linear = false;  // every equation is, in the unknowns
+  bool linear = false;  // every equation is linear in the unknowns
   Tape tape;
 };
 
@@ -57,23 +56,23 @@ class Stage {
   bool linear() const { return plan_->linear; }
   const Mechanics& mechanics() const { return m_; }
 
-  // From now on only these equations ask for anything; then all again.
+  // Restricts the stage to these equations; the other function takes all again.
   void keep(std::vector<bool> rows) { kept_ = std::move(rows); }
   void keep_all() { kept_.clear(); }
 
   // Values, scales and partial derivatives at a state; false if a formula has no value there (`undefined` is its row,
-  // or the number of equations where it is an entry of the mass matrix).
+  // or the number of equations for an entry of the mass matrix).
   bool evaluate(const InitialState<N>& s);
-  // True if the equations say anything about unknown j.
+  // True if the equations depend on unknown j.
   bool moves(std::size_t j) const {
     for (std::size_t i = 0; i < size(); ++i)
       if (abs(jacobian(i, j)) > N(0)) return true;
     return false;
   }
-  // The largest residual in relation to its scale, and where it is. Residuals below the round-off of the unknowns are
-  // none.
+  // The largest residual relative to its scale, and its index. Residuals below the round-off of the unknowns count as
+  // zero.
   N worst(std::size_t* which = nullptr) const { return worst(scale, which); }
-  // … in relation to the scales of another point.
+  // As above, relative to the scales of another point.
   N worst(const std::vector<N>& scale, std::size_t* which = nullptr) const;
 
   std::vector<N> residual, scale;
@@ -89,16 +88,16 @@ class Stage {
   Machine<N> machine_;
 };
 
-// Residuals below this part of their scale are round-off.
+// Residuals below this fraction of their scale are round-off.
 template <Number N>
 N stage_rounding() {
   return unit_roundoff<N>() * N(200);
 }
 
-// min |x - x0| over the free unknowns subject to the equations, x0 being the values that the state has, by Newton's
-// method with a line search. Where that does not arrive, a solution is looked for from x0 and from points around it,
-// and the nearest is taken; where there is none, it ends at the least miss reachable, and the caller looks at what is
-// left. False: no value there. `near`: where the first search begins, if not at x0.
+// min |x - x0| over the free unknowns subject to the equations, with x0 the values in the state, by Newton's method
+// with a line search. If the search does not converge, solutions are searched from x0 and from points around it, and
+// the nearest is taken; if none is found, the state ends at the least residual reached, which the caller examines.
+// Returns false if the equations have no value there. `near`: the start of the first search, if not x0.
 template <Number N>
 bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free,
                           const InitialState<double>* near = nullptr);

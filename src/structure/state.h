@@ -1,4 +1,4 @@
-// The initial state as it is being found: every value with where it came from.
+// The initial state during its computation: every value with its origin.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace anholon {
 
-// Where a value of the state came from.
+// The origin of a value of the state.
 enum class Origin : std::uint8_t { given, derived, chosen, guessed, corrected };
 const char* name(Origin origin);
 
@@ -25,14 +25,14 @@ struct InitialState {
   N t{0};
   std::vector<N> q, qd;
   std::vector<Origin> q_origin, qd_origin;
-  std::vector<Level<N>> higher;  // q^(k), k = 2, 3, …: the state and the leading derivatives, where they were needed
-  std::vector<Level<N>> multipliers;   // lambda^(k), k = 0, 1, … of all constraints of the model, likewise
+  std::vector<Level<N>> higher;        // q^(k), k = 2, 3, …: the state and the leading derivatives, if they were needed
+  std::vector<Level<N>> multipliers;   // lambda^(k), k = 0, 1, … of all constraints of the model, if they were needed
   std::vector<N> states, state_rates;  // z and z' of the model's states
   std::vector<Origin> states_origin, state_rates_origin;
-  N largest_correction{0};         // of values that were given
-  std::vector<std::string> notes;  // choices that were made
+  N largest_correction{0};         // the largest correction of a given value
+  std::vector<std::string> notes;  // the choices made
 
-  // q_a^(k) or lambda_r^(k); null where the state does not go so far, and for other symbols.
+  // q_a^(k) or lambda_r^(k); null for orders that the state does not hold, and for other symbols.
   N* value(const Node& n) { return entry(*this, n); }
   const N* value(const Node& n) const { return entry(*this, n); }
   Origin* origin(const Node& n) {

@@ -1,4 +1,4 @@
-// How consistent initial data are found: the solver behind consistent.h, whose parts stand in rooms of their own.
+// The solver of consistent initial data behind consistent.h, whose parts are separate files.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -9,12 +9,12 @@
 
 namespace anholon {
 
-// Given values may miss a constraint by this much of its scale: they are rounded numbers.
+// Given values may miss a constraint by this fraction of its scale: they are taken for rounded numbers.
 inline constexpr double kRounded = 1e-8;
 
 using StageEquations = std::vector<StageEquation>;
 
-// q_a^(k) with k >= 2, or a multiplier: what positions and velocities do not hold.
+// q_a^(k) with k >= 2, or a multiplier: a value beyond positions and velocities.
 inline bool is_higher(const Node& n) { return n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1); }
 bool holds_higher(Expr e);
 bool overridden(const std::vector<StateOverride>& overrides, const Node& n);
@@ -49,7 +49,7 @@ class StateSolver {
   Outcome attempt(const StartPlan::Stages& stages);
   void mark_derived(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
 
-  // Beyond velocities (completion.cpp).
+  // Completes the state beyond velocities (completion.cpp).
   void make_room(const System& s, const Structure& t);
   int level_of(Expr e, const System& s, const Structure& t) const;
   Outcome stage(const System& s, const Structure& t, int level);
@@ -62,14 +62,14 @@ class StateSolver {
   Outcome together(const System& s, const Structure& t, const StageEquations& late);
   bool all_given(const System& s, const Structure& t) const;
 
-  // What no equation determines (choices.cpp).
+  // Chooses values that no equation determines (choices.cpp).
   void start_with_free_accelerations(const System& s);
   void keep_said(const InitialState<N>& before, const Column& unknowns);
   void start_unconstrained(const StageEquations& laws, const Column& unknowns, unsigned metric);
   void mark_choices(const StageEquations& equations, const Column& unknowns, unsigned metric);
   void say_choices(const System& s, const Structure& t);
 
-  // What went wrong, in words (clash.cpp).
+  // Messages about contradictions (clash.cpp).
   std::string entry_name(const Node& n) const;
   std::string solution_text(const std::vector<N>& x, const System& s, const Structure& t) const;
   Outcome no_leading(const System& s, const LeadingSolutions<N>& solutions, const std::string& others) const;
@@ -84,7 +84,7 @@ class StateSolver {
   const Mechanics& m_;
   const Model& model_;
   InitialState<N>& state_;
-  bool clash_is_told_ = false;  // of the last stage that failed: which values and equations
+  bool clash_is_told_ = false;  // the message names the values and equations of the last stage that failed
 };
 
 }  // namespace anholon

@@ -14,10 +14,10 @@ int Structure::largest_c() const { return c.empty() ? 0 : *std::max_element(c.be
 namespace {
 
 constexpr int kProbes = 3;
-// A partial derivative below this fraction of the terms it is the sum of is round-off, no dependence.
+// A partial derivative below this fraction of its terms is round-off, not a dependence.
 constexpr double kNoDependence = 1e-11;
 
-// Forward tangents of all equations by all inputs at one point: |dE_i / d input_k|.
+// Forward tangents of all equations with respect to all inputs at one point: |dE_i / d input_k|.
 class Probe {
  public:
   Probe(const System& s, const Tape& equations, const std::vector<double>& parameters)
@@ -45,7 +45,7 @@ class Probe {
     machine_.evaluate();
     partials_.clear();
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) partials_.push_back(machine_.partials(s));
-    // A few columns at a time: all at once would take slots times inputs of memory.
+    // A few columns at a time: all columns would take slots times inputs of memory.
     constexpr std::size_t kColumns = 64;
     for (std::size_t from = 0; from < tape_.inputs.size(); from += kColumns)
       if (!columns(from, std::min(kColumns, tape_.inputs.size() - from), largest)) return false;
@@ -53,7 +53,7 @@ class Probe {
   }
 
  private:
-  // The derivatives by the inputs [from, from + cols).
+  // The derivatives with respect to the inputs [from, from + cols).
   bool columns(std::size_t from, std::size_t cols, std::vector<std::vector<double>>& largest) const {
     Matrix<double> tangent(tape_.code.size(), cols), terms(tape_.code.size(), cols);
     std::size_t next_input = 0;
@@ -74,7 +74,7 @@ class Probe {
       case Op::parameter:
       case Op::lookup:
         break;
-      // What occurs in either branch occurs.
+      // A derivative that occurs in either branch occurs.
       case Op::select:
         for (const std::uint32_t operand : {in.a, in.b}) {
           const double* below = &tangent.data[operand * cols];
@@ -102,7 +102,7 @@ class Probe {
         add(in.a, partials.a);
         break;
       case Op::rate:
-        break;  // systems are analysed with their derivatives written out
+        break;  // systems are analysed with their derivatives expanded
       }
     }
     for (std::size_t i = 0; i < tape_.roots.size(); ++i)
@@ -271,14 +271,15 @@ void drop_absent(System& s, const Structure& t) {
 
 namespace {
 
-// A matrix wider than this has numbers for the names of its columns; one of more unknowns is written row by row.
+// The limits for a matrix: a wider one has numbers instead of names of its columns; one of more unknowns is printed row
+// by row.
 constexpr std::size_t kWidest = 100, kMostColumns = 30;
 
 std::string entry(const Structure& t, std::size_t i, std::size_t j) {
   return std::to_string(t.sigma[i][j]) + (t.transversal[i] == static_cast<int>(j) ? "*" : "");
 }
 
-// Only what occurs: "rod1 (c 2): x1 0*, y1 0".
+// Only nonzero entries: "rod1 (c 2): x1 0*, y1 0".
 std::string row_by_row(const System& s, const Structure& t) {
   std::string out =
       "signature matrix (equation (c): unknowns with the highest derivative that occurs; * on the transversal)\n";
@@ -296,7 +297,7 @@ std::string row_by_row(const System& s, const Structure& t) {
   return out + "\n";
 }
 
-// "1 x, 2 y, …" in lines that are not too long.
+// "1 x, 2 y, …" in lines of limited length.
 std::string numbered_columns(const System& s) {
   std::string out = "  columns:", line;
   for (std::size_t j = 0; j < s.size(); ++j) {

@@ -1,14 +1,15 @@
-// Pryce's Sigma-method: what must be differentiated, what is solved for, what may be prescribed.
+// Pryce's Sigma-method: how often each equation is differentiated, which derivatives are solved for, and which may be
+// prescribed.
 //
 //   sigma_ij  order of the highest derivative of variable j that truly occurs in equation i
 //   Val       highest-value transversal;  offsets  d_j - c_i >= sigma_ij, equality on it
 //   J_ij      = dE_i / dx_j^(d_j - c_i), the system Jacobian
-// If J is regular at a consistent point, Val = sum d - sum c is the dimension of the state: equation
-// i is differentiated c_i times, x_j^(d_j) is solved for, and E_i^(k) = 0 (k < c_i) are the hidden
-// constraints (theory: dae-view).
+// If J is regular at a consistent point, Val = sum d - sum c is the dimension of the state: equation i is
+// differentiated c_i times, x_j^(d_j) is solved for, and E_i^(k) = 0 (k < c_i) are the hidden constraints (theory:
+// dae-view).
 //
-// "Truly" is decided by numbers, not by symbols: a derivative counts if the partial derivative by it
-// is not zero at random points (theory: dae-view, the jet trap).
+// "Truly" is decided numerically, not symbolically: a derivative counts if the partial derivative by it is not zero at
+// random points (theory: dae-view, the jet trap).
 #pragma once
 #include <optional>
 #include <string>
@@ -40,8 +41,8 @@ struct ProbeHints {
   double t = 0;
 };
 
-// Sigma by probing near the hints; nothing if the equations have no value there. `equations`: compiled from those of
-// the system. Builds no expressions, so many threads may ask at the same time.
+// Sigma by probing near the hints; nullopt if the equations have no value there. `equations`: compiled from those of
+// the system. It builds no expressions, so many threads may call it at the same time.
 std::optional<std::vector<std::vector<int>>> signature(const System& system, const Tape& equations,
                                                        const std::vector<double>& parameters, const ProbeHints& hints);
 
@@ -49,8 +50,8 @@ std::optional<std::vector<std::vector<int>>> signature(const System& system, con
 Outcome analyse(const System& system, const std::vector<double>& parameters, const ProbeHints& hints,
                 Structure& structure);
 
-// Puts zero for derivatives that stand in an equation but cannot truly occur in it, being higher than
-// those solved for: they cancel, and a stepper could not know their values.
+// Replaces derivatives by zero that appear in an equation but cannot truly occur in it, being higher than those solved
+// for: they cancel, and a stepper could not know their values.
 void drop_absent(System& system, const Structure& structure);
 
 std::string print(const System& system, const Structure& structure);

@@ -19,7 +19,7 @@ class Compiler {
     const auto part = [&](std::span<const Expr> roots) {
       Column all(roots.begin(), roots.end());
       all.insert(all.end(), rates_.begin(), rates_.end());
-      // A function needs its derivative as a slot of its own; that may bring in more functions.
+      // A function needs its derivative as a slot of its own, which may introduce more functions.
       for (std::size_t before = 0; before != all.size();) {
         before = all.size();
         Column derivatives;
@@ -44,7 +44,7 @@ class Compiler {
     };
     part(es.first(leads.size()));
     std::vector<std::uint32_t> roots;
-    // Each root has an alias of its own, so that its lead is exactly the one asked for.
+    // Each root has an alias of its own, so that its lead is exactly the given one.
     for (Expr e : es.first(leads.size())) roots.push_back(alias(e.id));
     tape_.main_end = static_cast<std::uint32_t>(tape_.code.size());
     part(es.subspan(leads.size()));
@@ -130,7 +130,7 @@ class Compiler {
     return varies_[id] = v;
   }
 
-  // Which pairs of factors are multiplied first: always the one that most products still have in common.
+  // Chooses the pairs of factors that are multiplied first: always the pair that most products still have in common.
   void share(const Column& roots) {
     using Pair = std::pair<std::uint64_t, std::uint64_t>;
     constexpr std::size_t kMostProducts = 4000;
@@ -378,7 +378,7 @@ class Compiler {
       code[slot].lead = std::max(code[slot].lead, lead);
       return changed;
     };
-    // Derivative slots may stand after the function that uses them: repeat until nothing changes.
+    // Derivative slots may come after the function that uses them: repeat until nothing changes.
     for (bool again = true; again;) {
       again = false;
       for (std::uint32_t s = tape_.main_end; s-- > 0;) {
@@ -430,7 +430,7 @@ class Compiler {
   std::span<const Expr> rates_;
   std::uint32_t rates_from_;
   std::unordered_map<NodeId, bool> varies_;
-  std::unordered_map<NodeId, std::vector<std::uint64_t>> factors_;  // of products: nodes, or pairs
+  std::unordered_map<NodeId, std::vector<std::uint64_t>> factors_;  // the factors of products: nodes, or pairs
   std::vector<std::pair<std::uint64_t, std::uint64_t>> pairs_;
   std::vector<std::optional<std::uint32_t>> pair_slot_;
   Tape tape_;

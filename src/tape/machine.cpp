@@ -37,8 +37,8 @@ N pi_value() {
     return pi<N>();
 }
 
-// abs and sign are smooth beside 0 only, atan2 beside its cut: there no Taylor coefficient after the first means
-// anything. All other functions are not finite themselves where they are not smooth.
+// abs and sign are smooth only away from 0, and atan2 away from its cut: elsewhere their Taylor coefficients after the
+// first are meaningless. All other functions are not finite where they are not smooth.
 bool smooth(Function f, const Ball& u) { return (f != Function::abs && f != Function::sign) || !u.contains_zero(); }
 bool smooth(const Ball& y, const Ball& x) { return !y.contains_zero() || x.is_positive(); }
 
@@ -54,7 +54,7 @@ N power_value(const N& u, const N& r, const Rational& exact) {
     return pow(u, r);
 }
 
-// The side of a choice: 1 where s >= 0, -1 where s < 0, 0 where a ball does not say.
+// The side of a choice: 1 if s >= 0, -1 if s < 0, 0 if a ball does not decide.
 template <Scalar N>
 int branch(const N& s) {
   if constexpr (std::same_as<N, Ball>)
@@ -63,7 +63,7 @@ int branch(const N& s) {
     return s < N(0) ? -1 : 1;
 }
 
-// How many of the ascending knots lie at or below x, and whether that is sure.
+// The number of ascending knots at or below x, and whether that number is certain.
 template <Scalar N>
 std::pair<std::size_t, bool> below(const std::vector<N>& knots, const N& x) {
   std::size_t low = 0, high = knots.size();
@@ -79,7 +79,7 @@ std::pair<std::size_t, bool> below(const std::vector<N>& knots, const N& x) {
   return {low, true};
 }
 
-// Whether the coefficients of orders 0..last are zero. A ball never says so.
+// Whether the coefficients of orders 0..last are zero. For balls always false.
 template <Scalar N>
 bool vanishes(const N* series, std::size_t last) {
   if constexpr (std::same_as<N, Ball>)
@@ -96,7 +96,7 @@ N unknown() {
     return N(0);
 }
 
-// What may be taken where a ball does not say which.
+// The values that may be taken if a ball does not decide.
 template <Scalar N>
 N either(const N& a, const N& b) {
   if constexpr (std::same_as<N, Ball>)
@@ -105,7 +105,7 @@ N either(const N& a, const N& b) {
     return a;
 }
 
-// All values of a step function that a ball may meet.
+// All values of a step function on a ball.
 template <Scalar N>
 N any_value(const std::vector<N>& knots, const std::vector<N>& values, const N& x) {
   std::optional<N> all;
@@ -135,7 +135,7 @@ Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& 
     const Instruction& in = tape.code[s];
     if (in.op == Op::parameter) series(s)[0] = parameters[in.index];
   }
-  // Constant slots once and for all; derivatives of constants may stand later, and are not needed.
+  // Constant slots are computed once; derivatives of constants may come later in the tape and are not needed.
   for (std::uint32_t s = 0; s < tape.code.size(); ++s)
     if (tape.code[s].constant) step(tape.code[s], s, 0);
 }
@@ -208,11 +208,11 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
       return;
     }
     if (sgn(tape_->rationals[in.index]) > 0 && vanishes(u, p)) {
-      // A positive power of a series that is zero as far as it is known is zero as far.
+      // A positive power of a series that is zero up to the known order is zero up to that order.
       w[p] = N(0);
       return;
     }
-    // u w' = r w u'. Multiples of r = 1/3, say, would be rounded in the same way at every step.
+    // u w' = r w u'. Multiples of, say, r = 1/3 would be rounded in the same way at every step.
     N rates_of_u(0), rates_of_w(0);
     for (std::size_t j = 0; j < p; ++j) {
       const N product = u[p - j] * w[j];
@@ -415,7 +415,7 @@ N Machine<N>::terms(std::size_t root, std::size_t order) const {
 
 template <Scalar N>
 std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values) {
-  // Parameters may refer to each other in any order: put values in until none is left.
+  // Parameters may refer to each other in any order: substitute values until none is left.
   std::vector<N> out;
   if (values.empty()) return out;
   Column es(values.begin(), values.end());

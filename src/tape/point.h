@@ -1,5 +1,4 @@
-// Values of expressions at one point, node by node and remembered: for choices (which pivot, which coordinate), never
-// for results.
+// Values of expressions at one point, stored node by node: for choices (pivots, coordinates), never for results.
 #pragma once
 #include <functional>
 #include <vector>
@@ -12,7 +11,7 @@ namespace anholon {
 template <Number N>
 class ValuesAt {
  public:
-  // `symbol` gives the value of every symbol (t, q_a^(k), parameters, …).
+  // `symbol` returns the value of every symbol (t, q_a^(k), parameters, …).
   explicit ValuesAt(std::function<N(const Node&)> symbol) : symbol_(std::move(symbol)) {}
   N operator()(Expr e);
 
@@ -21,7 +20,7 @@ class ValuesAt {
   const N& known(NodeId id) const { return values_[place_[id] - 1]; }
 
   std::function<N(const Node&)> symbol_;
-  std::vector<std::uint32_t> place_;  // of a node among the values, counted from 1; 0 while it has none
+  std::vector<std::uint32_t> place_;  // index of a node among the values, counted from 1; 0 if it has none
   std::vector<N> values_;
 };
 

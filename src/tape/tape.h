@@ -1,16 +1,15 @@
 // A straight-line program for a list of expressions, and its interpreter over any number type.
 //
-// Slot i is the result of instruction i. A slot is a Taylor series; the interpreter computes the
-// coefficients of all slots one stage at a time:
+// Slot i is the result of instruction i. A slot is a Taylor series; the interpreter computes the coefficients of all
+// slots one stage at a time:
 //
-//   stage s computes of each slot the coefficient of order s + lead(slot)   (if that is >= 0).
+//   stage s computes for each slot the coefficient of order s + lead(slot)   (if that is >= 0).
 //
-// The lead of a root is given by the caller (the offset c_i of equation i: how often the equation
-// is to be differentiated), the lead of any other slot is the largest among its users. Leads make
-// the derivatives of a constraint come out as higher Taylor coefficients of the constraint itself:
-// nothing is ever differentiated symbolically for that.
+// The lead of a root is given by the caller (the offset c_i of equation i: how often the equation is to be
+// differentiated), the lead of any other slot is the largest among its users. With leads, the derivatives of a
+// constraint are higher Taylor coefficients of the constraint itself; they need no symbolic differentiation.
 //
-// This interpreter is the reference: slow but right. Faster kernels must agree with it.
+// This interpreter is the reference implementation: slow, but simple. Faster kernels must agree with it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -37,7 +36,7 @@ enum class Op : std::uint8_t {
   power,      // a^r, r = rational `index`, not a whole positive number
   function,   // elementary function `index` of a; b = slot of its derivative f'(a)
   arctan2,    // atan2(a, b); `first` and `second` = slots of the derivatives by a and b
-  select,     // a where slot `first` >= 0, else b: of all orders, as the value at the point says
+  select,     // a if slot `first` >= 0, else b, in all orders, decided by the value at the point
   lookup,     // step function `index` of a: the value there; a constant of its series
   rate,       // the derivative of order `index` of a
 };
@@ -56,7 +55,7 @@ struct LinearTerm {
   std::uint32_t slot;
 };
 
-// The symbol an input slot stands for: t, q_a^(k), lambda_r^(k), …
+// The symbol that an input slot represents: t, q_a^(k), lambda_r^(k), …
 struct Input {
   NodeId symbol;
   std::uint32_t slot;
@@ -70,26 +69,25 @@ struct Tape {
   std::vector<StepFunction> step_functions;
   std::vector<Input> inputs;
   std::vector<std::uint32_t> roots;  // slots of the expressions, in the order given
-  std::vector<NodeId> nodes;         // the node whose value a slot has; kNoNode where a slot is a part of a product
+  std::vector<NodeId> nodes;         // the node whose value a slot has; kNoNode if the slot is a part of a product
   std::uint32_t main_end = 0;        // slots below this serve the first `main_roots` expressions
   int largest_lead = 0;
 };
 
-// Compiles the expressions. The first `leads.size()` of them are the main roots, with these leads;
-// those that follow have lead 0 and do not influence the slots of the main part.
-// REQUIRES: no frozen mass and no unknown given function occurs.
-// `shared`: products of factors that vary in time are made of pairs that several of them have in common, and what is
-// constant in time comes last. Fewer products, and another order of rounding.
+// Compiles the expressions. The first `leads.size()` of them are the main roots, with these leads; those that follow
+// have lead 0 and do not influence the slots of the main part. REQUIRES: no frozen mass and no unknown given function
+// occurs. `shared`: products of factors that vary in time are made of pairs that several of them have in common, and
+// factors constant in time come last. There are fewer products, and their rounding differs.
 //
-// `rates`: the jets of coordinates from `rates_from` on stand for these expressions and their derivatives, which the
-// tape takes from their series.
+// `rates`: the jets of coordinates from `rates_from` on denote these expressions and their derivatives, which the tape
+// takes from the series of the expressions.
 Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared = false,
              std::span<const Expr> rates = {}, std::uint32_t rates_from = 0);
 Tape compile(std::span<const Expr> es);
 
-// What a tape is computed in: numbers; or balls, of which no comparison is asked. Whatever lies in the input series of
-// a machine of balls, the Taylor coefficients of every slot lie in the slot's, where the slot is smooth on all of the
-// balls, else they are not finite.
+// The number type of a tape: a floating-point type, or balls, which are never compared. In a machine of balls, the
+// series of a slot encloses its Taylor coefficients for all inputs enclosed by the input series, if the slot is smooth
+// on all of the balls; otherwise its coefficients are not finite.
 template <class N>
 concept Scalar = Number<N> || std::same_as<N, Ball>;
 
@@ -105,7 +103,7 @@ class Machine {
 
   // Computes stage s of slots [from, to); inputs must be set by the caller.
   void sweep(int stage, std::uint32_t from, std::uint32_t to);
-  // Values only: all slots at order 0.
+  // Computes values only: all slots at order 0.
   void evaluate() { sweep(0, 0, static_cast<std::uint32_t>(tape_->code.size())); }
 
   // d slot / d operand at order 0, for the operands of an instruction.
@@ -113,15 +111,15 @@ class Machine {
     N a, b;
   };
   Partials partials(std::uint32_t slot) const;
-  // The sum of the absolute values of what a slot is the sum of, at order 0.
+  // The sum of the absolute values of a slot's terms, at order 0.
   N magnitude(std::uint32_t slot) const;
-  // Of every slot, at order 0, what it is made of: the sum of the absolute values of the terms that it has with its
-  // products multiplied out. Round-off of that is what the slot may be where it ought to vanish.
+  // For every slot at order 0: the sum of the absolute values of its terms with products multiplied out. Its round-off
+  // bounds a slot that should vanish.
   void made_of(std::vector<N>& sizes) const;
   // The sum of the absolute values of the terms of a main root, in its Taylor coefficient of this order.
   N terms(std::size_t root, std::size_t order) const;
   const N& rational(std::uint32_t index) const { return rationals_[index]; }
-  // The knots between which a slot with a step function stands: below and above; null where there is none.
+  // The knots around a slot with a step function: the one below and the one above; null if there is none.
   std::pair<const N*, const N*> knots_around(std::uint32_t slot) const;
   const Tape& tape() const { return *tape_; }
 
@@ -143,7 +141,7 @@ extern template class Machine<long double>;
 extern template class Machine<Quad>;
 extern template class Machine<Multi>;
 
-// Values of parameters in any number type, or enclosed.
+// Values of parameters in any number type, or as enclosures.
 template <Scalar N>
 std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values);
 

@@ -71,7 +71,7 @@ TEST_P(Forms, AreNewtonsLawWithIdealReactions) {
   EXPECT_GT(applied, 0);
 }
 
-// dh/dt = power without constraints + P_c + q'.(E - G - N)  [theory.md section 7], on and off the solutions.
+// dh/dt = power without constraints + P_c + q'.(E - G - N)  (theory: certificate), on and off the solutions.
 Column energy_terms(const System& s, const Power& p) {
   Graph& g = s.g();
   Expr virtual_power = g.zero();
@@ -89,8 +89,7 @@ TEST_P(Forms, EnergyIdentity) {
 INSTANTIATE_TEST_SUITE_P(Model, Forms, testing::ValuesIn(test::shipped_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
-// ---- mutants: the same checks must refute the mistakes of theory.md section 9
-// -----------------------------------------------
+// ---- mutants: the same checks must refute the mistakes under "What goes wrong easily" in doc/theory/
 
 // How many shipped models refute Routh's equations with a mistake in them.
 int refuted_by(const std::function<Equations(const System&)>& mutant) {

@@ -1,4 +1,4 @@
-// The text of a chain of n links in the plane: absolute angles, joints P1 … Pn written out, a mass at each, gravity.
+// The text of a chain of n links in the plane: absolute angles, explicit joints P1 … Pn, a mass at each, gravity.
 #pragma once
 #include <string>
 

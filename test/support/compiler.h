@@ -1,4 +1,4 @@
-// Whether kernels can be compiled here: where the module was built, a test that cannot load it fails.
+// Whether kernels can be compiled here: if the module was built, a test that cannot load it fails.
 #pragma once
 
 namespace anholon::test {

@@ -1,12 +1,12 @@
-// Equations without multipliers against Newton's law: both along the tangents of the constraints, which are found by
-// numbers, at random free higher derivatives, so that those that must cancel do.
+// Compares equations without multipliers with Newton's law: both along the tangents of the constraints, which are found
+// numerically, at random free higher derivatives, so that derivatives that must cancel do.
 #pragma once
 #include "formulation/formulation.h"
 #include "support/manifold.h"
 
 namespace anholon::test {
 
-// |residual - B^T (E - G)| in units of the terms, the largest of `points` points, huge where none is found; for n
+// |residual - B^T (E - G)| in units of the terms, the largest of `points` points, huge if no point is found; for n
 // equations without multipliers |B^T residual - …|.
 inline double miss_along_constraints(const Mechanics& M, const Elimination& e, const Column& residual, int points) {
   const PrecisionScope precision(40);

@@ -1,6 +1,6 @@
-// A small system that has everything the equations of order m speak of: moving guides, a varying mass, two constraints
-// whose right sides hold time, lower derivatives of dependent coordinates, and powers of the independent highest
-// derivatives. Polynomials only, so that identities can be proved by exact algebra.
+// A small system with everything that occurs in the equations of order m: moving guides, a varying mass, two
+// constraints whose right sides contain time, lower derivatives of dependent coordinates, and powers of the independent
+// highest derivatives. It has polynomials only, so that identities can be proved by exact algebra.
 #pragma once
 #include <string>
 
@@ -12,11 +12,11 @@ inline std::string primes(const std::string& name, int order) {
 
 enum class Shape {
   affine,     // in all highest derivatives: quasi-velocities can be solved too
-  linear,     // in the dependent highest derivatives: can be solved
-  nonlinear,  // in them as well: cannot
+  linear,     // in the dependent highest derivatives: the constraints can be solved
+  nonlinear,  // in the dependent ones as well: the constraints cannot be solved
 };
 
-// Which quasi-velocities there are beside the two constraints.
+// The quasi-velocities beside the two constraints.
 enum class Speeds { none, linear, nonlinear };
 
 inline std::string generic_system(int m, Shape shape, Speeds speeds = Speeds::none) {

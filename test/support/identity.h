@@ -1,5 +1,5 @@
-// Identities at points: systems that have everything the equations of order m speak of, and by how much a sum of terms
-// misses zero there, anywhere among the jets or on the manifold of the constraints.
+// Identities at points: systems with everything that occurs in the equations of order m, and the residual of a sum of
+// terms there, at arbitrary jets or on the manifold of the constraints.
 #pragma once
 #include <map>
 
@@ -36,7 +36,7 @@ inline std::shared_ptr<const System> generic(unsigned m, Shape shape, Speeds spe
   return s;
 }
 
-// An identity says that the sum of its terms is zero.
+// An identity states that the sum of its terms is zero.
 using Terms = std::vector<Column>;
 
 inline Column sum_of(const Terms& terms) {

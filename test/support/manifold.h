@@ -1,6 +1,6 @@
-// Points on the manifold of the constraints: everything free is pseudo-random, the dependent highest derivatives are
-// found by Newton's method on the (lifted) constraints themselves, the next ones from their derivative. Nothing of an
-// Elimination is used but its list of coordinates.
+// Points on the manifold of the constraints: all free symbols are pseudo-random, the dependent highest derivatives are
+// found by Newton's method on the (lifted) constraints themselves, the next ones from their derivative. Of an
+// Elimination only the list of coordinates is used.
 #pragma once
 #include <optional>
 

@@ -1,4 +1,4 @@
-// Points at which expressions of a model are evaluated: its parameters as given, everything else pseudo-random.
+// Points at which expressions of a model are evaluated: parameters as given, all other symbols pseudo-random.
 #pragma once
 #include "model/model.h"
 #include "support/value.h"
@@ -12,8 +12,8 @@ inline Point random_point(const Model& model, std::uint64_t seed) {
   return Point(seed).set_parameters(evaluate_parameters<Multi>(*model.graph, es));
 }
 
-// The point a time tau later on a smooth path through `start`: every jet is the derivative of the one below it, as in a
-// motion with all derivatives from order `highest` + 1 on zero.
+// The point at a time tau later on a smooth path through `start`: every jet is the derivative of the one below it, as
+// in a motion whose derivatives from order `highest` + 1 on are zero.
 inline Point moved(const Model& model, const Point& start, const Multi& tau, unsigned highest) {
   Graph& g = *model.graph;
   Point p = start;

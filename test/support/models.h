@@ -21,8 +21,8 @@ inline std::string file_text(const std::filesystem::path& path) {
 
 inline std::filesystem::path source_dir() { return ANHOLON_SOURCE_DIR; }
 
-// "zoo/rocket" for models/zoo/rocket.toml, sorted. Templates of new models are no systems of their own
-// (tools/reference.py runs them).
+// "zoo/rocket" for models/zoo/rocket.toml, sorted. Templates of new models are not included (tools/reference.py runs
+// them).
 inline std::vector<std::string> shipped_models() {
   std::vector<std::string> names;
   const std::filesystem::path folder = source_dir() / "models";
@@ -33,8 +33,8 @@ inline std::vector<std::string> shipped_models() {
   return names;
 }
 
-// Those with a formula for every function. The others, models/papers/*-symbolic.toml, derive, prove and compare;
-// nothing moves.
+// The shipped models that have a formula for every function. The others, models/papers/*-symbolic.toml, can be derived,
+// proved and compared, but not simulated.
 inline std::vector<std::string> moving_models() {
   std::vector<std::string> names = shipped_models();
   std::erase_if(names, [](const std::string& name) { return name.ends_with("-symbolic"); });
@@ -45,7 +45,7 @@ inline std::string shipped_text(const std::string& name) {
   return file_text(source_dir() / "models" / (name + ".toml"));
 }
 
-// The model, or a test failure that shows what the reader had to say.
+// The model, or a test failure with the reader's messages.
 inline std::shared_ptr<const Model> model_of(const std::string& text, const Overrides& overrides = {}) {
   const SourceText source{"test.toml", text};
   Diagnostics diagnostics;

@@ -1,4 +1,4 @@
-// What a simulation leaves behind, for tests that look at its numbers.
+// The results of a simulation, for tests that examine its numbers.
 #pragma once
 #include <algorithm>
 #include <sstream>
@@ -14,7 +14,7 @@ struct Motion {
   SimulationReport report;
   test::TextRows rows;
 
-  // Throws std::out_of_range where there is no such row or column, so that a test fails.
+  // Throws std::out_of_range if there is no such row or column, so that a test fails.
   double number(std::size_t row, const std::string& column) const {
     const auto& names = rows.names();
     const auto at = std::find(names.begin(), names.end(), column);
@@ -24,7 +24,7 @@ struct Motion {
   double last(const std::string& column) const { return number(rows.rows().size() - 1, column); }
 };
 
-// A saved run without the count of rows that were given so far, which the end of the first part adds to.
+// A saved run without the count of its rows, which the end of the first part increases.
 inline std::string of_the_motion(const std::string& saved) {
   std::istringstream lines(saved);
   std::string kept;

@@ -1,8 +1,9 @@
-// Random systems of particles whose places are functions of fewer coordinates, g = 3N - n > 0 holonomic constraints in
-// them, or of as many, g = 0: varying masses, an observer that turns and accelerates, moving guides, and constraints of
-// one order. Every force has a place, so that Newton's law gives the reaction on each particle.
+// Random systems of particles whose positions are functions of fewer coordinates, g = 3N - n > 0 holonomic constraints
+// in them, or of as many, g = 0: varying masses, an observer that rotates and accelerates, moving guides, and
+// constraints of one order. Every force has a point of application, so that Newton's law gives the reaction on each
+// particle.
 //
-// The same seed gives the same text everywhere: nothing but the raw numbers of the generator is used.
+// The same seed gives the same text everywhere: only the raw numbers of the generator are used.
 #pragma once
 #include <random>
 #include <string>

@@ -1,4 +1,4 @@
-// A model as published equations speak about it, for tests that say a few of them.
+// A model as the subject of published equations, for tests with some of these.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -41,18 +41,18 @@ class Published {
     EXPECT_FALSE(diagnostics.has_errors()) << diagnostics.print(source);
     return list;
   }
-  // What is said of a text that cannot be read.
+  // The messages about a text that cannot be read.
   Diagnostics errors(const std::string& text) {
     Diagnostics diagnostics;
     subject_.read({"test.eq", text}, diagnostics);
     return diagnostics;
   }
-  // Of one equation, without its label.
+  // Compares one equation, given without its label.
   Comparison compare(const std::string& equation) {
     const auto list = read("e: " + equation + "\n");
     return list.empty() ? Comparison{} : subject_.compare(list[0]);
   }
-  // "from -> to" of the only change; else how many there are.
+  // "from -> to" of the only change; else the number of changes.
   std::string change(const std::string& equation) {
     const Comparison c = compare(equation);
     if (c.verdict != Verdict::refuted) return name(c.verdict);

@@ -1,6 +1,6 @@
-// Random systems whose motion between events is known in closed form, and their events by another way: every zero is
-// bracketed by bounds of the second derivative and bisected in long double, on the exact pieces. A formula may be
-// written as another one with the same zeros, that saturates, has a kink, or is steep.
+// Random systems whose motion between events is known in closed form, and their events by an independent method: every
+// zero is bracketed by bounds of the second derivative and bisected in long double, on the exact pieces. A formula may
+// be replaced by another one with the same zeros that saturates, has a kink, or is steep.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,20 +18,20 @@ class EventModel {
  public:
   struct Occurred {
     std::size_t event;
-    Real t, slope;  // of the formula, when it passed zero
+    Real t, slope;  // of the formula at its zero
   };
-  // What happens up to `end`; not decided: two things nearly at once, or a formula that nearly touches zero.
+  // The events up to `end`; undecided if two events are nearly simultaneous, or a formula nearly touches zero.
   struct Course {
     std::vector<Occurred> events;
     bool decided = true, stopped = false;
-    std::vector<Real> x, v;  // at the end, of the bodies; v without meaning for a state
+    std::vector<Real> x, v;  // at the end, of the bodies; v is meaningless for a state
   };
 
   explicit EventModel(std::uint64_t seed) : seed_(seed * 0x9e3779b97f4a7c15ULL + 1) {
     make_bodies();
     make_events();
     end_ = decimal(300, 600);
-    // How nearly an arc is missed is below the round-off of a steep formula.
+    // The margin by which an arc misses is below the round-off of a steep formula.
     for (Event& e : events_) e.writing = e.level_text[0] == '(' ? kPlain : draw(kPlain + 1);
   }
 
@@ -49,7 +49,7 @@ class EventModel {
   enum class Law : std::uint8_t { falling, spring, filling };  // x'' = a; x'' = -w^2 (x - c); z' = r, by the mode
   enum class When : std::uint8_t { level, gap, velocity, time, square };
   enum class Set : std::uint8_t { nothing, bounce, collide, mode, kick, move, stop };
-  static constexpr std::size_t kPlain = 7;  // this and those from 3 on are written as they are
+  static constexpr std::size_t kPlain = 7;  // this form and those from 3 on are written unchanged
   struct Body {
     Law law;
     int w, constant[2], x, v;  // in hundredths
@@ -105,7 +105,7 @@ class EventModel {
 inline void EventModel::make_bodies() {
   const std::size_t n = 1 + draw(3);
   for (std::size_t i = 0; i < n; ++i) {
-    if (i > 0 && draw(4) == 0) {  // the like of the one before: what happens to them happens at once
+    if (i > 0 && draw(4) == 0) {  // equal to the one before: their events are simultaneous
       bodies_.push_back(bodies_.back());
       continue;
     }
@@ -140,13 +140,13 @@ inline void EventModel::make_events() {
       e.when = When::square, level = std::abs(level) + 20;
       break;
     default:
-      level = draw(2) == 0 ? 0 : level;  // a floor, mostly
+      level = draw(2) == 0 ? 0 : level;  // usually a floor
     }
     e.level = real(level);
     e.level_text = text(level);
     const Body& b = bodies_[e.i];
     if (e.when == When::level && b.law == Law::falling && b.constant[0] < 0 && b.v > 0 && draw(3) == 0) {
-      // The top of the first arc, and by how much it is missed or passed.
+      // The top of the first arc, and the margin by which it misses or passes the level.
       static const char* const misses[] = {"0", "1e-6", "-1e-6", "1e-9", "-1e-9", "1e-11", "-1e-11"};
       static const Real sizes[] = {0, 1e-6L, -1e-6L, 1e-9L, -1e-9L, 1e-11L, -1e-11L};
       const std::size_t m = draw(7);
@@ -177,7 +177,7 @@ inline void EventModel::make_events() {
       else if (e.when == When::level)
         e.set = Set::move;
     }
-    // A bounce that fires on both ways is none.
+    // A bounce must not fire in both directions.
     if ((e.set == Set::bounce || e.set == Set::collide) && e.direction == 0) e.direction = draw(2) == 0 ? -1 : 1;
     events_.push_back(e);
   }
@@ -304,7 +304,7 @@ inline EventModel::State EventModel::after(const State& s, Real dt) const {
 inline EventModel::Function EventModel::function(const State& s, const Event& e, Real within) const {
   const auto x = [this, s](std::size_t i) { return [this, s, i](Real dt) { return after(s, dt).x[i]; }; };
   const auto v = [this, s](std::size_t i) { return [this, s, i](Real dt) { return after(s, dt).v[i]; }; };
-  // Bounds of |x''|, |x'|, |x| and |x'''| over the stretch.
+  // Bounds of |x''|, |x'|, |x| and |x'''| over the interval.
   const auto bounds = [&](std::size_t i) {
     const Body& b = bodies_[i];
     const Real c = real(b.constant[s.mode - 1]), w = real(b.w);
@@ -340,7 +340,7 @@ inline EventModel::Function EventModel::function(const State& s, const Event& e,
   return {};
 }
 
-// The first d in (from, to] from where on f has the sign -side; f + shift in its place.
+// The first d in (from, to] after which f + shift has the sign -side.
 inline std::optional<Real> first_change(const std::function<Real(Real)>& value, const std::function<Real(Real)>& slope,
                                         Real bend, Real shift, int side, Real from, Real to) {
   const Real middle = (from + to) / 2, half = (to - from) / 2, f = side * (value(middle) + shift),
@@ -349,7 +349,7 @@ inline std::optional<Real> first_change(const std::function<Real(Real)>& value, 
     return f < 0 ? std::optional<Real>(from) : std::nullopt;
   if (std::abs(d) > bend * half) {
     const auto at = [&](Real x) { return side * (value(x) + shift); };
-    constexpr Real kRoundoff = 1e-15L;  // where the last event was
+    constexpr Real kRoundoff = 1e-15L;  // time of the last event
     if (d > 0) return at(from) < -kRoundoff ? std::optional<Real>(from) : std::nullopt;
     if (!(at(to) < 0)) return std::nullopt;
     if (at(from) < -kRoundoff) return from;
@@ -405,7 +405,7 @@ inline EventModel::Course EventModel::course() const {
     for (std::size_t k = 0; k < events_.size(); ++k) {
       const Function f = function(at, events_[k], 1);
       const Real value = f.value(0), slope = f.slope(0), bend = f.slope(1e-6L) - slope;
-      // Nearly zero without having fired: who is to say.
+      // The formula is nearly zero without having fired: undecided.
       if (!fired[k] && out.events.size() > 0 && std::abs(value) < kDoubt &&
           !(std::abs(value) < kZero && std::abs(slope) < kZero))
         out.decided = false;
@@ -435,11 +435,11 @@ inline EventModel::Course EventModel::course() const {
       const auto dt = change(0);
       const Real doubt = s.t == 0 ? kFirst : kDoubt;
       for (Real shift : {doubt, -doubt}) {
-        // Where it begins at zero, a shift against the side is passed at once.
+        // If the formula begins at zero, a shift against the side is passed at once.
         if (std::abs(f.value(since)) <= doubt && shift * sides[k] < 0) continue;
         const auto other = change(shift);
         if (dt.has_value() != other.has_value() || (dt && std::abs(*dt - *other) > 1e-2L)) {
-          // An arc that touches exactly, first of all, is decided: it does not pass.
+          // An arc that touches exactly at the first event is decided: it does not pass.
           const bool exact = doubt == kFirst && !dt && !change(-sides[k] * 1e-16L) ? false : doubt == kFirst && !dt;
           if (!exact) out.decided = false;
         }

@@ -55,8 +55,8 @@ class RandomExpr {
     }
   }
 
-  // The elementary function number k of an argument made fit for its domain; abs and sign, which have a corner, are
-  // kept away from it.
+  // The elementary function number k of an argument adapted to its domain; abs and sign, which have a corner, are kept
+  // away from it.
   Expr function(int k, Expr u) {
     const Function f = static_cast<Function>(k);
     switch (f) {

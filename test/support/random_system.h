@@ -1,8 +1,8 @@
-// Random mechanical systems as model files: moving guides, varying masses, an observer that turns and accelerates,
+// Random mechanical systems as model files: moving guides, varying masses, an observer that rotates and accelerates,
 // rigid bodies, springs, and constraints of orders 0 to 4, linear and nonlinear in their highest derivatives, alone,
 // mixed and redundant.
 //
-// The same seed gives the same text everywhere: nothing but the raw numbers of the generator is used.
+// The same seed gives the same text everywhere: only the raw numbers of the generator are used.
 #pragma once
 #include <random>
 #include <string>
@@ -24,7 +24,7 @@ class RandomSystem {
   }
 
   const std::string& text() const { return text_; }
-  // What it is, in a line.
+  // A description in one line.
   const std::string& what() const { return what_; }
 
  private:
@@ -41,7 +41,7 @@ class RandomSystem {
   }
   std::string any(int order = 0) { return q(below(n_), order); }
 
-  // A bounded function of the coordinates and, where wanted, of time.
+  // A bounded function of the coordinates and, if `time`, of time.
   std::string function(bool time) {
     switch (below(time ? 5 : 4)) {
     case 0:
@@ -152,7 +152,7 @@ class RandomSystem {
     text_ += "[[constraint]]\nname = \"c" + std::to_string(k) + "\"\nequation = \"" + e + "\"\n";
   }
 
-  // One more that follows from the others.
+  // Adds a constraint that follows from the others.
   void redundant() {
     const auto sides = [](const std::string& e) {
       const std::size_t at = e.find(" = ");

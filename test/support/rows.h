@@ -7,7 +7,7 @@
 
 namespace anholon::test {
 
-// Keeps every row as it is written.
+// Keeps every row in its written form.
 class TextRows final : public RowSink {
  public:
   void columns(const std::vector<RunColumn>& columns) override { names_ = names_of(columns); }
@@ -29,7 +29,7 @@ inline void set_columns(RowSink& sink, const std::vector<std::string>& names) {
   sink.columns(columns);
 }
 
-// A row of numbers as they are written.
+// Adds a row of written numbers.
 inline void add_row(RowSink& sink, const std::vector<std::string>& texts) {
   std::vector<double> values(texts.size());
   for (std::size_t k = 0; k < texts.size(); ++k) parse_number(texts[k], values[k]);

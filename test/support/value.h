@@ -1,5 +1,5 @@
-// The value of an expression by its definition, in multiprecision: nothing but the operands of each node. It shares no
-// code with the tape, and it looks at the flat terms of sums, never at their short way, so it may judge both.
+// The value of an expression by its definition, in multiprecision, from the operands of each node. It shares no code
+// with the tape, and it uses the flat terms of sums, never their short form, so it can check both.
 #pragma once
 #include <functional>
 #include <map>
@@ -126,11 +126,11 @@ inline double distance(const Multi& a, const Multi& b) {
   for (const Multi* v : {&a, &b})
     if (abs(*v) > scale) scale = abs(*v);
   const double d = to_double(Multi(abs(Multi(a - b)) / scale));
-  return d == d ? d : 1e300;  // not a number is far from everything
+  return d == d ? d : 1e300;  // NaN is far from everything
 }
 
-// Taylor coefficients f^(k)(0)/k!, k <= orders, by central differences: their error is of order h^2, and the digits
-// that the differences cancel are carried along.
+// Taylor coefficients f^(k)(0)/k!, k <= orders, by central differences: their error is of order h^2, and the precision
+// includes the digits that the differences cancel.
 inline std::vector<Multi> taylor_by_differences(const std::function<Multi(const Multi&)>& f, int orders) {
   const PrecisionScope precision(30 * orders + 80);
   const Multi h = raise(Multi(10), Rational(-25));

@@ -2,8 +2,8 @@
 //
 //   dS/dq'' = Q + QR + Qomega - d(V_O + V_omega)/dq + Gamma + sum lambda dphi/dq^(m)
 //
-// S = sum 1/2 m |a|^2 with relative accelerations and frozen masses; always the partial derivative by
-// q'', whatever the order of the constraints.
+// S = sum 1/2 m |a|^2 with relative accelerations and frozen masses; the partial derivative is by q'' for every order
+// of the constraints.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

@@ -3,7 +3,7 @@
 //   m = 1:   dS~/dq''_nu = G_nu + sum_b G_b df_b/dq_nu'          with q_D'' = df/dt put into S
 //   m >= 2:  dS~/dq_nu^(m) = G_nu + sum_b G_b df_b/dq_nu^(m)     with q_D^(m) = f put into S^(m-2) = D^(m-2) S/Dt^(m-2)
 //
-// The print has S itself for every m, which is right for m = 2 only.
+// The paper prints S itself for every m, which is right for m = 2 only.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

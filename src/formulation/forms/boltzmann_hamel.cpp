@@ -3,7 +3,7 @@
 //
 //   D/Dt dT*/du_a - sum_s dT*/dq_s beta_sa + sum_k dT*/du_k sum_s (d/dt du_k/dq_s' - du_k/dq_s) beta_sa = sum_s G_s beta_sa
 //
-// for the n - s free ones; k runs over all n, and only then are the last s put to zero.
+// for the n - s free ones; k runs over all n, and the last s are set to zero only after that.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {
@@ -26,7 +26,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
 static Quantities quantities(const Mechanics& M, const Elimination& E) {
   const Label star = energy("T", 0, Over::star);
   const Labels q = jet_labels(M, 0), qd = jet_labels(M, 1);
-  Labels u = free_labels(M, E);  // all n of them
+  Labels u = free_labels(M, E);  // all n quasi-velocities
   for (std::size_t r : E.constraints) {
     const std::string& name = M.model->constraints[r].name;
     u.push_back(indexed(letter("phi"), name, {name_of(*M.model, name)}));

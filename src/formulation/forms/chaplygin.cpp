@@ -1,5 +1,5 @@
-// Chaplygin's equations, generalized to constraints of order m [L 3.13]. With T~ = T^(m-1) where q_D^(m) = f is put in
-// before the partial derivatives are taken [L 3.12]:
+// Chaplygin's equations, generalized to constraints of order m [L 3.13]. With T~ = T^(m-1) where q_D^(m) = f is
+// substituted before the partial derivatives are taken [L 3.12]:
 //
 //   m D/Dt dT~/dq_nu^(m) - dT~/dq_nu^(m-1) - sum_b dT^(m-1)/dq_b^(m) (m d/dt df_b/dq_nu^(m) - df_b/dq_nu^(m-1))
 //     - sum_b dT^(m-1)/dq_b^(m-1) df_b/dq_nu^(m)  =  G_nu + sum_b G_b df_b/dq_nu^(m)
@@ -14,7 +14,8 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   const Expr T_before = T(M, E.m - 1), T_tilde = E.on(T_before);
   const Column p = E.on(E.D(gradient(T_before, jets(*M.model, E.m))));      // dT^(m-1)/dq_b^(m)
   const Column r = E.on(E.D(gradient(T_before, jets(*M.model, E.m - 1))));  // dT^(m-1)/dq_b^(m-1)
-  // Term by term: compilers evaluate the operands of a sum in different orders, and the order of nodes is that of sums.
+  // Term by term: compilers evaluate the operands of a sum in different orders, and the order of creation of nodes
+  // determines the order of sums.
   const auto f_by_u = E.f_by_u();
   const auto turned = m * E.rate(f_by_u), f_by = E.f_by(E.m - 1);
   const Column first = m * E.rate(E.by_u(T_tilde)), second = E.I(E.by(E.m - 1, T_tilde)), third = p * (turned - f_by),

@@ -2,7 +2,7 @@
 //
 //   D/Dt dT~/dq_nu' - sum_b dT/dq_b' d/dt df_b/dq_nu' - dT/dq_nu - sum_b dT/dq_b df_b/dq_nu'  =  G_nu + sum_b G_b df_b/dq_nu'
 //
-// T~ is T with q_D' = f put in; everywhere else T is not reduced.
+// T~ is T with q_D' = f substituted; everywhere else T is not reduced.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

@@ -3,8 +3,9 @@
 //
 //   Z = S - sum_a G_a q_a''     (the compulsion sum 1/2 m |a - F/m|^2 up to terms without q'')
 //
-// stationary: dZ/dq''_nu along the constraints is zero. They are taken at the level of accelerations: order 1 once,
-// order 0 twice differentiated, order 2 as it is. Of order 3 and more the principle would be another mechanics.
+// stationary: dZ/dq''_nu along the constraints is zero. The constraints are taken at the level of accelerations: those
+// of order 1 are differentiated once, those of order 0 twice. For order 3 and more the principle would define another
+// mechanics.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

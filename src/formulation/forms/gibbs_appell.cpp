@@ -2,7 +2,7 @@
 //
 //   dS*/du_a' = sum_s G_s B_sa
 //
-// S* is S with q' = g and q'' = dg/dt put in.
+// S* is S with q' = g and q'' = dg/dt substituted.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

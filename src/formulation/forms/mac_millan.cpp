@@ -2,9 +2,9 @@
 //
 //   D/Dt dT_/dq_nu' - dT_/dq_nu = Q_nu + (Q_nu)_t + (Q_nu)_c + sum_i m_i (v_i) . (d/dt d(v_i)/dq_nu' - d(v_i)/dq_nu)
 //
-// (v_i) is the relative velocity of point i with q_D' = f put in, T_ = sum 1/2 m |(v)|^2; every force is Q_nu + sum_b
-// Q_b df_b/dq_nu', (Q)_t = Qomega - d(V_O + V_omega)/dq the transport, (Q)_c = Gamma the Coriolis force. Beyond the
-// paper: variable masses (frozen derivatives, QR among the forces) and bodies (their axes are points of the sum).
+// (v_i) is the relative velocity of point i with q_D' = f substituted, T_ = sum 1/2 m |(v)|^2; every force is Q_nu +
+// sum_b Q_b df_b/dq_nu', (Q)_t = Qomega - d(V_O + V_omega)/dq the transport, (Q)_c = Gamma the Coriolis force. Beyond
+// the paper: variable masses (frozen derivatives, QR among the forces) and bodies (their axes are points of the sum).
 // Without nonholonomic constraints the sum vanishes; with an observer at rest it is the equation in an inertial frame.
 #include "formulation/formulation.h"
 

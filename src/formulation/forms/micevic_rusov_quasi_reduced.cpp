@@ -1,5 +1,5 @@
 // The Micevic-Rusov equations in quasi-coordinates, reduced [N 4.11]. T*^(k) is T^(k) with q^(m) = g, q^(m+1) = g' =
-// dg/dt put in [N 4.9, 4.10]:
+// dg/dt substituted [N 4.9, 4.10]:
 //
 //   dT*^(m)/du_a - dT*^(m-1)/dpi_a^(m-1) - dT/dpi_a - sum_s dT^(m-1)/dq_s^(m) (dg'_s/du_a - dg_s/dpi_a^(m-1)) = sum_s G_s B_sa
 //

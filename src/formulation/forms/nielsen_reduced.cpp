@@ -1,5 +1,5 @@
 // Nielsen's equations, generalized to order m, in reduced kinetic energies [L 3.15]. T~^(k) is T^(k) with q_D^(m) = f
-// and q_D^(m+1) = df/dt put in before the partial derivatives are taken [L 3.14]:
+// and q_D^(m+1) = df/dt substituted before the partial derivatives are taken [L 3.14]:
 //
 //   m dT~^(m)/dq_nu^(m) - (m+1) dT~^(m-1)/dq_nu^(m-1) - (m+1) sum_b dT^(m-1)/dq_b^(m-1) df_b/dq_nu^(m)
 //     - sum_b dT^(m-1)/dq_b^(m) (m d(df_b/dt)/dq_nu^(m) - (m+1) df_b/dq_nu^(m-1))  =  G_nu + sum_b G_b df_b/dq_nu^(m)

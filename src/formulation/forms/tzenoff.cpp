@@ -2,8 +2,8 @@
 //
 //   1/2 [dT''/dq'' - 3 dT/dq] = Q + QR + … + Gamma + sum lambda dphi/dq^(m)
 //
-// whatever the order of the constraints. Asked for with another m, they are Tzenoff's equations of higher order: [N
-// 5.1] with that m.
+// for every order of the constraints. With another m asked for, they are Tzenoff's equations of higher order: [N 5.1]
+// with that m.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

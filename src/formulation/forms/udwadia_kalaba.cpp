@@ -3,7 +3,7 @@
 //
 //   E = G + A^T (A M^-1 A^T)^-1 (b + A M^-1 h)
 //
-// n equations without multipliers. The inverses are eliminations on the expression graph, no entry is written out.
+// n equations without multipliers. The inverses are eliminations on the expression graph, entries are not expanded.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

@@ -1,5 +1,5 @@
 // Voronets' equations (theory: classics), for constraints of order 1, q_D' = f(q, q_I', t) of any shape. With Theta = T
-// where q_D' = f is put in, theta_b = dT/dq_b':
+// where q_D' = f is substituted, theta_b = dT/dq_b':
 //
 //   D/Dt dTheta/dq_nu' - dTheta/dq_nu - sum_b dTheta/dq_b df_b/dq_nu'
 //     - sum_b theta_b (d/dt df_b/dq_nu' - df_b/dq_nu - sum_c df_b/dq_c df_c/dq_nu')  =  G_nu + sum_b G_b df_b/dq_nu'

@@ -1,6 +1,6 @@
-// Doubles side by side, as many as an instruction set has: what the arithmetic of kernels is written over.
+// Vectors of doubles, as long as the instruction set allows: the number type of kernel arithmetic.
 //
-// Everything lies in an unnamed namespace: each tier (tier_*.cpp) has its own copy, compiled for its machine.
+// Everything is in an unnamed namespace: each tier (tier_*.cpp) has its own copy, compiled for its machine.
 #pragma once
 #ifdef __AVX2__
 #include <immintrin.h>
@@ -12,7 +12,7 @@
 namespace anholon {
 namespace {
 
-// Lanes of doubles; one lane is a double. fma is fused where the machine can, in every tier but the plainest.
+// Lanes of doubles; one lane is a double. fma is fused if the machine supports it, in every tier but the plainest.
 template <int L>
 struct Lanes;
 
@@ -63,7 +63,7 @@ struct Lanes<8> : SeveralLanes<8> {
 };
 #endif
 
-// x / n, rounded once: the exact quotient but for 2^-106 of it. 1 / n is `reciprocal` + `beyond`.
+// x / n, rounded once: the exact quotient up to a relative error of 2^-106. 1 / n is `reciprocal` + `beyond`.
 template <class T>
 typename T::V quotient(typename T::V x, double n, double reciprocal, double beyond) {
 #ifdef __FMA__

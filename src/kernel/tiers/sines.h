@@ -1,11 +1,11 @@
-// Sine and cosine over a lane type: of an angle and what it is beyond its double. Included by one file per instruction
-// set, as lanes.h is.
+// Sine and cosine over a lane type, of an angle and the part of the angle beyond its double. Included by one file per
+// instruction set, like lanes.h.
 //
 // With n the nearest integer to 2x/pi, the rest r = x - n pi/2 is known to twice the digits of a double (pi/2 as two
-// doubles, the product n P_1 with what it rounds away); sine and cosine of it are polynomials (minimax for r^2 up to
-// (pi/4)^2, errors of 1e-18 at most), to which the lower half of r adds its first order. Measured
-// (test/backends/sines_test.cpp): not more than 0.7 units of the last place. Angles from 2^27 on are left to the C
-// library.
+// doubles, the product n P_1 with its rounding error); sine and cosine of it are polynomials (minimax for r^2 up to
+// (pi/4)^2, errors of 1e-18 at most), to which the lower half of r adds a term of first order. Measured
+// (test/backends/sines_test.cpp): errors of at most 0.7 units of the last place. For angles from 2^27 on the C library
+// is used.
 #pragma once
 #include "kernel/arithmetic.h"
 #include "kernel/tiers/lanes.h"
@@ -36,7 +36,7 @@ struct Sines {
     }
   }
 
-  // For machine code: a vector of lanes each, what is beyond may be missing.
+  // For machine code: each argument is a vector of lanes; `beyond` may be null.
   static void at(const double* x, const double* beyond, double* sine, double* cosine) {
     V s, c;
     of(*reinterpret_cast<const V*>(x), beyond ? *reinterpret_cast<const V*>(beyond) : T::broadcast(0), s, c);
@@ -69,7 +69,7 @@ struct Sines {
     const V first = x - product, second = T::fma(n, T::broadcast(kHalfPiBeyond), rounded_away);
     const V r = first - second, low = ((first - r) - second) + beyond;
     const V z = r * r, half = T::broadcast(0.5) * z, one = T::broadcast(1), left = one - half;
-    // Without what lies in `low`, which may be as large as half a unit of a large angle.
+    // Computed without `low`, which may be as large as half a unit of the last place of a large angle.
     const V of_s = r * z, s_so_far = polynomial(kSine, z), lost = T::fma(r, r, -z);
     const V c_so_far = T::fma(z * z, polynomial(kCosine, z), T::fma(T::broadcast(-0.5), lost, (one - left) - half));
     const V s = r + T::fma(of_s, s_so_far, low * (left + c_so_far)),
@@ -80,7 +80,7 @@ struct Sines {
     cosine = with_sign(odd ? s : c, (quarter + 1) << 62);
   }
 
-  // The opposite where the highest bit is set.
+  // Negates v if the highest bit is set.
   static V with_sign(V v, typename T::B bits) { return T::of(T::bits(v) ^ (bits & 0x8000000000000000ULL)); }
 };
 

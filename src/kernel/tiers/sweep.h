@@ -1,7 +1,7 @@
 // The arithmetic of a kernel over one lane type: expansions. Included by one file per instruction set (tier_*.cpp),
-// which says which lanes there are.
+// which defines the lanes.
 //
-// Everything lies in an unnamed namespace: each of those files has its own copy, compiled for its machine.
+// Everything is in an unnamed namespace: each of those files has its own copy, compiled for its machine.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -77,7 +77,7 @@ class Sweep final : public SweepSteps<L> {
       determinant *= ratio;
       invalid += ratio - ratio;
     }
-    w_[k_.found.health] = invalid == zero ? health : zero;  // what is not a number
+    w_[k_.found.health] = invalid == zero ? health : zero;  // NaN
     w_[k_.found.determinant] = determinant;
     w_[k_.found.drift] = w_[k_.found.moved] = zero;
   }
@@ -152,9 +152,9 @@ class Sweep final : public SweepSteps<L> {
     return quotient<T>(x, d.number[i], d.reciprocal[i], d.beyond[i]);
   }
 
-  // Sum of a_j b_(p-j), j = 1..p - 1. Orders are computed in blocks of four: what was known before the block comes
-  // first (so that another tier may do that for four orders at once), then what is new of b, and of a. In each part the
-  // newest comes last.
+  // Sum of a_j b_(p-j), j = 1..p - 1. Orders are computed in blocks of four: products of coefficients from before the
+  // block come first (so that another tier can compute them for four orders at once), then those with new coefficients
+  // of b, then of a. In each part the newest comes last.
   V history(const V* a, const V* b, std::int64_t p) const {
     const std::int64_t known = block_ < p ? block_ : p, i = p - known, few = known < kBlock ? known : kBlock;
     V s = T::broadcast(0), t = s;
@@ -165,7 +165,7 @@ class Sweep final : public SweepSteps<L> {
     return s + t;
   }
 
-  // The same for j = first..last; first is 0 or 1, last p or p - 1.
+  // As above for j = first..last; first is 0 or 1, last p or p - 1.
   V convolution(const V* a, const V* b, std::int64_t p, bool first, bool last, bool b_later = false) const {
     V s = history(a, b, p);
     if (first && !b_later) s = T::fma(a[0], b[p], s);
@@ -273,7 +273,7 @@ class Sweep final : public SweepSteps<L> {
     return r;
   }
 
-  // Each product and each addition leaves what it rounds away.
+  // The rounding errors of each product and each addition.
   V beyond_of_sum(const Step& s) {
     const PlanTerm *term = &p_.terms[s.first], *low = &p_.terms[s.index];
     V r = T::broadcast(0), beyond = r;
@@ -385,9 +385,9 @@ class Sweep final : public SweepSteps<L> {
     }
   }
 
-  // Of the right sides in `side`; with `refine` once more for what the solution leaves of them. What is left comes from
-  // the linearized tape, not from J: where J is nearly singular, that still knows the small difference of two rates
-  // whose squares J has rounded away.
+  // Solves for the right sides in `side`; with `refine` again for the remaining residual. The residual is that of the
+  // linearized tape, not of J: if J is nearly singular, the tape still contains the small difference of two rates whose
+  // squares J has rounded away.
   void solve() {
     V* const side = w_ + k_.side;
     V* const rhs = w_ + k_.rhs;
@@ -422,7 +422,7 @@ class Sweep final : public SweepSteps<L> {
     for (std::uint32_t i = 0; i < p_.rows; ++i) y[i] += change[i];
   }
 
-  // Of sides of one.
+  // Solves for unit sides.
   void invert() {
     V* const rhs = w_ + k_.rhs;
     V* const y = w_ + k_.solution;
@@ -453,7 +453,7 @@ class Sweep final : public SweepSteps<L> {
     }
   }
 
-  std::int64_t block_ = 0;  // coefficients below were known before the present block
+  std::int64_t block_ = 0;  // coefficients below this order are older than the present block
 };
 
 }  // namespace

@@ -1,5 +1,4 @@
-// The arithmetic of a kernel over one lane type: what makes a step of an expansion. How far it reaches, and the state
-// at its end.
+// The arithmetic of a kernel over one lane type for a step: its reach, and the state at its end.
 #pragma once
 #include <algorithm>
 
@@ -19,8 +18,8 @@ class SweepSteps : public Arithmetic {
   SweepSteps(const KernelTables& tables, double* arena)
       : k_(tables), p_(*tables.plan), w_(reinterpret_cast<V*>(arena)) {}
 
-  // Sums of every fourth term, from the highest on, so that none waits for a power, and four orders are one vector
-  // elsewhere.
+  // Sums every fourth term, from the highest on, so that no term waits for a power, and four orders can be one vector
+  // in other code.
   void advance() override {
     weigh();
     V* out = w_ + k_.increments;
@@ -61,7 +60,7 @@ class SweepSteps : public Arithmetic {
                       : *high;
   }
 
-  // The newest coefficients come last: no division, no logarithm of anything else waits for them.
+  // The newest coefficients come last: only their own division and logarithm wait for them.
   void measure() override {
     const int order = p_.stages + 1;
     const V zero = T::broadcast(0), one = T::broadcast(1);
@@ -109,7 +108,7 @@ class SweepSteps : public Arithmetic {
       const V* x = w_ + p_.x[j];
       const int d = p_.d[j];
       for (int k = 0; k < d; ++k, ++to) {
-        // What the series do not know of the state.
+        // The change of the state by projection, which the series do not contain.
         V s = low[k] + *change++, power = step;
         for (int i = k + 1; i < d; ++i) {
           s = T::fma(high[i] - x[i] * T::broadcast(k_.factorial[static_cast<std::size_t>(i)]) + low[i], power, s);
@@ -158,7 +157,7 @@ class SweepSteps : public Arithmetic {
   V* w_;
 
  private:
-  // That of order k, of a derivative. Up to 2! the product is exact.
+  // The coefficient of order k from a derivative. Up to 2! the product is exact.
   V coefficient_of(V derivative, int k) const {
     const auto i = static_cast<std::size_t>(k);
     return k <= 2 ? V(derivative * T::broadcast(k_.inverse_factorial[i]))
@@ -179,7 +178,7 @@ class SweepSteps : public Arithmetic {
       for (int i = 1; i <= most - k; ++i) w_[k_.weight(k, i)] = power[i] * T::broadcast(k_.rising(k, i));
   }
 
-  // An error of a sum, rounded to what a long double keeps of both.
+  // The error of a sum, rounded to the digits that a long double keeps of sum and error.
   static V rest(V sum, V error) {
     const V grid = T::of(T::bits(sum) & 0x7ff0000000000000ULL) * T::broadcast(1.5 * 0x1p-11);
     return (error + grid) - grid;
@@ -198,7 +197,7 @@ class SweepSteps : public Arithmetic {
     return weight > T::broadcast(0) ? T::fma(cubic(kLog2, u), u * each, whole) : T::broadcast(kFarthest);
   }
 
-  // For |x| < 1000.
+  // Requires |x| < 1000.
   static V exp2(V x) {
     const V n = x + T::broadcast(kInteger), f = x - (n - T::broadcast(kInteger));
     return T::of(T::bits(cubic(kExp2, f)) + ((T::bits(n) - T::bits(T::broadcast(kInteger))) << 52));

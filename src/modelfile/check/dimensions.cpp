@@ -12,7 +12,7 @@ namespace anholon {
 
 namespace {
 
-// A number, a blank and a letter somewhere, or a key 'unit'.
+// Whether the item contains a number, a blank and a letter, or a key 'unit'.
 bool may_have_units(const Item& item) {
   if (item.key == "unit") return true;
   for (const char* prose : {"title", "source", "doc"})
@@ -27,18 +27,18 @@ bool may_have_units(const Item& item) {
   return std::any_of(item.items.begin(), item.items.end(), may_have_units);
 }
 
-// What each element of a model file says about dimensions.
+// The equations between dimensions that each element of a model file gives.
 class Elements {
  public:
   Elements(const Item& root, const Scope& scope, const Model& model)
       : root_(root), model_(model), formulas_(scope, model) {}
 
   bool run() {
-    // A value from outside may have taken the place of the only one with a unit.
+    // A value given from outside may have replaced the only one with a unit.
     each("parameters", [&](const Item& i) {
       if (i.is_formula()) formulas_.look_for_units(parse_formula(i.formula));
     });
-    tables();  // the units of their knots are given, not found
+    tables();  // the units of their knots are given, not inferred
     formulas_.declarations(found_);
     observer();
     each("gravity", [&](const Item& i) {
@@ -168,7 +168,7 @@ class Elements {
     each("input", [&](const Item& i) { expect(i, named(i.key)); });
   }
 
-  // The knots may have units, too.
+  // The knots may have units as well.
   void tables() {
     list("table", [&](const Item& t) {
       const Item* name = t.find("name");
@@ -247,11 +247,11 @@ class Elements {
 
 }  // namespace
 
-// A number without a unit among others that have one may be meant in theirs: "b = 18" beside "r = 8 cm".
+// A number without a unit among others that have one may be meant in their unit: "b = 18" beside "r = 8 cm".
 static void note_bare_numbers(const Scope& scope, Model& model) {
   const auto& names = model.names.parameters;
   std::map<std::string, std::string>
-      measured;  // the unit in SI: a parameter that is given with a unit, as it is written
+      measured;  // the unit in SI: a parameter that is given with a unit, in its written form
   std::vector<std::pair<std::size_t, std::string>> bare;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Scope::Declaration& d = scope.declarations().at(names[i]);

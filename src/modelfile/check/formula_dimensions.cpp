@@ -8,7 +8,7 @@ namespace anholon {
 
 using Type = Measured::Type;
 
-// Functions called inside one another, over the whole file: more is not looked into.
+// The limit of calls of functions inside one another, over the whole file; calls beyond it are not checked.
 static constexpr std::size_t kMostCalls = 20'000;
 
 FormulaDimensions::FormulaDimensions(const Scope& scope, const Model& model) : scope_(scope) {
@@ -36,7 +36,7 @@ void FormulaDimensions::alike(const Measured& a, const Measured& b, Span place, 
   throw Failure(place, dimensions_.text(a.dimension) + between + dimensions_.text(b.dimension) + behind);
 }
 
-// Degrees alone say nothing of lengths and masses.
+// Degrees alone do not determine the units of lengths and masses.
 void FormulaDimensions::seen(const DimensionForm& unit) {
   if (!in_override_ && unit.known != Dimension{}) units_seen = true;
 }
@@ -82,7 +82,7 @@ Measured FormulaDimensions::named(const std::string& name) {
     return !body ? anything() : scope_.is_particle(*body) ? vector(unit("m")) : Measured{Type::body, {}};
   }
   if (!it->second.arguments.empty() || std::find(open_.begin(), open_.end(), name) != open_.end()) return anything();
-  // A definition means the same wherever it is used.
+  // A definition has the same meaning wherever it is used.
   const auto arguments = std::exchange(arguments_, {});
   const bool in_override = std::exchange(in_override_, !it->second.override.empty()),
              field = std::exchange(in_field, false);
@@ -148,7 +148,7 @@ Measured FormulaDimensions::of(const Item& item) {
   return vector(first.dimension);
 }
 
-// The exponent as a number, where it is written out.
+// The exponent as a number, if it is written as one.
 static std::optional<Rational> written_number(const Syntax& s) {
   switch (s.op) {
   case Syntax::Op::number:
@@ -176,7 +176,7 @@ Measured FormulaDimensions::raised(const Syntax& s) {
   const Measured base = of(s.args[0]);
   if (const auto exponent = written_number(s.args[1])) return number(power(base.dimension, *exponent));
   pure(s.args[1]);
-  // An exponent that is a parameter (Hertz's 3/2): only of a pure number is the dimension known.
+  // If the exponent is a parameter (Hertz's 3/2), the dimension is known only for the power of a pure number.
   const auto known = dimensions_.known(base.dimension);
   return known && *known == Dimension{} ? number() : anything();
 }
@@ -212,7 +212,7 @@ Measured FormulaDimensions::term(const Syntax& s) {
 }
 
 Measured FormulaDimensions::of(const Syntax& s) {
-  // Deeper than any formula that a person writes: nothing is asked of it.
+  // A formula deeper than any that a person writes is not checked.
   constexpr int kDeepest = 500;
   if (depth_ > kDeepest) return anything();
   ++depth_;
@@ -361,8 +361,8 @@ Measured FormulaDimensions::call(const Syntax& s) {
     return f == "atan2" ? number() : first;
   }
   if (f == "choose" || f == "piecewise") {
-    // choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values are alike, and so are the sides of a
-    // condition.
+    // choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values have one dimension, and so have the sides
+    // of a condition.
     std::optional<Measured> value;
     for (std::size_t k = 0; k < s.args.size(); ++k) {
       const Syntax& a = s.args[k];
@@ -403,7 +403,8 @@ Measured FormulaDimensions::call(const Syntax& s) {
     return {Type::rotation, {}};
   }
   if (f == "vel" || f == "acc") {
-    // The velocity of a point is its derivative; of a material point of a body, or inertially, it is a velocity.
+    // The velocity of a point is its derivative; with a body (the material point) or `inertial` it has the dimension of
+    // a velocity.
     const DimensionForm per = power(unit("s"), f == "vel" ? 1 : 2);
     if (s.args.size() == 1) return vector(argument(0).dimension / per);
     for (const Syntax& a : s.args)

@@ -5,8 +5,8 @@
 
 namespace anholon {
 
-// What a formula is, as far as dimensions go. The components of a vector are alike; the entries of a rotation are
-// numbers.
+// The kind of a formula as far as dimensions matter. The components of a vector have one dimension; entries of a
+// rotation are numbers.
 struct Measured {
   enum class Type : std::uint8_t { number, vector, rotation, body, other } type = Type::other;
   DimensionForm dimension;
@@ -16,29 +16,30 @@ class FormulaDimensions {
  public:
   FormulaDimensions(const Scope& scope, const Model& model);
 
-  // All names that are declared; clashes inside one are reported once, where they are.
+  // Declares all names; a clash inside a declaration is reported once, at its place.
   void declarations(Diagnostics& found);
 
   void look_for_units(const Syntax& s);
   Measured of(const Syntax& s);
   Measured of(const Item& item);  // a formula, or an array of three
-  // As a whole side of an equation, or a term of a sum: an axis alone is 1 of any unit along it, as in vel(P) = T.x.
+  // The dimension of a side of an equation or of a term of a sum: a single axis is 1 of any unit along it, as in vel(P)
+  // = T.x.
   Measured term(const Syntax& s);
   Measured term(const Item& item) { return item.is_formula() ? term(parse_formula(item.formula)) : of(item); }
   Measured named(const std::string& name);
   DimensionForm unit(const char* text) const;
-  // Throw Failure where it cannot be.
+  // Throws Failure if m cannot have the wanted dimension.
   void expect(const Measured& m, const DimensionForm& wanted, Span place);
   void alike(const Measured& a, const Measured& b, Span place, const char* between, const char* behind = "");
   std::optional<Dimension> known(const std::string& name);
 
-  // x and y of a table.
+  // The dimensions of x and y of a table.
   std::pair<DimensionForm, DimensionForm> table(const std::string& name);
-  // A unit that stands beside a value.
+  // The dimension of a unit that is given beside a value.
   DimensionForm given_unit(const std::string& text);
 
   bool units_seen = false;  // in the file, not in --set
-  bool in_field = false;    // of [gravity], where 'here' is a place
+  bool in_field = false;    // in [gravity], where 'here' is a place
 
  private:
   Measured declared(const std::string& name, const Scope::Declaration& d);

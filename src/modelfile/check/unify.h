@@ -1,4 +1,4 @@
-// Unknown dimensions and what is known of them: linear equations over Q^7, solved as they come.
+// Unknown dimensions and the relations between them: linear equations over Q^7, solved as they are added.
 #pragma once
 #include <map>
 #include <optional>
@@ -21,9 +21,9 @@ DimensionForm operator/(const DimensionForm& a, const DimensionForm& b);
 
 class Dimensions {
  public:
-  DimensionForm unknown(const std::string& name = "");   // of what, for messages
-  DimensionForm resolved(const DimensionForm& f) const;  // with all that is known put in
-  // Takes a and b to be equal from here on; false, and nothing is learned, if they cannot be.
+  DimensionForm unknown(const std::string& name = "");   // the name is used in messages
+  DimensionForm resolved(const DimensionForm& f) const;  // with all known relations substituted
+  // Adds the equation a = b. Returns false, and adds nothing, if it is inconsistent.
   bool equate(const DimensionForm& a, const DimensionForm& b);
   std::optional<Dimension> known(const DimensionForm& f) const;
   std::string text(const DimensionForm& f) const;  // "a length (m)"

@@ -10,12 +10,13 @@
 
 namespace anholon {
 
-// Parameters are put into each other so many times.
+// The depth of references between parameters.
 static constexpr std::size_t kDeepestParameters = 400;
 
 void check_values(const Model& model, Diagnostics& diagnostics) {
   const Graph& g = *model.graph;
-  std::vector<std::size_t> depth(model.parameters.size(), 0);  // through how many others a value leads
+  // the length of the chain of references behind each value
+  std::vector<std::size_t> depth(model.parameters.size(), 0);
   const std::function<std::size_t(std::size_t)> deep = [&](std::size_t i) {
     if (depth[i] > 0 || is_number(model.parameters[i].value)) return depth[i];
     std::size_t most = 0;
@@ -56,7 +57,7 @@ void check_values(const Model& model, Diagnostics& diagnostics) {
     });
   };
   for (const Parameter& p : model.parameters)
-    if (!check(p.value, p.span, "the parameter '" + p.name + "'")) return;  // others may hold this one
+    if (!check(p.value, p.span, "the parameter '" + p.name + "'")) return;  // other parameters may contain this one
   for (const StateVariable& z : model.states) check(z.initial, z.span, "the initial value of '" + z.name + "'");
   for (const auto* list : {&model.initial.given, &model.initial.guess})
     for (const GivenValue& v : *list) check(v.value, v.span, "this initial value");

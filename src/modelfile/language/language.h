@@ -1,6 +1,6 @@
-// The language of model files as one table: its sections, their keys, what stands behind each, and what a reader of the
-// language wants to know of them. The reader takes the keys it knows from here, `anholon reference` prints it, and
-// editors get it as a JSON Schema, so that none of them can say anything else than the others.
+// The language of model files as one table: its sections, their keys, the types of their values, and their
+// documentation. The reader takes the known keys from this table, `anholon reference` prints it, and editors get it as
+// a JSON Schema, so all three agree.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace anholon {
 
-// What stands behind a key.
+// The type of a key's value.
 enum class Content : std::uint8_t {
   text,
   name,
@@ -28,7 +28,7 @@ enum class Content : std::uint8_t {
   place,
   columns,
   formulas,  // a table of formulas by name
-  values,    // the same, and tables of them by name
+  values,    // as formulas, and tables of them by name
   any,
 };
 
@@ -36,7 +36,7 @@ struct LanguageKey {
   const char* name;
   Content content;
   const char* meaning;                    // in Markdown, without full stop
-  std::vector<std::string> choices = {};  // of a choice
+  std::vector<std::string> choices = {};  // the values of a choice
 };
 
 struct LanguageSection {
@@ -44,24 +44,24 @@ struct LanguageSection {
     top,       // the file itself
     keys,      // [gravity]: these keys
     elements,  // [[body]]: a list of tables with these keys
-    named,     // [define]: names of the author, all with the same content, or with a table of these keys
+    named,     // [define]: names chosen by the author, all with the same content, or with a table of these keys
     part,      // a table within a section, called NAME of that section and the key: "force.on"
   };
   const char* name;
   Form form;
-  Content content;  // of each name of a `named` section
+  Content content;  // the content of each name of a `named` section
   std::vector<LanguageKey> keys;
-  const char* page;  // Markdown: examples first, then what is decided where one could doubt
+  const char* page;  // Markdown: examples first, then the rules for doubtful cases
 };
 
-// In the order of the reference page.
+// The sections in the order of the reference page.
 const std::vector<LanguageSection>& language();
 const LanguageSection& language_section(const std::string& name);
 
-// Keys of a section; of the file itself also the names of the sections.
+// The keys of a section; for the file itself also the names of the sections.
 std::vector<std::string> known_keys(const LanguageSection& section);
 
-// Names that mean something everywhere and cannot be declared.
+// A name that has a meaning everywhere and cannot be declared.
 struct ReservedName {
   const char* name;
   const char* meaning;

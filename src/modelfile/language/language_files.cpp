@@ -1,4 +1,4 @@
-// The language: the file itself, and what makes several files or elements of one.
+// The language: the file itself, bases, cases, and families.
 #include "modelfile/language/language.h"
 
 namespace anholon {

@@ -1,4 +1,4 @@
-// The language: unknowns beside coordinates, the start, what is recorded, how it is integrated.
+// The language: unknowns beside coordinates, initial data, output, integration.
 #include "modelfile/language/language.h"
 
 namespace anholon {

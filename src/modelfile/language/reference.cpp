@@ -111,7 +111,7 @@ error: a length (m) plus a time (s)
 
 )md";
 
-// What a formula means where one could doubt; checked by the test of the page.
+// A rule about the meaning of formulas that could be doubted; the test of the page checks it.
 struct Decision {
   const char* formula;
   const char* value;

@@ -4,7 +4,7 @@
 
 namespace anholon {
 
-// The page doc/language.md; or of one section its part. Throws Failure if there is none of that name.
+// The page doc/language.md, or the part of one section. Throws Failure if there is no section of that name.
 std::string reference_page();
 std::string reference_section(const std::string& name);
 

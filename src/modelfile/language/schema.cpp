@@ -28,7 +28,7 @@ void list_of(JsonWriter& j, std::initializer_list<const char*> types) {
   j.close();
 }
 
-// What stands behind a key; `list`: values of the members of a family may stand there.
+// The schema of a key's value; `list`: values for the members of a family are allowed.
 void content(JsonWriter& j, Content c, const std::vector<std::string>& choices = {}) {
   switch (c) {
   case Content::text:
@@ -96,7 +96,7 @@ void properties(JsonWriter& j, const LanguageSection& s) {
   }
 }
 
-// A table of these keys and, perhaps, names of the author.
+// The schema of a table of these keys and, if `others`, of names chosen by the author.
 void keys(JsonWriter& j, const LanguageSection& s, bool others) {
   type(j, {"object"});
   j.key("properties").open_object();
@@ -129,13 +129,13 @@ void section(JsonWriter& j, const LanguageSection& s) {
     type(j, {"object"});
     if (std::string(s.name) == "case") return;
     j.key("additionalProperties").open_object().key("anyOf").open_array();
-    // The value alone, a list of those of a family, or a table of its keys.
+    // The value alone, a list of values for the members of a family, or a table of its keys.
     j.open_object();
     type(j, {"string", "number", "array"});
     j.close().open_object();
     if (s.keys.empty()) {
       type(j, {"object"});
-      j.key("maxProperties").integer(0);  // {}: not known
+      j.key("maxProperties").integer(0);  // {}: an unknown key
     } else {
       keys(j, s);
     }

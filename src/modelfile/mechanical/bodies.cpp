@@ -24,7 +24,7 @@ void BodyReader::declare(const Item& root) {
   const auto place = [](const Item& i) {
     const Item* name = i.find("name");
     const Span s = name ? name->key_span : i.items.empty() ? i.span : i.items[0].key_span;
-    return std::tuple(-static_cast<long>(s.file), s.line, s.column);  // what a file builds on comes before it
+    return std::tuple(-static_cast<long>(s.file), s.line, s.column);  // base files come before the files that use them
   };
   std::stable_sort(found.begin(), found.end(),
                    [&](const Entry& a, const Entry& b) { return place(*a.item) < place(*b.item); });
@@ -79,7 +79,7 @@ Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
   return g.mass(static_cast<std::uint32_t>(index));
 }
 
-// Positions of a chain are parts of one another: what was looked through is not looked at again.
+// Positions of a chain are parts of one another: nodes that were checked are not checked again.
 void BodyReader::check_position(const Vector& place, const Item& item, const std::string& what) {
   const Graph& g = *model_.graph;
   for (int i = 0; i < 3; ++i) {
@@ -101,7 +101,7 @@ void BodyReader::check_position(const Vector& place, const Item& item, const std
     for (NodeId id : symbols) {
       const Node& n = g.node(id);
       const auto refuse = [&](const std::string& why, const std::string& hint) {
-        position_nodes_.clear();  // whoever holds it next is refused, too
+        position_nodes_.clear();  // the next position that contains it is refused as well
         throw Failure(item.span, what + why, hint);
       };
       if (n.kind == Kind::multiplier) refuse(" depends on a multiplier", "");
@@ -131,7 +131,7 @@ void BodyReader::read_body(const Entry& e) {
   body.particle = e.particle;
   body.mass = g.zero();
   body.center = body.gravity = body.exit_point = zero_vector(g);
-  // The list keeps its order even if this body turns out to be wrong.
+  // The list keeps its order even if this body turns out to be invalid.
   if (model_.bodies.size() <= e.index) model_.bodies.resize(e.index + 1, body);
   const std::string what = (e.particle ? "particle '" : "body '") + body.name + "'";
   check_keys(item, what, e.particle ? "particle" : "body", diagnostics_);
@@ -161,7 +161,7 @@ void BodyReader::read_body(const Entry& e) {
   }
   if (const Item* shape = item.find("shape")) {
     body.shape = read_shape(*shape, scope_, model_);
-    // Without a mass it is a picture only, as it is beside an inertia.
+    // A shape without a mass, or beside an inertia, only serves the picture.
     if (!inertia && !axes && !is_zero(mass_value)) shape_axes(body, mass_value, shape->span);
   }
   if (inertia || axes) read_axes(body, inertia, axes);
@@ -197,9 +197,9 @@ void BodyReader::read_body(const Entry& e) {
   model_.bodies[e.index] = std::move(body);
 }
 
-// The second moments as weighted axes. For J about the body axes, E = 1/2 tr(J) 1 - J; a principal
-// E gives the weights of the three axes. Products of inertia are put in exactly and without division
-// by E_kl (x_k x_l^T + x_l x_k^T) = E_kl [(x_k + x_l)(x_k + x_l)^T - x_k x_k^T - x_l x_l^T].
+// Represents the second moments by weighted axes. For J about the body axes, E = 1/2 tr(J) 1 - J; a principal E gives
+// the weights of the three axes. Products of inertia are included exactly and without division by E_kl (x_k x_l^T + x_l
+// x_k^T) = E_kl [(x_k + x_l)(x_k + x_l)^T - x_k x_k^T - x_l x_l^T].
 void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
   Graph& g = *model_.graph;
   if (inertia && axes) throw Failure(axes->key_span, "the body has both 'inertia' and 'axes'");
@@ -283,7 +283,7 @@ void BodyReader::add_axis(Body& body, Expr weight, const Column& own, const std:
   body.axes.push_back(axis);
 }
 
-// A varying mass makes varying moments, and they are frozen with it.
+// A varying mass makes the moments vary, and they are frozen with it.
 void BodyReader::shape_axes(Body& body, Expr mass, Span span) {
   if (!body.orientation)
     throw Failure(span, "the body '" + body.name + "' has the inertia of its shape but no orientation",
@@ -350,7 +350,7 @@ Force::Place BodyReader::place(const Item& item) {
     p.point =
         at->kind == Item::Kind::array ? scope_.center(p.body, at->span) + scope_.orientation(p.body, at->span) * a : a;
     p.at_center = is_zero(p.point - scope_.center(p.body, at->span));
-    if (!p.at_center) scope_.orientation(p.body, at->span);  // it must have one
+    if (!p.at_center) scope_.orientation(p.body, at->span);  // the body must have an orientation
   }
   return p;
 }

@@ -34,7 +34,7 @@ class BodyReader {
   Model& model_;
   Diagnostics& diagnostics_;
   std::vector<Entry> entries_;
-  std::unordered_set<NodeId> position_nodes_;  // that hold nothing a position may not
+  std::unordered_set<NodeId> position_nodes_;  // nodes without anything that a position may not contain
 };
 
 }  // namespace anholon

@@ -11,7 +11,7 @@
 
 namespace anholon {
 
-// The highest order of derivative on which phi truly depends.
+// The highest order of derivative on which phi depends after simplification.
 int ConstraintReader::true_order(Expr& phi) const {
   Graph& g = *model_.graph;
   for (int k = jet_order(phi);; --k) {
@@ -20,13 +20,13 @@ int ConstraintReader::true_order(Expr& phi) const {
     for (NodeId id : symbols({&phi, 1}))
       if (g.node(id).kind == Kind::jet && g.node(id).order == k) top.push_back({&g, id});
     const Column d = gradient(phi, top);
-    const auto told = [](Expr e) { return is_number(e) && !is_zero(e); };  // without a proof
+    const auto told = [](Expr e) { return is_number(e) && !is_zero(e); };  // a number at a glance, without a proof
     const bool depends = std::any_of(d.begin(), d.end(), told) ||
                          std::any_of(d.rbegin(), d.rend(), [](Expr e) { return !proved_zero(e); });
     if (depends) return k;
     phi = substitute({&phi, 1}, [&](NodeId id) {
       const Node& n = g.node(id);
-      // Any value will do, as phi does not depend on it; zero might stand in a denominator.
+      // Any value serves, because phi does not depend on the symbol; zero could occur in a denominator.
       return n.kind == Kind::jet && n.order == k ? g.number(Rational(17, 13)) : Expr{};
     })[0];
   }
@@ -51,7 +51,7 @@ void ConstraintReader::add_constraint(const std::string& name, Expr phi, const s
   model_.names.multipliers.push_back(name);
 }
 
-// What quaternions need to be rotations.
+// The unit norms that quaternions need.
 std::vector<UnitNorm> ConstraintReader::norms_of_quaternions() {
   std::vector<UnitNorm> norms;
   collect(diagnostics_, [&] { norms = unit_norms(scope_, model_); });

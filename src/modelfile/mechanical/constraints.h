@@ -1,4 +1,4 @@
-// [[constraint]]: equations of numbers or vectors, along axes, kept by inputs; the unit norms that quaternions need.
+// [[constraint]]: equations of numbers or vectors, along axes, or maintained by inputs; the unit norms of quaternions.
 #pragma once
 #include <set>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace anholon {
 
-// Coordinates, or coordinates and constraints, beyond these are refused: matrices of their equations would not fit in
-// memory, and their factors would take minutes.
+// More coordinates, or coordinates and constraints, are refused: the matrices of their equations would not fit in
+// memory, and their factorization would take minutes.
 inline constexpr std::size_t kMostCoordinates = 2000, kMostUnknowns = 2500;
 
 class ConstraintReader {
@@ -18,7 +18,7 @@ class ConstraintReader {
       : scope_(scope), model_(model), diagnostics_(diagnostics) {}
 
   void read(const Item& root);
-  // What quaternions need to be rotations, after all that may hold one was read.
+  // The unit norms that quaternions need; call it after everything that may contain a quaternion has been read.
   std::vector<UnitNorm> norms_of_quaternions();
 
  private:

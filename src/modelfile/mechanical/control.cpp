@@ -27,7 +27,7 @@ void declare_controls(const Item& root, Scope& scope, Model& model, Diagnostics&
     });
 }
 
-// Inputs in the formulas of others are put in, until none is left.
+// Substitutes inputs in the formulas of other inputs until none is left.
 static void close(Model& model, Diagnostics& diagnostics) {
   const Graph& g = *model.graph;
   for (std::size_t depth = 0; depth <= model.controls.size(); ++depth) {
@@ -129,7 +129,7 @@ static void record(const std::string& column, Expr value, const OutputQuantity& 
       std::find(taken.begin(), taken.end(), column) != taken.end() ||
       std::any_of(model.monitors.begin(), model.monitors.end(), [&](const Monitor& m) { return m.name == column; }))
     throw Failure(output.span, "a column '" + column + "' is there already", "give the output a name of its own");
-  // What is recorded is in the unit that was asked for.
+  // Converts the output to the unit that was asked for.
   if (!output.unit.empty()) {
     const Unit unit = *read_unit(output.unit);
     const Expr factor = model.graph->number(Rational(1 / unit.factor));

@@ -68,8 +68,8 @@ std::optional<Expr> antiderivative(Expr e) {
   return total;
 }
 
-// The rotation A(t) whose angular velocity is `spin`, equal to 1 at t = 0, where the direction of
-// the spin is one of the axes.
+// The rotation A(t) whose angular velocity is `spin`, equal to 1 at t = 0; nullopt unless the direction of the spin is
+// one of the axes.
 static std::optional<Rotation> rotation_of(const Vector& spin) {
   int axis = -1;
   for (int i = 0; i < 3; ++i) {
@@ -86,7 +86,7 @@ static std::optional<Rotation> rotation_of(const Vector& spin) {
   return turn(axis, *angle - start);
 }
 
-// The axes at a few times: nothing else holds an observer's axes at right angles.
+// Checks the axes at a few times: only the user's formulas keep an observer's axes orthonormal.
 static void check_orthonormal(const Rotation& a, const Model& model, Span span) {
   constexpr double kRounded = 1e-9;
   Graph& g = *model.graph;
@@ -151,7 +151,7 @@ void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics&
   check(v, *origin);
   const std::string& key = origin->key;
   if (key == "origin_acceleration") {
-    o.origin_velocity.reset();  // known up to a constant only
+    o.origin_velocity.reset();  // known only up to a constant
     o.origin_acceleration = v;
   } else if (key == "origin_velocity") {
     o.origin_velocity = v;

@@ -9,8 +9,8 @@ namespace anholon {
 
 void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics);
 
-// A function of t whose derivative is e (sums of constants, powers of t, and sin, cos, exp of
-// arguments linear in t, times constants); nothing if e is of another kind.
+// A function of t whose derivative is e (sums of constants, powers of t, and sin, cos, exp of arguments linear in t,
+// times constants); nullopt if e is of another kind.
 std::optional<Expr> antiderivative(Expr e);
 
 }  // namespace anholon

@@ -9,7 +9,7 @@
 
 namespace anholon {
 
-// Is this constraint a multiple of norm^2 = 1?
+// Whether this constraint is a multiple of norm^2 = 1.
 static bool same_constraint(Expr phi, Expr norm) {
   for (const Rational& k : {Rational(1), Rational(-1), Rational(1, 2), Rational(-1, 2)})
     if (proved_zero(phi - k * norm)) return true;
@@ -27,7 +27,7 @@ std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model) {
     if (is_zero(phi) || proved_zero(phi)) continue;
     if (std::any_of(list.begin(), list.end(), [&](const UnitNorm& n) { return n.phi == phi; })) continue;
     if (jet_order(phi) < 0) {
-      // Given numbers, or functions of time: nothing can hold them to 1, so they must be it.
+      // Given numbers, or functions of time, cannot be constrained: their norm must be 1 already.
       for (const Rational& t : {Rational(0), Rational(3, 10), Rational(2)}) {
         const Expr at =
             substitute({&phi, 1}, [&](NodeId id) { return g.node(id).kind == Kind::time ? g.number(t) : Expr{}; })[0];
@@ -63,7 +63,7 @@ void start_at_identity(const std::vector<UnitNorm>& norms, Model& model) {
   Graph& g = *model.graph;
   for (const UnitNorm& n : norms) {
     if (!n.scalar) continue;
-    // The position that a value is given for, if it is one of the four.
+    // The index of the component that the value is given for, if it is one of the four.
     const auto component = [&](const GivenValue& v) -> std::optional<std::size_t> {
       const Node& node = g.node(v.symbol.id);
       const auto it = std::find(n.coordinates.begin(), n.coordinates.end(), node.index);
@@ -79,7 +79,7 @@ void start_at_identity(const std::vector<UnitNorm>& norms, Model& model) {
         given += value * value;
       }
     for (const GivenValue& v : model.initial.guess) mentioned = mentioned || component(v).has_value();
-    // With norm 1 already the scalar part stays 0: half a turn.
+    // If the norm is already 1, the scalar part stays 0: half a turn.
     if (mentioned || given > 1 - kFull) continue;
     model.initial.guess.push_back({g.jet(static_cast<std::uint32_t>(*n.scalar), 0), g.one(), n.span});
   }

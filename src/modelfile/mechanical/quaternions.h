@@ -1,5 +1,5 @@
-// quat(e0, e1, e2, e3) is a rotation only where e0^2 + e1^2 + e2^2 + e3^2 = 1: the equation becomes a constraint of the
-// model (theory: weighted-points), once for each quaternion, unless it always holds or the file has it already.
+// quat(e0, e1, e2, e3) is a rotation only if e0^2 + e1^2 + e2^2 + e3^2 = 1: the equation becomes a constraint of the
+// model (theory: weighted-points), once for each quaternion, unless it always holds or the file contains it already.
 #pragma once
 #include "modelfile/names/names.h"
 
@@ -9,15 +9,15 @@ struct UnitNorm {
   std::string name;  // "norm.e0", by the first component that is a coordinate
   Expr phi;          // norm^2 - 1
   std::string equation;
-  Span span;                          // of quat(…)
-  std::optional<std::size_t> scalar;  // the coordinate e0, where the four components are four coordinates
+  Span span;                          // place of quat(…)
+  std::optional<std::size_t> scalar;  // the coordinate e0, if the four components are four coordinates
   std::vector<std::size_t> coordinates;
 };
 
-// What must be added for the quaternions met so far. Throws Failure for one that is no rotation.
+// Constraints to add for the quaternions read so far. Throws Failure for one that is no rotation.
 std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model);
 
-// A quaternion of four coordinates whose first is not given is guessed to be near the identity: 0, the default, is no
+// For a quaternion of four coordinates whose first is not given, the guess is near the identity: the default 0 is not a
 // rotation.
 void start_at_identity(const std::vector<UnitNorm>& norms, Model& model);
 

@@ -1,12 +1,12 @@
 // shape = "disc(R)": homogeneous solids of mass m and their central moments of inertia about the body axes. Disc, ring
-// and cylinder are turned about z, a rod lies along x. torus(R, r): a full tube of radius r around the circle of radius
-// R.
+// and cylinder are turned about z, the axis of a rod is x. torus(R, r): a full tube of radius r around the circle of
+// radius R.
 #pragma once
 #include "modelfile/names/names.h"
 
 namespace anholon {
 
-// The shape with its sizes, numbers and formulas of parameters. Throws Failure.
+// Reads the shape with its sizes, which are numbers or formulas of parameters. Throws Failure.
 Shape read_shape(const Item& item, Scope& scope, Model& model);
 
 // Moments of inertia about x, y, z for the mass m.

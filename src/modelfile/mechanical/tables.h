@@ -1,4 +1,4 @@
-// [[table]]: functions given by values at knots, in the file or in columns of another one.
+// [[table]]: functions given by values at knots, in the file or in columns of another file.
 #pragma once
 #include "modelfile/names/names.h"
 

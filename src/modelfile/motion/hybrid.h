@@ -1,9 +1,9 @@
-// [state], [mode] and [[event]]: what the user adds to the mechanics, and what changes at a moment.
+// [state], [mode] and [[event]]: additions to the mechanics, and instantaneous changes.
 //
-// A state z has z' = rate. A mode is constant between events. An event fires where the formula `when` strictly changes
+// A state z has z' = rate. A mode is constant between events. An event fires when the formula `when` strictly changes
 // its sign along the motion, not at the start and not right after an event; `set` gives modes, states, coordinates or
-// their derivatives new values, by the values before. Of several events at one moment each is served in the order of
-// the file, and finds what those before it have set.
+// their derivatives new values, computed from the old ones. Several events at one moment are served in the order of the
+// file; each sees the values set by the earlier ones.
 #pragma once
 #include "modelfile/names/names.h"
 

@@ -47,10 +47,10 @@ class InitialReader {
             add(out.given, i, symbol(i.key, i.key_span));
           },
           i);
-    // For constraints of order 3 and more these are initial data; below they follow from the state.
+    // For constraints of order 3 and more these are initial data; for lower orders they follow from the state.
     int highest = 0;
     for (const Constraint& c : model_.constraints) highest = std::max(highest, c.order);
-    // The reaction of a mass that depends on accelerations holds their rates.
+    // The reaction of a mass that depends on accelerations contains their rates.
     for (const VaryingMass& m : model_.masses)
       highest = std::max(highest, jet_order(m.value) + (jet_order(m.value) > 1 ? 1 : 0));
     for (const GivenValue& v : out.given) {

@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// Derivatives beyond this order would be computed at every row.
+// Derivatives of higher order would be computed at every row, so they are refused.
 static constexpr int kHighestOrder = 20;
 
 static void read_one(const Item& i, Scope& scope, Model& model) {

@@ -1,5 +1,5 @@
-// [monitor] name = "formula": numbers to be watched along the motion, over everything that formulas know and the
-// multipliers.
+// [monitor] name = "formula": numbers that are watched along the motion; the formulas may use all names of formulas and
+// the multipliers.
 #pragma once
 #include "modelfile/names/names.h"
 

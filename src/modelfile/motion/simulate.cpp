@@ -6,7 +6,7 @@
 
 namespace anholon {
 
-// An end time, and a number of rows, beyond these are refused before they are tried.
+// A later end time, or a larger number of rows, is refused at once.
 static const Rational kLatest(mpz_class("1000000000000000000"));
 static constexpr long kMostRows = 5'000'000;
 

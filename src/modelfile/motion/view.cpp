@@ -86,7 +86,7 @@ class ViewReader {
     if (i.kind != Item::Kind::array)
       throw Failure(i.span, "'hide' is a list of bodies and points", "hide = [\"rotor\"]");
     for (const Item& item : i.items) {
-      // The name of a family means all its members.
+      // The name of a family denotes all its members.
       const std::string family = (item.kind == Item::Kind::string ? normal_name(item.text()) : "") + "[";
       bool any = false;
       for (const std::string& name : drawn_)
@@ -133,7 +133,7 @@ class ViewReader {
     view_.elements.push_back(std::move(e));
   }
 
-  // Keys that go with what is shown.
+  // Keys that depend on the object that is shown.
   void keys(const Item& i, const View::Element& e) {
     for (const Item& k : i.items) {
       const bool at = (e.kind == View::Kind::solid || e.kind == View::Kind::vector) && k.key == "at";

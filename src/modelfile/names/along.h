@@ -6,7 +6,7 @@ namespace anholon {
 
 struct Direction {
   std::string tag;             // "x", "y", "z" of axes, "1", "2", … of a list
-  std::optional<Vector> axis;  // none: the observer's own, whose component stands in the vector itself
+  std::optional<Vector> axis;  // nullopt: the observer's own axis, whose component is in the vector itself
 };
 
 // along = "frame" (a frame, a body, or a formula of a rotation) or along = ["v1", "v2"]; without it ex, ey, ez. Throws

@@ -1,5 +1,5 @@
-// What a call means in a model file: velocities and accelerations of points, angular velocities, the
-// gravity field, components along a frame, given functions.
+// The meaning of calls in a model file: velocities and accelerations of points, angular velocities, the gravity field,
+// components along a frame, given functions.
 #include <algorithm>
 
 #include "modelfile/names/names.h"
@@ -7,10 +7,10 @@
 
 namespace anholon {
 
-// Calls of given functions over a whole file; more would unfold without end.
+// The limit of calls of given functions over a whole file; more would expand without end.
 static constexpr std::size_t kMostCalls = 100'000;
 
-// vel(B, P): the velocity of the material point of B that is at P now.
+// vel(B, P): the velocity of the material point of B that coincides with P.
 Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use) {
   const Vector c = center(body, use);
   const Vector v = total_derivative(c);
@@ -19,7 +19,7 @@ Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use)
     throw Failure(use, "the body '" + body_names_[body] + "' has no orientation: it has no material point there",
                   "give it orientation = \"…\", or angle = \"…\" in the plane");
   }
-  // One after the other: nodes are numbered in the order of their making, by every compiler alike.
+  // One after the other: nodes are numbered in the order of their creation, so that all compilers number them alike.
   const Vector rate = orientation(body, use).rate;
   const Vector arm = place - c;
   return v + cross(rate, arm);
@@ -49,7 +49,7 @@ static Vector components(const std::vector<Value>& a, const Syntax& s) {
   return {number(0), number(1), number(2)};
 }
 
-// The table's value; one that must not be left ends the motion where it is.
+// The value of the table; the motion ends at the border of a table that must not be left.
 Expr Scope::look_up(std::size_t index, Expr x, Span use) {
   const TableEntry& entry = tables_[index];
   if (entry.table.outside == Outside::error) {

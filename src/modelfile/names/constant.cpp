@@ -66,7 +66,7 @@ std::optional<double> constant_value(const Model& model, Expr e) {
       const Node& n = g.node(id);
       return n.kind == Kind::parameter ? model.parameters[n.index].value : Expr{};
     })[0];
-  if (!symbols({&e, 1}).empty()) return std::nullopt;  // (a division by zero is thrown as Failure)
+  if (!symbols({&e, 1}).empty()) return std::nullopt;  // (a division by zero throws Failure)
   const Tape tape = compile({&e, 1});
   Machine<double> machine(tape, 0, {});
   machine.evaluate();

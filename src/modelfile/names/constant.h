@@ -9,11 +9,11 @@
 namespace anholon {
 
 struct Constant {
-  Rational value;                      // in SI units; where pi or a root is in it, to 60 digits
-  std::optional<Dimension> dimension;  // of a number with a unit
+  Rational value;                      // in SI units; to 60 digits if it contains pi or a root
+  std::optional<Dimension> dimension;  // the dimension of a number with a unit
 };
 
-// Throws Failure, with the place in the text as column of line 1.
+// Throws Failure with the position in the text, as a column of line 1.
 Constant read_constant(const std::string& text);
 
 // The value of an expression of parameters and numbers; nullopt if it depends on anything else.

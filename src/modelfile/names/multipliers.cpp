@@ -19,14 +19,14 @@ Value Scope::multiplier(const std::string& path, Span use) {
   if (const auto it = std::find(names.begin(), names.end(), path); it != names.end())
     return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
   for (const std::string& n : names)
-    if (n.rfind(path + ".", 0) == 0) return InertialName{};  // of a vector equation: a component follows
+    if (n.rfind(path + ".", 0) == 0) return InertialName{};  // of a vector equation: a component must follow
   const std::string near = did_you_mean(path, names);
   throw Failure(use, "there is no constraint '" + path + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
 bool is_reaction(const std::string& function) { return function == "reaction" || function == "reaction_torque"; }
 
-// reaction(B), reaction_torque(B): by Newton's law, from the accelerations.
+// reaction(B), reaction_torque(B): from the accelerations, by Newton's law.
 Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
   if (multipliers_ == 0)
     throw Failure(call.span,
@@ -36,7 +36,7 @@ Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
   return call.text == "reaction" ? r.force : r.torque;
 }
 
-// A look at the texts spares most files the search below.
+// Looks at the texts first, which spares most files the search below.
 bool Scope::speaks_of_multipliers() {
   if (!speaks_of_multipliers_)
     speaks_of_multipliers_ = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
@@ -47,7 +47,7 @@ bool Scope::speaks_of_multipliers() {
   return *speaks_of_multipliers_;
 }
 
-// Does a definition hold a multiplier or a reaction, itself or through others?
+// Whether a definition contains a multiplier or a reaction, itself or through others.
 bool Scope::holds_multiplier(const std::string& name) {
   if (!speaks_of_multipliers()) return false;
   if (const auto known = holds_multiplier_.find(name); known != holds_multiplier_.end()) return known->second;
@@ -65,7 +65,7 @@ bool Scope::holds_multiplier(const std::string& name) {
     try {
       trees.push_back(parse_formula(d.formula));
     } catch (const Failure&) {
-      continue;  // reported where it is evaluated
+      continue;  // reported at its evaluation
     }
     while (!trees.empty() && !found) {
       const Syntax s = std::move(trees.back());

@@ -10,7 +10,7 @@
 
 namespace anholon {
 
-// Definitions within each other in one go (a matter of the stack); what is deeper waits for its parts
+// The limit of nested definitions in one evaluation (for the stack); deeper ones are evaluated from their parts up
 // (from_the_ground).
 static constexpr std::size_t kDeepest = 200;
 
@@ -67,7 +67,7 @@ const std::size_t* Scope::find_body(const std::string& name) const {
 }
 
 void Scope::unknown(const std::string& name, Span span) const {
-  // Where so much is unknown a guess at each name helps nobody, and takes long.
+  // With more failures than this no names are suggested: they would not help, and take long.
   constexpr std::size_t kMostGuesses = 100;
   if (failures.size() > kMostGuesses) throw Failure(span, "unknown name '" + name.substr(0, 60) + "'");
   std::vector<std::string> known;
@@ -134,7 +134,8 @@ bool has_unit(const Syntax& s) {
   return s.op == Syntax::Op::quantity || std::any_of(s.args.begin(), s.args.end(), has_unit);
 }
 
-// {value = 2, unit = "km"} is 2 km; a bare number from outside has this unit, too, one with a unit its own.
+// {value = 2, unit = "km"} is 2 km; a bare number from outside has this unit, too, and a number with a unit keeps its
+// own.
 Value Scope::in_its_unit(Value v, const Declaration& d) {
   if (d.unit.empty()) return v;
   const bool own = d.item ? std::any_of(d.item->items.begin(), d.item->items.end(),
@@ -159,7 +160,7 @@ Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
   case Role::control:
     return g.control(static_cast<std::uint32_t>(d.index), 0);
   case Role::table:
-    return InertialName{};  // means something with an argument only
+    return InertialName{};  // has a meaning only with an argument
   case Role::coordinate:
     return g.jet(static_cast<std::uint32_t>(d.index), 0);
   case Role::function:
@@ -209,7 +210,7 @@ Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
 }
 
 namespace {
-// Marks something as being evaluated, whatever way its evaluation ends.
+// Marks a declaration as being evaluated until the evaluation ends, with or without a failure.
 class Opened {
  public:
   Opened(bool& flag, std::size_t& depth) : flag_(flag), depth_(depth) { flag_ = true, ++depth_; }
@@ -223,7 +224,8 @@ class Opened {
 };
 }  // namespace
 
-// Asks again and again, each time for what was too deep before, until the first question is answered.
+// Repeats the evaluation, each time first for the definition that was too deep before, until the first request
+// succeeds.
 void Scope::from_the_ground(const std::function<void()>& ask) {
   std::vector<TooDeep> waiting{{"", nullptr, {}, ask}};
   while (!waiting.empty()) {
@@ -244,7 +246,7 @@ void Scope::from_the_ground(const std::function<void()>& ask) {
       }
       waiting.push_back(deep);
     } catch (const Failure&) {
-      // A declaration has kept its failure, and who waits for it meets it.
+      // The declaration stores its failure; the definitions that wait for it fail at its use.
       if (waiting.size() == 1 || !waiting.back().declaration) throw;
       waiting.pop_back();
     }
@@ -274,7 +276,7 @@ void Scope::settle(const std::string& name, Declaration& d, Span use) {
   d.state = State::open;
   ++depth_;
   open_.push_back(name);
-  // A definition means the same wherever it is used: not frozen, not inside a call.
+  // A definition has the same meaning wherever it is used: not frozen, not inside a call.
   const bool frozen = std::exchange(freeze_masses, false);
   const auto arguments = std::exchange(arguments_, {});
   const auto here = std::exchange(here_, std::nullopt);
@@ -342,7 +344,7 @@ Value Scope::name(const std::string& name, Span span) {
     return *here_;
   }
   if (name == "lambda") {
-    if (multipliers_ > 0) return InertialName{};  // means something with a member only
+    if (multipliers_ > 0) return InertialName{};  // has a meaning only with a member
     throw Failure(span,
                   "a multiplier has no meaning here: it follows from the equations of which this formula is a part",
                   kWhereMultipliers);
@@ -402,7 +404,7 @@ Value Scope::member(const Value& object, const Syntax& s) {
                 object.index() == 0 ? habit_of_member(s) : "");
 }
 
-// A particle is the point where it is. (Of a body that merely has no orientation the centre is meant less surely.)
+// A particle denotes the point of its position. (A body that merely has no orientation does not denote its centre.)
 std::optional<Vector> Scope::point(const BodyName& body, Span use) {
   return parts_[body.index].particle ? std::optional(center(body.index, use)) : std::nullopt;
 }
@@ -419,7 +421,7 @@ Vector Scope::center(std::size_t body, Span use) {
   return *parts_[body].center_value;
 }
 
-// What fails once is reported once: whoever needs it afterwards fails in silence.
+// Reports a failure once: a later use of the failed element fails silently.
 static void keep_failure(bool& failed, const std::function<void()>& f) {
   try {
     f();
@@ -483,7 +485,7 @@ Vector Scope::gravity_at(const Vector& place, Span use) {
 
 std::vector<Vector> Scope::gravity_gradient_at(const Vector& place, Span use) {
   Graph& g = *model_.graph;
-  // The place stands as three symbols that no model has, so that the field can be differentiated by it.
+  // Three symbols that no model has represent the place, so that the field can be differentiated by it.
   constexpr std::uint32_t kPlace = 200'000;
   const Column here = {g.quasi(kPlace, 0), g.quasi(kPlace + 1, 0), g.quasi(kPlace + 2, 0)};
   const Vector field = gravity_at({here[0], here[1], here[2]}, use);

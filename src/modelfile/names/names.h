@@ -1,7 +1,7 @@
-// What a name means in a model file: looked up when needed, in any order of declaration.
+// The meaning of names in a model file, looked up when needed, in any order of declaration.
 //
-// Values (coordinates, parameters, functions, defines, frames, points) share one namespace, bodies
-// have their own, so that a point P and a body P may live together.
+// Values (coordinates, parameters, functions, defines, frames, points) share one namespace, bodies have their own, so
+// that a point P and a body P may live together.
 #pragma once
 #include <functional>
 #include <map>
@@ -18,7 +18,7 @@ class Scope final : public Names {
  public:
   explicit Scope(Model& model) : model_(model) {}
 
-  // Declarations. A formula is parsed and evaluated at its first use.
+  // A declaration. Its formula is parsed and evaluated at its first use.
   enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point, state, control, table };
   struct Declaration {
     Role role = Role::define;
@@ -27,9 +27,9 @@ class Scope final : public Names {
     const Item* item = nullptr;          // an array value
     std::vector<std::string> arguments;  // of a function with arguments
     Span span;
-    bool symbolic = false;  // stands for itself: coordinate, unknown function
+    bool symbolic = false;  // a symbol of its own: coordinate, unknown function
     std::string unit;       // of a parameter {value, unit}
-    std::string override;   // "--set m=3", where the value comes from there
+    std::string override;   // "--set m=3", if the value comes from the command line
     enum class State : std::uint8_t { fresh, open, done, failed } state = State::fresh;
     std::size_t place = 0;  // among all declarations
     Value value = InertialName{};
@@ -37,21 +37,22 @@ class Scope final : public Names {
     bool parsed = false;
   };
   void reserve(const std::set<std::string>& letters) { letters_ = letters; }  // of [index]
-  // Throws Failure if the name is reserved, not an identifier (with whole numbers in a bracket: P[2]) or taken.
+  // Throws Failure if the name is reserved, already taken, or not an identifier (P[2], with whole numbers in a bracket,
+  // is allowed).
   void declare(const std::string& name, Declaration d);
   void declare_body(const std::string& name, Span span);
   void set_gravity(const Item& field);
   std::size_t add_table(Table table);
   bool has_tables() const { return !tables_.empty(); }
 
-  // The bodies' parts, evaluated on demand (a centre may refer to another body's centre).
+  // The parts of bodies, evaluated on demand (a centre may refer to another body's centre).
   struct BodyParts {
     const Item* center = nullptr;
     const Item* orientation = nullptr;
     const Item* angle = nullptr;
     bool particle = false;
     bool center_open = false, orientation_open = false;
-    bool center_failed = false, orientation_failed = false;  // and said so
+    bool center_failed = false, orientation_failed = false;  // and the failure was reported
     std::optional<Vector> center_value;
     std::optional<Rotation> orientation_value;
   };
@@ -64,18 +65,19 @@ class Scope final : public Names {
   const std::size_t* find_body(const std::string& name) const;
   const std::vector<std::string>& body_names() const { return body_names_; }
 
-  // Evaluation of items: a string or number is a formula, an array a vector.
+  // Evaluates an item: a string or number is a formula, an array a vector.
   Expr number(const Item& item);
   Vector vector(const Item& item);
   Rotation rotation(const Item& item);
   std::vector<Syntax> equation(const Item& item);
   Value evaluate_value(const Item& item);
-  void resolve_all();  // evaluates what nothing used, so that its errors are reported
+  void resolve_all();  // evaluates unused declarations, so that their errors are reported
   const std::map<std::string, Declaration>& declarations() const { return declarations_; }
 
-  // In potentials the name of a varying mass means its frozen symbol.
+  // In potentials the name of a varying mass denotes its frozen symbol.
   bool freeze_masses = false;
-  // Within its life formulas may hold multipliers and reactions, and definitions that do: constraints are known then.
+  // While an object of this class exists, formulas may contain multipliers and reactions, and definitions that contain
+  // them: the constraints are known then.
   class Multipliers {
    public:
     explicit Multipliers(Scope& scope) : scope_(scope) { ++scope_.multipliers_; }
@@ -87,8 +89,8 @@ class Scope final : public Names {
     Scope& scope_;
   };
   Vector gravity_at(const Vector& place, Span use);
-  // Its derivatives by the three coordinates of the place; none where the field is uniform.
-  bool gravity_gradient = false;  // asked for by [gravity] gradient
+  // The derivatives of the field of gravity by the three coordinates of the place; none if the field is uniform.
+  bool gravity_gradient = false;  // set by [gravity] gradient
   std::vector<Vector> gravity_gradient_at(const Vector& place, Span use);
   std::vector<Diagnostic> failures;  // of declarations evaluated on demand
 
@@ -114,10 +116,11 @@ class Scope final : public Names {
   const std::vector<Quaternion>& quaternions() const { return quaternions_; }
 
  private:
-  // A definition that leads through too many others to be evaluated in one go: it waits until what it needs is known.
+  // A definition that leads through too many others to be evaluated in one go: it is evaluated after the definitions
+  // that it needs.
   struct TooDeep {
     std::string name;
-    Declaration* declaration;  // or a part of a body
+    Declaration* declaration;  // null for a part of a body
     Span use;
     std::function<void()> ask;
   };
@@ -156,22 +159,22 @@ class Scope final : public Names {
   std::optional<Vector> here_;
   std::vector<Quaternion> quaternions_;
   std::vector<std::string> open_;                        // path of names being evaluated
-  std::size_t depth_ = 0;                                // of definitions and parts of bodies within each other
+  std::size_t depth_ = 0;                                // depth of nested definitions and parts of bodies
   std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
-  int multipliers_ = 0;                                  // how many allow them
+  int multipliers_ = 0;                                  // number of callers that allow them
   std::optional<bool> speaks_of_multipliers_;            // some definition may hold one
   std::map<std::string, bool> holds_multiplier_;
   std::size_t calls_ = 0;  // of given functions, over the whole file
 };
 
-// Where multipliers and reactions may stand.
+// The places in which multipliers and reactions are allowed.
 inline constexpr const char* kWhereMultipliers =
     "such a formula stands in conditions, monitors, outputs, rates and events, or in a [define] that these use";
 bool is_reaction(const std::string& function);
 // "rolling.x" of lambda.rolling.x; empty for other members.
 std::string multiplier_path(const Syntax& member);
 
-// Does a number with a unit occur in it?
+// Whether a number with a unit occurs in the formula.
 bool has_unit(const Syntax& s);
 
 }  // namespace anholon

@@ -51,7 +51,7 @@ class Latex {
   bool end() const { return at_ >= text_.size(); }
   static std::string row(const std::string& parts) { return "<mrow>" + parts + "</mrow>"; }
 
-  // Up to the end, or to the brace that closes it.
+  // Reads up to the end, or up to the closing brace.
   std::string sequence(bool braced) {
     if (++depth_ > 20) fail("nested deeper than 20 levels");
     std::string out;

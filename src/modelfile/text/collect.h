@@ -7,18 +7,18 @@
 
 namespace anholon {
 
-// A failure that was reported where it arose: uses of a broken definition stay silent.
+// A failure that was already reported at its origin: uses of a broken definition are not reported again.
 Failure silent_failure();
 bool is_silent(const Diagnostic& d);
 
-// Runs f and adds what it throws to the diagnostics (a silent failure only returns false). A failure that knows no
-// place of its own is one of the element at `place`.
+// Runs f and adds its failure to the diagnostics (a silent failure only returns false). A failure without a position
+// gets `place`.
 bool collect(Diagnostics& diagnostics, const std::function<void()>& f, Span place = {});
 
-// The same for an element of the file; of a member of a family the message says which one it is, and one member speaks
-// for all whose failure has the same place.
+// As above, for an element of the file. For a member of a family the message names the member; of failures at the same
+// place only that of one member is reported.
 bool collect(Diagnostics& diagnostics, const std::function<void()>& f, const Item& element);
-// Whether a failure of another member of the family was reported at its place.
+// Whether a failure of another member of the family was already reported at the same place.
 bool is_repeated(const Diagnostics& diagnostics, const Diagnostic& d);
 
 // Calls f(table, index) for each element of an array of tables, collecting failures per element.

@@ -12,7 +12,7 @@ namespace anholon {
 namespace {
 
 constexpr std::size_t kMostIndices = 100;
-// Members of one range; entries of all families of a file; terms of all sums and products.
+// The limits of members of one range, of entries of all families of a file, and of terms of all sums and products.
 constexpr std::size_t kLongestRange = 100'000, kMostEntries = 200'000, kMostTerms = 2'000'000;
 
 // ---- [index] ---------------------------------------------------------------------------------
@@ -44,7 +44,7 @@ class IndexReader {
   }
 
  private:
-  // Reads the entry, and before it those that it needs.
+  // Reads the entry after the entries that it needs.
   void find(const std::string& name) {
     if (done_.count(name)) return;
     if (std::find(open_.begin(), open_.end(), name) != open_.end()) {
@@ -54,7 +54,7 @@ class IndexReader {
     }
     if (failed_.count(name)) throw silent_failure();
     open_.push_back(name);
-    failed_.insert(name);  // until it is done
+    failed_.insert(name);  // until it succeeds
     entry(*entries_.at(name));
     failed_.erase(name);
     open_.pop_back();
@@ -112,7 +112,7 @@ class IndexReader {
 
 // ---- names with brackets ---------------------------------------------------------------------
 
-// A text in which names with brackets stand: "th[i]'", "D(th[i],3)", "trailer[i]".
+// A text that contains names with brackets: "th[i]'", "D(th[i],3)", "trailer[i]".
 class Bracketed {
  public:
   Bracketed(const std::string& text, Span span) : text_(text) {
@@ -180,7 +180,7 @@ class Writer {
   Writer(Families& out, Diagnostics& diagnostics) : out_(out), diagnostics_(diagnostics) {}
 
   void table(Item& t, const Context& context) {
-    // Members written out win, wherever they stand.
+    // Explicit members take precedence, wherever they are.
     std::set<std::string> written;
     std::vector<std::optional<Bracketed>> names(t.items.size());
     for (std::size_t k = 0; k < t.items.size(); ++k) {
@@ -221,7 +221,7 @@ class Writer {
   }
 
  private:
-  // Calls f(copy, name, context) for each member that is not written out; for a name without letters, once.
+  // Calls f(copy, name, context) for each member that is not explicit; for a name without letters, once.
   template <class F>
   void members(const Item& item, const Bracketed& name, const Context& context, const std::set<std::string>& written,
                bool list, F f) {
@@ -302,7 +302,7 @@ class Writer {
     }
   }
 
-  // A name in place of the text, at its place.
+  // Replaces the text by the name, keeping the position.
   void reference(Item& i, const Context& context) {
     if (!is_reference(i.text())) return;
     collect(diagnostics_, [&] { rename(i, Bracketed(i.text(), i.formula.span(0, 1)).with(context.get())); }, i.span);
@@ -314,7 +314,8 @@ class Writer {
     i.formula.set_indices(std::move(indices));
   }
 
-  // What makes an element of a list a family: the entry itself, its name, or for a force without name what it acts on.
+  // The part of a list element that makes it a family: the entry itself, its name, or, for a force without name, the
+  // object it acts on.
   static const Item* naming(const Item& element) {
     if (element.kind == Item::Kind::string) return &element;
     const Item* name = element.find("name");
@@ -361,7 +362,7 @@ class Writer {
     l.items = std::move(items);
   }
 
-  // An equation in which a letter stands free is one for each of its values.
+  // An equation with a free letter is expanded to one for each of its values.
   void conditions(Item& l, const Context& context) {
     std::vector<Item> items;
     for (Item& i : l.items) {
@@ -373,7 +374,7 @@ class Writer {
       Letters letters;
       try {
         for (const Syntax& side : parse_plain(i.formula)) free_letters(side, *context, letters);
-      } catch (const Failure&) {  // its reader says what is wrong with it
+      } catch (const Failure&) {  // the reader of the element reports the error
       }
       collect(
           diagnostics_,
@@ -409,7 +410,7 @@ Families write_out_families(Item& root, const std::map<std::string, std::string>
       collect(diagnostics, [&] { context = IndexReader(overrides, out).read(*section, diagnostics); });
     root.items.erase(section);
   }
-  // Where an index is wrong, all that follows from it would be, too.
+  // Stops after a wrong index: everything that depends on it would be wrong, too.
   if (!diagnostics.has_errors()) Writer(out, diagnostics).table(root, context);
   return out;
 }

@@ -10,17 +10,17 @@ namespace {
 
 constexpr std::size_t kWidth = 120;
 
-// A value as written: a scalar with its text, a list or an inline table with their elements.
+// A value as written: a scalar with its text, a list or an inline table with its elements.
 struct Written {
   enum class Kind { scalar, list, table } kind = Kind::scalar;
-  std::string text;  // of a scalar, quotes and all
+  std::string text;  // for a scalar, with its quotes
   std::string key;   // in a table
   std::vector<Written> elements;
-  std::size_t blanks = 1;          // before it, after the comma of the one before
-  std::vector<std::string> above;  // comments in lines of their own; "" for an empty line
+  std::size_t blanks = 1;          // blanks in front, after the comma of the previous element
+  std::vector<std::string> above;  // comments on lines of their own; "" for an empty line
   std::string comment;             // at the end of its line
-  std::size_t column = 0;          // where that begins
-  std::vector<std::string> below;  // before the closing bracket
+  std::size_t column = 0;          // the column of the comment
+  std::vector<std::string> below;  // comments before the closing bracket
   bool broken = false;             // the author put elements on lines of their own
 };
 
@@ -33,7 +33,7 @@ struct Line {
   std::size_t column = 0;
 };
 
-// Reads what is known to be TOML.
+// Reads a text that is known to be TOML.
 class Text {
  public:
   explicit Text(const std::string& text) : s_(text) {
@@ -97,7 +97,7 @@ class Text {
     for (at_ += quote.size(); at_ < s_.size() && s_.compare(at_, quote.size(), quote) != 0; ++at_)
       if (quote[0] == '"' && s_[at_] == '\\') ++at_;
     at_ = std::min(at_ + quote.size(), s_.size());
-    // Three quotes may close a text that ends with one or two.
+    // Three quotes may close a text that ends with one or two more.
     while (quote.size() == 3 && is(quote[0])) ++at_;
     return s_.substr(begin, at_ - begin);
   }
@@ -106,7 +106,7 @@ class Text {
     std::string out;
     for (;; ++at_) {
       skip_blanks();
-      // In a key two quotes are an empty text, never the start of a long one.
+      // In a key two quotes are an empty text, never the start of a multi-line one.
       if (is('"') || is('\'')) {
         const char quote = s_[at_];
         const std::size_t begin = at_++;
@@ -177,7 +177,7 @@ class Text {
     Written l;
     l.kind = Written::Kind::list;
     ++at_;
-    std::vector<std::string> waiting;  // comments on their way to the element below them
+    std::vector<std::string> waiting;  // comments for the next element
     bool fresh = false, comma = true;  // fresh: a new line has begun
     std::size_t empty = 0;
     while (at_ < s_.size() && !is(']')) {
@@ -221,7 +221,7 @@ bool has_comments(const Written& v) {
          std::any_of(v.elements.begin(), v.elements.end(), has_comments);
 }
 
-// Is an inner list broken, or does it hold comments?
+// Whether an inner list is broken or contains comments.
 bool has_lines(const Written& v) {
   return v.broken || has_comments(v) || std::any_of(v.elements.begin(), v.elements.end(), has_lines);
 }
@@ -231,8 +231,8 @@ bool is_number(const Written& v) {
          std::string("+-.0123456789").find(v.text[0]) != std::string::npos;
 }
 
-// Lines of code, each perhaps with a comment: those next to each other that have one have it in the same column, that
-// of the author's first one if it is wide enough.
+// Lines of code, each perhaps with a comment: comments on neighbouring lines start in the same column, that of the
+// author's first one if it is wide enough.
 struct Commented {
   std::string code, comment;
   std::size_t column = 0;
@@ -276,7 +276,7 @@ std::string text_of(const Written& v, std::size_t indent, std::size_t column, bo
     for (const Written& e : v.elements) {
       if (!out.empty()) out += "," + std::string(aligned ? e.blanks : 1, ' ');
       out += e.key + " = ";
-      // A list within stays on the line if it can.
+      // An inner list stays on the line if it fits.
       out += text_of(e, indent, utf8_length(out.substr(out.rfind('\n') + 1)));
     }
     return "{" + out + "}";
@@ -307,7 +307,7 @@ std::string text_of(const Written& v, std::size_t indent, std::size_t column, bo
   return out + std::string(indent, ' ') + "]";
 }
 
-// Entries that stand in consecutive lines.
+// Prints entries on consecutive lines.
 void print_block(std::string& out, const std::vector<const Line*>& block) {
   std::size_t column = 0;
   for (const Line* l : block) column = std::max(column, utf8_length(l->key));
@@ -340,7 +340,7 @@ std::string layout(const std::vector<Line>& lines) {
       break;
     case Line::Kind::comment: {
       flush();
-      // Comments right above a header belong to it.
+      // Comments directly above a header belong to the header.
       std::size_t next = i;
       while (next < lines.size() && lines[next].kind == Line::Kind::comment) ++next;
       const bool first = i == 0 || lines[i - 1].kind != Line::Kind::comment;

@@ -1,5 +1,5 @@
-// The text of a model file in its usual layout. Order, comments and the text of every value stay the author's; blanks,
-// blank lines, the alignment of = and of comments, and the lines of lists are set.
+// The text of a model file in its usual layout. The order, the comments and the text of every value are kept; blanks,
+// blank lines, the alignment of = and of comments, and the lines of lists are changed.
 //
 //   key = value          consecutive lines have their = in one column, and their comments
 //   [a, b], {k = v}      on one line up to 120 characters; a list that the author broke, or that is wider, has one element on each
@@ -13,10 +13,10 @@
 
 namespace anholon {
 
-// Throws Failure where the text is not TOML, or where its layout could not be changed without changing what it says.
+// Throws Failure if the text is not TOML, or if its layout cannot be changed without changing its content.
 std::string formatted(const SourceText& source);
 
-// Do both say the same, place and layout aside?
+// Whether both have the same content, apart from position and layout.
 bool same_content(const Item& a, const Item& b);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// The keys of a section: known to the language, or a slip.
+// The keys of a section: known to the language, or a mistake.
 #pragma once
 #include <string>
 
@@ -7,14 +7,14 @@
 
 namespace anholon {
 
-// Reports keys of `table` that the language does not have there (language_section(section)); `where` is what the author
-// knows the table by.
+// Reports keys of `table` that the language does not have there (language_section(section)); `where` is the author's
+// name for the table.
 void check_keys(const Item& table, const std::string& where, const std::string& section, Diagnostics& diagnostics);
 
-// The section of that name; null where there is none, or what stands there is none (reported).
+// The section of that name; null if there is none, or if its value is not a section (reported).
 const Item* find_section(const Item& root, const char* key, Diagnostics& diagnostics);
 
-// The text of unit = "km/h"; throws if it is none.
+// The text of unit = "km/h"; throws if it is not a unit.
 std::string unit_text(const Item& item);
 
 }  // namespace anholon

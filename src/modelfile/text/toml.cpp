@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-// The parser states its own invariants on input it has not yet judged: a broken one is a syntax error.
+// On invalid input the parser may violate its own invariants: a violation is reported as a syntax error.
 #define TOML_ASSERT(condition)                                                                                         \
   do {                                                                                                                 \
     if (!(condition)) throw std::invalid_argument("a syntax that is not TOML");                                        \
@@ -34,7 +34,7 @@ Span span_of(const toml::source_region& r) {
   return s;
 }
 
-// Walks the raw text of a value to find where each character of it stands.
+// Walks the raw text of a value to find the position of each of its characters.
 class Places {
  public:
   explicit Places(const SourceText& source) : text_(source.text) {
@@ -44,7 +44,7 @@ class Places {
       if (text_[i] == '\n') starts_.push_back(i + 1);
   }
 
-  // Values of one line are asked for from left to right: the search goes on where it ended.
+  // Values of one line are looked up from left to right: the search continues at its last position.
   std::size_t offset(Span s) const {
     if (s.line == 0 || s.line >= starts_.size()) return text_.size();
     if (s.line != last_.line || s.column < last_.column) last_ = {s.line, 1, 1}, last_offset_ = starts_[s.line];
@@ -106,8 +106,7 @@ class Places {
   mutable std::size_t last_offset_ = 0;
 };
 
-// A key of more parts than this is refused before the parser builds (and recursively destroys) a
-// table for each.
+// A key of more parts is refused before the parser builds (and recursively destroys) a table for each part.
 constexpr int kDeepestKey = 100;
 
 void check_depth(const SourceText& source) {
@@ -126,12 +125,12 @@ void check_depth(const SourceText& source) {
   }
 }
 
-// A character outside ASCII may stand in quotes and comments only (a bare Greek key is the likeliest
-// slip, and toml++ 3.3 does not survive it).
+// A character outside ASCII is allowed only in quotes and comments (a bare Greek key is the likeliest mistake, and
+// toml++ 3.3 fails on it).
 void check_ascii(const SourceText& source) {
   const std::string& s = source.text;
   std::uint32_t line = 1, column = 1;
-  std::string quote;  // the quotes that close the text we are in
+  std::string quote;  // the quotes that close the current text
   for (std::size_t i = 0; i < s.size();) {
     const std::size_t width = utf8_width(s, i);
     std::size_t step = width;
@@ -164,7 +163,7 @@ void check_ascii(const SourceText& source) {
   }
 }
 
-// What the parser says, in the words of a user.
+// The parser's message, in the words of a user.
 Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
   const Span span = span_of(e.source());
   std::string message(e.description());
@@ -177,7 +176,7 @@ Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
   const std::size_t first = line.find_first_not_of(" \t");
   const bool header = first != std::string::npos && line[first] == '[';
   if (header && quote != std::string::npos && message.find(redefined) != std::string::npos) {
-    // [body] here and [[body]] there.
+    // [body] at one place and [[body]] at another.
     const std::string name = message.substr(quote + 1, message.find('\'', quote + 1) - quote - 1);
     const bool of_list = std::any_of(language().begin(), language().end(), [&](const LanguageSection& s) {
       return s.form == LanguageSection::Form::elements && name == s.name;

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFiles = 20;
 
-// Sections whose names are declared: a scenario that gives another name made a slip.
+// Sections that declare names: a case that gives a name not declared there contains a mistake.
 const std::vector<std::string>& declaring() {
   static const std::vector<std::string> list = {"index", "parameters", "functions",   "define",
                                                 "frame", "point",      "state",       "mode",
@@ -43,7 +43,7 @@ Item* find_named(Item& list, const std::string& name) {
   return it == list.items.end() ? nullptr : &*it;
 }
 
-// P[2] is there if it is written out or a family P[…] is.
+// P[2] is declared if it is written explicitly or a family P[…] is.
 bool is_declared(const std::string& name, const std::vector<std::string>& known) {
   const std::string family = name.substr(0, name.find('[') + 1);
   return std::any_of(known.begin(), known.end(),
@@ -102,7 +102,7 @@ class Overlay {
     put(to, i);
   }
 
-  // Puts an entry into a table.
+  // Lays an entry over a table.
   void put(Item& to, const Item& i) {
     Item* there = find(to.items, i.key);
     if (!there) {
@@ -155,7 +155,7 @@ class Overlay {
 };
 
 Item read_over(SourceText& all, std::size_t file, std::vector<fs::path>& open) {
-  // A copy: the list of files grows.
+  // Makes a copy, because the list of files grows.
   const SourceText source = file == 0 ? SourceText{all.name, all.text, all.path} : all.others[file - 1];
   Item root = read_toml(source, static_cast<std::uint32_t>(file));
   const Item* base = root.find("base");
@@ -173,7 +173,7 @@ Item read_over(SourceText& all, std::size_t file, std::vector<fs::path>& open) {
   SourceText below;
   below.name = (fs::path(source.name).parent_path() / base->text()).lexically_normal().string();
   below.path = path.string();
-  // A text that is at hand already, as in the file of a run, is not looked for on disk.
+  // A text that is already in memory, as in the file of a run, is not read from disk.
   if (file >= all.others.size()) {
     std::string why;
     if (!read_file(path, below.text, &why))

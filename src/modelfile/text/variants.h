@@ -1,12 +1,12 @@
-// What a file builds on, base = "file.toml", and its scenarios, [case.NAME]: one tree put over another.
+// Bases (base = "file.toml") and cases ([case.NAME]) of a file: one tree laid over another.
 //
-// * Tables are merged key by key; elements of a list of tables by their name, key by key, those without a counterpart
-// are added
-//   at the end; every other value is replaced. What came first keeps its place.
-// * constraint.reel.equation = "…" changes an element of the list that is there: its name stands for it. * A scenario
-// changes what the file declares: the names in [parameters], [define], … must be there. New elements of a scenario
-//   stand in a list, [[case.NAME.force]].
-// A key cannot be taken away again.
+//  * Tables are merged key by key; elements of a list of tables by their names, key by key, and those without a
+//    counterpart are added at the end; every other value is replaced. Existing entries keep their place.
+//  * constraint.reel.equation = "…" changes an existing element of the list, which is addressed by its name.
+//  * A case changes declarations of the file: the names in [parameters], [define], … must exist. New elements of a
+//    case are given as a list, [[case.NAME.force]].
+//
+// A key cannot be removed.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,13 +16,13 @@
 
 namespace anholon {
 
-// The tree of a file with that of its base (and of the base's base) under it; the files are added to source.others,
-// where they are not there yet. A base lies relative to the file that names it. Throws Failure.
+// The tree of a file laid over that of its base (and of the base's base); the files are added to source.others unless
+// they are already there. The path of a base is relative to the file that names it. Throws Failure.
 Item read_files(SourceText& source);
 
-// The scenarios of a file, taken out of its tree.
+// Removes the cases of a file from its tree and returns them.
 Item take_cases(Item& root, Diagnostics& diagnostics);
-// Puts the scenario of this name over the tree.
+// Lays the case of this name over the tree.
 void apply_case(Item& root, const Item& cases, const std::string& name, Diagnostics& diagnostics);
 
 }  // namespace anholon

@@ -63,7 +63,7 @@ TEST_F(ObserverTest, InThePlane) {
                      rotation + moving_velocity, spin + moving_velocity,
                      spin + "origin_acceleration = " + turned_back(ax, ay),
                      rotation + "origin_acceleration = " + turned_back(ax, ay)},
-                    // omega x v counted for a velocity in inertial components (theory.md section 9, 4).
+                    // omega x v counted for a velocity in inertial components (theory: forces).
                     spin + "origin_velocity = [\"" + vx + "\", \"" + vy + "\", \"0\"]\n");
 }
 

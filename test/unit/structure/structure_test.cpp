@@ -1,4 +1,4 @@
-// Signature, offsets and dimension of the examples of theory.md section 5.
+// Signature, offsets and dimension of the examples (theory: dae-view).
 #include <gtest/gtest.h>
 
 #include "structure/structure.h"
