@@ -14,7 +14,8 @@ Result<System> prepare(const Model& model, const PrepareOptions& options) {
     data->choice = state_choice(options, *model.data().model);
     std::string form = options.form;
     if (form == "auto") form = inner::choose_form(model.data().model, data->choice).form->name;
-    if (const inner::Outcome o = make_system(model.data().model, form, data->choice, data->scenario); !o.ok()) return error_of(o);
+    if (const inner::Outcome o = make_system(model.data().model, form, data->choice, data->scenario); !o.ok())
+      return error_of(o);
     return System(std::move(data));
   });
 }

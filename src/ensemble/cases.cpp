@@ -319,9 +319,7 @@ class EnsembleRowFilter final : public RowSink {
   EnsembleRowFilter(const std::vector<Rational>& times, CaseResult& result) : result_(result) {
     for (const Rational& t : times) times_.push_back(from_rational<double>(t));
   }
-  void columns(const std::vector<RunColumn>& columns) override {
-    kept_ = ensemble_places(columns);
-  }
+  void columns(const std::vector<RunColumn>& columns) override { kept_ = ensemble_places(columns); }
   void row(const Row& row) override {
     const double t = row.values[0];
     result_.t = t;

@@ -60,8 +60,7 @@ struct KernelTables {
   // `projected`, without guesses: the present state after projection.
   std::array<std::uint32_t, 3> motions{};
   std::uint32_t projected = 0;
-  std::uint32_t margin =
-      0;  // what a step is of the reach of its series (integrate/step_control.h), in powers of two
+  std::uint32_t margin = 0;  // what a step is of the reach of its series (integrate/step_control.h), in powers of two
   std::uint32_t inverse_pivots = 0;  // `inverse` of those that are judged
   Findings found;
   std::uint32_t size = 0;

@@ -359,7 +359,8 @@ class Run {
                                            " is hardly determined"
                                      : "the constraint '" + s_.system.equation_names[j] + "' hardly holds";
       report_.warnings.push_back(
-          {"the motion passes near a singular configuration at t = " + number_text(report_.smallest_sigma_t, 6) + ": " + what,
+          {"the motion passes near a singular configuration at t = " + number_text(report_.smallest_sigma_t, 6) + ": " +
+               what,
            "trust what follows less; write the constraint or the coordinates so that they are regular there"});
     }
     // Far above what integration and round-off leave.
