@@ -13,8 +13,8 @@ import sys
 import tempfile
 
 
-# The programs of doc/library.md
-EXAMPLE = re.compile(r"```cpp\n(.*?)```", re.S)
+# The programs of doc/library.md, each with what it prints
+EXAMPLE = re.compile(r"```cpp\n(.*?)```\n\n```text\n(.*?)```", re.S)
 
 
 def run(*command, env=None):
@@ -36,13 +36,15 @@ def main():
         run("cmake", "-S", project, "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_COMPILER={options.compiler}",
             "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")  # fmt: skip
         run("cmake", "--build", build)
-        for k, program in enumerate(EXAMPLE.findall((project.parent.parent / "doc" / "library.md").read_text(encoding="utf-8"))):
+        for k, (program, printed) in enumerate(EXAMPLE.findall((project.parent.parent / "doc" / "library.md").read_text(encoding="utf-8"))):
             source, example = pathlib.Path(scratch) / f"example{k}.cpp", pathlib.Path(scratch) / f"example{k}"
             source.write_text(program, encoding="utf-8")
             library = next(prefix.glob("lib/**/libanholon.so"))
             run(options.compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror", f"-I{prefix / 'include'}", source, library,
                 f"-Wl,-rpath,{library.parent}", "-o", example)  # fmt: skip
-            print(run(example, env=os.environ | {"ANHOLON_CACHE": ""}), end="")
+            found = run(example, env=os.environ | {"ANHOLON_CACHE": ""})
+            if found != printed:
+                sys.exit(f"doc/library.md, program {k + 1} prints\n{found}")
         environment = {k: v for k, v in os.environ.items() if k != "ANHOLON_CACHE"} | {"ANHOLON_CACHE": ""}
         print(run(build / "outside", env=environment), end="")
         print(run(prefix / "bin" / "anholon", "models", env=environment).splitlines()[0])

@@ -22,12 +22,12 @@ parameters = {m = 1, l = "9.81/4"}
 [[particle]]
 name = "bob"
 mass = "m"
-position = ["l*sin(theta)", "-l*cos(theta)"]
+position = ["l*sin(theta)", "-l*cos(theta)", 0]
 [gravity]
-field = ["0", "-9.81"]
+field = [0, "-9.81", 0]
 [initial]
 theta = 0.1
-theta' = 0
+"theta'" = 0
 [simulate]
 to = 2
 )toml";
