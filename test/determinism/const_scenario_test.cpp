@@ -11,6 +11,7 @@
 #include "setup/explain.h"
 #include "simulation/simulate.h"
 #include "support/models.h"
+#include "support/rows.h"
 
 namespace anholon {
 namespace {
@@ -30,14 +31,14 @@ SimulationOptions to(const Rational& end) {
 }
 
 auto rows(const Scenario& s, const SimulationOptions& o) {
-  MemorySink sink;
+  test::TextRows sink;
   simulate(s, o, sink);
   return sink.rows();
 }
 
 // The rows and the residuals of a motion.
 auto motion_in(Workspace& s, const SimulationOptions& o) {
-  MemorySink sink;
+  test::TextRows sink;
   const SimulationReport r = simulate_in(s, o, sink);
   return std::pair(sink.rows(), std::vector<double>{r.newton, r.projected, r.power, r.constraints});
 }
