@@ -66,13 +66,14 @@ TEST(LinearModels, PendulumSwingsByTheStiffnessOfItsRod) {
 TEST(LinearModels, WithoutThatStiffnessItDoesNot) {
   const PrecisionScope scope(kDigits);
   const StateChoice choice;
-  const auto s = scenario(model_of(kPendulum), choice);
-  Graph& g = *s->model->graph;
+  const auto prepared = scenario(model_of(kPendulum), choice);
+  Workspace s(*prepared);
+  Graph& g = s.graph();
   const Expr lambda = g.multiplier(0, 0);
   const Column at_rest{g.zero(), g.number(-6)};  // Phi = 2 (x, y)
   for (std::size_t a = 0; a < 2; ++a)
-    s->system.equations[a] = s->system.equations[a] + lambda * (s->mechanics->Phi[0][a] - at_rest[a]);
-  const LinearModel m = linear(*s, choice);
+    s.system.equations[a] = s.system.equations[a] + lambda * (s.mechanics->Phi[0][a] - at_rest[a]);
+  const LinearModel m = linear(s, choice);
   EXPECT_GT(miss(m, Multi(0), sqrt(Multi(10) / Multi(3))), 0.1);
 }
 
@@ -210,10 +211,11 @@ guess = {b = -2}
 )");
   Graph& g = *model->graph;
   const StateChoice choice;
-  const auto s = scenario(model, choice);
+  // The formulas of signals belong to the model; the system is a copy of it.
   const Expr x2 = g.jet(0, 2), b = g.jet(2, 0);
   const Signals signals{
       {"push"}, {"acceleration", "height", "pull", "jerk"}, {g.parameter(0)}, {x2, b, g.multiplier(0, 0), g.jet(0, 3)}};
+  const auto s = scenario(model, choice);
   const Linearization l = linearize(*s, choice, std::nullopt, signals);
   ASSERT_TRUE(l.results[0].outcome.ok());
   const LinearModel& m = l.results[0].model;

@@ -59,7 +59,8 @@ TEST(Plots, KnowWhatEventsHaveSet) {
     return std::vector<double>{};
   };
   EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 2, 2}));
-  run.report = R"({"events": [{"name": "catch", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}]})";
+  run.report =
+      R"({"outcome": "finished", "events": [{"name": "catch", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}]})";
   EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 4, 4}));
 }
 
