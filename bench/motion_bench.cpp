@@ -13,8 +13,8 @@ using namespace anholon;
 
 class NoRows final : public RowSink {
  public:
-  void columns(const std::vector<std::string>&) override {}
-  void row(const std::vector<std::string>&) override {}
+  void columns(const std::vector<RunColumn>&) override {}
+  void row(const Row&) override {}
 };
 
 std::shared_ptr<const Model> read(const std::string& path) {
