@@ -51,7 +51,8 @@ class ANHOLON_API Model {
   std::vector<std::string> inputs() const;    // of [input]
   std::vector<std::string> monitors() const;  // of [monitor], then the numbers of [output]
   std::vector<std::string> cases() const;     // of [case.NAME]
-  std::vector<Form> forms() const;            // all, with whether they apply
+  // All forms, with whether they apply. Errors: equations that have no value, such as a division by zero.
+  Result<std::vector<Form>> forms() const;
   // Warnings and notes of the reader.
   const std::vector<Diagnostic>& remarks() const;
   // The text it was read from.

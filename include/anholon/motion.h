@@ -1,7 +1,6 @@
 // One motion: rows of numbers, events, and a report of how far they can be trusted.
 #pragma once
 #include <functional>
-#include <limits>
 #include <span>
 
 #include "anholon/system.h"

@@ -29,10 +29,13 @@ class ANHOLON_API Sweep {
  public:
   std::size_t cases() const;
   std::size_t finished() const;  // cases that reached their end
-  // What is varied, then coordinates, velocities, states and monitors at the end.
+  // Coordinates, velocities, states and monitors.
   const std::vector<std::string>& columns() const;
-  // The numbers of a column, one for each case; NaN where a case has no final state. Empty if there is no such column.
+  // The numbers of a column at the end, one for each case; NaN where a case has no final state. Empty if there is no
+  // such column.
   std::span<const double> column(const std::string& name) const;
+  // The values that a name in SweepOptions::vary takes, one for each case. Empty if the name is not varied.
+  std::span<const double> varied(const std::string& name) const;
   std::span<const double> t() const;  // reached
   const Outcome& outcome(std::size_t number) const;
   // finished, or interrupted.

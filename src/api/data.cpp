@@ -76,10 +76,14 @@ Error mistake(const std::string& message, const std::string& hint) {
   return {{d}, {}, "error: " + message + "\n" + (hint.empty() ? "" : "hint: " + hint + "\n")};
 }
 
+bool sets_values(const inner::Model& model) {
+  return std::any_of(model.events.begin(), model.events.end(), [](const inner::Event& e) { return !e.set.empty(); });
+}
+
 inner::Rational exact(const Number& number, const std::string& argument) {
   try {
     return inner::read_constant(number.text()).value;
-  } catch (const inner::Failure& f) {
+  } catch (const inner::Failure&) {
     const std::string& text = number.text();
     throw inner::Failure({}, argument + ": '" + text + "' is not a number",
                          "a decimal such as 0.25, 1e-12, a fraction 1/3, pi/2 or a number with a unit, '30 deg'");

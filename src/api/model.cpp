@@ -90,15 +90,17 @@ std::vector<std::string> Model::inputs() const { return names(data_->model->cont
 std::vector<std::string> Model::monitors() const { return names(data_->model->monitors); }
 std::vector<std::string> Model::cases() const { return data_->model->cases; }
 
-std::vector<Form> Model::forms() const {
-  const std::shared_ptr<const inner::Model> model = data_->own_copy();
-  const inner::Mechanics m = inner::mechanics(*model);
-  std::vector<Form> list;
-  for (const inner::Formulation* f : inner::formulations()) {
-    const std::string why = inner::obstacle(*f, m);
-    list.push_back({f->name, f->title, f->equation, f->source, why.empty(), why});
-  }
-  return list;
+Result<std::vector<Form>> Model::forms() const {
+  return guarded(data_->source, [&]() -> Result<std::vector<Form>> {
+    const std::shared_ptr<const inner::Model> model = data_->own_copy();
+    const inner::Mechanics m = inner::mechanics(*model);
+    std::vector<Form> list;
+    for (const inner::Formulation* f : inner::formulations()) {
+      const std::string why = inner::obstacle(*f, m);
+      list.push_back({f->name, f->title, f->equation, f->source, why.empty(), why});
+    }
+    return list;
+  });
 }
 
 std::vector<ShippedModel> shipped_models() {

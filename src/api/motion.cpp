@@ -77,9 +77,7 @@ void set_times(const MotionOptions& asked, const inner::Scenario& s, inner::Simu
   const inner::Rational end = o.at.empty() ? *o.to : o.at.front() < start ? o.at.front() : o.at.back();
   if (o.every && abs(inner::Rational(end - start)) > kMostRows * *o.every)
     throw inner::Failure({}, "every asks for more than " + std::to_string(kMostRows) + " rows");
-  const bool sets =
-      std::any_of(s.model->events.begin(), s.model->events.end(), [](const inner::Event& e) { return !e.set.empty(); });
-  if (sets && end < start)
+  if (sets_values(*s.model) && end < start)
     throw inner::Failure({}, "events that set values are irreversible", "integrate forwards in time");
 }
 
@@ -126,9 +124,7 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     o.estimate = asked.error_estimate ? inner::ErrorEstimate::short_runs : inner::ErrorEstimate::never;
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
-    const bool sets = std::any_of(s.model->events.begin(), s.model->events.end(),
-                                  [](const inner::Event& e) { return !e.set.empty(); });
-    if (!sets) o.conserved = inner::conserved(*s.mechanics);
+    if (!sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);
     auto data = std::make_shared<Run::Data>();
     RowKeeper rows(*data);
     data->inner_report = inner::simulate_in(s, o, rows);
@@ -143,7 +139,9 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     }
     data->run.title = s.model->title;
     data->run.created_by = std::string("anholon ") + ANHOLON_VERSION;
-    data->run.model.push_back({of.model->source.name, of.model->source.text});
+    const inner::SourceText& source = s.model->source_text;
+    data->run.model.push_back({source.name, source.text});
+    for (const inner::SourceText& other : source.others) data->run.model.push_back({other.name, other.text});
     data->run.report = inner::report_json(r);
     return Run(std::move(data));
   });

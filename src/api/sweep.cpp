@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 
 #include "api/data.h"
 #include "ensemble/ensemble.h"
@@ -10,8 +9,8 @@
 namespace anholon::v1 {
 
 struct Sweep::Data {
-  std::vector<std::string> columns;
-  std::vector<std::vector<double>> values;  // by column
+  std::vector<std::string> names, columns;          // of what is varied, of the final state
+  std::vector<std::vector<double>> varied, values;  // by name, by column
   std::vector<double> t;
   std::vector<Outcome> outcomes;
   Outcome outcome;
@@ -48,9 +47,8 @@ class CaseKeeper final : public inner::CaseSink {
  public:
   explicit CaseKeeper(Sweep::Data& data) : data_(data) {}
   void result(const inner::CaseResult& r) override {
-    std::size_t column = 0;
-    for (const double x : r.values) data_.values[column++][r.number] = x;
-    for (const double x : r.last) data_.values[column++][r.number] = x;
+    for (std::size_t k = 0; k < r.values.size(); ++k) data_.varied[k][r.number] = r.values[k];
+    for (std::size_t k = 0; k < r.last.size(); ++k) data_.values[k][r.number] = r.last[k];
     data_.t[r.number] = r.t;
     data_.outcomes[r.number] = to_public(r.outcome);
     data_.finished += r.outcome.ok();
@@ -81,6 +79,8 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
     auto data = std::make_shared<Sweep::Data>();
     for (const Vary& v : asked.vary) {
       o.varied.push_back(varied(v.name, *s.model));
+      if (std::find(data->names.begin(), data->names.end(), v.name) != data->names.end())
+        throw inner::Failure({}, "'" + v.name + "' is varied twice", "one entry of SweepOptions::vary for each name");
       if (v.values.empty()) throw inner::Failure({}, "'" + v.name + "' has no values to take");
       for (const inner::StateOverride& given : o.state.overrides)
         if (const inner::Varied& w = o.varied.back(); w.kind == inner::Varied::Kind::initial && !given.multiplier &&
@@ -91,7 +91,7 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
       if (values.size() > kMostCases / o.cases)
         throw inner::Failure({}, "the grid has more than " + std::to_string(kMostCases) + " cases", "fewer values");
       o.cases *= values.size();
-      data->columns.push_back(v.name);
+      data->names.push_back(v.name);
     }
     if (asked.vary.empty()) throw inner::Failure({}, "nothing is varied", "SweepOptions::vary");
     o.numbers = [&grid](std::size_t number) {
@@ -110,8 +110,11 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
     o.threads = asked.threads;
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
-    for (const std::string& n : inner::ensemble_columns(*s.model)) data->columns.push_back(n);
+    if (sets_values(*s.model) && o.to < inner::Rational(s.state.t))
+      throw inner::Failure({}, "events that set values are irreversible", "integrate forwards in time");
+    data->columns = inner::ensemble_columns(*s.model);
     const double nothing = std::numeric_limits<double>::quiet_NaN();
+    data->varied.assign(data->names.size(), std::vector<double>(o.cases, nothing));
     data->values.assign(data->columns.size(), std::vector<double>(o.cases, nothing));
     data->t.assign(o.cases, nothing);
     data->outcomes.assign(o.cases, {OutcomeKind::interrupted, "the case was not computed", ""});
@@ -128,10 +131,18 @@ std::span<const double> Sweep::t() const { return data_->t; }
 const Outcome& Sweep::outcome(std::size_t number) const { return data_->outcomes.at(number); }
 const Outcome& Sweep::outcome() const { return data_->outcome; }
 
+static std::span<const double> named(const std::string& name, const std::vector<std::string>& names,
+                                     const std::vector<std::vector<double>>& values) {
+  const auto it = std::find(names.begin(), names.end(), name);
+  if (it == names.end()) return {};
+  return values[static_cast<std::size_t>(it - names.begin())];
+}
+
 std::span<const double> Sweep::column(const std::string& name) const {
-  const auto it = std::find(data_->columns.begin(), data_->columns.end(), name);
-  if (it == data_->columns.end()) return {};
-  return data_->values[static_cast<std::size_t>(it - data_->columns.begin())];
+  return named(name, data_->columns, data_->values);
+}
+std::span<const double> Sweep::varied(const std::string& name) const {
+  return named(name, data_->names, data_->varied);
 }
 
 }  // namespace anholon::v1

@@ -80,7 +80,9 @@ void sweep(const anholon::System& system) {
   expect(bool(all), "the sweep is computed");
   if (!all) return;
   expect(all->cases() == 10 && all->finished() == 10, "all cases finish");
-  expect(all->column("theta'").size() == 10 && all->column("m")[5] == 2, "the last one varies fastest");
+  expect(all->varied("theta'").size() == 10 && all->varied("m")[5] == 2, "the last one varies fastest");
+  expect(all->varied("theta'")[4] == 1 && all->column("theta'")[4] != 1,
+         "a velocity at the end is not that at the start");
   expect(all->column("theta")[0] == all->column("theta")[5], "the mass of a pendulum has no influence");
 }
 
