@@ -89,7 +89,7 @@ void by_taylor(benchmark::State& state, const std::string& model, double toleran
   }
 }
 
-void by_sundials(benchmark::State& state, const std::string& model, double tolerance, Integrator integrator) {
+void by_sundials(benchmark::State& state, const std::string& model, double tolerance, Method integrator) {
   const Task& t = task(model);
   Start<double> start;
   initial_state(t.scenario, {}, start);
@@ -112,7 +112,7 @@ const bool registered = [] {
         return "opinion/" + how + "/1e-" + std::to_string(digits) + "/" + model;
       };
       benchmark::RegisterBenchmark(title("taylor").c_str(), by_taylor, model, tolerance)->Unit(benchmark::kMicrosecond);
-      for (const Integrator k : {Integrator::cvode, Integrator::ida})
+      for (const Method k : {Method::cvode, Method::ida})
         benchmark::RegisterBenchmark(title(name(k)).c_str(), by_sundials, model, tolerance, k)
             ->Unit(benchmark::kMicrosecond);
     }

@@ -1,6 +1,7 @@
 // One motion: rows of numbers, events, and a report of how far they can be trusted.
 #pragma once
 #include <functional>
+#include <map>
 #include <span>
 
 #include "anholon/system.h"
@@ -16,6 +17,8 @@ struct MotionOptions {
   std::string method = "auto";           // auto, taylor, rk or bdf
   int digits = 16;                       // more than 16: multiple precision
   bool error_estimate = true;            // by a second, sharper run, where there are no more than 5000 steps
+  // Any option of `anholon simulate` that changes the motion, by its name: {{"numbers", "quad"}, {"rigorous", "64"}}.
+  std::map<std::string, std::string> others = {};
   std::size_t most_steps = 50'000'000;
   std::function<bool()> cancelled = {};  // asked at every step; true ends the motion
   std::function<void(double t, std::size_t steps)> progress = {};

@@ -76,10 +76,6 @@ Error mistake(const std::string& message, const std::string& hint) {
   return {{d}, {}, "error: " + message + "\n" + (hint.empty() ? "" : "hint: " + hint + "\n")};
 }
 
-bool sets_values(const inner::Model& model) {
-  return std::any_of(model.events.begin(), model.events.end(), [](const inner::Event& e) { return !e.set.empty(); });
-}
-
 inner::Rational exact(const Number& number, const std::string& argument) {
   try {
     return inner::read_constant(number.text()).value;

@@ -49,9 +49,6 @@ auto guarded(const inner::SourceText& source, F f) -> decltype(f()) {
   }
 }
 
-// Whether an event of the model sets values: what it changes cannot be taken back, and conserves nothing.
-bool sets_values(const inner::Model& model);
-
 // The number as an exact rational in SI units. Throws Failure that names the argument.
 inner::Rational exact(const Number& number, const std::string& argument);
 

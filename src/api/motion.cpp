@@ -6,6 +6,7 @@
 #include "mechanics/conserved.h"
 #include "result/run_file.h"
 #include "simulation/report_json.h"
+#include "simulation/request.h"
 #include "simulation/simulate.h"
 
 namespace anholon::v1 {
@@ -16,6 +17,7 @@ struct Run::Data {
   Outcome outcome;
   std::vector<Column> columns;
   std::vector<Event> events;
+  std::vector<std::string> notes;  // on the options
   Report report;
 };
 
@@ -57,58 +59,34 @@ Report to_public(const inner::SimulationReport& r) {
   return p;
 }
 
-// The times of the rows and the end, from the options or the file. Throws Failure.
-void set_times(const MotionOptions& asked, const inner::Scenario& s, inner::SimulationOptions& o) {
-  constexpr long kMostRows = 5'000'000;
-  const inner::SimulationSettings& file = s.model->simulate;
-  o.to = asked.to ? std::optional(exact(*asked.to, "to")) : file.to;
-  if (asked.every) o.every = exact(*asked.every, "every");
-  if (o.every && *o.every <= 0) throw inner::Failure({}, "every is a positive time");
-  for (const Number& t : asked.at) o.at.push_back(exact(t, "at"));
-  if (o.at.empty() && !o.every) o.at = file.at, o.every = file.every;
-  if (!o.at.empty()) o.every.reset();
-  if (!asked.at.empty() && !asked.to) o.to.reset();
-  std::sort(o.at.begin(), o.at.end());
-  if (o.at.empty() && !o.to)
-    throw inner::Failure({}, "no end time", "MotionOptions::to, or [simulate] to = 10 in the model");
-  const inner::Rational start(s.state.t);
-  if (!o.at.empty() && o.at.front() < start && o.at.back() > start)
-    throw inner::Failure({}, "the time " + o.at.front().get_str() + " lies before the start, t = " + start.get_str());
-  const inner::Rational end = o.at.empty() ? *o.to : o.at.front() < start ? o.at.front() : o.at.back();
-  if (o.every && abs(inner::Rational(end - start)) > kMostRows * *o.every)
-    throw inner::Failure({}, "every asks for more than " + std::to_string(kMostRows) + " rows");
-  if (sets_values(*s.model) && end < start)
-    throw inner::Failure({}, "events that set values are irreversible", "integrate forwards in time");
-}
-
 // Throws Failure.
-void set_accuracy(const MotionOptions& asked, const inner::Scenario& s, inner::SimulationOptions& o) {
-  const inner::Rational least(1, 5'000'000'000'000'000L);  // 2e-16, the least that double precision supports
-  o.digits = asked.digits;
-  o.order = asked.order;
-  o.most_steps = asked.most_steps;
-  if (asked.digits > 16) {
-    o.precision = inner::Precision::multi;
-    o.tolerance = exact(Number("1e-" + std::to_string(asked.digits + 2)), "digits");
-  } else if (s.model->simulate.tolerance) {
-    o.tolerance = *s.model->simulate.tolerance;
-  }
-  if (asked.tolerance) o.tolerance = exact(*asked.tolerance, "tolerance");
-  if (o.tolerance <= 0 || o.tolerance >= 1) throw inner::Failure({}, "the tolerance lies between 0 and 1");
-  if (o.precision == inner::Precision::real && o.tolerance < least) o.tolerance = least;
-  const auto method = inner::find_method(asked.method);
-  if (!method) throw inner::Failure({}, "there is no method '" + asked.method + "'", "auto, taylor, rk or bdf");
-  o.method = *method;
-  if (o.method == inner::Method::automatic || o.method == inner::Method::taylor) return;
-  const auto refuse = [&](const std::string& why) {
-    throw inner::Failure({}, "the method '" + asked.method + "' " + why, "use the method taylor");
+inner::MotionSettings settings_of(const MotionOptions& asked) {
+  inner::MotionSettings settings;
+  const auto set = [&](const std::string& name, const std::vector<std::string>& words) {
+    inner::set(settings, inner::motion_option(name), words, name,
+               [&](const std::string& text) { return exact(Number(text), name); });
   };
-  const bool wide = o.precision != inner::Precision::real;
-  if (const auto refused =
-          inner::refusal(inner::info(o.method), {wide, false, false, o.order > 0, o.tolerance.get_d()}))
-    refuse(refused->why);
-  if (const std::string why = inner::only_taylor(*s.model, inner::program(s.system, s.structure)); !why.empty())
-    refuse(why);
+  for (const auto& [name, number] : {std::pair{"to", asked.to}, std::pair{"every", asked.every},
+                                     std::pair{"tolerance", asked.tolerance}})
+    if (number) set(name, {number->text()});
+  std::vector<std::string> times;
+  for (const Number& t : asked.at) times.push_back(t.text());
+  if (!times.empty()) set("at", times);
+  if (asked.order != 0) set("order", {std::to_string(asked.order)});
+  if (asked.digits != 16) set("digits", {std::to_string(asked.digits)});
+  set("method", {asked.method});
+  set("error-estimate", {asked.error_estimate ? "short" : "never"});
+  for (const auto& [name, word] : asked.others) {
+    std::vector<std::string> known;
+    for (const inner::MotionOption& o : inner::motion_options()) known.emplace_back(o.name);
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      const std::string near = inner::did_you_mean(name, known);
+      throw inner::Failure({}, "there is no option '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+    if (name == "form") throw inner::Failure({}, "the form belongs to the system", "PrepareOptions::form");
+    set(name, {word});
+  }
+  return settings;
 }
 
 }  // namespace
@@ -119,18 +97,19 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     inner::Workspace s(of.scenario);
     inner::SimulationOptions o;
     o.state = of.choice;
-    set_times(asked, s, o);
-    set_accuracy(asked, s, o);
-    o.estimate = asked.error_estimate ? inner::ErrorEstimate::short_runs : inner::ErrorEstimate::never;
+    auto data = std::make_shared<Run::Data>();
+    const inner::Asker asker{"", "", [&](const std::string& note) { data->notes.push_back(note); }};
+    inner::ask(inner::merged(settings_of(asked), s.model->simulate), s, asker, o);
+    o.most_steps = asked.most_steps;
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
-    if (!sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);
-    auto data = std::make_shared<Run::Data>();
+    if (!inner::sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);
     RowKeeper rows(*data);
     data->inner_report = inner::simulate_in(s, o, rows);
     const inner::SimulationReport& r = data->inner_report;
     data->outcome = to_public(r.outcome);
     data->report = to_public(r);
+    data->report.notes.insert(data->report.notes.begin(), data->notes.begin(), data->notes.end());
     for (const inner::EventReport& e : r.events) {
       Event& event = data->events.emplace_back();
       event.name = e.name, event.t = e.t.value, event.stop = e.stop;

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "api/data.h"
-#include "ensemble/ensemble.h"
+#include "ensemble/request.h"
 
 namespace anholon::v1 {
 
@@ -101,17 +101,18 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
         c.values[k] = grid[k][number % grid[k].size()];
       return c;
     };
-    if (!asked.to && !s.model->simulate.to)
-      throw inner::Failure({}, "no end time", "SweepOptions::to, or [simulate] to = 10 in the model");
-    o.to = asked.to ? exact(*asked.to, "to") : *s.model->simulate.to;
-    if (s.model->simulate.tolerance) o.tolerance = *s.model->simulate.tolerance;
-    if (asked.tolerance) o.tolerance = exact(*asked.tolerance, "tolerance");
-    if (o.tolerance <= 0 || o.tolerance >= 1) throw inner::Failure({}, "the tolerance lies between 0 and 1");
+    inner::MotionSettings settings;
+    const auto number = [&](const char* name, const std::optional<Number>& given) {
+      if (given)
+        inner::set(settings, inner::motion_option(name), {given->text()}, name,
+                   [&](const std::string& text) { return exact(Number(text), name); });
+    };
+    number("to", asked.to), number("tolerance", asked.tolerance);
+    settings.error_estimate = "never";
+    inner::ask(inner::merged(settings, s.model->simulate), s, {"", "", [](const std::string&) {}}, o);
     o.threads = asked.threads;
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
-    if (sets_values(*s.model) && o.to < inner::Rational(s.state.t))
-      throw inner::Failure({}, "events that set values are irreversible", "integrate forwards in time");
     data->columns = inner::ensemble_columns(*s.model);
     const double nothing = std::numeric_limits<double>::quiet_NaN();
     data->varied.assign(data->names.size(), std::vector<double>(o.cases, nothing));

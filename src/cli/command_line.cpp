@@ -7,6 +7,7 @@
 
 #include "base/diagnostic.h"
 #include "cli/input.h"
+#include "cli/model_options.h"
 #include "cli/say.h"
 #include "cli/words.h"
 
@@ -97,38 +98,38 @@ class CommandLine {
 
   // ---- options that commands share ---------------------------------------------------------------
 
-  void parameters(CLI::App* c) {
-    c->add_option("--set", o_.set, "NAME=VALUE: another value of a parameter, or of an integer of [index]")
-        ->type_name("NAME=VALUE");
-    c->add_option("--case", o_.cases, "a scenario of the file, [case.NAME]; several are applied one after the other")
-        ->type_name("NAME")
-        ->allow_extra_args(false);
+  void model_options(CLI::App* c, ModelOption::Of of) {
+    for (const ModelOption& m : cli::model_options())
+      if (m.of == of)
+        c->add_option("--" + std::string(m.name), o_.*m.words, m.help)
+            ->type_name(m.value)
+            ->allow_extra_args(m.assigns);
   }
-
+  void parameters(CLI::App* c) { model_options(c, ModelOption::Of::parameters); }
   void state(CLI::App* c) {
     c->add_option("--t", o_.t, "initial time")->type_name("T");
-    c->add_option("--q", o_.q, "initial positions x=0.2,y=1 (exact decimals); others from the file")
-        ->type_name("NAME=VALUE");
-    c->add_option("--qdot", o_.qdot, "initial velocities x=0.2,y=1")->type_name("NAME=VALUE");
-    c->add_option("--qddot", o_.qddot, "initial accelerations, where constraints of order 3 and more leave them free")
-        ->type_name("NAME=VALUE");
-    c->add_option("--qdddot", o_.qdddot, "initial third derivatives, likewise (order 4 and more)")
-        ->type_name("NAME=VALUE");
-    c->add_option("--lambda", o_.lambda, "initial multipliers blade=0.4, likewise (order 3 and more)")
-        ->type_name("NAME=VALUE");
-    c->add_option("--lambdadot", o_.lambdadot, "initial rates of multipliers (order 4 and more)")
-        ->type_name("NAME=VALUE");
+    model_options(c, ModelOption::Of::state);
+  }
+
+  // An option of motions; `help` where a command means it in its own way.
+  void motion_option(CLI::App* c, const char* name, const char* help = nullptr) {
+    const MotionOption& row = anholon::motion_option(name);
+    const std::string flag = "--" + std::string(name);
+    const auto take = [this, &row, flag](const std::vector<std::string>& words) {
+      set(o_.motion, row, words, flag, [&](const std::string& text) { return exact(text, flag); });
+    };
+    CLI::Option* option =
+        std::holds_alternative<std::vector<WrittenTime> MotionSettings::*>(row.member)
+            ? c->add_option_function<std::vector<std::string>>(
+                  flag, [take](const std::vector<std::string>& words) { take(split(words)); }, help ? help : row.help)
+            : c->add_option_function<std::string>(
+                  flag, [take](const std::string& word) { take({word}); }, help ? help : row.help);
+    option->type_name(row.value);
   }
 
   void form_option(CLI::App* c) {
-    c->add_option("--form", o_.form,
-                  "form of the equations (see `anholon forms`; derive: also all; motions: also auto)")
-        ->type_name("NAME")
-        ->each([this](const std::string&) { o_.form_given = true; });
-    c->add_option("--eliminate", o_.eliminate,
-                  "dependent coordinates of the forms without multipliers: y,z (default: chosen)")
-        ->type_name("NAME,…")
-        ->allow_extra_args(false);
+    motion_option(c, "form");
+    model_options(c, ModelOption::Of::form);
     c->add_option("--show", o_.show, "print one stage instead: mechanics, system, structure, program; check: also cost")
         ->type_name("STAGE");
   }
@@ -143,31 +144,12 @@ class CommandLine {
   }
 
   void accuracy(CLI::App* c) {
-    c->add_option("--tolerance", o_.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
-    c->add_option("--digits", o_.digits, "more than 16: multiprecision, or quad if asked for")
-        ->type_name("N")
-        ->check(CLI::Range(1, 2000));
-    c->add_option("--numbers", o_.numbers,
-                  "double, long-double or quad (33 digits, tolerance 1e-32 unless given; faster than --digits)")
-        ->check(CLI::IsMember({"double", "long-double", "quad"}));
-    c->add_option("--rigorous", o_.rigorous,
-                  "bound the residuals of the dense output by ball arithmetic: at so many times, or all")
-        ->type_name("N");
-    c->add_option("--order", o_.order, "order of the Taylor polynomials (default: from the tolerance)")
-        ->check(CLI::Range(4, 500));
-    c->add_option("--method", o_.method,
-                  "taylor; rk: Runge-Kutta of order 8, for loose tolerances and kinks; bdf, for stiff motions; auto "
-                  "(default): Taylor\nunless another one is found to be much cheaper on the way")
-        ->type_name("NAME");
-    c->add_option("--integrator", o_.integrator,
-                  "taylor, or a second opinion by SUNDIALS: cvode, ida; with its difference")
-        ->type_name("NAME");
+    for (const char* name : {"tolerance", "digits", "numbers", "rigorous", "order", "method", "integrator"})
+      motion_option(c, name);
   }
 
   void motion(CLI::App* c) {
-    c->add_option("--to", o_.to, "end time (absolute)")->type_name("T");
-    c->add_option("--at", o_.at, "rows at exactly these times: 0.25,0.5")->type_name("T,…");
-    c->add_option("--every", o_.every, "rows at this interval")->type_name("DT");
+    for (const char* name : {"to", "at", "every"}) motion_option(c, name);
     accuracy(c);
   }
 
@@ -208,11 +190,8 @@ class CommandLine {
     CLI::App* c = model_command("evaluate", "all forces, accelerations, multipliers, reactions at one state",
                                 cli::evaluate, "Example: anholon evaluate disc --q theta=1 --qdot theta=0.1 --json");
     parameters(c), state(c), form_option(c);
-    c->add_option("--digits", o_.digits, "more than 16: multiprecision, or quad if asked for")
-        ->type_name("N")
-        ->check(CLI::Range(1, 2000));
-    c->add_option("--numbers", o_.numbers, "long-double (default) or quad (33 digits)")
-        ->check(CLI::IsMember({"long-double", "quad"}));
+    motion_option(c, "digits");
+    motion_option(c, "numbers", "long-double (default) or quad (33 digits)");
   }
 
   void add_simulate() {
@@ -229,11 +208,7 @@ class CommandLine {
     c->add_option("--continue", o_.resume,
                   "FILE that --save wrote: the run goes on with the same bits, rows after its last")
         ->type_name("FILE");
-    c->add_option(
-         "--error-estimate", o_.error_estimate,
-         "digits to trust, by a second, sharper run: always, never, or of runs up to 5000 steps (short, the default)")
-        ->type_name("WHEN")
-        ->check(CLI::IsMember({"always", "never", "short"}));
+    motion_option(c, "error-estimate");
     c->add_option("-o,--output", o_.output, "FILE.h5, FILE.csv or FILE.json (default: CSV on the standard output)")
         ->type_name("FILE");
 
@@ -291,9 +266,8 @@ class CommandLine {
                   "with FILE.png: the time of the picture, or 60%: so far through the motion (default: its start)")
         ->type_name("T");
     c->add_option("--from", o_.from, "recorded from this time on")->type_name("T");
-    c->add_option("--to", o_.to, "recorded up to this time, where the motion of a MODEL ends, too")->type_name("T");
-    c->add_option("--every", o_.every, "rows of the motion at this interval (default: as many as a page shows)")
-        ->type_name("DT");
+    motion_option(c, "to", "recorded up to this time, where the motion of a MODEL ends, too");
+    motion_option(c, "every", "rows of the motion at this interval (default: as many as a page shows)");
     c->add_option("--frame", o_.frame,
                   "where the model's observer moves: what it sees, observer (default), or an inertial one")
         ->type_name("WHO")
@@ -323,19 +297,13 @@ class CommandLine {
     c->add_option("--threads", o_.threads, "default: as many as the machine has; the numbers are the same for any")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
-    c->add_option("--to", o_.to, "end time (absolute)")->type_name("T");
-    c->add_option("--tolerance", o_.tolerance, "of each step, relative (default 1e-12)")->type_name("TOL");
-    c->add_option("--order", o_.order, "order of the Taylor polynomials (default: from the tolerance)")
-        ->check(CLI::Range(4, 500));
-    c->add_option("--method", o_.method,
+    for (const char* name : {"to", "tolerance", "order"}) motion_option(c, name);
+    motion_option(c, "method",
                   "taylor; rk or bdf, as for simulate: one case after the other on each core; auto (default): Taylor, "
-                  "in the lanes of the processor")
-        ->type_name("NAME");
-    c->add_option("--error-estimate", o_.error_estimate,
+                  "in the lanes of the processor");
+    motion_option(c, "error-estimate",
                   "digits to trust, by a second, sharper run of a few cases: always, never, or of cases up to 5000 "
-                  "steps (short, the default)")
-        ->type_name("WHEN")
-        ->check(CLI::IsMember({"always", "never", "short"}));
+                  "steps (short, the default)");
     c->add_option("-o,--output", o_.output, "FILE.csv or FILE.json (default: CSV on the standard output)")
         ->type_name("FILE");
   }
@@ -356,9 +324,7 @@ class CommandLine {
     c->add_option("--vary", o_.vary,
                   "a parameter over a range, v=0..10:1 or v=0,1,2; where eigenvalues cross the imaginary axis is found")
         ->type_name("NAME=VALUES");
-    c->add_option("--digits", o_.digits, "of the numbers printed (default 16); the computation has at least 36")
-        ->type_name("N")
-        ->check(CLI::Range(1, 2000));
+    motion_option(c, "digits", "of the numbers printed (default 16); the computation has at least 36");
     c->add_flag("--csv", o_.csv, "one line of eigenvalues per parameter value");
   }
 
@@ -471,7 +437,7 @@ class CommandLine {
     c->add_option("COLUMN", o_.columns, "names of columns, or patterns");
     c->add_option("--x", o_.abscissa, "the column along the horizontal axis (default: t)")->type_name("COLUMN");
     c->add_option("--from", o_.from, "no rows before this time")->type_name("T");
-    c->add_option("--to", o_.to, "no rows after this time")->type_name("T");
+    c->add_option("--to", o_.until, "no rows after this time")->type_name("T");
     c->add_flag("--log", o_.log_axis, "logarithmic vertical axis; what is not positive is left out");
     c->add_flag("--equal", o_.equal, "one unit is as long along both axes, for paths: plot run.h5 y --x x --equal");
     c->add_flag("--together", o_.together, "all columns in one panel (the default)");

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "model/motion_settings.h"
+
 namespace anholon::cli {
 
 enum ExitCode : int { kOk = 0, kStopped = 1, kBadInput = 2, kFault = 3 };
@@ -11,18 +13,14 @@ struct Options {
   std::string command_line;  // in a form that can be typed again
   std::string model;
   std::string equations;
-  std::string form = "routh";
-  bool form_given = false;
   std::string format = "text";
   bool format_given = false;
   std::string expand = "auto";
   std::string show;
   std::string output;
-  std::string numbers = "double";
-  std::string method;      // of the motion; empty: auto
-  std::string integrator;  // empty: that of the file, or Taylor series
-  std::vector<std::string> set, cases, q, qdot, qddot, qdddot, lambda, lambdadot, at, eliminate, forms;
-  std::string t, to, every, tolerance, rigorous;
+  MotionSettings motion;  // as asked for, without those of the file
+  std::vector<std::string> set, cases, q, qdot, qddot, qdddot, lambda, lambdadot, eliminate, forms;
+  std::string t;
   std::string save, resume;
   std::string report, rows;  // a page of the motion; a run whose rows the page shows
   bool no_proof = false;
@@ -30,21 +28,20 @@ struct Options {
   std::vector<std::string> varied;  // of sweep
   std::string case_count;
   int threads = 0;
-  std::string error_estimate = "short";
-  int digits = 16;
   int proof_digits = 308;
-  int order = 0;
   int m = 0;  // of the forms of order m; 0: not asked for
   int points = 6;
   unsigned long long seed = 0;
   std::vector<std::string> files;
   std::vector<std::string> columns;  // of plot
-  std::string abscissa, from, size, title, labels = "unicode";
+  std::string abscissa, from, until, size, title, labels = "unicode";
   std::string fps, seconds, picture_at, frame;  // of render
   bool dark = false;
   bool log_axis = false, each = false, together = false, equal = false;
   bool check_only = false, to_stdout = false, schema = false, markdown = false;
   bool json = false, quiet = false, steps = false, reactions = false, csv = false;
+
+  int digits() const { return motion.digits.value_or(16); }
 };
 
 int check(const Options& o);

@@ -56,7 +56,7 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   }
   EmitOptions options;
   options.name = std::filesystem::path(o.model).stem().string();
-  options.made_by = "anholon derive " + o.model + " --format " + o.format + (o.form_given ? " --form " + o.form : "");
+  options.made_by = "anholon derive " + o.model + " --format " + o.format + (o.motion.form ? " --form " + *o.motion.form : "");
   for (const std::string& set : o.set) options.made_by += " --set " + set;
   options.start = {s.state.t, s.state.q, s.state.qd};
   // What constraints settle is solved for in wider numbers, as for a motion.
@@ -93,7 +93,7 @@ int derive(const Options& asked) {
   if (o.expand != "auto" && o.expand != "none" && o.expand != "paper" && o.expand != "full" && o.expand != "parts")
     throw UsageError{"error: --expand: '" + o.expand + "'\nhint: auto, none, paper, full or parts\n"};
   const Mechanics m = mechanics(model);
-  const bool all = o.form_given && o.form == "all";
+  const bool all = o.motion.form == "all";
   const bool program = o.format == "c" || o.format == "python";
   if (all && (program || !o.show.empty()))
     throw UsageError{"error: --form all goes with text, latex, mathml and json\nhint: name one form\n"};

@@ -113,7 +113,7 @@ int evaluate(const Options& o) {
   }
   if (!o.show.empty()) return show(o, s);
   StateReport report;
-  if (outcome.ok()) outcome = evaluate(s, choice, precision(o, Precision::long_real), o.digits, report);
+  if (outcome.ok()) outcome = evaluate(s, choice, precision(o.motion, Precision::long_real, asker(o)), o.digits(), report);
   if (!outcome.ok()) {
     if (o.json) {
       JsonWriter j;
@@ -127,7 +127,7 @@ int evaluate(const Options& o) {
   if (o.json)
     hand_out(json(s, report));
   else
-    print_text(s, report, o.digits);
+    print_text(s, report, o.digits());
   return kOk;
 }
 

@@ -83,13 +83,10 @@ std::vector<std::string> split(const std::vector<std::string>& words) {
   return out;
 }
 
-Precision precision(const Options& o, Precision usual) {
-  if (o.numbers == "quad" && o.digits > kQuadDigits)
-    throw UsageError{"error: --numbers quad holds " + std::to_string(kQuadDigits) + " digits\nhint: --digits " +
-                     std::to_string(o.digits) + " without --numbers computes in multiprecision\n"};
-  if (o.numbers == "quad") return Precision::quad;
-  if (o.digits > 16) return Precision::multi;
-  return o.numbers == "long-double" ? Precision::long_real : usual;
+Asker asker(const Options& o) {
+  Asker a{"--", !o.save.empty() ? "--save" : !o.resume.empty() ? "--continue" : "", {}};
+  a.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
+  return a;
 }
 
 Rational exact(const std::string& text, const std::string& option) {
@@ -180,9 +177,14 @@ static void must_apply(const Formulation& f, const Mechanics& m) {
                      "\nhint: these do: " + list_of_forms(m, false) + "\n"};
 }
 
+// The name of the form asked for.
+static std::string wanted_form(const Options& o, const Model& model) {
+  return merged(o.motion, model.simulate).form.value_or("routh");
+}
+
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics) {
-  std::string wanted = o.form;
-  if (!o.form_given && model.simulate.form) wanted = *model.simulate.form;
+  const bool from_file = !o.motion.form && model.simulate.form;
+  const std::string wanted = wanted_form(o, model);
   const Formulation* f = find_formulation(wanted);
   if (!f) {
     std::vector<std::string> names;
@@ -197,7 +199,7 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
                                     : "there is no form '" + wanted + "'" +
                                           (near.empty() ? "" : "; did you mean '" + near + "'?"),
                       hint = "the forms are " + list;
-    if (!o.form_given && model.simulate.form)
+    if (from_file)
       throw UsageError{print({Severity::error, model.simulate.form_span, message, hint}, model.source_text)};
     throw UsageError{"error: " + message + "\nhint: " + hint + "\n"};
   }
@@ -206,10 +208,9 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
 }
 
 Options with_form(Options o, const Reader& in) {
-  if ((o.form_given || !in.model->simulate.form ? o.form : *in.model->simulate.form) != "auto") return o;
+  if (wanted_form(o, *in.model) != "auto") return o;
   const FormChoice choice = choose_form(in.model, state_choice(o, *in.model));
-  o.form = choice.form->name;
-  o.form_given = true;
+  o.motion.form = choice.form->name;
   if (!o.quiet) say(stderr, "form %s: %s\n", choice.form->name, choice.why.c_str());
   return o;
 }

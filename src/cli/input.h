@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "proof/prove.h"
 #include "setup/scenario.h"
+#include "simulation/request.h"
 
 namespace anholon::cli {
 
@@ -34,8 +35,8 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
 Options with_form(Options o, const Reader& in);
 StateChoice state_choice(const Options& o, const Model& model);
 Rational exact(const std::string& text, const std::string& option);
-// The numbers asked for by --numbers and --digits; `usual` if neither is given.
-Precision precision(const Options& o, Precision usual);
+// How the command line calls its options, and notes on stderr.
+Asker asker(const Options& o);
 // Splits "a,b,c" and repeated words alike.
 std::vector<std::string> split(const std::vector<std::string>& words);
 

@@ -353,7 +353,7 @@ int linearize(const Options& o) {
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
-  const PrecisionScope scope(std::max(kWorkingDigits, o.digits + kGuardDigits));
+  const PrecisionScope scope(std::max(kWorkingDigits, o.digits() + kGuardDigits));
   Linearization l;
   if (start.ok())
     l = linearize(s, choice, values, signals);
@@ -365,15 +365,15 @@ int linearize(const Options& o) {
     if (failed.ok()) failed = r.outcome;
   }
   if (o.json)
-    hand_out(json(s, l, start.ok() ? values : std::nullopt, o.digits));
+    hand_out(json(s, l, start.ok() ? values : std::nullopt, o.digits()));
   else if (o.csv)
-    print_csv(s, l, start.ok() ? values : std::nullopt, o.digits);
+    print_csv(s, l, start.ok() ? values : std::nullopt, o.digits());
   else if (failed.ok() || l.results.size() > 1) {
     say(stdout, "%s\n%s, %s\n\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation);
     if (values)
-      print_range(s, l, *values, o.digits);
+      print_range(s, l, *values, o.digits());
     else
-      print_model(l.results[0].model, o.digits);
+      print_model(l.results[0].model, o.digits());
   }
   if (failed.ok()) return kOk;
   print_outcome(failed);

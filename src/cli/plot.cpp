@@ -170,7 +170,7 @@ int plot(const Options& o) {
   for (const std::string& name : split(o.columns)) options.names.push_back(name);
   options.x = o.abscissa;
   if (!o.from.empty()) options.from = time(o.from, "--from");
-  if (!o.to.empty()) options.to = time(o.to, "--to");
+  if (!o.until.empty()) options.to = time(o.until, "--to");
   options.log = o.log_axis;
   options.each = o.each;
   options.equal = o.equal;

@@ -26,8 +26,7 @@ std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& 
   }
   for (const std::string& name : split(o.forms)) {
     Options one = o;
-    one.form = name;
-    one.form_given = true;
+    one.motion.form = name;
     forms.push_back(&form(one, *m.model, &m));
     if (order && forms.back()->highest_m) must_have_order(*forms.back(), m, order);
   }

@@ -78,7 +78,7 @@ Recording recording(const Options& o) {
     r.at = number(o.picture_at, "--at");
   }
   if (!o.from.empty()) r.from = number(o.from, "--from");
-  if (!o.to.empty()) r.to = number(o.to, "--to");
+  if (o.motion.to) r.to = o.motion.to->get_d();
   if ((r.at || r.part) && r.kind != Record::picture)
     throw UsageError{"error: --at is the time of one picture\nhint: -o FILE.png, or --from and --to for a film\n"};
   if (r.kind == Record::picture && (!o.seconds.empty() || !o.fps.empty()))

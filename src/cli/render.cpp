@@ -88,9 +88,8 @@ int motion(const Options& o, Told& x) {
     return kOk;
   }
   Options one = o;
-  one.at.clear();
   one.output.clear();
-  one.error_estimate = "never";  // the estimate is not printed
+  one.motion.error_estimate = "never";  // the estimate is not printed
   return simulate_motion(one, nullptr, &x);
 }
 

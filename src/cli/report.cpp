@@ -46,8 +46,7 @@ std::vector<const Formulation*> shown_forms(const Options& o, const Told& x) {
   };
   for (const std::string& name : split(o.forms)) {
     Options one = o;
-    one.form = name;
-    one.form_given = true;
+    one.motion.form = name;
     add(&form(one, *x.in.model, &m));
   }
   if (!list.empty()) return list;

@@ -4,12 +4,6 @@ namespace anholon::cli {
 
 std::string small(double x) { return number_text(x, 3); }
 
-ErrorEstimate error_estimate(const Options& o) {
-  return o.error_estimate == "always"  ? ErrorEstimate::always
-         : o.error_estimate == "never" ? ErrorEstimate::never
-                                       : ErrorEstimate::short_runs;
-}
-
 std::string digits_to_trust(const ErrorReport& e) {
   std::string list;
   for (const KindError& k : e.kinds)

@@ -1,12 +1,8 @@
 // Texts for the numbers in the report of a run.
 #pragma once
-#include "cli/commands.h"
 #include "simulation/simulate.h"
 
 namespace anholon::cli {
-
-// --error-estimate.
-ErrorEstimate error_estimate(const Options& o);
 
 // The text that follows "digits to trust" in a report.
 std::string digits_to_trust(const ErrorReport& error);

@@ -6,7 +6,8 @@
 
 namespace anholon::cli {
 
-RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const SimulationOptions& options);
+// The settings are those of the run, complete.
+RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const MotionSettings& settings);
 // The inverse: the options, with those settings of the run on which its start and its equations depend.
 Options options_of(const RunInfo& run, Options o);
 

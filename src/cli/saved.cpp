@@ -3,26 +3,11 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "cli/model_options.h"
 
 namespace anholon::cli {
 
 namespace {
-
-// Lists of words, as given on the command line.
-struct WordsOption {
-  const char* option;
-  const char* entry;
-  std::vector<std::string> Options::* words;
-};
-constexpr WordsOption kWords[] = {{"--set", "set", &Options::set},
-                                  {"--case", "case", &Options::cases},
-                                  {"--q", "q", &Options::q},
-                                  {"--qdot", "qdot", &Options::qdot},
-                                  {"--qddot", "qddot", &Options::qddot},
-                                  {"--qdddot", "qdddot", &Options::qdddot},
-                                  {"--lambda", "lambda0", &Options::lambda},
-                                  {"--lambdadot", "lambda1", &Options::lambdadot},
-                                  {"--eliminate", "eliminate", &Options::eliminate}};
 
 void must_be_absent(bool given, const std::string& option) {
   if (given)
@@ -43,26 +28,19 @@ auto with_file(const std::string& path, F f) {
 }  // namespace
 
 SavedRun continued(Options& o) {
-  for (const WordsOption& w : kWords) must_be_absent(!(o.*w.words).empty(), w.option);
+  for (const ModelOption& m : model_options()) must_be_absent(!(o.*m.words).empty(), "--" + std::string(m.name));
   must_be_absent(!o.t.empty(), "--t");
-  must_be_absent(!o.tolerance.empty(), "--tolerance");
-  must_be_absent(o.form_given, "--form");
-  must_be_absent(o.order != 0, "--order");
-  must_be_absent(o.digits != Options().digits, "--digits");
-  must_be_absent(o.numbers != Options().numbers, "--numbers");
+  for (const MotionOption& m : motion_options())
+    if (m.kept) must_be_absent(is_set(o.motion, m), "--" + std::string(m.name));
   SourceText source{o.resume, {}};
   std::string why;
   if (!read_file(o.resume, source.text, &why)) throw UsageError{"error: cannot read " + o.resume + ": " + why + "\n"};
   return with_file(o.resume, [&] {
     SavedRun run = read_saved(source);
-    for (const WordsOption& w : kWords) o.*w.words = run.texts(w.entry);
+    for (const ModelOption& m : model_options()) o.*m.words = run.texts(m.name);
     o.t = run.texts("t0").empty() ? "" : run.one("t0");
-    o.tolerance = run.one("tolerance");
-    o.form = run.one("form");
-    o.form_given = true;
-    o.numbers = run.one("numbers");
-    o.digits = static_cast<int>(run.number<double>("digits"));
-    o.order = static_cast<int>(run.number<double>("order"));
+    for (const MotionOption& m : motion_options())
+      if (m.kept) set(o.motion, m, run.texts(m.name), m.name, [&](const std::string& n) { return exact(n, m.name); });
     return run;
   });
 }
@@ -76,15 +54,11 @@ void same_model(const SavedRun& run, const Reader& in) {
   });
 }
 
-void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formulation& form,
-                  const SimulationOptions& options) {
-  for (const WordsOption& w : kWords) run.set(w.entry, o.*w.words);
+void describe_run(SavedRun& run, const Options& o, const Reader& in, const MotionSettings& settings) {
+  for (const ModelOption& m : model_options()) run.set(m.name, o.*m.words);
   run.set("t0", o.t.empty() ? SavedRun::Texts{} : SavedRun::Texts{o.t});
-  run.set("tolerance", {options.tolerance.get_str()});
-  run.set("form", {form.name});
-  run.set("numbers", {o.numbers});
-  run.set("digits", {std::to_string(o.digits)});
-  run.set("order", {std::to_string(o.order)});
+  for (const MotionOption& m : motion_options())
+    if (m.kept) run.set(m.name, words(settings, m));
   run.set("model", {sha256_text(all_text(in.source))});
   run.set("title", {in.model->title});
 }
@@ -92,15 +66,15 @@ void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formu
 void beyond(const SavedRun& run, const Options& o, const Rational& end) {
   with_file(o.resume, [&] {
     // Times of a saved run may be wider than double; the times compared with them are written by hand.
-    const PrecisionScope precision(std::max(o.digits, kQuadTextDigits) + 12);
+    const PrecisionScope precision(std::max(o.digits(), kQuadTextDigits) + 12);
     const Multi start = run.number<Multi>("start"), done = run.number<Multi>("rows"), to(end);
     const bool forward = start < done || (start == done && start < to);
     if (forward ? !(done < to) : !(to < done))
       throw UsageError{"error: the saved run has come to t = " + number_text(done.to_double()) +
                        " already\nhint: --to beyond that\n"};
-    for (const std::string& t : split(o.at))
-      if (const Multi time(exact(t, "--at")); forward ? !(done < time) : !(time < done))
-        throw UsageError{"error: --at " + t + ": the saved run has come to t = " + number_text(done.to_double()) +
+    for (const WrittenTime& t : o.motion.at)
+      if (const Multi time(t.value); forward ? !(done < time) : !(time < done))
+        throw UsageError{"error: --at " + t.text + ": the saved run has come to t = " + number_text(done.to_double()) +
                          " already\nhint: times beyond that\n"};
   });
 }

@@ -10,8 +10,7 @@ SavedRun continued(Options& o);
 // Throws if the saved run belongs to another model.
 void same_model(const SavedRun& run, const Reader& in);
 // Adds the data that `continued` needs.
-void describe_run(SavedRun& run, const Options& o, const Reader& in, const Formulation& form,
-                  const SimulationOptions& options);
+void describe_run(SavedRun& run, const Options& o, const Reader& in, const MotionSettings& settings);
 // Throws if not all requested rows are beyond those of the saved run.
 void beyond(const SavedRun& run, const Options& o, const Rational& end);
 

@@ -7,13 +7,12 @@
 
 #include "base/json.h"
 #include "cli/input.h"
-#include "cli/method.h"
 #include "cli/progress.h"
 #include "cli/report_text.h"
 #include "cli/say.h"
 #include "cli/show.h"
 #include "cli/vary.h"
-#include "ensemble/ensemble.h"
+#include "ensemble/request.h"
 #include "result/file.h"
 #include "simulation/report_json.h"
 
@@ -155,39 +154,6 @@ class Json final : public Output {
   bool any_ = false;
 };
 
-Rational tolerance_of(const Options& o, const Model& model) {
-  const Rational least = exact("2e-16", "");
-  Rational t = !o.tolerance.empty()       ? exact(o.tolerance, "--tolerance")
-               : model.simulate.tolerance ? *model.simulate.tolerance
-                                          : Rational(1, 1000000000000);
-  if (t <= 0 || t >= 1) throw UsageError{"error: the tolerance lies between 0 and 1\n"};
-  if (t >= least) return t;
-  say(stderr, "note: a tolerance below 2e-16 means 2e-16 in these numbers\n");
-  return least;
-}
-
-Rational end_of(const Options& o, const Model& model) {
-  Rational to;
-  if (!o.to.empty())
-    to = exact(o.to, "--to");
-  else if (model.simulate.to)
-    to = *model.simulate.to;
-  else if (!model.simulate.at.empty())
-    to = *std::max_element(model.simulate.at.begin(), model.simulate.at.end());
-  else
-    throw UsageError{"error: no end time\nhint: --to 10, or [simulate] to = 10 in the model file\n"};
-  if (abs(to) > Rational(mpz_class("1000000000000000000"))) throw UsageError{"error: an end time beyond 1e18\n"};
-  return to;
-}
-
-Method method_of_cases(const Options& o, const Scenario& s, const EnsembleOptions& options) {
-  SimulationOptions one;
-  one.tolerance = options.tolerance;
-  one.order = options.order;
-  choose_method(o, s, one);
-  return one.method;
-}
-
 void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
@@ -222,10 +188,6 @@ int sweep(const Options& asked) {
   options.varied = variation.varied();
   options.cases = variation.cases();
   options.numbers = [&](std::size_t k) { return EnsembleCase{variation(k), {}}; };
-  options.to = end_of(o, *in.model);
-  options.tolerance = tolerance_of(o, *in.model);
-  options.order = o.order;
-  options.estimate = error_estimate(o);
   options.threads = static_cast<std::size_t>(o.threads);
   Scenario s;
   Outcome start = ready(in, form(o, *in.model), options.state, s);
@@ -235,18 +197,12 @@ int sweep(const Options& asked) {
     return kBadInput;
   }
   if (!o.show.empty()) return show(o, s);
-  options.method = method_of_cases(o, s, options);
+  ask(merged(o.motion, in.model->simulate), s, asker(o), options);
   if (!start.ok()) start = scenario_of_cases(options, s);
   if (!start.ok()) {
     print_outcome(start);
     return kStopped;
   }
-  const bool reset =
-      std::any_of(in.model->events.begin(), in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
-  if (reset && options.to < Rational(s.state.t))
-    throw UsageError{"error: what events set cannot be taken back: the motion goes forwards only\nhint: an end after "
-                     "the start, t = " +
-                     number_text(s.state.t) + "\n"};
   catch_stop(o.output);
   const bool json = o.json || o.output.ends_with(".json");
   const std::vector<std::string> columns = ensemble_columns(*in.model);

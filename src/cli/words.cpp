@@ -2,18 +2,22 @@
 
 #include "base/diagnostic.h"
 #include "cli/input.h"
+#include "cli/model_options.h"
 
 namespace anholon::cli {
 
 // --q x=1 y=2 MODEL: a word without '=' that slipped into a list of assignments is the model.
 void rescue_model(Options& o) {
-  for (std::vector<std::string>* list : {&o.q, &o.qdot, &o.qddot, &o.qdddot, &o.lambda, &o.lambdadot, &o.set})
-    for (auto it = list->begin(); it != list->end();) {
+  for (const ModelOption& option : model_options()) {
+    if (!option.assigns) continue;
+    std::vector<std::string>& list = o.*option.words;
+    for (auto it = list.begin(); it != list.end();) {
       if (o.model.empty() && it->find('=') == std::string::npos)
-        o.model = *it, it = list->erase(it);
+        o.model = *it, it = list.erase(it);
       else
         ++it;
     }
+  }
 }
 
 static constexpr const char* kCommands[] = {

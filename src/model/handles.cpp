@@ -6,6 +6,8 @@ namespace anholon {
 // Names of nodes by their ids, which a clone of the graph has, too.
 template <>
 inline constexpr bool kHoldsNoExpressions<SymbolNames> = true;
+template <>
+inline constexpr bool kHoldsNoExpressions<MotionSettings> = true;
 
 static void for_each_expression(Coordinate& c, const ExprVisitor& f) {
   auto& [name, span] = c;
@@ -127,11 +129,6 @@ static void for_each_expression(BranchChoice& b, const ExprVisitor& f) {
 static void for_each_expression(InitialData& d, const ExprVisitor& f) {
   auto& [t, given, guess, conditions, branches] = d;
   for_each_expression_of(f, t, given, guess, conditions, branches);
-}
-
-static void for_each_expression(SimulationSettings& s, const ExprVisitor& f) {
-  auto& [to, tolerance, every, at, form, integrator, form_span] = s;
-  for_each_expression_of(f, to, tolerance, every, at, form, integrator, form_span);
 }
 
 static void for_each_expression(View::Element& e, const ExprVisitor& f) {

@@ -2,20 +2,6 @@
 
 namespace anholon {
 
-const std::vector<std::string>& integrator_names() {
-  static const std::vector<std::string> names = {"taylor", "cvode", "ida"};  // in the order of Integrator
-  return names;
-}
-
-const char* name(Integrator integrator) { return integrator_names()[static_cast<std::size_t>(integrator)].c_str(); }
-
-std::optional<Integrator> find_integrator(const std::string& name) {
-  const std::vector<std::string>& names = integrator_names();
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (names[k] == name) return static_cast<Integrator>(k);
-  return std::nullopt;
-}
-
 Column put_controls(const Model& model, std::span<const Expr> es) {
   Graph& g = *model.graph;
   if (model.controls.empty()) return {es.begin(), es.end()};

@@ -12,6 +12,7 @@
 #include "base/diagnostic.h"
 #include "expr/handles.h"
 #include "formula/formula.h"
+#include "model/motion_settings.h"
 #include "model/view.h"
 #include "print/print.h"
 
@@ -200,20 +201,6 @@ struct InitialData {
   std::vector<BranchChoice> branches;
 };
 
-// What computes a motion: Taylor series, or a second opinion.
-enum class Integrator : std::uint8_t { taylor, cvode, ida };
-const char* name(Integrator integrator);
-const std::vector<std::string>& integrator_names();
-std::optional<Integrator> find_integrator(const std::string& name);
-
-struct SimulationSettings {
-  std::optional<Rational> to, tolerance, every;
-  std::vector<Rational> at;
-  std::optional<std::string> form;
-  std::optional<Integrator> integrator;
-  Span form_span;
-};
-
 struct Model {
   std::shared_ptr<Graph> graph;
   SourceText source_text;
@@ -237,7 +224,7 @@ struct Model {
   std::vector<Event> events;
   std::vector<Bound> bounds;
   std::vector<Monitor> monitors;  // [monitor], then the numbers of the outputs
-  SimulationSettings simulate;
+  MotionSettings simulate;
   View view;
   SymbolNames names;
   std::vector<std::string> cases;  // scenarios of the file, [case.NAME]

@@ -249,11 +249,9 @@ int Course<N>::order() const {
     return dormand_prince::kOrder;
   case Method::bdf:
     return 5;
-  case Method::automatic:
-  case Method::taylor:
-    break;
+  default:
+    return motion_.stepper().order();
   }
-  return motion_.stepper().order();
 }
 
 template <Number N>

@@ -7,7 +7,7 @@
 #pragma once
 #include "integrate/states/state_rate.h"
 #include "motion/code_for_long_runs.h"
-#include "motion/methods.h"
+#include "model/methods.h"
 #include "motion/motion.h"
 
 namespace anholon {

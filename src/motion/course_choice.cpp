@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-const double kLoose = std::log(1e-5), kBdf = std::log(kLeastBdfTolerance);
+const double kLoose = std::log(1e-5), kBdf = std::log(info(Method::bdf).least_tolerance);
 // Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps: BDF by more, as its
 // errors grow faster. Where a motion is stiff it is cheaper by far.
 constexpr double kCheaper = 1.3, kMuchCheaper = 4;
@@ -92,7 +92,7 @@ std::unique_ptr<StateStepper> Course<N>::make(Method method) {
     const Program& program = motion_.program();
     StateRate rate(program, parameter_values<double>(*s_.model), motion_.parameters(), plan_, guards_);
     StepSettings settings = settings_;
-    settings.log_tolerance = std::max(settings.log_tolerance, std::log(kLeastRungeKuttaTolerance));
+    settings.log_tolerance = std::max(settings.log_tolerance, std::log(info(Method::runge_kutta).least_tolerance));
     if (method == Method::bdf) return std::make_unique<Bdf>(std::move(rate), settings);
     return std::make_unique<RungeKutta>(std::move(rate), settings);
   } else {

@@ -20,8 +20,8 @@ struct SimulationOptions {
   std::optional<Rational> every;
   Rational tolerance{1, 1000000000000};
   int order = 0;  // of the Taylor polynomials; 0: from the tolerance
-  Integrator integrator =
-      Integrator::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
+  Method integrator =
+      Method::taylor;  // another one: its rows, and how far they are from Taylor's (precision real only)
   // Whose motion it is. Where only Taylor's can give what is asked for, automatic means that; others by name compute in
   // double, do not save, and know neither events nor enclosures.
   Method method = Method::automatic;

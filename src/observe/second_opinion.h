@@ -10,7 +10,7 @@
 namespace anholon {
 
 struct SecondOpinion {
-  Integrator integrator = Integrator::cvode;
+  Method integrator = Method::cvode;
   std::string form;       // of the equations it integrates
   double difference = 0;  // largest |q - q_Taylor| / (1 + |q_Taylor|) of any coordinate in any row
   std::string of;         // that coordinate

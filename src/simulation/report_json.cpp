@@ -308,7 +308,7 @@ std::optional<OutcomeKind> find_outcome(const std::string& text) {
 
 SecondOpinion second_opinion(const Fields& f) {
   SecondOpinion o;
-  o.integrator = find_integrator(f.text("integrator")).value_or(Integrator::cvode);
+  o.integrator = find_method(f.text("integrator"), MethodInfo::Use::second_opinion).value_or(Method::cvode);
   o.form = f.text("form"), o.difference = f.number("difference"), o.of = f.text("of"), o.t = f.number("t");
   o.steps = f.count("steps"), o.evaluations = f.count("evaluations");
   return o;

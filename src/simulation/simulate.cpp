@@ -21,7 +21,7 @@ StepSettings step_settings(const SimulationOptions& o) {
 
 // What is to go on with the same bits, to be enclosed or to be compared with is Taylor's.
 Method method(const SimulationOptions& o) {
-  return o.method == Method::automatic && (o.save || o.resume || o.rigorous || o.integrator != Integrator::taylor)
+  return o.method == Method::automatic && (o.save || o.resume || o.rigorous || o.integrator != Method::taylor)
              ? Method::taylor
              : o.method;
 }
@@ -125,7 +125,7 @@ class Run {
   // Another integrator, whose motion is then the one that is written.
   void ask_second() {
     if constexpr (std::same_as<N, double>)
-      if (o_.integrator != Integrator::taylor)
+      if (o_.integrator != Method::taylor)
         second_ = std::make_unique<SecondMotion>(
             s_, o_.state, watched_quadratures(s_, power_)[0],
             SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, end_);

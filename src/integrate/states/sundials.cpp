@@ -49,7 +49,7 @@ struct Sundials::Work {
   Work(const Program& p, const std::vector<double>& parameters, const SundialsSettings& s,
        std::optional<StateRate> f = std::nullopt)
       : program(p), settings(s), field(std::move(f)), point(p, parameters, 0),
-        ida(!field && s.integrator == Integrator::ida) {
+        ida(!field && s.integrator == Method::ida) {
     for (std::size_t j = 0; j < p.unknowns(); ++j)
       if (ida && p.d[j] == 0) algebraic.push_back(j);
     if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
@@ -345,7 +345,7 @@ Sundials::Sundials(StateRate rate, const SundialsSettings& settings, double t, d
 void Sundials::begin(double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
                      const std::vector<double>& integrals) {
   Work& w = *work_;
-  w.settings.tolerance = std::max(w.settings.tolerance, kLeastSundialsTolerance);
+  w.settings.tolerance = std::max(w.settings.tolerance, info(w.settings.integrator).least_tolerance);
   w.end = end;
   w.forward = end > t;
   w.reached = w.shown = t;

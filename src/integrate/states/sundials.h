@@ -18,15 +18,13 @@
 #include <memory>
 
 #include "integrate/states/state_rate.h"
+#include "model/methods.h"
 #include "model/model.h"
 
 namespace anholon {
 
-// Below this the error test of either meets the round-off of double.
-inline constexpr double kLeastSundialsTolerance = 1e-14;
-
 struct SundialsSettings {
-  Integrator integrator = Integrator::cvode;  // or ida
+  Method integrator = Method::cvode;  // or ida
   double tolerance = 1e-12;                   // relative and absolute, of each step
   std::size_t most_steps = 50'000'000;
   std::function<bool()> cancelled;    // asked between steps

@@ -1,10 +1,30 @@
 // The language: unknowns beside coordinates, initial data, output, integration.
+#include "model/motion_settings.h"
 #include "modelfile/language/language.h"
 
 namespace anholon {
 
 using enum Content;
 using Form = LanguageSection::Form;
+
+// The options of a motion, which are those of the command line.
+static std::vector<LanguageKey> keys_of_simulate() {
+  struct ContentOf {
+    const MotionOption& option;
+    Content operator()(std::optional<Rational> MotionSettings::*) const { return number; }
+    Content operator()(std::optional<int> MotionSettings::*) const { return number; }
+    Content operator()(std::vector<WrittenTime> MotionSettings::*) const { return numbers; }
+    Content operator()(std::optional<std::string> MotionSettings::* m) const {
+      return option.choices ? choice : m == &MotionSettings::form ? text : any;
+    }
+  };
+  std::vector<LanguageKey> keys;
+  for (const MotionOption& o : motion_options()) {
+    const Content content = std::visit(ContentOf{o}, o.member);
+    keys.push_back({o.key, content, o.in_file, o.choices ? o.choices() : std::vector<std::string>{}});
+  }
+  return keys;
+}
 
 std::vector<LanguageSection> language_of_motion() {
   return {
@@ -199,12 +219,7 @@ reach  = "norm(P) - 2"
       {"simulate",
        Form::keys,
        any,
-       {{"to", number, "end time, absolute; it may lie before the start"},
-        {"tolerance", number, "of each step, relative; 1e-12 without it"},
-        {"every", number, "rows at this interval; at the accepted steps without it"},
-        {"at", numbers, "rows at these times"},
-        {"form", text, "the form of the equations, see `anholon forms`"},
-        {"integrator", choice, "SUNDIALS' for a second opinion", {"taylor", "cvode", "ida"}}},
+       keys_of_simulate(),
        R"md(```toml
 [simulate]
 to = 10

@@ -6,9 +6,7 @@
 
 namespace anholon {
 
-// A later end time, or a larger number of rows, is refused at once.
-static const Rational kLatest(mpz_class("1000000000000000000"));
-static constexpr long kMostRows = 5'000'000;
+static constexpr long kMostRows = 5'000'000;  // more are refused at once
 
 static Rational rational(const Item& i, Scope& scope) {
   const Expr e = scope.number(i);
@@ -16,53 +14,49 @@ static Rational rational(const Item& i, Scope& scope) {
   return number_value(e);
 }
 
+static OptionValue value(const Item& i, const MotionOption& option, Scope& scope) {
+  if (std::holds_alternative<std::vector<WrittenTime> MotionSettings::*>(option.member)) {
+    if (i.kind != Item::Kind::array) throw Failure(i.span, "'" + i.key + "' is a list of times");
+    std::vector<WrittenTime> times;
+    for (const Item& t : i.items) times.push_back({rational(t, scope), {}});
+    return times;
+  }
+  const bool word = std::holds_alternative<std::optional<std::string> MotionSettings::*>(option.member);
+  if (!word || (i.kind != Item::Kind::string && !option.choices)) return rational(i, scope);
+  if (i.kind != Item::Kind::string)
+    throw Failure(i.span, "'" + i.key + "' is a name in quotes", i.key + " = \"" + option.choices().front() + "\"");
+  return i.text();
+}
+
+static void check_times(const Item& section, const Model& model) {
+  const MotionSettings& s = model.simulate;
+  const Rational start = is_number(model.initial.t) ? number_value(model.initial.t) : Rational(0);
+  if (s.every && s.to && abs(Rational(*s.to - start)) > kMostRows * *s.every)
+    throw Failure(section.find("every")->span, "'every' asks for more than " + std::to_string(kMostRows) + " rows");
+  const auto side = [&](int sign) {
+    return std::any_of(s.at.begin(), s.at.end(),
+                       [&](const WrittenTime& t) { return sgn(Rational(t.value - start)) == sign; });
+  };
+  if (side(-1) && side(1))
+    throw Failure(section.find("at")->span, "some of these times lie before the start, others after it",
+                  "one run goes one way");
+}
+
 void read_simulate(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   const Item* s = find_section(root, "simulate", diagnostics);
   if (!s) return;
   check_keys(*s, "[simulate]", "simulate", diagnostics);
-  SimulationSettings& out = model.simulate;
-  const Rational start = is_number(model.initial.t) ? number_value(model.initial.t) : Rational(0);
-  if (const Item* i = s->find("to")) {
-    out.to = rational(*i, scope);
-    if (abs(*out.to) > kLatest) throw Failure(i->span, "an end time beyond 1e18");
-  }
-  if (const Item* i = s->find("tolerance")) {
-    out.tolerance = rational(*i, scope);
-    if (*out.tolerance <= 0 || *out.tolerance >= 1) throw Failure(i->span, "the tolerance lies between 0 and 1");
-  }
-  if (const Item* i = s->find("every")) {
-    out.every = rational(*i, scope);
-    if (*out.every <= 0) throw Failure(i->span, "'every' is a positive time");
-    if (out.to && abs(Rational(*out.to - start)) > kMostRows * *out.every)
-      throw Failure(i->span, "'every' asks for more than " + std::to_string(kMostRows) + " rows");
-  }
-  if (const Item* i = s->find("at")) {
-    if (i->kind != Item::Kind::array) throw Failure(i->span, "'at' is a list of times");
-    for (const Item& t : i->items) out.at.push_back(rational(t, scope));
-    const auto side = [&](int sign) {
-      return std::any_of(out.at.begin(), out.at.end(),
-                         [&](const Rational& t) { return sgn(Rational(t - start)) == sign; });
-    };
-    if (side(-1) && side(1))
-      throw Failure(i->span, "some of these times lie before the start, others after it", "one run goes one way");
-  }
-  if (const Item* i = s->find("form")) {
-    if (i->kind != Item::Kind::string) throw Failure(i->span, "a form is a name in quotes", "form = \"routh\"");
-    out.form = i->text();
-    out.form_span = i->formula.whole();
-  }
-  if (const Item* i = s->find("integrator")) {
-    if (i->kind != Item::Kind::string)
-      throw Failure(i->span, "an integrator is a name in quotes", "integrator = \"taylor\"");
-    out.integrator = find_integrator(i->text());
-    if (!out.integrator) {
-      const std::string near = did_you_mean(i->text(), integrator_names());
-      throw Failure(i->span,
-                    "there is no integrator '" + i->text() + "'" +
-                        (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                    "integrator = \"taylor\", \"cvode\" or \"ida\"");
+  for (const MotionOption& option : motion_options())
+    if (const Item* i = s->find(option.key)) {
+      const OptionValue v = value(*i, option, scope);
+      try {
+        set(model.simulate, option, v, "'" + i->key + "'");
+      } catch (const Failure& f) {
+        throw Failure(i->span, f.diagnostic.message, f.diagnostic.hint);
+      }
+      if (option.member == motion_option("form").member) model.simulate.form_span = i->formula.whole();
     }
-  }
+  check_times(*s, model);
 }
 
 }  // namespace anholon

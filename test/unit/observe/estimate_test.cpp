@@ -223,11 +223,11 @@ TEST(DigitsToTrust, AMotionThatEndsWithoutAValueHasNone) {
 
 TEST(DigitsToTrust, OfAnotherIntegratorByTheMotionBesideIt) {
   SimulationOptions o;
-  o.integrator = Integrator::cvode;
+  o.integrator = Method::cvode;
   o.tolerance = Rational(1, 1'000'000);
   const Result by_cvode = until(kKepler, 10, o);
   EXPECT_GT(by_cvode.error(ColumnKind::velocity), 1e-6);
-  o.integrator = Integrator::taylor;
+  o.integrator = Method::taylor;
   EXPECT_LT(until(kKepler, 10, o).error(ColumnKind::velocity), by_cvode.error(ColumnKind::velocity));
 }
 

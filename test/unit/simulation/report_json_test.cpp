@@ -31,7 +31,7 @@ SimulationReport full_report() {
   r.conserved = {{"p", {1, ""}, {1, ""}, {1, ""}, {1, ""}, 1e-15}};
   r.method.asked = Method::automatic, r.method.last = Method::bdf, r.method.steps = 7, r.method.trials = 1;
   r.method.turns = {{0.25, Method::bdf, "it is stiff"}};
-  r.second = SecondOpinion{Integrator::ida, "routh", 1e-9, "x", 3.5, 0, 40, 90, 0};
+  r.second = SecondOpinion{Method::ida, "routh", 1e-9, "x", 3.5, 0, 40, 90, 0};
   r.rigorous = RigorousReport{64, 64, "1e-13", "2e-13", "3e-13", "inf", 64};
   return r;
 }

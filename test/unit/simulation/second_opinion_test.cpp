@@ -7,7 +7,7 @@
 namespace anholon {
 namespace {
 
-SimulationOptions options_for(Integrator integrator, const Model& model) {
+SimulationOptions options_for(Method integrator, const Model& model) {
   SimulationOptions o;
   o.to = std::min(*model.simulate.to, Rational(2));
   o.every = Rational(*o.to / 4);
@@ -20,7 +20,7 @@ struct Motion {
   explicit Motion(const std::string& text, const std::string& form = "routh") {
     start = make_scenario(test::model_of(text), *find_formulation(form), {}, scenario);
   }
-  SimulationReport by(Integrator integrator) {
+  SimulationReport by(Method integrator) {
     rows = test::TextRows();
     return simulate(scenario, options_for(integrator, *scenario.model), rows);
   }
@@ -31,7 +31,7 @@ struct Motion {
 
 struct Case {
   std::string model;
-  Integrator integrator;
+  Method integrator;
   std::string form = "routh";
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) {
@@ -44,7 +44,7 @@ class SecondOpinionOn : public testing::TestWithParam<Case> {};
 TEST_P(SecondOpinionOn, AgreesWithTaylor) {
   Motion motion(test::shipped_text(GetParam().model), GetParam().form);
   ASSERT_TRUE(motion.start.ok()) << motion.start.message;
-  const SimulationReport taylor = motion.by(Integrator::taylor);
+  const SimulationReport taylor = motion.by(Method::taylor);
   const test::TextRows expected = motion.rows;
   const SimulationReport r = motion.by(GetParam().integrator);
   ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
@@ -77,7 +77,7 @@ TEST_P(SecondOpinionOn, AgreesWithTaylor) {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
+  for (const Method k : {Method::cvode, Method::ida}) {
     // Orders 0 (index 3), 1, 2 and 3; linear and not; a varying mass; coordinates eliminated.
     for (const char* model :
          {"zoo/double-pendulum-cartesian", "zoo/chaplygin-sleigh", "zoo/disc", "zoo/snakeboard", "zoo/isokinetic",
@@ -94,10 +94,10 @@ INSTANTIATE_TEST_SUITE_P(Models, SecondOpinionOn, testing::ValuesIn(cases()), []
 });
 
 // What the other integrator makes of the same motion with one parameter changed.
-double difference(Integrator integrator, double factor) {
+double difference(Method integrator, double factor) {
   Motion motion(test::shipped_text("zoo/chaplygin-sleigh"));
   Workspace s(motion.scenario);
-  motion.by(Integrator::taylor);
+  motion.by(Method::taylor);
   const Program p = program(s.system, s.structure);
   std::vector<double> parameters = parameter_values<double>(*s.model);
   parameters[0] *= factor;
@@ -113,7 +113,7 @@ double difference(Integrator integrator, double factor) {
 }
 
 TEST(SecondOpinion, ShowsADisturbedMotion) {
-  for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
+  for (const Method k : {Method::cvode, Method::ida}) {
     EXPECT_LT(difference(k, 1), 1e-6);
     EXPECT_GT(difference(k, 1 + 1e-4), 1e-6);
   }
@@ -122,7 +122,7 @@ TEST(SecondOpinion, ShowsADisturbedMotion) {
 TEST(SecondOpinion, KeepsToItsBranch) {
   const std::string text = test::replaced(test::shipped_text("zoo/constant-acceleration"), "[simulate]",
                                           "branch = {acceleration = \"lambda > 0\"}\n[simulate]");
-  for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
+  for (const Method k : {Method::cvode, Method::ida}) {
     Motion motion(text);
     ASSERT_TRUE(motion.start.ok()) << motion.start.message;
     const SimulationReport r = motion.by(k);
@@ -133,7 +133,7 @@ TEST(SecondOpinion, KeepsToItsBranch) {
 
 // Taylor's motion changes its dependent coordinates on the way, eleven times.
 TEST(SecondOpinion, OnAFormWhosePivotsVanish) {
-  for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
+  for (const Method k : {Method::cvode, Method::ida}) {
     Motion motion(test::shipped_text("zoo/car-three-trailers"), "maggi");
     SimulationOptions o = options_for(k, *motion.scenario.model);
     o.to = Rational(20);
@@ -147,7 +147,7 @@ TEST(SecondOpinion, OnAFormWhosePivotsVanish) {
 }
 
 TEST(SecondOpinion, GoesBackInTime) {
-  for (const Integrator k : {Integrator::cvode, Integrator::ida}) {
+  for (const Method k : {Method::cvode, Method::ida}) {
     Motion motion(test::replaced(test::shipped_text("zoo/chaplygin-sleigh"), "to = 5", "to = -3"));
     ASSERT_EQ(*motion.scenario.model->simulate.to, -3);
     SimulationOptions o = options_for(k, *motion.scenario.model);
@@ -161,7 +161,7 @@ TEST(SecondOpinion, GoesBackInTime) {
 
 TEST(SecondOpinion, SaysWhyItStops) {
   Motion motion(test::shipped_text("zoo/chaplygin-sleigh"));
-  SimulationOptions o = options_for(Integrator::ida, *motion.scenario.model);
+  SimulationOptions o = options_for(Method::ida, *motion.scenario.model);
   o.most_steps = 50;  // enough for Taylor's series
   const SimulationReport r = simulate(motion.scenario, o, motion.rows);
   EXPECT_EQ(r.outcome.kind, OutcomeKind::interrupted);

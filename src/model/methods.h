@@ -1,26 +1,20 @@
 // The methods by which motions are computed, one row each: what they can do, and what they refuse.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "model/model.h"
-
 namespace anholon {
 
-// By which a motion goes; automatic: the one that takes the fewest operations.
-enum class Method : std::uint8_t { automatic, taylor, runge_kutta, bdf };
-const std::vector<std::string>& method_names();  // auto, taylor, rk, bdf
-const char* name(Method method);
-std::optional<Method> find_method(const std::string& name);
-
-// A smaller tolerance would take BDF, of order 5 at most, for ever.
-inline constexpr double kLeastBdfTolerance = 1e-10;
-// The round-off of f in double.
-inline constexpr double kLeastRungeKuttaTolerance = 1e-14;
+// In the order of the table. `automatic` is the method that takes the fewest operations.
+enum class Method : std::uint8_t { automatic, taylor, runge_kutta, bdf, cvode, ida };
 
 struct MethodInfo {
-  const char* name;      // as --method or --integrator accepts it
+  // The motion itself goes by a method of --method; those of --integrator give a second opinion on its rows.
+  enum class Use : std::uint8_t { motion, second_opinion, both };
+  Use use;
+  const char* name;      // as the option accepts it
   const char* title;     // "Runge-Kutta 8"
   const char* citation;  // key of refs.bib; empty if every page cites it
   bool wide_numbers;     // computes in numbers wider than double
@@ -31,8 +25,12 @@ struct MethodInfo {
   bool raises_tolerance;  // to the least one; else a smaller one is refused
 };
 const MethodInfo& info(Method method);
-// Of SUNDIALS, which gives a second opinion.
-const MethodInfo& info(Integrator integrator);
+const char* name(Method method);
+
+// The names with this use, or with both: "auto", "taylor", "rk", "bdf" for motions.
+const std::vector<std::string>& method_names(MethodInfo::Use use);
+// Returns nullopt if no method with this use has the name.
+std::optional<Method> find_method(const std::string& name, MethodInfo::Use use = MethodInfo::Use::motion);
 
 // What is asked of a motion beside its method.
 struct MethodDemands {

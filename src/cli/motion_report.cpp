@@ -1,0 +1,118 @@
+#include "cli/motion_report.h"
+
+#include <cstdio>
+
+#include "cli/report_text.h"
+#include "cli/say.h"
+
+namespace anholon::cli {
+
+namespace {
+
+// By which methods the motion went; nothing if Taylor's made every step and no other was tried.
+void method(const MethodReport& r) {
+  if (!r.differs_from_taylor()) return;
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+  if (r.asked == Method::automatic) {
+    if (r.turns.empty()) add("Taylor, others were tried and not cheaper");
+    for (const MethodReport::Turn& turn : r.turns)
+      add(std::string(info(turn.to).title) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
+  } else {
+    add(std::string(info(r.asked).title) + ", as asked");
+    for (const MethodReport::Turn& turn : r.turns)
+      add(std::string(info(turn.to).title) + " from t = " + number_text(turn.t, 6) + " on, " + turn.why);
+  }
+  if (r.steps > 0) {
+    add(std::to_string(r.steps) + " steps (" + std::to_string(r.refused) + " refused), " +
+        std::to_string(r.evaluations) + " evaluations");
+    if (r.taylor_steps > 0) add(std::to_string(r.taylor_steps) + " steps by Taylor");
+  }
+  if (r.trials > 0)
+    add(std::to_string(r.trials) + (r.trials == 1 ? " trial, " : " trials, ") + std::to_string(r.trial_evaluations) +
+        " evaluations");
+  say(stderr, "method: %s\n", text.c_str());
+}
+
+// "blade'" for the first derivative of the constraint with the largest residual.
+std::string worst_constraint(const SimulationReport& r) {
+  std::string name;
+  double worst = 0;
+  for (const ConstraintReport& c : r.constraints_each)
+    for (std::size_t k = 0; k < c.residuals.size(); ++k)
+      if (c.residuals[k] > worst)
+        worst = c.residuals[k], name = derivative_name(c.name, static_cast<unsigned>(k), Format::text);
+  return name.empty() ? "" : ", worst '" + name + "'";
+}
+
+// Names the motion with which a second opinion is compared.
+std::string beside(const SimulationReport& r) {
+  return r.method.steps > 0 ? "the motion by method " + std::string(name(r.method.last)) : "Taylor's motion";
+}
+
+void second_opinion(const Scenario& s, const SimulationReport& r) {
+  const SecondOpinion& o = *r.second;
+  say(stderr,
+      "second opinion: the rows are those of %s%s (%zu steps, %zu evaluations, %.3g s); they differ from %s by at most "
+      "%s (%s at t = %s, relative to 1 + |%s|)\n",
+      name(o.integrator), o.form == s.system.form->name ? "" : " on Routh's equations", o.steps, o.evaluations,
+      o.seconds, beside(r).c_str(), small(o.difference).c_str(), o.of.c_str(), number_text(o.t, 6).c_str(),
+      o.of.c_str());
+}
+
+// "event burn_out at t = 160: stage 1 -> 2, fuel 0 -> 90000"
+void events(const SimulationReport& r) {
+  constexpr std::size_t kMostLines = 20;
+  for (std::size_t k = 0; k < r.events.size() && k < kMostLines; ++k) {
+    const EventReport& e = r.events[k];
+    std::string list;
+    for (const auto& c : e.changes)
+      list += (list.empty() ? ": " : ", ") + c.name + " " + c.before.text() + " -> " + c.after.text();
+    if (e.correction > 0) list += "; made consistent by " + small(e.correction);
+    say(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.text().c_str(), list.c_str(),
+        e.stop ? ": the motion ends here" : "");
+  }
+  if (r.events.size() > kMostLines)
+    say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
+}
+
+}  // namespace
+
+void print_report(const Scenario& s, const SimulationReport& r) {
+  std::fflush(stdout);
+  // `check` prints the notes that concern the model itself; here only those of the state follow.
+  for (const std::string& n : s.state.notes) say(stderr, "note: %s\n", n.c_str());
+  const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
+  say(stderr,
+      "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
+      small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
+      worst_constraint(r).c_str(), small(r.power).c_str());
+  if (r.error)
+    say(stderr, "digits to trust%s\n", digits_to_trust(*r.error).c_str());
+  else if (!r.no_error.empty())
+    say(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
+  events(r);
+  for (const WatchedReport& w : r.conserved)
+    say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.text().c_str(),
+        small(w.largest_change).c_str());
+  for (const WatchedReport& w : r.monitors)
+    say(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(),
+        w.first.text().c_str(), w.last.text().c_str(), w.least.text().c_str(), w.greatest.text().c_str(),
+        small(w.largest_change).c_str());
+  if (r.rigorous) {
+    const RigorousReport& g = *r.rigorous;
+    say(stderr,
+        "rigorous, %s of the dense output: Newton's law misses by at most %s of its terms, without multipliers %s, "
+        "constraints %s, steps join within %s\n",
+        (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(),
+        g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
+  }
+  say(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n",
+      (r.second ? beside(r) + ": " : "").c_str(), r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(),
+      number_text(r.smallest_sigma_t, 6).c_str(), r.second ? r.seconds - r.second->seconds : r.seconds);
+  method(r.method);
+  if (r.second) second_opinion(s, r);
+  for (const Warning& w : r.warnings) say(stderr, "warning: %s\nhint: %s\n", w.message.c_str(), w.hint.c_str());
+}
+
+}  // namespace anholon::cli
