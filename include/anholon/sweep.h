@@ -1,6 +1,8 @@
 // Many motions of one system, on many threads.
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "anholon/system.h"
@@ -10,13 +12,17 @@ namespace anholon::v1 {
 // What differs from motion to motion: a parameter, or the initial value of a coordinate or velocity ("theta'").
 struct Vary {
   std::string name;
-  std::vector<Number> values;
+  std::vector<Number> values = {};
+  std::string law = {};  // instead of values a random one in each case: "normal(MEAN,DEVIATION)" or "uniform(FROM,TO)"
 };
 // `count` values from `from` to `to`, both included.
 ANHOLON_API std::vector<Number> linspace(double from, double to, std::size_t count);
 
 struct SweepOptions {
   std::vector<Vary> vary = {};  // the grid of all combinations; the last one varies fastest
+  // How many cases there are, where values are random: the cases go round the grid. Empty: all points of the grid.
+  std::optional<std::size_t> cases = {};
+  std::uint64_t seed = 0;  // of the random values, which depend on it and on the number of the case alone
   std::optional<Number> to = {};
   std::optional<Number> tolerance = {};
   std::size_t threads = 0;                              // 0: as many as the machine has

@@ -1,32 +1,15 @@
 #include "anholon/model.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 
 #include "anholon/version.h"
 #include "api/data.h"
-#include "base/installed.h"
-#include "base/read_file.h"
+#include "modelfile/shipped.h"
 
 namespace anholon::v1 {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-// The value of `key = "…"` at the beginning of a line.
-std::string quoted_value(const std::string& text, const std::string& key) {
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line(text.data() + at, end - at);
-    const std::size_t open = line.find('"'), close = line.rfind('"');
-    if (line.starts_with(key) && open != std::string_view::npos && close > open)
-      return std::string(line.substr(open + 1, close - open - 1));
-    at = end + 1;
-  }
-  return {};
-}
 
 Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
   auto data = std::make_shared<Model::Data>();
@@ -105,37 +88,13 @@ Result<std::vector<Form>> Model::forms() const {
 
 std::vector<ShippedModel> shipped_models() {
   std::vector<ShippedModel> list;
-  for (const fs::path& folder : inner::data_folders("models", ANHOLON_MODELS_DIR)) {
-    std::error_code error;
-    if (!fs::is_directory(folder, error)) continue;
-    for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
-      if (e.path().extension() != ".toml" || e.path().parent_path().filename() == "templates") continue;
-      std::string text;
-      inner::read_file(e.path(), text);
-      list.push_back({e.path().stem().string(), e.path().string(), quoted_value(text, "title")});
-    }
-    if (!list.empty()) break;
-  }
-  std::sort(list.begin(), list.end(), [](const ShippedModel& a, const ShippedModel& b) { return a.path < b.path; });
+  for (const inner::ShippedFile& f : inner::shipped_files(inner::Shipped::models, ANHOLON_MODELS_DIR))
+    list.push_back({f.name, f.path, f.title});
   return list;
 }
 
 Result<Model> read_file(const std::string& path, const ReadOptions& options) {
-  inner::SourceText source{path, {}};
-  std::string why;
-  if (inner::read_file(path, source.text, &why)) return opened(std::move(source), options);
-  std::vector<std::string> known;
-  for (const ShippedModel& m : shipped_models()) {
-    known.push_back(m.name);
-    if (m.name != path || !inner::read_file(m.path, source.text)) continue;
-    source.name = m.name + ".toml";
-    source.path = m.path;
-    return opened(std::move(source), options);
-  }
-  const std::string near = inner::did_you_mean(path, known);
-  return mistake("cannot read the model '" + path + "': " + why,
-                 near.empty() ? "a path to a .toml file, or the name of a shipped model"
-                              : "did you mean the shipped model '" + near + "'?");
+  return guarded({}, [&] { return opened(inner::model_text(path, ANHOLON_MODELS_DIR), options); });
 }
 
 Result<Model> read_text(const std::string& text, const ReadOptions& options, const std::string& name) {

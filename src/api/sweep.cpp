@@ -5,6 +5,7 @@
 
 #include "api/data.h"
 #include "ensemble/request.h"
+#include "ensemble/variation.h"
 
 namespace anholon::v1 {
 
@@ -19,27 +20,27 @@ struct Sweep::Data {
 
 namespace {
 
-// Takes what a name varies. Throws Failure.
-inner::Varied varied(const std::string& written, const inner::Model& model) {
-  std::string name = written;
-  unsigned order = 0;
-  while (!name.empty() && name.back() == '\'') name.pop_back(), ++order;
-  name = inner::normal_name(name);
-  const std::vector<std::string>& q = model.names.coordinates;
-  if (const auto it = std::find(q.begin(), q.end(), name); it != q.end()) {
-    unsigned highest = 2;  // derivatives of this order follow from the state
-    for (const inner::Constraint& c : model.constraints) highest = std::max(highest, static_cast<unsigned>(c.order));
-    if (order >= highest) throw inner::Failure({}, written + " follows from the state", "vary " + name);
-    return {inner::Varied::Kind::initial, static_cast<std::size_t>(it - q.begin()), order, written};
+// What varies, from the options. Throws Failure.
+inner::Variation variation_of(const SweepOptions& asked, const inner::Model& model) {
+  constexpr std::size_t kMostCases = 100'000'000;  // all of them are held in memory
+  inner::Variation v(asked.seed);
+  try {
+    for (const Vary& each : asked.vary) {
+      if (!each.law.empty()) {
+        v.add(each.name + "~" + each.law, model);
+        continue;
+      }
+      std::vector<inner::Rational> values;
+      for (const Number& n : each.values) values.push_back(exact(n, each.name));
+      v.add(each.name, std::move(values), model);
+    }
+  } catch (const inner::VariationMistake& m) {
+    throw inner::Failure({}, "vary " + m.word + ": " + m.diagnostic.message, m.diagnostic.hint);
   }
-  std::vector<std::string> known = q;
-  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-    if (model.parameters[i].name == name && order == 0) return {inner::Varied::Kind::parameter, i, 0, name};
-    known.push_back(model.parameters[i].name);
-  }
-  const std::string near = inner::did_you_mean(name, known);
-  throw inner::Failure({}, "there is no parameter and no coordinate '" + written + "'" +
-                               (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  v.finish(asked.cases, "SweepOptions::cases");
+  if (v.cases() > kMostCases)
+    throw inner::Failure({}, "the sweep has more than " + std::to_string(kMostCases) + " cases", "fewer values");
+  return v;
 }
 
 // Puts each case into its place.
@@ -68,39 +69,18 @@ std::vector<Number> linspace(double from, double to, std::size_t count) {
 }
 
 Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
-  constexpr std::size_t kMostCases = 100'000'000;
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Sweep> {
     const inner::Scenario& s = of.scenario;
     inner::EnsembleOptions o;
     o.state = of.choice;
-    std::vector<std::vector<inner::Rational>> grid;
-    o.cases = 1;
+    const inner::Variation variation = variation_of(asked, *s.model);
+    must_not_be_given(variation.varied(), o.state);
+    o.varied = variation.varied();
+    o.cases = variation.cases();
+    o.numbers = [&variation](std::size_t number) { return inner::EnsembleCase{variation(number), {}}; };
     auto data = std::make_shared<Sweep::Data>();
-    for (const Vary& v : asked.vary) {
-      o.varied.push_back(varied(v.name, *s.model));
-      if (std::find(data->names.begin(), data->names.end(), v.name) != data->names.end())
-        throw inner::Failure({}, "'" + v.name + "' is varied twice", "one entry of SweepOptions::vary for each name");
-      if (v.values.empty()) throw inner::Failure({}, "'" + v.name + "' has no values to take");
-      for (const inner::StateOverride& given : o.state.overrides)
-        if (const inner::Varied& w = o.varied.back(); w.kind == inner::Varied::Kind::initial && !given.multiplier &&
-                                                      given.coordinate == w.index && given.order == w.order)
-          throw inner::Failure({}, "'" + v.name + "' is both given and varied");
-      std::vector<inner::Rational>& values = grid.emplace_back();
-      for (const Number& n : v.values) values.push_back(exact(n, v.name));
-      if (values.size() > kMostCases / o.cases)
-        throw inner::Failure({}, "the grid has more than " + std::to_string(kMostCases) + " cases", "fewer values");
-      o.cases *= values.size();
-      data->names.push_back(v.name);
-    }
-    if (asked.vary.empty()) throw inner::Failure({}, "nothing is varied", "SweepOptions::vary");
-    o.numbers = [&grid](std::size_t number) {
-      inner::EnsembleCase c;
-      c.values.resize(grid.size());
-      for (std::size_t k = grid.size(); k-- > 0; number /= grid[k].size())
-        c.values[k] = grid[k][number % grid[k].size()];
-      return c;
-    };
+    for (const inner::Varied& v : o.varied) data->names.push_back(v.name);
     inner::MotionSettings settings;
     const auto number = [&](const char* name, const std::optional<Number>& given) {
       if (given)

@@ -35,7 +35,7 @@ int forms(const Options& o) {
 }
 
 int models(const Options& o) {
-  const std::vector<ShippedModel> list = shipped_models();
+  const std::vector<ShippedFile> list = shipped(Shipped::models);
   if (!o.model.empty()) {
     const Reader r = read(o);
     hand_out(r.source.text);
@@ -44,11 +44,11 @@ int models(const Options& o) {
   if (o.json) {
     JsonWriter j;
     j.open_array();
-    for (const ShippedModel& m : list) j.open_object().key("name").string(m.name).key("title").string(m.title).close();
+    for (const ShippedFile& m : list) j.open_object().key("name").string(m.name).key("title").string(m.title).close();
     hand_out(j.close().text() + "\n");
     return kOk;
   }
-  for (const ShippedModel& m : list) say(stdout, "%-34s %s\n", m.name.c_str(), m.title.c_str());
+  for (const ShippedFile& m : list) say(stdout, "%-34s %s\n", m.name.c_str(), m.title.c_str());
   return kOk;
 }
 

@@ -20,7 +20,7 @@ SourceText read_equation_text(const Options& o) {
   std::string why;
   if (read_file(o.equations, source.text, &why)) return source;
   std::vector<std::string> names;
-  for (const ShippedModel& e : shipped_equations()) {
+  for (const ShippedFile& e : shipped(Shipped::equations)) {
     names.push_back(e.name);
     if (e.name != o.equations && e.name + ".eq" != o.equations) continue;
     source.name = e.name + ".eq";

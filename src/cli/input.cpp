@@ -2,55 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <sstream>
 
-#include <unistd.h>
-
-#include "base/installed.h"
 #include "cli/say.h"
 #include "modelfile/names/constant.h"
 #include "motion/form_choice.h"
+#include "setup/choice.h"
 
 namespace anholon::cli {
 
-namespace fs = std::filesystem;
-
-static std::string first_line_value(const std::string& text, const std::string& key) {
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);)
-    if (line.rfind(key, 0) == 0) {
-      const std::size_t a = line.find('"'), b = line.rfind('"');
-      if (a != std::string::npos && b > a) return line.substr(a + 1, b - a - 1);
-    }
-  return {};
-}
-
-constexpr const char* kTemplates = "templates";
-
-static std::vector<ShippedModel> shipped(const char* extension, bool of_templates = false) {
-  std::vector<ShippedModel> list;
-  for (const fs::path& folder : data_folders("models", ANHOLON_MODELS_DIR)) {
-    std::error_code error;
-    if (!fs::is_directory(folder, error)) continue;
-    for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
-      if (e.path().extension() != extension || (e.path().parent_path().filename() == kTemplates) != of_templates)
-        continue;
-      std::string text;
-      read_file(e.path(), text);
-      list.push_back({e.path().stem().string(), e.path().string(), first_line_value(text, "title")});
-    }
-    if (!list.empty()) break;
-  }
-  std::sort(list.begin(), list.end(), [](const ShippedModel& a, const ShippedModel& b) { return a.path < b.path; });
-  return list;
-}
-
-std::vector<ShippedModel> shipped_models() { return shipped(".toml"); }
-std::vector<ShippedModel> shipped_equations() { return shipped(".eq"); }
-std::vector<ShippedModel> templates() { return shipped(".toml", true); }
+std::vector<ShippedFile> shipped(Shipped kind) { return shipped_files(kind, ANHOLON_MODELS_DIR); }
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source) {
   std::fflush(stdout);
@@ -112,29 +72,7 @@ std::string all_text(const SourceText& source) {
   return text;
 }
 
-Reader read(const Options& o) {
-  Reader r;
-  r.source.name = o.model;
-  std::string why;
-  if (!read_file(o.model, r.source.text, &why)) {
-    bool found = false;
-    std::vector<std::string> names;
-    for (const ShippedModel& m : shipped_models()) {
-      names.push_back(m.name);
-      if (m.name != o.model || found) continue;
-      found = read_file(m.path, r.source.text);
-      r.source.name = m.name + ".toml";
-      r.source.path = m.path;
-    }
-    if (!found) {
-      const std::string near = did_you_mean(o.model, names);
-      throw UsageError{"error: cannot read the model '" + o.model + "': " + why + "\n" +
-                       (near.empty() ? "hint: a path to a .toml file, or a name that `anholon models` lists\n"
-                                     : "hint: did you mean the shipped model '" + near + "'?\n")};
-    }
-  }
-  return read(o, std::move(r.source));
-}
+Reader read(const Options& o) { return read(o, model_text(o.model, ANHOLON_MODELS_DIR)); }
 
 Reader read(const Options& o, SourceText source) {
   Reader r;
@@ -161,47 +99,18 @@ Reader read(const Options& o, SourceText source) {
   return r;
 }
 
-// Forms whose motions can be computed, or all that apply.
-static std::string list_of_forms(const Mechanics& m, bool with_motions) {
-  std::string list;
-  for (const Formulation* f : formulations())
-    if (obstacle(*f, m).empty() && !(with_motions && f->unknowns == Unknowns::variational))
-      list += (list.empty() ? "" : ", ") + std::string(f->name);
-  return list;
-}
-
-// Throws if the form does not apply to the model.
-static void must_apply(const Formulation& f, const Mechanics& m) {
-  if (const std::string why = obstacle(f, m); !why.empty())
-    throw UsageError{"error: the form '" + std::string(f.name) + "' does not apply: " + why +
-                     "\nhint: these do: " + list_of_forms(m, false) + "\n"};
-}
-
 // The name of the form asked for.
 static std::string wanted_form(const Options& o, const Model& model) {
   return merged(o.motion, model.simulate).form.value_or("routh");
 }
 
 const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics) {
-  const bool from_file = !o.motion.form && model.simulate.form;
-  const std::string wanted = wanted_form(o, model);
-  const Formulation* f = find_formulation(wanted);
-  if (!f) {
-    std::vector<std::string> names;
-    std::string list;
-    for (const Formulation* k : formulations()) {
-      names.push_back(k->name);
-      list += (list.empty() ? "" : ", ") + std::string(k->name);
-    }
-    const std::string near = did_you_mean(wanted, names);
-    const std::string message = wanted == "auto"
-                                    ? std::string("'auto' is a form for motions, to simulate, sweep and check")
-                                    : "there is no form '" + wanted + "'" +
-                                          (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                      hint = "the forms are " + list;
-    if (from_file)
-      throw UsageError{print({Severity::error, model.simulate.form_span, message, hint}, model.source_text)};
-    throw UsageError{"error: " + message + "\nhint: " + hint + "\n"};
+  const Formulation* f = nullptr;
+  try {
+    f = &named_form(wanted_form(o, model));
+  } catch (Failure& e) {
+    if (!o.motion.form) e.diagnostic.span = model.simulate.form_span;
+    throw UsageError{print(e.diagnostic, model.source_text)};
   }
   if (mechanics) must_apply(*f, *mechanics);
   return *f;
@@ -216,11 +125,7 @@ Options with_form(Options o, const Reader& in) {
 }
 
 Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice, Scenario& s) {
-  if (f.unknowns == Unknowns::variational)
-    throw UsageError{"error: the form '" + std::string(f.name) +
-                     "' is another mechanics: it is derived and compared, but no motion is computed with it\nhint: "
-                     "these give motions: " +
-                     list_of_forms(mechanics(*in.model), true) + "\n"};
+  if (f.unknowns == Unknowns::variational) must_have_motions(f, mechanics(*in.model));
   if (f.obstacle != no_obstacle) must_apply(f, mechanics(*in.model));
   try {
     return make_scenario(in.model, f, choice, s);
@@ -266,63 +171,22 @@ std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, 
 
 StateChoice state_choice(const Options& o, const Model& model) {
   StateChoice c;
-  for (const std::string& word : split(o.eliminate)) {
-    const std::string name = normal_name(word);
-    const auto& names = model.names.coordinates;
-    const auto it = std::find(names.begin(), names.end(), name);
-    if (it == names.end()) {
-      const std::string near = did_you_mean(name, names);
-      throw UsageError{"error: --eliminate: there is no coordinate '" + name + "'" +
-                       (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
-    }
-    c.eliminate.push_back(static_cast<std::size_t>(it - names.begin()));
-  }
+  for (const std::string& word : split(o.eliminate)) c.eliminate.push_back(coordinate_of(model, word, "--eliminate: "));
   if (!o.t.empty()) c.t = exact(o.t, "--t");
-  unsigned highest = 2;  // derivatives of this order follow from the state
-  for (const Constraint& m : model.constraints) highest = std::max(highest, static_cast<unsigned>(m.order));
-  for (const auto& [list, order, option] : {std::tuple{&o.q, 0U, "--q"}, std::tuple{&o.qdot, 1U, "--qdot"},
-                                            std::tuple{&o.qddot, 2U, "--qddot"}, std::tuple{&o.qdddot, 3U, "--qdddot"}})
-    for (const std::string& s : split(*list)) {
-      auto [name, value] = assignment(s, option);
-      unsigned primes = 0;
-      while (!name.empty() && name.back() == '\'') name.pop_back(), ++primes;
-      const unsigned k = order == 0 ? primes : order;  // --qdot "x'=2" also means x'
-      const auto it = std::find(model.names.coordinates.begin(), model.names.coordinates.end(), name);
-      if (it == model.names.coordinates.end()) {
-        const std::string near = did_you_mean(name, model.names.coordinates);
-        throw UsageError{"error: " + std::string(option) + ": there is no coordinate '" + name + "'" +
-                         (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
-      }
-      if (k >= highest)
-        throw UsageError{
-            "error: " + std::string(option) + ": " +
-            (highest == 2 ? "accelerations follow" : "derivatives of order " + std::to_string(k) + " follow") +
-            " from the state\n"};
-      for (const StateOverride& before : c.overrides)
-        if (before.order == k && before.coordinate == static_cast<std::size_t>(it - model.names.coordinates.begin()))
-          throw UsageError{"error: " + std::string(option) + " gives '" + name + "' twice\n"};
-      c.overrides.push_back({k, static_cast<std::size_t>(it - model.names.coordinates.begin()), exact(value, option)});
-    }
-  for (const auto& [list, order, option] :
-       {std::tuple{&o.lambda, 0U, "--lambda"}, std::tuple{&o.lambdadot, 1U, "--lambdadot"}})
-    for (const std::string& s : split(*list)) {
-      const auto [name, value] = assignment(s, option);
-      const auto& names = model.names.multipliers;
-      const auto it = std::find(names.begin(), names.end(), name);
-      if (it == names.end()) {
-        const std::string near = did_you_mean(name, names);
-        throw UsageError{"error: " + std::string(option) + ": there is no constraint '" + name + "'" +
-                         (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
-      }
-      if (order + 2 >= highest)
-        throw UsageError{
-            "error: " + std::string(option) +
-            ": multipliers follow from the state\nhint: they are initial data for constraints of order 3 and more\n"};
-      const auto k = static_cast<std::size_t>(it - names.begin());
-      for (const StateOverride& before : c.overrides)
-        if (before.multiplier && before.order == order && before.coordinate == k)
-          throw UsageError{"error: " + std::string(option) + " gives '" + name + "' twice\n"};
-      c.overrides.push_back({order, k, exact(value, option), true});
+  struct Given {
+    const char* option;
+    const std::vector<std::string>& words;
+    unsigned order;
+    bool multiplier;
+  };
+  for (const Given& g : {Given{"--q", o.q, 0, false}, Given{"--qdot", o.qdot, 1, false},
+                         Given{"--qddot", o.qddot, 2, false}, Given{"--qdddot", o.qdddot, 3, false},
+                         Given{"--lambda", o.lambda, 0, true}, Given{"--lambdadot", o.lambdadot, 1, true}})
+    for (const std::string& word : split(g.words)) {
+      const auto [name, value] = assignment(word, g.option);
+      InitialName of = g.multiplier ? InitialName{name, g.order, true} : initial_name(name);
+      if (g.order > 0) of.order = g.order;  // --qdot "x'=2" means x', too
+      give(c, model, of, exact(value, g.option), std::string(g.option) + ": ");
     }
   return c;
 }

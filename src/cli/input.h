@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "base/installed.h"
 #include "base/read_file.h"
 #include "cli/commands.h"
+#include "modelfile/shipped.h"
 #include "proof/prove.h"
 #include "setup/scenario.h"
 #include "simulation/request.h"
@@ -56,11 +56,6 @@ std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, 
 void print_diagnostic(const Diagnostic& d, const SourceText& source);
 void print_outcome(const Outcome& o);
 
-struct ShippedModel {
-  std::string name, path, title;
-};
-std::vector<ShippedModel> shipped_models();
-std::vector<ShippedModel> shipped_equations();  // published equations, *.eq
-std::vector<ShippedModel> templates();          // templates of new models
+std::vector<ShippedFile> shipped(Shipped kind);
 
 }  // namespace anholon::cli

@@ -7,17 +7,17 @@
 namespace anholon::cli {
 
 int new_model(const Options& o) {
-  const std::vector<ShippedModel> list = templates();
+  const std::vector<ShippedFile> list = shipped(Shipped::templates);
   if (o.model.empty()) {
     if (!o.output.empty())
       throw UsageError{"error: which template is to be written to '" + o.output +
                        "'?\nhint: `anholon new` lists them\n"};
-    for (const ShippedModel& t : list) say(stdout, "%-12s %s\n", t.name.c_str(), t.title.c_str());
+    for (const ShippedFile& t : list) say(stdout, "%-12s %s\n", t.name.c_str(), t.title.c_str());
     return kOk;
   }
   std::vector<std::string> known;
   std::string text;
-  for (const ShippedModel& t : list) {
+  for (const ShippedFile& t : list) {
     known.push_back(t.name);
     if (t.name == o.model && !read_file(t.path, text)) throw UsageError{"error: cannot read '" + t.path + "'\n"};
   }

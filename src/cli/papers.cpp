@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "base/read_file.h"
 #include "base/utf8.h"
+#include "base/installed.h"
 #include "cli/input.h"
 #include "cli/say.h"
 #include "published/decide.h"
@@ -55,7 +56,7 @@ OpenModel load(const std::string& name) {
   if (name.ends_with(".toml"))
     path = (papers_folder().parent_path() / name).string();
   else
-    for (const ShippedModel& m : shipped_models())
+    for (const ShippedFile& m : shipped(Shipped::models))
       if (m.path.ends_with("/" + name + ".toml")) path = m.path;
   SourceText source{name, {}, path};
   std::string why = "there is no shipped model of this name";

@@ -11,8 +11,8 @@
 #include "cli/report_text.h"
 #include "cli/say.h"
 #include "cli/show.h"
-#include "cli/vary.h"
 #include "ensemble/request.h"
+#include "ensemble/variation.h"
 #include "result/file.h"
 #include "simulation/report_json.h"
 
@@ -154,6 +154,26 @@ class Json final : public Output {
   bool any_ = false;
 };
 
+// --vary, -n and --seed.
+Variation variation_of(const Options& o, const Model& model) {
+  Variation v(o.seed);
+  try {
+    for (const std::string& word : o.varied) v.add(word, model);
+  } catch (const VariationMistake& m) {
+    throw UsageError{print(m.diagnostic, SourceText{"--vary", m.word})};
+  }
+  std::optional<std::size_t> cases;
+  if (!o.case_count.empty()) {
+    const auto n = parse_rational(o.case_count);
+    if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(Variation::kMostCases))
+      throw UsageError{"error: -n takes a number of cases up to " + std::to_string(Variation::kMostCases) + ", not '" +
+                       o.case_count + "'\nhint: -n 1000\n"};
+    cases = n->get_num().get_ui();
+  }
+  v.finish(cases, "-n");
+  return v;
+}
+
 void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
@@ -178,13 +198,10 @@ int sweep(const Options& asked) {
       throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
   const Reader in = read(asked);
   const Options o = with_form(asked, in);
-  const Variation variation(o, *in.model);
+  const Variation variation = variation_of(o, *in.model);
   EnsembleOptions options;
   options.state = state_choice(o, *in.model);
-  for (const StateOverride& given : options.state.overrides)
-    for (const Varied& v : variation.varied())
-      if (v.kind == Varied::Kind::initial && !given.multiplier && given.coordinate == v.index && given.order == v.order)
-        throw UsageError{"error: '" + v.name + "' is both given and varied\nhint: leave out one of them\n"};
+  must_not_be_given(variation.varied(), options.state);
   options.varied = variation.varied();
   options.cases = variation.cases();
   options.numbers = [&](std::size_t k) { return EnsembleCase{variation(k), {}}; };

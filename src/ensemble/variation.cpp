@@ -1,26 +1,25 @@
-#include "cli/vary.h"
+#include "ensemble/variation.h"
 
 #include <algorithm>
 
 #include "modelfile/names/constant.h"
 #include "numeric/philox.h"
+#include "setup/choice.h"
 
-namespace anholon::cli {
+namespace anholon {
 
 namespace {
 
 constexpr std::size_t kMostPoints = 1'000'000;  // of one grid
-constexpr std::size_t kMostCases = 1'000'000'000'000;
 
-// The word after --vary with a part of it marked, like positioned errors of files.
+// Marks a part of the word.
 [[noreturn]] void wrong(const std::string& word, std::size_t at, std::size_t length, const std::string& message,
                         const std::string& hint) {
-  const SourceText source{"--vary", word};
   Span span;
   span.line = 1;
   span.column = static_cast<decltype(span.column)>(at + 1);
   span.length = static_cast<decltype(span.length)>(std::max<std::size_t>(length, 1));
-  throw UsageError{print({Severity::error, span, message, hint}, source)};
+  throw VariationMistake{{Severity::error, span, message, hint}, word};
 }
 
 // A part of the word, with its place.
@@ -75,18 +74,14 @@ std::string unit_of(const Varied& v, const Model& model) {
 }
 
 Varied named(const std::string& word, const std::string& text, const Model& model) {
-  std::string name = text;
-  unsigned primes = 0;
-  while (!name.empty() && name.back() == '\'') name.pop_back(), ++primes;
-  name = normal_name(name);
+  const auto [name, primes, multiplier] = initial_name(text);
   const auto& coordinates = model.names.coordinates;
-  if (const auto q = std::find(coordinates.begin(), coordinates.end(), name); q != coordinates.end()) {
-    unsigned highest = 2;  // derivatives of this order follow from the state
-    for (const Constraint& c : model.constraints) highest = std::max(highest, static_cast<unsigned>(c.order));
-    if (primes >= highest)
+  if (const auto q = std::find(coordinates.begin(), coordinates.end(), name); q != coordinates.end() && !multiplier) {
+    const unsigned determined = first_determined_order(model);
+    if (primes >= determined)
       wrong(word, 0, text.size(),
-            highest == 2 ? "accelerations follow from the state"
-                         : "derivatives of order " + std::to_string(primes) + " follow from the state",
+            determined == 2 ? "accelerations follow from the state"
+                            : "derivatives of order " + std::to_string(primes) + " follow from the state",
             "vary " + name + ", " + name + "' or a parameter");
     return {Varied::Kind::initial, static_cast<std::size_t>(q - coordinates.begin()), primes,
             derivative_name(name, primes, Format::text)};
@@ -137,7 +132,7 @@ Variation::Values Variation::law(const std::string& word, std::size_t sign, cons
 }
 
 // A grid, NAME=FROM:TO:COUNT, or a list, NAME=A,B,….
-Variation::Values Variation::listed(const std::string& word, std::size_t sign, const std::string& unit) {
+Variation::Values Variation::listed(const std::string& word, std::size_t sign, const std::string& unit) const {
   Values values;
   if (word.find(':', sign) == std::string::npos) {
     for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p, unit));
@@ -162,42 +157,54 @@ Variation::Values Variation::listed(const std::string& word, std::size_t sign, c
   return values;
 }
 
-Variation::Variation(const Options& o, const Model& model) : seed_(o.seed) {
-  if (o.varied.empty()) throw UsageError{std::string("error: nothing is varied\nhint: ") + kHint + "\n"};
-  for (const std::string& word : o.varied) {
-    const std::size_t sign = word.find_first_of("=~");
-    if (sign == std::string::npos || sign == 0)
-      wrong(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
-    const Varied v = named(word, word.substr(0, sign), model);
-    for (const Varied& before : varied_)
-      if (before.name == v.name) wrong(word, 0, sign, "'" + v.name + "' is varied twice", "one --vary for each name");
-    varied_.push_back(v);
-    const std::string unit = unit_of(v, model);
-    Values values = word[sign] == '~' ? law(word, sign, unit) : listed(word, sign, unit);
-    if (!values.list.empty()) {
-      if (values.list.size() > kMostCases / grid_)
-        throw UsageError{"error: the grids have more than " + std::to_string(kMostCases) +
-                         " points\nhint: fewer values\n"};
-      grid_ *= values.list.size();
-    }
-    values_.push_back(std::move(values));
+void Variation::name(const std::string& word, std::size_t sign, const Model& model) {
+  const Varied v = named(word, word.substr(0, sign), model);
+  for (const Varied& before : varied_)
+    if (before.name == v.name) wrong(word, 0, sign, "'" + v.name + "' is varied twice", "each name varies once");
+  varied_.push_back(v);
+}
+
+void Variation::take(Values values) {
+  if (!values.list.empty()) {
+    if (values.list.size() > kMostCases / grid_)
+      throw Failure({}, "the grids have more than " + std::to_string(kMostCases) + " points", "fewer values");
+    grid_ *= values.list.size();
   }
-  if (o.case_count.empty()) {
-    if (streams_ > 0) throw UsageError{"error: how many cases are to be drawn?\nhint: -n 1000\n"};
+  values_.push_back(std::move(values));
+}
+
+void Variation::add(const std::string& word, const Model& model) {
+  const std::size_t sign = word.find_first_of("=~");
+  if (sign == std::string::npos || sign == 0)
+    wrong(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
+  name(word, sign, model);
+  const std::string unit = unit_of(varied_.back(), model);
+  take(word[sign] == '~' ? law(word, sign, unit) : listed(word, sign, unit));
+}
+
+void Variation::add(const std::string& name, std::vector<Rational> values, const Model& model) {
+  this->name(name, name.size(), model);
+  if (values.empty()) wrong(name, 0, name.size(), "there are no values to take", "one value at least");
+  Values listed;
+  listed.list = std::move(values);
+  take(std::move(listed));
+}
+
+void Variation::finish(std::optional<std::size_t> cases, const std::string& called) {
+  if (varied_.empty()) throw Failure({}, "nothing is varied", kHint);
+  if (!cases) {
+    if (streams_ > 0) throw Failure({}, "how many cases are to be drawn?", called + " 1000");
     cases_ = grid_;
     return;
   }
-  const auto n = parse_rational(o.case_count);
-  if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(kMostCases))
-    throw UsageError{"error: -n takes a number of cases up to " + std::to_string(kMostCases) + ", not '" +
-                     o.case_count + "'\nhint: -n 1000\n"};
-  cases_ = n->get_num().get_ui();
+  cases_ = *cases;
   if (streams_ == 0 && cases_ != grid_)
-    throw UsageError{"error: nothing is random, and the grid has " + std::to_string(grid_) +
-                     (grid_ == 1 ? " point" : " points") + "\nhint: leave out -n\n"};
+    throw Failure({}, "nothing is random, and the grid has " + std::to_string(grid_) + (grid_ == 1 ? " point" : " points"),
+                  "leave out " + called);
   if (cases_ < grid_)
-    throw UsageError{"error: -n " + std::to_string(cases_) + " leaves out points of the grid, which has " +
-                     std::to_string(grid_) + "\nhint: -n " + std::to_string(grid_) + " or more\n"};
+    throw Failure({}, called + " " + std::to_string(cases_) + " leaves out points of the grid, which has " +
+                          std::to_string(grid_),
+                  called + " " + std::to_string(grid_) + " or more");
 }
 
 std::vector<Rational> Variation::operator()(std::size_t number) const {
@@ -216,4 +223,11 @@ std::vector<Rational> Variation::operator()(std::size_t number) const {
   return out;
 }
 
-}  // namespace anholon::cli
+void must_not_be_given(const std::vector<Varied>& varied, const StateChoice& state) {
+  for (const StateOverride& given : state.overrides)
+    for (const Varied& v : varied)
+      if (v.kind == Varied::Kind::initial && !given.multiplier && given.coordinate == v.index && given.order == v.order)
+        throw Failure({}, "'" + v.name + "' is both given and varied", "leave out one of them");
+}
+
+}  // namespace anholon

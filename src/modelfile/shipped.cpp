@@ -1,0 +1,64 @@
+#include "modelfile/shipped.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/installed.h"
+#include "base/read_file.h"
+
+namespace anholon {
+
+namespace fs = std::filesystem;
+
+// The value of the first line that is `title = "…"`.
+static std::string title_of(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line(text.data() + at, end - at);
+    const std::size_t open = line.find('"'), close = line.rfind('"');
+    if (line.starts_with("title") && open != std::string_view::npos && close > open)
+      return std::string(line.substr(open + 1, close - open - 1));
+    at = end + 1;
+  }
+  return {};
+}
+
+std::vector<ShippedFile> shipped_files(Shipped kind, const char* in_source) {
+  std::vector<ShippedFile> list;
+  for (const fs::path& folder : data_folders("models", in_source)) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) continue;
+    for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
+      const bool template_file = e.path().parent_path().filename() == "templates";
+      if (e.path().extension() != (kind == Shipped::equations ? ".eq" : ".toml") ||
+          template_file != (kind == Shipped::templates))
+        continue;
+      std::string text;
+      read_file(e.path(), text);
+      list.push_back({e.path().stem().string(), e.path().string(), title_of(text)});
+    }
+    if (!list.empty()) break;
+  }
+  std::sort(list.begin(), list.end(), [](const ShippedFile& a, const ShippedFile& b) { return a.path < b.path; });
+  return list;
+}
+
+SourceText model_text(const std::string& path_or_name, const char* in_source) {
+  SourceText source{path_or_name, {}};
+  std::string why;
+  if (read_file(path_or_name, source.text, &why)) return source;
+  std::vector<std::string> known;
+  for (const ShippedFile& m : shipped_files(Shipped::models, in_source)) {
+    known.push_back(m.name);
+    if (m.name != path_or_name || !read_file(m.path, source.text)) continue;
+    source.name = m.name + ".toml";
+    source.path = m.path;
+    return source;
+  }
+  const std::string near = did_you_mean(path_or_name, known);
+  throw Failure({}, "cannot read the model '" + path_or_name + "': " + why,
+                near.empty() ? "a path to a .toml file, or a name that `anholon models` lists"
+                             : "did you mean the shipped model '" + near + "'?");
+}
+
+}  // namespace anholon

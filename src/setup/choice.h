@@ -1,0 +1,34 @@
+// Names and numbers that somebody gives beside a model, made into a form and a choice of state. The command line and the
+// library share them. All functions throw Failure without a place.
+#pragma once
+#include "setup/scenario.h"
+
+namespace anholon {
+
+const Formulation& named_form(const std::string& name);
+// Throws if the form does not apply to the model.
+void must_apply(const Formulation& form, const Mechanics& mechanics);
+// Throws if no motion is computed in the form.
+void must_have_motions(const Formulation& form, const Mechanics& mechanics);
+// "routh, maggi, …": the forms that apply; `with_motions` leaves out those without.
+std::string forms_that_apply(const Mechanics& mechanics, bool with_motions);
+
+// The place of a coordinate; `called` begins the message: "--eliminate: ".
+std::size_t coordinate_of(const Model& model, const std::string& name, const std::string& called = {});
+
+// What an initial value belongs to: x'' is of order 2; lambda.blade is a multiplier.
+struct InitialName {
+  std::string name;  // without primes and "lambda."
+  unsigned order = 0;
+  bool multiplier = false;
+};
+InitialName initial_name(const std::string& written);
+// Adds a value to the choice. Throws if there is no such name, if the value follows from the state, and if it is given
+// already.
+void give(StateChoice& choice, const Model& model, const InitialName& of, const Rational& value,
+          const std::string& called = {});
+
+// Derivatives of this order and above follow from the state.
+unsigned first_determined_order(const Model& model);
+
+}  // namespace anholon
