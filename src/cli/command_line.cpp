@@ -128,7 +128,7 @@ class CommandLine {
   }
 
   void form_option(CLI::App* c) {
-    motion_option(c, "form");
+    motion_options(c, MotionOption::Part::form);
     model_options(c, ModelOption::Of::form);
     c->add_option("--show", o_.show, "print one stage instead: mechanics, system, structure, program; check: also cost")
         ->type_name("STAGE");
@@ -143,13 +143,13 @@ class CommandLine {
         ->check(CLI::Range(1, static_cast<int>(kHighestM)));
   }
 
-  void accuracy(CLI::App* c) {
-    for (const char* name : {"tolerance", "digits", "numbers", "rigorous", "order", "method", "integrator"})
-      motion_option(c, name);
+  void motion_options(CLI::App* c, MotionOption::Part part) {
+    for (const MotionOption& row : anholon::motion_options())
+      if (row.part == part) motion_option(c, row.name);
   }
-
+  void accuracy(CLI::App* c) { motion_options(c, MotionOption::Part::accuracy); }
   void motion(CLI::App* c) {
-    for (const char* name : {"to", "at", "every"}) motion_option(c, name);
+    motion_options(c, MotionOption::Part::times);
     accuracy(c);
   }
 
@@ -208,7 +208,7 @@ class CommandLine {
     c->add_option("--continue", o_.resume,
                   "FILE that --save wrote: the run goes on with the same bits, rows after its last")
         ->type_name("FILE");
-    motion_option(c, "error-estimate");
+    motion_options(c, MotionOption::Part::judgement);
     c->add_option("-o,--output", o_.output, "FILE.h5, FILE.csv or FILE.json (default: CSV on the standard output)")
         ->type_name("FILE");
 

@@ -21,7 +21,7 @@ struct WrittenTime {
 struct MotionSettings {
   std::optional<Rational> to, every, tolerance;
   std::vector<WrittenTime> at;  // ascending
-  std::optional<int> digits, order;
+  std::optional<int> digits, order, most_steps;
   std::optional<std::string> form, numbers, method, integrator, rigorous, error_estimate;
   Span form_span;  // of a form that the file names
 };
@@ -29,11 +29,14 @@ struct MotionSettings {
 struct MotionOption {
   using Member = std::variant<std::optional<Rational> MotionSettings::*, std::optional<int> MotionSettings::*,
                               std::optional<std::string> MotionSettings::*, std::vector<WrittenTime> MotionSettings::*>;
+  // What commands ask for together: the times of a motion, how it is computed, and how it is judged.
+  enum class Part : std::uint8_t { times, accuracy, judgement, form };
   const char* name;     // "error-estimate" for --error-estimate
   const char* key;      // in [simulate]: "error_estimate"
   const char* value;    // what the help calls its value: "WHEN"
   const char* help;     // of the command line
   const char* in_file;  // of [simulate]
+  Part part;
   Member member;
   bool kept = false;                                  // a saved run goes on with the same value
   const std::vector<std::string>& (*choices)() = {};  // of a word; any other word is refused

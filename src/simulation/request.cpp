@@ -171,6 +171,7 @@ Method method(const MotionSettings& settings, const Scenario& s, const Simulatio
 Rational ask(const MotionSettings& settings, const Scenario& s, const Asker& asker, SimulationOptions& o) {
   // The tolerance of quad without --digits: it leaves some digits for round-off.
   constexpr int kQuadTolerance = 32;
+  o.settings = settings;
   o.estimate = error_estimate(settings);
   o.order = settings.order.value_or(0);
   const Rational last = set_times(settings, s, asker, o);
