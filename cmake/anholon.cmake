@@ -101,7 +101,7 @@ endfunction()
 function(anholon_compiler_module)
   # Program and module share these types. A hash of the headers tells the program that the module beside it is of another build.
   set(layout "")
-  foreach(header arithmetic code plan sparse_lu)
+  foreach(header arithmetic code plan/plan sparse_lu)
     set(file "${PROJECT_SOURCE_DIR}/src/kernel/${header}.h")
     file(SHA256 "${file}" hash)
     string(APPEND layout "${hash}")

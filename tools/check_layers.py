@@ -18,7 +18,7 @@ LEVEL = {
     "modelfile/language": 5, "modelfile/text": 5.1, "modelfile/names": 5.2, "modelfile/mechanical": 5.3,
     "modelfile/motion": 5.4, "modelfile/check": 5.5, "modelfile": 5.6, "mechanics": 5.7,
     "formulation": 6, "formulation/forms": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof": 8,
-    "program": 9, "setup": 9.2, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
+    "program": 9, "setup": 9.2, "kernel/plan": 9.4, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
     "integrate/series": 9.8, "integrate": 10, "integrate/states": 10.1, "result": 11, "motion": 11.5, "observe": 12, "linear": 12, "simulation": 12.2,
     "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "api": 13.8, "cli": 14, "python": 14,
 }  # fmt: skip
@@ -28,7 +28,7 @@ MODELFILE = {name for name in LEVEL if name.startswith("modelfile")}
 # Layers that may see less than everything below them.
 ONLY = {
     "result": {"base", "numeric"},
-    "jit": {"kernel"},  # a module of its own
+    "jit": {"kernel", "kernel/plan"},  # a module of its own
     "plot": {"base", "numeric", "expr", "print", "formula", "result"},
 }
 NOT = {
@@ -42,6 +42,7 @@ NOT = {
     "proof": MODELFILE | {"lowering"},
     "program": MODELFILE | {"lowering", "proof"},
     "formula": {"print"},
+    "kernel/plan": MODELFILE | {"proof", "setup"},
     "kernel/tiers": MODELFILE | {"proof", "setup"},
     "kernel": MODELFILE | {"proof", "setup"},
     "integrate": MODELFILE | {"proof", "setup"},

@@ -36,7 +36,8 @@ struct PresentStep {
   Expander<N>& expander;
   LookAhead<N>& look;
 
-  const W& t() const { return track.now.t; }
+  // Where the expansion was made. While the stepper looks back, the motion has come farther.
+  const W& t() const { return track.begun().at.motion.t; }
   const Expansion<N>& series() const { return expander.series(); }
   // h beyond the expansion.
   Expansion<N>& load(const W& h) {

@@ -5,16 +5,14 @@ namespace anholon {
 template <Number N>
 StepRecord<N> with_other_equations(const StepRecord<N>& record) {
   // By structured bindings: a member that is added later and forgotten here does not compile.
-  [[maybe_unused]] const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, smallest_sigma,
-                                smallest_sigma_t, weakest, sigma_before, last_step, least_health, careful] = record;
+  [[maybe_unused]] const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular,
+                                sigma_before, last_step, least_health, careful] = record;
   StepRecord<N> to;
   to.steps = steps;
   to.worst_constraint = worst_constraint;
   to.worst_equation = worst_equation;
   to.first_sigma = first_sigma;
-  to.smallest_sigma = smallest_sigma;
-  to.smallest_sigma_t = smallest_sigma_t;
-  to.weakest = weakest;
+  to.least_regular = least_regular;
   return to;
 }
 
@@ -24,7 +22,7 @@ MotionState<N> motion_from(const Wider<N>& t, const std::vector<Wider<N>>& state
   using W = Wider<N>;
   const std::vector<W> none(quadratures, W(0));
   MotionState<N> m{t, state, std::vector<W>(state.size(), W(0)), leading, {}, {}, none, none, {}};
-  m.record.smallest_sigma_t = t;
+  m.record.least_regular.t = t;
   return m;
 }
 

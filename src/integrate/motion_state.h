@@ -7,6 +7,23 @@
 
 namespace anholon {
 
+// Where the scaled system Jacobian J was least regular so far.
+template <Number N>
+struct LeastRegular {
+  N sigma{1};  // its smallest singular value
+  Wider<N> t{0};
+  std::size_t unknown = 0;  // that J determined least there
+
+  // `direction`: the unit vector that J maps to the shortest image at time `at`.
+  void see(const N& value, const Wider<N>& at, const std::vector<N>& direction) {
+    if (!(value < sigma)) return;
+    sigma = value;
+    t = at;
+    for (std::size_t j = unknown = 0; j < direction.size(); ++j)
+      if (abs(direction[j]) > abs(direction[unknown])) unknown = j;
+  }
+};
+
 // What has been met on the way so far.
 template <Number N>
 struct StepRecord {
@@ -14,13 +31,12 @@ struct StepRecord {
   W branch_step{0};  // length of the last step that stayed on the branch of the solution
   std::size_t steps = 0;
   W worst_constraint{0}, worst_equation{0};
-  N first_sigma{0}, smallest_sigma{1};  // of the scaled system Jacobian J
-  W smallest_sigma_t{0};
-  std::size_t weakest = 0;  // the unknown that J determined least there
-  N sigma_before{0};        // where the last step began
-  W last_step{0};           // its length
-  N least_health{1};        // of a kernel's pivots
-  bool careful = false;     // the step that follows is made without a kernel
+  N first_sigma{0};  // the first smallest singular value of the scaled system Jacobian
+  LeastRegular<N> least_regular;
+  N sigma_before{0};     // where the last step began
+  W last_step{0};        // its length
+  N least_health{1};     // of a kernel's pivots
+  bool careful = false;  // the step that follows is made without a kernel
 };
 
 // The record of a stepper that goes on with other equations for the same motion: lengths of steps, pivots and values of

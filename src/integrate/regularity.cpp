@@ -128,12 +128,7 @@ Outcome JacobianGuard<N>::check(Expansion<N>& at, const W& t, StepRecord<N>& rec
   sigma_ = at.smallest_singular_value();
   const std::vector<N>& v = at.weakest_direction();
   if (record.first_sigma == N(0)) record.first_sigma = sigma_;
-  if (sigma_ < record.smallest_sigma) {
-    record.smallest_sigma = sigma_;
-    record.smallest_sigma_t = t;
-    for (std::size_t j = record.weakest = 0; j < v.size(); ++j)
-      if (abs(v[j]) > abs(v[record.weakest])) record.weakest = j;
-  }
+  record.least_regular.see(sigma_, t, v);
   // Steps shrink towards where constraints lose their hold, and would come out on the other side, with one motion of
   // several. Where coordinates are singular (Euler's angles) there is one.
   const auto larger = [](const N& a, const N& b) { return abs(a) < abs(b); };

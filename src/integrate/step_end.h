@@ -4,7 +4,7 @@
 #include "integrate/end_check.h"
 #include "integrate/look_ahead.h"
 #include "integrate/series/events.h"
-#include "kernel/plan.h"
+#include "kernel/plan/plan.h"
 
 namespace anholon {
 

@@ -100,11 +100,8 @@ class Stepper {
   std::size_t expansions_by_kernel() const { return expander_.expansions_by_kernel(); }
   const W& worst_constraint() const { return record().worst_constraint; }
   const W& worst_equation() const { return record().worst_equation; }
-  // Of the scaled system Jacobian: the smallest so far, when it was met, the unknown that J determined least there; the
-  // first one.
-  const N& smallest_sigma() const { return record().smallest_sigma; }
-  const W& smallest_sigma_time() const { return record().smallest_sigma_t; }
-  std::size_t weakest_unknown() const { return record().weakest; }
+  // Where the scaled system Jacobian was least regular; its smallest singular value at the first expansion.
+  const LeastRegular<N>& least_regular() const { return record().least_regular; }
   const N& first_sigma() const { return record().first_sigma; }
 
  private:

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-#include "kernel/plan.h"
+#include "kernel/plan/plan.h"
 
 namespace anholon::jit {
 

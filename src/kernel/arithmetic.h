@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/plan.h"
+#include "kernel/plan/plan.h"
 #include "kernel/sparse_lu.h"
 
 namespace anholon {

@@ -10,6 +10,7 @@
 
 #include "kernel/code.h"
 #include "kernel/pivots.h"
+#include "kernel/plan/planner.h"
 #include "kernel/state_map.h"
 
 namespace anholon {

@@ -4,7 +4,7 @@
 // processor can execute in parallel. For a single small system the latency is most of the time; in many lanes the
 // number of operations (Plan::work) is.
 #pragma once
-#include "kernel/plan.h"
+#include "kernel/plan/plan.h"
 #include "kernel/sparse_lu.h"
 
 namespace anholon {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/assert.h"
+#include "tape/bind.h"
 
 namespace anholon {
 
@@ -120,16 +121,12 @@ class LinearPoint {
 
   // Values of all equations, and the partial derivatives; false if a formula has no value here.
   bool evaluate() {
-    const Graph& g = *l_.s_.model->graph;
-    for (const Input& in : l_.tape_.inputs) {
-      const Node& n = g.node(in.symbol);
-      Multi value(0);  // multipliers of redundant constraints
-      if (n.kind == Kind::time)
-        value = t;
-      else if (const auto j = l_.s_.system.variable(in.symbol); j && n.order <= l_.s_.structure.d[*j])
-        value = x[l_.entry(*j, n.order)];
-      machine_.series(in.slot)[0] = value;
-    }
+    bind(machine_, *l_.s_.model->graph, [&](const Node& n, NodeId symbol) {
+      if (n.kind == Kind::time) return t;
+      const auto j = l_.s_.system.variable(symbol);
+      const bool known = j && n.order <= l_.s_.structure.d[*j];  // others are multipliers of redundant constraints
+      return known ? x[l_.entry(*j, n.order)] : Multi(0);
+    });
     machine_.evaluate();
     residual.clear();
     const std::size_t all = l_.rows_.size() + l_.signals_.y.size();

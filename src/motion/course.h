@@ -3,12 +3,11 @@
 // Taylor's motion (motion.h) is the main line: it starts, and it goes where another method cannot: to the end of a
 // table, to a mass that vanishes, past a singular point, to another elimination. What another method costs is found on
 // a stretch of the motion itself and counted in operations, never measured in time, so the same motion always takes the
-// same course.
+// same course. Numbers wider than double have Taylor's method alone; Course<N> names the class of each number type.
 #pragma once
-#include "integrate/states/state_rate.h"
 #include "motion/code_for_long_runs.h"
-#include "model/methods.h"
-#include "motion/motion.h"
+#include "motion/method_choice.h"
+#include "motion/state_motion.h"
 
 namespace anholon {
 
@@ -27,92 +26,119 @@ struct MethodReport {
 };
 
 template <Number N>
-class Course {
+class TaylorCourse {
  public:
   using W = Wider<N>;
 
-  Course(Workspace& scenario, const StepSettings& settings, Method asked, std::vector<Expr> quadratures, int stages);
+  TaylorCourse(Workspace& scenario, const StepSettings& settings, Method asked, const std::vector<Expr>& quadratures,
+               int stages)
+      : motion_(scenario, settings, quadratures, stages), asked_(asked) {}
 
   Outcome start(const StateChoice& choice) { return motion_.start(choice); }
-  Outcome step(const W& end);
+  Outcome step(const W& end) { return motion_.step(end); }
   // The solution anywhere in the last step.
-  Outcome at(const W& t);
-  const Expansion<W>& point() const { return by_other_ ? *point_ : motion_.point(); }
+  Outcome at(const W& t) { return motion_.at(t); }
+  const Expansion<W>& point() const { return motion_.point(); }
   // Where the last step began, its derivatives.
-  const Expansion<W>& begun() const { return by_other_ ? *begun_ : motion_.stepper().point(); }
+  const Expansion<W>& begun() const { return motion_.stepper().point(); }
 
-  // Taylor's, for what only it has; where the last step was another method's, it is somewhere before.
+  // Taylor's motion; where the last step was another method's, it lags behind.
   Motion<N>& taylor() { return motion_; }
   const Motion<N>& taylor() const { return motion_; }
-  bool by_taylor() const { return !by_other_; }
+  bool by_taylor() const { return true; }  // the last step
 
-  W time() const;
-  W before() const;
-  const std::vector<W>& integrals() const;
-  std::size_t steps() const;
-  int order() const;
-  W worst_constraint() const;
-  // As of a stepper, of all methods.
-  const N& smallest_sigma() const;
-  const W& smallest_sigma_time() const;
-  std::size_t weakest_unknown() const;
+  W time() const { return motion_.stepper().time(); }
+  W before() const { return motion_.stepper().before(); }  // the time where the last step began
+  const std::vector<W>& integrals() const { return motion_.stepper().integrals(); }
+  std::size_t steps() const { return motion_.stepper().steps(); }
+  int order() const { return motion_.stepper().order(); }
+  W worst_constraint() const { return motion_.stepper().worst_constraint(); }
+  // Of the scaled system Jacobian: its smallest singular value so far, when it was met, the unknown that it determined
+  // least there; the first one.
+  const N& smallest_sigma() const { return motion_.stepper().least_regular().sigma; }
+  const W& smallest_sigma_time() const { return motion_.stepper().least_regular().t; }
+  std::size_t weakest_unknown() const { return motion_.stepper().least_regular().unknown; }
   const N& first_sigma() const { return motion_.stepper().first_sigma(); }
   MethodReport report() const;
 
  private:
-  void choose(const W& end);
-  bool try_bdf(const W& end);
-  std::string percent() const { return number_text(100 * ratio_, 2) + " % of Taylor's operations on the same stretch"; }
-  bool pays(Method method, std::size_t steps, double factor, const W& end);
-  void make_plans();
-  std::unique_ptr<StateStepper> make(Method method);
-  MotionPoint here() const;
-  std::optional<Outcome> step_by_other(const W& end);
-  bool passed_singular_point();
-  Outcome hand_over(const MotionPoint& p);
-  bool slower_than_taylor();
-  void look();
-  double spent(StateStepper& stepper) const;
-  void turn(Method to, std::string why);
-
-  const Scenario& s_;
-  StepSettings settings_;
   Motion<N> motion_;
-  std::vector<Guard> guards_;
-  int stages_;
-  bool free_ = false;               // to choose a method
-  Method wanted_ = Method::taylor;  // by which the motion goes on
-  std::unique_ptr<StateStepper> other_;
-  const Program* planned_ = nullptr;
-  std::shared_ptr<const KernelPlan> plan_;  // of its rates
-  double expansion_work_ = 0;               // of Taylor's
-  CodeForLongRuns code_;
-  bool by_other_ = false;                     // the last step
-  std::size_t rescues_ = 0, taylor_for_ = 0;  // how often Taylor had to help; the steps it still makes
-  std::optional<Expansion<W>> point_, begun_;
-  std::optional<Expansion<N>> look_;
-  W worst_constraint_{0}, smallest_sigma_t_{0};
-  N smallest_sigma_{1};
-  std::size_t weakest_ = 0;
-  double least_health_ = 1;
-  bool suspected_ = false;  // J may be singular close by
-  // Taylor's last steps, and when it is asked next whether another method pays.
-  std::vector<W> times_;
-  static constexpr std::size_t kStretch = 256;  // steps that are remembered
-  std::size_t next_kinks_ = 128, next_stiff_ = 2048;
-  double pace_ = 0,
-         ratio_ = 0;  // operations for a unit of time by Taylor where it was left; what the trial took of them
-  double window_t_ = 0, window_spent_ = 0;
-  std::size_t window_steps_ = 0;
-  MethodReport report_;
+  Method asked_;
 };
 
-extern template class Course<double>;
-extern template class Course<long double>;
-extern template class Course<Quad>;
-extern template class Course<Multi>;
+// The same in doubles, where other methods may take over stretches of the motion.
+class MethodCourse {
+ public:
+  using W = Wider<double>;
 
-// Why no other method can make the motion of these equations, or nothing.
+  MethodCourse(Workspace& scenario, const StepSettings& settings, Method asked, const std::vector<Expr>& quadratures,
+               int stages);
+
+  Outcome start(const StateChoice& choice) { return motion_.start(choice); }
+  Outcome step(const W& end);
+  Outcome at(const W& t) { return by_other_ ? other_->at(t) : motion_.at(t); }
+  const Expansion<W>& point() const { return by_other_ ? other_->point() : motion_.point(); }
+  const Expansion<W>& begun() const { return by_other_ ? other_->begun() : motion_.stepper().point(); }
+
+  Motion<double>& taylor() { return motion_; }
+  const Motion<double>& taylor() const { return motion_; }
+  bool by_taylor() const { return !by_other_; }
+
+  W time() const { return by_other_ ? other_->stepper().now().t : motion_.stepper().time(); }
+  W before() const { return by_other_ ? other_->stepper().before().t : motion_.stepper().before(); }
+  const std::vector<W>& integrals() const {
+    return by_other_ ? other_->stepper().now().integrals : motion_.stepper().integrals();
+  }
+  std::size_t steps() const { return motion_.stepper().steps() + report_.steps; }
+  int order() const;
+  W worst_constraint() const;
+  double smallest_sigma() const { return least_regular().sigma; }
+  W smallest_sigma_time() const { return least_regular().t; }
+  std::size_t weakest_unknown() const { return least_regular().unknown; }
+  double first_sigma() const { return motion_.stepper().first_sigma(); }
+  MethodReport report() const;
+
+ private:
+  const LeastRegular<double>& least_regular() const;
+  Outcome step_by_taylor(const W& end);
+  std::optional<Outcome> step_by_other(const W& end);
+  Outcome go_on_from(const MotionPoint& p);
+  std::optional<Outcome> help_from(const MotionPoint& p, std::size_t steps);
+  std::optional<Outcome> return_to_taylor(std::string why);
+  void turn(MethodChoice::Turn to);
+
+  Motion<double> motion_;
+  const Model& model_;
+  StepSettings settings_;
+  int stages_;
+  StateSteppers steppers_;
+  std::optional<MethodChoice> choice_;  // if the method is free
+  std::unique_ptr<StateMotion> other_;  // the stretch by another method that is under way
+  bool by_other_ = false;               // the last step
+  StateRecord met_;                     // by other methods
+  CodeForLongRuns code_;
+  std::size_t rescues_ = 0, taylor_for_ = 0;  // how often Taylor had to help; the steps it still makes
+  MethodReport report_;                       // `last` is the method by which the motion goes on
+};
+
+namespace course_of {
+template <Number N>
+struct Type {
+  using type = TaylorCourse<N>;
+};
+template <>
+struct Type<double> {
+  using type = MethodCourse;
+};
+}  // namespace course_of
+template <Number N>
+using Course = typename course_of::Type<N>::type;
+
+extern template class TaylorCourse<long double>;
+extern template class TaylorCourse<Quad>;
+extern template class TaylorCourse<Multi>;
+
+// The reason why no other method can make the motion of these equations; else an empty string.
 std::string only_taylor(const Model& model, const Program& program);
 
 }  // namespace anholon

@@ -55,15 +55,10 @@ Outcome Motion<N>::fire(const Event& event, std::vector<W>& state, std::vector<W
   };
   const Tape tape = compile(OutputTape<W>::put(s_, values));
   Machine<W> machine(tape, 0, parameters);
-  for (const Input& in : tape.inputs) {
-    const Node& n = g.node(in.symbol);
+  bind(machine, g, [&](const Node& n, NodeId symbol) {
     const W* own = n.kind == Kind::jet || n.kind == Kind::state ? entry(n) : nullptr;
-    const auto j = s_.system.variable(in.symbol);
-    machine.series(in.slot)[0] = n.kind == Kind::time ? point.time()
-                                 : own                ? *own
-                                 : j                  ? point.derivative(*j, static_cast<int>(n.order))
-                                                      : W(0);
-  }
+    return own ? *own : ValueAt<W>{s_.system, point}(n, symbol);
+  });
   machine.evaluate();
   for (std::size_t i = 0; i < event.set.size(); ++i) {
     const Expr symbol = event.set[i].symbol;

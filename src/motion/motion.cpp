@@ -243,8 +243,8 @@ void Motion<N>::save(SavedRun& to) const {
   const StepperState<N> begun = leg_->stepper.begun();
   const auto& [motion, direction, sides] = begun;
   const auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
-  const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, smallest_sigma, smallest_sigma_t,
-               weakest, sigma_before, last_step, least_health, careful] = record;
+  const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular, sigma_before,
+               last_step, least_health, careful] = record;
   to.set_numbers<W>("t", {t});
   to.set_numbers("state", state);
   to.set_numbers("carry", carry);
@@ -253,10 +253,10 @@ void Motion<N>::save(SavedRun& to) const {
   to.set_numbers("own_leading", own_leading);
   to.set_numbers("integrals", integrals);
   to.set_numbers("integral_carry", integral_carry);
-  to.set_numbers<W>("stepper", {branch_step, worst_constraint, worst_equation, smallest_sigma_t, last_step});
-  to.set_numbers<N>("sigma", {first_sigma, smallest_sigma, sigma_before, least_health});
+  to.set_numbers<W>("stepper", {branch_step, worst_constraint, worst_equation, least_regular.t, last_step});
+  to.set_numbers<N>("sigma", {first_sigma, least_regular.sigma, sigma_before, least_health});
   to.set_numbers("direction", direction);
-  to.set("counts", {std::to_string(steps), std::to_string(weakest), careful ? "1" : "0"});
+  to.set("counts", {std::to_string(steps), std::to_string(least_regular.unknown), careful ? "1" : "0"});
   std::vector<double> choices;
   for (std::size_t i = 0; i < mark_.choices; ++i) {
     const Choice& c = choices_[i];
@@ -322,8 +322,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   StepperState<N> b;
   auto& [motion, direction, sides] = b;
   auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
-  auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, smallest_sigma, smallest_sigma_t, weakest,
-         sigma_before, last_step, least_health, careful] = record;
+  auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular, sigma_before, last_step,
+         least_health, careful] = record;
   t = from.number<W>("t");
   state = from.numbers<W>("state", size);
   carry = from.numbers<W>("carry", size);
@@ -336,18 +336,19 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   branch_step = more[0];
   worst_constraint = more[1];
   worst_equation = more[2];
-  smallest_sigma_t = more[3];
+  least_regular.t = more[3];
   last_step = more[4];
   first_sigma = sigma[0];
-  smallest_sigma = sigma[1];
+  least_regular.sigma = sigma[1];
   sigma_before = sigma[2];
   least_health = sigma[3];
   steps = static_cast<std::size_t>(counts[0]);
-  weakest = static_cast<std::size_t>(counts[1]);
+  least_regular.unknown = static_cast<std::size_t>(counts[1]);
   careful = counts[2] != 0;
   direction = from.numbers<N>("direction");
   for (const W& side : from.numbers<W>("sides", watched().size())) sides.push_back(static_cast<int>(to_double(side)));
-  if (weakest >= p.unknowns() || (!direction.empty() && direction.size() != p.unknowns())) SavedRun::unfit("direction");
+  if (least_regular.unknown >= p.unknowns() || (!direction.empty() && direction.size() != p.unknowns()))
+    SavedRun::unfit("direction");
   if (!leg_->pivots) effort_ = effort_after(steps);
   accelerate(*leg_);
   return leg_->stepper.resume(b);

@@ -104,11 +104,11 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
     outcome.hint = "look at the last good state: end the motion before";
     return;
   }
-  const double first = to_double(stepper.first_sigma()), least = to_double(stepper.smallest_sigma());
+  const double first = to_double(stepper.first_sigma()), least = to_double(stepper.least_regular().sigma);
   const std::string lost = lost_hold(s, motion);
   // Not where the motion has passed a singular configuration long before.
   const Wider<N> steps = abs(W(stepper.time() - stepper.before())) * W(kRecentSteps);
-  const bool here = abs(W(stepper.smallest_sigma_time() - stepper.time())) <= steps;
+  const bool here = abs(W(stepper.least_regular().t - stepper.time())) <= steps;
   const bool fallen = outcome.kind == OutcomeKind::singular || (here && least < kFallen * first) || !lost.empty();
   for (std::size_t k = 0; k < s.system.constraints.size() && lost.empty(); ++k) {
     const std::size_t r = s.system.constraints[k];
@@ -126,7 +126,7 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
     return;
   }
   if (fallen) {
-    const std::size_t j = stepper.weakest_unknown();
+    const std::size_t j = stepper.least_regular().unknown;
     outcome.kind = OutcomeKind::singular;
     message = "singular configuration" + when + where(s, motion) + ": " +
               (!lost.empty() ? lost

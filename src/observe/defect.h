@@ -13,22 +13,23 @@
 // reported beside.
 //
 // For one time a ball of that time is put in. For all times of an interval c + s, |s| <= r, each residual R is a Taylor
-// polynomial
-// about c with the remainder of Lagrange,  |R| <= sum_(k<K) |R_k(c)| r^k + |R_K(c +- r)| r^K, coefficients by the machine of balls;
-// the interval is halved while the remainder is what counts (theory: defect).
+// polynomial about c with the remainder of Lagrange (theory: defect; the coefficients by residual_series.h):
+//
+//   |R| <= sum_(k<K) |R_k(c)| r^k + |R_K(c +- r)| r^K
+//
+// The interval is halved while the remainder is what counts.
 //
 // All bounds are relative as those of the residual report: to the largest term, and at least to 1.
 #pragma once
 #include "integrate/stepper.h"
-#include "numeric/ball.h"
-#include "setup/scenario.h"
+#include "observe/residual_series.h"
 
 namespace anholon {
 
 // x_j(t) = sum_k coefficient[j][k] (t - begin)^k for t from begin to end.
 struct DenseStep {
   Ball begin, end;
-  std::vector<std::vector<Ball>> coefficients;
+  BallSeries coefficients;
 };
 
 // The last step of a stepper, exactly.
@@ -43,7 +44,7 @@ DenseStep dense_step(const Stepper<N>& stepper, const Wider<N>& end) {
 }
 
 struct RigorousReport {
-  std::optional<std::size_t> times;  // that the motion reached, at which the bounds hold; nothing: at all
+  std::optional<std::size_t> times;  // that the motion reached, at which the bounds hold; nullopt: at all times
   std::size_t pieces = 0;            // in which these were found
   std::string newton, projected, constraints, joints;  // bounds, rounded upwards; "inf" where there is none
   long bits = 0;                                       // of the midpoints of balls
@@ -58,38 +59,33 @@ class Defect {
   // The steps of the motion, one after the other. REQUIRES: a coefficient at least for every derivative that belongs to
   // the state.
   void step(const DenseStep& step);
-  // Nothing where the motion reached none of the times.
+  // nullopt if the motion reached none of the times.
   std::optional<RigorousReport> report() const;
 
  private:
-  struct Bound {
+  // In relation to the largest terms.
+  struct Bounds {
     Ball newton, projected, constraints;
+    bool is_finite() const { return newton.is_finite() && projected.is_finite() && constraints.is_finite(); }
+  };
+  struct PieceBounds : Bounds {
     bool sharp = true;   // the remainders are not what counts
     bool smooth = true;  // there are remainders
   };
-  void set_inputs(const std::vector<std::vector<Ball>>& x, const Ball& t, int orders);
-  void sweep(int orders);
-  Bound at_time(const DenseStep& step, const Ball& time);
-  Bound over(const std::vector<std::vector<Ball>>& centered, const Ball& center, const Ball& radius);
-  const Ball* phi(std::size_t constraint, std::size_t coordinate) const;
-  std::vector<std::vector<Ball>> correction(std::size_t orders) const;
-  Ball corrected(std::size_t coordinate, std::size_t order, const std::vector<std::vector<Ball>>& delta) const;
+  PieceBounds at_time(const DenseStep& step, const Ball& time);
+  PieceBounds over(const BallSeries& centered, const Ball& center, const Ball& radius);
   void piece(const DenseStep& step, const Ball& begin, const Ball& end, int halvings);  // so many so far
-  void keep(const Bound& b);
-  Ball newton_scale() const;
+  bool says_more(const Bounds& b) const;
+  void keep(const Bounds& b);
 
-  const Scenario& s_;
+  const std::vector<int> d_;  // derivatives of the unknowns that belong to the state
   std::size_t times_, reached_ = 0, pieces_ = 0, pieces_of_step_ = 0;
   slong bits_;
   Ball begin_, end_, quiet_;
-  Tape tape_;
-  std::size_t phi_ = 0, scale_ = 0;  // the first root of Phi; of E, G, N
-  std::vector<int> hidden_;          // derivatives of each constraint that are to vanish
-  std::vector<Ball> parameters_;
-  std::unique_ptr<Machine<Ball>> machine_;
-  int orders_ = -1;                      // that the machine has room for
-  std::vector<std::vector<Ball>> last_;  // derivatives of the unknowns where the last step ended
-  Ball newton_, projected_, constraints_, joints_;
+  ResidualSeries residuals_;
+  BallSeries last_;  // derivatives of the unknowns where the last step ended
+  Bounds worst_;
+  Ball joints_;
 };
 
 }  // namespace anholon

@@ -53,136 +53,202 @@ std::string text(const N& x, int digits) {
     return number_text(static_cast<double>(x));
 }
 
-template <Number N>
-Outcome evaluate_in(Workspace& s, const StateChoice& choice, int digits, StateReport& r) {
+// Outputs [first, first + count) of a tape.
+struct Block {
+  std::size_t first = 0, count = 0;
+};
+
+// The expressions of a report, in blocks of one list.
+struct ReportedExpressions {
+  explicit ReportedExpressions(const Scenario& s);
+
+  struct Named {
+    const char* name;
+    Block at;
+  };
+  Column all;
+  std::vector<Named> forces;  // by coordinate
+  Named inertia, reaction;    // Newton's left side, N
+  std::vector<Named> numbers;
+  Block noncons, constraint, dh_dt;  // those of the power identity
+  Block mass, body_forces, body_torques, phi;
+
+ private:
+  Block add(const Column& es) {
+    all.insert(all.end(), es.begin(), es.end());
+    return {all.size() - es.size(), es.size()};
+  }
+  Block add_number(const char* title, Expr e) {
+    numbers.push_back({title, add({e})});
+    return numbers.back().at;
+  }
+};
+
+ReportedExpressions::ReportedExpressions(const Scenario& s) {
   const Model& model = *s.model;
   const Mechanics& m = *s.mechanics;
-  const std::size_t n = m.q.size();
-  const std::vector<N> parameters = parameter_values<N>(model);
-  const Program prog = program(s.system, s.structure);
-  const int largest_d = largest_order(s, prog.d), beyond = orders_beyond(s, prog.d);
-  Expansion<N> point(prog, parameters, std::max(1, beyond));
+  const auto put = [&](const Column& c) { return put_masses(model, c); };
+  forces = {{"Q", add(put(m.Q))},
+            {"QR", add(put(m.QR))},
+            {"Qomega", add(put(m.Qomega))},
+            {"minus_dVO", add(put(m.minus_dVO))},
+            {"minus_dVomega", add(put(m.minus_dVomega))},
+            {"Gamma", add(put(m.Gamma))}};
+  if (!model.dissipation.empty()) forces.push_back({"QD", add(put(m.QD))});
+  inertia = {"inertia_term", add(newton_left_side(m))};
+  reaction = {"N", add(put(m.N))};
+  const Power p = power(m);
+  add_number("T_r", put_masses(model, m.T));
+  add_number("S_r", put_masses(model, m.S));
+  add_number("V_O", put_masses(model, m.V_O));
+  add_number("V_omega", put_masses(model, m.V_omega));
+  add_number("h", p.h);
+  noncons = add_number("power_noncons", p.noncons);
+  constraint = add_number("power_constraint", p.constraint);
+  dh_dt = add_number("dh_dt", p.dh_dt);
+  Column entries, on_bodies, about_bodies, partials;
+  for (const Column& row : mass_matrix(m)) entries.insert(entries.end(), row.begin(), row.end());
+  for (const Load& l : reactions(*m.model))
+    for (int i = 0; i < 3; ++i) on_bodies.push_back(l.force[i]), about_bodies.push_back(l.torque[i]);
+  for (std::size_t k : s.system.constraints)
+    for (Expr e : m.Phi[k]) partials.push_back(put_masses(model, e));
+  mass = add(entries);
+  body_forces = add(on_bodies);
+  body_torques = add(about_bodies);
+  phi = add(partials);
+}
+
+// Writes a report of one point, part by part.
+template <Number N>
+class StateWriter {
+ public:
+  StateWriter(Workspace& s, const ReportedExpressions& e, const std::vector<N>& parameters, const Expansion<N>& point,
+              int digits, StateReport& report)
+      : s_(s), e_(e), n_(s.mechanics->q.size()), point_(point), digits_(digits), out_(s, e.all, parameters),
+        r_(report) {
+    out_.evaluate(point);
+  }
+
+  void coordinates(int highest_derivative) {
+    const std::vector<Coordinate>& q = s_.model->coordinates;
+    r_.t = text(point_.time(), digits_);
+    for (std::size_t a = 0; a < n_; ++a) {
+      r_.q.push_back({q[a].name, text(point_.derivative(a, 0), digits_)});
+      r_.qdot.push_back({q[a].name, text(point_.derivative(a, 1), digits_)});
+    }
+    for (int k = 2; k <= highest_derivative; ++k)
+      for (std::size_t a = 0; a < n_; ++a)
+        r_.derivatives.push_back({derivative_name(q[a].name, static_cast<unsigned>(k), Format::text),
+                                  text(point_.derivative(a, k), digits_)});
+  }
+
+  void forces() {
+    for (const auto& [name, at] : e_.forces) r_.forces.push_back({name, texts(at)});
+    for (const auto& [name, at] : {e_.inertia, e_.reaction}) r_.forces.push_back({name, texts(at)});
+  }
+
+  // `values`: of the multipliers of all constraints.
+  void multipliers(const std::vector<N>& values) {
+    for (std::size_t k = 0; k < s_.model->constraints.size(); ++k) {
+      const auto j = s_.system.variable(s_.mechanics->lambda[k].id);
+      for (int order = 0; order <= multiplier_orders(s_); ++order)
+        r_.lambda.push_back({derivative_name(multiplier_name(*s_.model, k), static_cast<unsigned>(order), Format::text),
+                             text(order == 0 ? values[k]
+                                  : j        ? point_.derivative(*j, order)
+                                             : N(0),
+                                  digits_)});
+    }
+  }
+
+  void numbers() {
+    for (const auto& [name, at] : e_.numbers) r_.numbers.push_back({name, text(out_[at.first], digits_)});
+    for (std::size_t a = 0; a < n_; ++a) r_.mass_matrix.push_back(texts({e_.mass.first + a * n_, n_}));
+  }
+
+  void reactions() {
+    for (std::size_t b = 0; b < s_.model->bodies.size(); ++b)
+      r_.reactions.push_back({s_.model->bodies[b].name, texts({e_.body_forces.first + 3 * b, 3}),
+                              texts({e_.body_torques.first + 3 * b, 3})});
+  }
+
+  void residuals() {
+    std::vector<N> force(n_, N(0));
+    for (const auto& [name, at] : e_.forces)
+      for (std::size_t a = 0; a < n_; ++a) force[a] += out_[at.first + a];
+    Matrix<N> phi(s_.system.constraints.size(), n_);
+    phi.data = values(e_.phi);
+    const NewtonResidual<N> c = certify(values(e_.inertia.at), force, values(e_.reaction.at), phi);
+    const Block law{0, e_.reaction.at.first + n_}, power{e_.numbers.front().at.first, e_.numbers.size()};
+    const auto of_law = [&](const N& miss) {
+      return relative_miss(miss, c.largest, [&] { return greatest_made_of(law); });
+    };
+    const N dh = out_[e_.dh_dt.first], rate = out_[e_.noncons.first] + out_[e_.constraint.first];
+    const N power_miss =
+        relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))), [&] { return greatest_made_of(power); });
+    const auto small = [](const N& x) { return number_text(to_double(x), 3); };
+    r_.residuals = {{"newton", small(of_law(c.newton))},
+                    {"projected", small(of_law(c.projected))},
+                    {"constraints", small(point_.constraint_residual())},
+                    {"power", small(power_miss)}};
+  }
+
+ private:
+  std::vector<N> values(const Block& of) const {
+    std::vector<N> list;
+    for (std::size_t i = 0; i < of.count; ++i) list.push_back(out_[of.first + i]);
+    return list;
+  }
+  std::vector<std::string> texts(const Block& of) const {
+    std::vector<std::string> list;
+    for (const N& x : values(of)) list.push_back(text(x, digits_));
+    return list;
+  }
+  N greatest_made_of(const Block& of) const {
+    N most(0);
+    for (std::size_t i = of.first; i < of.first + of.count; ++i)
+      if (const N& v = out_.made_of(i); v > most) most = v;
+    return most;
+  }
+
+  Workspace& s_;
+  const ReportedExpressions& e_;
+  std::size_t n_;
+  const Expansion<N>& point_;
+  int digits_;
+  OutputTape<N> out_;
+  StateReport& r_;
+};
+
+// The point of the consistent state, with the orders beyond its leading derivatives if there are any.
+template <Number N>
+Outcome solve_at_start(Workspace& s, const StateChoice& choice, bool beyond, Expansion<N>& point) {
   Start<N> start;
   if (Outcome o = initial_state(s, choice, start); !o.ok()) return o;
   point.load(start.t, start.state, start.leading);
   if (Outcome o = point.prepare(); !o.ok()) return o;
   if (Outcome o = point.project(); !o.ok()) return o;
   if (Outcome o = point.solve(); !o.ok()) return o;
-  if (beyond > 0)
-    if (Outcome o = point.extend(); !o.ok()) return o;
+  return beyond ? point.extend() : Outcome{};
+}
 
-  const auto put = [&](const Column& c) { return put_masses(model, c); };
-  std::vector<std::pair<const char*, Column>> forces = {{"Q", put(m.Q)},
-                                                        {"QR", put(m.QR)},
-                                                        {"Qomega", put(m.Qomega)},
-                                                        {"minus_dVO", put(m.minus_dVO)},
-                                                        {"minus_dVomega", put(m.minus_dVomega)},
-                                                        {"Gamma", put(m.Gamma)}};
-  if (!model.dissipation.empty()) forces.push_back({"QD", put(m.QD)});
-  const std::size_t given = forces.size();  // before Newton's left side and the reactions
-  forces.push_back({"inertia_term", newton_left_side(m)});
-  forces.push_back({"N", put(m.N)});
-  const Power p = power(m);
-  const std::vector<std::pair<const char*, Expr>> numbers = {{"T_r", put_masses(model, m.T)},
-                                                             {"S_r", put_masses(model, m.S)},
-                                                             {"V_O", put_masses(model, m.V_O)},
-                                                             {"V_omega", put_masses(model, m.V_omega)},
-                                                             {"h", p.h},
-                                                             {"power_noncons", p.noncons},
-                                                             {"power_constraint", p.constraint},
-                                                             {"dh_dt", p.dh_dt}};
-  const std::vector<Column> mass = mass_matrix(m);
-  const std::vector<Load> loads = reactions(*m.model);
-  Column es;
-  for (const auto& [name, column] : forces) es.insert(es.end(), column.begin(), column.end());
-  for (const auto& [name, e] : numbers) es.push_back(e);
-  for (const Column& row : mass) es.insert(es.end(), row.begin(), row.end());
-  for (const Load& l : loads)
-    for (int i = 0; i < 3; ++i) es.push_back(l.force[i]);
-  for (const Load& l : loads)
-    for (int i = 0; i < 3; ++i) es.push_back(l.torque[i]);
-  const std::size_t phi_first = es.size();
-  for (std::size_t k : s.system.constraints)
-    for (Expr e : m.Phi[k]) es.push_back(put_masses(model, e));
-  OutputTape<N> out(s, es, parameters);
-  out.evaluate(point);
-
-  r.t = text(start.t, digits);
-  for (std::size_t a = 0; a < n; ++a) {
-    r.q.push_back({model.coordinates[a].name, text(point.derivative(a, 0), digits)});
-    r.qdot.push_back({model.coordinates[a].name, text(point.derivative(a, 1), digits)});
-  }
-  std::size_t at = 0;
-  std::vector<std::vector<N>> columns(forces.size());
-  for (std::size_t f = 0; f < forces.size(); ++f) {
-    std::vector<std::string> column;
-    for (std::size_t a = 0; a < n; ++a, ++at) {
-      columns[f].push_back(out[at]);
-      column.push_back(text(out[at], digits));
-    }
-    r.forces.push_back({forces[f].first, column});
-  }
-  for (int k = 2; k <= largest_d; ++k)
-    for (std::size_t a = 0; a < n; ++a)
-      r.derivatives.push_back({derivative_name(model.coordinates[a].name, static_cast<unsigned>(k), Format::text),
-                               text(point.derivative(a, k), digits)});
+template <Number N>
+Outcome evaluate_in(Workspace& s, const StateChoice& choice, int digits, StateReport& r) {
+  const std::vector<N> parameters = parameter_values<N>(*s.model);
+  const Program prog = program(s.system, s.structure);
+  const int beyond = orders_beyond(s, prog.d);
+  Expansion<N> point(prog, parameters, std::max(1, beyond));
+  if (Outcome o = solve_at_start(s, choice, beyond > 0, point); !o.ok()) return o;
+  const ReportedExpressions expressions(s);
+  StateWriter<N> writer(s, expressions, parameters, point, digits, r);
+  writer.coordinates(largest_order(s, prog.d));
+  writer.forces();
   Redundant<N> redundant(s, parameters);
   double missed = 0;
   if (Outcome o = redundant.hold(point, true, missed); !o.ok()) return o;
-  const std::vector<N> multipliers = redundant.multipliers(point);
-  for (std::size_t k = 0; k < model.constraints.size(); ++k) {
-    const auto j = s.system.variable(m.lambda[k].id);
-    for (int order = 0; order <= multiplier_orders(s); ++order)
-      r.lambda.push_back({derivative_name(multiplier_name(model, k), static_cast<unsigned>(order), Format::text),
-                          text(order == 0 ? multipliers[k]
-                               : j        ? point.derivative(*j, order)
-                                          : N(0),
-                               digits)});
-  }
-  N dh(0), rate(0);
-  const std::size_t first_number = at;
-  for (const auto& [name, e] : numbers) {
-    r.numbers.push_back({name, text(out[at], digits)});
-    if (std::string(name) == "power_noncons" || std::string(name) == "power_constraint") rate += out[at];
-    if (std::string(name) == "dh_dt") dh = out[at];
-    ++at;
-  }
-  for (std::size_t a = 0; a < n; ++a) {
-    std::vector<std::string> row;
-    for (std::size_t b = 0; b < n; ++b, ++at) row.push_back(text(out[at], digits));
-    r.mass_matrix.push_back(row);
-  }
-  const std::size_t bodies = model.bodies.size();
-  for (std::size_t b = 0; b < bodies; ++b) {
-    StateReport::Reaction reaction{model.bodies[b].name, {}, {}};
-    for (std::size_t i = 0; i < 3; ++i) {
-      reaction.force.push_back(text(out[at + 3 * b + i], digits));
-      reaction.torque.push_back(text(out[at + 3 * (bodies + b) + i], digits));
-    }
-    r.reactions.push_back(reaction);
-  }
-  std::vector<N> force(n, N(0));
-  for (std::size_t f = 0; f < given; ++f)
-    for (std::size_t a = 0; a < n; ++a) force[a] += columns[f][a];
-  Matrix<N> phi(s.system.constraints.size(), n);
-  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = out[phi_first + i];
-  const NewtonResidual<N> c = certify(columns[given], force, columns[given + 1], phi);
-  const auto greatest_made_of = [&](std::size_t first, std::size_t count) {
-    N most(0);
-    for (std::size_t i = first; i < first + count; ++i)
-      if (const N& v = out.made_of(i); v > most) most = v;
-    return most;
-  };
-  const auto of_law = [&](const N& miss) {
-    return relative_miss(miss, c.largest, [&] { return greatest_made_of(0, (given + 2) * n); });
-  };
-  const N power_miss = relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))),
-                                     [&] { return greatest_made_of(first_number, numbers.size()); });
-  const auto small = [](const N& x) { return number_text(to_double(x), 3); };
-  r.residuals = {{"newton", small(of_law(c.newton))},
-                 {"projected", small(of_law(c.projected))},
-                 {"constraints", small(point.constraint_residual())},
-                 {"power", small(power_miss)}};
+  writer.multipliers(redundant.multipliers(point));
+  writer.numbers();
+  writer.reactions();
+  writer.residuals();
   return {};
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "numeric/number.h"
-#include "tape/tape.h"
+#include "tape/bind.h"
 
 namespace anholon {
 
@@ -29,10 +29,7 @@ class Rates {
 
   // At the start, moved by this along every coordinate.
   void go(std::size_t coordinate, double away) {
-    const Graph& g = *s_.model->graph;
-    for (const Input& in : tape_.inputs) {
-      const Node& n = g.node(in.symbol);
-      double* series = machine_.series(in.slot);
+    bind_series(machine_, *s_.model->graph, [&](const Node& n, NodeId, double* series, int) {
       series[1] = 0;
       if (n.kind == Kind::jet && n.order == 0)
         series[0] = s_.state.q[n.index] + away * (1 + 0.37 * n.index), series[1] = n.index == coordinate ? 1 : 0;
@@ -40,7 +37,7 @@ class Rates {
         series[0] = s_.state.t;
       else
         series[0] = n.kind == Kind::state && n.index < s_.state.states.size() ? s_.state.states[n.index] : 0;
-    }
+    });
     for (int stage : {0, 1}) machine_.sweep(stage, 0, static_cast<std::uint32_t>(tape_.code.size()));
   }
   // Of the mass centre of a body, and whether the body turns.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tape/tape.h"
+#include "tape/bind.h"
 
 namespace anholon {
 
@@ -17,11 +17,11 @@ using State = std::array<double, 10>;  // quaternion, origin, its velocity
 class Path {
  public:
   Path(const Model& model, const std::vector<double>& parameters)
-      : by_velocity_(model.observer.origin_velocity.has_value()), tape_(compile(expressions(model))),
-        machine_(tape_, 0, parameters) {}
+      : by_velocity_(model.observer.origin_velocity.has_value()), graph_(*model.graph),
+        tape_(compile(expressions(model))), machine_(tape_, 0, parameters) {}
 
   State rate(double t, const State& x) {
-    for (const Input& in : tape_.inputs) machine_.series(in.slot)[0] = t;
+    bind(machine_, graph_, [t](const Node&, NodeId) { return t; });
     machine_.evaluate();
     const auto given = [&](std::size_t k) { return machine_.value(k); };
     const double w = x[0], a = x[1], b = x[2], c = x[3], p = given(0), q = given(1), r = given(2);
@@ -72,6 +72,7 @@ class Path {
   }
 
   bool by_velocity_;
+  const Graph& graph_;
   Tape tape_;
   Machine<double> machine_;
 };

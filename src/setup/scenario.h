@@ -8,6 +8,7 @@
 #include "program/expansion.h"
 #include "setup/eliminate.h"
 #include "structure/consistent.h"
+#include "tape/bind.h"
 
 namespace anholon {
 
@@ -120,6 +121,18 @@ std::vector<N> parameter_values(const Model& model) {
   return evaluate_parameters<N>(*model.graph, es);
 }
 
+// The value of a symbol at a point of the motion, for tape/bind.h; 0 for the multiplier of a redundant constraint.
+template <Number N>
+struct ValueAt {
+  const System& system;
+  const Expansion<N>& point;
+  N operator()(const Node& n, NodeId symbol) const {
+    if (n.kind == Kind::time) return point.time();
+    const auto j = system.variable(symbol);
+    return j ? point.derivative(*j, n.order) : N(0);
+  }
+};
+
 // Expressions evaluated at a point of the motion.
 template <Number N>
 class OutputTape {
@@ -127,16 +140,7 @@ class OutputTape {
   OutputTape(Workspace& s, const Column& es, const std::vector<N>& parameters)
       : system_(s.system), tape_(compile(put(s, es))), machine_(tape_, 0, parameters) {}
   void evaluate(const Expansion<N>& point) {
-    const Graph& g = *system_.model->graph;
-    for (const Input& in : tape_.inputs) {
-      const Node& n = g.node(in.symbol);
-      N value(0);
-      if (n.kind == Kind::time)
-        value = point.time();
-      else if (const auto j = system_.variable(in.symbol))
-        value = point.derivative(*j, n.order);
-      machine_.series(in.slot)[0] = value;
-    }
+    bind(machine_, *system_.model->graph, ValueAt<N>{system_, point});
     machine_.evaluate();
     sizes_.clear();
   }

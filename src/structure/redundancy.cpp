@@ -5,6 +5,7 @@
 
 #include "expr/generic_point.h"
 #include "structure/stage.h"
+#include "tape/bind.h"
 
 namespace anholon {
 
@@ -94,12 +95,10 @@ IndependentConstraints independent_constraints(const Mechanics& m, const std::ve
     for (Expr e : row) es.push_back(put_masses(*m.model, e));
   const Tape tape = compile(es);
   Machine<double> machine(tape, 0, parameters);
-  const Graph& g = m.graph();
-  for (const Input& in : tape.inputs) {
-    const Node& node = g.node(in.symbol);
+  bind(machine, m.graph(), [&](const Node& node, NodeId) {
     const double* known = state.value(node);
-    machine.series(in.slot)[0] = node.kind == Kind::time ? state.t : known ? *known : generic(node);
-  }
+    return node.kind == Kind::time ? state.t : known ? *known : generic(node);
+  });
   machine.evaluate();
   Matrix<double> phi(s, n);
   for (std::size_t i = 0; i < s; ++i)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tape/bind.h"
+
 namespace anholon {
 
 namespace {
@@ -36,12 +38,10 @@ Stage<N>::Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const
 
 template <Number N>
 bool Stage<N>::evaluate(const InitialState<N>& s) {
-  const Graph& g = m_.graph();
-  for (const Input& in : plan_->tape.inputs) {
-    const Node& n = g.node(in.symbol);
+  bind(machine_, m_.graph(), [&](const Node& n, NodeId) {
     const N* known = s.value(n);
-    machine_.series(in.slot)[0] = n.kind == Kind::time ? s.t : known ? *known : N(0);
-  }
+    return n.kind == Kind::time ? s.t : known ? *known : N(0);
+  });
   machine_.evaluate();
   const std::size_t n = unknowns(), q = m_.q.size();
   residual.assign(size(), N(0));

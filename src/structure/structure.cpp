@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "tape/tape.h"
+#include "tape/bind.h"
 
 namespace anholon {
 
@@ -27,12 +27,10 @@ class Probe {
 
   // False if a formula has no value at the point.
   bool measure(const ProbeHints& hints, std::mt19937_64& random, std::vector<std::vector<double>>& largest) {
-    const Graph& g = *system_.model->graph;
     constexpr double kLeast = 0.05, kMost = 0.35;
     // A distribution of the standard library has other bits in other libraries.
     const auto spread = [&] { return static_cast<double>(random()) * 0x1p-64 * (kMost - kLeast) + kLeast; };
-    for (const Input& in : tape_.inputs) {
-      const Node& n = g.node(in.symbol);
+    bind(machine_, *system_.model->graph, [&](const Node& n, NodeId) {
       double base = 0.4;
       if (n.kind == Kind::time)
         base = hints.t;
@@ -40,8 +38,8 @@ class Probe {
         base = hints.derivatives[n.order][n.index];
       else if (n.kind == Kind::state && n.order == 0 && n.index < hints.states.size())
         base = hints.states[n.index];
-      machine_.series(in.slot)[0] = base + (1 + std::abs(base)) * spread();
-    }
+      return base + (1 + std::abs(base)) * spread();
+    });
     machine_.evaluate();
     partials_.clear();
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) partials_.push_back(machine_.partials(s));

@@ -3,7 +3,7 @@
 // zeros of its argument and at the ends of parts of the step. Where it differs from its own series, the equations are
 // to be looked at.
 #pragma once
-#include "kernel/plan.h"
+#include "kernel/plan/plan.h"
 #include "numeric/number.h"
 
 namespace anholon {

@@ -244,6 +244,23 @@ TEST(ByKernel, ASingularPointWithinAStepIsSeen) {
   }
 }
 
+// x = -cos t loses its hold where it meets -0.3 t: the time enters J itself, also when the stepper looks back.
+TEST(ByKernel, ASingularPointThatDependsOnTimeIsSeen) {
+  const double met = 1.2019131636661846;  // cos t = 0.3 t
+  const Motion motion(loses_hold("0.3*t"));
+  for (const int order : {12, 13, 15, 17, 19, 21}) {
+    Accelerated a(motion, order);
+    ASSERT_TRUE(a.steps.accelerated());
+    const Outcome o = a.go(4);
+    EXPECT_EQ(o.kind, OutcomeKind::singular) << o.message << ", order " << order;
+    const std::string at = "at t = ";
+    const double when = o.message.find(at) != std::string::npos
+                            ? std::stod(o.message.substr(o.message.find(at) + at.size()))
+                            : static_cast<double>(a.steps.time());
+    EXPECT_NEAR(when, met, 1e-6) << o.message << ", order " << order;
+  }
+}
+
 TEST(ByKernel, RegularMotionsAreNotStopped) {
   const Motion motion(loses_hold("3"));
   Accelerated a(motion);

@@ -1,4 +1,4 @@
-#include "kernel/slots.h"
+#include "kernel/plan/slots.h"
 
 #include <algorithm>
 
@@ -124,7 +124,7 @@ void Slots::gather_sums() {
     if (in.op == Op::scale) {
       add({Rational(1), {in.a}}, in.b);
     } else if (in.op == Op::divide) {
-      add({Rational(1), {in.b | kReciprocal}}, in.a);
+      add({Rational(1), {in.b | Coefficient::kReciprocal}}, in.a);
     } else {
       for (std::uint32_t k = in.first; k < in.first + in.count; ++k)
         add({tape.rationals[tape.linear_terms[k].coefficient], {}}, tape.linear_terms[k].slot);

@@ -66,6 +66,7 @@ struct PlanTerm {
 
 // A constant of the arena: rational * product of slots of the tape that are constant in time.
 struct Coefficient {
+  static constexpr std::uint32_t kReciprocal = 0x80000000U;  // in a slot: the product is divided by it
   Rational rational{1};
   std::vector<std::uint32_t> slots;
   bool one() const { return slots.empty() && rational == 1; }
@@ -146,12 +147,6 @@ struct Plan {
   // elimination).
   double work() const;
 };
-
-// The reason why a program has no plan; else an empty string.
-std::string no_plan(const Program& program);
-// REQUIRES: no_plan(program).empty()
-// `judged`: the last quadrature is the plan's `determinant`, known at the point of expansion only.
-Plan plan(const Program& program, int stages, bool judged = false);
 
 // The values of the coefficients; the values of slots are given in long double and rounded once.
 std::vector<double> coefficient_values(const Plan& plan, const Program& program,

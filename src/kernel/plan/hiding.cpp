@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "kernel/plan.h"
+#include "kernel/plan/plan.h"
 
 namespace anholon {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <map>
 
-#include "kernel/plan.h"
+#include "kernel/plan/plan.h"
 
 namespace anholon {
 
@@ -12,7 +12,6 @@ class Slots {
   explicit Slots(const Program& program);
 
   static constexpr std::uint32_t kNone = 0xffffffffU;
-  static constexpr std::uint32_t kReciprocal = 0x80000000U;  // in the slots of a coefficient: marks a divisor
   struct Summand {
     Coefficient c;
     std::uint32_t slot;  // kNone if constant in time
@@ -32,6 +31,7 @@ class Slots {
     return code[s].op == Op::linear || code[s].op == Op::scale ||
            (code[s].op == Op::divide && code[code[s].b].constant);
   }
+  bool varies(std::uint32_t s) const { return live[s] && !code[s].constant; }
   bool in_main(std::uint32_t s) const { return s < tape.main_end; }
   bool unknown(std::uint32_t s, std::uint8_t lead) const { return tainted[s] && code[s].lead == lead; }
   // The slot with the same value, if this one repeats it.

@@ -1,0 +1,56 @@
+#include "kernel/plan/planner.h"
+
+#include <algorithm>
+
+#include "base/assert.h"
+#include "kernel/plan/linearized_tape.h"
+
+namespace anholon {
+
+namespace {
+
+// The limit of the tables of a kernel (arithmetic.h: kMostRising).
+constexpr int kHighestOrder = 12;
+
+// Notes the slots that a step of the motion has to look at: the radicands of roots, which may pass zero, and functions
+// that may hide their variation.
+void note_watched(const Slots& slots, const PlanLayout& layout, Plan& plan) {
+  const Tape& tape = slots.tape;
+  for (std::uint32_t s = 0; s < tape.code.size(); ++s)
+    if (slots.varies(s) && tape.code[s].op == Op::power && tape.rationals[tape.code[s].index].get_den() % 2 == 0)
+      plan.roots_of_even_powers.push_back({tape.code[s].a, layout.place(tape.code[s].a)});
+  for (std::uint32_t s = 0; s < tape.main_end; ++s)
+    if (const auto function = slots.varies(s) ? may_hide(tape, tape.code[s]) : std::nullopt)
+      plan.hiding.push_back({*function, layout.place(hidden_argument(tape.code[s])), layout.place(s)});
+}
+
+}  // namespace
+
+std::string no_plan(const Program& p) {
+  if (p.nonlinear) return "the leading derivatives enter nonlinearly";
+  int highest = p.tape.largest_lead;
+  for (int d : p.d) highest = std::max(highest, d);
+  for (const ProgramInput& in : p.inputs) highest = std::max(highest, in.order);
+  if (highest > kHighestOrder) return "derivatives of order " + std::to_string(highest) + " occur";
+  return {};
+}
+
+Plan plan(const Program& program, int stages, bool judged) {
+  ANHOLON_ASSERT(no_plan(program).empty());
+  const Slots slots(program);
+  Plan plan;
+  PlanLayout layout(program, slots, stages, plan);
+  const PlanSteps steps(program, slots, layout, plan, judged);
+  LinearizedTape(program, slots, layout, steps, plan).run();
+  for (std::size_t i = program.unknowns(); i < program.tape.roots.size(); ++i)
+    plan.quadratures.push_back(layout.place(program.tape.roots[i]));
+  if (judged) {
+    plan.determinant = plan.quadratures.back();
+    plan.quadratures.pop_back();
+  }
+  plan.apart = program.unknowns();
+  note_watched(slots, layout, plan);
+  return plan;
+}
+
+}  // namespace anholon

@@ -1,0 +1,100 @@
+#include "motion/method_choice.h"
+
+#include <cmath>
+
+#include "kernel/kernel.h"
+
+namespace anholon {
+
+namespace {
+
+const double kLoose = std::log(1e-5), kBdf = std::log(info(Method::bdf).least_tolerance);
+// Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps: BDF by more, as its
+// errors grow faster. Where a motion is stiff it is cheaper by far.
+constexpr double kCheaper = 1.3, kMuchCheaper = 4;
+constexpr std::size_t kFewSteps = 48, kManySteps = 256;
+// Where there are many kinks it is asked again when they are so many times as many.
+constexpr std::size_t kOftener = 8;
+// A trial that has spent this part of what it may spend has come this far, or is given up.
+constexpr double kEarly = 0.25, kFar = 0.05;
+
+}  // namespace
+
+void MethodChoice::note_step() {
+  if (times_.size() > 2 * kManySteps)
+    times_.erase(times_.begin(), times_.end() - static_cast<std::ptrdiff_t>(kManySteps + 1));
+  times_.push_back(motion_.stepper().time());
+}
+
+std::optional<MethodChoice::Turn> MethodChoice::leave_taylor(long double end) {
+  const Stepper<double>& taylor = motion_.stepper();
+  const std::size_t steps = taylor.steps();
+  // Where the end is near, nothing is won by a trial.
+  const auto far = [&](std::size_t stretch, double times) {
+    if (times_.size() <= stretch) return false;
+    const long double pace =
+        (taylor.time() - times_[times_.size() - 1 - stretch]) / static_cast<long double>(static_cast<double>(stretch));
+    return std::abs(end - taylor.time()) >
+           std::abs(pace) * static_cast<long double>(times * static_cast<double>(steps));
+  };
+  if (log_tolerance_ >= kLoose && steps == kFewSteps + 1 && far(kFewSteps, 4) &&
+      pays(Method::runge_kutta, kFewSteps, kCheaper, end))
+    return Turn{Method::runge_kutta, "the tolerance is loose: " + percent()};
+  if (taylor.kinks() >= next_kinks_ && times_.size() > kFewSteps) {
+    next_kinks_ = kOftener * taylor.kinks();
+    if (pays(Method::runge_kutta, kFewSteps, kCheaper, end))
+      return Turn{Method::runge_kutta, "the motion has met many kinks: " + percent()};
+  }
+  if (steps >= next_stiff_ && far(kManySteps, 1)) return leave_for_bdf(end);
+  return std::nullopt;
+}
+
+std::optional<MethodChoice::Turn> MethodChoice::leave_for_bdf(long double end) {
+  next_stiff_ = 2 * motion_.stepper().steps();
+  if (log_tolerance_ < kBdf || !pays(Method::bdf, kManySteps, kMuchCheaper, end)) return std::nullopt;
+  return Turn{Method::bdf, "the motion is stiff: " + percent()};
+}
+
+// Whether the method would come from here as far as Taylor's last `steps` did, with `factor` times fewer operations.
+bool MethodChoice::pays(Method method, std::size_t steps, double factor, long double end) {
+  if (times_.size() <= steps) return false;
+  const MotionPoint from = present_point(motion_);
+  const long double span = from.t - times_[times_.size() - 1 - steps], left = end - from.t;
+  const bool whole = std::abs(span) < std::abs(left);
+  const long double to = whole ? from.t + span : end;
+  const auto trial = steppers_.make(method);
+  if (!steppers_.plan() || !std::isfinite(steppers_.work_of_expansion())) return false;
+  const double all = steppers_.work_of_expansion() * static_cast<double>(steps),
+               part = whole ? 1.0 : std::abs(static_cast<double>(left / span));
+  const double costs = all * part, most = costs / factor;
+  taylor_pace_ = all / std::abs(static_cast<double>(span));
+  ++trials_.count;
+  bool good = trial->start(from, to).ok();
+  while (good && !(trial->now().t == to)) {
+    good = trial->step(to).ok() && !(work_of(*trial) > most);
+    const double progress = std::abs(static_cast<double>((trial->now().t - from.t) / (to - from.t)));
+    if (work_of(*trial) > kEarly * most && progress < kFar) good = false;
+  }
+  trials_.evaluations += trial->rate().evaluations();
+  ratio_ = work_of(*trial) / costs;
+  return good;
+}
+
+std::string MethodChoice::percent() const {
+  return number_text(100 * ratio_, 2) + " % of Taylor's operations on the same stretch";
+}
+
+void MethodChoice::begin_other() {
+  times_.clear();
+  stretch_ = {static_cast<double>(motion_.stepper().time()), 0, 0};
+}
+
+bool MethodChoice::slower_than_taylor(StateStepper& other) {
+  if (other.steps() < stretch_.steps + kManySteps) return false;
+  const Stretch now{static_cast<double>(other.now().t), work_of(other), other.steps()};
+  const double pace = (now.work - stretch_.work) / std::abs(now.t - stretch_.t);
+  stretch_ = now;
+  return pace > taylor_pace_;
+}
+
+}  // namespace anholon

@@ -1,0 +1,94 @@
+#include "motion/state_steppers.h"
+
+#include <cmath>
+#include <limits>
+
+#include "integrate/states/bdf.h"
+#include "integrate/states/runge_kutta.h"
+#include "kernel/kernel.h"
+
+namespace anholon {
+
+namespace {
+
+// The reference takes so many times the operations of a kernel.
+constexpr double kReference = 6;
+
+// Operations of an expansion by a plan. What it takes to come to a step, and to an expansion, weighs as much as so many
+// of them.
+constexpr double kExpansion = 300;
+double work(const KernelPlan& plan) {
+  constexpr double kStep = 16;
+  const double steps = static_cast<double>(plan.plan().stage.size() + plan.plan().after.size());
+  return plan.work() + kStep * steps * (plan.plan().stages + 1) + kExpansion;
+}
+
+// Of the rates alone: values are quicker than series, and all that is known of J is asked for at every point.
+double work_of_rates(const KernelPlan& plan) {
+  constexpr double kStep = 11, kEntry = 6;
+  const double steps = static_cast<double>(plan.plan().point.size() + plan.plan().after.size());
+  return plan.work() + kStep * steps +
+         kEntry * (plan.elimination().work() +
+                   static_cast<double>(plan.elimination().update_list.size() + plan.plan().entries.size())) +
+         kExpansion;
+}
+
+std::shared_ptr<const Program> program_of(const std::shared_ptr<const KernelPlan>& plan, const Program& otherwise) {
+  if (plan) return {plan, &plan->program()};
+  return std::make_shared<const Program>(otherwise);
+}
+
+}  // namespace
+
+MotionPoint present_point(const Motion<double>& motion) {
+  const Stepper<double>& taylor = motion.stepper();
+  MotionPoint p;
+  p.t = taylor.time();
+  p.state = taylor.state();
+  p.integrals = taylor.integrals();
+  for (std::size_t j = 0; j < taylor.unknowns(); ++j)
+    p.leading.push_back(to_double(taylor.point().derivative(j, motion.program().d[j])));
+  return p;
+}
+
+StateSteppers::StateSteppers(const Motion<double>& motion, const Model& model, const StepSettings& settings,
+                             std::vector<Guard> guards, bool counts)
+    : motion_(motion), model_(model), settings_(settings), guards_(std::move(guards)), counts_(counts) {}
+
+// The plans serve as long as the equations are the same.
+void StateSteppers::make_plans() {
+  const Program* equations = motion_.plan() ? &motion_.plan()->program() : &motion_.program();
+  if (planned_ == equations) return;
+  planned_ = equations;
+  const MotionPoint from = present_point(motion_);
+  const auto plan = [&](int stages) {
+    return KernelPlan::make(program_of(motion_.unmapped_plan(), motion_.program()), stages, motion_.parameters(),
+                            static_cast<double>(from.t), {from.state.begin(), from.state.end()});
+  };
+  plan_ = settings_.kernel ? plan(0) : nullptr;
+  expansion_work_ = std::numeric_limits<double>::infinity();
+  if (!counts_) return;
+  if (motion_.plan())
+    expansion_work_ = work(*motion_.plan());
+  else if (const auto all = plan(motion_.stepper().order() - 1))
+    expansion_work_ = kReference * work(*all);
+}
+
+std::unique_ptr<StateStepper> StateSteppers::make(Method method) {
+  make_plans();
+  StateRate rate(motion_.program(), parameter_values<double>(model_), motion_.parameters(), plan_, guards_);
+  StepSettings settings = settings_;
+  settings.log_tolerance = std::max(settings.log_tolerance, std::log(info(Method::runge_kutta).least_tolerance));
+  if (method == Method::bdf) return std::make_unique<Bdf>(std::move(rate), settings);
+  return std::make_unique<RungeKutta>(std::move(rate), settings);
+}
+
+double work_of(StateStepper& stepper) {
+  const StateRate& f = stepper.rate();
+  const double evaluations =
+      static_cast<double>(f.evaluations()) + (kReference - 1) * static_cast<double>(f.by_reference());
+  return f.plan() ? evaluations * work_of_rates(*f.plan()) + stepper.more_work()
+                  : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace anholon
