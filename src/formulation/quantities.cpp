@@ -1,6 +1,6 @@
 #include "formulation/quantities.h"
 
-#include "formulation/formulation.h"
+#include "formulation/operators.h"
 
 namespace anholon {
 
