@@ -242,7 +242,7 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
   Column pivots;
   Expr rest = P;
   try {
-    const Rows inverted = inverse(square, points[0], pivots, false);
+    const Rows inverted = inverse(square, points[0], pivots, Wanted::brief);
     for (std::size_t i = 0; i < support.size(); ++i) {
       std::vector<Expr> sum_of = {M_.graph().zero()};
       for (std::size_t j = 0; j < columns.size(); ++j)

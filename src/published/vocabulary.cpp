@@ -248,7 +248,7 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
   if (first == "g") {
     const std::size_t s = coordinate(one_member("a coordinate's derivative as a function of quasi-velocities"), span);
     used_quasi_ = true;
-    return elimination_(true).g[s];
+    return elimination_(true).g()[s];
   }
   if (first == "C" || first == "B") {
     if (rest.size() != 2)
@@ -257,17 +257,17 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
                                  : "B.x.u, of the coordinate x by the quasi-velocity u");
     const Elimination& E = elimination_(first == "B");
     const std::size_t s = coordinate(rest[0], span);
-    const auto u = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), rest[1]) - E.names.begin());
-    if (u == E.names.size()) throw Failure(span, "'" + rest[1] + "' is not among the free quantities");
+    const auto u = E.free.index_of(rest[1]);
+    if (!u) throw Failure(span, "'" + rest[1] + "' is not among the free quantities");
     if (first == "B") {
       used_quasi_ = true;
-      return E.g_by_u()[s][u];
+      return E.g_by_u()[s][*u];
     }
     const auto d = static_cast<std::size_t>(std::find(E.dependent.begin(), E.dependent.end(), s) - E.dependent.begin());
     if (d == E.dependent.size())
       throw Failure(span, "'" + rest[0] + "' is an independent coordinate here",
                     "--eliminate names the dependent coordinates");
-    return E.C()[d][u];
+    return E.C()[d][*u];
   }
   if (const Formulation* form = form_named(first)) return of_form(*form, rest, span);
   if (rest.empty())
@@ -279,10 +279,10 @@ std::optional<Expr> Vocabulary::quasi_velocity(const std::string& name) {
   const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
   if (std::none_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == name; })) return std::nullopt;
   const Elimination& E = elimination_(true);
-  const auto k = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), name) - E.names.begin());
-  if (k == E.names.size()) return std::nullopt;
+  const auto k = E.free.index_of(name);
+  if (!k) return std::nullopt;
   used_quasi_ = true;
-  return E.u[k];
+  return E.free.u[*k];
 }
 
 Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>& rest, Span span) {
@@ -298,7 +298,7 @@ Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>
   if (e.left.size() == mechanics_.q.size())
     for (const Coordinate& c : mechanics_.model->coordinates) known.push_back(c.name);
   else
-    known = E.names;
+    known = E.free.names;
   std::vector<std::string> path = rest;
   const bool left = !path.empty() && path[0] == "left" && path.size() > 1,
              right = !path.empty() && path[0] == "right" && path.size() > 1;
@@ -322,7 +322,7 @@ Expr Vocabulary::solved(const std::string& y, Span span) {
   if (std::find(E.dependent.begin(), E.dependent.end(), s) == E.dependent.end())
     throw Failure(span, "'" + y + "' is an independent coordinate here: the constraints are not solved for it",
                   "--eliminate names the dependent coordinates");
-  return E.g[s];
+  return E.g()[s];
 }
 
 // ---- functions ---------------------------------------------------------------------------------
@@ -368,12 +368,12 @@ Expr Vocabulary::along(const Column& c, const std::string& direction, Span span)
   const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
   const bool quasi = std::any_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == direction; });
   const Elimination& E = elimination_(quasi);
-  const auto k = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), direction) - E.names.begin());
-  if (k == E.names.size())
+  const auto k = E.free.index_of(direction);
+  if (!k)
     throw Failure(span, "'" + direction + "' is not among the free quantities",
                   "--eliminate names the dependent coordinates");
   if (quasi) used_quasi_ = true;
-  return E.contract(c)[k];
+  return E.contract(c)[*k];
 }
 
 // ---- partial derivatives -----------------------------------------------------------------------
@@ -475,9 +475,9 @@ Expr Vocabulary::partial_along(Expr e, Expr by, bool quasi, Span span) {
     return static_cast<std::size_t>(std::find(list.begin(), list.end(), a) - list.begin());
   };
   if (quasi)
-    for (std::size_t k = 0; k < E.u.size(); ++k) {
-      if (E.u[k] == by) return E.by_u(e)[k];
-      if (total_derivative(E.u[k]) == by) return E.by_u_rate(e)[k];
+    for (std::size_t k = 0; k < E.free.u.size(); ++k) {
+      if (E.free.u[k] == by) return E.by_u(e)[k];
+      if (total_derivative(E.free.u[k]) == by) return E.by_u_rate(e)[k];
     }
   if (n.kind == Kind::jet) {
     if (n.order < E.m) return E.by(n.order, e)[n.index];
