@@ -1,7 +1,7 @@
-// A formulation: one classical form of the equations of motion, as one file in forms/.
+// A formulation: one classical form of the equations of motion, as one file in forms/, in the room of its unknowns.
 //
 // A form maps Mechanics (and, if it eliminates the multipliers, an Elimination) to its equations, left side = right
-// side, with masses frozen. Adding a file forms/NAME.cpp adds the form; no other file is touched.
+// side, with masses frozen. Adding a file forms/UNKNOWNS/NAME.cpp adds the form; no other file is touched.
 #pragma once
 #include <string>
 #include <vector>
