@@ -327,41 +327,41 @@ Expr Vocabulary::solved(const std::string& y, Span span) {
 
 // ---- functions ---------------------------------------------------------------------------------
 
-bool Vocabulary::call(const std::string& f, const std::vector<Value>& a, const Syntax& s, Value& result) {
-  if (model_->call(f, a, s, result)) return true;
+std::optional<Value> Vocabulary::call(const std::string& f, const std::vector<Value>& a, const Syntax& s) {
+  if (std::optional<Value> value = model_->call(f, a, s)) return value;
   if (const Column* c = declares(f) ? nullptr : column(f)) {
     expect(s, 1, 1);
-    result = (*c)[coordinate(a[0], s.args[0].span)];
-    return true;
+    return (*c)[coordinate(a[0], s.args[0].span)];
   }
-  if (!among(kFunctions, f)) return false;
+  if (!among(kFunctions, f)) return std::nullopt;
   if (f == "partial") {
     expect(s, 2, 2);
-    result = partial_of(s, a[0]);
-  } else if (f == "Dt") {
+    return partial_of(s, a[0]);
+  }
+  if (f == "Dt") {
     expect(s, 1, 2);
     const auto times = static_cast<unsigned>(a.size() > 1 ? whole_number(a[1], s.args[1]) : 1);
-    result = each(as_point(a[0], *this, s.span), s.args[0].span,
-                  [&](Expr e) { return total_derivative(with_frozen_masses(e), times); });
-  } else if (f == "frozen") {
+    return each(as_point(a[0], *this, s.span), s.args[0].span,
+                [&](Expr e) { return total_derivative(with_frozen_masses(e), times); });
+  }
+  if (f == "frozen") {
     expect(s, 1, 1);
-    result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return with_frozen_masses(e); });
-  } else if (f == "reduced" || f == "star") {
+    return each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return with_frozen_masses(e); });
+  }
+  if (f == "reduced" || f == "star") {
     expect(s, 1, 1);
     const bool quasi = f == "star";
     const Elimination& E = elimination_(quasi);
     if (quasi) used_quasi_ = true;
-    result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return E.on(e); });
-  } else {
-    expect(s, 2, 2);
-    const Column* c =
-        s.args[0].op == Syntax::Op::name ? column(s.args[0].text.substr(s.args[0].text.rfind('.') + 1)) : nullptr;
-    if (!c) throw Failure(s.args[0].span, "the name of a force is expected here", "along(Q, x), along(QR, x), …");
-    if (s.args[1].op != Syntax::Op::name)
-      throw Failure(s.args[1].span, "an independent coordinate or a quasi-velocity is expected here");
-    result = along(*c, s.args[1].text, s.args[1].span);
+    return each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return E.on(e); });
   }
-  return true;
+  expect(s, 2, 2);
+  const Column* c =
+      s.args[0].op == Syntax::Op::name ? column(s.args[0].text.substr(s.args[0].text.rfind('.') + 1)) : nullptr;
+  if (!c) throw Failure(s.args[0].span, "the name of a force is expected here", "along(Q, x), along(QR, x), …");
+  if (s.args[1].op != Syntax::Op::name)
+    throw Failure(s.args[1].span, "an independent coordinate or a quasi-velocity is expected here");
+  return along(*c, s.args[1].text, s.args[1].span);
 }
 
 Expr Vocabulary::along(const Column& c, const std::string& direction, Span span) {
