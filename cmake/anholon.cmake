@@ -178,14 +178,14 @@ function(anholon_link_layers target)
   target_link_libraries(${target} PRIVATE anholon_options ${layers})
 endfunction()
 
-# A formulation is found by its file name: src/formulation/forms/<name>.cpp defines
+# A formulation is found by its file name: src/formulation/forms/<unknowns>/<name>.cpp defines
 # `extern const Formulation <name>;` in namespace anholon::forms. Linking by name (and not by
 # self-registration) keeps the linker from dropping one silently.
 # EXTRA: further files, and the registry gets a name of its own: a test that adds a form.
 function(anholon_formulation_registry result)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "NAME" "EXTRA")
   set(${result} "" PARENT_SCOPE)
-  file(GLOB forms CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/formulation/forms/*.cpp")
+  file(GLOB_RECURSE forms CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/formulation/forms/*.cpp")
   file(GLOB header CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/formulation/formulation.h")
   if(NOT header)
     return()
@@ -197,7 +197,7 @@ function(anholon_formulation_registry result)
   set(entries "")
   foreach(form IN LISTS forms)
     if(NOT form MATCHES "^[a-z][a-z0-9_]*$")
-      message(FATAL_ERROR "src/formulation/forms/${form}.cpp: the file name must be the C++ name of its Formulation")
+      message(FATAL_ERROR "src/formulation/forms: ${form}.cpp: the file name must be the C++ name of its Formulation")
     endif()
     string(APPEND declarations "extern const Formulation ${form};\n")
     string(APPEND entries "      &forms::${form},\n")

@@ -17,13 +17,15 @@ LEVEL = {
     "base": 0, "numeric": 1, "expr": 2, "print": 2.2, "formula": 2.5, "tape": 3, "model": 4,
     "modelfile/language": 5, "modelfile/text": 5.1, "modelfile/names": 5.2, "modelfile/mechanical": 5.3,
     "modelfile/motion": 5.4, "modelfile/check": 5.5, "modelfile": 5.6, "mechanics": 5.7,
-    "formulation": 6, "formulation/forms": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof": 8,
+    "formulation": 6, "formulation/forms/multipliers": 6.1, "formulation/forms/coordinates": 6.1,
+    "formulation/forms/quasi_velocities": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof": 8,
     "program": 9, "setup": 9.2, "kernel/plan": 9.4, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
     "integrate/series": 9.8, "integrate": 10, "integrate/states": 10.1, "result": 11, "motion": 11.5, "observe": 12, "linear": 12, "simulation": 12.2,
     "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "api": 13.8, "cli": 14, "python": 14,
 }  # fmt: skip
 
 MODELFILE = {name for name in LEVEL if name.startswith("modelfile")}
+FORMS = {name for name in LEVEL if name.startswith("formulation/forms/")}
 
 # Layers that may see less than everything below them.
 ONLY = {
@@ -35,7 +37,6 @@ NOT = {
     "modelfile/text": {"tape"},
     "mechanics": MODELFILE,
     "formulation": MODELFILE,
-    "formulation/forms": MODELFILE,
     "system": MODELFILE,
     "lowering": MODELFILE,
     "structure": MODELFILE | {"lowering"},
@@ -49,7 +50,7 @@ NOT = {
     "integrate/series": MODELFILE | {"proof", "setup"},
     "integrate/states": MODELFILE | {"proof", "setup"},
     "report": {"jit", "integrate", "integrate/series", "integrate/states"},
-}
+} | {room: MODELFILE for room in FORMS}
 
 # The checker of certificates must not trust the simplifier: it and the format see numbers only.
 VERIFY = re.compile(r"^proof/(verify|certificate)\w*\.(h|cpp)$")
@@ -218,7 +219,7 @@ GOOD = {
 MUTANTS = {
     "upward": ("src/expr/bad.cpp", '#include "model/model.h"\n'),
     "across": ("src/mechanics/bad.cpp", '#include "modelfile/read.h"\n'),
-    "across, below": ("src/formulation/forms/bad.cpp", '  #  include "modelfile/read.h"\n'),
+    "across, below": ("src/formulation/forms/multipliers/bad.cpp", '  #  include "modelfile/read.h"\n'),
     "result sees numbers only": ("src/result/bad.cpp", '#include "model/model.h"\n'),
     "report does not integrate": ("src/report/bad.cpp", '#include "integrate/stepper.h"\n'),
     "the compiler sees kernels only": ("src/jit/bad.cpp", '#include "program/program.h"\n'),

@@ -75,7 +75,7 @@ def self_test():
     doc = "# Routh form\n\n### [L 2.7] elimination\nand [Q 13], [N 2.10, 3.1] and [L 2.8–2.11] (theory: routh)\n"
     good = "// [L 2.7] [Q 13] [N 3.1] [L 2.10] [L 2.9, 2.11] (theory: routh) (theory: routh-form)\nint a[3];\n"
     bad = ["[L 2.12]", "[Q 1]", "[N 2.10, 3.2]", "[L 2.10–2.13]", "(theory: hamel)", "[NF 2.7]"]
-    places = ["src/formulation/forms/routh.cpp", "test/laws/forms_test.cpp", "doc/results.md", "NOTATION.md"]
+    places = ["src/formulation/forms/multipliers/routh.cpp", "test/laws/forms_test.cpp", "doc/results.md", "NOTATION.md"]
     failures = 0
     cases = [("", False, places[0])] + [(good, False, p) for p in places]
     for text, refused, place in cases + [(f"//\n// {tag}\n", True, p) for tag in bad for p in places]:

@@ -185,6 +185,8 @@ class Graph {
     std::size_t nodes;  // that are common to both
   };
 
+  class Product;
+
   std::uint32_t rational_index(const Rational& r);
   void spend(std::uint64_t work);
   Expr leaf(Kind kind, std::uint32_t index, std::uint32_t order);

@@ -5,7 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "expr/normal.h"
+#include "expr/expr.h"
+#include "expr/monomial.h"
 
 namespace anholon::arrangement {
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "expr/expr.h"
+#include "expr/monomial.h"
 
 namespace anholon {
 
@@ -18,13 +19,6 @@ bool proved_zero(Expr e);
 // limit or `most_work` products of terms. Equal to e wherever e is defined.
 std::optional<Expr> expanded(Expr e);
 std::optional<Expr> expanded(Expr e, long most_work);
-
-// A sum of monomials c g1^e1 g2^e2 … in generators (symbols, functions, roots).
-struct Monomial {
-  Rational coefficient;
-  std::vector<unsigned long> exponents;
-};
-using Monomials = std::vector<Monomial>;
 
 struct NormalForm {
   std::vector<Expr> generators;                             // the expression of each generator
@@ -44,8 +38,5 @@ std::optional<NormalForm> normal_form(Expr e, const Whole& whole, long most_work
 Expr expression(const Monomials& terms, const std::vector<Expr>& generators);
 // The fraction as an expression; nullopt if it is longer than anybody reads.
 std::optional<Expr> expression(const NormalForm& f);
-
-// A product of polynomials with more terms than this ends the test without a result.
-inline constexpr long kNormalTermLimit = 2'000'000;
 
 }  // namespace anholon

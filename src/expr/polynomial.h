@@ -9,12 +9,14 @@
 #include <flint/fmpq_mpoly.h>
 #include <flint/fmpq_mpoly_factor.h>
 
-#include "expr/normal.h"
+#include "expr/monomial.h"
 
 namespace anholon {
 
 struct TooLarge {};
 
+// A product of more terms ends the test.
+inline constexpr long kNormalTermLimit = 2'000'000;
 // Coefficients of more bits end the test.
 inline constexpr long kLargestCoefficient = 4000;
 // The limit of products of terms in one test.

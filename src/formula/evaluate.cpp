@@ -113,7 +113,7 @@ Value differentiate(Value v, int times, Span at, Names& names) {
   if (times > kHighestDerivative)
     throw Failure(at, "a derivative of order " + std::to_string(times) + "; at most " +
                           std::to_string(kHighestDerivative) + " are read");
-  if (v.index() == 3)
+  if (is_body(v))
     throw Failure(at, "derivative of a body",
                   body_hint(v, names) + "; its angular velocity is angvel(" + names.body_name(std::get<BodyName>(v)) +
                       ")");
@@ -276,8 +276,7 @@ Value call(const Syntax& s, Names& names) {
   for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
   const Arguments in{s, values, names};
 
-  Value result = g.zero();
-  if (names.call(f, values, s, result)) return result;
+  if (std::optional<Value> value = names.call(f, values, s)) return *value;
   if (const int index = find_function(f); index >= 0) {
     in.expect(1);
     const Expr x = in.number(0);
@@ -337,6 +336,42 @@ Value call(const Syntax& s, Names& names) {
                 near.empty() ? "a product is written with '*'" : "");
 }
 
+// Numbers and vectors are summed at once, so that a long sum is linear work.
+Value sum_of(const Syntax& s, Names& names) {
+  std::vector<Value> values;
+  for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
+  const auto is_minus = [&](std::size_t i) { return i > 0 && s.operators[i - 1].op == Syntax::Op::subtract; };
+  const auto all = [&](const auto& of_type) {
+    return std::all_of(values.begin(), values.end(), [&](Value& v) { return of_type(v) != nullptr; });
+  };
+  const auto total_of = [&](const auto& part) {
+    std::vector<std::pair<Rational, Expr>> parts;
+    for (std::size_t i = 0; i < values.size(); ++i) parts.push_back({is_minus(i) ? -1 : 1, part(values[i])});
+    return names.graph().sum(parts);
+  };
+  if (all(number)) return total_of([](Value& v) { return *number(v); });
+  if (all(vector)) {
+    Vector total;
+    for (int axis = 0; axis < 3; ++axis) total[axis] = total_of([&](Value& v) { return (*vector(v))[axis]; });
+    return total;
+  }
+  Value total = values[0];
+  for (std::size_t i = 1; i < values.size(); ++i)
+    total = add(total, values[i], is_minus(i), s.operators[i - 1].span, names);
+  return total;
+}
+
+Value product_of(const Syntax& s, Names& names) {
+  Value product = evaluate(s.args[0], names);
+  for (std::size_t i = 1; i < s.args.size(); ++i) {
+    const Syntax::Operator& o = s.operators[i - 1];
+    Value factor = evaluate(s.args[i], names);
+    product = o.op == Syntax::Op::divide ? divide(product, factor, o.span, names)
+                                         : multiply(product, factor, o.op, o.span, names);
+  }
+  return product;
+}
+
 }  // namespace
 
 static Value value_of(const Syntax& s, Names& names) {
@@ -382,45 +417,10 @@ static Value value_of(const Syntax& s, Names& names) {
   }
   case Syntax::Op::power:
     return power(evaluate(s.args[0], names), evaluate(s.args[1], names), s.span);
-  case Syntax::Op::add: {
-    // Numbers are summed at once, so that a long sum is linear work.
-    std::vector<Value> values;
-    for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
-    if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 0; })) {
-      std::vector<std::pair<Rational, Expr>> parts;
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        const bool minus = i > 0 && s.operators[i - 1].op == Syntax::Op::subtract;
-        parts.push_back({minus ? -1 : 1, std::get<Expr>(values[i])});
-      }
-      return g.sum(parts);
-    }
-    if (std::all_of(values.begin(), values.end(), [](const Value& v) { return v.index() == 1; })) {
-      Vector total;
-      for (int axis = 0; axis < 3; ++axis) {
-        std::vector<std::pair<Rational, Expr>> parts;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-          const bool minus = i > 0 && s.operators[i - 1].op == Syntax::Op::subtract;
-          parts.push_back({minus ? -1 : 1, std::get<Vector>(values[i])[axis]});
-        }
-        total[axis] = g.sum(parts);
-      }
-      return total;
-    }
-    Value total = values[0];
-    for (std::size_t i = 1; i < values.size(); ++i)
-      total = add(total, values[i], s.operators[i - 1].op == Syntax::Op::subtract, s.operators[i - 1].span, names);
-    return total;
-  }
-  case Syntax::Op::multiply: {
-    Value product = evaluate(s.args[0], names);
-    for (std::size_t i = 1; i < s.args.size(); ++i) {
-      const Syntax::Operator& o = s.operators[i - 1];
-      Value factor = evaluate(s.args[i], names);
-      product = o.op == Syntax::Op::divide ? divide(product, factor, o.span, names)
-                                           : multiply(product, factor, o.op, o.span, names);
-    }
-    return product;
-  }
+  case Syntax::Op::add:
+    return sum_of(s, names);
+  case Syntax::Op::multiply:
+    return product_of(s, names);
   case Syntax::Op::index:
   case Syntax::Op::apply:
     break;  // replaced by the parser
@@ -465,7 +465,7 @@ Expr evaluate_number(const Syntax& s, Names& names) {
   Value v = evaluate(s, names);
   if (Expr* e = number(v)) return *e;
   throw Failure(s.span, std::string("a number is expected, this is ") + type_name(v),
-                v.index() == 1 ? "take a component (.x, .y, .z), dot(…) or norm(…)" : "");
+                std::holds_alternative<Vector>(v) ? "take a component (.x, .y, .z), dot(…) or norm(…)" : "");
 }
 
 Vector evaluate_vector(const Syntax& s, Names& names) {
@@ -473,17 +473,17 @@ Vector evaluate_vector(const Syntax& s, Names& names) {
   if (Vector* a = vector(v)) return *a;
   if (Expr* e = number(v); e && is_zero(*e)) return zero_vector(names.graph());
   throw Failure(s.span, std::string("a vector is expected, this is ") + type_name(v),
-                v.index() == 3   ? body_hint(v, names)
-                : v.index() == 0 ? "along the first axis: x*ex, or [\"x\", \"0\", \"0\"]"
-                                 : "");
+                is_body(v)     ? body_hint(v, names)
+                : is_scalar(v) ? "along the first axis: x*ex, or [\"x\", \"0\", \"0\"]"
+                               : "");
 }
 
 Rotation evaluate_rotation(const Syntax& s, Names& names) {
   Value v = as_frame(evaluate(s, names), names, s.span);
   if (Rotation* r = rotation(v)) return *r;
   throw Failure(s.span, std::string("a rotation is expected, this is ") + type_name(v),
-                v.index() == 3 ? names.body_name(std::get<BodyName>(v)) + " has no orientation, and so no axes"
-                               : "rotx(…), roty(…), rotz(…), rot(axis, angle) and products of these");
+                is_body(v) ? names.body_name(std::get<BodyName>(v)) + " has no orientation, and so no axes"
+                           : "rotx(…), roty(…), rotz(…), rot(axis, angle) and products of these");
 }
 
 }  // namespace anholon

@@ -144,16 +144,19 @@ struct InertialName {};
 
 using Value = std::variant<Expr, Vector, Rotation, BodyName, InertialName>;
 const char* type_name(const Value& v);
+inline bool is_body(const Value& v) { return std::holds_alternative<BodyName>(v); }
+inline bool is_inertial(const Value& v) { return std::holds_alternative<InertialName>(v); }
+inline bool is_scalar(const Value& v) { return std::holds_alternative<Expr>(v); }
 
 // The meaning of names. Lookups throw Failure for unknown names (`span` gives the position).
 struct Names {
   virtual ~Names() = default;
   virtual Graph& graph() = 0;
   virtual Value name(const std::string& name, Span span) = 0;
-  // Evaluates functions beyond the built-in ones (velocity of a point, given functions); returns false for an unknown
+  // Evaluates functions beyond the built-in ones (velocity of a point, given functions); returns nullopt for an unknown
   // one.
-  virtual bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax,
-                    Value& result) = 0;
+  virtual std::optional<Value> call(const std::string& function, const std::vector<Value>& arguments,
+                                    const Syntax& syntax) = 0;
   virtual Value member(const Value& object, const Syntax& syntax) = 0;
   virtual std::vector<std::string> functions() const = 0;  // for "did you mean"
   // The point, or the frame, that a body stands for; nullopt if the body has none.

@@ -32,131 +32,148 @@ bool is_name_start(std::string_view c) {
 }
 bool is_name_part(std::string_view c) { return is_name_start(c) || std::isdigit(static_cast<unsigned char>(c[0])); }
 
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+// The operators in all their spellings; of two that begin alike, the longer one comes first.
+struct Sign {
+  std::string_view spelling;
+  Token token;
+  std::string_view text = {};  // of the lexeme, if it differs from the spelling
+};
+constexpr Sign kSigns[] = {
+    {"+", Token::plus},
+    {"-", Token::minus},
+    {"−", Token::minus},
+    {"–", Token::minus},
+    {"**", Token::caret},
+    {"*", Token::times},
+    {"/", Token::over},
+    {"^", Token::caret},
+    {"'", Token::prime},
+    {"′", Token::prime},
+    {"’", Token::prime},
+    {"²", Token::superscript, "2"},
+    {"³", Token::superscript, "3"},
+    {"·", Token::middle_dot},
+    {"⋅", Token::middle_dot},
+    {"×", Token::cross_sign},
+    {"(", Token::open},
+    {")", Token::close},
+    {"[", Token::left},
+    {"]", Token::right},
+    {",", Token::comma},
+    {".", Token::point},
+    {">=", Token::compare},
+    {"<=", Token::compare},
+    {">", Token::compare},
+    {"<", Token::compare},
+    {"≥", Token::compare, ">="},
+    {"≤", Token::compare, "<="},
+    {"==", Token::equals},
+    {"=", Token::equals},
+};
+
 class Lexer {
  public:
-  explicit Lexer(const FormulaText& source) : source_(source) {}
+  explicit Lexer(const FormulaText& source) : source_(source), s_(source.text()) {}
 
   std::vector<Lexeme> run() {
-    const std::string& s = source_.text();
-    std::size_t i = 0, offset = 0;
-    const auto push = [&](Token t, std::size_t bytes, std::size_t chars, std::string text) {
-      lexemes_.push_back({t, std::move(text), offset, chars});
-      i += bytes;
-      offset += chars;
-    };
-    while (i < s.size()) {
-      const std::size_t width = utf8_width(s, i);
-      const std::string_view c(s.data() + i, width);
-      if (c == " " || c == "\t" || c == "\n" || c == "\r" || c == "\u00a0") {
-        i += width;
-        ++offset;
-      } else if (c == "#") {
-        while (i < s.size() && s[i] != '\n') i += utf8_width(s, i), ++offset;
-      } else if (std::isdigit(static_cast<unsigned char>(c[0])) ||
-                 (c == "." && !after_name(offset) && i + 1 < s.size() &&
-                  std::isdigit(static_cast<unsigned char>(s[i + 1])))) {
-        std::size_t j = i;
-        while (j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]))) ++j;
-        const bool member = !lexemes_.empty() && lexemes_.back().token == Token::point;  // lambda.blade.1
-        if (member) {
-          push(Token::number, j - i, j - i, s.substr(i, j - i));
-          continue;
-        }
-        if (j < s.size() && s[j] == '.')
-          for (++j; j < s.size() && std::isdigit(static_cast<unsigned char>(s[j]));) ++j;
-        if (j < s.size() && (s[j] == 'e' || s[j] == 'E')) {
-          std::size_t k = j + 1;
-          if (k < s.size() && (s[k] == '+' || s[k] == '-')) ++k;
-          if (k < s.size() && std::isdigit(static_cast<unsigned char>(s[k]))) {
-            while (k < s.size() && std::isdigit(static_cast<unsigned char>(s[k]))) ++k;
-            j = k;
-          }
-        }
-        push(Token::number, j - i, j - i, s.substr(i, j - i));
-      } else if (is_name_start(c)) {
-        std::size_t j = i, chars = 0;
-        std::string text;
-        while (j < s.size()) {
-          const std::string_view part(s.data() + j, utf8_width(s, j));
-          if (!is_name_part(part)) break;
-          j += part.size();
-          ++chars;
-        }
-        text = s.substr(i, j - i);
-        push(Token::name, j - i, chars, normal_name(text));
-      } else if (c == "\"") {
-        // "zxz": the axis letters of euler(…) may be quoted.
-        const std::size_t close = s.find('"', i + 1);
-        if (close == std::string::npos) throw Failure(source_.span(offset, 1), "this quote is not closed");
-        const std::string text = s.substr(i + 1, close - i - 1);
-        push(Token::name, close + 1 - i, utf8_length(text) + 2, text);
-      } else {
-        const auto sign = [&](Token t) { push(t, width, 1, std::string(c)); };
-        if (c == "+")
-          sign(Token::plus);
-        else if (c == "-" || c == "−" || c == "–")
-          sign(Token::minus);
-        else if (c == "*" && i + 1 < s.size() && s[i + 1] == '*')
-          push(Token::caret, 2, 2, "**");
-        else if (c == "*")
-          sign(Token::times);
-        else if (c == "/")
-          sign(Token::over);
-        else if (c == "^")
-          sign(Token::caret);
-        else if (c == "'" || c == "′" || c == "’")
-          sign(Token::prime);
-        else if (c == "²")
-          push(Token::superscript, width, 1, "2");
-        else if (c == "³")
-          push(Token::superscript, width, 1, "3");
-        else if (c == "·" || c == "⋅")
-          sign(Token::middle_dot);
-        else if (c == "×")
-          sign(Token::cross_sign);
-        else if (c == "(")
-          sign(Token::open);
-        else if (c == ")")
-          sign(Token::close);
-        else if (c == "[")
-          sign(Token::left);
-        else if (c == "]")
-          sign(Token::right);
-        else if (c == ",")
-          sign(Token::comma);
-        else if (c == ".")
-          sign(Token::point);
-        else if ((c == ">" || c == "<") && i + 1 < s.size() && s[i + 1] == '=')
-          push(Token::compare, 2, 2, std::string(c) + "=");
-        else if (c == ">" || c == "<")
-          sign(Token::compare);
-        else if (c == "≥" || c == "≤")
-          push(Token::compare, width, 1, c == "≥" ? ">=" : "<=");
-        else if (c == "=" && i + 1 < s.size() && s[i + 1] == '=')
-          push(Token::equals, 2, 2, "==");
-        else if (c == "=")
-          sign(Token::equals);
-        else {
-          const bool printable = width > 1 || std::isprint(static_cast<unsigned char>(c[0]));
-          throw Failure(source_.span(offset, 1),
-                        printable ? "'" + std::string(c) + "' means nothing in a formula"
-                                  : "a character that means nothing in a formula",
-                        habit_of_sign(std::string(c)));
-        }
-      }
+    while (at_ < s_.size()) {
+      const std::string_view c(s_.data() + at_, utf8_width(s_, at_));
+      if (c == " " || c == "\t" || c == "\n" || c == "\r" || c == "\u00a0")
+        skip(c.size());
+      else if (c == "#")
+        comment();
+      else if (is_digit(c[0]) || (c == "." && !after_name() && is_digit(byte(at_ + 1))))
+        number();
+      else if (is_name_start(c))
+        name();
+      else if (c == "\"")
+        quoted();
+      else
+        sign(c);
     }
-    lexemes_.push_back({Token::end, "", offset, 1});
+    lexemes_.push_back({Token::end, "", offset_, 1});
     return std::move(lexemes_);
   }
 
  private:
+  // The byte at i; 0 beyond the end.
+  char byte(std::size_t i) const { return i < s_.size() ? s_[i] : '\0'; }
+  std::size_t after_digits(std::size_t i) const {
+    while (is_digit(byte(i))) ++i;
+    return i;
+  }
+  void skip(std::size_t bytes) {
+    at_ += bytes;
+    ++offset_;
+  }
+  void push(Token token, std::size_t bytes, std::size_t characters, std::string text) {
+    lexemes_.push_back({token, std::move(text), offset_, characters});
+    at_ += bytes;
+    offset_ += characters;
+  }
+
+  void comment() {
+    while (at_ < s_.size() && s_[at_] != '\n') skip(utf8_width(s_, at_));
+  }
+
+  void number() {
+    std::size_t end = after_digits(at_);
+    const bool is_member = !lexemes_.empty() && lexemes_.back().token == Token::point;  // lambda.blade.1
+    if (!is_member) {
+      if (byte(end) == '.') end = after_digits(end + 1);
+      if (byte(end) == 'e' || byte(end) == 'E') {
+        const std::size_t digits = end + (byte(end + 1) == '+' || byte(end + 1) == '-' ? 2 : 1);
+        if (is_digit(byte(digits))) end = after_digits(digits);
+      }
+    }
+    push(Token::number, end - at_, end - at_, s_.substr(at_, end - at_));
+  }
+
+  void name() {
+    std::size_t end = at_, characters = 0;
+    while (end < s_.size()) {
+      const std::string_view part(s_.data() + end, utf8_width(s_, end));
+      if (!is_name_part(part)) break;
+      end += part.size();
+      ++characters;
+    }
+    push(Token::name, end - at_, characters, normal_name(s_.substr(at_, end - at_)));
+  }
+
+  // "zxz": the axis letters of euler(…) may be quoted.
+  void quoted() {
+    const std::size_t close = s_.find('"', at_ + 1);
+    if (close == std::string::npos) throw Failure(source_.span(offset_, 1), "this quote is not closed");
+    const std::string text = s_.substr(at_ + 1, close - at_ - 1);
+    push(Token::name, close + 1 - at_, utf8_length(text) + 2, text);
+  }
+
+  void sign(std::string_view c) {
+    const std::string_view rest = std::string_view(s_).substr(at_);
+    for (const Sign& sign : kSigns)
+      if (rest.starts_with(sign.spelling)) {
+        const std::string_view text = sign.text.empty() ? sign.spelling : sign.text;
+        push(sign.token, sign.spelling.size(), utf8_length(sign.spelling), std::string(text));
+        return;
+      }
+    const bool printable = c.size() > 1 || std::isprint(static_cast<unsigned char>(c[0]));
+    throw Failure(source_.span(offset_, 1),
+                  printable ? "'" + std::string(c) + "' means nothing in a formula"
+                            : "a character that means nothing in a formula",
+                  habit_of_sign(std::string(c)));
+  }
+
   // Whether a name ends here, in which case a '.' is followed by a member.
-  bool after_name(std::size_t offset) const {
+  bool after_name() const {
     return !lexemes_.empty() && lexemes_.back().token == Token::name &&
-           lexemes_.back().offset + lexemes_.back().length == offset;
+           lexemes_.back().offset + lexemes_.back().length == offset_;
   }
 
   const FormulaText& source_;
+  const std::string& s_;
+  std::size_t at_ = 0, offset_ = 0;  // in bytes and in characters
   std::vector<Lexeme> lexemes_;
 };
 

@@ -83,8 +83,8 @@ Labels jet_labels(const Mechanics& M, unsigned k) {
 
 Labels free_labels(const Mechanics& M, const Elimination& E, unsigned more) {
   Labels out;
-  for (std::size_t a = 0; a < E.names.size(); ++a)
-    out.push_back(derivative_of(*M.model, E.names[a], E.orders[a] + more));
+  for (std::size_t a = 0; a < E.free.names.size(); ++a)
+    out.push_back(derivative_of(*M.model, E.free.names[a], E.free.orders[a] + more));
   return out;
 }
 

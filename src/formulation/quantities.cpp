@@ -1,6 +1,6 @@
 #include "formulation/quantities.h"
 
-#include "formulation/formulation.h"
+#include "formulation/operators.h"
 
 namespace anholon {
 
@@ -110,7 +110,7 @@ Labels point_labels(const Mechanics& M, const Label& of) {
 
 Quantities along(const Mechanics& M, const Elimination& E, const Label& of, const Column& X) {
   Labels names;
-  for (const std::string& u : E.names) names.push_back(indexed(of, u, {name_of(*M.model, u)}));
+  for (const std::string& u : E.free.names) names.push_back(indexed(of, u, {name_of(*M.model, u)}));
   return named(names, E.contract(X));
 }
 

@@ -34,7 +34,7 @@ Quantities frozen_rates(const Quantities& of, const Column& values);
 Quantities with_partials(const Mechanics& M, const Label& name, Expr F, unsigned k);
 Quantities partials_of(const Mechanics& M, const Label& name, Expr F, unsigned k);
 
-// The operators of formulation.h: T, the frozen momenta dT/dq' and their rates D/Dt, dT/dq  [L 2.7]
+// The operators of operators.h: T, the frozen momenta dT/dq' and their rates D/Dt, dT/dq  [L 2.7]
 Quantities of_lagrange(const Mechanics& M);
 // T^(m-1), its derivatives by q^(m) with their rates, and by q^(m-1)  [L 3.10]
 Quantities of_nielsen(const Mechanics& M, unsigned m);

@@ -1,32 +1,12 @@
 #include "mechanics/elimination.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/assert.h"
-#include "expr/normal.h"
-#include "print/arrange.h"
 
 namespace anholon {
 
 namespace {
-
-// In large matrices, which are not for readers, only shorter expressions are rewritten.
-constexpr std::size_t kShortInLarge = 40, kLarge = 5;
-// The limit of the work for simplifying intermediate expressions, in products of terms.
-constexpr long kShortWork = 20'000;
-// A pivot is at least this fraction of the largest candidate.
-constexpr double kPivot = 1e-3;
-
-std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
-
-// A short form of e: common factors of fractions are cancelled, also those hidden by sin^2 + cos^2 = 1.
-Expr shortest(Expr e) {
-  const std::size_t size = nodes(e);
-  if (size <= 3 || size > kShortEnough) return e;
-  const Expr short_one = arranged(e, {});
-  return nodes(short_one) < size ? short_one : e;
-}
 
 // Replaces the symbols `from` by `to`.
 Column put(const Column& X, const Column& from, const Column& to) {
@@ -50,93 +30,10 @@ bool depends(std::span<const Expr> es, const Column& on) {
 
 }  // namespace
 
-Expr shorter(Expr e, std::size_t longest) {
-  const std::size_t size = nodes(e);
-  if (size <= 3 || size > longest) return e;
-  const std::optional<Expr> full = expanded(e, kShortWork);
-  return full && nodes(*full) < size ? *full : e;
-}
-
-Column operator*(const Column& X, const Rows& Y) {
-  ANHOLON_ASSERT(X.size() == Y.size());
-  if (Y.empty() || Y[0].empty()) return {};
-  Graph& g = *Y[0][0].graph;
-  Column out;
-  for (std::size_t a = 0; a < Y[0].size(); ++a) {
-    std::vector<Expr> terms;
-    for (std::size_t b = 0; b < X.size(); ++b)
-      if (!is_zero(X[b]) && !is_zero(Y[b][a])) terms.push_back(X[b] * Y[b][a]);
-    out.push_back(terms.empty() ? g.zero() : sum(terms));
-  }
-  return out;
-}
-
-Rows operator-(const Rows& a, const Rows& b) {
-  Rows r;
-  for (std::size_t i = 0; i < a.size(); ++i) r.push_back(a[i] - b[i]);
-  return r;
-}
-
-Rows operator+(const Rows& a, const Rows& b) {
-  Rows r;
-  for (std::size_t i = 0; i < a.size(); ++i) r.push_back(a[i] + b[i]);
-  return r;
-}
-
-Rows operator*(const Rational& c, const Rows& a) {
-  Rows r;
-  for (const Column& row : a) r.push_back(c * row);
-  return r;
-}
-
-Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable) {
-  const std::size_t n = A.size();
-  if (n == 0) return {};
-  Graph& g = *A[0][0].graph;
-  const std::size_t longest = n < kLarge ? kShortEnough : kShortInLarge;
-  Rows left = A, right(n, Column(n, g.zero()));
-  for (std::size_t i = 0; i < n; ++i) right[i][i] = g.one();
-  std::vector<std::size_t> row_of(n);
-  std::vector<bool> used(n, false), column_used(n, false);
-  for (std::size_t step = 0; step < n; ++step) {
-    double largest = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        if (!used[i] && !column_used[j] && !is_zero(left[i][j])) largest = std::max(largest, std::abs(at(left[i][j])));
-    std::size_t row = n, column = n, best = SIZE_MAX;
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) {
-        if (used[i] || column_used[j] || is_zero(left[i][j])) continue;
-        if (!(std::abs(at(left[i][j])) >= kPivot * largest)) continue;
-        const std::size_t cost = is_number(left[i][j]) ? 0 : nodes(left[i][j]);
-        if (cost < best) best = cost, row = i, column = j;
-      }
-    if (row == n)
-      throw Failure({}, "the constraints do not determine the dependent coordinates", "choose others with --eliminate");
-    used[row] = column_used[column] = true;
-    row_of[column] = row;
-    const Expr pivot = left[row][column];
-    if (!is_number(pivot)) pivots.push_back(pivot);
-    for (std::size_t j = 0; j < n; ++j) {
-      if (!is_zero(left[row][j])) left[row][j] = shorter(left[row][j] / pivot, longest);
-      if (!is_zero(right[row][j])) right[row][j] = shorter(right[row][j] / pivot, longest);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const Expr factor = left[i][column];
-      if (i == row || is_zero(factor)) continue;
-      for (std::size_t j = 0; j < n; ++j) {
-        if (!is_zero(left[row][j]))
-          left[i][j] = j == column ? g.zero() : shorter(left[i][j] - factor * left[row][j], longest);
-        if (!is_zero(right[row][j])) right[i][j] = shorter(right[i][j] - factor * right[row][j], longest);
-      }
-    }
-  }
-  Rows out;
-  for (std::size_t j = 0; j < n; ++j) out.push_back(right[row_of[j]]);
-  if (readable && n < kLarge)
-    for (Column& row : out)
-      for (Expr& e : row) e = shortest(e);
-  return out;
+std::optional<std::size_t> FreeQuantities::index_of(const std::string& name) const {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - names.begin());
 }
 
 Column Elimination::pick(const Column& X, const std::vector<std::size_t>& which) {
@@ -146,27 +43,31 @@ Column Elimination::pick(const Column& X, const std::vector<std::size_t>& which)
 }
 
 Elimination::Elimination(const Mechanics& M, const EliminationChoice& choice, std::shared_ptr<PointValues> at)
-    : constraints(choice.constraints), dependent(choice.dependent), mechanics_(&M), at_(std::move(at)) {
+    : constraints(choice.constraints), dependent(choice.dependent), mechanics_(&M), pivots_(std::move(at)) {
   const Model& model = *M.model;
   for (std::size_t r : constraints) m = std::max(m, static_cast<unsigned>(M.order[r]));
   for (const QuasiVelocity& q : choice.quasi) m = std::max(m, static_cast<unsigned>(q.order));
   ANHOLON_ASSERT(choice.m == 0 || choice.m >= m);  // constraints are lifted, never lowered
   if (choice.m) m = asked = choice.m;
-  top_ = jets(model, m);
-  next_ = jets(model, m + 1);
+  top_.symbols = jets(model, m);
+  next_.symbols = jets(model, m + 1);
   std::sort(dependent.begin(), dependent.end());
   for (std::size_t a = 0; a < M.q.size(); ++a)
     if (std::find(dependent.begin(), dependent.end(), a) == dependent.end()) independent.push_back(a);
+  Rows Phi_D;
   for (std::size_t r : constraints) {
     phi.push_back(total_derivative(put_masses(model, M.phi[r]), m - static_cast<unsigned>(M.order[r])));
     Phi_D.push_back(D(put_masses(model, M.Phi[r])));
   }
-  Phi_D_inverse = inverse(Phi_D, *at_, pivots_, true);
+  Phi_D_inverse = pivots_.inverse(Phi_D, Wanted::readable);
   if (choice.by_quasi)
     by_quasi_velocities(choice.quasi, choice.solve);
   else
-    by_coordinates(choice.solve);
-  finish();
+    by_coordinates(Phi_D, choice.solve);
+  if (solved)
+    differentiate();
+  else
+    differentiate_implicitly();
 }
 
 Elimination Elimination::of_order(unsigned asked) {
@@ -175,17 +76,17 @@ Elimination Elimination::of_order(unsigned asked) {
   return e;
 }
 
-void Elimination::by_coordinates(bool solve) {
+void Elimination::by_coordinates(const Rows& Phi_D, bool solve) {
   Graph& gr = mechanics_->graph();
-  const std::size_t n = top_.size(), s = dependent.size();
-  u = u_value_ = I(top_);
-  u_rate_ = u_rate_value_ = I(next_);
-  for (std::size_t a : independent) names.push_back(mechanics_->model->coordinates[a].name);
-  orders.assign(names.size(), m);
-  g = top_;
+  const std::size_t n = top_.symbols.size(), s = dependent.size();
+  free.u = free.value = I(top_.symbols);
+  free.rate = free.rate_value = I(next_.symbols);
+  for (std::size_t a : independent) free.names.push_back(mechanics_->model->coordinates[a].name);
+  free.orders.assign(free.names.size(), m);
+  top_.values = top_.symbols;
   // If phi is linear in q_D^(m), the coefficients do not contain q_D^(m).
   solved = solve;
-  const Column top_D = D(top_);
+  const Column top_D = D(top_.symbols);
   for (const Column& row : Phi_D)
     for (Expr e : row)
       if (depends({&e, 1}, top_D)) solved = false;
@@ -195,7 +96,7 @@ void Elimination::by_coordinates(bool solve) {
       std::vector<Expr> terms;
       for (std::size_t r = 0; r < s; ++r)
         if (!is_zero(Phi_D_inverse[b][r])) terms.push_back(-(Phi_D_inverse[b][r] * rest[r]));
-      g[dependent[b]] = shortest(sum(terms));
+      top_.values[dependent[b]] = shortest(sum(terms));
     }
     return;
   }
@@ -204,7 +105,7 @@ void Elimination::by_coordinates(bool solve) {
   for (std::size_t b = 0; b < s; ++b)
     for (std::size_t r = 0; r < s; ++r) {
       W_inverse_[dependent[b]][independent.size() + r] = Phi_D_inverse[b][r];
-      const Column row = gradient(phi[r], u);
+      const Column row = gradient(phi[r], free.u);
       for (std::size_t a = 0; a < independent.size(); ++a)
         W_inverse_[dependent[b]][a] += -(Phi_D_inverse[b][r] * row[a]);
     }
@@ -212,80 +113,81 @@ void Elimination::by_coordinates(bool solve) {
 
 void Elimination::by_quasi_velocities(const std::vector<QuasiVelocity>& list, bool solve) {
   Graph& gr = mechanics_->graph();
-  quasi = true;
-  Column symbols, symbol_rates;
+  Column symbols;
   for (std::size_t a = 0; a < list.size(); ++a) {
     const unsigned lift = m - static_cast<unsigned>(list[a].order);
     const auto index = static_cast<std::uint32_t>(a);
     symbols.push_back(gr.quasi(index, lift));
-    symbol_rates.push_back(gr.quasi(index, lift + 1));
-    u_value_.push_back(total_derivative(list[a].value, lift));
-    names.push_back(list[a].name);
-    orders.push_back(lift);
+    free.rate.push_back(gr.quasi(index, lift + 1));
+    free.value.push_back(total_derivative(list[a].value, lift));
+    free.names.push_back(list[a].name);
+    free.orders.push_back(lift);
   }
-  u_rate_value_ = total_derivative(u_value_);
-  w = u_value_;
-  w.insert(w.end(), phi.begin(), phi.end());
+  free.rate_value = total_derivative(free.value);
+  quasi = QuasiBasis{all_values(), {}};
   Rows W;
-  for (Expr e : w) W.push_back(gradient(e, top_));
-  chi_by_u = inverse(W, *at_, pivots_, true);
+  for (Expr e : quasi->w) W.push_back(gradient(e, top_.symbols));
+  quasi->chi_by_u = pivots_.inverse(W, Wanted::readable);
   solved = solve;
   for (const Column& row : W)
-    if (depends(row, top_)) solved = false;
+    if (depends(row, top_.symbols)) solved = false;
   if (solved) {
     // W q^(m) = (u, 0) - w at q^(m) = 0.
-    const Column rest = put(w, top_, Column(top_.size(), gr.zero()));
-    u = symbols;
-    u_rate_ = symbol_rates;
-    for (const Column& row : chi_by_u) {
+    const Column rest = put(quasi->w, top_.symbols, Column(top_.symbols.size(), gr.zero()));
+    free.u = symbols;
+    for (const Column& row : quasi->chi_by_u) {
       std::vector<Expr> terms;
       for (std::size_t i = 0; i < row.size(); ++i) {
-        if (i < u.size()) terms.push_back(row[i] * u[i]);
+        if (i < symbols.size()) terms.push_back(row[i] * symbols[i]);
         terms.push_back(-(row[i] * rest[i]));
       }
-      g.push_back(shortest(sum(terms)));
+      top_.values.push_back(shortest(sum(terms)));
     }
   } else {
-    u = u_value_;
-    u_rate_ = symbol_rates;
-    g = top_;
-    W_inverse_ = chi_by_u;
+    free.u = free.value;
+    top_.values = top_.symbols;
+    W_inverse_ = quasi->chi_by_u;
   }
 }
 
-void Elimination::finish() {
+void Elimination::differentiate() {
+  next_.values = put(total_derivative(top_.values), top_.symbols, top_.values);
+  for (OnManifold* level : {&top_, &next_})
+    for (Expr e : level->values) level->by_u.push_back(gradient(e, free.u));
+}
+
+void Elimination::differentiate_implicitly() {
   Graph& gr = mechanics_->graph();
-  const std::size_t n = top_.size(), free = u.size();
-  if (solved) {
-    g_rate_ = put(total_derivative(g), top_, g);
-    for (Expr e : g) B_.push_back(gradient(e, u));
-    for (Expr e : g_rate_) g_rate_by_u_.push_back(gradient(e, u));
-    return;
-  }
+  const std::size_t n = top_.symbols.size(), count = free.u.size();
   for (const Column& row : W_inverse_)
-    B_.push_back(Column(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(free)));
+    top_.by_u.push_back(Column(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(count)));
   // W q^(m+1) + (the remaining terms of dw/dt) = (u', 0).
-  Column all = u_value_;
-  all.insert(all.end(), phi.begin(), phi.end());
-  const Column rest = put(total_derivative(all), next_, Column(n, gr.zero()));
+  const Column rest = put(total_derivative(all_values()), next_.symbols, Column(n, gr.zero()));
   for (const Column& row : W_inverse_) {
     std::vector<Expr> terms;
     for (std::size_t i = 0; i < n; ++i) {
-      if (i < free) terms.push_back(row[i] * u_rate_[i]);
-      if (quasi || i >= free) terms.push_back(-(row[i] * rest[i]));
+      if (i < count) terms.push_back(row[i] * free.rate[i]);
+      if (quasi || i >= count) terms.push_back(-(row[i] * rest[i]));
     }
-    g_rate_.push_back(sum(terms));
+    next_.values.push_back(sum(terms));
   }
-  for (Expr e : g_rate_) g_rate_by_u_.push_back(put(gradient(e, top_) * B_, u_rate_, u_rate_value_));
+  for (Expr e : next_.values)
+    next_.by_u.push_back(put(gradient(e, top_.symbols) * top_.by_u, free.rate, free.rate_value));
+}
+
+Column Elimination::all_values() const {
+  Column all = free.value;
+  all.insert(all.end(), phi.begin(), phi.end());
+  return all;
 }
 
 Expr Elimination::on(Expr X) const { return on(Column{X})[0]; }
 
 Column Elimination::on(const Column& X) const {
   if (!solved) return X;
-  Column from = top_, to = g;
-  from.insert(from.end(), next_.begin(), next_.end());
-  to.insert(to.end(), g_rate_.begin(), g_rate_.end());
+  Column from = top_.symbols, to = top_.values;
+  from.insert(from.end(), next_.symbols.begin(), next_.symbols.end());
+  to.insert(to.end(), next_.values.begin(), next_.values.end());
   return put(X, from, to);
 }
 
@@ -302,17 +204,19 @@ Rows Elimination::rate(const Rows& X) const {
 }
 
 Column Elimination::by_u(Expr X) const {
-  if (solved) return gradient(on(X), u);
-  const Column a = gradient(X, top_) * B_;
-  return a.empty() ? a : a + gradient(X, next_) * g_rate_by_u_;
+  if (solved) return gradient(on(X), free.u);
+  const Column a = gradient(X, top_.symbols) * top_.by_u;
+  return a.empty() ? a : a + gradient(X, next_.symbols) * next_.by_u;
 }
 
-Column Elimination::by_u_rate(Expr X) const { return solved ? gradient(on(X), u_rate_) : gradient(X, next_) * B_; }
+Column Elimination::by_u_rate(Expr X) const {
+  return solved ? gradient(on(X), free.rate) : gradient(X, next_.symbols) * top_.by_u;
+}
 
 Column Elimination::by(unsigned k, Expr X) const {
   const Column lower = jets(*mechanics_->model, k);
   if (solved) return gradient(on(X), lower);
-  return gradient(X, lower) + gradient(X, top_) * g_by(k);
+  return gradient(X, lower) + gradient(X, top_.symbols) * g_by(k);
 }
 
 const Rows& Elimination::g_by(unsigned k) const {
@@ -322,13 +226,11 @@ const Rows& Elimination::g_by(unsigned k) const {
   if (!rows.empty()) return rows;
   const Column lower = jets(*mechanics_->model, k);
   if (solved) {
-    for (Expr e : g) rows.push_back(gradient(e, lower));
+    for (Expr e : top_.values) rows.push_back(gradient(e, lower));
     return rows;
   }
-  Column all = u_value_;
-  all.insert(all.end(), phi.begin(), phi.end());
   Rows by_lower;
-  for (Expr e : all) by_lower.push_back(gradient(e, lower));
+  for (Expr e : all_values()) by_lower.push_back(gradient(e, lower));
   for (const Column& row : W_inverse_) rows.push_back(-(row * by_lower));
   return rows;
 }
@@ -353,18 +255,18 @@ Rows Elimination::C() const {
   return out;
 }
 
-Rows Elimination::f_by_u() const { return part(B_, dependent, nullptr); }
+Rows Elimination::f_by_u() const { return part(top_.by_u, dependent, nullptr); }
 Rows Elimination::f_by(unsigned k) const { return part(g_by(k), dependent, &independent); }
-Rows Elimination::f_rate_by_u() const { return part(g_rate_by_u_, dependent, nullptr); }
+Rows Elimination::f_rate_by_u() const { return part(next_.by_u, dependent, nullptr); }
 
-Column Elimination::contract(const Column& X) const { return on(X) * B_; }
+Column Elimination::contract(const Column& X) const { return on(X) * top_.by_u; }
 
 Column Elimination::in_coordinates(const Column& X) const {
   if (!quasi) return X;
-  Column from = solved ? u : u_rate_, to = solved ? u_value_ : u_rate_value_;
+  Column from = solved ? free.u : free.rate, to = solved ? free.value : free.rate_value;
   if (solved) {
-    from.insert(from.end(), u_rate_.begin(), u_rate_.end());
-    to.insert(to.end(), u_rate_value_.begin(), u_rate_value_.end());
+    from.insert(from.end(), free.rate.begin(), free.rate.end());
+    to.insert(to.end(), free.rate_value.begin(), free.rate_value.end());
   }
   return put(X, from, to);
 }
@@ -372,18 +274,31 @@ Column Elimination::in_coordinates(const Column& X) const {
 Elimination Elimination::of(const Mechanics& copy) const {
   Elimination e = *this;
   if (mechanics_) e.mechanics_ = &copy;
-  if (at_) e.at_ = std::make_shared<PointValues>(*at_);
+  e.pivots_ = pivots_.copy();
   return e;
 }
 
+static void for_each_expression(FreeQuantities& free, const ExprVisitor& f) {
+  auto& [names, orders, u, rate, value, rate_value] = free;
+  for_each_expression_of(f, names, orders, u, rate, value, rate_value);
+}
+
+static void for_each_expression(QuasiBasis& basis, const ExprVisitor& f) {
+  auto& [w, chi_by_u] = basis;
+  for_each_expression_of(f, w, chi_by_u);
+}
+
+static void for_each_expression(OnManifold& level, const ExprVisitor& f) {
+  auto& [symbols, values, by_u] = level;
+  for_each_expression_of(f, symbols, values, by_u);
+}
+
 void for_each_expression(Elimination& e, const ExprVisitor& f) {
-  auto& [m, asked, constraints, dependent, independent, phi, Phi_D, Phi_D_inverse, names, orders, solved, quasi, u, g,
-         w, chi_by_u, mechanics, at, top, next, u_rate, g_rate, u_value, u_rate_value, W_inverse, B, g_rate_by_u, g_by,
-         pivots] = e;
-  static_cast<void>(mechanics), static_cast<void>(at);
-  for_each_expression_of(f, m, asked, constraints, dependent, independent, phi, Phi_D, Phi_D_inverse, names, orders,
-                         solved, quasi, u, g, w, chi_by_u, top, next, u_rate, g_rate, u_value, u_rate_value, W_inverse,
-                         B, g_rate_by_u, g_by, pivots);
+  auto& [m, asked, constraints, dependent, independent, phi, Phi_D_inverse, solved, free, quasi, mechanics, top, next,
+         W_inverse, g_by, pivots] = e;
+  static_cast<void>(mechanics);
+  for_each_expression_of(f, m, asked, constraints, dependent, independent, phi, Phi_D_inverse, solved, free, quasi, top,
+                         next, W_inverse, g_by, pivots);
 }
 
 }  // namespace anholon

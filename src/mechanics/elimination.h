@@ -14,23 +14,12 @@
 // does not distinguish both cases: it differentiates along the manifold with the operators below.
 #pragma once
 #include <memory>
+#include <optional>
 
+#include "mechanics/expression_matrix.h"
 #include "mechanics/mechanics.h"
-#include "tape/point.h"
 
 namespace anholon {
-
-using Rows = std::vector<Column>;
-
-// An expression of more nodes than this is not rewritten.
-inline constexpr std::size_t kShortEnough = 200;
-// e, or its expanded form if that is shorter.
-Expr shorter(Expr e, std::size_t longest = kShortEnough);
-
-// A^-1 by elimination on the graph, each entry in the shorter of its forms. Pivots are entries that are not small at
-// the point; pivots that can vanish elsewhere are added to `pivots`. `readable`: the result is for a reader, and is
-// simplified with more work.
-Rows inverse(const Rows& A, PointValues& at, Column& pivots, bool readable);
 
 // The choice of eliminated and of free quantities.
 struct EliminationChoice {
@@ -40,6 +29,29 @@ struct EliminationChoice {
   std::vector<QuasiVelocity> quasi;
   bool solve = true;  // if the constraints can be solved
   unsigned m = 0;     // the common order asked for; 0: the highest order of the constraints and quasi-velocities
+};
+
+// The free quantities u, n - s of them.
+struct FreeQuantities {
+  std::vector<std::string> names;  // coordinates or quasi-velocities
+  std::vector<unsigned> orders;    // u_k is the derivative of order orders[k] of names[k]
+  Column u, rate;                  // u': symbols; u: symbols if solved, else functions of q, …, q^(m)
+  Column value, rate_value;        // u, u' in coordinates
+  // The index of a name; nullopt if it is not among them.
+  std::optional<std::size_t> index_of(const std::string& name) const;
+};
+
+// All n quasi-velocities, of which the last s are the constraints, and dq/du of all of them [N 4.2].
+struct QuasiBasis {
+  Column w;
+  Rows chi_by_u;  // n x n
+};
+
+// One derivative of all coordinates on the manifold.
+struct OnManifold {
+  Column symbols;  // q^(k)
+  Column values;   // n entries; q^(m) itself if not solved
+  Rows by_u;       // n x (n - s)
 };
 
 class Elimination {
@@ -53,16 +65,11 @@ class Elimination {
   unsigned m = 1;      // common order of the lifted constraints, at least 1
   unsigned asked = 0;  // m, if it was asked for
   std::vector<std::size_t> constraints, dependent, independent;
-  Column phi;                      // lifted constraints, masses substituted
-  Rows Phi_D, Phi_D_inverse;       // dphi/dq_D^(m), s x s
-  std::vector<std::string> names;  // names of u: coordinates or quasi-velocities
-  // u_k is the derivative of order orders[k] of the coordinate or quasi-velocity names[k]
-  std::vector<unsigned> orders;
+  Column phi;           // lifted constraints, masses substituted
+  Rows Phi_D_inverse;   // of dphi/dq_D^(m), s x s
   bool solved = false;  // g is known as a formula
-  bool quasi = false;
-
-  Column u;  // symbols if solved, else functions of q, …, q^(m)
-  Column g;  // n entries; q^(m) itself if not solved
+  FreeQuantities free;
+  std::optional<QuasiBasis> quasi;  // if u are quasi-velocities
 
   // X on the manifold.
   Expr on(Expr X) const;
@@ -76,9 +83,10 @@ class Elimination {
   Column by_u_rate(Expr X) const;       // u'                   (n - s)
   Column by(unsigned k, Expr X) const;  // q^(k), k < m         (n)
   // As above for g and g' = dg/dt: row s is the gradient of g_s.
-  const Rows& g_by_u() const { return B_; }  // B of [N 4.3], n x (n - s)
-  const Rows& g_by(unsigned k) const;        // n x n
-  const Rows& g_rate_by_u() const { return g_rate_by_u_; }
+  const Column& g() const { return top_.values; }
+  const Rows& g_by_u() const { return top_.by_u; }  // B of [N 4.3], n x (n - s)
+  const Rows& g_by(unsigned k) const;               // n x n
+  const Rows& g_rate_by_u() const { return next_.by_u; }
   // f_b,nu and similar derivatives: the rows of the dependent coordinates, the columns of the independent ones.
   Rows f_by_u() const;
   Rows f_by(unsigned k) const;
@@ -87,18 +95,14 @@ class Elimination {
   // C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
   Rows C() const;
   // A^-1, with pivots that are not small near the state.
-  Rows inverted(const Rows& A) const { return inverse(A, *at_, pivots_, false); }
+  Rows inverted(const Rows& A) const { return pivots_.inverse(A, Wanted::brief); }
   // The divisors; near a zero of one of them another elimination is better.
-  const Column& pivots() const { return pivots_; }
+  const Column& pivots() const { return pivots_.divisors(); }
   // sum_s X_s B_sa: X_nu + sum_b X_b f_b,nu.
   Column contract(const Column& X) const;
   // The entries of the independent and of the dependent coordinates.
   Column I(const Column& X) const { return pick(X, independent); }
   Column D(const Column& X) const { return pick(X, dependent); }
-
-  // All n quasi-velocities (the last s are the constraints) and dq/du of all of them [N 4.2]; quasi only.
-  Column w;
-  Rows chi_by_u;  // n x n
 
   // Writes quasi-velocities in coordinates again.
   Column in_coordinates(const Column& X) const;
@@ -111,27 +115,20 @@ class Elimination {
 
  private:
   static Column pick(const Column& X, const std::vector<std::size_t>& which);
-  void by_coordinates(bool solve);
+  void by_coordinates(const Rows& Phi_D, bool solve);
   void by_quasi_velocities(const std::vector<QuasiVelocity>& list, bool solve);
-  void finish();
+  void differentiate();
+  void differentiate_implicitly();
+  // w = (u, phi) in coordinates, whose Jacobian is W.
+  Column all_values() const;
 
   const Mechanics* mechanics_ = nullptr;
-  std::shared_ptr<PointValues> at_;
-  Column top_, next_;  // q^(m), q^(m+1)
-  Column u_rate_, g_rate_;
-  Column u_value_, u_rate_value_;  // in coordinates
-  Rows W_inverse_;                 // not solved: n x n
-  Rows B_, g_rate_by_u_;
-  mutable std::vector<Rows> g_by_;
-  mutable Column pivots_;
+  OnManifold top_, next_;           // q^(m) = g, q^(m+1) = g'
+  Rows W_inverse_;                  // not solved: n x n
+  mutable std::vector<Rows> g_by_;  // those computed so far
+  mutable PivotChoice pivots_;
 };
 
 void for_each_expression(Elimination& e, const ExprVisitor& f);
-
-// sum_b X_b Y_b,a: the sums over dependent coordinates of [L 3.13] and its kin.
-Column operator*(const Column& X, const Rows& Y);
-Rows operator-(const Rows& a, const Rows& b);
-Rows operator+(const Rows& a, const Rows& b);
-Rows operator*(const Rational& c, const Rows& a);
 
 }  // namespace anholon

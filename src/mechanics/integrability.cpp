@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/diagnostic.h"
-#include "mechanics/elimination.h"
+#include "mechanics/expression_matrix.h"
 #include "mechanics/integrals.h"
 #include "mechanics/pfaff.h"
 #include "print/arrange.h"
@@ -96,7 +96,7 @@ void solve(Pfaffian& p, std::vector<std::size_t> pivots, FormPoint& at) {
   }
   Column divisors;
   PointValues rough = at.rough();
-  if (!square.empty()) p.inverse = inverse(square, rough, divisors, false);
+  if (!square.empty()) p.inverse = inverse(square, rough, divisors, Wanted::brief);
   for (std::size_t i = 0; i < p.space.z.size(); ++i) {
     if (std::binary_search(p.pivots.begin(), p.pivots.end(), i)) continue;
     Column X(p.space.z.size(), g.zero()), column;

@@ -119,7 +119,7 @@ bool any_form(const Rows& forms, FormPoint& at, const std::function<bool(const C
     if (rank(minor) < p) continue;
     ++choices;
     Column divisors;
-    for (const Column& row : inverse(square, rough, divisors, false)) {
+    for (const Column& row : inverse(square, rough, divisors, Wanted::brief)) {
       Column w = row * forms;
       for (Expr& e : w) e = shorter(e);
       if (serves(w)) return true;

@@ -6,7 +6,7 @@
 #pragma once
 #include <memory>
 
-#include "mechanics/elimination.h"
+#include "mechanics/expression_matrix.h"
 #include "mechanics/mechanics.h"
 #include "numeric/linear.h"
 #include "tape/point.h"

@@ -344,9 +344,9 @@ class DerivedNames final : public Names {
         if (name == "m_" + m.name) return m.value;
     return scope_.name(name, span);
   }
-  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax,
-            Value& result) override {
-    return scope_.call(function, arguments, syntax, result);
+  std::optional<Value> call(const std::string& function, const std::vector<Value>& arguments,
+                            const Syntax& syntax) override {
+    return scope_.call(function, arguments, syntax);
   }
   Value member(const Value& object, const Syntax& syntax) override { return scope_.member(object, syntax); }
   std::vector<std::string> functions() const override { return scope_.functions(); }

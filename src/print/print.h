@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "expr/expr.h"
+#include "print/format.h"
+#include "print/print_names.h"
 
 namespace anholon {
-
-enum class Format : std::uint8_t { text, latex, mathml };
 
 inline constexpr std::size_t kLongestPrint = 1 << 18;
 
@@ -39,12 +39,5 @@ std::vector<std::string> print_contents(std::span<const Expr> es, const SymbolNa
 // Gives names to all sums and products that occur more than once in `es`; the printed length is then proportional to
 // the size of the graph. The result is in the order of definition.
 std::vector<Expr> name_parts(std::span<const Expr> es, SymbolNames& names);
-
-// "theta" -> "\theta", "x1" -> "x_{1}", "front_wheel" -> "\mathrm{front\_wheel}".
-std::string latex_name(const std::string& name);
-// "theta" -> <mi>θ</mi>, "x1" -> <msub><mi>x</mi><mn>1</mn></msub>.
-std::string mathml_name(const std::string& name);
-// The name of the k-th derivative: "x''", "D(x,4)"; "\ddot{x}", "x^{(4)}".
-std::string derivative_name(const std::string& name, unsigned order, Format format);
 
 }  // namespace anholon

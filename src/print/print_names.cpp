@@ -1,11 +1,8 @@
-// Names in LaTeX and MathML: Greek letters, subscripts, indices, derivatives.
 #include "print/print_names.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-
-#include "print/print.h"
 
 namespace anholon {
 

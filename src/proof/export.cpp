@@ -160,7 +160,7 @@ Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminatio
     if (i >= names.masses.size()) names.masses.emplace_back();
     names.masses[i] = "m_" + M.model->masses[i].name + (M.model->masses[i].weight ? "." + std::to_string(i) : "");
   }
-  if (eliminations.quasi.quasi) names.quasi = eliminations.quasi.names;
+  if (eliminations.quasi.quasi) names.quasi = eliminations.quasi.free.names;
   Exporter out(c, M.graph(), names);
   for (const Difference& d : proof.kernel)
     if (d.verdict == Verdict::proved) out.claim(Certificate::ClaimKind::kernel, "routh", "", d);

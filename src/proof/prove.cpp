@@ -8,24 +8,6 @@
 
 namespace anholon {
 
-const char* name(Verdict v) {
-  switch (v) {
-  case Verdict::proved:
-    return "proved";
-  case Verdict::refuted:
-    return "refuted";
-  case Verdict::unknown:
-    return "unknown";
-  }
-  return "";
-}
-
-Expr Difference::expression() const {
-  std::vector<Expr> terms = {left};
-  for (const auto& [coefficient, term] : right) terms.push_back(-(coefficient * term));
-  return sum(terms);
-}
-
 bool shown_zero(Expr e, Effort effort) {
   constexpr std::size_t kLong = 60;  // nodes
   const bool is_long = reachable({&e, 1}).size() > kLong;
@@ -72,8 +54,8 @@ void kernel_claims(const Mechanics& M, const Elimination& e, long bits, std::vec
       decide(out.back(), e, model, Effort::full, bits);
     }
     const Column row = e.on(put_masses(model, M.Phi[e.constraints[k]]));
-    for (std::size_t a = 0; a < e.names.size(); ++a) {
-      Difference d{name + ", " + e.names[a], g.zero(), {}, {}, {}, {}};
+    for (std::size_t a = 0; a < e.free.names.size(); ++a) {
+      Difference d{name + ", " + e.free.names[a], g.zero(), {}, {}, {}, {}};
       for (std::size_t s = 0; s < row.size(); ++s)
         if (!is_zero(row[s]) && !is_zero(e.g_by_u()[s][a])) d.right.push_back({-row[s], e.g_by_u()[s][a]});
       decide(d, e, model, Effort::full, bits);
@@ -114,7 +96,7 @@ FormProof against_routh(const Mechanics& M, const Formulation& form, const Equat
         residual.size() == M.q.size() && !e.constraints.empty();
     const Column contracted = along ? e.contract(residual) : residual;
     for (std::size_t nu = 0; nu < contracted.size(); ++nu) {
-      Difference d{e.names[nu], contracted[nu], {}, {}, {}, {}};
+      Difference d{e.free.names[nu], contracted[nu], {}, {}, {}, {}};
       for (std::size_t s = 0; s < a.size(); ++s)
         if (!is_zero(e.g_by_u()[s][nu])) d.right.push_back({e.g_by_u()[s][nu], a[s]});
       decide(d, e, model, effort, bits);

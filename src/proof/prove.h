@@ -7,52 +7,21 @@
 //                         multipliers exist, and the form has the solutions of Routh's equations.
 // Two forms that agree with Routh's agree with each other; if one does and the other does not, they differ.
 //
-// proved   the difference is zero in the exact algebra (expr/normal.h): for all values of all symbols refuted  a point
-// of the manifold with rational free coordinates, where a ball that holds the difference excludes zero unknown  neither
-// was found within the limits; with the size of the difference at some points
-//
 // A proof states that the forms follow from each other given the same T, forces and constraints. It does not state that
 // these describe the machine.
 #pragma once
 #include <functional>
-#include <optional>
 
 #include "formulation/formulation.h"
 #include "proof/certificate.h"
+#include "proof/difference.h"
 
 namespace anholon {
-
-enum class Verdict : std::uint8_t { unknown, proved, refuted };  // a missing verdict means unknown
-const char* name(Verdict v);
 
 // The effort: brief tries the general form of a long expression only, which is far shorter; full tries everything.
 enum class Effort : std::uint8_t { brief, full };
 // Whether algebra (expr/normal.h) shows that e, or the general statement behind it, is zero.
 bool shown_zero(Expr e, Effort effort);
-
-// A point of the manifold: rational values of the free symbols, and boxes proved to contain exactly one root of the
-// equations.
-struct WitnessPoint {
-  std::vector<std::pair<Expr, Rational>> values;
-  struct Enclosed {
-    Expr symbol;
-    Rational midpoint, radius;
-  };
-  std::vector<Enclosed> enclosed;
-  Column equations;
-};
-
-// left - sum coefficient * term, which is claimed to be zero or not zero.
-struct Difference {
-  std::string component;
-  Expr left;
-  std::vector<std::pair<Expr, Expr>> right;
-  Verdict verdict = Verdict::unknown;
-  std::optional<WitnessPoint> witness;  // if refuted
-  std::string detail;                   // the value at the witness, or the bound reached
-
-  Expr expression() const;
-};
 
 struct FormProof {
   const Formulation* form = nullptr;

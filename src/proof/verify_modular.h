@@ -26,28 +26,16 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "numeric/prime_field.h"
 #include "proof/certificate.h"
+#include "proof/verify_work.h"
 
 namespace anholon::verification {
-
-// The number of operations left to a verification, so that a hostile certificate cannot run for ever.
-class Work {
- public:
-  bool spend(std::uint64_t n) { return (left_ -= n < left_ ? n : left_) > 0; }
-  bool done() const { return left_ == 0; }
-
- private:
-  std::uint64_t left_ = 20'000'000'000;
-};
 
 inline constexpr std::array<std::uint64_t, 16> kPrimes = {
     2305843009213057079, 2305843009178326439, 2305843009101690119, 2305843009045133879,
     2305843009005485759, 2305843008934483079, 2305843008908132399, 2305843008817757639,
     2305843008811413959, 2305843008787237079, 2305843008727893599, 2305843008716181359,
     2305843008639951959, 2305843008563423159, 2305843008485267039, 2305843008405113999};
-
-using Field = PrimeField;
 
 struct ModularFinding {
   enum class Is : std::uint8_t { zero, nonzero, unknown } is = Is::unknown;

@@ -1,24 +1,50 @@
-#include <algorithm>
-
+// The program over a field, and its values at random points.
 #include "proof/verify_modular_program.h"
 
 namespace anholon::verification {
 
-static bool is_odd(const std::string& f) { return f == "asin" || f == "atan" || f == "asinh" || f == "atanh"; }
+using Factor = ReducedProgram::Factor;
+using Turn = ReducedProgram::Turn;
+using Point = ReducedProgram::Point;
 
-bool ModularProgram::reduce(const Field& f, Reduced& r) const {
+namespace {
+
+// a/b modulo the order of a cyclic group, to which b is coprime.
+Word modulo(const Rational& e, Word order) {
+  mpz_class m, inverse;
+  mpz_import(m.get_mpz_t(), 1, 1, sizeof order, 0, 0, &order);
+  mpz_invert(inverse.get_mpz_t(), e.get_den_mpz_t(), m.get_mpz_t());
+  inverse *= e.get_num();
+  return static_cast<Word>(mpz_fdiv_ui(inverse.get_mpz_t(), order));
+}
+
+Point rotate(const Field& f, const Point& a, const Point& b) {
+  return {f.subtract(f.multiply(a.cos, b.cos), f.multiply(a.sin, b.sin)),
+          f.add(f.multiply(a.cos, b.sin), f.multiply(a.sin, b.cos))};
+}
+
+Point rotate(const Field& f, Point a, Word times) {
+  Point r{1, 0};
+  for (; times > 0; times >>= 1, a = rotate(f, a, a))
+    if (times & 1) r = rotate(f, r, a);
+  return r;
+}
+
+// cos and sin of π/12 are (√6 ± √2)/4; 2 and 3 are squares.
+Point twelfth_of(const Field& f, Word half) {
+  const auto root = [&f](Word square) { return f.power(square, ((f.prime() - 1) / 2 + 1) / 2); };
+  const Word quarter = f.multiply(half, half), root2 = root(2), root6 = f.multiply(root2, root(3));
+  return {f.multiply(f.add(root6, root2), quarter), f.multiply(f.subtract(root6, root2), quarter)};
+}
+
+}  // namespace
+
+ReducedProgram::ReducedProgram(const Field& f, std::size_t steps)
+    : field(f), half(f.inverse(2)), twelfth(twelfth_of(f, half)), weights(steps), factors(steps), turns(steps) {}
+
+std::optional<ReducedProgram> ModularProgram::over(const Field& f) const {
   const Word p = f.prime(), squares = (p - 1) / 2;
-  r.weights.assign(steps_.size(), {});
-  r.factors.assign(steps_.size(), {});
-  r.turns.assign(steps_.size(), {});
-  // a/b modulo the order of a cyclic group, to which b is coprime.
-  const auto modulo = [](const Rational& e, Word order) {
-    mpz_class m, inverse;
-    mpz_import(m.get_mpz_t(), 1, 1, sizeof order, 0, 0, &order);
-    mpz_invert(inverse.get_mpz_t(), e.get_den_mpz_t(), m.get_mpz_t());
-    inverse *= e.get_num();
-    return static_cast<Word>(mpz_fdiv_ui(inverse.get_mpz_t(), order));
-  };
+  ReducedProgram r(f, steps_.size());
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Step& s = steps_[i];
     if (s.node->operation == Operation::number || s.node->operation == Operation::sum) {
@@ -27,10 +53,10 @@ bool ModularProgram::reduce(const Field& f, Reduced& r) const {
         if (w) r.weights[i].push_back(*w);
         return w.has_value();
       };
-      if (s.node->operation == Operation::number && !take(s.node->value)) return false;
+      if (s.node->operation == Operation::number && !take(s.node->value)) return std::nullopt;
       if (s.node->operation == Operation::sum)
         for (const Certificate::Term& t : s.node->terms)
-          if (!take(t.weight)) return false;
+          if (!take(t.weight)) return std::nullopt;
     } else if (s.node->operation == Operation::product) {
       for (std::size_t k = 0; k < s.operands.size(); ++k) {
         Factor factor;
@@ -43,160 +69,200 @@ bool ModularProgram::reduce(const Field& f, Reduced& r) const {
         }
         r.factors[i].push_back(factor);
       }
-    } else if (s.family != Family::none) {
+    } else if (is_of_angle(s.family)) {
       const bool circle = s.family == Family::circle;
       for (const Part& part : s.angle.parts) {
         const auto content = f.from(part.content);
-        if (!content || *content == 0) return false;
+        if (!content || *content == 0) return std::nullopt;
         r.turns[i].push_back(
             {f.inverse(*content), modulo(part.coefficient * (circle ? circle_q_ : growth_q_), circle ? p + 1 : p - 1)});
       }
     }
   }
-  return true;
-}
-
-Word ModularProgram::random(const Field& f, const HashKey& key, std::uint64_t tag, Word a, Word b) const {
-  for (std::uint64_t attempt = 0;; ++attempt) {
-    const std::array<std::uint64_t, 4> words{tag, a, b, attempt};
-    const Word w = siphash(key, words) >> 3;
-    if (w < f.prime()) return w;
-  }
-}
-
-Word ModularProgram::atom(const Field& f, const Part& part, const Turn& t, const HashKey& key,
-                          const std::vector<Word>& v) const {
-  switch (part.of) {
-  case Part::Of::node:
-    return f.multiply(v[part.local], t.scale);
-  case Part::Of::one:
-    return 1;
-  case Part::Of::pi:
-    return pi_value(f, key);
-  }
-  return 0;
-}
-
-static std::pair<Word, Word> rotate(const Field& f, std::pair<Word, Word> a, std::pair<Word, Word> b) {
-  return {f.subtract(f.multiply(a.first, b.first), f.multiply(a.second, b.second)),
-          f.add(f.multiply(a.first, b.second), f.multiply(a.second, b.first))};
-}
-
-static std::pair<Word, Word> rotate(const Field& f, std::pair<Word, Word> a, Word times) {
-  std::pair<Word, Word> r{1, 0};
-  for (; times > 0; times >>= 1, a = rotate(f, a, a))
-    if (times & 1) r = rotate(f, r, a);
   return r;
 }
 
-ModularProgram::Point ModularProgram::turn(const Field& f, const Step& step, const std::vector<Turn>& turns,
-                                           const HashKey& key, const std::vector<Word>& v, const Point& twelfth) const {
-  std::pair<Word, Word> r = rotate(f, std::pair{twelfth.c, twelfth.s}, Word{step.angle.twelfths});
-  for (std::size_t k = 0; k < turns.size(); ++k) {
-    const Word u = random(f, key, 3, atom(f, step.angle.parts[k], turns[k], key, v)), square = f.multiply(u, u);
-    const Word scale = f.inverse(f.add(1, square));  // −1 is not a square
-    const std::pair<Word, Word> point{f.multiply(f.subtract(1, square), scale), f.multiply(f.add(u, u), scale)};
-    r = rotate(f, r, rotate(f, point, turns[k].exponent));
-  }
-  return {r.first, r.second};
-}
+// The values of a program at one random point.
+class ModularProgram::PointDraw {
+ public:
+  PointDraw(ModularProgram& program, const ReducedProgram& r, const HashKey& key, std::vector<Word>& values)
+      : program_(program), r_(r), f_(r.field), key_(key), v_(values) {}
 
-Word ModularProgram::grow(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key,
-                          const std::vector<Word>& v) const {
-  Word r = 1;
-  for (std::size_t k = 0; k < turns.size(); ++k) {
-    const Word value = atom(f, step.angle.parts[k], turns[k], key, v);
-    Word g = random(f, key, 4, value);
-    if (g == 0) g = 1;
-    r = f.multiply(r, f.power(f.multiply(g, g), turns[k].exponent));
+  Drawn run() {
+    v_.resize(program_.steps_.size());
+    for (std::size_t i = 0; i < v_.size() && drawn_ == Drawn::good; ++i) v_[i] = value(i);
+    return drawn_;
   }
-  return r;
-}
 
-ModularProgram::Drawn ModularProgram::draw(const Field& f, const Reduced& r, const HashKey& key, std::vector<Word>& v) {
-  const Word half = f.inverse(2);
-  // cos and sin of π/12 are (√6 ± √2)/4; 2 and 3 are squares.
-  const auto root = [&f](Word square) { return f.power(square, ((f.prime() - 1) / 2 + 1) / 2); };
-  const Word quarter = f.multiply(half, half), root2 = root(2), root6 = f.multiply(root2, root(3));
-  const Point twelfth{f.multiply(f.add(root6, root2), quarter), f.multiply(f.subtract(root6, root2), quarter)};
-  const auto sign = [&f](Word a) { return a == 0 ? Word{0} : f.is_square(a) ? Word{1} : f.prime() - 1; };
-  for (std::size_t i = 0; i < steps_.size(); ++i) {
-    const Step& s = steps_[i];
-    Word value = 0;
+ private:
+  // What is random: the kinds of the arguments that determine it.
+  enum : std::uint64_t { kSymbol = 1, kPi = 2, kTurn = 3, kGrowth = 4, kAtan2 = 5, kFunction = 6 };
+
+  Word random(std::uint64_t tag, Word a, Word b = 0) const {
+    for (std::uint64_t attempt = 0;; ++attempt) {
+      const std::array<std::uint64_t, 4> words{tag, a, b, attempt};
+      const Word w = siphash(key_, words) >> 3;
+      if (w < f_.prime()) return w;
+    }
+  }
+  Word pi_value() const { return random(kPi, 0); }
+  Word sign(Word a) const { return a == 0 ? Word{0} : f_.is_square(a) ? Word{1} : f_.prime() - 1; }
+  Word fails(Drawn how) {
+    drawn_ = how;
+    return 0;
+  }
+
+  Word value(std::size_t i) {
+    const Step& s = program_.steps_[i];
     switch (s.node->operation) {
     case Operation::number:
-      value = r.weights[i][0];
-      break;
+      return r_.weights[i][0];
     case Operation::pi:
-      value = pi_value(f, key);
-      break;
+      return pi_value();
     case Operation::symbol:
-      value = random(f, key, 1, s.node->symbol);
-      break;
-    case Operation::sum:
+      return random(kSymbol, s.node->symbol);
+    case Operation::sum: {
+      Word sum = 0;
       for (std::size_t k = 0; k < s.operands.size(); ++k)
-        value = f.add(value, f.multiply(r.weights[i][k], v[s.operands[k]]));
-      break;
+        sum = f_.add(sum, f_.multiply(r_.weights[i][k], v_[s.operands[k]]));
+      return sum;
+    }
     case Operation::product:
-      value = 1;
-      for (std::size_t k = 0; k < s.operands.size(); ++k) {
-        if (s.operands[k] == kNone) continue;
-        const Factor& factor = r.factors[i][k];
-        const Word x = v[s.operands[k]];
-        if (x == 0) {
-          if (!factor.zero_allowed) return Drawn::undefined;
-          value = 0;
-          continue;
-        }
-        if (factor.site != kNone && !f.is_square(x)) {
-          failed_site_ = factor.site;
-          return sites_[factor.site].constant ? Drawn::bad_prime : Drawn::not_square;
-        }
-        value = f.multiply(value, f.power(x, factor.exponent));
-      }
-      break;
-    case Operation::atan2:
-      if (v[s.operands[0]] == 0 && v[s.operands[1]] == 0) return Drawn::undefined;
-      value = random(f, key, 5, v[s.operands[0]], v[s.operands[1]]);
-      break;
-    case Operation::function: {
-      const std::string& name = s.node->function;
-      const Word u = v[s.operands[0]];
-      if (s.family == Family::circle) {
-        const Point point = turn(f, s, r.turns[i], key, v, twelfth);
-        if (name == "tan" && point.c == 0) return Drawn::undefined;
-        value = name == "sin" ? point.s : name == "cos" ? point.c : f.multiply(point.s, f.inverse(point.c));
-      } else if (s.family == Family::exponential) {
-        const Word e = grow(f, s, r.turns[i], key, v), inverse = f.inverse(e);
-        const Word twice_sinh = f.subtract(e, inverse), twice_cosh = f.add(e, inverse);
-        if (name == "tanh" && twice_cosh == 0) return Drawn::undefined;
-        value = name == "exp"    ? e
-                : name == "sinh" ? f.multiply(half, twice_sinh)
-                : name == "cosh" ? f.multiply(half, twice_cosh)
-                                 : f.multiply(twice_sinh, f.inverse(twice_cosh));
-      } else if (name == "abs" || name == "sign") {
-        const Certificate::Node& of = *steps_[s.operands[0]].node;
-        const Word plus = of.operation != Operation::number ? sign(u)
-                          : of.value == 0                   ? Word{0}
-                          : of.value > 0                    ? Word{1}
-                                                            : f.prime() - 1;
-        value = name == "abs" ? f.multiply(u, plus) : plus;
-      } else if (is_odd(name) || name == "acos") {
-        static const auto& all = Certificate::functions();
-        static const auto asin_name =
-            static_cast<std::uint64_t>(std::find(all.begin(), all.end(), "asin") - all.begin());
-        const Word plus = sign(u);
-        value = f.multiply(plus, random(f, key, 6 + (name == "acos" ? asin_name : s.name), f.multiply(u, plus)));
-        if (name == "acos") value = f.subtract(f.multiply(half, pi_value(f, key)), value);
-      } else {
-        value = random(f, key, 6 + s.name, u);
-      }
-      break;
+      return product(s, r_.factors[i]);
+    case Operation::atan2: {
+      const Word y = v_[s.operands[0]], x = v_[s.operands[1]];
+      return y == 0 && x == 0 ? fails(Drawn::undefined) : random(kAtan2, y, x);
     }
+    case Operation::function:
+      return function(s, r_.turns[i]);
     }
-    v[i] = value;
+    return 0;
   }
-  return Drawn::good;
+
+  Word product(const Step& s, const std::vector<Factor>& factors) {
+    Word value = 1;
+    for (std::size_t k = 0; k < s.operands.size(); ++k) {
+      if (s.operands[k] == kNone) continue;
+      const Factor& factor = factors[k];
+      const Word x = v_[s.operands[k]];
+      if (x == 0) {
+        if (!factor.zero_allowed) return fails(Drawn::undefined);
+        value = 0;
+        continue;
+      }
+      if (factor.site != kNone && !f_.is_square(x)) {
+        Site& site = program_.sites_[factor.site];
+        if (site.constant) return fails(Drawn::bad_prime);
+        site.failed = true;
+        return fails(Drawn::not_square);
+      }
+      value = f_.multiply(value, f_.power(x, factor.exponent));
+    }
+    return value;
+  }
+
+  Word function(const Step& s, const std::vector<Turn>& turns) {
+    const Word u = v_[s.operands[0]];
+    switch (s.family) {
+    case Family::keyed:
+      return random(kFunction + s.name, u);
+    case Family::odd:
+      return odd(s.name, u);
+    case Family::complement:
+      return f_.subtract(f_.multiply(r_.half, pi_value()), odd(s.name, u));
+    case Family::branch:
+      return branch(s, u);
+    case Family::circle:
+      return of_circle(s, turned(s, turns));
+    case Family::exponential:
+      return of_exponential(s, grown(s, turns));
+    }
+    return 0;
+  }
+
+  Word odd(std::uint64_t name, Word u) const {
+    const Word plus = sign(u);
+    return f_.multiply(plus, random(kFunction + name, f_.multiply(u, plus)));
+  }
+
+  Word branch(const Step& s, Word u) const {
+    const Certificate::Node& of = *program_.steps_[s.operands[0]].node;
+    const Word plus = of.operation != Operation::number ? sign(u)
+                      : of.value == 0                   ? Word{0}
+                      : of.value > 0                    ? Word{1}
+                                                        : f_.prime() - 1;
+    return s.node->function == "abs" ? f_.multiply(u, plus) : plus;
+  }
+
+  Word of_circle(const Step& s, const Point& p) {
+    if (s.node->function == "sin") return p.sin;
+    if (s.node->function == "cos") return p.cos;
+    return p.cos == 0 ? fails(Drawn::undefined) : f_.multiply(p.sin, f_.inverse(p.cos));
+  }
+
+  Word of_exponential(const Step& s, Word e) {
+    const std::string& name = s.node->function;
+    if (name == "exp") return e;
+    const Word inverse = f_.inverse(e);
+    const Word twice_sinh = f_.subtract(e, inverse), twice_cosh = f_.add(e, inverse);
+    if (name == "sinh") return f_.multiply(r_.half, twice_sinh);
+    if (name == "cosh") return f_.multiply(r_.half, twice_cosh);
+    return twice_cosh == 0 ? fails(Drawn::undefined) : f_.multiply(twice_sinh, f_.inverse(twice_cosh));
+  }
+
+  Word atom(const Part& part, const Turn& t) const {
+    switch (part.of) {
+    case Part::Of::node:
+      return f_.multiply(v_[part.local], t.scale);
+    case Part::Of::one:
+      return 1;
+    case Part::Of::pi:
+      return pi_value();
+    }
+    return 0;
+  }
+
+  Point turned(const Step& step, const std::vector<Turn>& turns) const {
+    Point r = rotate(f_, r_.twelfth, Word{step.angle.twelfths});
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      const Word u = random(kTurn, atom(step.angle.parts[k], turns[k])), square = f_.multiply(u, u);
+      const Word scale = f_.inverse(f_.add(1, square));  // −1 is not a square
+      const Point point{f_.multiply(f_.subtract(1, square), scale), f_.multiply(f_.add(u, u), scale)};
+      r = rotate(f_, r, rotate(f_, point, turns[k].exponent));
+    }
+    return r;
+  }
+
+  Word grown(const Step& step, const std::vector<Turn>& turns) const {
+    Word r = 1;
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      Word g = random(kGrowth, atom(step.angle.parts[k], turns[k]));
+      if (g == 0) g = 1;
+      r = f_.multiply(r, f_.power(f_.multiply(g, g), turns[k].exponent));
+    }
+    return r;
+  }
+
+  ModularProgram& program_;
+  const ReducedProgram& r_;
+  const Field& f_;
+  const HashKey& key_;
+  std::vector<Word>& v_;
+  Drawn drawn_ = Drawn::good;
+};
+
+ModularProgram::Drawn ModularProgram::draw(const ReducedProgram& r, const HashKey& key, std::vector<Word>& values) {
+  if (!work_.spend(cost_)) throw Unable{"the limit of work is reached"};
+  return PointDraw(*this, r, key, values).run();
+}
+
+Word ModularProgram::difference(const ReducedProgram& r, const Certificate::Claim& claim,
+                                const std::vector<Word>& values) const {
+  const Field& f = r.field;
+  Word difference = values[local_[claim.left]];
+  for (const Certificate::Pair& p : claim.right)
+    difference = f.subtract(difference, f.multiply(values[local_[p.coefficient]], values[local_[p.node]]));
+  return difference;
 }
 
 }  // namespace anholon::verification

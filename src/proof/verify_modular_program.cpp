@@ -10,10 +10,21 @@ namespace anholon::verification {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostBits = 4096;  // of a coefficient inside an angle
 
-static Family family(const std::string& f) {
-  if (f == "sin" || f == "cos" || f == "tan") return Family::circle;
-  if (f == "exp" || f == "sinh" || f == "cosh" || f == "tanh") return Family::exponential;
-  return Family::none;
+// The rule of each function; the others are keyed.
+static Family family(const std::string& function) {
+  static const std::map<std::string, Family> families = {
+      {"sin", Family::circle},       {"cos", Family::circle},       {"tan", Family::circle},
+      {"exp", Family::exponential},  {"sinh", Family::exponential}, {"cosh", Family::exponential},
+      {"tanh", Family::exponential}, {"abs", Family::branch},       {"sign", Family::branch},
+      {"asin", Family::odd},         {"atan", Family::odd},         {"asinh", Family::odd},
+      {"atanh", Family::odd},        {"acos", Family::complement}};
+  const auto row = families.find(function);
+  return row == families.end() ? Family::keyed : row->second;
+}
+
+static std::uint64_t name_of(const std::string& function) {
+  const auto& all = Certificate::functions();
+  return static_cast<std::uint64_t>(std::find(all.begin(), all.end(), function) - all.begin());
 }
 
 // Compiling
@@ -40,29 +51,29 @@ void ModularProgram::collect() {
   for (std::size_t i = 0; i < nodes_.size(); ++i) local_[nodes_[i]] = static_cast<std::uint32_t>(i);
   steps_.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    Step& s = steps_[i];
-    s.node = &c_.nodes[nodes_[i]];
-    const bool algebraic = s.node->operation == Operation::sum || s.node->operation == Operation::product;
-    s.constant =
-        algebraic || s.node->operation == Operation::number ||
-        (s.node->operation == Operation::function && (s.node->function == "abs" || s.node->function == "sign"));
-    cost_ += 30 + (s.node->operation == Operation::sum ? 5 : 400) * s.node->terms.size();
-    for (const Certificate::Term& t : s.node->terms) {
-      const bool used = s.node->operation != Operation::product || t.weight != 0;
-      s.operands.push_back(used ? local_[t.node] : kNone);
-      if (used && !steps_[local_[t.node]].constant) s.constant = false;
-    }
-    if (s.node->operation == Operation::product) {
-      for (std::size_t k = 0; k < s.operands.size(); ++k)
-        if (s.operands[k] != kNone && mpz_even_p(s.node->terms[k].weight.get_den_mpz_t())) site(s.operands[k], true);
-    } else if (s.node->operation == Operation::function) {
-      const std::string& name = s.node->function;
-      s.family = family(name);
-      const auto& all = Certificate::functions();
-      s.name = static_cast<std::uint64_t>(std::find(all.begin(), all.end(), name) - all.begin());
-      if (name == "abs" || name == "sign") site(s.operands[0], false);
-    }
+    steps_[i].node = &c_.nodes[nodes_[i]];
+    compile(steps_[i]);
   }
+}
+
+void ModularProgram::compile(Step& s) {
+  const Certificate::Node& n = *s.node;
+  if (n.operation == Operation::function) {
+    s.family = family(n.function);
+    s.name = name_of(s.family == Family::complement ? "asin" : n.function);
+  }
+  s.constant = n.operation == Operation::sum || n.operation == Operation::product || n.operation == Operation::number ||
+               s.family == Family::branch;
+  cost_ += 30 + (n.operation == Operation::sum ? 5 : 400) * n.terms.size();
+  for (const Certificate::Term& t : n.terms) {
+    const bool used = n.operation != Operation::product || t.weight != 0;
+    s.operands.push_back(used ? local_[t.node] : kNone);
+    if (used && !steps_[local_[t.node]].constant) s.constant = false;
+  }
+  if (n.operation == Operation::product)
+    for (std::size_t k = 0; k < s.operands.size(); ++k)
+      if (s.operands[k] != kNone && mpz_even_p(n.terms[k].weight.get_den_mpz_t())) site(s.operands[k], true);
+  if (s.family == Family::branch) site(s.operands[0], false);
 }
 
 std::size_t ModularProgram::site(std::uint32_t local, bool root) {
@@ -140,6 +151,31 @@ Angle ModularProgram::flatten(Index argument, bool circle) {
   return angle;
 }
 
+void ModularProgram::prepare() {
+  for (Step& s : steps_) {
+    if (!is_of_angle(s.family)) continue;
+    const bool circle = s.family == Family::circle;
+    s.angle = flatten(s.node->terms[0].node, circle);
+    for (const Part& part : s.angle.parts) {
+      mpz_class& q = circle ? circle_q_ : growth_q_;
+      mpz_lcm(q.get_mpz_t(), q.get_mpz_t(), part.coefficient.get_den_mpz_t());
+      cost_ += 1500;
+      if (mpz_sizeinbase(q.get_mpz_t(), 2) > 60) throw Unable{"angles of too fine a common denominator"};
+    }
+  }
+  degrees();
+}
+
+double ModularProgram::varying_roots() const {
+  return static_cast<double>(
+      std::count_if(sites_.begin(), sites_.end(), [](const Site& s) { return s.root && !s.constant; }));
+}
+
+int ModularProgram::open_branches() const {
+  return static_cast<int>(
+      std::count_if(sites_.begin(), sites_.end(), [](const Site& s) { return !s.failed && !s.constant; }));
+}
+
 // Degrees
 
 // The bases of denominators.
@@ -196,9 +232,7 @@ void ModularProgram::multiply_degree(Degree& d, const Degree& by, double exponen
 
 void ModularProgram::degrees() {
   degree_.assign(steps_.size(), {});
-  const std::uint64_t special = static_cast<std::uint64_t>(steps_.size()) * kBases;  // of the atoms 1 and π
   std::vector<std::pair<std::uint32_t, mpz_class>> roots;
-  const auto key = [&](double degree) { ++keyed_, largest_key_ = std::max(largest_key_, degree); };
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Step& s = steps_[i];
     Degree& d = degree_[i];
@@ -227,43 +261,11 @@ void ModularProgram::degrees() {
       break;
     case Operation::atan2:
       d.numerator = 1;
-      key(std::max(total(operand(0)), total(operand(1))));
+      key_degree(std::max(total(operand(0)), total(operand(1))));
       break;
-    case Operation::function: {
-      const std::string& name = s.node->function;
-      if (name == "abs") d = operand(0);
-      if (name == "abs" || name == "sign") break;
-      if (s.family == Family::none) {
-        d.numerator = 1;
-        key(total(operand(0)));
-        break;
-      }
-      const bool circle = s.family == Family::circle;
-      double sum = 0;
-      for (const Part& part : s.angle.parts) {
-        const double times = std::abs(Rational(part.coefficient * (circle ? circle_q_ : growth_q_)).get_d());
-        sum += 2 * times;
-        const std::uint64_t atom =
-            part.of == Part::Of::node ? part.local * kBases : special + (part.of == Part::Of::pi ? 1 : 0) * kBases;
-        const std::uint64_t base = atom + (circle ? kCircle : kGrowth);
-        base_degree_[base] = 2;
-        Degree by;
-        if (name == "exp" && part.coefficient > 0)
-          by.numerator = 2 * times;
-        else
-          by.denominators.emplace_back(base, times);
-        multiply_degree(d, by, 1, base);
-        key(part.of == Part::Of::node ? total(degree_[part.local]) : 1);
-      }
-      if (circle) d.numerator += sum;
-      if (name == "sinh" || name == "cosh" || name == "tanh") d.numerator += 2 * sum;
-      if (name == "tan" || name == "tanh") {
-        const std::uint64_t base = i * kBases + kQuotient;
-        base_degree_[base] = name == "tan" ? sum : 2 * sum;
-        d = Degree{base_degree_[base], {{base, 1}}};
-      }
+    case Operation::function:
+      function_degree(i, d);
       break;
-    }
     }
     if (std::isnan(d.numerator)) d.numerator = kInfinity;
     if (work_.done()) throw Unable{"the limit of work is reached"};
@@ -275,6 +277,55 @@ void ModularProgram::degrees() {
     mpz_lcm(n.get_mpz_t(), n.get_mpz_t(), q.get_mpz_t());
   }
   for (const auto& [local, n] : order) log2_conjugates_ += std::log2(n.get_d());
+}
+
+void ModularProgram::function_degree(std::size_t i, Degree& d) {
+  const Step& s = steps_[i];
+  switch (s.family) {
+  case Family::branch:
+    if (s.node->function == "abs") d = degree_[s.operands[0]];
+    break;
+  case Family::keyed:
+  case Family::odd:
+  case Family::complement:
+    d.numerator = 1;
+    key_degree(total(degree_[s.operands[0]]));
+    break;
+  case Family::circle:
+  case Family::exponential:
+    angle_degree(i, d);
+    break;
+  }
+}
+
+void ModularProgram::angle_degree(std::size_t i, Degree& d) {
+  const Step& s = steps_[i];
+  const std::string& name = s.node->function;
+  const bool circle = s.family == Family::circle;
+  const std::uint64_t special = static_cast<std::uint64_t>(steps_.size()) * kBases;  // of the atoms 1 and π
+  double sum = 0;
+  for (const Part& part : s.angle.parts) {
+    const double times = std::abs(Rational(part.coefficient * (circle ? circle_q_ : growth_q_)).get_d());
+    sum += 2 * times;
+    const std::uint64_t atom =
+        part.of == Part::Of::node ? part.local * kBases : special + (part.of == Part::Of::pi ? 1 : 0) * kBases;
+    const std::uint64_t base = atom + (circle ? kCircle : kGrowth);
+    base_degree_[base] = 2;
+    Degree by;
+    if (name == "exp" && part.coefficient > 0)
+      by.numerator = 2 * times;
+    else
+      by.denominators.emplace_back(base, times);
+    multiply_degree(d, by, 1, base);
+    key_degree(part.of == Part::Of::node ? total(degree_[part.local]) : 1);
+  }
+  if (circle) d.numerator += sum;
+  if (name == "sinh" || name == "cosh" || name == "tanh") d.numerator += 2 * sum;
+  if (name == "tan" || name == "tanh") {
+    const std::uint64_t base = i * kBases + kQuotient;
+    base_degree_[base] = name == "tan" ? sum : 2 * sum;
+    d = Degree{base_degree_[base], {{base, 1}}};
+  }
 }
 
 double ModularProgram::difference_degree(const Certificate::Claim& claim) {

@@ -1,20 +1,28 @@
-// The nodes that claims need, compiled for evaluation in finite fields (verify_modular.h): angles as combinations of
-// atoms and bounds on degrees (verify_modular_program.cpp), values at random points (verify_modular_points.cpp), the
-// conclusions (verify_modular.cpp).
+// The nodes that claims need, compiled for evaluation in finite fields by the rules of verify_modular.h: angles as
+// combinations of atoms and bounds on degrees (verify_modular_program.cpp), values at random points
+// (verify_modular_points.cpp).
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "proof/verify_modular.h"
+#include "base/hash.h"
+#include "numeric/prime_field.h"
+#include "proof/certificate.h"
+#include "proof/verify_work.h"
 
 namespace anholon::verification {
 
+using Field = PrimeField;
 using Word = Field::Word;
 using Index = Certificate::Index;
 using Operation = Certificate::Operation;
+
+inline constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no step, no site
 
 // Thrown for a construct that cannot be checked, with the reason.
 struct Unable {
@@ -32,14 +40,24 @@ struct Angle {
   unsigned twelfths = 0;  // multiple of π/12, exactly; circle functions only
 };
 
-enum class Family : std::uint8_t { none, circle, exponential };
+// The rule by which a function is evaluated.
+enum class Family : std::uint8_t {
+  keyed,        // equal arguments have equal values
+  odd,          // and the value of -u is that of u with the other sign
+  complement,   // acos u = pi/2 - asin u
+  branch,       // abs, sign: they follow whether u is a square
+  circle,       // a rational function of a point of the circle group
+  exponential,  // a rational function of a square that is not 0
+};
+// Functions of sums of angles: their arguments are flattened.
+inline bool is_of_angle(Family f) { return f == Family::circle || f == Family::exponential; }
 
 struct Step {
   const Certificate::Node* node = nullptr;
   std::vector<std::uint32_t> operands;  // local indices
   Angle angle;
-  Family family = Family::none;
-  std::uint64_t name = 0;  // of the function, for its key
+  Family family = Family::keyed;
+  std::uint64_t name = 0;  // the number of the function by which the values are keyed
   bool constant = false;   // the same number at all points
 };
 
@@ -58,6 +76,30 @@ struct Degree {
   std::vector<std::pair<std::uint64_t, double>> denominators;  // base, exponent; ascending
 };
 
+// A program over one field.
+struct ReducedProgram {
+  struct Factor {
+    Word exponent = 0;  // modulo the order of the group
+    std::uint32_t site = kNone;
+    bool zero_allowed = true;
+  };
+  struct Turn {
+    Word scale = 0;     // 1 / content
+    Word exponent = 0;  // coefficient · q, modulo the order of the group
+  };
+  // A point of the circle group.
+  struct Point {
+    Word cos, sin;
+  };
+  ReducedProgram(const Field& f, std::size_t steps);
+  Field field;
+  Word half;
+  Point twelfth;                           // of the angle pi/12
+  std::vector<std::vector<Word>> weights;  // number: its value; sum: coefficients
+  std::vector<std::vector<Factor>> factors;
+  std::vector<std::vector<Turn>> turns;
+};
+
 // The nodes that some claims need, evaluated together.
 class ModularProgram {
  public:
@@ -71,6 +113,7 @@ class ModularProgram {
   ModularProgram(const ModularProgram&) = delete;
   ModularProgram& operator=(const ModularProgram&) = delete;
 
+  const std::vector<std::size_t>& claims() const { return claims_; }
   // The choices of signs: nodes of the certificate, and whether a root is taken of them.
   std::vector<std::pair<Index, bool>> sites() const {
     std::vector<std::pair<Index, bool>> list;
@@ -78,49 +121,43 @@ class ModularProgram {
     std::sort(list.begin(), list.end());
     return list;
   }
-  std::vector<ModularFinding> run(const HashKey& key, int points);
+
+  // Flattens the angles and bounds the degrees; it comes before what follows. Throws Unable.
+  void prepare();
+  // The degree of the difference that a claim states, and the number of pairs of arguments that have to differ times
+  // their degree: bounds on the number of zeros.
+  double difference_degree(const Certificate::Claim& claim);
+  double key_collisions() const { return keyed_ * keyed_ * largest_key_; }
+  double log2_conjugates() const { return log2_conjugates_; }
+  // Roots whose arguments vary: half of the points have none.
+  double varying_roots() const;
+  // Choices of signs that the points seen have left open.
+  int open_branches() const;
+
+  // The program over a field; nullopt if a number of the program has no value in it.
+  std::optional<ReducedProgram> over(const Field& field) const;
+
+  enum class Drawn : std::uint8_t { good, undefined, not_square, bad_prime };
+  // The values of all nodes at the random point that `key` determines. Throws Unable at the limit of work.
+  Drawn draw(const ReducedProgram& r, const HashKey& key, std::vector<Word>& values);
+  // left - sum coefficient * term of a claim, from the values of the nodes.
+  Word difference(const ReducedProgram& r, const Certificate::Claim& claim, const std::vector<Word>& values) const;
 
  private:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  struct Factor {
-    Word exponent = 0;  // modulo the order of the group
-    std::uint32_t site = kNone;
-    bool zero_allowed = true;
-  };
-  struct Turn {
-    Word scale = 0;     // 1 / content
-    Word exponent = 0;  // coefficient · q, modulo the order of the group
-  };
-  // A program over one field.
-  struct Reduced {
-    std::vector<std::vector<Word>> weights;  // number: its value; sum: coefficients
-    std::vector<std::vector<Factor>> factors;
-    std::vector<std::vector<Turn>> turns;
-  };
-  enum class Drawn : std::uint8_t { good, undefined, not_square, bad_prime };
-  struct Point {
-    Word c, s;
-  };
+  class PointDraw;
 
   void collect();
   void add(Index node);
+  void compile(Step& s);
   Angle flatten(Index argument, bool circle);
   std::size_t site(std::uint32_t local, bool root);
   void degrees();
+  void function_degree(std::size_t i, Degree& d);
+  void angle_degree(std::size_t i, Degree& d);
   double total(const Degree& d) const;
   Degree sum_degree(const std::vector<const Degree*>& terms);
   void multiply_degree(Degree& d, const Degree& by, double exponent, std::uint64_t base);
-  double difference_degree(const Certificate::Claim& claim);
-
-  bool reduce(const Field& f, Reduced& r) const;
-  Drawn draw(const Field& f, const Reduced& r, const HashKey& key, std::vector<Word>& v);
-  Word random(const Field& f, const HashKey& key, std::uint64_t tag, Word a, Word b = 0) const;
-  Point turn(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key,
-             const std::vector<Word>& v, const Point& twelfth) const;
-  Word grow(const Field& f, const Step& step, const std::vector<Turn>& turns, const HashKey& key,
-            const std::vector<Word>& v) const;
-  Word atom(const Field& f, const Part& part, const Turn& t, const HashKey& key, const std::vector<Word>& v) const;
-  Word pi_value(const Field& f, const HashKey& key) const { return random(f, key, 2, 0); }
+  void key_degree(double degree) { ++keyed_, largest_key_ = std::max(largest_key_, degree); }
 
   const Certificate& c_;
   std::vector<std::size_t> claims_;
@@ -131,7 +168,6 @@ class ModularProgram {
   std::vector<Site> sites_;
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> site_of_;
   mpz_class circle_q_ = 1, growth_q_ = 1;
-  std::size_t failed_site_ = 0;
   std::uint64_t cost_ = 100;  // of one point
 
   std::vector<Degree> degree_;

@@ -1,6 +1,10 @@
 // A point of the manifold of the constraints at which a difference is not zero.
 #pragma once
-#include "proof/prove.h"
+#include <optional>
+#include <string>
+
+#include "mechanics/elimination.h"
+#include "proof/difference.h"
 
 namespace anholon {
 

@@ -7,55 +7,14 @@
 #include "numeric/linear.h"
 #include "print/arrange.h"
 #include "proof/witness.h"
+#include "published/at_points.h"
 #include "published/identity.h"
 
 namespace anholon {
 
 namespace {
 
-constexpr double kVanishes = 1e-8;  // relative to the size of the terms
-constexpr long kWorkOfCount = 200'000;
-constexpr std::size_t kLongestCounted = 800;  // nodes
-constexpr std::size_t kLongestFactor = 40;    // nodes
-constexpr std::size_t kPrinted = 5;           // differences that are arranged for a choice
-constexpr const char* kIdentity = "an identity, no equation of motion";
 constexpr std::size_t kMostCombined = 6;  // equations in a combination that is printed
-
-std::size_t nodes(Expr e) { return reachable({&e, 1}).size(); }
-
-bool vanishes(Expr e, std::vector<PointValues>& points) {
-  return std::all_of(points.begin(), points.end(),
-                     [&](PointValues& at) { return std::abs(at(e)) <= kVanishes * (1e-6 + size_at(e, at)); });
-}
-
-bool is_not_zero(Expr e, PointValues& at) { return std::abs(at(e)) > 1e-9 * (1e-6 + size_at(e, at)); }
-
-// The length of an expression in print.
-std::size_t monomials(Expr e, const SymbolNames& names) {
-  if (is_zero(e)) return 0;
-  std::size_t least = 1000 + nodes(e);
-  if (least > 1000 + kLongestCounted) return least;
-  // Tries sines of sums and tangents unexpanded, then expanded.
-  for (const bool angles : {true, false})
-    if (const auto form = normal_form(e, Whole{angles, angles, &names.defined}, kWorkOfCount))
-      least = std::min(least, form->numerator.size() * (form->denominator.size() > 1 ? 2 : 1));
-  return least;
-}
-
-// The constant ratio of two expressions at all points, if it is a short fraction.
-std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>& points) {
-  constexpr int kLongest = 720;
-  const double ratio = points[0](a) / points[0](b);
-  for (PointValues& at : points)
-    if (!(std::abs(at(a) - ratio * at(b)) <= 1e-10 * std::abs(at(a)))) return std::nullopt;
-  for (int d = 1; d <= kLongest; ++d)
-    if (const double n = ratio * d; std::abs(n) < 1e6 && std::abs(n - std::round(n)) < 1e-9 * std::abs(n)) {
-      Rational r(static_cast<long>(std::round(n)), d);
-      r.canonicalize();
-      return r;
-    }
-  return std::nullopt;
-}
 
 // Whether e is zero by algebra; if the whole is too large, by its coefficients of the symbols in which it is affine.
 bool zero_by_parts(Expr e, const Column& symbols) {
@@ -84,23 +43,6 @@ const char* times_in_words(unsigned k) {
 }
 
 }  // namespace
-
-double size_at(Expr e, PointValues& at) {
-  const Graph& g = *e.graph;
-  if (g.node(e.id).kind == Kind::product) {
-    double size = 1;
-    for (const Term& t : g.terms(e.id)) {
-      const double power = g.rational(t.weight).get_d();
-      const bool of_sum = g.node(t.node).kind == Kind::sum && power > 0;
-      size *= std::abs(std::pow(of_sum ? size_at({e.graph, t.node}, at) : at({e.graph, t.node}), power));
-    }
-    return size;
-  }
-  if (g.node(e.id).kind != Kind::sum) return std::abs(at(e));
-  double size = 0;
-  for (const Term& t : g.summands(e.id)) size += std::abs(g.rational(t.weight).get_d() * at({e.graph, t.node}));
-  return size;
-}
 
 unsigned order_of_motion(Expr e) {
   unsigned highest = 2;
@@ -159,7 +101,8 @@ bool Comparer::directly(Expr P, const DerivedEquation& e, EquationsOfMotion& mot
   for (std::size_t j = 0; j < symbols.size(); ++j) {
     if (is_zero(f[j]) || !is_not_zero(f[j], points[0])) continue;
     if (is_zero(p[j]) || !is_not_zero(p[j], points[0])) return false;
-    if (best == symbols.size() || nodes(f[j]) + nodes(p[j]) < nodes(f[best]) + nodes(p[best])) best = j;
+    if (best == symbols.size() || node_count(f[j]) + node_count(p[j]) < node_count(f[best]) + node_count(p[best]))
+      best = j;
   }
   if (best == symbols.size()) return false;
   Expr factor = p[best] / f[best];
@@ -218,8 +161,8 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
   // The shortest columns that determine the coefficients.
   std::vector<std::pair<std::size_t, std::size_t>> cost;
   for (std::size_t j = 0; j < motion.top.size(); ++j) {
-    std::size_t sum = nodes(p[j]);
-    for (std::size_t i : support) sum += nodes(K[i][j]);
+    std::size_t sum = node_count(p[j]);
+    for (std::size_t i : support) sum += node_count(K[i][j]);
     cost.push_back({sum, j});
   }
   std::sort(cost.begin(), cost.end());
@@ -242,7 +185,7 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
   Column pivots;
   Expr rest = P;
   try {
-    const Rows inverted = inverse(square, points[0], pivots, false);
+    const Rows inverted = inverse(square, points[0], pivots, Wanted::brief);
     for (std::size_t i = 0; i < support.size(); ++i) {
       std::vector<Expr> sum_of = {M_.graph().zero()};
       for (std::size_t j = 0; j < columns.size(); ++j)
@@ -311,119 +254,9 @@ bool Comparer::combined(Expr P, EquationsOfMotion& motion, Comparison& out) {
   return true;
 }
 
-// A misprint that is found shows the intended equation: of several, the one with the smallest change.
-void Comparer::nearest_of(const std::vector<Change>& changes, Expr P, Comparison& out) const {
-  std::size_t shortest = SIZE_MAX;
-  for (std::size_t k = 0; k < changes.size() && k < kPrinted; ++k) {
-    const Expr difference = arranged(P - changes[k].difference, names_);
-    const std::size_t length = print(difference, names_, Format::text).size();
-    if (length < shortest) shortest = length, out.difference = difference, out.what = changes[k].what;
-  }
-}
-
 bool Comparer::without_motion(Expr P, EquationsOfMotion& motion) const {
   const Column p = gradient(P, motion.top);
   return std::all_of(p.begin(), p.end(), [&](Expr x) { return is_zero(x) || vanishes(x, motion.anywhere()); });
-}
-
-// The remainder of P less the derived equation that leaves the shortest one.
-void Comparer::nearest(Expr P, Comparison& out) {
-  EquationsOfMotion& motion = this->motion(order_of_motion(P));
-  std::vector<PointValues>& points = motion.anywhere();
-  if (points.empty()) return;
-  struct Offer {
-    std::size_t length, weight, of;
-    Expr difference;
-    std::string what;
-  };
-  std::vector<Offer> offers;
-  std::size_t of = 0;  // index of the derived equation whose multiples are offered
-  // Weaker statements count as longer: a combination, a constraint beside an equation of motion.
-  const auto offer = [&](Expr difference, const std::string& what, std::size_t weight) {
-    offers.push_back({weight * monomials(difference, names_), weight, of, difference, what});
-  };
-  std::vector<DerivedEquation> candidates = motion.rows;
-  candidates.insert(candidates.begin(), motion.lower.begin(), motion.lower.end());
-  const Expr one = M_.graph().one();
-  // If all accelerations are lost, parameters show the factor.
-  Column by = motion.top;
-  const Column p_top = gradient(P, motion.top);
-  if (std::all_of(p_top.begin(), p_top.end(), [](Expr x) { return is_zero(x); }))
-    for (std::size_t k = 0; k < M_.model->parameters.size(); ++k)
-      by.push_back(M_.graph().parameter(static_cast<std::uint32_t>(k)));
-  const Column p = gradient(P, by);
-  const auto factors_of = [&](Expr residual) {
-    Column factors = {one, -one};
-    const Column f = gradient(residual, by);
-    for (std::size_t j = 0; j < by.size(); ++j) {
-      if (is_zero(p[j]) || is_zero(f[j]) || !is_not_zero(f[j], points[0]) || !is_not_zero(p[j], points[0])) continue;
-      const auto constant = constant_ratio(p[j], f[j], points);
-      const Expr factor = constant ? M_.graph().number(*constant) : tidy(p[j] / f[j]);
-      if (nodes(factor) > kLongestFactor) continue;
-      if (std::none_of(factors.begin(), factors.end(), [&](Expr before) { return before == factor; }))
-        factors.push_back(factor);
-    }
-    return factors;
-  };
-  for (const DerivedEquation& e : candidates) {
-    ++of;
-    if (e.constraint) {
-      // Compares in the equation's own leading derivatives.
-      const Column symbols = leading(e, motion), q = gradient(P, symbols), f = gradient(e.residual, symbols);
-      for (std::size_t j = 0; j < symbols.size(); ++j)
-        if (!is_zero(q[j]) && !is_zero(f[j]) && is_not_zero(f[j], points[0]) && is_not_zero(q[j], points[0]))
-          offer(P - tidy(q[j] / f[j]) * e.residual, name(e) + times(tidy(q[j] / f[j])), 6);
-    }
-    for (Expr factor : e.constraint ? Column{one, -one} : factors_of(e.residual))
-      offer(P - factor * e.residual, name(e) + times(factor), e.constraint ? 6 : is_number(factor) ? 2 : 3);
-  }
-  if (!elimination_.dependent.empty() && !elimination_.quasi) {
-    // Projects on the directions that the constraints leave free.
-    Column routh;
-    for (const DerivedEquation& e : motion.rows)
-      if (!e.constraint && e.times == 0) routh.push_back(e.residual);
-    if (routh.size() == M_.q.size()) {
-      for (std::size_t nu = 0; nu < elimination_.independent.size(); ++nu) {
-        Column parts;
-        for (std::size_t s = 0; s < routh.size(); ++s)
-          if (!is_zero(elimination_.g_by_u()[s][nu])) parts.push_back(elimination_.g_by_u()[s][nu] * routh[s]);
-        const Expr row = sum(parts);
-        ++of;
-        for (Expr factor : factors_of(row)) {
-          const std::string what = "the equation of " + M_.model->coordinates[elimination_.independent[nu]].name +
-                                   " without multipliers" + times(factor);
-          offer(P - factor * row, what, 3);
-          if (const auto on = motion.reduced(P - factor * row)) offer(*on, what + ", on the constraints", 4);
-        }
-      }
-    }
-  }
-  ++of;
-  std::vector<std::pair<std::size_t, Expr>> terms;
-  const auto rest = combination(P, motion, terms);
-  std::erase_if(terms, [](const auto& term) { return is_zero(term.second); });
-  if (rest && !terms.empty()) {
-    std::string what;
-    for (const auto& [i, c] : terms) what += (what.empty() ? "" : " and ") + name(motion.rows[i]) + times(c);
-    offer(*rest, what, 4);
-    if (const auto on = motion.reduced(*rest)) offer(*on, what + ", on the constraints", 5);
-  }
-  const std::size_t identity = ++of;
-  if (without_motion(P, motion)) offer(P, kIdentity, 8);
-  // Of the best few, takes the shortest in print.
-  std::stable_sort(offers.begin(), offers.end(), [](const Offer& x, const Offer& y) { return x.length < y.length; });
-  std::size_t shortest = SIZE_MAX;
-  std::vector<std::size_t> seen;
-  for (std::size_t k = 0; k < offers.size() && seen.size() < kPrinted; ++k) {
-    if (std::find(seen.begin(), seen.end(), offers[k].of) != seen.end()) continue;
-    seen.push_back(offers[k].of);
-    const Expr difference = arranged(offers[k].difference, names_);
-    const std::size_t length = offers[k].weight * print(difference, names_, Format::text).size();
-    if (length < shortest)
-      shortest = length, out.difference = difference, out.what = offers[k].what,
-      out.identity = offers[k].of == identity;
-    if (nodes(offers[k].difference) > kLongestCounted) break;
-  }
 }
 
 Comparison Comparer::judge(Expr P) {

@@ -67,6 +67,9 @@ class Comparer {
   const SymbolNames& names() const { return names_; }
 
  private:
+  class Nearest;
+  static constexpr const char* kIdentity = "an identity, no equation of motion";
+
   bool directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out);
   bool combined(Expr P, EquationsOfMotion& motion, Comparison& out);
   bool on_manifold(Expr P, bool regular, Comparison& out);
@@ -88,9 +91,6 @@ class Comparer {
 
 // The highest derivative that the equations of the motion must contain.
 unsigned order_of_motion(Expr e);
-
-// Size at a point; for a sum, the sum of the sizes of its terms.
-double size_at(Expr e, PointValues& at);
 
 // The changes that make a false equation true: of one place, else the fewest of up to four places.
 std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet,

@@ -6,6 +6,7 @@
 
 #include "numeric/linear.h"
 #include "proof/witness.h"
+#include "published/at_points.h"
 #include "published/compare.h"
 
 namespace anholon {
@@ -13,13 +14,6 @@ namespace anholon {
 namespace {
 
 constexpr int kPoints = 3;
-constexpr double kVanishes = 1e-8;  // relative to the size of the terms
-
-bool vanishes(Expr e, std::vector<PointValues>& points) {
-  for (PointValues& at : points)
-    if (!(std::abs(at(e)) <= kVanishes * (1e-6 + size_at(e, at)))) return false;
-  return true;
-}
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "published/at_points.h"
 #include "published/compare.h"
 #include "published/identity.h"
 #include "published/together.h"

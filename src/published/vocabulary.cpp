@@ -248,7 +248,7 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
   if (first == "g") {
     const std::size_t s = coordinate(one_member("a coordinate's derivative as a function of quasi-velocities"), span);
     used_quasi_ = true;
-    return elimination_(true).g[s];
+    return elimination_(true).g()[s];
   }
   if (first == "C" || first == "B") {
     if (rest.size() != 2)
@@ -257,17 +257,17 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
                                  : "B.x.u, of the coordinate x by the quasi-velocity u");
     const Elimination& E = elimination_(first == "B");
     const std::size_t s = coordinate(rest[0], span);
-    const auto u = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), rest[1]) - E.names.begin());
-    if (u == E.names.size()) throw Failure(span, "'" + rest[1] + "' is not among the free quantities");
+    const auto u = E.free.index_of(rest[1]);
+    if (!u) throw Failure(span, "'" + rest[1] + "' is not among the free quantities");
     if (first == "B") {
       used_quasi_ = true;
-      return E.g_by_u()[s][u];
+      return E.g_by_u()[s][*u];
     }
     const auto d = static_cast<std::size_t>(std::find(E.dependent.begin(), E.dependent.end(), s) - E.dependent.begin());
     if (d == E.dependent.size())
       throw Failure(span, "'" + rest[0] + "' is an independent coordinate here",
                     "--eliminate names the dependent coordinates");
-    return E.C()[d][u];
+    return E.C()[d][*u];
   }
   if (const Formulation* form = form_named(first)) return of_form(*form, rest, span);
   if (rest.empty())
@@ -279,10 +279,10 @@ std::optional<Expr> Vocabulary::quasi_velocity(const std::string& name) {
   const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
   if (std::none_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == name; })) return std::nullopt;
   const Elimination& E = elimination_(true);
-  const auto k = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), name) - E.names.begin());
-  if (k == E.names.size()) return std::nullopt;
+  const auto k = E.free.index_of(name);
+  if (!k) return std::nullopt;
   used_quasi_ = true;
-  return E.u[k];
+  return E.free.u[*k];
 }
 
 Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>& rest, Span span) {
@@ -298,7 +298,7 @@ Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>
   if (e.left.size() == mechanics_.q.size())
     for (const Coordinate& c : mechanics_.model->coordinates) known.push_back(c.name);
   else
-    known = E.names;
+    known = E.free.names;
   std::vector<std::string> path = rest;
   const bool left = !path.empty() && path[0] == "left" && path.size() > 1,
              right = !path.empty() && path[0] == "right" && path.size() > 1;
@@ -322,58 +322,58 @@ Expr Vocabulary::solved(const std::string& y, Span span) {
   if (std::find(E.dependent.begin(), E.dependent.end(), s) == E.dependent.end())
     throw Failure(span, "'" + y + "' is an independent coordinate here: the constraints are not solved for it",
                   "--eliminate names the dependent coordinates");
-  return E.g[s];
+  return E.g()[s];
 }
 
 // ---- functions ---------------------------------------------------------------------------------
 
-bool Vocabulary::call(const std::string& f, const std::vector<Value>& a, const Syntax& s, Value& result) {
-  if (model_->call(f, a, s, result)) return true;
+std::optional<Value> Vocabulary::call(const std::string& f, const std::vector<Value>& a, const Syntax& s) {
+  if (std::optional<Value> value = model_->call(f, a, s)) return value;
   if (const Column* c = declares(f) ? nullptr : column(f)) {
     expect(s, 1, 1);
-    result = (*c)[coordinate(a[0], s.args[0].span)];
-    return true;
+    return (*c)[coordinate(a[0], s.args[0].span)];
   }
-  if (!among(kFunctions, f)) return false;
+  if (!among(kFunctions, f)) return std::nullopt;
   if (f == "partial") {
     expect(s, 2, 2);
-    result = partial_of(s, a[0]);
-  } else if (f == "Dt") {
+    return partial_of(s, a[0]);
+  }
+  if (f == "Dt") {
     expect(s, 1, 2);
     const auto times = static_cast<unsigned>(a.size() > 1 ? whole_number(a[1], s.args[1]) : 1);
-    result = each(as_point(a[0], *this, s.span), s.args[0].span,
-                  [&](Expr e) { return total_derivative(with_frozen_masses(e), times); });
-  } else if (f == "frozen") {
+    return each(as_point(a[0], *this, s.span), s.args[0].span,
+                [&](Expr e) { return total_derivative(with_frozen_masses(e), times); });
+  }
+  if (f == "frozen") {
     expect(s, 1, 1);
-    result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return with_frozen_masses(e); });
-  } else if (f == "reduced" || f == "star") {
+    return each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return with_frozen_masses(e); });
+  }
+  if (f == "reduced" || f == "star") {
     expect(s, 1, 1);
     const bool quasi = f == "star";
     const Elimination& E = elimination_(quasi);
     if (quasi) used_quasi_ = true;
-    result = each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return E.on(e); });
-  } else {
-    expect(s, 2, 2);
-    const Column* c =
-        s.args[0].op == Syntax::Op::name ? column(s.args[0].text.substr(s.args[0].text.rfind('.') + 1)) : nullptr;
-    if (!c) throw Failure(s.args[0].span, "the name of a force is expected here", "along(Q, x), along(QR, x), …");
-    if (s.args[1].op != Syntax::Op::name)
-      throw Failure(s.args[1].span, "an independent coordinate or a quasi-velocity is expected here");
-    result = along(*c, s.args[1].text, s.args[1].span);
+    return each(as_point(a[0], *this, s.span), s.args[0].span, [&](Expr e) { return E.on(e); });
   }
-  return true;
+  expect(s, 2, 2);
+  const Column* c =
+      s.args[0].op == Syntax::Op::name ? column(s.args[0].text.substr(s.args[0].text.rfind('.') + 1)) : nullptr;
+  if (!c) throw Failure(s.args[0].span, "the name of a force is expected here", "along(Q, x), along(QR, x), …");
+  if (s.args[1].op != Syntax::Op::name)
+    throw Failure(s.args[1].span, "an independent coordinate or a quasi-velocity is expected here");
+  return along(*c, s.args[1].text, s.args[1].span);
 }
 
 Expr Vocabulary::along(const Column& c, const std::string& direction, Span span) {
   const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
   const bool quasi = std::any_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == direction; });
   const Elimination& E = elimination_(quasi);
-  const auto k = static_cast<std::size_t>(std::find(E.names.begin(), E.names.end(), direction) - E.names.begin());
-  if (k == E.names.size())
+  const auto k = E.free.index_of(direction);
+  if (!k)
     throw Failure(span, "'" + direction + "' is not among the free quantities",
                   "--eliminate names the dependent coordinates");
   if (quasi) used_quasi_ = true;
-  return E.contract(c)[k];
+  return E.contract(c)[*k];
 }
 
 // ---- partial derivatives -----------------------------------------------------------------------
@@ -475,9 +475,9 @@ Expr Vocabulary::partial_along(Expr e, Expr by, bool quasi, Span span) {
     return static_cast<std::size_t>(std::find(list.begin(), list.end(), a) - list.begin());
   };
   if (quasi)
-    for (std::size_t k = 0; k < E.u.size(); ++k) {
-      if (E.u[k] == by) return E.by_u(e)[k];
-      if (total_derivative(E.u[k]) == by) return E.by_u_rate(e)[k];
+    for (std::size_t k = 0; k < E.free.u.size(); ++k) {
+      if (E.free.u[k] == by) return E.by_u(e)[k];
+      if (total_derivative(E.free.u[k]) == by) return E.by_u_rate(e)[k];
     }
   if (n.kind == Kind::jet) {
     if (n.order < E.m) return E.by(n.order, e)[n.index];

@@ -43,8 +43,8 @@ class Vocabulary final : public Names {
 
   Graph& graph() override { return mechanics_.graph(); }
   Value name(const std::string& name, Span span) override;
-  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax,
-            Value& result) override;
+  std::optional<Value> call(const std::string& function, const std::vector<Value>& arguments,
+                            const Syntax& syntax) override;
   Value member(const Value& object, const Syntax& syntax) override { return model_->member(object, syntax); }
   std::vector<std::string> functions() const override;
   bool declares(const std::string& name) const override { return model_->declares(name); }

@@ -27,7 +27,7 @@ class Derive {
                                                                           : "m_" + m.model->masses[i].name;
     }
     if (e.quasi) {
-      d_.names.quasi = e.names;
+      d_.names.quasi = e.free.names;
       // The quasi-velocities are symbols of the equations, not abbreviations in them.
       for (const QuasiVelocity& u : m.model->quasi) d_.names.defined.erase(u.value.id);
     }
@@ -44,7 +44,7 @@ class Derive {
     const bool all = q.left.size() == m_.q.size();
     for (std::size_t a = 0; a < q.left.size(); ++a)
       d_.equations.push_back(
-          {all ? d_.model->coordinates[a].name : e_.names[a], arranged(q.left[a]), arranged(q.right[a])});
+          {all ? d_.model->coordinates[a].name : e_.free.names[a], arranged(q.left[a]), arranged(q.right[a])});
     for (std::size_t r = 0; r < m_.phi.size(); ++r)
       d_.constraints.push_back({d_.model->constraints[r].name, arranged(m_.phi[r]), m_.graph().zero()});
     if (of_reactions) reactions(*of_reactions);
@@ -133,10 +133,10 @@ class Derive {
     const Labels top_names = jet_labels(m_, e_.m), next_names = jet_labels(m_, e_.m + 1), free = free_labels(m_, e_);
     // A quasi-velocity of lower order than the constraints is lifted: its derivative is the free quantity.
     if (e_.quasi)
-      for (std::size_t a = 0; a < free.size(); ++a) add(lines, free[a], e_.w[a]);
+      for (std::size_t a = 0; a < free.size(); ++a) add(lines, free[a], e_.quasi->w[a]);
     for (std::size_t s = 0; s < top.size(); ++s) {
-      if (!e_.solved || e_.g[s] == top[s]) continue;
-      add(lines, top_names[s], e_.g[s]);
+      if (!e_.solved || e_.g()[s] == top[s]) continue;
+      add(lines, top_names[s], e_.g()[s]);
       add(lines, next_names[s], e_.on(next[s]));
     }
     Rows by_u = e_.g_by_u();

@@ -1,79 +1,10 @@
 #include "structure/consistent.h"
 
+#include <algorithm>
+
 #include "structure/state_solver.h"
 
 namespace anholon {
-
-const char* name(Origin origin) {
-  switch (origin) {
-  case Origin::given:
-    return "given";
-  case Origin::derived:
-    return "derived";
-  case Origin::chosen:
-    return "chosen";
-  case Origin::guessed:
-    return "guess";
-  case Origin::corrected:
-    return "corrected";
-  }
-  return "";
-}
-
-bool holds_higher(Expr e) {
-  for (NodeId id : symbols({&e, 1}))
-    if (is_higher(e.graph->node(id))) return true;
-  return false;
-}
-
-static bool same_entry(const StateOverride& v, const Node& n) {
-  return v.multiplier == (n.kind == Kind::multiplier) && v.order == n.order && v.coordinate == n.index;
-}
-
-bool overridden(const std::vector<StateOverride>& overrides, const Node& n) {
-  return std::any_of(overrides.begin(), overrides.end(), [&](const StateOverride& v) { return same_entry(v, n); });
-}
-
-StageEquations conditions_of(const Model& model) {
-  StageEquations list;
-  for (const Condition& c : model.initial.conditions)
-    list.push_back({put_masses(model, c.residual), "condition \"" + c.text + "\"", c.span, true});
-  return list;
-}
-
-namespace {
-
-// The numbers of the file: t, the states, then guesses and given values.
-Tape values_of(const Model& model) {
-  Column es = {model.initial.t};
-  for (const StateVariable& z : model.states) es.push_back(z.initial);
-  for (const std::vector<GivenValue>* list : {&model.initial.guess, &model.initial.given})
-    for (const GivenValue& v : *list) es.push_back(v.value);
-  return compile(es);
-}
-
-// The equations that overrides leave: all laws, and conditions that concern unknowns that are still open.
-StageEquations left_of(const StageEquations& equations, const Column& unknowns,
-                       const std::vector<StateOverride>& overrides, Graph& g) {
-  StageEquations list;
-  for (const StageEquation& e : equations) {
-    bool open = !e.condition;
-    for (NodeId id : symbols({&e.residual, 1})) {
-      const Expr symbol{&g, id};
-      open = open || (std::find(unknowns.begin(), unknowns.end(), symbol) != unknowns.end() &&
-                      !overridden(overrides, g.node(id)));
-    }
-    if (open) list.push_back(e);
-  }
-  return list;
-}
-
-StartPlan::Stages planned(const Mechanics& m, const StageEquations& equations, const Column& unknowns, unsigned metric,
-                          const std::vector<Column>* mass) {
-  return equations.empty() ? nullptr : std::make_shared<StagePlan>(m, equations, unknowns, metric, mass);
-}
-
-}  // namespace
 
 template <Number N>
 Outcome StateSolver<N>::positions_and_velocities() {
@@ -107,7 +38,7 @@ void StateSolver<N>::states() {
 template <Number N>
 void StateSolver<N>::start_values(const std::function<bool(const Node&)>& wanted) {
   const InitialData& in = model_.initial;
-  const Tape own = p_.plan ? Tape() : values_of(model_);
+  const Tape own = p_.plan ? Tape() : initial_values(model_);
   Machine<N> machine(p_.plan ? p_.plan->values : own, 0, p_.parameters);
   machine.evaluate();
   std::size_t at = 0;
@@ -206,34 +137,6 @@ void StateSolver<N>::mark_derived(const Stage<N>& stage, const InitialState<N>& 
   }
 }
 
-StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass)
-    : values(values_of(*m.model)) {
-  const Model& model = *m.model;
-  std::vector<StageEquation> of_positions, of_velocities;
-  for (const Constraint& c : model.constraints) {
-    if (c.order > 1) continue;
-    const Expr phi = put_masses(model, c.phi);
-    const std::string what = "constraint '" + c.name + "'";
-    if (c.order == 0) {
-      of_positions.push_back({phi, what, c.span});
-      of_velocities.push_back({put_state_rates(model, total_derivative(phi), 1), "the derivative of " + what, c.span});
-    } else {
-      of_velocities.push_back({phi, what, c.span});
-    }
-  }
-  for (const StageEquation& e : conditions_of(model))
-    if (!holds_higher(e.residual)) (jet_order(e.residual) == 0 ? of_positions : of_velocities).push_back(e);
-  constexpr unsigned kPositions = 1U, kVelocities = 2U;
-  std::vector<Column> of_both;
-  if (!mass && !(of_positions.empty() && of_velocities.empty())) mass = &(of_both = mass_matrix(m));
-  positions = planned(m, of_positions, m.q, kPositions, mass);
-  velocities = planned(m, of_velocities, m.qd, kVelocities, mass);
-  kept = !overrides.empty();
-  if (!kept) return;
-  kept_positions = planned(m, left_of(of_positions, m.q, overrides, m.graph()), m.q, kPositions, mass);
-  kept_velocities = planned(m, left_of(of_velocities, m.qd, overrides, m.graph()), m.qd, kVelocities, mass);
-}
-
 template <Number N>
 Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& state) {
   return StateSolver<N>(problem, state).positions_and_velocities();
@@ -251,19 +154,5 @@ template Outcome consistent_state<double>(const InitialProblem<double>&, Initial
 template Outcome consistent_state<long double>(const InitialProblem<long double>&, InitialState<long double>&);
 template Outcome consistent_state<Quad>(const InitialProblem<Quad>&, InitialState<Quad>&);
 template Outcome consistent_state<Multi>(const InitialProblem<Multi>&, InitialState<Multi>&);
-
-StartPlan StartPlan::copy() const {
-  StartPlan p = *this;
-  for (Stages* stages : {&p.positions, &p.velocities, &p.kept_positions, &p.kept_velocities})
-    if (*stages) *stages = std::make_shared<StagePlan>(**stages);
-  return p;
-}
-
-void for_each_expression(StartPlan& p, const ExprVisitor& f) {
-  auto& [values, positions, velocities, kept, kept_positions, kept_velocities] = p;
-  static_cast<void>(values), static_cast<void>(kept);  // without handles
-  for (StartPlan::Stages* stages : {&positions, &velocities, &kept_positions, &kept_velocities})
-    if (*stages) for_each_expression(const_cast<StagePlan&>(**stages), f);
-}
 
 }  // namespace anholon

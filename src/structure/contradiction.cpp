@@ -1,7 +1,5 @@
 #include "structure/contradiction.h"
 
-#include "structure/state_solver.h"
-
 namespace anholon {
 
 namespace {

@@ -19,6 +19,8 @@ struct StageEquation {
 
 // Rows of a constraint Jacobian count as dependent below this fraction of their size.
 inline constexpr double kDependent = 1e-9;
+// Given values may miss a constraint by this fraction of its scale: they are taken for rounded numbers.
+inline constexpr double kRounded = 1e-8;
 
 // Equations in chosen unknowns with their partial derivatives, compiled: its users build no expressions.
 struct StagePlan {

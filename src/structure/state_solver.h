@@ -3,22 +3,13 @@
 #include <algorithm>
 #include <functional>
 
+#include "base/outcome.h"
 #include "structure/branch.h"
-#include "structure/consistent.h"
 #include "structure/contradiction.h"
+#include "structure/initial_problem.h"
+#include "structure/structure.h"
 
 namespace anholon {
-
-// Given values may miss a constraint by this fraction of its scale: they are taken for rounded numbers.
-inline constexpr double kRounded = 1e-8;
-
-using StageEquations = std::vector<StageEquation>;
-
-// q_a^(k) with k >= 2, or a multiplier: a value beyond positions and velocities.
-inline bool is_higher(const Node& n) { return n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1); }
-bool holds_higher(Expr e);
-bool overridden(const std::vector<StateOverride>& overrides, const Node& n);
-StageEquations conditions_of(const Model& model);
 
 template <Number N>
 class StateSolver {

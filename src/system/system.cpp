@@ -44,7 +44,7 @@ static void equations_of_motion(System& s, const Mechanics& m, const Elimination
   if (residual.size() == m.q.size() && !e.constraints.empty()) residual = e.contract(residual);
   s.equations = put_masses(*s.model, e.in_coordinates(residual));
   s.of_motion = s.equations.size();
-  s.equation_names = e.names;
+  s.equation_names = e.free.names;
   const Column a = put_masses(*s.model, e.D(lagrange_operator(m) - right_side(m)));
   for (std::size_t b = 0; b < a.size(); ++b) {
     s.equations.push_back(a[b]);

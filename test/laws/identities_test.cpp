@@ -378,8 +378,8 @@ struct Along {
 
   Along(const System& system, const Elimination& elimination)
       : s(system), e(elimination), top(jets(*s.model, e.m)), next(jets(*s.model, e.m + 1)) {
-    w = e.in_coordinates(e.quasi ? Column(e.w.begin(), e.w.end() - static_cast<std::ptrdiff_t>(e.phi.size()))
-                                 : e.I(top));
+    w = e.in_coordinates(
+        e.quasi ? Column(e.quasi->w.begin(), e.quasi->w.end() - static_cast<std::ptrdiff_t>(e.phi.size())) : e.I(top));
     w.insert(w.end(), e.phi.begin(), e.phi.end());
     w_rate = total_derivative(w);
   }
@@ -433,7 +433,7 @@ double operator_error(const System& s, const Elimination& e, Expr X, std::option
     return v;
   };
   const Column by_u = e.by_u(X), by_rate = e.by_u_rate(X);
-  for (std::size_t a = 0; a < e.names.size(); ++a) {
+  for (std::size_t a = 0; a < e.free.names.size(); ++a) {
     compare(by_u[a], along.solved(at, shifted(value, a, h), rate), along.solved(at, shifted(value, a, -h), rate));
     compare(by_rate[a], along.solved(at, value, shifted(rate, a, h)), along.solved(at, value, shifted(rate, a, -h)));
   }

@@ -38,7 +38,9 @@ struct Derived {
     residual = put_masses(*s.model, e.in_coordinates(q.left - q.right));
     const Column top = jets(*s.model, e.m);
     if (residual.size() == s.m.q.size() && !(form.eliminates() && e.phi.empty())) return;
-    const Column u = e.quasi ? Column(e.w.begin(), e.w.begin() + static_cast<std::ptrdiff_t>(e.u.size())) : e.I(top);
+    const Column u = e.quasi
+                         ? Column(e.quasi->w.begin(), e.quasi->w.begin() + static_cast<std::ptrdiff_t>(e.free.u.size()))
+                         : e.I(top);
     for (Expr x : u) u_by_top.push_back(gradient(x, top));
   }
   // dq/du on the manifold, or the identity.
@@ -379,7 +381,7 @@ TEST(OtherQuasiVelocities, OfTheSleigh) {
 TEST(OtherQuasiVelocities, AreCompletedAtASingularState) {
   const System s(test::replaced(changed_text(changes()[0]), "r = 1", "r = 0"));
   const Elimination e = elimination_for(s.m, Unknowns::quasi_velocities, {}, {});
-  EXPECT_EQ(e.w.size(), s.m.q.size());
+  EXPECT_EQ(e.quasi->w.size(), s.m.q.size());
 }
 
 // ---- other ways to write a constraint

@@ -120,13 +120,13 @@ TEST(OrderOfQuasiVelocities, TheirDerivativesStayFree) {
   const Mechanics M = mechanics(*model);
   for (const unsigned asked : {0U, 3U}) {
     const Elimination e = elimination_for(M, Unknowns::quasi_velocities, {}, {}, true, asked);
-    EXPECT_EQ(e.names, (std::vector<std::string>{"u1", "u_y"}));
-    EXPECT_EQ(e.orders, (std::vector<unsigned>(2, e.m - 1)));
+    EXPECT_EQ(e.free.names, (std::vector<std::string>{"u1", "u_y"}));
+    EXPECT_EQ(e.free.orders, (std::vector<unsigned>(2, e.m - 1)));
     Labels free = free_labels(M, e);
     EXPECT_EQ(free[0].text, asked ? "u1''" : "u1'");
     EXPECT_EQ(free[1].text, asked ? "u_y''" : "u_y'");
     for (std::size_t a = 0; a < 2; ++a)
-      EXPECT_EQ(e.w[a].id, model->graph->jet(static_cast<std::uint32_t>(a), e.m).id) << "u' = x''";
+      EXPECT_EQ(e.quasi->w[a].id, model->graph->jet(static_cast<std::uint32_t>(a), e.m).id) << "u' = x''";
   }
 }
 

@@ -59,8 +59,10 @@ inline std::optional<Point> manifold_point(const Model& model, const Elimination
 // dq^(m)/du on the manifold, n x (n - s), from the constraints and the free quantities alone.
 inline Matrix<Multi> tangents(const Model& model, const Elimination& e, const Point& at) {
   const Column top = jets(model, e.m);
-  Column w = e.w;
-  if (!e.quasi) {
+  Column w;
+  if (e.quasi) {
+    w = e.quasi->w;
+  } else {
     for (std::size_t a : e.independent) w.push_back(top[a]);
     w.insert(w.end(), e.phi.begin(), e.phi.end());
   }

@@ -25,7 +25,9 @@ struct PlainNames final : Names {
     if (name == "B") return BodyName{0};
     throw Failure(span, "unknown name '" + name + "'");
   }
-  bool call(const std::string&, const std::vector<Value>&, const Syntax&, Value&) override { return false; }
+  std::optional<Value> call(const std::string&, const std::vector<Value>&, const Syntax&) override {
+    return std::nullopt;
+  }
   Value member(const Value& object, const Syntax& s) override {
     if (std::holds_alternative<InertialName>(object)) return g.multiplier(0, 0);
     if (const Vector* v = std::get_if<Vector>(&object)) return (*v)[s.text[0] - 'x'];

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/assert.h"
+#include "modelfile/language/language.h"
 
 namespace anholon {
 
@@ -295,12 +296,7 @@ DimensionForm FormulaDimensions::given_unit(const std::string& text) {
 }
 
 Measured FormulaDimensions::user_call(const Syntax& s, const Scope::Declaration& d) {
-  if (d.role == Scope::Role::frame) {
-    const Measured first = of(s.args[0]);
-    for (std::size_t k = 1; k < s.args.size(); ++k)
-      alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
-    return vector(first.dimension);
-  }
+  if (d.role == Scope::Role::frame) return components(s);
   if (d.role == Scope::Role::table) {
     if (s.args.size() != 1) return anything();
     const auto [x, y] = table(s.text);
@@ -334,89 +330,130 @@ Measured FormulaDimensions::user_call(const Syntax& s, const Scope::Declaration&
 }
 
 Measured FormulaDimensions::call(const Syntax& s) {
-  const std::string& f = s.text;
-  const auto argument = [&](std::size_t i) { return i < s.args.size() ? of(s.args[i]) : anything(); };
-  if (const auto it = scope_.declarations().find(f);
-      it != scope_.declarations().end() &&
-      (it->second.role == Scope::Role::function || it->second.role == Scope::Role::frame ||
-       it->second.role == Scope::Role::table))
-    return user_call(s, it->second);
-  if (is_body(f)) {
-    const Measured first = argument(0);
-    for (std::size_t k = 1; k < s.args.size(); ++k)
-      alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
-    return vector(first.dimension);
-  }
-  if (f == "abs") return argument(0);
-  if (f == "sign") return argument(0), number();
-  if (find_function(f) >= 0) {
+  const auto declared = scope_.declarations().find(s.text);
+  if (declared != scope_.declarations().end() &&
+      (declared->second.role == Scope::Role::function || declared->second.role == Scope::Role::frame ||
+       declared->second.role == Scope::Role::table))
+    return user_call(s, declared->second);
+  if (is_body(s.text)) return components(s);
+  for (const auto* table : {&function_table(), &kinematic_functions()})
+    for (const FunctionRow& row : *table)
+      if (row.name == s.text) return by_rule(s, row.dimension);
+  return anything();
+}
+
+Measured FormulaDimensions::by_rule(const Syntax& s, DimensionRule rule) {
+  switch (rule) {
+  case DimensionRule::pure:
     for (const Syntax& a : s.args) pure(a);
     return number();
+  case DimensionRule::same:
+    return argument(s, 0);
+  case DimensionRule::number:
+    return argument(s, 0), number();
+  case DimensionRule::root:
+    return number(power(argument(s, 0).dimension, {1, 2}));
+  case DimensionRule::square:
+    return number(power(argument(s, 0).dimension, 2));
+  case DimensionRule::length:
+    return number(argument(s, 0).dimension);
+  case DimensionRule::direction:
+    return argument(s, 0), vector();
+  case DimensionRule::alike:
+    return one_dimension(s, " as arguments of " + s.text);
+  case DimensionRule::angle:
+    return one_dimension(s, " as arguments of " + s.text), number();
+  case DimensionRule::choice:
+  case DimensionRule::cases:
+    return one_of_values(s, rule);
+  case DimensionRule::dot:
+  case DimensionRule::cross: {
+    const DimensionForm a = argument(s, 0).dimension, b = argument(s, 1).dimension;
+    return {rule == DimensionRule::dot ? Type::number : Type::vector, a * b};
   }
-  if (f == "sqrt") return number(power(argument(0).dimension, {1, 2}));
-  if (f == "atan2" || f == "min" || f == "max") {
-    const Measured first = argument(0);
-    for (std::size_t k = 1; k < s.args.size(); ++k)
-      alike(first, of(s.args[k]), s.span, " and ", (" as arguments of " + f).c_str());
-    return f == "atan2" ? number() : first;
-  }
-  if (f == "choose" || f == "piecewise") {
-    // choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values have one dimension, and so have the sides
-    // of a condition.
-    std::optional<Measured> value;
-    for (std::size_t k = 0; k < s.args.size(); ++k) {
-      const Syntax& a = s.args[k];
-      if (a.op == Syntax::Op::compare)
-        alike(term(a.args[0]), term(a.args[1]), a.span, " compared with ");
-      else if (f == "choose" ? k == 0 : k % 2 == 0 && k + 1 < s.args.size())
-        of(a);
-      else if (!value)
-        value = term(a);
-      else
-        alike(*value, term(a), a.span, " and ", (" as values of " + f).c_str());
-    }
-    return value ? *value : anything();
-  }
-  if (f == "dot" || f == "cross") {
-    const DimensionForm a = argument(0).dimension, b = argument(1).dimension;
-    return {f == "dot" ? Type::number : Type::vector, a * b};
-  }
-  if (f == "norm") return number(argument(0).dimension);
-  if (f == "norm2") return number(power(argument(0).dimension, 2));
-  if (f == "unit") return argument(0), vector();
-  if (f == "D") {
-    Measured m = argument(0);
+  case DimensionRule::derivative: {
+    Measured m = argument(s, 0);
     const auto k = s.args.size() == 2 ? written_number(s.args[1]) : std::nullopt;
     if (!k) return anything();
     m.dimension = m.dimension / power(unit("s"), *k);
     return m;
   }
-  if (f == "rotx" || f == "roty" || f == "rotz" || f == "quat" || f == "euler" || f == "rot") {
-    for (std::size_t i = f == "rot" || f == "euler" ? 1 : 0; i < s.args.size(); ++i) pure(s.args[i]);
-    if (f == "rot") argument(0);
+  case DimensionRule::rotation:
+    for (const Syntax& a : s.args) pure(a);
     return {Type::rotation, {}};
-  }
-  if (f == "matrix") {
+  case DimensionRule::turns:
+  case DimensionRule::turn_about:
+    for (std::size_t i = 1; i < s.args.size(); ++i) pure(s.args[i]);
+    if (rule == DimensionRule::turn_about) argument(s, 0);
+    return {Type::rotation, {}};
+  case DimensionRule::matrix:
     for (const Syntax& rows : s.args)
       for (const Syntax& row : rows.args)
         for (const Syntax& entry : row.args) pure(entry);
     return {Type::rotation, {}};
-  }
-  if (f == "vel" || f == "acc") {
-    // The velocity of a point is its derivative; with a body (the material point) or `inertial` it has the dimension of
-    // a velocity.
-    const DimensionForm per = power(unit("s"), f == "vel" ? 1 : 2);
-    if (s.args.size() == 1) return vector(argument(0).dimension / per);
-    for (const Syntax& a : s.args)
-      if (const Measured m = of(a); m.type == Type::vector) expect(m, unit("m"), a.span);
-    return vector(unit("m") / per);
-  }
-  if (f == "angvel" || f == "angacc") return vector(unit(f == "angvel" ? "s^-1" : "s^-2"));
-  if (f == "gravity") {
+  case DimensionRule::velocity:
+    return rate_of_point(s, 1);
+  case DimensionRule::acceleration:
+    return rate_of_point(s, 2);
+  case DimensionRule::angular_velocity:
+    return vector(unit("s^-1"));
+  case DimensionRule::angular_acceleration:
+    return vector(unit("s^-2"));
+  case DimensionRule::gravity:
     for (const Syntax& a : s.args) expect(of(a), unit("m"), a.span);
     return vector(unit("m/s^2"));
+  case DimensionRule::open:
+    break;
   }
   return anything();
+}
+
+Measured FormulaDimensions::argument(const Syntax& s, std::size_t i) {
+  return i < s.args.size() ? of(s.args[i]) : anything();
+}
+
+Measured FormulaDimensions::one_dimension(const Syntax& s, const std::string& behind) {
+  const Measured first = argument(s, 0);
+  for (std::size_t k = 1; k < s.args.size(); ++k) alike(first, of(s.args[k]), s.span, " and ", behind.c_str());
+  return first;
+}
+
+Measured FormulaDimensions::components(const Syntax& s) {
+  const Measured first = argument(s, 0);
+  for (std::size_t k = 1; k < s.args.size(); ++k)
+    alike(first, of(s.args[k]), s.args[k].span, " and ", " as components of one vector");
+  return vector(first.dimension);
+}
+
+// choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values have one dimension, and so have the sides of a
+// condition.
+Measured FormulaDimensions::one_of_values(const Syntax& s, DimensionRule rule) {
+  const auto is_condition = [&](std::size_t k) {
+    return rule == DimensionRule::choice ? k == 0 : k % 2 == 0 && k + 1 < s.args.size();
+  };
+  std::optional<Measured> value;
+  for (std::size_t k = 0; k < s.args.size(); ++k) {
+    const Syntax& a = s.args[k];
+    if (a.op == Syntax::Op::compare)
+      alike(term(a.args[0]), term(a.args[1]), a.span, " compared with ");
+    else if (is_condition(k))
+      of(a);
+    else if (!value)
+      value = term(a);
+    else
+      alike(*value, term(a), a.span, " and ", (" as values of " + s.text).c_str());
+  }
+  return value ? *value : anything();
+}
+
+// The velocity of a point is its derivative; with a body (the material point) or `inertial` it has the dimension of a
+// velocity.
+Measured FormulaDimensions::rate_of_point(const Syntax& s, int times) {
+  const DimensionForm per = power(unit("s"), times);
+  if (s.args.size() == 1) return vector(argument(s, 0).dimension / per);
+  for (const Syntax& a : s.args)
+    if (const Measured m = of(a); m.type == Type::vector) expect(m, unit("m"), a.span);
+  return vector(unit("m") / per);
 }
 
 }  // namespace anholon

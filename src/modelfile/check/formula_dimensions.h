@@ -1,5 +1,6 @@
 // The dimension of a formula, by its syntax tree.
 #pragma once
+#include "formula/functions.h"
 #include "modelfile/check/unify.h"
 #include "modelfile/names/names.h"
 
@@ -45,6 +46,13 @@ class FormulaDimensions {
   Measured declared(const std::string& name, const Scope::Declaration& d);
   Measured measured(const Syntax& s);
   Measured call(const Syntax& s);
+  Measured by_rule(const Syntax& s, DimensionRule rule);
+  Measured argument(const Syntax& s, std::size_t i);
+  // The arguments from the first on have one dimension, which is returned.
+  Measured one_dimension(const Syntax& s, const std::string& behind);
+  Measured components(const Syntax& s);
+  Measured one_of_values(const Syntax& s, DimensionRule rule);
+  Measured rate_of_point(const Syntax& s, int times);
   Measured user_call(const Syntax& s, const Scope::Declaration& d);
   Measured product(const Syntax& s);
   Measured raised(const Syntax& s);

@@ -1,5 +1,7 @@
 #include "modelfile/language/language.h"
 
+#include <algorithm>
+
 #include "base/assert.h"
 
 namespace anholon {
@@ -46,26 +48,27 @@ const std::vector<ReservedName>& reserved_names() {
 
 const std::vector<FunctionRow>& kinematic_functions() {
   static const std::vector<FunctionRow> list = {
-      {"vel", "vel(P)", "velocity of the point P relative to the observer, `P'`", "vel(P)"},
+      {"vel", "vel(P)", "velocity of the point P relative to the observer, `P'`", "vel(P)", DimensionRule::velocity},
       {"vel", "vel(B, P)", "body first: velocity of the material point of the body B that is at P now",
-       "vel(plate, P + R*ex)"},
+       "vel(plate, P + R*ex)", DimensionRule::velocity},
       {"vel", "vel(P, B)", "point first: velocity of P as seen from the body B, `vel(P) - vel(B, P)`",
-       "vel(P + R*ex, plate)"},
+       "vel(P + R*ex, plate)", DimensionRule::velocity},
       {"vel", "vel(P, inertial)", "velocity as seen inertially; needs the velocity of the observer's origin",
-       "vel(P, inertial)"},
+       "vel(P, inertial)", DimensionRule::velocity},
       {"acc", "acc(P)", "acceleration relative to the observer, `P''`; `acc(P, inertial)` as seen inertially",
-       "acc(P, inertial)"},
+       "acc(P, inertial)", DimensionRule::acceleration},
       {"angvel", "angvel(B)",
        "angular velocity of a body or frame relative to the observer; `angvel(B, C)` as seen from C; `angvel(B, "
        "inertial)`",
-       "angvel(B, inertial)"},
-      {"angacc", "angacc(B)", "its derivative", "angacc(plate)"},
+       "angvel(B, inertial)", DimensionRule::angular_velocity},
+      {"angacc", "angacc(B)", "its derivative", "angacc(plate)", DimensionRule::angular_acceleration},
       {"reaction", "reaction(B)",
        "force of all constraints on the body B, m·a less the given forces, in monitors, events and what these use; "
        "`reaction_torque(B)` is its torque about the mass centre",
-       ""},
-      {"reaction_torque", "reaction_torque(B)", "torque of all constraints on the body B about its mass centre", ""},
-      {"gravity", "gravity(P)", "the field of `[gravity]` at the point P", ""},
+       "", DimensionRule::open},
+      {"reaction_torque", "reaction_torque(B)", "torque of all constraints on the body B about its mass centre", "",
+       DimensionRule::open},
+      {"gravity", "gravity(P)", "the field of `[gravity]` at the point P", "", DimensionRule::gravity},
   };
   return list;
 }

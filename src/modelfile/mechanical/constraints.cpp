@@ -120,9 +120,9 @@ Vector ConstraintReader::evaluate_vector_side(const Value& side, const Syntax& s
   if (const Vector* a = std::get_if<Vector>(&v)) return *a;
   if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
   throw Failure(s.span, std::string("one side of the equation is a vector, the other is ") + type_name(v),
-                v.index() == 3   ? body_hint(v, scope_)
-                : v.index() == 0 ? "0 is also the zero vector"
-                                 : "");
+                is_body(v)     ? body_hint(v, scope_)
+                : is_scalar(v) ? "0 is also the zero vector"
+                               : "");
 }
 
 }  // namespace anholon

@@ -196,7 +196,7 @@ class InitialReader {
           if (std::holds_alternative<InertialName>(*side))
             throw Failure(sides[side == &right].span, "this is not a number or vector",
                           "a multiplier is lambda.NAME, NAME being the constraint");
-        if (left.index() == 0 && right.index() == 0) return push(std::get<Expr>(left) - std::get<Expr>(right), "");
+        if (is_scalar(left) && is_scalar(right)) return push(std::get<Expr>(left) - std::get<Expr>(right), "");
         const auto side = [&](const Value& v, const Syntax& s) {
           if (const Vector* a = std::get_if<Vector>(&v)) return *a;
           if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);

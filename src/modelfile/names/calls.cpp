@@ -28,27 +28,6 @@ Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use)
 // The inertial rate of change of a vector given by its moving components.
 Vector Scope::inertial_rate(const Vector& v) { return total_derivative(v) + cross(model_.observer.spin, v); }
 
-std::size_t Scope::body_argument(const Value& value, const Syntax& argument) const {
-  if (const BodyName* b = std::get_if<BodyName>(&value)) return b->index;
-  if (argument.op == Syntax::Op::name) return body(argument.text, argument.span);
-  throw Failure(argument.span, std::string("a body is expected, this is ") + type_name(value));
-}
-
-Vector Scope::point_argument(const Value& v, const Syntax& argument) {
-  const Value p = as_point(v, *this, argument.span);
-  if (const Vector* a = std::get_if<Vector>(&p)) return *a;
-  throw Failure(argument.span, std::string("a point is expected, this is ") + type_name(v), body_hint(v, *this));
-}
-
-// The three numbers of B(a, b, c): components along the axes of B.
-static Vector components(const std::vector<Value>& a, const Syntax& s) {
-  const auto number = [&](std::size_t i) {
-    if (const Expr* e = std::get_if<Expr>(&a[i])) return *e;
-    throw Failure(s.args[i].span, "a number is expected here");
-  };
-  return {number(0), number(1), number(2)};
-}
-
 // The value of the table; the motion ends at the border of a table that must not be left.
 Expr Scope::look_up(std::size_t index, Expr x, Span use) {
   const TableEntry& entry = tables_[index];
@@ -70,133 +49,193 @@ Expr Scope::look_up(std::size_t index, Expr x, Span use) {
   return entry.function(x);
 }
 
-bool Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax& s, Value& result) {
-  Graph& g = *model_.graph;
-  const auto is_body = [&](std::size_t i) {
-    if (a[i].index() == 3) return true;
-    return s.args[i].op == Syntax::Op::name && a[i].index() != 4 && find_body(s.args[i].text);
-  };
-  const auto count = [&](std::size_t least, std::size_t most) {
-    if (a.size() < least || a.size() > most)
-      throw Failure(s.span, f + " takes " + std::to_string(least) +
-                                (most > least ? " or " + std::to_string(most) : std::string()) + " arguments, " +
-                                std::to_string(a.size()) + (a.size() == 1 ? " is" : " are") + " given");
-  };
-  if (f == "vel" || f == "acc") {
-    count(1, 2);
-    if (a.size() == 2 && a[1].index() == 4) {
-      const Vector p = point_argument(a[0], s.args[0]);
-      const Observer& o = model_.observer;
-      if (f == "acc") {
-        result = o.origin_acceleration + inertial_rate(inertial_rate(p));
-      } else {
-        if (!o.origin_velocity)
-          throw Failure(s.span, "the inertial velocity of the observer's origin is not known",
-                        "give [observer] origin_velocity instead of origin_acceleration");
-        result = *o.origin_velocity + inertial_rate(p);
-      }
-      return true;
-    }
-    if (f == "vel" && a.size() == 2 && is_body(0)) {
-      result = material_velocity(body_argument(a[0], s.args[0]), point_argument(a[1], s.args[1]), s.span);
-      return true;
-    }
-    if (f == "vel" && a.size() == 2) {
-      const Vector p = point_argument(a[0], s.args[0]);
-      result = total_derivative(p) - material_velocity(body_argument(a[1], s.args[1]), p, s.span);
-      return true;
-    }
-    if (a.size() == 2) throw Failure(s.span, "acc(P) or acc(P, inertial)");
-    const Vector v = total_derivative(point_argument(a[0], s.args[0]));
-    result = f == "vel" ? v : total_derivative(v);
-    return true;
-  }
-  if (f == "angvel" || f == "angacc") {
-    count(1, 2);
-    const auto rate = [&](std::size_t i) -> Vector {
-      if (const Rotation* r = std::get_if<Rotation>(&a[i])) return r->rate;
-      return orientation(body_argument(a[i], s.args[i]), s.args[i].span).rate;
-    };
-    Vector w = rate(0);
-    if (f == "angacc") {
+// One call: the name of the function, its arguments, and their syntax.
+class Scope::Call {
+ public:
+  Call(Scope& scope, const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax)
+      : scope_(scope), f_(function), a_(arguments), s_(syntax) {}
+
+  // Returns nullopt if the scope knows no such function.
+  std::optional<Value> value() {
+    using Rule = Value (Call::*)();
+    static const std::map<std::string, Rule> kinematics = {{"vel", &Call::velocity},
+                                                           {"acc", &Call::acceleration},
+                                                           {"angvel", &Call::angular_velocity},
+                                                           {"angacc", &Call::angular_acceleration},
+                                                           {"gravity", &Call::gravity}};
+    if (const auto rule = kinematics.find(f_); rule != kinematics.end()) return (this->*rule->second)();
+    const auto declared = scope_.declarations_.find(f_);
+    if (declared != scope_.declarations_.end()) return of_declaration(declared->second);
+    if (is_reaction(f_)) {
       count(1, 1);
-      result = total_derivative(w);
-      return true;
+      return scope_.reaction_on(body(0), s_);
     }
-    if (a.size() == 2) w = a[1].index() == 4 ? w + model_.observer.spin : w - rate(1);
-    result = w;
-    return true;
+    const std::size_t* of_body = scope_.find_body(f_);
+    if (!of_body) return std::nullopt;
+    count(3, 3);
+    return scope_.orientation(*of_body, s_.span) * components();
   }
-  if (f == "gravity") {
-    count(1, 1);
-    result = gravity_at(point_argument(a[0], s.args[0]), s.span);
-    return true;
+
+ private:
+  // ---- arguments
+
+  void count(std::size_t least, std::size_t most) const {
+    if (a_.size() < least || a_.size() > most)
+      throw Failure(s_.span, f_ + " takes " + std::to_string(least) +
+                                 (most > least ? " or " + std::to_string(most) : std::string()) + " arguments, " +
+                                 std::to_string(a_.size()) + (a_.size() == 1 ? " is" : " are") + " given");
   }
-  const auto it = declarations_.find(f);
-  if (it == declarations_.end()) {
-    if (is_reaction(f)) {
-      count(1, 1);
-      result = reaction_on(body_argument(a[0], s.args[0]), s);
-      return true;
+  bool is_body_at(std::size_t i) const {
+    if (is_body(a_[i])) return true;
+    return s_.args[i].op == Syntax::Op::name && !is_inertial(a_[i]) && scope_.find_body(s_.args[i].text);
+  }
+  std::size_t body(std::size_t i) const {
+    const Syntax& argument = s_.args[i];
+    if (const BodyName* b = std::get_if<BodyName>(&a_[i])) return b->index;
+    if (argument.op == Syntax::Op::name) return scope_.body(argument.text, argument.span);
+    throw Failure(argument.span, std::string("a body is expected, this is ") + type_name(a_[i]));
+  }
+  Vector point(std::size_t i) const {
+    const Span at = s_.args[i].span;
+    const Value p = as_point(a_[i], scope_, at);
+    if (const Vector* v = std::get_if<Vector>(&p)) return *v;
+    throw Failure(at, std::string("a point is expected, this is ") + type_name(a_[i]), body_hint(a_[i], scope_));
+  }
+  Expr number(std::size_t i) const {
+    if (const Expr* e = std::get_if<Expr>(&a_[i])) return *e;
+    throw Failure(s_.args[i].span, "a number is expected here");
+  }
+  // The three numbers of B(a, b, c): components along the axes of B.
+  Vector components() const { return {number(0), number(1), number(2)}; }
+
+  // ---- kinematics
+
+  Value velocity() {
+    count(1, 2);
+    if (a_.size() == 1) return total_derivative(point(0));
+    if (is_inertial(a_[1])) {
+      const Vector p = point(0);
+      const std::optional<Vector>& of_origin = scope_.model_.observer.origin_velocity;
+      if (!of_origin)
+        throw Failure(s_.span, "the inertial velocity of the observer's origin is not known",
+                      "give [observer] origin_velocity instead of origin_acceleration");
+      return *of_origin + scope_.inertial_rate(p);
     }
-    const std::size_t* b = find_body(f);
-    if (!b) return false;
-    count(3, 3);
-    result = orientation(*b, s.span) * components(a, s);
-    return true;
+    if (is_body_at(0)) {
+      const std::size_t of = body(0);
+      return scope_.material_velocity(of, point(1), s_.span);
+    }
+    const Vector p = point(0), of_body = scope_.material_velocity(body(1), p, s_.span);
+    return total_derivative(p) - of_body;
   }
-  Declaration& d = it->second;
-  if (d.role == Role::frame) {
-    count(3, 3);
-    result = std::get<Rotation>(resolve(f, d, s.span)) * components(a, s);
-    return true;
+
+  Value acceleration() {
+    count(1, 2);
+    if (a_.size() == 1) return total_derivative(total_derivative(point(0)));
+    if (!is_inertial(a_[1])) throw Failure(s_.span, "acc(P) or acc(P, inertial)");
+    const Vector p = point(0);
+    return scope_.model_.observer.origin_acceleration + scope_.inertial_rate(scope_.inertial_rate(p));
   }
-  if (d.role == Role::table) {
+
+  // Of a rotation, or of a body.
+  Vector rate_of(std::size_t i) const {
+    if (const Rotation* r = std::get_if<Rotation>(&a_[i])) return r->rate;
+    return scope_.orientation(body(i), s_.args[i].span).rate;
+  }
+  Value angular_velocity() {
+    count(1, 2);
+    const Vector w = rate_of(0);
+    if (a_.size() == 1) return w;
+    return is_inertial(a_[1]) ? w + scope_.model_.observer.spin : w - rate_of(1);
+  }
+  Value angular_acceleration() {
     count(1, 1);
-    const Expr* e = std::get_if<Expr>(&a[0]);
+    return total_derivative(rate_of(0));
+  }
+
+  Value gravity() {
+    count(1, 1);
+    return scope_.gravity_at(point(0), s_.span);
+  }
+
+  // ---- declared functions
+
+  std::optional<Value> of_declaration(Declaration& d) {
+    switch (d.role) {
+    case Role::frame:
+      count(3, 3);
+      return std::get<Rotation>(scope_.resolve(f_, d, s_.span)) * components();
+    case Role::table:
+      return of_table(d);
+    case Role::function:
+      return d.arguments.empty() ? of_time(d) : of_arguments(d);
+    case Role::coordinate:
+    case Role::parameter:
+    case Role::define:
+    case Role::point:
+    case Role::state:
+    case Role::control:
+      break;
+    }
+    return std::nullopt;
+  }
+
+  Value of_table(const Declaration& d) {
+    count(1, 1);
+    const Expr* e = std::get_if<Expr>(&a_[0]);
     if (!e)
-      throw Failure(s.args[0].span, std::string("the argument of a table is a number, this is ") + type_name(a[0]));
-    result = look_up(d.index, *e, s.span);
-    return true;
+      throw Failure(s_.args[0].span, std::string("the argument of a table is a number, this is ") + type_name(a_[0]));
+    return scope_.look_up(d.index, *e, s_.span);
   }
-  if (d.role != Role::function) return false;
-  if (d.arguments.empty()) {
+
+  // f(t), or its formula at another argument.
+  Value of_time(Declaration& d) {
     count(1, 1);
-    const Expr* e = std::get_if<Expr>(&a[0]);
-    if (!e) throw Failure(s.args[0].span, "a number is expected here");
-    const Value body = resolve(f, d, s.span);
-    if (*e == g.time()) {
-      result = body;
-      return true;
-    }
-    if (d.symbolic) throw Failure(s.args[0].span, "an unknown function is used at t only");
+    const Expr at = number(0);
+    const Value body = scope_.resolve(f_, d, s_.span);
+    const Expr time = scope_.graph().time();
+    if (at == time) return body;
+    if (d.symbolic) throw Failure(s_.args[0].span, "an unknown function is used at t only");
     const Expr formula = std::get<Expr>(body);
-    const NodeId t = g.time().id;
-    result = substitute({&formula, 1}, [&](NodeId id) { return id == t ? *e : Expr{}; })[0];
-    return true;
+    return substitute({&formula, 1}, [&](NodeId id) { return id == time.id ? at : Expr{}; })[0];
   }
-  count(d.arguments.size(), d.arguments.size());
-  if (++calls_ > kMostCalls)
-    throw Failure(s.span, "the functions unfold into more than " + std::to_string(kMostCalls) + " calls");
-  if (d.state == Declaration::State::open) throw Failure(s.span, "the function '" + f + "' is defined through itself");
-  if (!d.parsed) {
-    d.body = parse_formula(d.formula);
-    d.parsed = true;
+
+  Value of_arguments(Declaration& d) {
+    count(d.arguments.size(), d.arguments.size());
+    if (++scope_.calls_ > kMostCalls)
+      throw Failure(s_.span, "the functions unfold into more than " + std::to_string(kMostCalls) + " calls");
+    if (d.state == Declaration::State::open)
+      throw Failure(s_.span, "the function '" + f_ + "' is defined through itself");
+    if (!d.parsed) {
+      d.body = parse_formula(d.formula);
+      d.parsed = true;
+    }
+    std::map<std::string, Value> bound;
+    for (std::size_t i = 0; i < a_.size(); ++i) bound[d.arguments[i]] = a_[i];
+    scope_.arguments_.push_back(std::move(bound));
+    d.state = Declaration::State::open;
+    const auto restore = [&] {
+      d.state = Declaration::State::fresh;
+      scope_.arguments_.pop_back();
+    };
+    try {
+      Value result = evaluate(d.body, scope_);
+      restore();
+      return result;
+    } catch (...) {
+      restore();
+      throw;
+    }
   }
-  std::map<std::string, Value> bound;
-  for (std::size_t i = 0; i < a.size(); ++i) bound[d.arguments[i]] = a[i];
-  arguments_.push_back(std::move(bound));
-  d.state = Declaration::State::open;
-  try {
-    result = evaluate(d.body, *this);
-  } catch (...) {
-    d.state = Declaration::State::fresh;
-    arguments_.pop_back();
-    throw;
-  }
-  d.state = Declaration::State::fresh;
-  arguments_.pop_back();
-  return true;
+
+  Scope& scope_;
+  const std::string& f_;
+  const std::vector<Value>& a_;
+  const Syntax& s_;
+};
+
+std::optional<Value> Scope::call(const std::string& f, const std::vector<Value>& a, const Syntax& s) {
+  return Call(*this, f, a, s).value();
 }
 
 }  // namespace anholon

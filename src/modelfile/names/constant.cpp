@@ -16,7 +16,9 @@ class Constants final : public Names {
     throw Failure(span, "'" + name.substr(0, 40) + "' is not a number",
                   "numbers, pi, functions of these and units stand here: pi/2, 8 cm");
   }
-  bool call(const std::string&, const std::vector<Value>&, const Syntax&, Value&) override { return false; }
+  std::optional<Value> call(const std::string&, const std::vector<Value>&, const Syntax&) override {
+    return std::nullopt;
+  }
   Value member(const Value&, const Syntax& s) override {
     throw Failure(s.span, "a number has no member '" + s.text + "'");
   }

@@ -50,8 +50,6 @@ std::size_t Scope::add_table(Table table) {
   return tables_.size() - 1;
 }
 
-void Scope::set_gravity(const Item& field) { gravity_ = &field; }
-
 std::size_t Scope::body(const std::string& name, Span span) const {
   if (const std::size_t* found = find_body(name)) return *found;
   if (const std::string members = members_known(name, body_names_); !members.empty())
@@ -398,10 +396,10 @@ Value Scope::member(const Value& object, const Syntax& s) {
     throw Failure(s.span, parts_[b->index].particle ? "a particle has the members position, x, y and z"
                                                     : "a body has the members center, x, y and z");
   }
-  if (multipliers_ > 0 && object.index() == 4)
+  if (multipliers_ > 0 && is_inertial(object))
     if (const std::string path = multiplier_path(s); !path.empty()) return multiplier(path, s.span);
   throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'",
-                object.index() == 0 ? habit_of_member(s) : "");
+                is_scalar(object) ? habit_of_member(s) : "");
 }
 
 // A particle denotes the point of its position. (A body that merely has no orientation does not denote its centre.)
@@ -465,49 +463,6 @@ void Scope::settle_orientation(std::size_t body, Span use) {
   const Opened opened(p.orientation_open, depth_);
   keep_failure(p.orientation_failed,
                [&] { p.orientation_value = p.orientation ? rotation(*p.orientation) : turn(2, number(*p.angle)); });
-}
-
-Vector Scope::gravity_at(const Vector& place, Span use) {
-  if (!gravity_) throw Failure(use, "there is no [gravity] field");
-  if (here_) throw Failure(use, "the field of [gravity] is defined through itself");
-  here_ = place;
-  const auto arguments = std::exchange(arguments_, {});
-  const auto restore = [&] { here_.reset(), arguments_ = arguments; };
-  try {
-    const Vector field = vector(*gravity_);
-    restore();
-    return field;
-  } catch (...) {
-    restore();
-    throw;
-  }
-}
-
-std::vector<Vector> Scope::gravity_gradient_at(const Vector& place, Span use) {
-  Graph& g = *model_.graph;
-  // Three symbols that no model has represent the place, so that the field can be differentiated by it.
-  constexpr std::uint32_t kPlace = 200'000;
-  const Column here = {g.quasi(kPlace, 0), g.quasi(kPlace + 1, 0), g.quasi(kPlace + 2, 0)};
-  const Vector field = gravity_at({here[0], here[1], here[2]}, use);
-  for (int i = 0; i < 3; ++i)
-    for (NodeId id : symbols({&field[i], 1}))
-      if (g.node(id).kind == Kind::quasi && g.node(id).order > 0)
-        throw Failure(gravity_->span, "the field depends on the velocity of 'here'",
-                      "a gradient is taken of a field of the place");
-  const Column rows[3] = {gradient(field.x, here), gradient(field.y, here), gradient(field.z, here)};
-  std::vector<Vector> by;
-  bool uniform = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Expr parts[] = {rows[0][k], rows[1][k], rows[2][k]};
-    const Column at = substitute(parts, [&](NodeId id) {
-      const Node& n = g.node(id);
-      return n.kind == Kind::quasi && n.index >= kPlace ? place[static_cast<int>(n.index - kPlace)] : Expr{};
-    });
-    by.push_back({at[0], at[1], at[2]});
-    uniform = uniform && is_zero(by.back());
-  }
-  if (uniform) by.clear();
-  return by;
 }
 
 }  // namespace anholon

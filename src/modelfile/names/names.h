@@ -97,8 +97,8 @@ class Scope final : public Names {
   // Names
   Graph& graph() override { return *model_.graph; }
   Value name(const std::string& name, Span span) override;
-  bool call(const std::string& function, const std::vector<Value>& arguments, const Syntax& syntax,
-            Value& result) override;
+  std::optional<Value> call(const std::string& function, const std::vector<Value>& arguments,
+                            const Syntax& syntax) override;
   Value member(const Value& object, const Syntax& syntax) override;
   std::vector<std::string> functions() const override;
   std::optional<Vector> point(const BodyName& body, Span use) override;
@@ -124,6 +124,7 @@ class Scope final : public Names {
     Span use;
     std::function<void()> ask;
   };
+  class Call;
   void from_the_ground(const std::function<void()>& ask);
   void settle(const std::string& name, Declaration& d, Span use);
   void settle_center(std::size_t body, Span use);
@@ -140,8 +141,6 @@ class Scope final : public Names {
   Value multiplier(const std::string& path, Span use);
   Vector reaction_on(std::size_t body, const Syntax& call);
   Expr look_up(std::size_t table, Expr x, Span use);
-  std::size_t body_argument(const Value& value, const Syntax& argument) const;
-  Vector point_argument(const Value& value, const Syntax& argument);
 
   Model& model_;
   std::map<std::string, Declaration> declarations_;

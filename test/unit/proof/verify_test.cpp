@@ -8,6 +8,7 @@
 #include "numeric/ball.h"
 #include "proof/verify.h"
 #include "proof/verify_modular.h"
+#include "proof/verify_modular_program.h"
 #include "proof/verify_real.h"
 
 namespace anholon {

@@ -59,10 +59,10 @@ TEST(Workspace, OfAFormThatEliminates) {
     Prepared p("zoo/chaplygin-sleigh", form);
     Workspace own(p.scenario);
     EXPECT_EQ(handles(own, &own.graph()).second, 0U) << form;
-    ASSERT_FALSE(own.elimination.u.empty());
-    EXPECT_EQ(own.elimination.u[0].graph, &own.graph());
+    ASSERT_FALSE(own.elimination.free.u.empty());
+    EXPECT_EQ(own.elimination.free.u[0].graph, &own.graph());
     // It goes on to eliminate in its own graph.
-    EXPECT_EQ(own.elimination.rate(own.elimination.g)[0].graph, &own.graph());
+    EXPECT_EQ(own.elimination.rate(own.elimination.g())[0].graph, &own.graph());
     Workspace again(own);
     EXPECT_EQ(handles(again, &again.graph()).second, 0U) << form;
   }

@@ -12,7 +12,7 @@ namespace anholon::forms {
 
 // The sum over the points.
 static Column bracket_of(const Mechanics& M, const Elimination& E) {
-  Column bracket(E.u.size(), M.graph().zero());
+  Column bracket(E.free.u.size(), M.graph().zero());
   for (const WeightedPoint& point : M.points) {
     const Vector v = total_derivative(point.place);
     for (int i = 0; i < 3; ++i) {
@@ -43,7 +43,7 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
   for (const WeightedPoint& point : M.points)
     for (int i = 0; i < 3; ++i) v.push_back(total_derivative(point.place[i]));
   Labels brackets;
-  for (const std::string& u : E.names)
+  for (const std::string& u : E.free.names)
     brackets.push_back(indexed({"bracket", "\\mathrm{bracket}", "<mi>bracket</mi>"}, u, {name_of(*M.model, u)}));
   Quantities list = listed({named(bar, T_bar), momenta, frozen_rates(momenta, E.rate(p)),
                             named(partial(bar, pick(jet_labels(M, 0), E.independent)), E.I(E.by(0, T_bar))),

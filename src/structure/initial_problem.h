@@ -1,0 +1,68 @@
+// The problem of consistent initial data: what is given, and the equations of positions and velocities, compiled.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "expr/handles.h"
+#include "structure/stage.h"
+#include "structure/state.h"
+#include "tape/tape.h"
+
+namespace anholon {
+
+// Values that override those of the model: q_a^(k), or lambda_r^(k).
+struct StateOverride {
+  unsigned order;
+  std::size_t coordinate;  // or the index of a constraint
+  Rational value;
+  bool multiplier = false;
+};
+
+// The expressions needed for positions and velocities, built once for many states: with a plan, `consistent_state`
+// builds none if the overrides are those of the plan, with other values; many threads may then call it at the same
+// time.
+struct StartPlan {
+  StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass = nullptr);
+
+  Tape values;  // t, the states, then guesses and given values
+  using Stages = std::shared_ptr<const StagePlan>;
+  Stages positions, velocities;            // null where there is nothing to solve
+  bool kept = false;                       // made for overrides:
+  Stages kept_positions, kept_velocities;  // without conditions that are only about what is overridden
+
+  // The same plan with stages of its own; the handles are left as they are.
+  StartPlan copy() const;
+};
+// The handles of a plan (expr/handles.h). REQUIRES: nobody else has its stages.
+void for_each_expression(StartPlan& p, const ExprVisitor& f);
+
+template <Number N>
+struct InitialProblem {
+  const Mechanics* mechanics;
+  std::vector<N> parameters;
+  std::vector<StateOverride> overrides;
+  std::optional<Rational> t;
+  const std::vector<Column>* mass = nullptr;  // the mass matrix, if the caller solves for many states
+  const StartPlan* plan = nullptr;
+  // a solution of the same or of a similar problem: searches begin there, but measure changes from the guess
+  const InitialState<double>* near = nullptr;
+};
+
+// q_a^(k) with k >= 2, or a multiplier: a value beyond positions and velocities.
+inline bool is_higher(const Node& n) { return n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1); }
+bool holds_higher(Expr e);
+bool overridden(const std::vector<StateOverride>& overrides, const Node& n);
+
+using StageEquations = std::vector<StageEquation>;
+
+StageEquations conditions_of(const Model& model);
+// The equations that overrides leave: all laws, and conditions that concern unknowns that are still open.
+StageEquations left_of(const StageEquations& equations, const Column& unknowns,
+                       const std::vector<StateOverride>& overrides, Graph& g);
+// The stage of these equations; null if there are none.
+StartPlan::Stages planned(const Mechanics& m, const StageEquations& equations, const Column& unknowns, unsigned metric,
+                          const std::vector<Column>* mass);
+// The numbers of the file: t, the states, then guesses and given values.
+Tape initial_values(const Model& model);
+
+}  // namespace anholon
