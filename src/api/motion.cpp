@@ -4,7 +4,7 @@
 
 #include "api/data.h"
 #include "mechanics/conserved.h"
-#include "result/run_file.h"
+#include "result/format.h"
 #include "simulation/report_json.h"
 #include "simulation/simulate.h"
 
@@ -168,9 +168,9 @@ std::string Run::text(std::size_t row, const std::string& column) const {
 std::string Run::json() const { return inner::run_json(data_->run.table, data_->inner_report); }
 
 Result<std::string> Run::write(const std::string& path) const {
-  inner::RunFormat format{};
-  if (!inner::format_of(path, format)) return mistake("'" + path + "' names no format", "end it in .csv, .json or .h5");
-  if (const std::string why = inner::write_run(path, format, data_->run); !why.empty()) return mistake(why);
+  const inner::ResultFormat* format = inner::format_of(path);
+  if (!format) return mistake("'" + path + "' names no format", "end it in " + inner::known_files(""));
+  if (const std::string why = format->write(path, data_->run); !why.empty()) return mistake(why);
   return path;
 }
 

@@ -13,24 +13,27 @@
 #include "cli/progress.h"
 #include "cli/report.h"
 #include "cli/report_text.h"
+#include "cli/result_file.h"
 #include "cli/run_info.h"
 #include "cli/saved.h"
 #include "cli/say.h"
 #include "cli/show.h"
 #include "result/file.h"
-#include "result/hdf5_sink.h"
+#include "result/format.h"
 #include "simulation/report_json.h"
 
 namespace anholon::cli {
 
 namespace {
 
-// More rows are refused before they fill memory or disk; JSON, which is held in memory, has a lower limit.
-constexpr long kMostRows = 5'000'000, kMostJsonNumbers = 5'000'000;
+// More rows are refused before they fill memory or disk; a format that is held in memory has a limit of its own.
+constexpr long kMostRows = 5'000'000;
 
-bool is_hdf5(const std::string& path) {
-  RunFormat format{};
-  return format_of(path, format) && format == RunFormat::hdf5;
+// The format of the rows: by the name of the file; --json asks for the report, too, if that format does not hold it.
+const ResultFormat& output_format(const Options& o) {
+  const ResultFormat* named = format_of(o.output);
+  if (o.json && (!named || named->holds == Holds::rows)) return report_format();
+  return named ? *named : plain_format();
 }
 
 // drawn: the motion is for a page or a film, which has a default end.
@@ -79,11 +82,11 @@ Rational times(const Options& o, const Scenario& scenario, SimulationOptions& s,
         number_text(start.get_d()).c_str());
   if (s.every && abs(Rational(end - start)) > kMostRows * *s.every)
     throw UsageError{"error: --every asks for more than " + std::to_string(kMostRows) + " rows\n"};
-  const bool json = o.output.ends_with(".json") || (o.json && !is_hdf5(o.output));
+  const ResultFormat& format = output_format(o);
   const auto columns = static_cast<long>(1 + 4 * scenario.system.coordinates + scenario.system.constraints.size());
-  if (s.every && json && columns * abs(Rational(end - start)) > kMostJsonNumbers * *s.every)
-    throw UsageError{"error: --every asks for more than " + std::to_string(kMostJsonNumbers) +
-                     " numbers of JSON\nhint: write HDF5 or CSV: -o run.h5\n"};
+  if (s.every && format.most_numbers > 0 && columns * abs(Rational(end - start)) > format.most_numbers * *s.every)
+    throw UsageError{"error: --every asks for more than " + std::to_string(format.most_numbers) + " numbers of " +
+                     format.name + "\nhint: write HDF5 or CSV: -o run.h5\n"};
   return end;
 }
 
@@ -258,7 +261,7 @@ SimulationReport run(Workspace& s, const SimulationOptions& options, RowSink& ro
 }
 
 // A run that continues in its own file appends its rows to the existing ones; any other file is replaced.
-void go_on(Hdf5Sink& rows, const Options& o, const SavedRun& resume, const Reader& in) {
+void go_on(RunWriter& rows, const Options& o, const SavedRun& resume, const Reader& in) {
   std::error_code none;
   if (!rows.error().empty() || !resume.has("given") || !std::filesystem::is_regular_file(o.output, none)) return;
   try {
@@ -325,11 +328,7 @@ class Writer {
          Saver& saver, Told* told)
       : o_(o), in_(in), s_(s), start_(start), options_(options), saver_(saver), told_(told) {}
 
-  Written write() {
-    if (told_ && o_.output.empty()) return keep();
-    if (is_hdf5(o_.output)) return hdf5();
-    return o_.json || o_.output.ends_with(".json") ? json() : csv();
-  }
+  Written write() { return told_ && o_.output.empty() ? keep() : to_file(output_format(o_)); }
 
  private:
   Written keep() {
@@ -341,42 +340,22 @@ class Writer {
     return w;
   }
 
-  Written json() {
+  Written to_file(const ResultFormat& format) {
     Written w;
-    RunFile kept;
-    RunSink rows(kept);
-    GrowingFile file(o_.output);
-    if (!file.error().empty()) throw UsageError{"error: " + file.error() + "\n"};
-    if (!o_.save.empty()) options_.save = std::ref(saver_);
+    if (!format.without_rows && !has_started(w)) return w;
+    const std::unique_ptr<RunWriter> rows = format.open(o_.output, run_info(o_, in_, s_, options_));
+    if (!rows->error().empty()) throw UsageError{"error: " + rows->error() + "\n"};
+    if (options_.resume && format.holds == Holds::everything) go_on(*rows, o_, *options_.resume, in_);
     if (start_.ok())
-      w.report = run(s_, options_, rows, told_);
+      into(*rows, w);
     else
       w.report.outcome = start_, w.report.t = s_.state.t, w.report.model = s_.model->title,
       w.report.form = s_.system.form->name;
-    file.write(run_json(kept.table, w.report));
-    w.error = file.close();
-    return w;
-  }
-
-  Written hdf5() {
-    Written w;
-    if (!has_started(w)) return w;
-    Hdf5Sink rows(o_.output, run_info(o_, in_, s_, options_));
-    if (options_.resume) go_on(rows, o_, *options_.resume, in_);
-    into(rows, w);
-    rows.report(report_json(w.report));
-    w.error = rows.close();
-    if (o_.json) hand_out(report_json(w.report) + "\n");
-    return w;
-  }
-
-  Written csv() {
-    Written w;
-    if (!has_started(w)) return w;
-    CsvSink rows(o_.output);
-    into(rows, w);
-    w.error = rows.close();
-    w.part = rows.part();
+    const std::string report = report_json(w.report);
+    w.error = rows->close(report);
+    w.part = rows->part();
+    // The report is in a file that also holds the model: --json asks for it on the standard output.
+    if (o_.json && &format != &report_format()) hand_out(report + "\n");
     return w;
   }
 
@@ -386,9 +365,7 @@ class Writer {
     return w.started = false;
   }
 
-  template <class Rows>
-  void into(Rows& rows, Written& w) {
-    if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
+  void into(RunWriter& rows, Written& w) {
     // What --save writes is never ahead of the rows.
     if (!o_.save.empty())
       options_.save = [this, &rows](const SavedRun& saved) {
@@ -431,8 +408,7 @@ int say_end(const Options& o, const Written& w, const std::string& save_error) {
 }  // namespace
 
 int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
-  if (is_hdf5(asked.output) && !has_hdf5())
-    throw UsageError{"error: " + std::string(kNoHdf5) + "\nhint: " + kNoHdf5Hint + "\n"};
+  check_format(format_of(asked.output));
   Told own;
   Told& all = told ? *told : own;
   all.in = read(asked);
