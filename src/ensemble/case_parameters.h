@@ -1,6 +1,6 @@
 // The parameters of the cases of an ensemble, and whether the model goes on to be what it was with them.
 #pragma once
-#include "ensemble/ensemble.h"
+#include "ensemble/case.h"
 
 namespace anholon {
 

@@ -8,42 +8,6 @@
 
 namespace anholon {
 
-std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
-  std::vector<StateOverride> list = o.state.overrides;
-  for (std::size_t i = 0; i < o.varied.size(); ++i)
-    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial)
-      list.push_back({v.order, v.index, numbers ? numbers->values[i] : Rational(0)});
-  return list;
-}
-
-Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
-                         Scenario& scenario) {
-  const std::shared_ptr<Model> model = given_model(of_all);
-  for (std::size_t i = 0; i < o.varied.size(); ++i)
-    if (o.varied[i].kind == Varied::Kind::parameter)
-      model->parameters[o.varied[i].index].value = model->graph->number(numbers.values[i]);
-  StateChoice state = o.state;
-  state.overrides = overrides_of(o, &numbers);
-  return make_scenario(model, *of_all.system.form, state, scenario);
-}
-
-std::vector<std::string> ensemble_columns(const Model& model) {
-  std::vector<std::string> names;
-  for (const unsigned k : {0U, 1U})
-    for (const Coordinate& c : model.coordinates) names.push_back(derivative_name(c.name, k, Format::text));
-  for (const StateVariable& z : model.states) names.push_back(z.name);
-  for (const Monitor& m : model.monitors) names.push_back(m.name);
-  return names;
-}
-
-std::vector<std::size_t> ensemble_places(const std::vector<RunColumn>& columns) {
-  std::vector<std::size_t> places;
-  for (const ColumnKind kind : {ColumnKind::coordinate, ColumnKind::velocity, ColumnKind::state, ColumnKind::monitor})
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      if (columns[k].kind == kind) places.push_back(k);
-  return places;
-}
-
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
     : of_all(s), options(o), scenario(s), parameters(scenario, o.varied) {
   make();
@@ -97,21 +61,6 @@ void EnsemblePlan::make() {
 
 void EnsemblePlan::compile_if_long() const {
   if (const std::unique_lock lock(compiling_, std::try_to_lock); lock) code_.step(kernel, lanes);
-}
-
-Outcome scenario_of_cases(const EnsembleOptions& o, Scenario& scenario) {
-  constexpr std::size_t kMost = 64;
-  Outcome first;
-  for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
-    const EnsembleCase numbers = o.numbers(k);
-    Scenario s;
-    const Outcome outcome = scenario_of_case(scenario, o, numbers, s);
-    if (k == 0) first = outcome;
-    if (!outcome.ok()) continue;
-    scenario = std::move(s);
-    return {};
-  }
-  return first;
 }
 
 CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shared_ptr<Kernel>& kernel, int lane) {

@@ -10,16 +10,12 @@
 #include <mutex>
 
 #include "ensemble/case_parameters.h"
+#include "ensemble/case_scenario.h"
+#include "ensemble/columns.h"
 #include "kernel/kernel.h"
 #include "motion/code_for_long_runs.h"
 
 namespace anholon {
-
-// The initial values that are given or varied; without numbers only which they are.
-std::vector<StateOverride> overrides_of(const EnsembleOptions& options, const EnsembleCase* numbers);
-// The scenario of a case, derived anew with its numbers in the form of the scenario of all cases.
-Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& options, const EnsembleCase& numbers,
-                         Scenario& scenario);
 
 // Read by all threads, changed by none.
 class EnsemblePlan {

@@ -1,6 +1,7 @@
 #include "ensemble/cases_error.h"
 
-#include "ensemble/cases.h"
+#include "ensemble/case_scenario.h"
+#include "ensemble/columns.h"
 #include "observe/estimate.h"
 
 namespace anholon {

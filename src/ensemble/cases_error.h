@@ -1,8 +1,11 @@
 // The error of the results of an ensemble, by sharper runs of some of its cases.  (theory: integrals)
 #pragma once
-#include "ensemble/ensemble.h"
+#include "ensemble/case.h"
 
 namespace anholon {
+
+// The numbers of the cases that are compared: a few, which cost little beside many cases.
+std::vector<std::size_t> cases_to_compare(std::size_t cases);
 
 // `results`: of cases_to_compare(); `each` calls a function with all numbers below a count, side by side if it can.
 // Those that have not finished are left out, and so are long ones where short runs are asked for.
