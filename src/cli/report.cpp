@@ -14,7 +14,7 @@
 #include "cli/say.h"
 #include "observe/row_values.h"
 #include "proof/verify.h"
-#include "report/page.h"
+#include "report/page/page.h"
 #include "result/file.h"
 
 namespace anholon::cli {

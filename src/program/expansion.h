@@ -12,7 +12,7 @@
 #include "numeric/balance.h"
 #include "program/program.h"
 #include "program/sensitivity.h"
-#include "program/unknown_series.h"
+#include "program/unknown_coefficients.h"
 
 namespace anholon {
 
@@ -149,7 +149,7 @@ class Expansion {
   int stages_;
   Machine<N> machine_;
   N t_{0};
-  UnknownSeries<N> x_;
+  UnknownCoefficients<N> x_;
   Sensitivity<N> sensitivity_;
   Matrix<N> j_;
   Lu<N> lu_;

@@ -9,9 +9,9 @@ namespace anholon {
 
 // Of unknown j, the coefficients x_(j, 0), x_(j, 1), …; the state holds x_j^(k), k < d_j, one unknown after the other.
 template <Number N>
-class UnknownSeries {
+class UnknownCoefficients {
  public:
-  UnknownSeries(const std::vector<int>& d, std::size_t length) : length_(length), x_(d.size() * length, N(0)) {
+  UnknownCoefficients(const std::vector<int>& d, std::size_t length) : length_(length), x_(d.size() * length, N(0)) {
     offset_.push_back(0);
     for (int k : d) offset_.push_back(offset_.back() + static_cast<std::size_t>(k));
     factorial_.push_back(N(1));
