@@ -5,6 +5,7 @@
 #include "api/data.h"
 #include "mechanics/conserved.h"
 #include "result/format.h"
+#include "result/json_run.h"
 #include "simulation/report_json.h"
 #include "simulation/simulate.h"
 
@@ -12,7 +13,6 @@ namespace anholon::v1 {
 
 struct Run::Data {
   inner::RunFile run;
-  inner::SimulationReport inner_report;
   Outcome outcome;
   std::vector<Column> columns;
   std::vector<Event> events;
@@ -127,8 +127,7 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     if (!sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);
     auto data = std::make_shared<Run::Data>();
     RowKeeper rows(*data);
-    data->inner_report = inner::simulate_in(s, o, rows);
-    const inner::SimulationReport& r = data->inner_report;
+    const inner::SimulationReport r = inner::simulate_in(s, o, rows);
     data->outcome = to_public(r.outcome);
     data->report = to_public(r);
     for (const inner::EventReport& e : r.events) {
@@ -165,7 +164,7 @@ std::string Run::text(std::size_t row, const std::string& column) const {
   return k < table.columns.size() && row < table.rows() ? table.text(row, k) : std::string();
 }
 
-std::string Run::json() const { return inner::run_json(data_->run.table, data_->inner_report); }
+std::string Run::json() const { return inner::json_run(data_->run); }
 
 Result<std::string> Run::write(const std::string& path) const {
   const inner::ResultFormat* format = inner::format_of(path);

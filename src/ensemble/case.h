@@ -1,4 +1,4 @@
-// The cases of an ensemble: what is asked of them, and what each and all of them give.
+// The values of an ensemble: its options, the result of a case, the report of all cases.
 #pragma once
 #include <functional>
 
@@ -15,15 +15,15 @@ struct Varied {
 };
 
 struct EnsembleCase {
-  std::vector<Rational> values;  // of what is varied
-  std::optional<Rational> to;    // where its end is another one
+  std::vector<Rational> values;  // of the varied numbers
+  std::optional<Rational> to;    // the end, if the case has one of its own
 };
 
 struct EnsembleOptions {
   StateChoice state;  // common to all cases
   std::vector<Varied> varied;
   std::size_t cases = 0;
-  std::function<EnsembleCase(std::size_t)> numbers;  // of a case, by its number alone: many threads ask at once
+  std::function<EnsembleCase(std::size_t)> numbers;  // of the case with this number; called by many threads at once
   Rational to;
   std::vector<Rational> at;  // rows at these times, ascending; none: the final state alone is kept
   Rational tolerance{1, 1000000000000};
@@ -35,12 +35,12 @@ struct EnsembleOptions {
   bool kernel = true;                             // as in SimulationOptions; without, a case has the bits of `simulate`
   std::size_t threads = 0;                        // 0: as many as the machine has
   std::function<void(std::size_t done)> progress;  // by one thread at a time
-  std::function<bool()> cancelled;                 // many threads ask at once
+  std::function<bool()> cancelled;                 // called by many threads at once
 };
 
 struct CaseResult {
   std::size_t number = 0;
-  std::vector<double> values;  // of what is varied
+  std::vector<double> values;  // of the varied numbers
   Outcome outcome;
   double t = 0;  // reached
   std::size_t steps = 0;
@@ -51,22 +51,22 @@ struct CaseResult {
 class CaseSink {
  public:
   virtual ~CaseSink() = default;
-  // In the order of the cases, by one thread at a time.
+  // Takes the results in the order of the cases, from one thread at a time.
   virtual void result(const CaseResult& result) = 0;
 };
 
-// How exact the results are: cases that lie evenly among all, each compared with a sharper run of it.
+// The error of the results: some cases, evenly spaced among all, are compared with sharper runs of the same cases.
 struct CasesError {
-  std::vector<std::size_t> cases;    // that were compared
-  std::optional<ErrorReport> error;  // of each kind the largest of any of them
-  std::size_t worst = 0;             // the case with the largest
-  std::string none;                  // why there is nothing to say, where an estimate was asked for
+  std::vector<std::size_t> cases;    // the compared ones
+  std::optional<ErrorReport> error;  // the largest error of each kind in any of these cases
+  std::size_t worst = 0;             // the case with the largest error
+  std::string none;                  // the reason if an estimate was asked for and there is none
 };
 struct EnsembleReport {
-  Outcome outcome;  // interrupted, or finished although cases may have stopped
+  Outcome outcome;  // interrupted, or finished; cases may have stopped in both
   std::size_t done = 0, finished = 0;
-  std::size_t in_workspaces = 0;  // cases that were not computed by the tapes all share
-  std::size_t most_held = 0;      // results at once in memory
+  std::size_t in_workspaces = 0;  // cases that were not computed by the shared tapes
+  std::size_t most_held = 0;      // the largest number of results that were in memory at once
   std::size_t threads = 0;
   double seconds = 0;
   CasesError error;

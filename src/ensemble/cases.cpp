@@ -143,7 +143,7 @@ CaseWay CaseWalk::step() {
   return after_step();
 }
 
-// What the last step has to give, which may be the end.
+// Takes the rows that lie in the last step, and the end if it does.
 CaseWay CaseWalk::after_step() {
   for (std::size_t i = 0; i < plan_->program->quadratures; ++i)
     if (!plan_->scenario.model->masses[i].weight &&
@@ -156,7 +156,7 @@ CaseWay CaseWalk::after_step() {
   return stop(keep(end_, result_->last) ? CaseWay::plain : CaseWay::simulation);
 }
 
-// Those that lie in the last step.
+// Keeps the rows that lie in the last step.
 bool CaseWalk::rows() {
   const bool forward = !(end_ < stepper_->before());
   while (result_->rows.size() < times_.size()) {
@@ -169,10 +169,10 @@ bool CaseWalk::rows() {
   return true;
 }
 
-// What is kept of the state at t, which lies in the last step.
+// Keeps the results at t, which lies in the last step.
 bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   const System& system = plan_->scenario.system;
-  stepper_->leave_kernel();  // as whoever reads a motion does (motion.cpp)
+  stepper_->leave_kernel();  // as every reader of a motion does (motion.cpp)
   if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
   for (const int k : {0, 1})
     for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
@@ -200,7 +200,7 @@ static bool contained(CaseResult& r, const Work& work) {
   return false;
 }
 
-// Each lane takes the next case when it has done one. A lane has the same bits whatever is beside it.
+// A lane takes the next case when it has done one. Its bits do not depend on the other lanes.
 void CaseWorker::integrate(std::span<CaseResult> results) {
   plan_.compile_if_long();
   if (plan_.kernel && !kernel_) kernel_ = std::make_shared<Kernel>(plan_.kernel, plan_.lanes);
@@ -252,7 +252,7 @@ void CaseWorker::integrate(std::span<CaseResult> results) {
 void CaseWorker::end(CaseWay way, const EnsembleCase& numbers, CaseResult& r) {
   if (way == CaseWay::simulation) {
     by_simulation(numbers, r);
-    // What fails where it begins may have another structure there, or other redundant constraints.
+    // A case that fails at its start may have another structure there, or other redundant constraints.
     if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent &&
         r.outcome.kind != OutcomeKind::interrupted)
       way = CaseWay::derivation;

@@ -29,7 +29,7 @@ SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, cons
     run.rows.add(t, std::vector<long double>(begin, last), 0);
   };
   for (const std::vector<double>& row : r.rows) add(row[0], row.begin() + 1, row.end());
-  // Written is the double next to the time that was asked for.
+  // The results hold the double next to the time that was asked for.
   add(static_cast<double>(end) == r.t ? end : r.t, r.last.begin(), r.last.end());
   estimate_error<double>(s, options, run, report);
   return report;

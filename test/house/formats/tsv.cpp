@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "base/diagnostic.h"
+#include "result/file.h"
 #include "result/format.h"
 #include "result/table.h"
 
