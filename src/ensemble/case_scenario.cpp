@@ -12,6 +12,16 @@ std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const Ensemble
   return list;
 }
 
+SimulationOptions options_of_case(const EnsembleOptions& o, const EnsembleCase& numbers) {
+  SimulationOptions options;
+  options.state = o.state;
+  options.state.overrides = overrides_of(o, &numbers);
+  options.tolerance = o.tolerance;
+  options.most_steps = o.most_steps;
+  options.cancelled = o.cancelled;
+  return options;
+}
+
 Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
                          Scenario& scenario) {
   const std::shared_ptr<Model> model = given_model(of_all);

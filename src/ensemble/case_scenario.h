@@ -1,4 +1,4 @@
-// The scenario of a case: the model with the numbers of the case.
+// A case as a single motion: its options, and its scenario, the model with the numbers of the case.
 #pragma once
 #include "ensemble/case.h"
 
@@ -6,6 +6,8 @@ namespace anholon {
 
 // The initial values that are given or varied; without numbers, the varied ones are zero.
 std::vector<StateOverride> overrides_of(const EnsembleOptions& options, const EnsembleCase* numbers);
+// The options with which `simulate` computes a case: those that are common to all ways of computing it.
+SimulationOptions options_of_case(const EnsembleOptions& options, const EnsembleCase& numbers);
 // The scenario of a case, derived anew with its numbers in the form of the scenario of all cases.
 Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& options, const EnsembleCase& numbers,
                          Scenario& scenario);

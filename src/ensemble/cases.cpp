@@ -293,18 +293,13 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   r.rows.clear();
   r.last.clear();
   const Rational to = numbers.to ? *numbers.to : o.to;
-  SimulationOptions options;
-  options.state = o.state;
-  options.state.overrides = overrides_of(o, &numbers);
+  SimulationOptions options = options_of_case(o, numbers);
   for (const Rational& t : o.at)
     if (to < Rational(own.state.t) ? t > to : t < to) options.at.push_back(t);
   options.at.push_back(to);
   std::sort(options.at.begin(), options.at.end());
-  options.tolerance = o.tolerance;
   options.order = o.order;
   options.method = o.method;
-  options.most_steps = o.most_steps;
-  options.cancelled = o.cancelled;
   options.kernel = o.kernel;
   EnsembleRowFilter rows(o.at, r);
   const SimulationReport report = simulate_in(own, options, rows);

@@ -14,12 +14,7 @@ SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, cons
   Scenario of_case;
   if (report.outcome = scenario_of_case(of_all, o, numbers, of_case); !report.outcome.ok()) return report;
   Workspace s(of_case);
-  SimulationOptions options;
-  options.state = o.state;
-  options.state.overrides = overrides_of(o, &numbers);
-  options.tolerance = o.tolerance;
-  options.most_steps = o.most_steps;
-  options.cancelled = o.cancelled;
+  SimulationOptions options = options_of_case(o, numbers);
   options.estimate = o.estimate;
   RunToJudge<long double> run;
   run.columns = ensemble_places(columns_after_time(s, largest_order(s, s.structure.d)));
