@@ -58,6 +58,16 @@ anholon_test_executable(test_new_form test/house/new_form_test.cpp ${new_form} $
 anholon_link_layers(test_new_form)
 gtest_discover_tests(test_new_form TEST_PREFIX "house." PROPERTIES LABELS unit ENVIRONMENT "${no_cache}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
 
+# A format of results added as one file and a name in the table: the commands of the build with that table in its place.
+
+if(TARGET anholon_cli)
+  file(GLOB new_format "${PROJECT_SOURCE_DIR}/test/house/formats/*.cpp")
+  anholon_test_executable(test_new_format test/house/new_format_test.cpp ${new_format})
+  anholon_link_layers(test_new_format)
+  target_link_libraries(test_new_format PRIVATE anholon_cli)
+  gtest_discover_tests(test_new_format TEST_PREFIX "house." PROPERTIES LABELS unit ENVIRONMENT "${no_cache}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+endif()
+
 # test/<set>/*_test.cpp: one executable over all layers, run in shards
 # Their tests share costly derivations within a process; shards keep that and fill the cores.
 
@@ -115,6 +125,8 @@ anholon_script_test(layers          tools/check_layers.py)
 anholon_script_test(layers_selftest tools/check_layers.py --self-test)
 anholon_script_test(house           tools/check_house.py)
 anholon_script_test(house_selftest  tools/check_house.py --self-test)
+anholon_script_test(formats         test/house/formats_by_table.py)
+anholon_script_test(formats_selftest test/house/formats_by_table.py --self-test)
 anholon_script_test(format          tools/check_format.py)
 set_tests_properties(script.format PROPERTIES SKIP_RETURN_CODE 77)
 anholon_script_test(refs            tools/check_refs.py)

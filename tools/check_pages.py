@@ -49,7 +49,7 @@ GOOD = {
     "doc/theory/routh.md": "",
     "src/base/outcome.cpp": 'return "finished";\nreturn "singular";\nreturn "";\n',
     "src/cli/x.cpp": 'j.key("model").key("t").key("a").key("form").key(name);\n',
-    "src/report/page_data.cpp": 'j.key("scene");\n',
+    "src/report/page/data.cpp": 'j.key("scene");\n',
     "src/report/equations_written.cpp": 'j.key("b");\n',
 }
 MUTANTS = [

@@ -4,7 +4,8 @@
 
 #include "api/data.h"
 #include "mechanics/conserved.h"
-#include "result/run_file.h"
+#include "result/format.h"
+#include "result/json_run.h"
 #include "simulation/report_json.h"
 #include "simulation/request.h"
 #include "simulation/simulate.h"
@@ -13,7 +14,6 @@ namespace anholon::v1 {
 
 struct Run::Data {
   inner::RunFile run;
-  inner::SimulationReport inner_report;
   Outcome outcome;
   std::vector<Column> columns;
   std::vector<Event> events;
@@ -105,8 +105,7 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     o.progress = asked.progress;
     if (!inner::sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);
     RowKeeper rows(*data);
-    data->inner_report = inner::simulate_in(s, o, rows);
-    const inner::SimulationReport& r = data->inner_report;
+    const inner::SimulationReport r = inner::simulate_in(s, o, rows);
     data->outcome = to_public(r.outcome);
     data->report = to_public(r);
     data->report.notes.insert(data->report.notes.begin(), data->notes.begin(), data->notes.end());
@@ -144,12 +143,12 @@ std::string Run::text(std::size_t row, const std::string& column) const {
   return k < table.columns.size() && row < table.rows() ? table.text(row, k) : std::string();
 }
 
-std::string Run::json() const { return inner::run_json(data_->run.table, data_->inner_report); }
+std::string Run::json() const { return inner::json_run(data_->run); }
 
 Result<std::string> Run::write(const std::string& path) const {
-  inner::RunFormat format{};
-  if (!inner::format_of(path, format)) return mistake("'" + path + "' names no format", "end it in .csv, .json or .h5");
-  if (const std::string why = inner::write_run(path, format, data_->run); !why.empty()) return mistake(why);
+  const inner::ResultFormat* format = inner::format_of(path);
+  if (!format) return mistake("'" + path + "' names no format", "end it in " + inner::known_files(""));
+  if (const std::string why = format->write(path, data_->run); !why.empty()) return mistake(why);
   return path;
 }
 

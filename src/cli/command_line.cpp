@@ -10,10 +10,13 @@
 #include "cli/model_options.h"
 #include "cli/say.h"
 #include "cli/words.h"
+#include "result/format.h"
 
 namespace anholon::cli {
 
 namespace {
+
+std::string plain_output() { return std::string(" (default: ") + plain_format().name + " on the standard output)"; }
 
 class CommandLine {
  public:
@@ -81,7 +84,8 @@ class CommandLine {
   using Function = int (*)(const Options&);
 
   // A command of its own kind.
-  CLI::App* command(const char* name, const char* what, Function f, const char* footer, bool needs_model = false) {
+  CLI::App* command(const char* name, const std::string& what, Function f, const std::string& footer,
+                    bool needs_model = false) {
     CLI::App* c = app_.add_subcommand(name, what);
     c->footer(footer);
     c->callback([this, f, needs_model] { command_ = f, needs_model_ = needs_model; });
@@ -209,8 +213,7 @@ class CommandLine {
                   "FILE that --save wrote: the run goes on with the same bits, rows after its last")
         ->type_name("FILE");
     motion_options(c, MotionOption::Part::judgement);
-    c->add_option("-o,--output", o_.output, "FILE.h5, FILE.csv or FILE.json (default: CSV on the standard output)")
-        ->type_name("FILE");
+    c->add_option("-o,--output", o_.output, known_files("FILE") + plain_output())->type_name("FILE");
 
     c->add_option("--report", o_.report,
                   "FILE.html: the motion as a page with equations, plots and animation (see anholon report)")
@@ -233,7 +236,7 @@ class CommandLine {
                   "forms whose equations are shown: routh,maggi (default: Routh's, those of the motion, Maggi's)")
         ->type_name("NAME,…")
         ->allow_extra_args(false);
-    c->add_option("--rows", o_.rows, "a run of this model whose rows are shown, in HDF5, CSV or JSON")
+    c->add_option("--rows", o_.rows, "a run of this model whose rows are shown, in " + known_formats())
         ->type_name("FILE");
     c->add_flag("--no-proof", o_.no_proof, "leave out the proof that the forms agree");
   }
@@ -273,7 +276,7 @@ class CommandLine {
         ->type_name("WHO")
         ->check(CLI::IsMember({"observer", "inertial"}));
     c->add_flag("--dark", o_.dark, "on a dark ground");
-    c->add_option("--rows", o_.rows, "a run of this model, in HDF5, CSV or JSON")->type_name("FILE");
+    c->add_option("--rows", o_.rows, "a run of this model, in " + known_formats())->type_name("FILE");
   }
 
   void add_sweep() {
@@ -304,8 +307,7 @@ class CommandLine {
     motion_option(c, "error-estimate",
                   "digits to trust, by a second, sharper run of a few cases: always, never, or of cases up to 5000 "
                   "steps (short, the default)");
-    c->add_option("-o,--output", o_.output, "FILE.csv or FILE.json (default: CSV on the standard output)")
-        ->type_name("FILE");
+    c->add_option("-o,--output", o_.output, known_files("FILE", sweep_formats()) + plain_output())->type_name("FILE");
   }
 
   void add_linearize() {
@@ -432,7 +434,7 @@ class CommandLine {
                           "          anholon plot run.h5 y --x x --title \"path of the contact\"\n"
                           "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm",
                           true);
-    c->add_option("RUN", o_.model, "a run: FILE.h5, FILE.csv, FILE.json, or - for what comes through a pipe")
+    c->add_option("RUN", o_.model, "a run: " + known_files("FILE") + ", or - for what comes through a pipe")
         ->required();
     c->add_option("COLUMN", o_.columns, "names of columns, or patterns");
     c->add_option("--x", o_.abscissa, "the column along the horizontal axis (default: t)")->type_name("COLUMN");
@@ -455,13 +457,11 @@ class CommandLine {
   }
 
   void add_convert() {
-    CLI::App* c = command("convert", "a run in another format: HDF5, CSV or JSON", cli::convert,
-                          "No digit is lost on the way. HDF5 holds the model, the rows and the report, JSON the rows "
-                          "and the report, CSV the rows.\n"
-                          "Example: anholon convert run.h5 run.csv",
-                          true);
+    CLI::App* c = command(
+        "convert", "a run in another format: " + known_formats(), cli::convert,
+        "No digit is lost on the way. " + held_by_formats() + "\nExample: anholon convert run.h5 run.csv", true);
     c->add_option("IN", o_.model, "the run, in any of the formats; -: through a pipe")->required();
-    c->add_option("OUT", o_.output, "FILE.h5, FILE.csv or FILE.json (default: CSV on the standard output)");
+    c->add_option("OUT", o_.output, known_files("FILE") + plain_output());
     c->add_flag("--json", o_.json, "JSON on the standard output");
   }
 

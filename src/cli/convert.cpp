@@ -14,19 +14,24 @@ RunFile read_result(const std::string& path) {
   }
 }
 
+void check_format(const ResultFormat* format) {
+  if (format && format->missing)
+    throw UsageError{"error: " + std::string(format->missing) + "\nhint: " + format->missing_hint + "\n"};
+}
+
 int convert(const Options& o) {
-  RunFormat format = o.json ? RunFormat::json : RunFormat::csv;
+  const ResultFormat* format = o.json ? &report_format() : &plain_format();
   if (!o.output.empty() && o.output != "-") {
-    if (!format_of(o.output, format))
-      throw UsageError{"error: the format of '" + o.output +
-                       "' is not known\nhint: a name that ends in .h5, .csv or .json\n"};
-    if (o.json && format != RunFormat::json)
+    format = format_of(o.output);
+    if (!format)
+      throw UsageError{"error: the format of '" + o.output + "' is not known\nhint: a name that ends in " +
+                       known_files("") + "\n"};
+    if (o.json && format != &report_format())
       throw UsageError{"error: --json and '" + o.output + "' ask for two formats\nhint: leave out --json\n"};
   }
-  if (format == RunFormat::hdf5 && !has_hdf5())
-    throw UsageError{"error: " + std::string(kNoHdf5) + "\nhint: " + kNoHdf5Hint + "\n"};
+  check_format(format);
   const RunFile run = read_result(o.model);
-  if (const std::string why = write_run(o.output, format, run); !why.empty()) throw UsageError{"error: " + why + "\n"};
+  if (const std::string why = format->write(o.output, run); !why.empty()) throw UsageError{"error: " + why + "\n"};
   return kOk;
 }
 

@@ -18,7 +18,7 @@
 #include "cli/say.h"
 #include "numeric/number.h"
 #include "report/assets.h"
-#include "report/page.h"
+#include "report/page/page.h"
 #include "result/file.h"
 
 namespace anholon::cli {

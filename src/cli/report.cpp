@@ -14,7 +14,7 @@
 #include "cli/say.h"
 #include "observe/row_values.h"
 #include "proof/verify.h"
-#include "report/page.h"
+#include "report/page/page.h"
 #include "result/file.h"
 
 namespace anholon::cli {
@@ -114,10 +114,7 @@ void take_up(const Options& o, Told& x) {
   make_ready(was, x);
 }
 
-bool is_a_run(const std::string& path) {
-  RunFormat format;
-  return format_of(path, format) && std::filesystem::exists(path);
-}
+bool is_a_run(const std::string& path) { return format_of(path) && std::filesystem::exists(path); }
 
 void check_page(const Options& o) {
   if (const std::string why = obstacle_to_writing(o.report); !why.empty()) throw UsageError{"error: " + why + "\n"};

@@ -1,11 +1,14 @@
 // Result files as arguments of commands.
 #pragma once
 #include "cli/input.h"
-#include "result/hdf5.h"
+#include "result/format.h"
 
 namespace anholon::cli {
 
 // Throws UsageError with the position of the error.
 RunFile read_result(const std::string& path);
+
+// Throws UsageError if this build cannot write the format; null passes.
+void check_format(const ResultFormat* format);
 
 }  // namespace anholon::cli

@@ -12,21 +12,24 @@
 #include "cli/motion_report.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "cli/result_file.h"
 #include "cli/run_info.h"
 #include "cli/saved.h"
 #include "cli/say.h"
 #include "cli/show.h"
 #include "result/file.h"
-#include "result/hdf5_sink.h"
+#include "result/format.h"
 #include "simulation/report_json.h"
 
 namespace anholon::cli {
 
 namespace {
 
-bool is_hdf5(const std::string& path) {
-  RunFormat format{};
-  return format_of(path, format) && format == RunFormat::hdf5;
+// The format of the rows: by the name of the file; --json asks for the report, too, if that format does not hold it.
+const ResultFormat& output_format(const Options& o) {
+  const ResultFormat* named = format_of(o.output);
+  if (o.json && (!named || named->holds == Holds::rows)) return report_format();
+  return named ? *named : plain_format();
 }
 
 // Writes the saved runs that --save asks for; stops at the first failure and keeps its message.
@@ -58,7 +61,7 @@ SimulationReport run(Workspace& s, const SimulationOptions& options, RowSink& ro
 }
 
 // A run that continues in its own file appends its rows to the existing ones; any other file is replaced.
-void go_on(Hdf5Sink& rows, const Options& o, const SavedRun& resume, const Reader& in) {
+void go_on(RunWriter& rows, const Options& o, const SavedRun& resume, const Reader& in) {
   std::error_code none;
   if (!rows.error().empty() || !resume.has("given") || !std::filesystem::is_regular_file(o.output, none)) return;
   try {
@@ -98,23 +101,21 @@ void settle_drawing(MotionSettings& settings, const Options& o, const Workspace&
     settings.every = abs(Rational(*settings.to - start)) / rows_to_look_at(*s.mechanics);
 }
 
-// JSON is held in memory, and has a lower limit than other formats.
-void must_fit_json(const SimulationOptions& asked, const Workspace& s, const Rational& last) {
-  constexpr long kMostNumbers = 5'000'000;
+// A format that is held in memory has a limit of its own.
+void must_fit(const ResultFormat& format, const SimulationOptions& asked, const Workspace& s, const Rational& last) {
   const auto columns = static_cast<long>(1 + 4 * s.system.coordinates + s.system.constraints.size());
-  if (asked.every && columns * abs(Rational(last - Rational(s.state.t))) > kMostNumbers * *asked.every)
-    throw UsageError{"error: --every asks for more than " + std::to_string(kMostNumbers) +
-                     " numbers of JSON\nhint: write HDF5 or CSV: -o run.h5\n"};
+  if (format.most_numbers > 0 && asked.every &&
+      columns * abs(Rational(last - Rational(s.state.t))) > format.most_numbers * *asked.every)
+    throw UsageError{"error: --every asks for more than " + std::to_string(format.most_numbers) + " numbers of " +
+                     format.name + "\nhint: write HDF5 or CSV: -o run.h5\n"};
 }
-
-bool writes_json(const Options& o) { return o.output.ends_with(".json") || (o.json && !is_hdf5(o.output)); }
 
 // All that is asked of the motion of this system. drawn: the motion is for a page or a film alone.
 void ask(MotionSettings& settings, const Options& o, const Workspace& s, bool drawn, SimulationOptions& options) {
   if (drawn) settle_drawing(settings, o, s);
   const Rational last = anholon::ask(settings, s, asker(o), options);
   if (options.resume) beyond(*options.resume, o, last);
-  if (writes_json(o)) must_fit_json(options, s, last);
+  must_fit(output_format(o), options, s, last);
   // An event that sets values does not conserve what is an integral between events.
   if (!sets_values(*s.model)) options.conserved = conserved(*s.mechanics);
   settings.tolerance = options.tolerance;
@@ -136,11 +137,7 @@ class Writer {
          SimulationOptions& options, Saver& saver, Told* told)
       : o_(o), in_(in), s_(s), info_(info), start_(start), options_(options), saver_(saver), told_(told) {}
 
-  Written write() {
-    if (told_ && o_.output.empty()) return keep();
-    if (is_hdf5(o_.output)) return hdf5();
-    return writes_json(o_) ? json() : csv();
-  }
+  Written write() { return told_ && o_.output.empty() ? keep() : to_file(output_format(o_)); }
 
  private:
   Written keep() {
@@ -152,42 +149,22 @@ class Writer {
     return w;
   }
 
-  Written json() {
+  Written to_file(const ResultFormat& format) {
     Written w;
-    RunFile kept;
-    RunSink rows(kept);
-    GrowingFile file(o_.output);
-    if (!file.error().empty()) throw UsageError{"error: " + file.error() + "\n"};
-    if (!o_.save.empty()) options_.save = std::ref(saver_);
+    if (!format.without_rows && !has_started(w)) return w;
+    const std::unique_ptr<RunWriter> rows = format.open(o_.output, info_);
+    if (!rows->error().empty()) throw UsageError{"error: " + rows->error() + "\n"};
+    if (options_.resume && format.holds == Holds::everything) go_on(*rows, o_, *options_.resume, in_);
     if (start_.ok())
-      w.report = run(s_, options_, rows, told_);
+      into(*rows, w);
     else
       w.report.outcome = start_, w.report.t = s_.state.t, w.report.model = s_.model->title,
       w.report.form = s_.system.form->name;
-    file.write(run_json(kept.table, w.report));
-    w.error = file.close();
-    return w;
-  }
-
-  Written hdf5() {
-    Written w;
-    if (!has_started(w)) return w;
-    Hdf5Sink rows(o_.output, info_);
-    if (options_.resume) go_on(rows, o_, *options_.resume, in_);
-    into(rows, w);
-    rows.report(report_json(w.report));
-    w.error = rows.close();
-    if (o_.json) hand_out(report_json(w.report) + "\n");
-    return w;
-  }
-
-  Written csv() {
-    Written w;
-    if (!has_started(w)) return w;
-    CsvSink rows(o_.output);
-    into(rows, w);
-    w.error = rows.close();
-    w.part = rows.part();
+    const std::string report = report_json(w.report);
+    w.error = rows->close(report);
+    w.part = rows->part();
+    // The report is in a file that also holds the model: --json asks for it on the standard output.
+    if (o_.json && &format != &report_format()) hand_out(report + "\n");
     return w;
   }
 
@@ -197,9 +174,7 @@ class Writer {
     return w.started = false;
   }
 
-  template <class Rows>
-  void into(Rows& rows, Written& w) {
-    if (!rows.error().empty()) throw UsageError{"error: " + rows.error() + "\n"};
+  void into(RunWriter& rows, Written& w) {
     // What --save writes is never ahead of the rows.
     if (!o_.save.empty())
       options_.save = [this, &rows](const SavedRun& saved) {
@@ -243,8 +218,7 @@ int say_end(const Options& o, const Written& w, const std::string& save_error) {
 }  // namespace
 
 int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
-  if (is_hdf5(asked.output) && !has_hdf5())
-    throw UsageError{"error: " + std::string(kNoHdf5) + "\nhint: " + kNoHdf5Hint + "\n"};
+  check_format(format_of(asked.output));
   Told own;
   Told& all = told ? *told : own;
   all.in = read(asked);

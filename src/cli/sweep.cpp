@@ -13,7 +13,7 @@
 #include "cli/show.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
-#include "result/file.h"
+#include "result/format.h"
 #include "simulation/report_json.h"
 
 namespace anholon::cli {
@@ -26,40 +26,6 @@ struct Stopped {
   Outcome outcome;
 };
 
-class Output : public CaseSink {
- public:
-  explicit Output(const std::vector<std::string>& columns) : width_(columns.size()) {}
-  void result(const CaseResult& r) override {
-    if (!r.outcome.ok()) {
-      Stopped& s = stopped_[r.outcome.kind];
-      if (s.count++ == 0) s.first = r.number, s.outcome = r.outcome;
-    }
-    write(r);
-    failed_ = !error().empty();
-  }
-  // Called by all threads.
-  bool failed() const { return failed_; }
-  const std::map<OutcomeKind, Stopped>& stopped() const { return stopped_; }
-  // Returns an empty string, or the reason why the file could not be written.
-  virtual std::string close(const EnsembleReport& report) = 0;
-  virtual const std::string& error() const = 0;
-
- protected:
-  virtual void write(const CaseResult& r) = 0;
-  // The numbers of a line after its outcome; missing ones are NaN.
-  std::vector<double> numbers(const CaseResult& r) const {
-    std::vector<double> list = {r.t};
-    list.insert(list.end(), r.last.begin(), r.last.end());
-    list.resize(1 + width_, std::numeric_limits<double>::quiet_NaN());
-    return list;
-  }
-
- private:
-  std::size_t width_;
-  std::atomic<bool> failed_{false};
-  std::map<OutcomeKind, Stopped> stopped_;
-};
-
 std::vector<std::string> header(const Variation& v, const std::vector<std::string>& columns) {
   std::vector<std::string> names = {"case"};
   // A varied initial value is not the final value.
@@ -69,31 +35,6 @@ std::vector<std::string> header(const Variation& v, const std::vector<std::strin
   names.insert(names.end(), columns.begin(), columns.end());
   return names;
 }
-
-class Csv final : public Output {
- public:
-  Csv(const std::string& path, const Variation& v, const std::vector<std::string>& columns)
-      : Output(columns), sink_(path) {
-    if (!sink_.error().empty()) throw UsageError{"error: " + sink_.error() + "\n"};
-    std::vector<std::string> names;
-    for (const std::string& n : header(v, columns)) names.push_back(csv_cell(n));
-    sink_.cells(names);
-  }
-  std::string close(const EnsembleReport&) override { return sink_.close(); }
-  const std::string& error() const override { return sink_.error(); }
-
- protected:
-  void write(const CaseResult& r) override {
-    std::vector<std::string> line = {std::to_string(r.number)};
-    for (double v : r.values) line.push_back(number_text(v));
-    line.emplace_back(name(r.outcome.kind));
-    for (double v : numbers(r)) line.push_back(std::isnan(v) ? "" : number_text(v));
-    sink_.cells(line);
-  }
-
- private:
-  CsvSink sink_;
-};
 
 std::string error_json(const CasesError& e) {
   JsonWriter j;
@@ -108,50 +49,53 @@ std::string error_json(const CasesError& e) {
   return text;
 }
 
-// Written line by line: there may be more cases than memory holds.
-class Json final : public Output {
+// Hands the cases to the writer of a file, and counts the outcomes of those that stopped.
+class Output final : public CaseSink {
  public:
-  Json(const std::string& path, const Scenario& s, const Variation& v, const std::vector<std::string>& columns)
-      : Output(columns), file_(path) {
-    if (!file_.error().empty()) throw UsageError{"error: " + file_.error() + "\n"};
-    std::string names;
-    for (const std::string& n : header(v, columns)) names += (names.empty() ? "\"" : ", \"") + json_escape(n) + "\"";
-    file_.write("{\n  \"model\": \"" + json_escape(s.model->title) + "\",\n  \"form\": \"" + s.system.form->name +
-                "\",\n  \"columns\": [" + names + "],\n  \"rows\": [");
+  Output(const ResultFormat& format, const std::string& path, const Scenario& s, const Variation& v,
+         const std::vector<std::string>& columns)
+      : width_(columns.size()),
+        file_(format.open_sweep(path, {s.model->title, s.system.form->name, header(v, columns)})) {
+    if (!file_->error().empty()) throw UsageError{"error: " + file_->error() + "\n"};
   }
-
-  std::string close(const EnsembleReport& report) override {
-    std::string end = std::string(any_ ? "\n  " : "") + "],\n  \"stopped\": [";
-    bool first = true;
-    for (const auto& [kind, s] : stopped()) {
-      end += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) +
-             "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) +
-             ", \"message\": \"" + json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) +
-             "\"}";
-      first = false;
+  void result(const CaseResult& r) override {
+    if (!r.outcome.ok()) {
+      Stopped& s = stopped_[r.outcome.kind];
+      if (s.count++ == 0) s.first = r.number, s.outcome = r.outcome;
     }
-    end += std::string(first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) +
-           ",\n  \"cases\": " + std::to_string(report.done) + ",\n  \"finished\": " + std::to_string(report.finished) +
-           ",\n  \"outcome\": \"" + name(report.outcome.kind) + "\"\n}\n";
-    file_.write(end);
-    return file_.close();
+    // The numbers that a stopped case does not have are NaN.
+    std::vector<double> last = {r.t};
+    last.insert(last.end(), r.last.begin(), r.last.end());
+    last.resize(1 + width_, std::numeric_limits<double>::quiet_NaN());
+    file_->row({r.number, r.values, name(r.outcome.kind), last});
+    failed_ = !file_->error().empty();
   }
-  const std::string& error() const override { return file_.error(); }
-
- protected:
-  void write(const CaseResult& r) override {
-    JsonWriter j;
-    j.open_array().integer(static_cast<long long>(r.number));
-    for (double v : r.values) j.number(number_text(v));
-    j.string(name(r.outcome.kind));
-    for (double v : numbers(r)) j.number(number_text(v));
-    file_.write((any_ ? ",\n    " : "\n    ") + j.close().text());
-    any_ = true;
-  }
+  // Called by all threads.
+  bool failed() const { return failed_; }
+  const std::map<OutcomeKind, Stopped>& stopped() const { return stopped_; }
+  // Returns an empty string, or the reason why the file could not be written.
+  std::string close(const EnsembleReport& report) { return file_->close(json(report)); }
 
  private:
-  GrowingFile file_;
-  bool any_ = false;
+  std::string json(const EnsembleReport& report) const {
+    std::string text = "{\n  \"stopped\": [";
+    bool first = true;
+    for (const auto& [kind, s] : stopped_) {
+      text += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) +
+              "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) +
+              ", \"message\": \"" + json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) +
+              "\"}";
+      first = false;
+    }
+    return text + (first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) +
+           ",\n  \"cases\": " + std::to_string(report.done) + ",\n  \"finished\": " + std::to_string(report.finished) +
+           ",\n  \"outcome\": \"" + name(report.outcome.kind) + "\"\n}";
+  }
+
+  std::size_t width_;
+  std::unique_ptr<SweepWriter> file_;
+  std::atomic<bool> failed_{false};
+  std::map<OutcomeKind, Stopped> stopped_;
 };
 
 // --vary, -n and --seed.
@@ -174,6 +118,18 @@ Variation variation_of(const Options& o, const Model& model) {
   return v;
 }
 
+// The format of the cases: by the name of the file, else --json decides.
+const ResultFormat& output_format(const Options& o) {
+  const ResultFormat* named = format_of(o.output);
+  // A data base is planned.
+  const char* unable = o.output.ends_with(".db") ? ".db" : named && !named->open_sweep ? named->endings[0] : nullptr;
+  if (unable)
+    throw UsageError{"error: " + std::string(unable) +
+                     " files are not written yet\nhint: " + known_files("-o cases", sweep_formats()) + "\n"};
+  if (o.json) return report_format();
+  return named ? *named : plain_format();
+}
+
 void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
@@ -193,9 +149,7 @@ void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out
 }  // namespace
 
 int sweep(const Options& asked) {
-  for (const std::string end : {".h5", ".db"})
-    if (asked.output.ends_with(end))
-      throw UsageError{"error: " + end + " files are not written yet\nhint: -o cases.csv or -o cases.json\n"};
+  const ResultFormat& format = output_format(asked);
   const Reader in = read(asked);
   const Options o = with_form(asked, in);
   const Variation variation = variation_of(o, *in.model);
@@ -221,26 +175,20 @@ int sweep(const Options& asked) {
     return kStopped;
   }
   catch_stop(o.output);
-  const bool json = o.json || o.output.ends_with(".json");
-  const std::vector<std::string> columns = ensemble_columns(*in.model);
-  std::unique_ptr<Output> out;
-  if (json)
-    out = std::make_unique<Json>(o.output, s, variation, columns);
-  else
-    out = std::make_unique<Csv>(o.output, variation, columns);
+  Output out(format, o.output, s, variation, ensemble_columns(*in.model));
   // Stops if the rows cannot be written.
-  options.cancelled = [&] { return stop_requested() || out->failed(); };
+  options.cancelled = [&] { return stop_requested() || out.failed(); };
   EnsembleReport r;
   {
     Progress progress(o.quiet, "case", "cases");
     options.progress = [&](std::size_t done) {
       progress(static_cast<double>(done) / static_cast<double>(options.cases), static_cast<double>(done), done);
     };
-    r = ensemble(s, options, *out);
+    r = ensemble(s, options, out);
   }
-  const std::string write_error = out->close(r);
-  if (!o.quiet) report(r, options, *out);
-  for (const auto& [kind, stopped] : out->stopped())
+  const std::string write_error = out.close(r);
+  if (!o.quiet) report(r, options, out);
+  for (const auto& [kind, stopped] : out.stopped())
     say(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
         stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(),
         stopped.outcome.hint.c_str());

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// What is derived from others follows from those that are varied.
+// All parameters as functions of the varied ones.
 Tape parameter_tape(const Model& model, const std::vector<Varied>& varied) {
   Graph& g = *model.graph;
   Column values;

@@ -1,37 +1,37 @@
-// The parameters of the cases of an ensemble, and whether the model goes on to be what it was with them.
+// The parameters of the cases of an ensemble, and whether bodies and equations of the model are possible with them.
 #pragma once
-#include "ensemble/ensemble.h"
+#include "ensemble/case.h"
 
 namespace anholon {
 
-// Read by many threads: it builds no expressions.
+// Builds no expressions after its construction, so many threads may read it.
 class CaseParameters {
  public:
   CaseParameters(Workspace& scenario, const std::vector<Varied>& varied);
 
-  // Of all parameters, those that are derived from others too.
+  // The values of all parameters, those that follow from others included, for these values of the varied numbers.
   template <Number N>
   std::vector<N> values(const std::vector<Rational>& varied) const;
-  // Not ok if no such body can be: a negative mass, a moment of inertia greater than the two others. (The reader asks
-  // the same of the file's numbers.)
+  // Returns an outcome that is not ok if no body has such a mass or inertia: a negative mass, a principal moment of
+  // inertia greater than the sum of the two others. (The reader refuses such numbers in a file.)
   Outcome possible(const std::vector<double>& parameters) const;
-  // No derivative occurs in the equations beyond those that are solved for (sigma_ij <= d_j - c_i): where a mass or a
-  // coefficient of the file is zero, others may.
+  // Whether the equations hold no derivative beyond those that are solved for (sigma_ij <= d_j - c_i). They may hold
+  // one if a mass or a coefficient is zero in the file and not in the case.
   bool same_structure(const std::vector<double>& parameters) const;
 
  private:
   const Scenario& s_;
   const std::vector<Varied>& varied_;
-  bool any_ = false;  // parameter is varied
+  bool any_ = false;  // whether a parameter is varied
   Tape tape_;
   std::optional<Tape> bodies_, equations_;
-  struct Check {  // of roots of `bodies_`
+  struct Check {  // one condition on the roots of `bodies_`
     std::string what;
     std::size_t root = 0;
-    std::vector<Column> axes;  // of an inertia: along the body's axes, their weights are the roots
+    std::vector<Column> axes;  // of an inertia: the body's axes, whose weights are the roots; empty for a single number
   };
   std::vector<Check> checks_;
-  System whole_;  // before what does not occur was dropped
+  System whole_;  // the equations with the derivatives that vanish for the numbers of the file
 };
 
 }  // namespace anholon

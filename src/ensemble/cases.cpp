@@ -8,42 +8,6 @@
 
 namespace anholon {
 
-std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
-  std::vector<StateOverride> list = o.state.overrides;
-  for (std::size_t i = 0; i < o.varied.size(); ++i)
-    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial)
-      list.push_back({v.order, v.index, numbers ? numbers->values[i] : Rational(0)});
-  return list;
-}
-
-Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
-                         Scenario& scenario) {
-  const std::shared_ptr<Model> model = given_model(of_all);
-  for (std::size_t i = 0; i < o.varied.size(); ++i)
-    if (o.varied[i].kind == Varied::Kind::parameter)
-      model->parameters[o.varied[i].index].value = model->graph->number(numbers.values[i]);
-  StateChoice state = o.state;
-  state.overrides = overrides_of(o, &numbers);
-  return make_scenario(model, *of_all.system.form, state, scenario);
-}
-
-std::vector<std::string> ensemble_columns(const Model& model) {
-  std::vector<std::string> names;
-  for (const unsigned k : {0U, 1U})
-    for (const Coordinate& c : model.coordinates) names.push_back(derivative_name(c.name, k, Format::text));
-  for (const StateVariable& z : model.states) names.push_back(z.name);
-  for (const Monitor& m : model.monitors) names.push_back(m.name);
-  return names;
-}
-
-std::vector<std::size_t> ensemble_places(const std::vector<RunColumn>& columns) {
-  std::vector<std::size_t> places;
-  for (const ColumnKind kind : {ColumnKind::coordinate, ColumnKind::velocity, ColumnKind::state, ColumnKind::monitor})
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      if (columns[k].kind == kind) places.push_back(k);
-  return places;
-}
-
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
     : of_all(s), options(o), scenario(s), parameters(scenario, o.varied) {
   make();
@@ -97,21 +61,6 @@ void EnsemblePlan::make() {
 
 void EnsemblePlan::compile_if_long() const {
   if (const std::unique_lock lock(compiling_, std::try_to_lock); lock) code_.step(kernel, lanes);
-}
-
-Outcome scenario_of_cases(const EnsembleOptions& o, Scenario& scenario) {
-  constexpr std::size_t kMost = 64;
-  Outcome first;
-  for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
-    const EnsembleCase numbers = o.numbers(k);
-    Scenario s;
-    const Outcome outcome = scenario_of_case(scenario, o, numbers, s);
-    if (k == 0) first = outcome;
-    if (!outcome.ok()) continue;
-    scenario = std::move(s);
-    return {};
-  }
-  return first;
 }
 
 CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shared_ptr<Kernel>& kernel, int lane) {
@@ -194,7 +143,7 @@ CaseWay CaseWalk::step() {
   return after_step();
 }
 
-// What the last step has to give, which may be the end.
+// Takes the rows that lie in the last step, and the end if it does.
 CaseWay CaseWalk::after_step() {
   for (std::size_t i = 0; i < plan_->program->quadratures; ++i)
     if (!plan_->scenario.model->masses[i].weight &&
@@ -207,7 +156,7 @@ CaseWay CaseWalk::after_step() {
   return stop(keep(end_, result_->last) ? CaseWay::plain : CaseWay::simulation);
 }
 
-// Those that lie in the last step.
+// Keeps the rows that lie in the last step.
 bool CaseWalk::rows() {
   const bool forward = !(end_ < stepper_->before());
   while (result_->rows.size() < times_.size()) {
@@ -220,10 +169,10 @@ bool CaseWalk::rows() {
   return true;
 }
 
-// What is kept of the state at t, which lies in the last step.
+// Keeps the results at t, which lies in the last step.
 bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   const System& system = plan_->scenario.system;
-  stepper_->leave_kernel();  // as whoever reads a motion does (motion.cpp)
+  stepper_->leave_kernel();  // as every reader of a motion does (motion.cpp)
   if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
   for (const int k : {0, 1})
     for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
@@ -251,7 +200,7 @@ static bool contained(CaseResult& r, const Work& work) {
   return false;
 }
 
-// Each lane takes the next case when it has done one. A lane has the same bits whatever is beside it.
+// A lane takes the next case when it has done one. Its bits do not depend on the other lanes.
 void CaseWorker::integrate(std::span<CaseResult> results) {
   plan_.compile_if_long();
   if (plan_.kernel && !kernel_) kernel_ = std::make_shared<Kernel>(plan_.kernel, plan_.lanes);
@@ -303,7 +252,7 @@ void CaseWorker::integrate(std::span<CaseResult> results) {
 void CaseWorker::end(CaseWay way, const EnsembleCase& numbers, CaseResult& r) {
   if (way == CaseWay::simulation) {
     by_simulation(numbers, r);
-    // What fails where it begins may have another structure there, or other redundant constraints.
+    // A case that fails at its start may have another structure there, or other redundant constraints.
     if (!r.outcome.ok() && r.steps == 0 && r.outcome.kind != OutcomeKind::inconsistent &&
         r.outcome.kind != OutcomeKind::interrupted)
       way = CaseWay::derivation;
@@ -344,18 +293,13 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   r.rows.clear();
   r.last.clear();
   const Rational to = numbers.to ? *numbers.to : o.to;
-  SimulationOptions options;
-  options.state = o.state;
-  options.state.overrides = overrides_of(o, &numbers);
+  SimulationOptions options = options_of_case(o, numbers);
   for (const Rational& t : o.at)
     if (to < Rational(own.state.t) ? t > to : t < to) options.at.push_back(t);
   options.at.push_back(to);
   std::sort(options.at.begin(), options.at.end());
-  options.tolerance = o.tolerance;
   options.order = o.order;
   options.method = o.method;
-  options.most_steps = o.most_steps;
-  options.cancelled = o.cancelled;
   options.kernel = o.kernel;
   EnsembleRowFilter rows(o.at, r);
   const SimulationReport report = simulate_in(own, options, rows);

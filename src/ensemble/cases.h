@@ -1,27 +1,22 @@
-// What threads do with the cases of an ensemble.
+// The computation of the cases of an ensemble on many threads.
 //
-// The plain way reads tapes that were compiled before: parameters, consistent positions and velocities, the stepping
-// program, outputs. It builds no expressions, so all threads share one graph. It only finishes: what stops on the way,
-// or needs events, completed states, redundant constraints or another elimination, goes the way of `simulate` in a
-// workspace of the case, so that its outcome is that of `simulate`. A case with which the equations have another
-// structure is derived anew.
+// A plain case is computed by tapes that were compiled before: parameters, consistent positions and velocities, the
+// stepping program, outputs. It builds no expressions, so all threads share one graph. A case that stops, or needs
+// events, completed states, redundant constraints or another elimination, is computed by `simulate` in a workspace of
+// its own, so its outcome is that of `simulate`. A case in which the equations have another structure is derived anew.
 #pragma once
 #include <deque>
 #include <mutex>
 
 #include "ensemble/case_parameters.h"
+#include "ensemble/case_scenario.h"
+#include "ensemble/columns.h"
 #include "kernel/kernel.h"
 #include "motion/code_for_long_runs.h"
 
 namespace anholon {
 
-// The initial values that are given or varied; without numbers only which they are.
-std::vector<StateOverride> overrides_of(const EnsembleOptions& options, const EnsembleCase* numbers);
-// The scenario of a case, derived anew with its numbers in the form of the scenario of all cases.
-Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& options, const EnsembleCase& numbers,
-                         Scenario& scenario);
-
-// Read by all threads, changed by none.
+// The tapes and settings that all threads read and none changes.
 class EnsemblePlan {
  public:
   EnsemblePlan(const Scenario& scenario, const EnsembleOptions& options);
@@ -29,26 +24,26 @@ class EnsemblePlan {
   const Scenario& of_all;  // as it was given
   const EnsembleOptions& options;
   Workspace scenario;  // in which the plan was made; frozen
-  bool plain = false;  // the plain way goes for this model
+  bool plain = false;  // whether cases of this model may be plain
   std::optional<StartPlan> start;
   CaseParameters parameters;
   std::vector<Node> entries;       // of the state, in the order of an Expansion's
   std::optional<Program> program;  // varying masses are its quadratures
-  // For the expansions of all cases, its pivots chosen at the start of the scenario; may be null. `simulate` chooses
-  // them at its own start, so the last digits may differ. Machine code, with the same bits, is made beside the cases
-  // when they have taken a while.
+  // The kernel plan for the expansions of all cases; null if there is none. Its pivots are chosen at the start of the
+  // scenario, those of `simulate` at the start of the case: the last digits may differ. Machine code with the same bits
+  // is made beside the cases when these have taken a while.
   std::shared_ptr<const KernelPlan> kernel;
   void compile_if_long() const;
-  int lanes = 1;  // of kernels of cases: all that this machine has
+  int lanes = 1;  // of the kernels of cases: as many as the machine has
   std::optional<Tape> outputs;
   struct Entry {
     std::uint32_t slot;
-    std::optional<std::size_t> variable;  // else t
+    std::optional<std::size_t> variable;  // nullopt: t
     int order;
   };
   std::vector<Entry> output_inputs;
   int stages = 0;
-  bool leading = false;  // what is kept of a case needs more than its state
+  bool leading = false;  // whether the results of a case need more than its state
   StepSettings settings;
 
  private:
@@ -58,23 +53,24 @@ class EnsemblePlan {
   mutable CodeForLongRuns code_;
 };
 
-// How a case is computed: by the tapes of the plan, or in a workspace of its own, by the program of the scenario or one
-// that is derived anew.
+// How a case is computed: plainly, by the tapes of the plan; or in a workspace of its own, by `simulate` with the
+// program of the scenario, or with one that is derived anew.
 enum class CaseWay : std::uint8_t { plain, simulation, derivation };
 
-// The plain way of one case after the other, in one lane of a kernel.
+// Computes one plain case after the other, in one lane of a kernel.
 class CaseWalk {
  public:
   using W = Wider<double>;
 
-  // The next case: its numbers, its consistent start. The way it has to go; `walking` if this one has steps to make.
+  // Begins the next case with its numbers and its consistent start. Returns the way in which it has to be computed;
+  // `walking` tells whether it is plain and has steps to make.
   CaseWay begin(const EnsemblePlan& plan, CaseResult& result, const std::shared_ptr<Kernel>& kernel, int lane);
   bool walking() const { return result_ != nullptr; }
   void abandon() { result_ = nullptr, ready_ = false; }
   CaseResult& result() const { return *result_; }
   const EnsembleCase& numbers() const { return numbers_; }
-  // One step, in the parts of Stepper::step; the kernel works in between. Whoever stops walking after one of them has
-  // come to its end on the way it returns.
+  // One step, in the parts of Stepper::step; the kernel works between them. A case that is not walking after one of the
+  // parts is done, or has to be computed in the way that the part returns.
   CaseWay begin_step();
   CaseWay aim();
   CaseWay look_at_end();
@@ -96,7 +92,7 @@ class CaseWalk {
   std::vector<W> parameters_;
   std::vector<double> narrow_parameters_;
   bool ready_ = false, same_structure_ = true;  // for these parameters
-  bool looks_elsewhere_ = false;                // the step is to end somewhere else
+  bool looks_elsewhere_ = false;                // whether the step has to end at another time
   W end_{0};
   std::vector<W> times_;  // of rows
   InitialState<W> named_;
@@ -110,7 +106,7 @@ class CaseWorker {
  public:
   explicit CaseWorker(const EnsemblePlan& plan) : plan_(plan) {}
 
-  // These cases, whose numbers stand in the results.
+  // Computes the cases with the numbers that the results hold.
   void integrate(std::span<CaseResult> results);
   std::size_t in_workspaces() const { return in_workspaces_; }
 

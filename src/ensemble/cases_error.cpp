@@ -1,6 +1,7 @@
 #include "ensemble/cases_error.h"
 
-#include "ensemble/cases.h"
+#include "ensemble/case_scenario.h"
+#include "ensemble/columns.h"
 #include "observe/estimate.h"
 
 namespace anholon {
@@ -13,12 +14,7 @@ SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, cons
   Scenario of_case;
   if (report.outcome = scenario_of_case(of_all, o, numbers, of_case); !report.outcome.ok()) return report;
   Workspace s(of_case);
-  SimulationOptions options;
-  options.state = o.state;
-  options.state.overrides = overrides_of(o, &numbers);
-  options.tolerance = o.tolerance;
-  options.most_steps = o.most_steps;
-  options.cancelled = o.cancelled;
+  SimulationOptions options = options_of_case(o, numbers);
   options.estimate = o.estimate;
   RunToJudge<long double> run;
   run.columns = ensemble_places(columns_after_time(s, largest_order(s, s.structure.d)));
@@ -28,7 +24,7 @@ SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, cons
     run.rows.add(t, std::vector<long double>(begin, last), 0);
   };
   for (const std::vector<double>& row : r.rows) add(row[0], row.begin() + 1, row.end());
-  // Written is the double next to the time that was asked for.
+  // The results hold the double next to the time that was asked for.
   add(static_cast<double>(end) == r.t ? end : r.t, r.last.begin(), r.last.end());
   estimate_error<double>(s, options, run, report);
   return report;

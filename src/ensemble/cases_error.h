@@ -1,11 +1,14 @@
 // The error of the results of an ensemble, by sharper runs of some of its cases.  (theory: integrals)
 #pragma once
-#include "ensemble/ensemble.h"
+#include "ensemble/case.h"
 
 namespace anholon {
 
-// `results`: of cases_to_compare(); `each` calls a function with all numbers below a count, side by side if it can.
-// Those that have not finished are left out, and so are long ones where short runs are asked for.
+// The numbers of the cases that are compared: a few, which cost little beside many cases.
+std::vector<std::size_t> cases_to_compare(std::size_t cases);
+
+// The error of the `results` of cases_to_compare(). `each` calls a function with all numbers below a count, in parallel
+// if it can. Cases that have not finished are left out, and so are long ones if the estimate is for short runs.
 using Each = std::function<void(std::size_t count, const std::function<void(std::size_t)>&)>;
 CasesError cases_error(const Scenario& scenario, const EnsembleOptions& options, std::span<const CaseResult> results,
                        const Each& each);

@@ -25,7 +25,7 @@ std::size_t together(std::size_t cases) {
   return std::clamp<std::size_t>(cases / kFew, 1, kMost);
 }
 
-// Cases on their way for each thread, however they are grouped: room for one that takes long while the others go on.
+// The most cases under way per thread, in groups of any size: the others go on beside one that takes long.
 constexpr std::size_t kWindow = 256;
 
 // Debian's libtbb is not compiled for ThreadSanitizer, which so sees neither that what a thread is given was ready
@@ -89,7 +89,7 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
     const std::unique_ptr<Group> owned(g);
     const std::lock_guard lock(in_order);
     for (const CaseResult& r : g->take()) {
-      // What Ctrl-C cut short is no result, and neither is what comes after it: the results are the first ones, without
+      // Neither a case that Ctrl-C has cut short nor one after it is a result: the results are the first cases, without
       // a gap.
       cut = cut || (r.outcome.kind == OutcomeKind::interrupted && cancelled());
       if (cut) continue;

@@ -4,9 +4,6 @@
 
 namespace anholon {
 
-// The inputs of the file with a constant added to each, 0 here: the symbol u by which B and D are derivatives. A
-// formula of an input remains valid, so A is that of the motion that `simulate` computes. The input of a servo
-// constraint is an unknown, not a signal.
 std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) {
   auto m = std::make_shared<Model>(model);
   Graph& g = *m->graph;
@@ -26,7 +23,6 @@ std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) 
   return m;
 }
 
-// Rest without accelerations, near the positions of the file.
 std::shared_ptr<const Model> at_rest(const Model& model) {
   auto m = std::make_shared<Model>(model);
   Graph& g = *m->graph;
@@ -44,8 +40,6 @@ std::shared_ptr<const Model> at_rest(const Model& model) {
   return m;
 }
 
-// Positions of the command line are the start of the search for an equilibrium, like those of the file: held fixed,
-// they would not be an equilibrium.
 std::shared_ptr<const Model> searched_from(const Model& at_rest, StateChoice& choice) {
   auto m = std::make_shared<Model>(at_rest);
   Graph& g = *m->graph;
@@ -61,7 +55,6 @@ std::shared_ptr<const Model> searched_from(const Model& at_rest, StateChoice& ch
   return m;
 }
 
-// If no equilibrium was found, the failed conditions are those of the search, not of the file: replaces the message.
 void say_no_rest(Outcome& o) {
   if (o.kind != OutcomeKind::inconsistent) return;
   o.message = "no equilibrium was found near the initial positions";

@@ -2,6 +2,7 @@
 
 #include "base/escape.h"
 #include "numeric/number.h"
+#include "program/emit_statements.h"
 #include "program/emit_text.h"
 
 namespace anholon {
@@ -105,10 +106,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-std::string put(std::string text, const std::string& mark, const std::string& by) {
-  return text.replace(text.find(mark), mark.size(), by);
-}
-
 std::vector<std::string> targets(const std::string& array, std::size_t count) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < count; ++i) out.push_back(array + "[" + std::to_string(i) + "]");
@@ -128,134 +125,172 @@ std::string names_table(const std::string& name, const std::vector<std::string>&
   return out + "  0};\n";
 }
 
-}  // namespace
+// The text of a C file, part by part. `$` marks the name that the user gave.
+class CFile {
+ public:
+  CFile(const System& system, const Structure& structure, const EmitOptions& options)
+      : system_(system), structure_(structure), options_(options), m_(motion(system, structure, options)),
+        names_(system, structure, m_), writer_(system, structure, m_, names_, Language::c),
+        inputs_(!m_.inputs.empty()) {
+    const std::size_t n = system.size();
+    residual_ = writer_.body(m_.residual, targets("out", n));
+    jacobian_ = writer_.body(entries(m_.jacobian), targets("out", n * n), true);
+    hidden_ = writer_.body(m_.hidden, targets("out", m_.hidden.size()));
+    formulas_ = writer_.body(m_.input_values, targets("out", m_.inputs.size()));
+    const ParameterAssignments parameters = parameter_assignments(m_);
+    defaults_ = writer_.body(parameters.free.values, parameters.free.targets);
+    derived_ = writer_.body(parameters.derived.values, parameters.derived.targets);
+  }
 
-std::string emit_c(const System& system, const Structure& structure, const EmitOptions& options) {
-  const Motion m = motion(system, structure, options);
-  const LocalNames names(system, structure, m);
-  Writer writer(system, structure, m, names, Language::c);
-  const std::size_t n = system.size(), parameters = system.model->parameters.size();
+  std::string text() const {
+    const std::string program = contents() + declarations() + tables() + parameters() + equations() + kSolver +
+                                newton() + right_side() + start();
+    // A title may contain a $.
+    return "/*\n" + lines(head(system_, structure_, m_, options_), " * ") +
+           replaced(program, "$", identifier(options_.name, "motion"));
+  }
 
+ private:
   // Inputs follow the parameters.
-  const bool inputs = !m.inputs.empty();
-  const auto with_inputs = [&](std::string text) {
-    if (!inputs) return text;
+  std::string with_inputs(std::string text) const {
+    if (!inputs_) return text;
     text = replaced(std::move(text), "const double *p, double *", "const double *p, const double *u, double *");
     return replaced(replaced(replaced(std::move(text), "p, f)", "p, u, f)"), "p, a)", "p, u, a)"), "p, lead)",
                     "p, u, lead)");
-  };
-  // Precedes statements that read u.
-  const auto own_inputs = [&](const Statements& s) {
-    return !inputs    ? std::string()
-           : s.inputs ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n"
-                      : "  (void)u;\n";
-  };
-  const auto not_read = [](const Statements& s) {
-    const bool all = s.inputs;  // passed on to the formulas of the inputs
-    return unused({{"t", all || s.time}, {"state", all || s.state}, {"lead", s.lead}, {"p", all || s.parameters}});
-  };
-  const std::string arguments =
-      with_inputs("(double t, const double *state, const double *lead, const double *p, double *out)");
-  const Statements residual = writer.body(m.residual, targets("out", n));
-  Column entries;
-  for (const Column& row : m.jacobian) entries.insert(entries.end(), row.begin(), row.end());
-  const Statements jacobian = writer.body(entries, targets("out", n * n), true);
-  const Statements hidden = writer.body(m.hidden, targets("out", m.hidden.size()));
-  const Statements formulas = writer.body(m.input_values, targets("out", m.inputs.size()));
-  Column free, derived;
-  std::vector<std::string> free_targets, derived_targets;
-  for (std::size_t i = 0; i < parameters; ++i) {
-    const bool is_free = std::find(m.derived.begin(), m.derived.end(), i) == m.derived.end();
-    (is_free ? free : derived).push_back(m.parameters[i]);
-    (is_free ? free_targets : derived_targets).push_back("p[" + std::to_string(i) + "]");
   }
-  const Statements defaults = writer.body(free, free_targets);
-  const Statements follow = writer.body(derived, derived_targets);
 
-  std::string out = R"( *
+  std::string arguments() const {
+    return with_inputs("(double t, const double *state, const double *lead, const double *p, double *out)");
+  }
+
+  // What precedes the statements of a function of all arguments: its own inputs, and a mention of what it does not read.
+  std::string before(const Statements& s) const {
+    const std::string own = !inputs_   ? ""
+                            : s.inputs ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n"
+                                       : "  (void)u;\n";
+    const bool all = s.inputs;  // passed on to the formulas of the inputs
+    return own +
+           unused({{"t", all || s.time}, {"state", all || s.state}, {"lead", s.lead}, {"p", all || s.parameters}});
+  }
+
+  // The comment that lists the functions, and the headers.
+  std::string contents() const {
+    std::string out = R"( *
  * $_defaults      sets p to the default values
 )";
-  if (!derived.empty())
-    out += " * $_derived       computes anew the parameters that depend on others: call it after a change of p\n";
-  if (inputs) out += " * $_inputs        the inputs by the formulas of the model\n";
-  out += R"( * $_residual      the equations, out of any state and lead
+    if (!m_.derived.empty())
+      out += " * $_derived       computes anew the parameters that depend on others: call it after a change of p\n";
+    if (inputs_) out += " * $_inputs        the inputs by the formulas of the model\n";
+    out += R"( * $_residual      the equations, out of any state and lead
  * $_jacobian      their derivatives by lead
  * $_hidden        the hidden constraints
  * $_leading       solves for lead; on entry lead is where to start (zeros will do if linear)
  * $_rhs           d state / dt, for an integrator
 )";
-  if (options.start) out += " * $_start         a time and a state to begin with\n";
-  out += R"( * $_leading and $_rhs return 0; 1 if the jacobian is singular, 2 if Newton's method
+    if (options_.start) out += " * $_start         a time and a state to begin with\n";
+    return out + R"( * $_leading and $_rhs return 0; 1 if the jacobian is singular, 2 if Newton's method
  * does not converge, 3 if a formula has no value.
  */
 #include <math.h>
 
 )";
-  out += "enum { $_UNKNOWNS = " + std::to_string(n) + ", $_STATE = " + std::to_string(m.state.size()) +
-         ", $_HIDDEN = " + std::to_string(m.hidden.size()) + ", $_PARAMETERS = " + std::to_string(parameters) +
-         (inputs ? ", $_INPUTS = " + std::to_string(m.inputs.size()) : std::string()) + " };\n\n";
-  out += "extern const char *const $_parameter_names[], *const $_state_names[], *const $_lead_names[];\n";
-  if (inputs) out += "extern const char *const $_input_names[];\n";
-  out += "void $_defaults(double *p);\n";
-  if (!derived.empty()) out += "void $_derived(double *p);\n";
-  if (inputs) out += "void $_inputs(double t, const double *state, const double *p, double *out);\n";
-  out += "void $_residual" + arguments + ";\nvoid $_jacobian" + arguments + ";\n";
-  out += "void $_hidden(double t, const double *state, const double *p, double *out);\n";
-  out += with_inputs("int $_leading(double t, const double *state, const double *p, double *lead);\n"
-                     "int $_rhs(double t, const double *state, const double *p, double *dstate);\n");
-  if (options.start) out += "void $_start(double *t, double *state);\n";
-  out += "\n/* Each ends with a null pointer. */\n";
-  std::vector<std::string> parameter_names;
-  for (const Parameter& p : system.model->parameters) parameter_names.push_back(p.name);
-  out += names_table("$_parameter_names", parameter_names) + names_table("$_state_names", m.state_names) +
-         names_table("$_lead_names", m.leading_names) +
-         (inputs ? names_table("$_input_names", m.input_names) : std::string());
-  if (writer.used_sign()) out += "\nstatic double $_sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }\n";
-
-  out += "\nvoid $_defaults(double *p)\n{\n" + unused({{"p", parameters > 0}}) + defaults.text;
-  if (!derived.empty()) out += "  $_derived(p);\n}\n\nvoid $_derived(double *p)\n{\n" + follow.text;
-  out += "}\n";
-  if (inputs)
-    out += "\nvoid $_inputs(double t, const double *state, const double *p, double *out)\n{\n" +
-           unused({{"t", formulas.time}, {"state", formulas.state}, {"p", formulas.parameters}}) + formulas.text +
-           "}\n";
-  out += "\nvoid $_residual" + arguments + "\n{\n" + own_inputs(residual) + not_read(residual) + residual.text + "}\n";
-  out += "\nvoid $_jacobian" + arguments + "\n{\n  int i;\n" + own_inputs(jacobian) + not_read(jacobian) +
-         "  for (i = 0; i < $_UNKNOWNS * $_UNKNOWNS; ++i) out[i] = 0;\n" + jacobian.text + "}\n";
-  out += "\nvoid $_hidden(double t, const double *state, const double *p, double *out)\n{\n" +
-         unused({{"t", hidden.time}, {"state", hidden.state}, {"p", hidden.parameters}, {"out", !m.hidden.empty()}}) +
-         hidden.text + "}\n";
-
-  out += kSolver;
-  const std::vector<std::string> factor = {"$_jacobian(t, state, lead, p, a);",
-                                           "status = $_factor(a, order, row, column);", "if (status) return status;"};
-  std::string newton = put(kNewton, "@ONCE", m.linear ? lines(factor, "  ") : "");
-  newton = put(newton, "@EACH", m.linear ? "" : lines(factor, "    "));
-  newton = with_inputs(newton);
-  out +=
-      put(newton, "@SETTLED", m.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size && length > 0.5 * before)");
-
-  out += with_inputs("\nint $_rhs(double t, const double *state, const double *p, double *dstate)\n{\n") +
-         unused({{"dstate", !m.state.empty()}}) +
-         with_inputs("  double lead[$_UNKNOWNS] = {0};\n  const int status = $_leading(t, state, p, lead);\n");
-  for (std::size_t i = 0; i < m.state.size(); ++i) {
-    const StateEntry& e = m.state[i];
-    const bool last = static_cast<int>(e.order) + 1 == structure.d[e.variable];
-    out += "  dstate[" + std::to_string(i) + "] = " +
-           (last ? "lead[" + std::to_string(e.variable) : "state[" + std::to_string(m.place(e.variable, e.order + 1))) +
-           "];\n";
   }
-  out += "  return status;\n}\n";
-  if (options.start) {
-    out += "\nvoid $_start(double *t, double *state)\n{\n  *t = " + number_text(options.start->t) + ";\n";
-    const std::vector<double> state = start_state(system, m, *options.start);
+
+  std::string declarations() const {
+    std::string out = "enum { $_UNKNOWNS = " + std::to_string(system_.size()) +
+                      ", $_STATE = " + std::to_string(m_.state.size()) +
+                      ", $_HIDDEN = " + std::to_string(m_.hidden.size()) +
+                      ", $_PARAMETERS = " + std::to_string(m_.parameters.size()) +
+                      (inputs_ ? ", $_INPUTS = " + std::to_string(m_.inputs.size()) : std::string()) + " };\n\n";
+    out += "extern const char *const $_parameter_names[], *const $_state_names[], *const $_lead_names[];\n";
+    if (inputs_) out += "extern const char *const $_input_names[];\n";
+    out += "void $_defaults(double *p);\n";
+    if (!m_.derived.empty()) out += "void $_derived(double *p);\n";
+    if (inputs_) out += "void $_inputs(double t, const double *state, const double *p, double *out);\n";
+    out += "void $_residual" + arguments() + ";\nvoid $_jacobian" + arguments() + ";\n";
+    out += "void $_hidden(double t, const double *state, const double *p, double *out);\n";
+    out += with_inputs("int $_leading(double t, const double *state, const double *p, double *lead);\n"
+                       "int $_rhs(double t, const double *state, const double *p, double *dstate);\n");
+    if (options_.start) out += "void $_start(double *t, double *state);\n";
+    return out;
+  }
+
+  // The names of all quantities.
+  std::string tables() const {
+    std::vector<std::string> parameters;
+    for (const Parameter& p : system_.model->parameters) parameters.push_back(p.name);
+    return "\n/* Each ends with a null pointer. */\n" + names_table("$_parameter_names", parameters) +
+           names_table("$_state_names", m_.state_names) + names_table("$_lead_names", m_.leading_names) +
+           (inputs_ ? names_table("$_input_names", m_.input_names) : std::string());
+  }
+
+  std::string parameters() const {
+    std::string out =
+        writer_.used_sign() ? "\nstatic double $_sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }\n" : "";
+    out += "\nvoid $_defaults(double *p)\n{\n" + unused({{"p", !m_.parameters.empty()}}) + defaults_.text;
+    if (!m_.derived.empty()) out += "  $_derived(p);\n}\n\nvoid $_derived(double *p)\n{\n" + derived_.text;
+    return out + "}\n";
+  }
+
+  std::string equations() const {
+    std::string out;
+    if (inputs_)
+      out += "\nvoid $_inputs(double t, const double *state, const double *p, double *out)\n{\n" +
+             unused({{"t", formulas_.time}, {"state", formulas_.state}, {"p", formulas_.parameters}}) + formulas_.text +
+             "}\n";
+    out += "\nvoid $_residual" + arguments() + "\n{\n" + before(residual_) + residual_.text + "}\n";
+    out += "\nvoid $_jacobian" + arguments() + "\n{\n  int i;\n" + before(jacobian_) +
+           "  for (i = 0; i < $_UNKNOWNS * $_UNKNOWNS; ++i) out[i] = 0;\n" + jacobian_.text + "}\n";
+    return out + "\nvoid $_hidden(double t, const double *state, const double *p, double *out)\n{\n" +
+           unused({{"t", hidden_.time},
+                   {"state", hidden_.state},
+                   {"p", hidden_.parameters},
+                   {"out", !m_.hidden.empty()}}) +
+           hidden_.text + "}\n";
+  }
+
+  std::string newton() const {
+    const std::vector<std::string> factor = {"$_jacobian(t, state, lead, p, a);",
+                                             "status = $_factor(a, order, row, column);", "if (status) return status;"};
+    std::string text = put(kNewton, "@ONCE", m_.linear ? lines(factor, "  ") : "");
+    text = put(text, "@EACH", m_.linear ? "" : lines(factor, "    "));
+    return put(with_inputs(text), "@SETTLED",
+               m_.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size && length > 0.5 * before)");
+  }
+
+  std::string right_side() const {
+    std::string out =
+        with_inputs("\nint $_rhs(double t, const double *state, const double *p, double *dstate)\n{\n") +
+        unused({{"dstate", !m_.state.empty()}}) +
+        with_inputs("  double lead[$_UNKNOWNS] = {0};\n  const int status = $_leading(t, state, p, lead);\n");
+    for (std::size_t i = 0; i < m_.state.size(); ++i)
+      out += "  dstate[" + std::to_string(i) + "] = " + rate_of_state(structure_, m_, i) + ";\n";
+    return out + "  return status;\n}\n";
+  }
+
+  std::string start() const {
+    if (!options_.start) return {};
+    std::string out = "\nvoid $_start(double *t, double *state)\n{\n  *t = " + number_text(options_.start->t) + ";\n";
+    const std::vector<double> state = start_state(system_, m_, *options_.start);
     for (std::size_t i = 0; i < state.size(); ++i)
       out += "  state[" + std::to_string(i) + "] = " + number_text(state[i]) + ";\n";
-    out += "}\n";
+    return out + "}\n";
   }
-  // A title may contain a $.
-  return "/*\n" + lines(head(system, structure, m, options), " * ") +
-         replaced(out, "$", identifier(options.name, "motion"));
+
+  const System& system_;
+  const Structure& structure_;
+  const EmitOptions& options_;
+  Motion m_;
+  LocalNames names_;
+  Writer writer_;
+  bool inputs_;
+  Statements residual_, jacobian_, hidden_, formulas_, defaults_, derived_;
+};
+
+}  // namespace
+
+std::string emit_c(const System& system, const Structure& structure, const EmitOptions& options) {
+  return CFile(system, structure, options).text();
 }
 
 }  // namespace anholon

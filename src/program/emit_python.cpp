@@ -1,7 +1,6 @@
-#include <algorithm>
-
 #include "base/escape.h"
 #include "numeric/number.h"
+#include "program/emit_statements.h"
 #include "program/emit_text.h"
 
 namespace anholon {
@@ -50,10 +49,6 @@ def leading(t, state, p=None, start=None@GIVEN):
     raise ArithmeticError("Newton's method for the leading derivatives does not converge")
 )";
 
-std::string put(std::string text, const std::string& mark, const std::string& by) {
-  return text.replace(text.find(mark), mark.size(), by);
-}
-
 std::string table(const std::string& name, const std::vector<std::string>& list) {
   std::string out = name + " = (\n";
   for (const std::string& s : list) out += "    \"" + code_string(s) + "\",\n";
@@ -79,104 +74,137 @@ std::string arrays(const Statements& b) {
   return out;
 }
 
-}  // namespace
+// The text of a Python module, part by part.
+class PythonModule {
+ public:
+  PythonModule(const System& system, const Structure& structure, const EmitOptions& options)
+      : system_(system), structure_(structure), options_(options), m_(motion(system, structure, options)),
+        names_(system, structure, m_), writer_(system, structure, m_, names_, Language::python),
+        inputs_(!m_.inputs.empty()) {}
 
-std::string emit_python(const System& system, const Structure& structure, const EmitOptions& options) {
-  const Motion m = motion(system, structure, options);
-  const LocalNames names(system, structure, m);
-  Writer writer(system, structure, m, names, Language::python);
-  const std::size_t n = system.size(), parameters = system.model->parameters.size();
-
-  Column free, derived;
-  std::vector<std::string> free_targets, derived_targets, parameter_names;
-  for (std::size_t i = 0; i < parameters; ++i) {
-    const bool is_free = std::find(m.derived.begin(), m.derived.end(), i) == m.derived.end();
-    (is_free ? free : derived).push_back(m.parameters[i]);
-    (is_free ? free_targets : derived_targets).push_back("p[" + std::to_string(i) + "]");
-    parameter_names.push_back(system.model->parameters[i].name);
+  std::string text() {
+    return documentation() + tables() + start() + parameters() + inputs() + equations() + newton() + right_side() +
+           demonstration();
   }
 
-  // Inputs are the last argument and are passed on.
-  const bool inputs = !m.inputs.empty();
-  const std::string u_argument = inputs ? ", u=None" : "", u = inputs ? ", u" : "";
+ private:
+  // Inputs are the last argument of a function and are passed on.
+  std::string u_argument() const { return inputs_ ? ", u=None" : ""; }
+  std::string u() const { return inputs_ ? ", u" : ""; }
 
-  std::string out = "\"\"\"";
-  std::vector<std::string> about = head(system, structure, m, options);
-  if (!about.empty() && about[0].empty()) about[0] = "A motion";
-  for (const std::string& l : about) out += code_string(l) + "\n";
-  out += R"(
+  std::string documentation() const {
+    std::string out = "\"\"\"";
+    std::vector<std::string> about = head(system_, structure_, m_, options_);
+    if (!about.empty() && about[0].empty()) about[0] = "A motion";
+    for (const std::string& l : about) out += code_string(l) + "\n";
+    out += R"(
 residual, jacobian and hidden also take many states at once: state[:, k] at time t[k].
 With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
 """
 )";
-  if (!options.start) out = put(out, "START", "start");
-  out += "import numpy as np\n\n" + table("STATE", m.state_names) + table("LEAD", m.leading_names) +
-         table("PARAMETERS", parameter_names) + table("HIDDEN", m.hidden_names) +
-         (inputs ? table("INPUTS", m.input_names) : "");
-  if (options.start) {
-    out += "T0 = " + number_text(options.start->t) + "\nSTART = np.array([";
-    const std::vector<double> state = start_state(system, m, *options.start);
-    for (double x : state) out += "\n    " + number_text(x) + ",";
-    out += state.empty() ? "], dtype=float)\n" : "\n], dtype=float)\n";
+    return options_.start ? out : put(out, "START", "start");
   }
 
-  out += "\n\ndef defaults():\n    \"\"\"The default values of the parameters.\"\"\"\n    p = "
-         "np.empty(len(PARAMETERS))\n" +
-         writer.body(free, free_targets).text + (derived.empty() ? "    return p\n" : "    return derived(p)\n");
-  if (!derived.empty())
-    out += "\n\ndef derived(p):\n    \"\"\"Computes anew, in p, the parameters that depend on others: call it after a "
-           "change of p.\"\"\"\n" +
-           writer.body(derived, derived_targets).text + "    return p\n";
-  out += "\n\nDEFAULTS = defaults()\n";
+  // The names of all quantities.
+  std::string tables() const {
+    std::vector<std::string> parameters;
+    for (const Parameter& p : system_.model->parameters) parameters.push_back(p.name);
+    return "import numpy as np\n\n" + table("STATE", m_.state_names) + table("LEAD", m_.leading_names) +
+           table("PARAMETERS", parameters) + table("HIDDEN", m_.hidden_names) +
+           (inputs_ ? table("INPUTS", m_.input_names) : "");
+  }
 
-  if (inputs) {
-    const Statements formulas = writer.body(m.input_values, targets(m.inputs.size()));
-    out += "\n\ndef inputs(t, state, p=None):\n    \"\"\"The inputs by the formulas of the model.\"\"\"\n" +
+  std::string start() const {
+    if (!options_.start) return {};
+    std::string out = "T0 = " + number_text(options_.start->t) + "\nSTART = np.array([";
+    const std::vector<double> state = start_state(system_, m_, *options_.start);
+    for (double x : state) out += "\n    " + number_text(x) + ",";
+    return out + (state.empty() ? "], dtype=float)\n" : "\n], dtype=float)\n");
+  }
+
+  std::string parameters() {
+    const auto [free, derived] = parameter_assignments(m_);
+    const bool any = !derived.values.empty();
+    std::string out = "\n\ndef defaults():\n    \"\"\"The default values of the parameters.\"\"\"\n    p = "
+                      "np.empty(len(PARAMETERS))\n" +
+                      writer_.body(free.values, free.targets).text +
+                      (any ? "    return derived(p)\n" : "    return p\n");
+    if (any)
+      out +=
+          "\n\ndef derived(p):\n    \"\"\"Computes anew, in p, the parameters that depend on others: call it after a "
+          "change of p.\"\"\"\n" +
+          writer_.body(derived.values, derived.targets).text + "    return p\n";
+    return out + "\n\nDEFAULTS = defaults()\n";
+  }
+
+  std::string inputs() {
+    if (!inputs_) return {};
+    const Statements formulas = writer_.body(m_.input_values, targets(m_.inputs.size()));
+    return "\n\ndef inputs(t, state, p=None):\n    \"\"\"The inputs by the formulas of the model.\"\"\"\n" +
            arrays(formulas) + "    out = np.empty((len(INPUTS),) + state.shape[1:])\n" + formulas.text +
            "    return out\n";
   }
-  const Statements residual = writer.body(m.residual, targets(n));
-  out += "\n\ndef residual(t, state, lead, p=None" + u_argument +
-         "):\n    \"\"\"The equations, left side minus right side.\"\"\"\n" + arrays(residual) +
-         "    out = np.empty((len(LEAD),) + state.shape[1:])\n" + residual.text + "    return out\n";
-  Column entries;
-  for (const Column& row : m.jacobian) entries.insert(entries.end(), row.begin(), row.end());
-  const Statements jacobian = writer.body(entries, targets(n * n, n), true);
-  out += "\n\ndef jacobian(t, state, lead, p=None" + u_argument +
-         "):\n    \"\"\"The derivatives of the residuals by lead.\"\"\"\n" + arrays(jacobian) +
-         "    out = np.zeros((len(LEAD), len(LEAD)) + state.shape[1:])\n" + jacobian.text + "    return out\n";
-  const Statements hidden = writer.body(m.hidden, targets(m.hidden.size()));
-  out += "\n\ndef hidden(t, state, p=None):\n    \"\"\"What must be zero at a state that satisfies the "
-         "constraints.\"\"\"\n" +
-         arrays(hidden) + "    out = np.empty((len(HIDDEN),) + state.shape[1:])\n" + hidden.text + "    return out\n";
 
-  const std::string factor = "a, row, column = _scaled(jacobian(t, state, lead, p" + u + "))\n";
-  std::string newton =
-      put(put(put(kNewton, "@GIVEN", u_argument), "@INPUTS", u), "@ONCE", m.linear ? "    " + factor : "");
-  newton = put(newton, "@EACH", m.linear ? "" : "        " + factor);
-  out += "\n" + put(newton, "@SETTLED",
-                    m.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size and length > 0.5 * before)");
-
-  out += "\n\ndef rhs(t, state, p=None" + u_argument +
-         "):\n    \"\"\"d state / dt\"\"\"\n"
-         "    lead = leading(t, state, p" +
-         (inputs ? ", u=u" : "") + ")\n    out = np.empty(len(STATE))\n";
-  for (std::size_t i = 0; i < m.state.size(); ++i) {
-    const StateEntry& e = m.state[i];
-    const bool last = static_cast<int>(e.order) + 1 == structure.d[e.variable];
-    out += "    out[" + std::to_string(i) + "] = " +
-           (last ? "lead[" + std::to_string(e.variable) : "state[" + std::to_string(m.place(e.variable, e.order + 1))) +
-           "]\n";
+  std::string equations() {
+    const std::size_t n = system_.size();
+    const Statements residual = writer_.body(m_.residual, targets(n));
+    std::string out = "\n\ndef residual(t, state, lead, p=None" + u_argument() +
+                      "):\n    \"\"\"The equations, left side minus right side.\"\"\"\n" + arrays(residual) +
+                      "    out = np.empty((len(LEAD),) + state.shape[1:])\n" + residual.text + "    return out\n";
+    const Statements jacobian = writer_.body(entries(m_.jacobian), targets(n * n, n), true);
+    out += "\n\ndef jacobian(t, state, lead, p=None" + u_argument() +
+           "):\n    \"\"\"The derivatives of the residuals by lead.\"\"\"\n" + arrays(jacobian) +
+           "    out = np.zeros((len(LEAD), len(LEAD)) + state.shape[1:])\n" + jacobian.text + "    return out\n";
+    const Statements hidden = writer_.body(m_.hidden, targets(m_.hidden.size()));
+    return out +
+           "\n\ndef hidden(t, state, p=None):\n    \"\"\"What must be zero at a state that satisfies the "
+           "constraints.\"\"\"\n" +
+           arrays(hidden) + "    out = np.empty((len(HIDDEN),) + state.shape[1:])\n" + hidden.text + "    return out\n";
   }
-  out += "    return out\n";
-  if (options.start)
-    out += R"(
+
+  std::string newton() const {
+    const std::string factor = "a, row, column = _scaled(jacobian(t, state, lead, p" + u() + "))\n";
+    std::string text = put(put(kNewton, "@GIVEN", u_argument()), "@INPUTS", u());
+    text = put(text, "@ONCE", m_.linear ? "    " + factor : "");
+    text = put(text, "@EACH", m_.linear ? "" : "        " + factor);
+    return "\n" + put(text, "@SETTLED",
+                      m_.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size and length > 0.5 * before)");
+  }
+
+  std::string right_side() const {
+    std::string out = "\n\ndef rhs(t, state, p=None" + u_argument() +
+                      "):\n    \"\"\"d state / dt\"\"\"\n"
+                      "    lead = leading(t, state, p" +
+                      (inputs_ ? ", u=u" : "") + ")\n    out = np.empty(len(STATE))\n";
+    for (std::size_t i = 0; i < m_.state.size(); ++i)
+      out += "    out[" + std::to_string(i) + "] = " + rate_of_state(structure_, m_, i) + "\n";
+    return out + "    return out\n";
+  }
+
+  // What the module does as a program.
+  std::string demonstration() const {
+    if (!options_.start) return {};
+    return R"(
 
 if __name__ == "__main__":
     for _name, _value in zip(LEAD, leading(T0, START)):
         print(f"{_name} = {_value:.16g}")
 )";
-  return out;
+  }
+
+  const System& system_;
+  const Structure& structure_;
+  const EmitOptions& options_;
+  Motion m_;
+  LocalNames names_;
+  Writer writer_;
+  bool inputs_;
+};
+
+}  // namespace
+
+std::string emit_python(const System& system, const Structure& structure, const EmitOptions& options) {
+  return PythonModule(system, structure, options).text();
 }
 
 }  // namespace anholon

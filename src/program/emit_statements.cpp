@@ -1,4 +1,5 @@
-// Expressions as statements, by one sweep from the leaves up without recursion, so the depth is not limited.
+#include "program/emit_statements.h"
+
 #include <algorithm>
 #include <functional>
 

@@ -12,63 +12,37 @@ namespace {
 constexpr int kMostProjections = 4;
 // An LU is singular if its smallest scaled singular value is below this many round-offs.
 constexpr int kSingularRoundoffs = 50;
-
-// to! / from!. A quotient of factorials would be rounded in the same way at every step, and the errors of a motion
-// would add up; this product is exact.
-template <Number N>
-N rising(std::size_t from, std::size_t to) {
-  N product(1);
-  for (std::size_t k = from + 1; k <= to; ++k) product *= N(static_cast<int>(k));
-  return product;
-}
 }  // namespace
+
+// The orders of the series: those of the state and the leading derivative, the stages, and one beyond.
+static std::size_t length_of_series(const Program& program, int stages) {
+  return static_cast<std::size_t>(stages + *std::max_element(program.d.begin(), program.d.end()) + 2);
+}
 
 template <Number N>
 Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters, int stages)
     : program_(&program), parameters_(parameters), stages_(stages),
-      machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters) {
-  const int largest_d = *std::max_element(program.d.begin(), program.d.end());
-  stride_ = static_cast<std::size_t>(stages + largest_d + 2);
-  x_.assign(program.unknowns() * stride_, N(0));
-  offset_.push_back(0);
-  for (int d : program.d) offset_.push_back(offset_.back() + static_cast<std::size_t>(d));
-  factorial_.push_back(N(1));
-  for (std::size_t k = 1; k < stride_ + 2; ++k) factorial_.push_back(factorial_.back() * N(static_cast<int>(k)));
-  for (int c : program.c) {
-    hidden_offset_.push_back(hidden_.size());
-    hidden_.resize(hidden_.size() + static_cast<std::size_t>(c), N(0));
-  }
-  const std::size_t n = program.unknowns();
-  tangent_ = Matrix<N>(program.tangent_rows, n);
-  j_ = Matrix<N>(n, n);
-  partials_.resize(program.tainted.size());
-  delta_.assign(program.tape.main_end, N(0));
-  r_.assign(n, N(0));
-  delta_x_ = r_;
-}
+      machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters),
+      x_(program.d, length_of_series(program, stages)), sensitivity_(program),
+      j_(program.unknowns(), program.unknowns()), delta_x_(program.unknowns(), N(0)), r_(program.unknowns(), N(0)),
+      hidden_(program.c) {}
 
 template <Number N>
 void Expansion<N>::load(const N& t, const std::vector<N>& state, const std::vector<N>& leading) {
   t_ = t;
   const Program& p = *program_;
   for (std::size_t j = 0; j < p.unknowns(); ++j) {
-    N* x = &x_[j * stride_];
-    for (int k = 0; k < p.d[j]; ++k)
-      x[k] = state[offset_[j] + static_cast<std::size_t>(k)] / factorial_[static_cast<std::size_t>(k)];
-    x[p.d[j]] = leading.empty() ? N(0) : leading[j] / factorial_[static_cast<std::size_t>(p.d[j])];
+    N* x = x_.series(j);
+    for (int k = 0; k < p.d[j]; ++k) x[k] = state[x_.offset(j) + static_cast<std::size_t>(k)] / x_.factorial(k);
+    x[p.d[j]] = leading.empty() ? N(0) : leading[j] / x_.factorial(p.d[j]);
   }
-}
-
-template <Number N>
-N Expansion<N>::derivative(std::size_t j, int k) const {
-  return x_[j * stride_ + static_cast<std::size_t>(k)] * factorial_[static_cast<std::size_t>(k)];
 }
 
 template <Number N>
 void Expansion<N>::state(std::vector<N>& out) const {
   out.resize(state_size());
   for (std::size_t j = 0; j < program_->unknowns(); ++j)
-    for (int k = 0; k < program_->d[j]; ++k) out[offset_[j] + static_cast<std::size_t>(k)] = derivative(j, k);
+    for (int k = 0; k < program_->d[j]; ++k) out[x_.offset(j) + static_cast<std::size_t>(k)] = derivative(j, k);
 }
 
 template <Number N>
@@ -91,7 +65,7 @@ void Expansion<N>::set_inputs(int stage, std::size_t from, std::size_t to) {
     case ProgramInput::Kind::variable: {
       // (x^(k))_p = x_(p+k) (p+k)! / p!
       const std::size_t up = static_cast<std::size_t>(p), k = up + static_cast<std::size_t>(in.order);
-      w = k < stride_ ? x_[in.variable * stride_ + k] * rising<N>(up, k) : N(0);
+      w = k < x_.length() ? x_(in.variable, k) * rising<N>(up, k) : N(0);
       break;
     }
     case ProgramInput::Kind::other:
@@ -128,48 +102,14 @@ void Expansion<N>::equations(std::vector<N>& out) const {
   out.resize(p.unknowns());
   for (std::size_t i = 0; i < p.unknowns(); ++i) {
     const std::size_t order = static_cast<std::size_t>(p.c[i]);
-    out[i] = machine_.series(p.tape.roots[i])[order] * factorial_[order];
+    out[i] = machine_.series(p.tape.roots[i])[order] * x_.factorial(order);
   }
 }
 
 template <Number N>
 void Expansion<N>::jacobian() {
-  const Program& p = *program_;
-  const Tape& tape = p.tape;
-  const std::size_t n = p.unknowns();
-  std::fill(tangent_.data.begin(), tangent_.data.end(), N(0));
-  for (const ProgramInput& in : p.inputs)
-    if (in.leading) tangent_(p.tangent_row[in.slot], in.variable) = N(1);
-  for (std::size_t k = 0; k < p.tainted.size(); ++k) {
-    const TaintedSlot& t = p.tainted[k];
-    const Instruction& in = tape.code[t.slot];
-    N* row = &tangent_(t.row, 0);
-    const auto add = [&](std::uint32_t slot, const N& factor) {
-      const N* from = &tangent_(p.tangent_row[slot], 0);
-      for (std::size_t j = 0; j < n; ++j) addmul(row[j], factor, from[j]);
-    };
-    if (in.op == Op::linear) {
-      for (std::uint32_t i = in.first; i < in.first + in.count; ++i) {
-        const LinearTerm& term = tape.linear_terms[i];
-        if (p.tangent_row[term.slot] != Program::kUntainted && tape.code[term.slot].lead == in.lead)
-          add(term.slot, machine_.rational(term.coefficient));
-      }
-      continue;
-    }
-    partials_[k] = machine_.partials(t.slot);
-    if (in.op == Op::select) {
-      // The other branch is not evaluated; it may have no value.
-      if (const bool first = partials_[k].a > N(0); first ? t.a : t.b) add(first ? in.a : in.b, N(1));
-      continue;
-    }
-    if (t.a) add(in.a, partials_[k].a);
-    if (t.b) add(in.b, partials_[k].b);
-  }
+  sensitivity_.jacobian(machine_, j_);
   balance_.reset();
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t row = p.tangent_row[tape.roots[i]];
-    for (std::size_t j = 0; j < n; ++j) j_(i, j) = row == Program::kUntainted ? N(0) : tangent_(row, j);
-  }
 }
 
 template <Number N>
@@ -225,8 +165,7 @@ N Expansion<N>::terms_of(std::size_t i, int level) const {
   const Program& p = *program_;
   N scale = machine_.terms(i, static_cast<std::size_t>(p.c[i] - level)), moved(0);
   for (std::size_t j = 0; j < p.unknowns(); ++j)
-    if (const int k = p.d[j] - level; k >= 0 && j_(i, j) != N(0))
-      moved += abs(N(j_(i, j) * x_[j * stride_ + static_cast<std::size_t>(k)]));
+    if (const int k = p.d[j] - level; k >= 0 && j_(i, j) != N(0)) moved += abs(N(j_(i, j) * x_(j, k)));
   return moved > scale ? moved : scale;
 }
 
@@ -245,7 +184,7 @@ const N& Expansion<N>::balanced_size(int level) const {
     if (const int k = p.d[j] - level; k >= 0)
       if (N v = abs(derivative(j, k)) / N(balance_->column[j]); v > size) size = v;
   for (std::size_t i = 0; level == 0 && i < p.unknowns(); ++i)
-    if (N v = terms_of(i, 0) * factorial_[static_cast<std::size_t>(p.c[i])] * N(balance_->row[i]); v > size) size = v;
+    if (N v = terms_of(i, 0) * x_.factorial(p.c[i]) * N(balance_->row[i]); v > size) size = v;
   if (level > 0 && level < deepest) {
     const N between = sqrt(N(balanced_size(level - 1) * balanced_size(deepest)));
     if (is_finite(between) && size < unit_roundoff<N>() * N(kRoundoffsOfSum) * between) size = between;
@@ -271,14 +210,14 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
     const int order = p.c[i] - level;
     r[i] = N(0);
     if (order < 0) continue;
-    N* hidden = level > 0 ? &hidden_[hidden_offset_[i] + static_cast<std::size_t>(order)] : nullptr;
+    N* hidden = level > 0 ? &hidden_(i, order) : nullptr;
     if (hidden) *hidden = N(0);
     const N value = machine_.series(p.tape.roots[i])[order];
     if (!is_finite(value)) {
       worst = value;
       return true;
     }
-    const N& factor = factorial_[static_cast<std::size_t>(order)];
+    const N& factor = x_.factorial(order);
     r[i] = -(value * factor);
     if (!(abs(value) > N(0))) continue;
     any = true;
@@ -336,7 +275,7 @@ Outcome Expansion<N>::project(const Solver& solver) {
       for (std::size_t j = 0; j < p.unknowns(); ++j) {
         const int order = p.d[j] - level;
         if (order < 0) continue;
-        x_[j * stride_ + static_cast<std::size_t>(order)] += y_[j] / factorial_[static_cast<std::size_t>(order)];
+        x_(j, order) += y_[j] / x_.factorial(order);
       }
       changed = true;
     }
@@ -359,38 +298,9 @@ void Expansion<N>::measure() {
 // Adds the effect of the new coefficients to all slots that depend on them.
 template <Number N>
 void Expansion<N>::add_leading(int stage) {
-  const Program& p = *program_;
-  const Tape& tape = p.tape;
-  for (const ProgramInput& in : p.inputs) {
-    if (!in.leading) continue;
-    const std::size_t order = static_cast<std::size_t>(stage + tape.code[in.slot].lead);
-    const std::size_t k = order + static_cast<std::size_t>(in.order);
-    const N ratio = rising<N>(order, k);
-    machine_.series(in.slot)[order] = x_[in.variable * stride_ + k] * ratio;
-    delta_[in.slot] = delta_x_[in.variable] * ratio;
-  }
-  for (std::size_t k = 0; k < p.tainted.size(); ++k) {
-    const TaintedSlot& t = p.tainted[k];
-    const Instruction& in = tape.code[t.slot];
-    N change(0);
-    if (in.op == Op::linear) {
-      for (std::uint32_t i = in.first; i < in.first + in.count; ++i) {
-        const LinearTerm& term = tape.linear_terms[i];
-        if (p.tangent_row[term.slot] != Program::kUntainted && tape.code[term.slot].lead == in.lead)
-          addmul(change, machine_.rational(term.coefficient), delta_[term.slot]);
-      }
-    } else if (in.op == Op::select) {
-      if (const bool first = partials_[k].a > N(0); first ? t.a : t.b) change = delta_[first ? in.a : in.b];
-    } else if (in.op == Op::rate) {
-      const std::size_t order = static_cast<std::size_t>(stage + in.lead);
-      change = delta_[in.a] * rising<N>(order, order + in.index);
-    } else {
-      if (t.a) addmul(change, partials_[k].a, delta_[in.a]);
-      if (t.b) addmul(change, partials_[k].b, delta_[in.b]);
-    }
-    delta_[t.slot] = change;
-    machine_.series(t.slot)[stage + in.lead] += change;
-  }
+  sensitivity_.add(
+      stage, machine_, [&](std::size_t j) -> const N& { return delta_x_[j]; },
+      [&](std::size_t j, std::size_t k) -> const N& { return x_(j, k); });
 }
 
 template <Number N>
@@ -400,7 +310,7 @@ Outcome Expansion<N>::extend() {
   jacobian();
   if (!lu_.factor(j_)) return singular();
   for (int stage = 1; stage <= stages_; ++stage) {
-    for (std::size_t j = 0; j < p.unknowns(); ++j) x_[j * stride_ + static_cast<std::size_t>(p.d[j] + stage)] = N(0);
+    for (std::size_t j = 0; j < p.unknowns(); ++j) x_(j, p.d[j] + stage) = N(0);
     sweep(stage);
     const std::size_t s = static_cast<std::size_t>(stage);
     // The second pass is the step of iterative refinement. Its residual comes from the tape itself, not from J: if J is
@@ -415,7 +325,7 @@ Outcome Expansion<N>::extend() {
       for (std::size_t j = 0; j < p.unknowns(); ++j) {
         const std::size_t order = s + static_cast<std::size_t>(p.d[j]);
         delta_x_[j] = y_[j] / rising<N>(s, order);
-        x_[j * stride_ + order] += delta_x_[j];
+        x_(j, order) += delta_x_[j];
         if (!is_finite(y_[j])) return fault_outcome(*program_, machine_, stage);
       }
       add_leading(stage);
@@ -429,10 +339,10 @@ template <Number N>
 void Expansion<N>::cut_to(const std::vector<N>& leading) {
   const Program& p = *program_;
   for (std::size_t j = 0; j < p.unknowns(); ++j) {
-    N* x = &x_[j * stride_];
+    N* x = x_.series(j);
     const std::size_t d = static_cast<std::size_t>(p.d[j]);
-    x[d] = leading[j] / factorial_[d];
-    std::fill(x + d + 1, x + stride_, N(0));
+    x[d] = leading[j] / x_.factorial(d);
+    std::fill(x + d + 1, x + x_.length(), N(0));
   }
   sweep_known(0);
   sweep_quadratures(0);

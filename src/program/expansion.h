@@ -11,11 +11,31 @@
 #include "base/outcome.h"
 #include "numeric/balance.h"
 #include "program/program.h"
+#include "program/sensitivity.h"
+#include "program/unknown_coefficients.h"
 
 namespace anholon {
 
 // An equation holds while its residual is below this many round-offs of its terms.
 inline constexpr int kQuietRoundoffs = 6;
+
+// The residuals of the hidden constraints E_i^(k), k < c_i, relative to their terms.
+template <Number N>
+class HiddenResiduals {
+ public:
+  explicit HiddenResiduals(const std::vector<int>& c) {
+    for (int k : c) {
+      offset_.push_back(values_.size());
+      values_.resize(values_.size() + static_cast<std::size_t>(k), N(0));
+    }
+  }
+  N& operator()(std::size_t i, int k) { return values_[offset_[i] + static_cast<std::size_t>(k)]; }
+  const N& operator()(std::size_t i, int k) const { return values_[offset_[i] + static_cast<std::size_t>(k)]; }
+
+ private:
+  std::vector<std::size_t> offset_;
+  std::vector<N> values_;
+};
 
 template <Number N>
 class Expansion {
@@ -23,8 +43,8 @@ class Expansion {
   // stages: the number of orders beyond the leading derivatives that are computed.
   Expansion(const Program& program, const std::vector<N>& parameters, int stages);
 
-  std::size_t state_size() const { return offset_.back(); }
-  std::size_t offset(std::size_t variable) const { return offset_[variable]; }
+  std::size_t state_size() const { return x_.state_size(); }
+  std::size_t offset(std::size_t variable) const { return x_.offset(variable); }
   int stages() const { return stages_; }
   const Program& program() const { return *program_; }
 
@@ -55,8 +75,7 @@ class Expansion {
   void adopt_values(const Expansion<M>& wide) {
     t_ = convert<N>(wide.time());
     for (std::size_t j = 0; j < program_->unknowns(); ++j)
-      for (int k = 0; k <= program_->d[j]; ++k)
-        x_[j * stride_ + static_cast<std::size_t>(k)] = convert<N>(wide.coefficient(j, k));
+      for (int k = 0; k <= program_->d[j]; ++k) x_(j, k) = convert<N>(wide.coefficient(j, k));
     for (std::uint32_t s = 0; s < program_->tape.main_end; ++s) {
       const Instruction& in = program_->tape.code[s];
       if (in.constant) continue;
@@ -81,9 +100,7 @@ class Expansion {
   // The distance of the state from the hidden constraints found by project(), relative to the size of the state.
   const N& drift() const { return drift_; }
   // The residual of derivative k < c_i of equation i alone.
-  const N& hidden_residual(std::size_t i, int k) const {
-    return hidden_[hidden_offset_[i] + static_cast<std::size_t>(k)];
-  }
+  const N& hidden_residual(std::size_t i, int k) const { return hidden_(i, k); }
   // Residual of the equations at the computed leading derivatives, relative to their terms.
   const N& equation_residual() const { return equation_residual_; }
   // The largest of all terms at derivative order c_i - level, in the units of equation i, after prepare(). The residual
@@ -97,8 +114,8 @@ class Expansion {
 
   const N& time() const { return t_; }
   // x_j^(k) at the point (k <= d_j), or its Taylor coefficient of order k.
-  N derivative(std::size_t j, int k) const;
-  const N& coefficient(std::size_t j, int k) const { return x_[j * stride_ + static_cast<std::size_t>(k)]; }
+  N derivative(std::size_t j, int k) const { return x_.derivative(j, k); }
+  const N& coefficient(std::size_t j, int k) const { return x_(j, k); }
   void state(std::vector<N>& out) const;
   void leading(std::vector<N>& out) const;
   // E_i^(c_i) at the loaded leading derivatives, after evaluate(): the residual that solve() makes zero.
@@ -130,21 +147,17 @@ class Expansion {
   const Program* program_;
   std::vector<N> parameters_;
   int stages_;
-  std::size_t stride_;
-  std::vector<std::size_t> offset_;
   Machine<N> machine_;
   N t_{0};
-  std::vector<N> x_;  // Taylor coefficients of the unknowns
-  std::vector<N> factorial_;
-  Matrix<N> tangent_, j_;
+  UnknownCoefficients<N> x_;
+  Sensitivity<N> sensitivity_;
+  Matrix<N> j_;
   Lu<N> lu_;
-  std::vector<typename Machine<N>::Partials> partials_;
-  std::vector<N> delta_, delta_x_, r_, y_, direction_;
+  std::vector<N> delta_x_, r_, y_, direction_;
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
-  std::vector<N> hidden_;                       // residuals of the hidden constraints, equation by equation
+  HiddenResiduals<N> hidden_;
   mutable std::optional<Balance> balance_;      // of J
   mutable std::vector<std::optional<N>> size_;  // of each level, balanced, at the current point
-  std::vector<std::size_t> hidden_offset_;
 };
 
 extern template class Expansion<double>;

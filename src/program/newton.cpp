@@ -53,7 +53,7 @@ bool Expansion<N>::left_is_roundoff() const {
   for (std::size_t i = 0; i < p.unknowns(); ++i) {
     const N value = abs(machine_.series(p.tape.roots[i])[p.c[i]]);
     N most = size[tape.roots[i]];
-    for (const N& v : {terms_of(i, 0), N(size_of_level(0, i) / factorial_[static_cast<std::size_t>(p.c[i])])})
+    for (const N& v : {terms_of(i, 0), N(size_of_level(0, i) / x_.factorial(p.c[i]))})
       if (v > most) most = v;
     if (!(value <= unit_roundoff<N>() * N(kRoundoffsOfSum) * most)) return false;
   }
@@ -80,12 +80,12 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     solver(r_, y_);
     N step(0), size(0);
     for (std::size_t j = 0; j < p.unknowns(); ++j) {
-      N& x = x_[j * stride_ + static_cast<std::size_t>(p.d[j])];
-      const N change = y_[j] / factorial_[static_cast<std::size_t>(p.d[j])];
+      N& x = x_(j, p.d[j]);
+      const N change = y_[j] / x_.factorial(p.d[j]);
       if (!is_finite(change)) return unsolved();
       x += change;
       if (abs(y_[j]) > step) step = abs(y_[j]);
-      if (N v = abs(x) * factorial_[static_cast<std::size_t>(p.d[j])]; v > size) size = v;
+      if (N v = abs(x) * x_.factorial(p.d[j]); v > size) size = v;
     }
     // The residual is below the range of the numbers: the only force is a function that almost vanishes.
     if (!(step > N(0))) return {};

@@ -1,9 +1,15 @@
-// Rows from CSV: one row of names, then numbers.
+#include "result/csv.h"
+
 #include <algorithm>
+#include <cmath>
+
+#include <unistd.h>
 
 #include "base/diagnostic.h"
+#include "base/escape.h"
 #include "base/utf8.h"
-#include "result/run_file.h"
+#include "numeric/number.h"
+#include "result/format.h"
 
 namespace anholon {
 
@@ -95,8 +101,117 @@ class CsvReader {
   std::vector<char> words_;
 };
 
+// Cases have outcomes among their numbers, so their lines are written as cells.
+class CsvSweepWriter final : public SweepWriter {
+ public:
+  CsvSweepWriter(const std::string& path, const SweepInfo& info) : lines_(path) {
+    if (error().empty()) lines_.header(info.columns);
+  }
+  const std::string& error() const override { return lines_.error(); }
+  void row(const SweepRow& row) override {
+    std::vector<std::string> line = {std::to_string(row.number)};
+    for (const double v : row.varied) line.push_back(number_text(v));
+    line.emplace_back(row.outcome);
+    for (const double v : row.last) line.push_back(std::isnan(v) ? "" : number_text(v));
+    lines_.cells(line);
+  }
+  std::string close(const std::string&) override { return lines_.close(); }
+
+ private:
+  CsvLines lines_;
+};
+
+std::string header_line(const std::vector<std::string>& names) {
+  std::string line;
+  for (const std::string& name : names) line += (&name == names.data() ? "" : ",") + csv_cell(name);
+  return line;
+}
+
+// Writes line by line; returns false at the first failure.
+bool write_table(std::FILE* file, const RunTable& table) {
+  std::string line = header_line(table.columns) + '\n';
+  constexpr std::size_t kBuffer = 1u << 16;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    for (std::size_t j = 0; j < table.columns.size(); ++j) {
+      if (j) line += ',';
+      line += table.text(i, j);
+    }
+    line += '\n';
+    if (line.size() < kBuffer) continue;
+    if (std::fwrite(line.data(), 1, line.size(), file) != line.size()) return false;
+    line.clear();
+  }
+  return std::fwrite(line.data(), 1, line.size(), file) == line.size();
+}
+
 }  // namespace
 
 RunFile read_csv(std::string_view text) { return CsvReader(text).read(); }
+
+CsvLines::~CsvLines() { flush(); }
+
+void CsvLines::header(const std::vector<std::string>& names) {
+  if (!open()) return;
+  waiting_ += header_line(names);
+  end_line();
+  flush();
+}
+
+void CsvLines::row(const Row& row) {
+  if (!open()) return;
+  for (std::size_t k = 0; k < row.values.size(); ++k) {
+    if (k > 0) waiting_ += ',';
+    append_number(waiting_, row, k);
+  }
+  end_line();
+}
+
+void CsvLines::cells(const std::vector<std::string>& texts) {
+  if (!open()) return;
+  for (const std::string& text : texts) {
+    if (&text != texts.data()) waiting_ += ',';
+    waiting_ += text;
+  }
+  end_line();
+}
+
+void CsvLines::end_line() {
+  waiting_ += '\n';
+  constexpr std::size_t kTogether = 1u << 16;
+  if (waiting_.size() >= kTogether || std::chrono::steady_clock::now() >= next_) flush();
+}
+
+void CsvLines::flush() {
+  constexpr auto kPause = std::chrono::milliseconds(500);
+  if (!file_.stream()) return;
+  file_.write(waiting_);
+  file_.flush();
+  waiting_.clear();
+  next_ = std::chrono::steady_clock::now();
+  if (!::isatty(::fileno(file_.stream()))) next_ += kPause;
+}
+
+std::string CsvLines::close() {
+  flush();
+  return file_.close();
+}
+
+extern const ResultFormat csv_format;
+const ResultFormat csv_format = {
+    .name = "CSV",
+    .endings = {".csv"},
+    .holds = Holds::rows,
+    .read_text = read_csv,
+    .write =
+        [](const std::string& path, const RunFile& run) {
+          return write_stream(path, [&](std::FILE* file) { return write_table(file, run.table); });
+        },
+    .open = [](const std::string& path, const RunInfo&) -> std::unique_ptr<RunWriter> {
+      return std::make_unique<CsvRunWriter>(path);
+    },
+    .open_sweep = [](const std::string& path, const SweepInfo& info) -> std::unique_ptr<SweepWriter> {
+      return std::make_unique<CsvSweepWriter>(path, info);
+    },
+};
 
 }  // namespace anholon

@@ -184,6 +184,12 @@ std::string write_whole(const std::string& path, const std::string& text) {
                      [&](std::FILE* file) { return std::fwrite(text.data(), 1, text.size(), file) == text.size(); });
 }
 
+std::string write_stream(const std::string& path, const std::function<bool(std::FILE*)>& write) {
+  if (!path.empty() && path != "-") return write_whole(path, write);
+  if (write(stdout) && std::fflush(stdout) == 0) return {};
+  return "cannot write the output: " + std::string(std::strerror(errno));
+}
+
 std::string obstacle_to_writing(const std::string& path) {
   if (is_other_kind(path)) return ::access(path.c_str(), W_OK) == 0 ? std::string() : cannot_write(path, errno);
   const WritingClaim claim(path);

@@ -64,7 +64,9 @@ std::string target_of_link(const std::string& path);
 std::string write_whole(const std::string& path, const std::string& text);
 // As above, by a function that returns false at its first failure.
 std::string write_whole(const std::string& path, const std::function<bool(std::FILE*)>& write);
-// As above, by a function that gets the name to write to and returns the reason of a failure.
+// As above; an empty path or "-" is the standard output.
+std::string write_stream(const std::string& path, const std::function<bool(std::FILE*)>& write);
+// As write_whole, by a function that gets the name to write to and returns the reason of a failure.
 std::string write_whole_by_name(const std::string& path,
                                 const std::function<std::string(const std::string& beside)>& write);
 

@@ -22,9 +22,6 @@
 namespace anholon {
 
 const char* const kNoHdf5 = "this build of anholon has no HDF5";
-const char* const kNoHdf5Hint = "-o run.csv, or build it where libhdf5-dev is installed";
-
-bool looks_like_hdf5(std::string_view beginning) { return beginning.substr(0, 8) == "\x89HDF\r\n\x1A\n"; }
 
 void RowBlock::add(const Row& row) {
   columns = row.values.size();

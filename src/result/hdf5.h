@@ -16,10 +16,6 @@ namespace anholon {
 // Whether this build can read and write HDF5, and the message if it cannot.
 bool has_hdf5();
 extern const char* const kNoHdf5;
-extern const char* const kNoHdf5Hint;
-
-// Whether a file with this beginning is an HDF5 file.
-bool looks_like_hdf5(std::string_view beginning);
 
 // Rows that are appended to a file together.
 struct RowBlock {

@@ -24,7 +24,7 @@ Hdf5Sink::Hdf5Sink(std::string path, RunInfo info, Pace pace)
 }
 
 Hdf5Sink::~Hdf5Sink() {
-  close();
+  close({});
   if (last_ >= 0) ::close(last_);
 }
 
@@ -57,7 +57,8 @@ void Hdf5Sink::flush() {
   if (begun_ && block_.bytes() > 0) checkpoint();
 }
 
-std::string Hdf5Sink::close() {
+std::string Hdf5Sink::close(const std::string& report) {
+  if (!closed_ && !report.empty()) block_.report = report;
   if (!closed_ && begun_ && (block_.bytes() > 0 || block_.report)) checkpoint();
   closed_ = true;
   return error_;

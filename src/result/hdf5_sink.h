@@ -12,7 +12,7 @@
 
 #include "result/file.h"
 #include "result/hdf5.h"
-#include "result/rows.h"
+#include "result/writer.h"
 
 namespace anholon {
 
@@ -22,7 +22,7 @@ struct CheckpointPace {
   double share = 20;  // multiple of the time of the last checkpoint
 };
 
-class Hdf5Sink final : public RowSink {
+class Hdf5Sink final : public RunWriter {
  public:
   using Pace = CheckpointPace;
   // Check `error` before use: the constructor tries at once to write to the folder.
@@ -31,20 +31,16 @@ class Hdf5Sink final : public RowSink {
   Hdf5Sink(const Hdf5Sink&) = delete;
   Hdf5Sink& operator=(const Hdf5Sink&) = delete;
 
-  // Call it before `columns`: the first rows and steps of a run, before the rows to come; they are omitted if that run
-  // has other columns.
-  void go_on(const RunFile& before, std::size_t rows, std::size_t steps);
+  // The earlier part is omitted if it has other columns.
+  void go_on(const RunFile& before, std::size_t rows, std::size_t steps) override;
   void columns(const std::vector<RunColumn>& columns) override;
   void row(const Row& row) override;
   void step(double t) override;
-  // Stores the JSON of the whole run; with it the file is complete.
-  void report(std::string json) { block_.report = std::move(json); }
-
-  // After this call, the rows so far are in the file, whatever happens to the program.
-  void flush();
-  // Returns an empty string, or the reason why the file could not be written: the last complete file is kept then.
-  std::string close();
-  const std::string& error() const { return error_; }
+  void flush() override;
+  // A file without a report is that of a run that was not finished. If the file cannot be written, the last complete
+  // one is kept.
+  std::string close(const std::string& report) override;
+  const std::string& error() const override { return error_; }
   // Number of rows in the complete file.
   std::size_t written() const { return written_; }
 

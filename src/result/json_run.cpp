@@ -1,13 +1,20 @@
-// Rows from the JSON of `simulate`. Numbers are taken as written, and the text beside the rows is kept: a general
-// reader would round the numbers and reformat the rest.
+#include "result/json_run.h"
+
+#include <cstdio>
+
 #include "base/diagnostic.h"
+#include "base/json.h"
 #include "base/utf8.h"
-#include "result/run_file.h"
+#include "numeric/number.h"
+#include "result/file.h"
+#include "result/format.h"
 
 namespace anholon {
 
 namespace {
 
+// Takes numbers as they are written, and keeps the text beside the rows: a general reader would round the numbers and
+// reformat the rest.
 class JsonReader {
  public:
   explicit JsonReader(std::string_view text) : text_(text) {}
@@ -226,8 +233,111 @@ class JsonReader {
   RunFile run_;
 };
 
+// Columns and rows, in the form that they have within the JSON of `simulate`.
+std::string json_rows(const RunTable& table) {
+  JsonWriter j;
+  j.open_object().key("columns").open_array();
+  for (const std::string& n : table.columns) j.string(n);
+  j.close().key("rows").open_array();
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    j.open_array();
+    for (std::size_t c = 0; c < table.columns.size(); ++c) j.number(json_number(table.text(i, c)));
+    j.close();
+  }
+  j.close().close();
+  return j.text().substr(1, j.text().size() - 3);
+}
+
+// Keeps the rows until the report is there.
+class JsonRunWriter final : public RunWriter {
+ public:
+  JsonRunWriter(const std::string& path, const RunInfo& info) : file_(path) { static_cast<RunInfo&>(run_) = info; }
+  const std::string& error() const override { return file_.error(); }
+  void columns(const std::vector<RunColumn>& columns) override { rows_.columns(columns); }
+  void row(const Row& row) override { rows_.row(row); }
+  void step(double t) override { rows_.step(t); }
+  void flush() override {}
+  std::string close(const std::string& report) override {
+    run_.report = report;
+    file_.write(json_run(run_));
+    return file_.close();
+  }
+
+ private:
+  GrowingFile file_;
+  RunFile run_;
+  RunSink rows_{run_};
+};
+
+// Written line by line: there may be more cases than memory holds.
+class JsonSweepWriter final : public SweepWriter {
+ public:
+  JsonSweepWriter(const std::string& path, const SweepInfo& info) : file_(path) {
+    if (!error().empty()) return;
+    std::string names;
+    for (const std::string& n : info.columns) names += (names.empty() ? "\"" : ", \"") + json_escape(n) + "\"";
+    file_.write("{\n  \"model\": \"" + json_escape(info.model) + "\",\n  \"form\": \"" + json_escape(info.form) +
+                "\",\n  \"columns\": [" + names + "],\n  \"rows\": [");
+  }
+  const std::string& error() const override { return file_.error(); }
+  void row(const SweepRow& row) override {
+    JsonWriter j;
+    j.open_array().integer(static_cast<long long>(row.number));
+    for (const double v : row.varied) j.number(number_text(v));
+    j.string(row.outcome);
+    for (const double v : row.last) j.number(number_text(v));
+    file_.write((any_ ? ",\n    " : "\n    ") + j.close().text());
+    any_ = true;
+  }
+  std::string close(const std::string& report) override {
+    file_.write(std::string(any_ ? "\n  " : "") + "]," + report.substr(1) + "\n");
+    return file_.close();
+  }
+
+ private:
+  GrowingFile file_;
+  bool any_ = false;
+};
+
+bool looks_like_json(std::string_view beginning) {
+  const std::size_t first = beginning.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && beginning[first] == '{';
+}
+
 }  // namespace
 
 RunFile read_json_run(std::string_view text) { return JsonReader(text).read(); }
+
+std::string json_run(const RunFile& run) {
+  const std::string& report = run.report;
+  if (report.size() < 2) return "{" + json_rows(run.table) + "\n}\n";
+  // At the place where `simulate` writes them: after the model and the form.
+  const std::size_t place = report.find("\n  \"residuals\":");
+  if (place == std::string::npos) return "{" + json_rows(run.table) + "," + report.substr(1) + "\n";
+  return report.substr(0, place) + json_rows(run.table) + "," + report.substr(place) + "\n";
+}
+
+extern const ResultFormat json_format;
+const ResultFormat json_format = {
+    .name = "JSON",
+    .endings = {".json"},
+    .holds = Holds::report,
+    .without_rows = true,
+    .most_numbers = 5'000'000,
+    .recognizes = looks_like_json,
+    .read_text = read_json_run,
+    .write =
+        [](const std::string& path, const RunFile& run) {
+          const std::string text = json_run(run);
+          return write_stream(
+              path, [&](std::FILE* file) { return std::fwrite(text.data(), 1, text.size(), file) == text.size(); });
+        },
+    .open = [](const std::string& path, const RunInfo& info) -> std::unique_ptr<RunWriter> {
+      return std::make_unique<JsonRunWriter>(path, info);
+    },
+    .open_sweep = [](const std::string& path, const SweepInfo& info) -> std::unique_ptr<SweepWriter> {
+      return std::make_unique<JsonSweepWriter>(path, info);
+    },
+};
 
 }  // namespace anholon

@@ -1,13 +1,10 @@
-// Sinks for the rows of a result, to a file or the standard output: columns once, then rows of numbers. Writing stops
-// at the first failure of the file, which `close` reports.
+// Rows of numbers, and what takes them: the columns once, then row by row.
 #pragma once
-#include <chrono>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "result/columns.h"
-#include "result/file.h"
 
 namespace anholon {
 
@@ -29,34 +26,6 @@ class RowSink {
   virtual void row(const Row& row) = 0;
   // Called when an accepted step of the motion ends at t.
   virtual void step(double) {}
-};
-
-// CSV with one header row. Rows are written whole: on a terminal one by one, else many together or those of half a
-// second.
-class CsvSink final : public RowSink {
- public:
-  // An empty path or "-" is the standard output. Check `error` before use.
-  explicit CsvSink(const std::string& path) : file_(path) {}
-  ~CsvSink() override;
-  CsvSink(const CsvSink&) = delete;
-  CsvSink& operator=(const CsvSink&) = delete;
-  void columns(const std::vector<RunColumn>& columns) override;
-  void row(const Row& row) override;
-  // Writes a line of words and numbers unchanged: a sweep has outcomes among its numbers.
-  void cells(const std::vector<std::string>& texts);
-  // After this call, the rows so far are in the file, whatever happens to the program.
-  void flush();
-  // Returns an empty string, or the reason why the file could not be written.
-  std::string close();
-  const std::string& error() const { return file_.error(); }
-  std::string part() const { return file_.part(); }
-
- private:
-  void end_line();
-
-  GrowingFile file_;
-  std::string waiting_;
-  std::chrono::steady_clock::time_point next_{};
 };
 
 // Passes rows to two sinks.

@@ -1,13 +1,9 @@
-// The file of a run: its rows, and the data that identify their origin.
-//
-// The content determines the format. HDF5 holds everything, JSON the rows and the report, CSV the rows.
-// (doc/results.md)
+// A run as a result file holds it: its rows, and the data that identify their origin.
 #pragma once
 #include <map>
 #include <string>
 #include <vector>
 
-#include "base/diagnostic.h"
 #include "result/rows.h"
 #include "result/table.h"
 
@@ -44,19 +40,5 @@ class RunSink final : public RowSink {
  private:
   RunFile& run_;
 };
-
-enum class RunFormat { csv, json, hdf5 };
-// The format is determined by the extension of the name.
-bool format_of(const std::string& path, RunFormat& format);
-
-// "-" is the standard input. Throws Failure; if its span is a place in the file, `source` gets the text.
-RunFile read_run(const std::string& path, SourceText* source = nullptr);
-// Returns an empty string, or the reason why the run could not be written. The file is written completely or not
-// changed; "-" is the standard output (CSV, JSON).
-std::string write_run(const std::string& path, RunFormat format, const RunFile& run);
-
-// The single formats, from and to texts.
-RunFile read_csv(std::string_view text);
-RunFile read_json_run(std::string_view text);
 
 }  // namespace anholon

@@ -370,22 +370,6 @@ std::string report_json(const SimulationReport& r) {
   return j.close().text();
 }
 
-std::string run_json(const RunTable& rows, const SimulationReport& r) {
-  JsonWriter j;
-  j.open_object().key("model").string(r.model).key("form").string(r.form);
-  j.key("columns").open_array();
-  for (const std::string& n : rows.columns) j.string(n);
-  j.close().key("rows").open_array();
-  for (std::size_t i = 0; i < rows.rows(); ++i) {
-    j.open_array();
-    for (std::size_t k = 0; k < rows.columns.size(); ++k) j.number(json_number(rows.text(i, k)));
-    j.close();
-  }
-  j.close();
-  ReportWriter(j).write(r);
-  return j.close().text() + "\n";
-}
-
 std::optional<SimulationReport> read_report(const std::string& json) {
   Json j;
   DigitKeeper keeper(j);

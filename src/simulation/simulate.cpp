@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <chrono>
 
-#include "observe/angles.h"
 #include "observe/judge.h"
 #include "observe/supports.h"
-#include "observe/watch.h"
+#include "simulation/event_paces.h"
+#include "simulation/row_writer.h"
+#include "simulation/schedule.h"
+#include "simulation/shown_motion.h"
+#include "simulation/trust.h"
 
 namespace anholon {
 
@@ -20,7 +23,7 @@ StepSettings step_settings(const SimulationOptions& o) {
   return s;
 }
 
-// What is to go on with the same bits, to be enclosed or to be compared with is Taylor's.
+// A motion that is saved, continued, enclosed or compared with another integrator is computed by Taylor's method.
 Method method(const SimulationOptions& o) {
   return o.method == Method::automatic && (o.save || o.resume || o.rigorous || o.integrator != Method::taylor)
              ? Method::taylor
@@ -33,16 +36,17 @@ Column monitored(const Model& model) {
   return es;
 }
 
+// One run: prepares the motion, follows it step by step, writes the rows, watches it and reports.
 template <Number N>
 class Run {
  public:
   using W = Wider<N>;
   Run(Workspace& s, const SimulationOptions& o, RowSink& sink)
-      : s_(s), o_(o), sink_(sink), power_(anholon::power(*s.mechanics)),
+      : s_(s), o_(o), power_(anholon::power(*s.mechanics)),
         course_(s, step_settings(o), method(o), watched_quadratures(s, power_),
                 std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
-        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, motion().parameters()), judge_(s, o),
-        supports_(s) {
+        shown_(course_), rows_(sink, o.digits), watch_(s, power_, o.conserved, motion().parameters()),
+        angles_(s, motion().parameters()), judge_(s, o), supports_(s), paces_(s.model->events) {
     report_.model = s.model->title;
     report_.form = s.system.form->name;
     report_.constraints_each = constraint_reports(s);
@@ -50,127 +54,50 @@ class Run {
   }
 
   SimulationReport go() {
-    if (o_.resume)
-      report_.outcome = resume(*o_.resume);
-    else
-      begin();
+    report_.outcome = o_.resume ? resume(*o_.resume) : begin();
     if (report_.outcome.ok()) {
-      ask_second();
-      sink_.columns(run_columns(s_, highest()));
-      run();
+      show_second();
+      rows_.columns(run_columns(s_, highest()));
+      follow();
     }
-    report_.order = course_.order();
-    report_.method = course_.report();
-    report_.t = to_double(reached_ ? *reached_ : course_.time());
-    report_.steps = course_.steps();
-    report_.constraints = to_double(course_.worst_constraint());
-    report_.smallest_sigma = to_double(course_.smallest_sigma());
-    report_.smallest_sigma_t = to_double(course_.smallest_sigma_time());
-    if (s_.system.form->eliminates()) report_.eliminations = motion().eliminations();
-    if (second_) {
-      report_.second = second_->report();
-      report_.constraints = report_.second->drift;
-    }
-    if (defect_) report_.rigorous = defect_->report();
-    const std::size_t monitors = s_.model->monitors.size();
-    for (std::size_t i = 0; i < monitors; ++i) {
-      const Monitor& m = s_.model->monitors[i];
-      (declared_conserved(*s_.model, m) ? report_.conserved : report_.monitors)
-          .push_back(watched(m.name, watch_.tracks()[i]));
-    }
-    for (std::size_t i = 0; i < o_.conserved.size(); ++i)
-      report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
-    for (const std::string& text : supports_.notes()) note(text);
-    warn();
-    judge_.estimate(course_, report_);
+    report();
     return report_;
   }
 
  private:
-  // Taylor's part of it.
   Motion<N>& motion() { return course_.taylor(); }
   const Motion<N>& motion() const { return course_.taylor(); }
 
   int highest() const { return largest_order(s_, motion().program().d); }
-
-  void begin() {
-    report_.outcome = course_.start(o_.state);
-    if (!report_.outcome.ok()) return;
-    t0_ = course_.time();
-    schedule();
-    if (course_.at(t0_).ok()) watch_.start(course_.point());
-    report_.outcome = motion().within_bounds();
-    if (report_.outcome.ok()) limits();
-  }
 
   void note(const std::string& text) {
     report_.notes.push_back(text);
     if (o_.note) o_.note(text);
   }
 
-  // Events that look out for a limit which is passed at the start do not happen.
-  void limits() {
-    if (!forward_) return;
-    // A limit at which the motion starts is not passed by round-off.
-    constexpr double kPassed = 1e-12;
-    for (std::size_t i = 0; i < s_.model->events.size(); ++i) {
-      const Event& e = s_.model->events[i];
-      const double value = e.direction * motion().at_start(i);
-      if (!e.ends_step() || !(value > kPassed)) continue;
-      note("event '" + e.name + "' is past its limit at the start: its formula is " +
-           number_text(e.direction * value, 6) + ", and it happens where that passes zero " +
-           (e.direction > 0 ? "upwards" : "downwards") + "; until it has come back, nothing happens");
-    }
+  // ---- start -------------------------------------------------------------------------------------
+
+  Outcome begin() {
+    if (Outcome o = course_.start(o_.state); !o.ok()) return o;
+    schedule_ = RowSchedule<W>(o_, course_.time());
+    if (course_.at(schedule_.start()).ok()) watch_.start(course_.point());
+    if (Outcome o = motion().within_bounds(); !o.ok()) return o;
+    if (schedule_.forward())
+      for (const std::string& text : passed_limits(*s_.model, motion())) note(text);
+    return {};
   }
 
   // Another integrator, whose motion is then the one that is written.
-  void ask_second() {
+  void show_second() {
+    if (o_.integrator == Method::taylor) return;
     if constexpr (std::same_as<N, double>)
-      if (o_.integrator != Method::taylor)
-        second_ = std::make_unique<SecondMotion>(
-            s_, o_.state, watched_quadratures(s_, power_)[0],
-            SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, end_);
-    if (second_) judge_.look_beside(course_);
+      shown_.show(std::make_unique<SecondMotion>(
+          s_, o_.state, watched_quadratures(s_, power_)[0],
+          SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, schedule_.end()));
+    if (shown_.second()) judge_.look_beside(course_);
   }
 
-  // The motion that was asked for, at t.
-  Outcome at(const W& t) {
-    Outcome o = course_.at(t);
-    if constexpr (std::same_as<N, double>)
-      if (o.ok() && second_) o = second_->at(t, course_.point());
-    return o;
-  }
-
-  const Expansion<W>& point() const {
-    if constexpr (std::same_as<N, double>)
-      if (second_) return second_->point();
-    return course_.point();
-  }
-
-  const W& work() const {
-    if constexpr (std::same_as<N, double>)
-      if (second_) return second_->work();
-    return course_.integrals()[0];
-  }
-
-  Outcome resume(const SavedRun& from) {
-    if (Outcome o = motion().resume(o_.state, from); !o.ok()) return o;
-    t0_ = from.number<W>("start");
-    done_ = from.number<W>("rows");
-    if (from.has("given")) {
-      const std::vector<double> given = from.numbers<double>("given", 2);
-      given_rows_ = static_cast<std::size_t>(given[0]), given_steps_ = static_cast<std::size_t>(given[1]);
-    }
-    judge_.goes_on_from(*done_);
-    watch_.resume(from);
-    const std::vector<double*> residuals = carried();
-    const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
-    for (std::size_t i = 0; i < worst.size(); ++i) *residuals[i] = worst[i];
-    const std::vector<double> angles = from.numbers<double>("angles", 2 * angles_.least.size());
-    for (std::size_t i = 0; i < angles_.least.size(); ++i) angles_.least[i] = {angles[2 * i], W(angles[2 * i + 1])};
-    schedule();
-    return {};
-  }
+  // ---- saved runs --------------------------------------------------------------------------------
 
   // The residuals so far.
   std::vector<double*> carried() {
@@ -180,16 +107,16 @@ class Run {
     return list;
   }
 
-  // From here a run goes on with the same bits.
+  // Stores the state from which a run goes on with the same bits.
   void save() {
     SavedRun to;
     motion().save(to);
     watch_.save(to);
-    to.set_numbers<W>("start", {t0_});
-    to.set_numbers<W>("rows", {*done_});
+    to.set_numbers<W>("start", {schedule_.start()});
+    to.set_numbers<W>("rows", {*schedule_.given()});
     // The last step will be made again.
-    to.set_numbers<double>(
-        "given", {static_cast<double>(given_rows_), static_cast<double>(given_steps_ > 0 ? given_steps_ - 1 : 0)});
+    const std::size_t steps = rows_.steps() > 0 ? rows_.steps() - 1 : 0;
+    to.set_numbers<double>("given", {static_cast<double>(rows_.rows()), static_cast<double>(steps)});
     std::vector<double> worst, angles;
     for (const double* x : carried()) worst.push_back(*x);
     for (const auto& least : angles_.least) angles.insert(angles.end(), {least.value, to_double(least.t)});
@@ -198,74 +125,74 @@ class Run {
     o_.save(to);
   }
 
-  // The times of the rows, in the direction of the motion, and its end.
-  void schedule() {
-    for (const Rational& r : o_.at) times_.push_back(from_rational<W>(r));
-    labels_ = o_.at_text;
-    labels_.resize(times_.size());
-    end_ = o_.to && (times_.empty() || *o_.to > o_.at.back()) ? from_rational<W>(*o_.to) : times_.back();
-    if (!times_.empty() && times_.front() < t0_ && !(times_.back() > t0_)) {
-      std::reverse(times_.begin(), times_.end());
-      std::reverse(labels_.begin(), labels_.end());
-      end_ = times_.back();
+  Outcome resume(const SavedRun& from) {
+    if (Outcome o = motion().resume(o_.state, from); !o.ok()) return o;
+    const W start = from.number<W>("start"), given_until = from.number<W>("rows");
+    if (from.has("given")) {
+      const std::vector<double> given = from.numbers<double>("given", 2);
+      rows_.go_on(static_cast<std::size_t>(given[0]), static_cast<std::size_t>(given[1]));
     }
-    forward_ = end_ > t0_;
-    if (o_.every) {
-      const Rational step = end_ < t0_ ? Rational(-*o_.every) : *o_.every;
-      for (long k = 0;; ++k) {
-        const W next = t0_ + from_rational<W>(Rational(k * step));
-        if (end_ < t0_ ? next < end_ : next > end_) break;
-        times_.push_back(next);
-      }
-      if (times_.empty() || times_.back() != end_) times_.push_back(end_);
-      labels_.resize(times_.size());
-    }
-    every_step_ = times_.empty();
-    while (done_ && next_ < times_.size() && reaches(*done_, times_[next_])) ++next_;
+    judge_.goes_on_from(given_until);
+    watch_.resume(from);
+    const std::vector<double*> residuals = carried();
+    const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
+    for (std::size_t i = 0; i < worst.size(); ++i) *residuals[i] = worst[i];
+    const std::vector<double> angles = from.numbers<double>("angles", 2 * angles_.least.size());
+    for (std::size_t i = 0; i < angles_.least.size(); ++i) angles_.least[i] = {angles[2 * i], W(angles[2 * i + 1])};
+    schedule_ = RowSchedule<W>(o_, start, given_until);
+    return {};
   }
 
-  // Whether a motion that has come to `stop` has passed t.
-  bool reaches(const W& stop, const W& t) const { return forward_ ? t <= stop : t >= stop; }
+  // ---- the motion --------------------------------------------------------------------------------
 
-  void run() {
+  void follow() {
     // Rows at or before the start come from the initial state itself.
-    if (!done_) {
-      if (every_step_) row(t0_, "");
-      while (next_ < times_.size() && times_[next_] == t0_) row(times_[next_], labels_[next_]), ++next_;
-      done_ = t0_;
-    } else if (reaches(*done_, end_)) {
+    if (!schedule_.given()) {
+      const W start = schedule_.start();
+      if (schedule_.every_step()) row(start, "");
+      while (schedule_.due_at(start)) row(schedule_.take());
+      schedule_.set_given(start);
+    } else if (schedule_.reaches(*schedule_.given(), schedule_.end())) {
       return;  // nothing is left
     }
-    if (o_.rigorous) defect_.emplace(s_, *o_.rigorous, Ball(*done_), Ball(end_), significand_bits<W>());
+    if (o_.rigorous)
+      defect_.emplace(s_, *o_.rigorous, Ball(*schedule_.given()), Ball(schedule_.end()), significand_bits<W>());
     // Soon at first, so that a run that is killed early can go on, too; then at longer and longer intervals.
     constexpr double kFirst = 0.5, kLonger = 1.5;
     auto saved = std::chrono::steady_clock::now();
     double pause = std::min(kFirst, o_.save_seconds);
-    while (report_.outcome.ok() && !(course_.time() == end_)) {
-      watch_.turn_over(course_.integrals()[0]);
-      report_.outcome = course_.step(end_);
-      if (!report_.outcome.ok()) break;
-      angles_.see(course_.begun());
-      if (report_.outcome = watch_.still_redundant(course_.begun(), report_); !report_.outcome.ok()) break;
-      const W stop = masses_positive_until();
-      if (defect_) defect_->step(dense_step(motion().stepper(), stop));
-      if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
-      rows_until(stop);
-      sink_.step(to_double(stop));
-      ++given_steps_;
-      if (report_.outcome.ok() && !(stop == course_.time())) negative_mass(stop);
-      if (report_.outcome.ok() && course_.by_taylor() && motion().fired() && !events()) break;
+    while (report_.outcome.ok() && !(course_.time() == schedule_.end())) {
+      if (!step()) break;
       if (!o_.save || std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() < pause) continue;
       save();
       saved = std::chrono::steady_clock::now();
       pause = std::min(kLonger * pause, o_.save_seconds);
     }
-    if (report_.outcome.ok() && course_.steps() > 0 && at(course_.time()).ok()) watch_.end(point(), work(), report_);
+    if (report_.outcome.ok() && course_.steps() > 0 && shown_.at(course_.time()).ok())
+      watch_.end(shown_.point(), shown_.work(), report_);
     if (o_.save) save();
     if (!report_.outcome.ok()) stopped();
   }
 
-  // What fired in the last step; false if it ends the motion.
+  // One step, with its rows and events; returns false if it ends the motion before its end.
+  bool step() {
+    watch_.turn_over(course_.integrals()[0]);
+    if (report_.outcome = course_.step(schedule_.end()); !report_.outcome.ok()) return false;
+    angles_.see(course_.begun());
+    if (report_.outcome = watch_.still_redundant(course_.begun(), report_); !report_.outcome.ok()) return false;
+    const MassLimit<W> masses = masses_positive_until<N>(*s_.model, course_);
+    if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
+    if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
+    rows_until(masses.t);
+    rows_.step(masses.t);
+    if (report_.outcome.ok() && !(masses.t == course_.time())) {
+      report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));
+      reached_ = masses.t;
+    }
+    return !(report_.outcome.ok() && course_.by_taylor() && motion().fired()) || events();
+  }
+
+  // Takes the events that fired in the last step; returns false if they end the motion.
   bool events() {
     if (Outcome o = motion().at(motion().stepper().time()); o.ok()) watch_.leave(motion().point());
     std::vector<Occurrence<W>> occurrences;
@@ -273,10 +200,11 @@ class Run {
     report_.outcome = motion().settle(occurrences, goes_on);
     for (const Occurrence<W>& o : occurrences) {
       const Event& e = s_.model->events[o.event];
-      EventReport r{e.name, written(o.t), {}, to_double(o.correction), e.stop};
-      for (const auto& c : o.changes) r.changes.push_back({c.name, written(c.before), written(c.after)});
+      EventReport r{e.name, rows_.written(o.t), {}, to_double(o.correction), e.stop};
+      for (const auto& c : o.changes) r.changes.push_back({c.name, rows_.written(c.before), rows_.written(c.after)});
       report_.events.push_back(std::move(r));
-      accumulate(o);
+      const Outcome pace = paces_.see(o, W(schedule_.end() - schedule_.start()));
+      if (report_.outcome.ok()) report_.outcome = pace;
     }
     judge_.events(occurrences);
     if (!report_.outcome.ok()) {
@@ -289,42 +217,14 @@ class Run {
     return goes_on && report_.outcome.ok();
   }
 
-  // By an event: the state there is worth a row of its own.
+  // Ends the motion by an event: the state there is worth a row of its own.
   void ended() {
     const W t = course_.time();
     reached_ = t;
-    if (!every_step_ && !(next_ > 0 && times_[next_ - 1] == t)) row(t, "");
+    if (!schedule_.every_step() && !schedule_.took(t)) row(t, "");
   }
 
-  // An event that comes sooner and sooner has infinitely many before some moment: nothing is computed beyond it.
-  void accumulate(const Occurrence<W>& o) {
-    constexpr int kShrinking = 3;
-    constexpr double kNoTime = 1e-8;
-    const Event& e = s_.model->events[o.event];
-    if (e.set.empty()) return;
-    paces_.resize(s_.model->events.size());
-    Pace& p = paces_[o.event];
-    const W interval = abs(W(o.t - p.last));
-    p.shrinking = p.times > 1 && interval < p.interval ? p.shrinking + 1 : 0;
-    p.interval = interval;
-    p.last = o.t;
-    ++p.times;
-    if (!report_.outcome.ok() || p.shrinking < kShrinking || interval > W(kNoTime) * abs(W(end_ - t0_))) return;
-    report_.outcome = {
-        OutcomeKind::step_collapse,
-        "events accumulate: '" + e.name + "' fired " + std::to_string(p.times) +
-            " times, sooner and sooner, the last time after " + number_text(to_double(interval), 2),
-        "let an event end the motion (stop = true), or change a mode, when what it resets has become small"};
-  }
-
-  // What lies in the last step.
-  void rows_until(const W& stop) {
-    for (; report_.outcome.ok() && next_ < times_.size() && reaches(stop, times_[next_]); ++next_)
-      row(times_[next_], labels_[next_]);
-    if (every_step_ && report_.outcome.ok() && !reaches(*done_, stop)) row(stop, "");
-    if (!reaches(*done_, stop)) done_ = stop;
-  }
-
+  // Ends the motion where it cannot be continued.
   void stopped() {
     if (report_.outcome.message.find(" t = ") == std::string::npos) {
       report_.outcome.message += " at t = " + number_text(to_double(course_.time()), 12);
@@ -339,7 +239,7 @@ class Run {
       return;  // it has its row
     }
     // The last good state is worth a row of its own.
-    if (course_.steps() > 0 && !every_step_) {
+    if (course_.steps() > 0 && !schedule_.every_step()) {
       const Outcome why = report_.outcome;
       report_.outcome = {};
       row(course_.before(), "");
@@ -351,136 +251,87 @@ class Run {
     }
   }
 
-  void warn() {
-    constexpr double kNearSingular = 1e-3;
-    if (course_.smallest_sigma() < course_.first_sigma() * N(kNearSingular)) {
-      const std::size_t j = course_.weakest_unknown(), n = s_.system.coordinates;
-      const std::string what = j < n ? derivative_name(s_.system.variable_names[j],
-                                                       static_cast<unsigned>(motion().program().d[j]), Format::text) +
-                                           " is hardly determined"
-                                     : "the constraint '" + s_.system.equation_names[j] + "' hardly holds";
-      report_.warnings.push_back(
-          {"the motion passes near a singular configuration at t = " + number_text(report_.smallest_sigma_t, 6) + ": " +
-               what,
-           "trust what follows less; write the constraint or the coordinates so that they are regular there"});
-    }
-    // Far above what integration and round-off leave.
-    constexpr double kConserved = 1e-6;
-    for (std::size_t i = 0; i < s_.model->monitors.size(); ++i)
-      if (const double change = watch_.tracks()[i].relative_change();
-          declared_conserved(*s_.model, s_.model->monitors[i]) && !(change <= kConserved))
-        report_.warnings.push_back(
-            {"the output '" + s_.model->monitors[i].name + "' is not conserved: it changes by " +
-                 number_text(change, 3) + " of its size",
-             "look for a force, an event or an observer that changes it, or leave out conserved = true"});
-    for (std::size_t i = 0; i < angles_.triples.size(); ++i)
-      if (angles_.least[i].value < kNearSingular)
-        report_.warnings.push_back(
-            {"the angles " + angles_.triples[i].angles +
-                 " come near their singularity at t = " + number_text(to_double(angles_.least[i].t), 6),
-             "describe the orientation of '" + angles_.triples[i].body + "' by a quaternion: quat(e0, e1, e2, e3)"});
+  // ---- rows --------------------------------------------------------------------------------------
+
+  // The rows that lie in the last step.
+  void rows_until(const W& stop) {
+    while (report_.outcome.ok() && schedule_.due(stop)) row(schedule_.take());
+    if (schedule_.reaches(*schedule_.given(), stop)) return;
+    if (schedule_.every_step() && report_.outcome.ok()) row(stop, "");
+    schedule_.set_given(stop);
   }
 
-  // The end of the last step, or the earlier time at which a mass passes zero.
-  W masses_positive_until() {
-    if (!course_.by_taylor()) return course_.time();  // Taylor's steps go to where one vanishes
-    const Stepper<N>& stepper = motion().stepper();
-    const W whole = stepper.time() - stepper.before();
-    W good = whole;
-    for (std::size_t i = 0; i < s_.model->masses.size(); ++i) {
-      if (s_.model->masses[i].weight || !(stepper.quadrature(1 + i, good) < W(0))) continue;
-      W low(0), high = good;
-      for (int k = 0; k < 200 && !(low == high); ++k) {
-        const W middle = low + (high - low) * W(0.5);
-        if (middle == low || middle == high) break;
-        (stepper.quadrature(1 + i, middle) < W(0) ? high : low) = middle;
-      }
-      good = low;
-      negative_ = i;
-    }
-    return good == whole ? stepper.time() : stepper.before() + good;
-  }
-
-  void negative_mass(const W& t) {
-    report_.outcome = {OutcomeKind::negative_mass,
-                       "the mass of '" + s_.model->masses[negative_].name +
-                           "' is negative from t = " + number_text(to_double(t), 12) + " on",
-                       "end the motion before, or let the mass end at zero flow"};
-    reached_ = t;
-  }
-
-  std::string text(const W& x) const {
-    if constexpr (std::same_as<N, Multi>)
-      return number_text(x, o_.digits + 2);
-    else if constexpr (std::same_as<N, Quad>)
-      return quad_text(x, o_.digits);
-    else
-      return number_text(convert<N>(x));
-  }
-
-  WrittenNumber written(const W& x) const { return {to_double(x), kWide ? text(x) : std::string()}; }
-
-  WatchedReport watched(const std::string& name, const Track<W>& track) const {
-    return {name,
-            written(track.first),
-            written(track.last),
-            written(track.least),
-            written(track.greatest),
-            track.relative_change()};
-  }
+  void row(const typename RowSchedule<W>::Due& due) { row(due.t, due.label); }
 
   void row(const W& t, const std::string& label) {
-    report_.outcome = at(t);
+    report_.outcome = shown_.at(t);
     if (!report_.outcome.ok()) return;
-    const Expansion<W>& here = point();
+    const Expansion<W>& here = shown_.point();
     report_.outcome = watch_.see(here, report_);
     const std::vector<W> numbers = row_values(s_, highest(), here, watch_);
     judge_.row(t, label, numbers, course_);
-    values_.assign(1, to_double(t));
-    for (const W& x : numbers) values_.push_back(to_double(x));
-    texts_.clear();
-    if (kWide) {
-      texts_.push_back(text(t));
-      for (const W& x : numbers) texts_.push_back(text(x));
-    }
-    if (!label.empty()) texts_.resize(std::max<std::size_t>(1, texts_.size())), texts_[0] = label;
     supports_.see(to_double(t), [&](std::size_t r) { return to_double(watch_.multiplier(r)); });
-    sink_.row({values_, texts_});
+    rows_.row(t, label, numbers);
     ++report_.rows;
-    ++given_rows_;
   }
 
-  // The numbers written say more than doubles do.
-  static constexpr bool kWide = !std::same_as<N, double>;
+  // ---- the report --------------------------------------------------------------------------------
+
+  void report() {
+    report_.order = course_.order();
+    report_.method = course_.report();
+    report_.t = to_double(reached_ ? *reached_ : course_.time());
+    report_.steps = course_.steps();
+    report_.constraints = to_double(course_.worst_constraint());
+    report_.smallest_sigma = to_double(course_.smallest_sigma());
+    report_.smallest_sigma_t = to_double(course_.smallest_sigma_time());
+    if (s_.system.form->eliminates()) report_.eliminations = motion().eliminations();
+    if (shown_.second()) {
+      report_.second = shown_.second()->report();
+      report_.constraints = report_.second->drift;
+    }
+    if (defect_) report_.rigorous = defect_->report();
+    report_watched();
+    for (const std::string& text : supports_.notes()) note(text);
+    const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
+    report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
+    judge_.estimate(course_, report_);
+  }
+
+  void report_watched() {
+    const std::size_t monitors = s_.model->monitors.size();
+    for (std::size_t i = 0; i < monitors; ++i) {
+      const Monitor& m = s_.model->monitors[i];
+      (declared_conserved(*s_.model, m) ? report_.conserved : report_.monitors)
+          .push_back(watched(m.name, watch_.tracks()[i]));
+    }
+    for (std::size_t i = 0; i < o_.conserved.size(); ++i)
+      report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
+  }
+
+  WatchedReport watched(const std::string& name, const Track<W>& track) const {
+    return {name,
+            rows_.written(track.first),
+            rows_.written(track.last),
+            rows_.written(track.least),
+            rows_.written(track.greatest),
+            track.relative_change()};
+  }
 
   Workspace& s_;
   const SimulationOptions& o_;
-  RowSink& sink_;
-  std::vector<double> values_;  // of the row that is written, and its digits
-  std::vector<std::string> texts_;
   Power power_;
   Course<N> course_;
-  std::unique_ptr<SecondMotion> second_;  // what another integrator makes of it
+  ShownMotion<N> shown_;
+  RowSchedule<W> schedule_;
+  RowWriter<N> rows_;
   Watch<W> watch_;
   AngleWatch<W> angles_;
   Judge<N> judge_;
   SupportWatch supports_;
+  EventPaces<W> paces_;
   std::optional<Defect> defect_;
-  std::vector<W> times_;
-  std::vector<std::string> labels_;
-  W t0_{0}, end_{0};
-  bool forward_ = true, every_step_ = false;
-  struct Pace {
-    std::size_t times = 0;
-    int shrinking = 0;  // how often in a row the time since the one before has become shorter
-    W last{0}, interval{0};
-  };
-  std::vector<Pace> paces_;                       // of the events
-  std::size_t next_ = 0;                          // row
-  std::size_t given_rows_ = 0, given_steps_ = 0;  // since the start of the motion
-  std::optional<W> done_;                         // all rows up to here have been given
-  std::optional<W> reached_;
-  std::size_t negative_ = 0;
+  std::optional<W> reached_;  // the time at which the motion ended before its end
   SimulationReport report_;
 };
 

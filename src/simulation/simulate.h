@@ -7,7 +7,7 @@
 namespace anholon {
 
 SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink);
-// The same in a workspace that the caller gives, and which has grown afterwards.
+// As above, in a workspace of the caller, in whose graph expressions are added.
 SimulationReport simulate_in(Workspace& scenario, const SimulationOptions& options, RowSink& sink);
 
 }  // namespace anholon

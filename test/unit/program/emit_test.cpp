@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "numeric/number.h"
+#include "program/emit_names.h"
 #include "program/emit_text.h"
 #include "support/chain.h"
 #include "support/models.h"

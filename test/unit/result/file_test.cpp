@@ -8,8 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "result/csv.h"
 #include "result/file.h"
-#include "result/rows.h"
 #include "support/rows.h"
 
 namespace anholon {
@@ -42,13 +42,13 @@ class File : public testing::Test {
 TEST_F(File, HasItsNameWhenItIsWhole) {
   std::ofstream(path_) << "old";
   {
-    CsvSink rows(path_);
+    CsvRunWriter rows(path_);
     test::set_columns(rows, {"t", "x"});
     test::add_row(rows, {"0", "1"});
     rows.flush();
     EXPECT_EQ(text(path_), "old");
     EXPECT_EQ(text(path_ + ".part"), "t,x\n0,1\n");
-    EXPECT_EQ(rows.close(), "");
+    EXPECT_EQ(rows.close({}), "");
   }
   EXPECT_EQ(text(path_), "t,x\n0,1\n");
   EXPECT_EQ(files(), 1u);
@@ -66,7 +66,7 @@ TEST_F(File, WhatWasNotBegunLeavesNothing) {
 TEST_F(File, RowsGoThereWhole) {
   const pid_t child = fork();
   if (child == 0) {
-    CsvSink rows(path_);
+    CsvRunWriter rows(path_);
     test::set_columns(rows, {"t", "x"});
     for (int k = 0; k < 200000; ++k) test::add_row(rows, {std::to_string(k), "0.123456789"});
     raise(SIGKILL);
@@ -130,9 +130,9 @@ TEST_F(File, DevicesAreWrittenAsTheyAre) {
   EXPECT_EQ(write_whole("/dev/null", "x"), "");
   EXPECT_EQ(write_whole("/dev/full", "x"), "cannot write /dev/full: No space left on device");
   EXPECT_FALSE(fs::exists("/dev/null.part"));
-  CsvSink rows("/dev/full");
+  CsvRunWriter rows("/dev/full");
   test::set_columns(rows, {"t"});
-  EXPECT_EQ(rows.close(), "cannot write /dev/full: No space left on device");
+  EXPECT_EQ(rows.close({}), "cannot write /dev/full: No space left on device");
   EXPECT_EQ(obstacle_to_writing("/dev/null"), "");
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/diagnostic.h"
 #include "numeric/number.h"
+#include "result/format.h"
 #include "result/hdf5_sink.h"
 #include "support/rows.h"
 
@@ -61,7 +62,7 @@ class Hdf5 : public ::testing::Test {
     Hdf5Sink sink(path_, info());
     test::set_columns(sink, {"t", "x"});
     for (int i = 0; i < rows; ++i) test::add_row(sink, {std::to_string(i), "0.50"});
-    sink.close();
+    sink.close({});
     std::ostringstream bytes;
     bytes << std::ifstream(path_, std::ios::binary).rdbuf();
     return bytes.str();
@@ -81,8 +82,7 @@ TEST_F(Hdf5, EverythingComesBack) {
       sink.step(i + 0.5);
       if (i == 3 || i == 1999) sink.flush();
     }
-    sink.report("{\"a\": 1}");
-    EXPECT_EQ(sink.close(), "");
+    EXPECT_EQ(sink.close("{\"a\": 1}"), "");
     EXPECT_EQ(sink.written(), 2500u);
   }
   const RunFile run = read_run(path_);
@@ -120,7 +120,7 @@ TEST_F(Hdf5, TextsOfSeveralColumns) {
     test::add_row(sink, rows.back());
     if (i % 5 == 4) sink.flush();
   }
-  ASSERT_EQ(sink.close(), "");
+  ASSERT_EQ(sink.close({}), "");
   const RunTable t = read_run(path_).table;
   EXPECT_TRUE(t.texts[0].empty());
   for (std::size_t i = 0; i < 40; ++i)
@@ -150,7 +150,7 @@ TEST_F(Hdf5, GoesOnWhereItsFileWasTakenAway) {
   sink.flush();
   fs::remove(path_);
   test::add_row(sink, {"2"});
-  EXPECT_EQ(sink.close(), "");
+  EXPECT_EQ(sink.close({}), "");
   EXPECT_EQ(read_run(path_).table.values[0], (std::vector<double>{1, 2}));
 }
 
@@ -236,8 +236,7 @@ TEST_F(Hdf5, FullDiskLeavesTheLastFile) {
     const rlimit little{3u << 20, 3u << 20};
     setrlimit(RLIMIT_FSIZE, &little);
     for (int i = 1000; i < 500'000; ++i) test::add_row(sink, {std::to_string(i)});
-    sink.report("{}");
-    const std::string why = sink.close();
+    const std::string why = sink.close("{}");
     if (why != "cannot write " + path_ + ": File too large") _exit(2);
     _exit(fs::exists(path_ + ".part") ? 3 : 0);
   }

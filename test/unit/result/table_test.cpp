@@ -5,7 +5,8 @@
 
 #include "base/diagnostic.h"
 #include "base/escape.h"
-#include "result/run_file.h"
+#include "result/csv.h"
+#include "result/json_run.h"
 #include "result/table.h"
 
 namespace anholon {

@@ -1,13 +1,10 @@
-// A run as one page of HTML: self-contained, readable without scripts, and printable; the viewer adds plots and
-// picture.
-//
-// Text of a model or a run is shown as text, never as markup or script.
+// The content of a page: the model with its motions, equations and proof.
 #pragma once
 #include "mechanics/conserved.h"
 #include "proof/prove.h"
 #include "report/equations.h"
-#include "report/words.h"
 #include "result/run_file.h"
+#include "setup/explain.h"
 
 namespace anholon {
 
@@ -35,10 +32,7 @@ struct Page {
   SourceText source;
 };
 
-std::string html(const Page& page);
-
-// The picture of the first case alone, for a recording: `script` runs after the viewer's script. It needs no
-// explanation and no equations.
-std::string stage_html(const Page& page, bool dark, const std::string& script);
+// The title of the model, or the name of its file.
+std::string page_title(const Page& page);
 
 }  // namespace anholon

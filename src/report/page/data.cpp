@@ -1,6 +1,5 @@
-#include "report/page_data.h"
+#include "report/page/data.h"
 
-#include "report/assets.h"
 #include "report/columns.h"
 #include "report/markup.h"
 #include "report/observer_path.h"
@@ -100,11 +99,6 @@ void one_case(JsonWriter& j, const PageCase& c) {
 
 }  // namespace
 
-std::string page_title(const Page& page) {
-  const std::string& title = page.cases[0].scenario->model->title;
-  return title.empty() ? page.source.name : title;
-}
-
 std::string page_data(const Page& page) {
   JsonWriter j;
   j.open_object().key("format").integer(1).key("title").string(page_title(page)).key("cases").open_array();
@@ -114,16 +108,6 @@ std::string page_data(const Page& page) {
   std::string out;
   for (char ch : j.text()) out += ch == '<' ? "\\u003c" : std::string(1, ch);
   return out;
-}
-
-std::string stage_html(const Page& page, bool dark, const std::string& script) {
-  std::string out = "<!doctype html>\n<html lang=\"en\" data-theme=\"" + std::string(dark ? "dark" : "light") +
-                    "\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + markup_escape(page_title(page)) + "</title>\n";
-  out += "<style>\n" + std::string(page_style()) + std::string(viewer_style()) +
-         "</style>\n</head>\n<body>\n<div class=\"player\" data-case=\"0\"></div>\n";
-  out += "<script type=\"application/json\" id=\"anholon-data\">" + page_data(page) + "</script>\n<script>" +
-         std::string(viewer_script()) + "</script>\n<script>\n" + script + "</script>\n";
-  return out + "</body>\n</html>\n";
 }
 
 }  // namespace anholon

@@ -1,0 +1,75 @@
+// The values of an ensemble: its options, the result of a case, the report of all cases.
+#pragma once
+#include <functional>
+
+#include "simulation/simulate.h"
+
+namespace anholon {
+
+// A number that differs from case to case.
+struct Varied {
+  enum class Kind : std::uint8_t { parameter, initial } kind = Kind::parameter;
+  std::size_t index = 0;  // of the parameter, or of the coordinate
+  unsigned order = 0;     // initial value of q^(order)
+  std::string name;
+};
+
+struct EnsembleCase {
+  std::vector<Rational> values;  // of the varied numbers
+  std::optional<Rational> to;    // the end, if the case has one of its own
+};
+
+struct EnsembleOptions {
+  StateChoice state;  // common to all cases
+  std::vector<Varied> varied;
+  std::size_t cases = 0;
+  std::function<EnsembleCase(std::size_t)> numbers;  // of the case with this number; called by many threads at once
+  Rational to;
+  std::vector<Rational> at;  // rows at these times, ascending; none: the final state alone is kept
+  Rational tolerance{1, 1000000000000};
+  int order = 0;                        // of the Taylor polynomials; 0: from the tolerance
+  Method method = Method::automatic;    // rk, bdf: one case after the other, as `simulate` does; else Taylor's, and
+                                        // `simulate` for what it cannot finish
+  std::size_t most_steps = 50'000'000;  // of a case
+  ErrorEstimate estimate = ErrorEstimate::never;  // of the cases that `cases_to_compare` names
+  bool kernel = true;                             // as in SimulationOptions; without, a case has the bits of `simulate`
+  std::size_t threads = 0;                        // 0: as many as the machine has
+  std::function<void(std::size_t done)> progress;  // by one thread at a time
+  std::function<bool()> cancelled;                 // called by many threads at once
+};
+
+struct CaseResult {
+  std::size_t number = 0;
+  std::vector<double> values;  // of the varied numbers
+  Outcome outcome;
+  double t = 0;  // reached
+  std::size_t steps = 0;
+  std::vector<double> last;  // of `ensemble_columns`, at the end or at the last good state; empty if there is none
+  std::vector<std::vector<double>> rows;  // the same at the times asked for, t first
+};
+
+class CaseSink {
+ public:
+  virtual ~CaseSink() = default;
+  // Takes the results in the order of the cases, from one thread at a time.
+  virtual void result(const CaseResult& result) = 0;
+};
+
+// The error of the results: some cases, evenly spaced among all, are compared with sharper runs of the same cases.
+struct CasesError {
+  std::vector<std::size_t> cases;    // the compared ones
+  std::optional<ErrorReport> error;  // the largest error of each kind in any of these cases
+  std::size_t worst = 0;             // the case with the largest error
+  std::string none;                  // the reason if an estimate was asked for and there is none
+};
+struct EnsembleReport {
+  Outcome outcome;  // interrupted, or finished; cases may have stopped in both
+  std::size_t done = 0, finished = 0;
+  std::size_t in_workspaces = 0;  // cases that were not computed by the shared tapes
+  std::size_t most_held = 0;      // the largest number of results that were in memory at once
+  std::size_t threads = 0;
+  double seconds = 0;
+  CasesError error;
+};
+
+}  // namespace anholon

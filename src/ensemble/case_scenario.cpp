@@ -1,0 +1,51 @@
+#include "ensemble/case_scenario.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
+  std::vector<StateOverride> list = o.state.overrides;
+  for (std::size_t i = 0; i < o.varied.size(); ++i)
+    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::initial)
+      list.push_back({v.order, v.index, numbers ? numbers->values[i] : Rational(0)});
+  return list;
+}
+
+SimulationOptions options_of_case(const EnsembleOptions& o, const EnsembleCase& numbers) {
+  SimulationOptions options;
+  options.state = o.state;
+  options.state.overrides = overrides_of(o, &numbers);
+  options.tolerance = o.tolerance;
+  options.most_steps = o.most_steps;
+  options.cancelled = o.cancelled;
+  return options;
+}
+
+Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
+                         Scenario& scenario) {
+  const std::shared_ptr<Model> model = given_model(of_all);
+  for (std::size_t i = 0; i < o.varied.size(); ++i)
+    if (o.varied[i].kind == Varied::Kind::parameter)
+      model->parameters[o.varied[i].index].value = model->graph->number(numbers.values[i]);
+  StateChoice state = o.state;
+  state.overrides = overrides_of(o, &numbers);
+  return make_scenario(model, *of_all.system.form, state, scenario);
+}
+
+Outcome scenario_of_cases(const EnsembleOptions& o, Scenario& scenario) {
+  constexpr std::size_t kMost = 64;
+  Outcome first;
+  for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
+    const EnsembleCase numbers = o.numbers(k);
+    Scenario s;
+    const Outcome outcome = scenario_of_case(scenario, o, numbers, s);
+    if (k == 0) first = outcome;
+    if (!outcome.ok()) continue;
+    scenario = std::move(s);
+    return {};
+  }
+  return first;
+}
+
+}  // namespace anholon

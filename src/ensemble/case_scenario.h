@@ -1,0 +1,18 @@
+// A case as a single motion: its options, and its scenario, the model with the numbers of the case.
+#pragma once
+#include "ensemble/case.h"
+
+namespace anholon {
+
+// The initial values that are given or varied; without numbers, the varied ones are zero.
+std::vector<StateOverride> overrides_of(const EnsembleOptions& options, const EnsembleCase* numbers);
+// The options with which `simulate` computes a case: those that are common to all ways of computing it.
+SimulationOptions options_of_case(const EnsembleOptions& options, const EnsembleCase& numbers);
+// The scenario of a case, derived anew with its numbers in the form of the scenario of all cases.
+Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& options, const EnsembleCase& numbers,
+                         Scenario& scenario);
+// For a model whose own numbers, those of `scenario`, have no consistent start: puts the scenario of the first case that
+// has one in its place. Not ok if none of the first cases has.
+Outcome scenario_of_cases(const EnsembleOptions& options, Scenario& scenario);
+
+}  // namespace anholon

@@ -1,0 +1,61 @@
+// Expressions as statements of C or Python, by one sweep from the leaves up without recursion, so the depth is not limited.
+#pragma once
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "program/emit_names.h"
+
+namespace anholon::emit {
+
+enum class Language : std::uint8_t { c, python };
+
+// The statements of one function. `$` marks the place of the prefix of names in C. A node that is used more than once,
+// or is long, gets a variable.
+struct Statements {
+  std::string text;
+  bool time = false, state = false, lead = false, parameters = false, inputs = false;  // the arguments that it reads
+};
+
+class Writer {
+ public:
+  Writer(const System& system, const Structure& structure, const Motion& motion, const LocalNames& names,
+         Language language);
+  // targets[i] = es[i], after the variables; structural zeros are left out if `sparse`.
+  Statements body(const Column& es, const std::vector<std::string>& targets, bool sparse = false);
+  bool used_sign() const { return used_sign_; }
+
+ private:
+  struct Text {
+    std::string s;
+    int strength;
+  };
+  struct Piece {
+    char op;  // + - * /
+    std::string s;
+  };
+
+  void load(const std::vector<NodeId>& ids, Statements& body);
+  std::vector<Piece> pieces(NodeId id);
+  std::vector<Piece> sum(NodeId id);
+  std::vector<Piece> product(NodeId id);
+  std::string call(NodeId id);
+  Text power(NodeId base, const Rational& exponent) const;
+  void write(NodeId id, Statements& body);
+  std::string assign(const std::string& name, const std::vector<Piece>& pieces, bool declare) const;
+  static std::string wrapped(const Text& t, int strength);
+  std::string fresh();
+
+  Graph& g_;
+  const System& system_;
+  const Structure& structure_;
+  const Motion& motion_;
+  const LocalNames& names_;
+  Language language_;
+  std::unordered_map<NodeId, Text> text_;
+  std::unordered_map<NodeId, std::size_t> uses_;
+  std::size_t next_ = 0;
+  bool used_sign_ = false;
+};
+
+}  // namespace anholon::emit

@@ -1,0 +1,152 @@
+#include "program/emit_text.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/escape.h"
+
+namespace anholon::emit {
+
+std::string lines(const std::vector<std::string>& list, const std::string& indent) {
+  std::string out;
+  for (const std::string& l : list) {
+    out += indent + l;
+    out.erase(out.find_last_not_of(' ') + 1);
+    out += "\n";
+  }
+  return out;
+}
+
+std::string number(const Rational& r) {
+  const mpz_class &num = r.get_num(), &den = r.get_den();
+  if (num == 0) return "0.0";
+  const mpz_class exact_limit = mpz_class(1) << std::numeric_limits<double>::digits;
+  if (den == 1 && abs(num) < 1000000000) return num.get_str() + ".0";
+  // Decimal digits d with r = ±0.d * 10^exponent; 25 digits are more than enough for one rounding.
+  constexpr std::size_t kDigits = 25;
+  const auto ten = [](unsigned long n) {
+    mpz_class p;
+    mpz_ui_pow_ui(p.get_mpz_t(), 10, n);
+    return p;
+  };
+  const long shift = static_cast<long>(kDigits) + 1 + static_cast<long>(mpz_sizeinbase(den.get_mpz_t(), 10)) -
+                     static_cast<long>(mpz_sizeinbase(num.get_mpz_t(), 10));
+  mpz_class top = abs(num), below = den;
+  if (shift > 0)
+    top *= ten(static_cast<unsigned long>(shift));
+  else
+    below *= ten(static_cast<unsigned long>(-shift));
+  mpz_class quotient, rest;
+  mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), top.get_mpz_t(), below.get_mpz_t());
+  std::string digits = quotient.get_str();
+  const long exponent = static_cast<long>(digits.size()) - shift;  // of 0.d
+  const bool cut = digits.size() > kDigits && digits.find_first_not_of('0', kDigits) != std::string::npos;
+  const bool terminates = rest == 0 && !cut;
+  digits.resize(std::min(digits.size(), kDigits));
+  while (digits.size() > 1 && digits.back() == '0') digits.pop_back();
+  const std::string sign = num < 0 ? "-" : "";
+  if (exponent > std::numeric_limits<double>::max_exponent10 || exponent <= std::numeric_limits<double>::min_exponent10)
+    throw Failure(Span{},
+                  "a number near " + sign + digits.substr(0, 1) + "e" + std::to_string(exponent - 1) +
+                      " occurs: double cannot hold it",
+                  "choose units in which numbers lie between 1e-300 and 1e300");
+  // A short decimal is written as such, and so is a quotient of exact numbers: either is rounded once.
+  if (!(terminates && digits.size() <= 17) && abs(num) < exact_limit && den < exact_limit)
+    return num.get_str() + ".0/" + den.get_str() + ".0";
+  if (exponent > 9 || exponent < -3) {
+    const std::string tail = digits.size() > 1 ? "." + digits.substr(1) : "";
+    return sign + digits.substr(0, 1) + tail + "e" + std::to_string(exponent - 1);
+  }
+  if (exponent <= 0) return sign + "0." + std::string(static_cast<std::size_t>(-exponent), '0') + digits;
+  const std::size_t whole = static_cast<std::size_t>(exponent);
+  if (digits.size() <= whole) return sign + digits + std::string(whole - digits.size(), '0') + ".0";
+  return sign + digits.substr(0, whole) + "." + digits.substr(whole);
+}
+
+ParameterAssignments parameter_assignments(const Motion& m) {
+  ParameterAssignments all;
+  for (std::size_t i = 0; i < m.parameters.size(); ++i) {
+    const bool derived = std::find(m.derived.begin(), m.derived.end(), i) != m.derived.end();
+    Assignments& to = derived ? all.derived : all.free;
+    to.values.push_back(m.parameters[i]);
+    to.targets.push_back("p[" + std::to_string(i) + "]");
+  }
+  return all;
+}
+
+Column entries(const std::vector<Column>& jacobian) {
+  Column all;
+  for (const Column& row : jacobian) all.insert(all.end(), row.begin(), row.end());
+  return all;
+}
+
+std::string rate_of_state(const Structure& structure, const Motion& m, std::size_t i) {
+  const StateEntry& e = m.state[i];
+  if (static_cast<int>(e.order) + 1 == structure.d[e.variable]) return "lead[" + std::to_string(e.variable) + "]";
+  return "state[" + std::to_string(m.place(e.variable, e.order + 1)) + "]";
+}
+
+std::string put(std::string text, const std::string& mark, const std::string& by) {
+  return text.replace(text.find(mark), mark.size(), by);
+}
+
+std::vector<std::string> head(const System& s, const Structure& structure, const Motion& m, const EmitOptions& o) {
+  const Model& model = *s.model;
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& line) {
+    std::string kept = comment_line(line);
+    while (!kept.empty() && kept.back() == ' ') kept.pop_back();
+    out.push_back(kept);
+  };
+  const auto count = [](std::size_t n) { return "[" + std::to_string(n) + "]"; };
+  // "  0  x": the numbers of an array, each with its meaning.
+  const auto list = [&](const std::vector<std::string>& meanings) {
+    for (std::size_t i = 0; i < meanings.size(); ++i) {
+      const std::string index = std::to_string(i);
+      add(std::string(index.size() < 4 ? 4 - index.size() : 0, ' ') + index + "  " + meanings[i]);
+    }
+  };
+  add(model.title);
+  add(std::string(s.form->title) + ", " + s.form->equation + " of " + s.form->source);
+  if (!o.made_by.empty()) add("Written by: " + o.made_by);
+  add("");
+  add("Numbers are double, in the units of the model. x' is dx/dt.");
+  add("");
+  add("t: the time");
+  add("state" + count(m.state.size()) + ": what the integrator of ordinary differential equations carries");
+  list(m.state_names);
+  add("lead" + count(s.size()) + ": the leading derivatives and multipliers, for which the equations are solved");
+  list(m.leading_names);
+  if (!model.parameters.empty()) add("p" + count(model.parameters.size()) + ": parameters, with their default values");
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const Parameter& p = model.parameters[i];
+    values.push_back(p.name + " = " + print(p.value, model.names, Format::text) +
+                     (p.doc.empty() ? "" : "    " + p.doc));
+  }
+  list(values);
+  if (!m.inputs.empty()) {
+    add("u" + count(m.inputs.size()) + ": inputs; where there is none (a null pointer, None) these formulas give them");
+    std::vector<std::string> formulas;
+    for (std::size_t k = 0; k < m.inputs.size(); ++k)
+      formulas.push_back(m.input_names[k] + " = " + print(m.input_values[k], model.names, Format::text));
+    list(formulas);
+  }
+  add("residual" + count(s.size()) + ": the equations, left side minus right side");
+  list(m.equation_names);
+  add("jacobian" + count(s.size() * s.size()) + ": derivatives of the residuals (rows) by lead (columns), row by row");
+  if (!m.hidden.empty())
+    add("hidden" + count(m.hidden.size()) + ": constraints that the state must satisfy; an integrator lets them drift");
+  list(m.hidden_names);
+  for (std::size_t r = 0; r < model.constraints.size(); ++r)
+    if (std::find(s.constraints.begin(), s.constraints.end(), r) == s.constraints.end())
+      add("The constraint " + model.constraints[r].name +
+          " follows from the others: it is left out, its multiplier is 0.");
+  add(m.linear ? "The equations are linear in lead."
+               : "The equations are not linear in lead: Newton's method needs a start that is not too far off.");
+  if (structure.state_dimension < static_cast<int>(m.state.size()))
+    add("Of the state " + std::to_string(structure.state_dimension) + " numbers are independent.");
+  return out;
+}
+
+}  // namespace anholon::emit

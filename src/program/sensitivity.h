@@ -1,0 +1,55 @@
+// How the slots of a program depend on the leading derivatives: their derivatives at the point, and the effect of new
+// coefficients of the unknowns on them.
+#pragma once
+#include <vector>
+
+#include "program/program.h"
+
+namespace anholon {
+
+// to! / from!. A quotient of factorials would be rounded in the same way at every step, and the errors of a motion
+// would add up; this product is exact.
+template <Number N>
+N rising(std::size_t from, std::size_t to) {
+  N product(1);
+  for (std::size_t k = from + 1; k <= to; ++k) product *= N(static_cast<int>(k));
+  return product;
+}
+
+template <Number N>
+class Sensitivity {
+ public:
+  explicit Sensitivity(const Program& program);
+
+  // The system Jacobian at the values of the machine; keeps the partial derivatives of the slots for `add`.
+  void jacobian(const Machine<N>& machine, Matrix<N>& j);
+  // Adds to all slots, at this stage, the effect of a change of the unknowns. The change and the new value of each input
+  // are given by functions of the unknown and the order of its coefficient.
+  template <class Change, class Value>
+  void add(int stage, Machine<N>& machine, Change change, Value value) {
+    for (const ProgramInput& in : program_->inputs) {
+      if (!in.leading) continue;
+      const std::size_t order = static_cast<std::size_t>(stage + program_->tape.code[in.slot].lead);
+      const std::size_t k = order + static_cast<std::size_t>(in.order);
+      const N ratio = rising<N>(order, k);
+      machine.series(in.slot)[order] = value(in.variable, k) * ratio;
+      delta_[in.slot] = change(in.variable) * ratio;
+    }
+    add_to_tainted(stage, machine);
+  }
+
+ private:
+  void add_to_tainted(int stage, Machine<N>& machine);
+
+  const Program* program_;
+  Matrix<N> tangent_;  // a row of derivatives for each slot that depends on leading derivatives
+  std::vector<typename Machine<N>::Partials> partials_;
+  std::vector<N> delta_;  // the change of each slot
+};
+
+extern template class Sensitivity<double>;
+extern template class Sensitivity<long double>;
+extern template class Sensitivity<Quad>;
+extern template class Sensitivity<Multi>;
+
+}  // namespace anholon

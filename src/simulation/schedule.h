@@ -1,0 +1,82 @@
+// The times of the rows of a run, in the direction of its motion.
+#pragma once
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "observe/options.h"
+
+namespace anholon {
+
+// Rows are due at the times that are asked for; if none are asked for, at the end of every step.
+template <class W>
+class RowSchedule {
+ public:
+  struct Due {
+    W t;
+    std::string label;  // the time as it was written; empty if it was not
+  };
+
+  RowSchedule() = default;
+  // given: all rows up to this time have been given by an earlier part of the run.
+  RowSchedule(const SimulationOptions& o, const W& start, std::optional<W> given = {})
+      : start_(start), given_(std::move(given)) {
+    for (const Rational& r : o.at) times_.push_back(from_rational<W>(r));
+    labels_ = o.at_text;
+    labels_.resize(times_.size());
+    end_ = o.to && (times_.empty() || *o.to > o.at.back()) ? from_rational<W>(*o.to) : times_.back();
+    if (!times_.empty() && times_.front() < start_ && !(times_.back() > start_)) {
+      std::reverse(times_.begin(), times_.end());
+      std::reverse(labels_.begin(), labels_.end());
+      end_ = times_.back();
+    }
+    forward_ = end_ > start_;
+    if (o.every) evenly(*o.every);
+    every_step_ = times_.empty();
+    while (given_ && due(*given_)) ++next_;
+  }
+
+  const W& start() const { return start_; }
+  const W& end() const { return end_; }
+  bool forward() const { return forward_; }
+  bool every_step() const { return every_step_; }
+
+  // Whether a motion that has come to `stop` has passed t.
+  bool reaches(const W& stop, const W& t) const { return forward_ ? t <= stop : t >= stop; }
+
+  // Whether a row is due at a time up to `stop`, or at t itself.
+  bool due(const W& stop) const { return next_ < times_.size() && reaches(stop, times_[next_]); }
+  bool due_at(const W& t) const { return next_ < times_.size() && times_[next_] == t; }
+  Due take() {
+    const std::size_t k = next_++;
+    return {times_[k], labels_[k]};
+  }
+  // Whether the last row that was taken is that of t.
+  bool took(const W& t) const { return next_ > 0 && times_[next_ - 1] == t; }
+
+  // All rows up to this time have been given; nullopt before the first one.
+  const std::optional<W>& given() const { return given_; }
+  void set_given(const W& t) { given_ = t; }
+
+ private:
+  void evenly(const Rational& every) {
+    const Rational step = end_ < start_ ? Rational(-every) : every;
+    for (long k = 0;; ++k) {
+      const W next = start_ + from_rational<W>(Rational(k * step));
+      if (end_ < start_ ? next < end_ : next > end_) break;
+      times_.push_back(next);
+    }
+    if (times_.empty() || times_.back() != end_) times_.push_back(end_);
+    labels_.resize(times_.size());
+  }
+
+  W start_{0}, end_{0};
+  bool forward_ = true, every_step_ = false;
+  std::vector<W> times_;
+  std::vector<std::string> labels_;
+  std::size_t next_ = 0;
+  std::optional<W> given_;
+};
+
+}  // namespace anholon

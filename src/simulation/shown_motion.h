@@ -1,0 +1,45 @@
+// The motion whose rows are written: that of the course, or the one of another integrator beside it.
+#pragma once
+#include <memory>
+
+#include "motion/course.h"
+#include "observe/second_opinion.h"
+
+namespace anholon {
+
+template <Number N>
+class ShownMotion {
+ public:
+  using W = Wider<N>;
+  explicit ShownMotion(Course<N>& course) : course_(course) {}
+
+  // Shows the motion of another integrator, which computes in double.
+  void show(std::unique_ptr<SecondMotion> second) { second_ = std::move(second); }
+  // The other integrator; null if the motion of the course is shown.
+  const SecondMotion* second() const { return second_.get(); }
+
+  // Goes to time t, whose state `point` and `work` then hold.
+  Outcome at(const W& t) {
+    Outcome o = course_.at(t);
+    if constexpr (std::same_as<N, double>)
+      if (o.ok() && second_) o = second_->at(t, course_.point());
+    return o;
+  }
+  const Expansion<W>& point() const {
+    if constexpr (std::same_as<N, double>)
+      if (second_) return second_->point();
+    return course_.point();
+  }
+  // The work of the forces so far.
+  const W& work() const {
+    if constexpr (std::same_as<N, double>)
+      if (second_) return second_->work();
+    return course_.integrals()[0];
+  }
+
+ private:
+  Course<N>& course_;
+  std::unique_ptr<SecondMotion> second_;
+};
+
+}  // namespace anholon

@@ -1,0 +1,97 @@
+// What limits the trust in a motion that has been computed: warnings, limits of events, masses that become negative.
+#pragma once
+#include "motion/course.h"
+#include "observe/angles.h"
+#include "observe/report.h"
+#include "observe/watch.h"
+
+namespace anholon {
+
+// The first time in the last step at which a mass passes zero; the end of the step if none does.
+template <class W>
+struct MassLimit {
+  W t{0};
+  std::size_t mass = 0;  // which one, of the model
+};
+
+template <Number N>
+MassLimit<Wider<N>> masses_positive_until(const Model& model, const Course<N>& course) {
+  using W = Wider<N>;
+  if (!course.by_taylor()) return {course.time(), 0};  // Taylor's steps go to where one vanishes
+  const Stepper<N>& stepper = course.taylor().stepper();
+  const W whole = stepper.time() - stepper.before();
+  W good = whole;
+  std::size_t negative = 0;
+  for (std::size_t i = 0; i < model.masses.size(); ++i) {
+    if (model.masses[i].weight || !(stepper.quadrature(1 + i, good) < W(0))) continue;
+    W low(0), high = good;
+    for (int k = 0; k < 200 && !(low == high); ++k) {
+      const W middle = low + (high - low) * W(0.5);
+      if (middle == low || middle == high) break;
+      (stepper.quadrature(1 + i, middle) < W(0) ? high : low) = middle;
+    }
+    good = low;
+    negative = i;
+  }
+  return {good == whole ? stepper.time() : stepper.before() + good, negative};
+}
+
+inline Outcome negative_mass(const Model& model, std::size_t mass, double t) {
+  return {OutcomeKind::negative_mass,
+          "the mass of '" + model.masses[mass].name + "' is negative from t = " + number_text(t, 12) + " on",
+          "end the motion before, or let the mass end at zero flow"};
+}
+
+// Notes on events that look out for a limit which is passed at the start: they do not happen until it has come back.
+template <Number N>
+std::vector<std::string> passed_limits(const Model& model, const Motion<N>& motion) {
+  // A limit at which the motion starts is not passed by round-off.
+  constexpr double kPassed = 1e-12;
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < model.events.size(); ++i) {
+    const Event& e = model.events[i];
+    const double value = e.direction * motion.at_start(i);
+    if (!e.ends_step() || !(value > kPassed)) continue;
+    notes.push_back("event '" + e.name + "' is past its limit at the start: its formula is " +
+                    number_text(e.direction * value, 6) + ", and it happens where that passes zero " +
+                    (e.direction > 0 ? "upwards" : "downwards") + "; until it has come back, nothing happens");
+  }
+  return notes;
+}
+
+// Warnings of a motion near a singular configuration, of outputs that were said to be conserved and are not, and of
+// angles near their singularity.
+template <Number N>
+std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const Watch<Wider<N>>& watch,
+                              const AngleWatch<Wider<N>>& angles) {
+  constexpr double kNearSingular = 1e-3;
+  // Far above what integration and round-off leave.
+  constexpr double kConserved = 1e-6;
+  const Model& model = *s.model;
+  std::vector<Warning> list;
+  if (course.smallest_sigma() < course.first_sigma() * N(kNearSingular)) {
+    const std::size_t j = course.weakest_unknown(), n = s.system.coordinates;
+    const unsigned order = j < n ? static_cast<unsigned>(course.taylor().program().d[j]) : 0;
+    const std::string what =
+        j < n ? derivative_name(s.system.variable_names[j], order, Format::text) + " is hardly determined"
+              : "the constraint '" + s.system.equation_names[j] + "' hardly holds";
+    list.push_back({"the motion passes near a singular configuration at t = " +
+                        number_text(to_double(course.smallest_sigma_time()), 6) + ": " + what,
+                    "trust what follows less; write the constraint or the coordinates so that they are regular there"});
+  }
+  for (std::size_t i = 0; i < model.monitors.size(); ++i)
+    if (const double change = watch.tracks()[i].relative_change();
+        declared_conserved(model, model.monitors[i]) && !(change <= kConserved))
+      list.push_back({"the output '" + model.monitors[i].name + "' is not conserved: it changes by " +
+                          number_text(change, 3) + " of its size",
+                      "look for a force, an event or an observer that changes it, or leave out conserved = true"});
+  for (std::size_t i = 0; i < angles.triples.size(); ++i)
+    if (angles.least[i].value < kNearSingular)
+      list.push_back(
+          {"the angles " + angles.triples[i].angles +
+               " come near their singularity at t = " + number_text(to_double(angles.least[i].t), 6),
+           "describe the orientation of '" + angles.triples[i].body + "' by a quaternion: quat(e0, e1, e2, e3)"});
+  return list;
+}
+
+}  // namespace anholon
