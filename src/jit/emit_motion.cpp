@@ -13,18 +13,7 @@ namespace {
 constexpr std::size_t kFewStates = 32;
 }  // namespace
 
-llvm::Value* Emitter::larger(Value* a, Value* b) { return b_.CreateSelect(b_.CreateFCmpOLT(a, b), b, a); }
-llvm::Value* Emitter::smaller(Value* a, Value* b) { return b_.CreateSelect(b_.CreateFCmpOLT(b, a), b, a); }
-llvm::Value* Emitter::of_bits(Value* b) { return b_.CreateBitCast(b, lane_); }
-llvm::Value* Emitter::bits(Value* v) { return b_.CreateBitCast(v, lane_->getWithNewType(b_.getInt64Ty())); }
-llvm::Value* Emitter::pattern(std::uint64_t x) {
-  return llvm::ConstantInt::get(lane_->getWithNewType(b_.getInt64Ty()), x);
-}
-llvm::Value* Emitter::magnitude(Value* v) { return b_.CreateIntrinsic(llvm::Intrinsic::fabs, {lane_}, {v}); }
-// A product with one is the factor itself.
-llvm::Value* Emitter::times(Value* v, double x) { return x == 1 ? v : b_.CreateFMul(v, number(x)); }
 llvm::Value* Emitter::coefficient_of(std::size_t j, int order) { return load(std::int64_t{p_.x[j]} + order); }
-double Emitter::factorial(int k) const { return k_.factorial[static_cast<std::size_t>(k)]; }
 
 void Emitter::begin_motion() {
   begin("begin", 1);
@@ -109,35 +98,6 @@ void Emitter::measure() {
   store(exp2(smaller(most, reach(last, order, margin))), k_.found.reach);
   store(unfit, k_.found.unfit);
   end();
-}
-
-llvm::Value* Emitter::line(const double* c, Value* x) { return fma(number(c[1]), x, number(c[0])); }
-
-llvm::Value* Emitter::cubic(const double* c, Value* x) {
-  Value *high = line(c + 2, x), *square = b_.CreateFMul(x, x);
-  return fma(high, square, line(c, x));
-}
-
-llvm::Value* Emitter::reach(Value* weight, int by, Value* margin) {
-  Value* exponent = b_.CreateAShr(b_.CreateSub(bits(weight), pattern(kRootOfHalf)), pattern(52));
-  Value *u = b_.CreateFSub(of_bits(b_.CreateSub(bits(weight), b_.CreateShl(exponent, pattern(52)))), number(1)),
-        *each = number(-1.0 / by);
-  Value* whole =
-      fma(b_.CreateFSub(of_bits(b_.CreateAdd(exponent, bits(number(kInteger)))), number(kInteger)), each, margin);
-  return b_.CreateSelect(b_.CreateFCmpOGT(weight, number(0)), fma(cubic(kLog2, u), b_.CreateFMul(u, each), whole),
-                         number(kFarthest));
-}
-
-llvm::Value* Emitter::exp2(Value* x) {
-  Value *n = b_.CreateFAdd(x, number(kInteger)), *f = b_.CreateFSub(x, b_.CreateFSub(n, number(kInteger)));
-  return of_bits(
-      b_.CreateAdd(bits(cubic(kExp2, f)), b_.CreateShl(b_.CreateSub(bits(n), bits(number(kInteger))), pattern(52))));
-}
-
-// The error of a sum, rounded to the digits that a long double keeps of sum and error.
-llvm::Value* Emitter::rest(Value* sum, Value* error) {
-  Value* grid = b_.CreateFMul(of_bits(b_.CreateAnd(bits(sum), pattern(0x7ff0000000000000ULL))), number(1.5 * 0x1p-11));
-  return b_.CreateFSub(b_.CreateFAdd(error, grid), grid);
 }
 
 // Advances the state over the step, by the increments.

@@ -148,11 +148,6 @@ void Emitter::invert_sides_by_call() {
   }
 }
 
-llvm::Value* Emitter::opposite(Value* x) {
-  auto* negation = llvm::dyn_cast<llvm::UnaryOperator>(x);
-  return negation && negation->getOpcode() == llvm::Instruction::FNeg ? negation->getOperand(0) : b_.CreateFNeg(x);
-}
-
 void Emitter::side(std::size_t i) {
   const int c = p_.c[i];
   if (!relative_ && stage_ == 0) {

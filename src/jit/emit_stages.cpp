@@ -212,13 +212,6 @@ void Emitter::stages_in_line(const std::vector<Step>& steps, bool solved) {
               });
 }
 
-void Emitter::begin_block(Value* k0) {
-  relative_ = true;
-  k0_ = k0;
-  block_ = b_.CreateInBoundsGEP(lane_, w_, k0);
-  forget();
-}
-
 // Makes a function for each place in a block. The function of the first place also serves the first block, whose
 // histories are computed stage by stage.
 void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {

@@ -54,6 +54,50 @@ llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t
   return s;
 }
 
+// u_0 w_p = (r sum (j u_j) w_(p-j) - sum (j w_j) u_(p-j)) / p + r u_p w_0, j = 1..p - 1
+void Emitter::coefficient_of_power(const Step& s) {
+  const std::uint8_t l = s.lead;
+  Value* r = fma(number(s.value), whole_history(s.c.at, s.out.at, l), b_.CreateFNeg(whole_history(s.d.at, s.a.at, l)));
+  r = b_.CreateFMul(over_order(r, l), constant(s.b.at));
+  if (!s.a_unknown) r = fma(get(s.a, l), constant(s.e.at), r);
+  put(s.out, l, r);
+  put(s.d, l, b_.CreateFMul(r, order(l)));
+}
+
+void Emitter::coefficient_of_sine_cosine(const Step& s) {
+  const std::uint8_t l = s.lead;
+  Value *sine = over_order(whole_history(s.b.at, s.c.at, l), l),
+        *cosine = over_order(whole_history(s.b.at, s.out.at, l), l);
+  if (!s.a_unknown) {
+    sine = fma(get(s.a, l), read(s.c.at, 0, false), sine);
+    cosine = fma(get(s.a, l), read(s.out.at, 0, false), cosine);
+  }
+  put(s.out, l, sine);
+  put(s.c, l, b_.CreateFNeg(cosine));
+}
+
+// w' = f'(u) u'
+void Emitter::coefficient_of_function(const Step& s) {
+  const std::uint8_t l = s.lead;
+  if (s.b_constant) {
+    put(s.out, l, s.a_unknown ? number(0) : b_.CreateFMul(load(s.b.at), get(s.a, l)));
+    return;
+  }
+  Value* r = over_order(whole_history(s.c.at, s.b.at, l), l);
+  put(s.out, l, s.a_unknown ? r : fma(get(s.a, l), read(s.b.at, 0, false), r));
+}
+
+void Emitter::coefficient_of_arctan2(const Step& s) {
+  const std::uint8_t l = s.lead;
+  Value* r = number(0);
+  if (!s.a_constant) r = b_.CreateFAdd(r, whole_history(s.e.at, s.c.at, l));
+  if (!s.b_constant) r = b_.CreateFAdd(r, whole_history(s.f.at, s.d.at, l));
+  r = over_order(r, l);
+  if (!s.a_constant && !s.a_unknown) r = fma(get(s.a, l), read(s.c.at, 0, false), r);
+  if (!s.b_constant && !s.b_unknown) r = fma(get(s.b, l), read(s.d.at, 0, false), r);
+  put(s.out, l, r);
+}
+
 void Emitter::coefficient(const Step& s) {
   const std::uint8_t l = s.lead;
   switch (s.act) {
@@ -85,45 +129,18 @@ void Emitter::coefficient(const Step& s) {
     put(s.out, l, b_.CreateFMul(r, b_.CreateFDiv(number(0.5), load(s.out.at))));
     break;
   }
-  case Act::power: {
-    Value* r =
-        fma(number(s.value), whole_history(s.c.at, s.out.at, l), b_.CreateFNeg(whole_history(s.d.at, s.a.at, l)));
-    r = b_.CreateFMul(over_order(r, l), constant(s.b.at));
-    if (!s.a_unknown) r = fma(get(s.a, l), constant(s.e.at), r);
-    put(s.out, l, r);
-    put(s.d, l, b_.CreateFMul(r, order(l)));
+  case Act::power:
+    coefficient_of_power(s);
     break;
-  }
-  case Act::sine_cosine: {
-    Value *sine = over_order(whole_history(s.b.at, s.c.at, l), l),
-          *cosine = over_order(whole_history(s.b.at, s.out.at, l), l);
-    if (!s.a_unknown) {
-      sine = fma(get(s.a, l), read(s.c.at, 0, false), sine);
-      cosine = fma(get(s.a, l), read(s.out.at, 0, false), cosine);
-    }
-    put(s.out, l, sine);
-    put(s.c, l, b_.CreateFNeg(cosine));
+  case Act::sine_cosine:
+    coefficient_of_sine_cosine(s);
     break;
-  }
-  case Act::function: {
-    if (s.b_constant) {
-      put(s.out, l, s.a_unknown ? number(0) : b_.CreateFMul(load(s.b.at), get(s.a, l)));
-      break;
-    }
-    Value* r = over_order(whole_history(s.c.at, s.b.at, l), l);
-    put(s.out, l, s.a_unknown ? r : fma(get(s.a, l), read(s.b.at, 0, false), r));
+  case Act::function:
+    coefficient_of_function(s);
     break;
-  }
-  case Act::arctan2: {
-    Value* r = number(0);
-    if (!s.a_constant) r = b_.CreateFAdd(r, whole_history(s.e.at, s.c.at, l));
-    if (!s.b_constant) r = b_.CreateFAdd(r, whole_history(s.f.at, s.d.at, l));
-    r = over_order(r, l);
-    if (!s.a_constant && !s.a_unknown) r = fma(get(s.a, l), read(s.c.at, 0, false), r);
-    if (!s.b_constant && !s.b_unknown) r = fma(get(s.b, l), read(s.d.at, 0, false), r);
-    put(s.out, l, r);
+  case Act::arctan2:
+    coefficient_of_arctan2(s);
     break;
-  }
   case Act::weigh:
     put(s.out, l, b_.CreateFMul(get(s.a, l), order(l)));
     break;

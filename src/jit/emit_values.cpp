@@ -125,8 +125,7 @@ void Emitter::value(const Step& s) {
     break;
   case Act::divide: {
     Value* r = b_.CreateFDiv(number(1), get(s.b, l));
-    store(r, s.c.at);
-    known_[{s.c.at, kNoOrder}] = r;
+    put_number(s.c.at, r);
     put(s.out, l, b_.CreateFMul(a, r));
     break;
   }

@@ -12,11 +12,7 @@ constexpr double kLongElimination = 100;
 }  // namespace
 
 Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines)
-    : k_(tables), p_(*tables.plan), m_(module), b_(module.getContext()), lanes_(lanes), several_sines_(several_sines),
-      lane_(lanes == 1
-                ? b_.getDoubleTy()
-                : static_cast<llvm::Type*>(llvm::FixedVectorType::get(b_.getDoubleTy(), static_cast<unsigned>(lanes)))),
-      asked_(p_.rows, false) {
+    : StageCode(tables, module, lanes), several_sines_(several_sines), asked_(p_.rows, false) {
   for (std::size_t j = 0; j < p_.x.size(); ++j) asked_[j] = true;
   for (const Completion& c : p_.completions) asked_[c.column] = true;
 }
@@ -36,148 +32,17 @@ void Emitter::run() {
 }
 
 void Emitter::begin(const char* name, unsigned places, bool answers) {
-  auto* type = llvm::FunctionType::get(answers ? b_.getInt32Ty() : b_.getVoidTy(),
-                                       std::vector<llvm::Type*>(1 + places, b_.getPtrTy()), false);
-  function_ = llvm::Function::Create(type, llvm::Function::ExternalLinkage, name, m_);
-  function_->addFnAttr(llvm::Attribute::NoUnwind);
-  w_ = function_->getArg(0);
-  b_.SetInsertPoint(llvm::BasicBlock::Create(m_.getContext(), "entry", function_));
+  open(name, places, answers);
   relative_ = false;
   sines_ = nullptr;
   forget();
 }
 
-// Functions are of moderate size: the work of the compiler grows faster than their length.
 llvm::Function* Emitter::begin_part(const std::string& name) {
-  auto* type = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt64Ty()}, false);
-  function_ = llvm::Function::Create(type, llvm::Function::PrivateLinkage, name, m_);
-  function_->addFnAttr(llvm::Attribute::NoUnwind);
-  w_ = function_->getArg(0);
+  open_part(name);
   scratch_ = function_->getArg(1);
-  function_->addParamAttr(1, llvm::Attribute::NoAlias);
-  b_.SetInsertPoint(llvm::BasicBlock::Create(m_.getContext(), "entry", function_));
   begin_block(function_->getArg(2));
   return function_;
-}
-
-void Emitter::end(Value* answer) {
-  if (answer)
-    b_.CreateRet(b_.CreateZExt(answer, b_.getInt32Ty()));
-  else
-    b_.CreateRetVoid();
-}
-
-llvm::Value* Emitter::address(std::int64_t slot, bool relative) {
-  return b_.CreateConstInBoundsGEP1_64(lane_, relative ? block_ : w_, static_cast<std::uint64_t>(slot));
-}
-
-llvm::Value* Emitter::get(const Place& place, int lead) {
-  if (place.series) return known_[{place.at, stage_ + lead}] = earlier(place.at, stage_ + lead);
-  const auto it = known_.find({place.at, kNoOrder});
-  return it != known_.end() ? it->second : known_[{place.at, kNoOrder}] = load(place.at);
-}
-
-llvm::Value* Emitter::earlier(std::uint32_t at, int order) {
-  const auto it = known_.find({at, order});
-  return it != known_.end() ? it->second : read(at, order, relative_);
-}
-
-llvm::Value* Emitter::constant(std::int64_t slot) {
-  return noted(load(slot), {Origin::Kind::constant, static_cast<std::uint32_t>(slot)});
-}
-
-llvm::Value* Emitter::read(std::uint32_t at, int order, bool relative) {
-  Value* const x = load(std::int64_t{at} + order, relative);
-  reads_.emplace_back(at, x);
-  return noted(x, {Origin::Kind::series, at, order, relative});
-}
-
-void Emitter::forget() {
-  known_.clear();
-  elements_.clear();
-  origins_.clear();
-  histories_.clear();
-  stores_.clear();
-}
-
-void Emitter::put(const Place& place, int lead, Value* v) {
-  known_[{place.at, place.series ? stage_ + lead : kNoOrder}] = v;
-  if (place.series) {
-    llvm::StoreInst* const made = store(v, std::int64_t{place.at} + stage_ + lead, relative_);
-    puts_.emplace_back(place.at, made);
-    // No load has read the value that an earlier store of the same stage wrote.
-    if (relative_ || stage_ > 0) {
-      llvm::StoreInst*& before = stores_[{place.at, stage_ + lead}];
-      if (before) before->eraseFromParent();
-      before = made;
-    }
-  }
-  // Beyond stage 0 the value is not needed again.
-  else if (!relative_ && stage_ <= 0)
-    store(v, place.at);
-}
-
-// The quotient by a whole number, as in kernel/tiers/lanes.h.
-llvm::Value* Emitter::quotient(Value* x, Value* reciprocal, Value* beyond) {
-  // The known part is zero.
-  if (const auto* nothing = llvm::dyn_cast<llvm::Constant>(x); nothing && nothing->isZeroValue()) return x;
-  return fma(x, reciprocal, b_.CreateFMul(x, beyond));
-}
-
-llvm::Value* Emitter::order(int offset) { return table("order", k_.order.number, offset); }
-
-llvm::Value* Emitter::over_order(Value* x, int offset) {
-  return quotient(x, table("reciprocal", k_.order.reciprocal, offset),
-                  table("reciprocal_beyond", k_.order.beyond, offset));
-}
-
-llvm::Value* Emitter::row(const char* name, const std::vector<double>& rows, int m, int offset) {
-  const auto first = rows.begin() + static_cast<std::ptrdiff_t>(k_.rising_at(m, 0));
-  return table((name + std::to_string(m)).c_str(), {first, first + static_cast<std::ptrdiff_t>(k_.orders)}, offset);
-}
-
-llvm::Value* Emitter::rising(int m, int offset) { return row("rising", k_.rising_.number, m, offset); }
-
-llvm::Value* Emitter::over_rising(Value* x, int m) {
-  return quotient(x, row("falling", k_.rising_.reciprocal, m, 0), row("falling_beyond", k_.rising_.beyond, m, 0));
-}
-
-llvm::Value* Emitter::table(const char* name, const std::vector<double>& row, int offset) {
-  if (!relative_) return number(row[static_cast<std::size_t>(stage_ + offset)]);
-  Value*& element = elements_[{name, stage_ + offset}];
-  if (element) return element;
-  llvm::GlobalVariable*& t = tables_[name];
-  if (!t) {
-    llvm::Constant* data = llvm::ConstantDataArray::get(m_.getContext(), llvm::ArrayRef<double>(row));
-    t = new llvm::GlobalVariable(m_, data->getType(), true, llvm::GlobalValue::PrivateLinkage, data, name);
-  }
-  Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), t, k0_);
-  at = b_.CreateConstGEP1_64(b_.getDoubleTy(), at,
-                             static_cast<std::uint64_t>(static_cast<std::int64_t>(stage_ + offset)));
-  Value* x = b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8));
-  return element = lanes_ == 1 ? x : b_.CreateVectorSplat(static_cast<unsigned>(lanes_), x);
-}
-
-llvm::Value* Emitter::fma(Value* a, Value* b, Value* c) {
-  return b_.CreateIntrinsic(llvm::Intrinsic::fma, {c->getType()}, {a, b, c});
-}
-
-llvm::Value* Emitter::call_scalar(const char* name, const std::vector<Value*>& arguments, llvm::Type* result) {
-  std::vector<llvm::Type*> types;
-  for (Value* v : arguments) types.push_back(v->getType());
-  return b_.CreateCall(m_.getOrInsertFunction(name, llvm::FunctionType::get(result, types, false)), arguments);
-}
-
-llvm::Value* Emitter::call(const char* name, const std::vector<Value*>& arguments) {
-  Value* all = llvm::PoisonValue::get(lane_);
-  for (int lane = 0; lane < lanes_; ++lane) {
-    std::vector<Value*> of;
-    for (Value* v : arguments) of.push_back(of_lane(v, lane));
-    Value* r = call_scalar(name, of, b_.getDoubleTy());
-    if (lanes_ == 1) return r;
-    all = b_.CreateInsertElement(all, r, static_cast<std::uint64_t>(lane));
-  }
-  return all;
 }
 
 void Emitter::complete() {

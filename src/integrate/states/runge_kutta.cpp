@@ -89,8 +89,8 @@ RungeKutta::RungeKutta(StateRate rate, const StepSettings& settings)
 Outcome RungeKutta::start(const MotionPoint& from, long double end) {
   now_ = before_ = from;
   started_ = from.t;
-  carry_.assign(from.state.size(), 0);
-  integral_carry_.assign(from.integrals.size(), 0);
+  carry_.state.assign(from.state.size(), 0);
+  carry_.integrals.assign(from.integrals.size(), 0);
   rate_.set_leading(from.leading);
   error_before_ = 1;
   if (Outcome o = first_rate(); !o.ok()) return o;
@@ -106,10 +106,10 @@ Outcome RungeKutta::first_rate() {
   if (Outcome o = rate_.evaluate(static_cast<double>(now_.t), y_, true); !o.ok()) return o;
   if (rate_.moved())
     for (std::size_t i = 0; i < y_.size(); ++i)
-      if (const double moved = rate_.state()[i] - y_[i]; moved != 0) now_.state[i] += moved, carry_[i] = 0;
+      if (const double moved = rate_.state()[i] - y_[i]; moved != 0) now_.state[i] += moved, carry_.state[i] = 0;
   now_.leading = rate_.leading();
-  sides_ = rate_.sides();
-  arguments_ = rate_.arguments();
+  kinks_.sides = rate_.sides();
+  kinks_.arguments = rate_.arguments();
   here_ = rate_.rate();
   here_.insert(here_.end(), rate_.integrands().begin(), rate_.integrands().end());
   worst_constraint_ = std::max(worst_constraint_, rate_.drift());
@@ -158,7 +158,7 @@ Outcome RungeKutta::whole(double h) {
 }
 
 // Whether f was evaluated beyond a kink.
-bool RungeKutta::turned() const { return rate_.sides().size() == sides_.size() && rate_.sides() != sides_; }
+bool RungeKutta::turned() const { return rate_.sides().size() == kinks_.sides.size() && rate_.sides() != kinks_.sides; }
 
 // After a whole step of h that has gone beyond a kink: the step to just beyond the first one, with its stages. By
 // secants (Illinois) through whole steps that end on both sides of it.
@@ -172,16 +172,16 @@ Outcome RungeKutta::cut_at_kink(double& h) {
   const double direction = h < 0 ? -1 : 1;
   const double past =
       0x1p-53 * kPastKink * std::max(std::abs(static_cast<double>(now_.t)), std::abs(h)) + tolerance_ * std::abs(h);
-  End low{0, arguments_}, high{std::abs(h), rate_.arguments()};
+  End low{0, kinks_.arguments}, high{std::abs(h), rate_.arguments()};
   std::vector<int> ends = rate_.sides();
   bool at_high = true;
   for (int tries = 0; tries < kMostTries && high.h - low.h > past; ++tries) {
     // Of those that have turned, the one that did so first, as far as straight lines tell.
     double root = high.h;
     for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (ends[i] == sides_[i]) continue;
-      const double before = low.weight * rate_.beyond(i, low.arguments[i], sides_[i], ends[i]),
-                   after = high.weight * rate_.beyond(i, high.arguments[i], sides_[i], ends[i]);
+      if (ends[i] == kinks_.sides[i]) continue;
+      const double before = low.weight * rate_.beyond(i, low.arguments[i], kinks_.sides[i], ends[i]),
+                   after = high.weight * rate_.beyond(i, high.arguments[i], kinks_.sides[i], ends[i]);
       root = std::min(root, before < 0 && after > 0 ? low.h + (high.h - low.h) * before / (before - after)
                             : before < 0            ? high.h
                                                     : low.h);
@@ -202,7 +202,7 @@ Outcome RungeKutta::cut_at_kink(double& h) {
     if (beyond) ends = rate_.sides();
   }
   h = direction * high.h;
-  short_kinks_ = high.h > 4 * past ? 0 : short_kinks_ + 1;
+  kinks_.short_steps = high.h > 4 * past ? 0 : kinks_.short_steps + 1;
   return at_high ? Outcome{} : whole(h);
 }
 
@@ -234,10 +234,10 @@ double RungeKutta::error(double h) {
   return worst;
 }
 
-void RungeKutta::advance(MotionPoint& to, std::vector<long double>& carry, double h) {
+void RungeKutta::advance(MotionPoint& to, RoundOffs& carry, double h) {
   const std::size_t n = rate_.size();
   weigh(table().b, k_, k_[0].size(), change_);
-  for (std::size_t i = 0; i < n; ++i) add(to.state[i], carry[i], h * change_[i]);
+  for (std::size_t i = 0; i < n; ++i) add(to.state[i], carry.state[i], h * change_[i]);
 }
 
 // Interrupted if the caller has cancelled the motion, or the end lies beyond the step limit.
@@ -275,16 +275,16 @@ Outcome RungeKutta::step(long double end) {
       return {OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
               "the motion approaches a singularity: stop before it, or look at the last good state"};
     }
-    trouble = sides_.empty() ? stages(now_, h) : whole(h);
+    trouble = kinks_.sides.empty() ? stages(now_, h) : whole(h);
     bool cut = false;
-    if (trouble.ok() && !sides_.empty() && turned()) {
+    if (trouble.ok() && !kinks_.sides.empty() && turned()) {
       trouble = cut_at_kink(h);
       cut = true;
       reached = static_cast<long double>(static_cast<double>(now_.t + h));
-      if (short_kinks_ > kMostShortKinks)
+      if (kinks_.short_steps > kMostShortKinks)
         return {OutcomeKind::step_collapse, "the motion stays at a kink", "put a smooth function in its place"};
     } else {
-      short_kinks_ = 0;
+      kinks_.short_steps = 0;
     }
     if (!trouble.ok()) {
       if (rate_.guarded()) return trouble;  // shorter steps would come so close that nobody could tell the sides apart
@@ -297,25 +297,23 @@ Outcome RungeKutta::step(long double end) {
       continue;
     }
     MotionPoint next = now_;
-    std::vector<long double> carry = carry_, integral_carry = integral_carry_;
+    RoundOffs carry = carry_;
     advance(next, carry, h);
     for (long double x : next.state)
       if (!std::isfinite(x) || std::abs(x) > kBlowUp)
         return {OutcomeKind::blow_up, "the motion grows without bound",
                 "look at the last good state: a velocity or position diverges"};
     for (std::size_t i = 0; i < next.integrals.size(); ++i)
-      add(next.integrals[i], integral_carry[i], h * change_[rate_.size() + i]);
+      add(next.integrals[i], carry.integrals[i], h * change_[rate_.size() + i]);
     next.t = reached;
     std::swap(before_, now_);
     std::swap(now_, next);
     std::swap(carry_, carry);
-    std::swap(integral_carry_, integral_carry);
     trouble = first_rate();
     if (!trouble.ok()) {  // the step was too bold
       std::swap(now_, before_);
       std::swap(before_, next);
       std::swap(carry_, carry);
-      std::swap(integral_carry_, integral_carry);
       here_ = k_[0];
       rate_.set_leading(now_.leading);
       if (rate_.guarded()) return trouble;
@@ -339,7 +337,7 @@ Outcome RungeKutta::at(long double t, MotionPoint& point) {
   }
   const double h = static_cast<double>(t - before_.t);
   if (Outcome o = stages(before_, h); !o.ok()) return o;
-  std::vector<long double> carry(before_.state.size(), 0);
+  RoundOffs carry{std::vector<long double>(before_.state.size(), 0), {}};
   point = before_;
   point.t = t;
   advance(point, carry, h);

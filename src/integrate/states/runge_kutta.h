@@ -33,7 +33,11 @@ class RungeKutta final : public StateStepper {
   bool turned() const;
   Outcome cut_at_kink(double& h);
   double error(double h);
-  void advance(MotionPoint& to, std::vector<long double>& carry, double h);
+  // The round-offs of the sums of a state and of the integrals.
+  struct RoundOffs {
+    std::vector<long double> state, integrals;
+  };
+  void advance(MotionPoint& to, RoundOffs& carry, double h);
 
   StateRate rate_;
   StepSettings settings_;
@@ -42,13 +46,16 @@ class RungeKutta final : public StateStepper {
   std::vector<double> here_;  // the first of them at now()
   std::vector<double> start_, y_, change_, sizes_, e5_, e3_;
   std::vector<std::pair<double, double>> most_;
-  std::vector<long double> carry_, integral_carry_;
+  RoundOffs carry_;
   long double started_ = 0;
   double h_ = 0, error_before_ = 1;
   std::size_t refused_ = 0;
-  std::vector<int> sides_;  // of the kinks, at now()
-  std::vector<double> arguments_;
-  int short_kinks_ = 0;  // steps in a row that were cut at their very start
+  struct Kinks {  // at now()
+    std::vector<int> sides;
+    std::vector<double> arguments;
+    int short_steps = 0;  // in a row that were cut at their very start
+  };
+  Kinks kinks_;
 };
 
 }  // namespace anholon

@@ -296,6 +296,69 @@ class Sweep final : public SweepSteps<L> {
     return r;
   }
 
+  // u_0 w_p = (r sum (j u_j) w_(p-j) - sum (j w_j) u_(p-j)) / p + r u_p w_0, j = 1..p - 1
+  void coefficient_of_power(const Step& s, std::uint32_t p) {
+    V* const a = w_ + s.a.at;
+    V* const w = w_ + s.out.at;
+    V& out = *at(s.out, p);
+    const std::int64_t n = p;
+    const bool newest = !s.a_unknown;
+    V* const c = w_ + s.c.at;
+    V* const d = w_ + s.d.at;
+    const V older = over(T::fma(T::broadcast(s.value), history(c, w, n), -history(d, a, n)), k_.order, p) * w_[s.b.at];
+    out = newest ? T::fma(a[p], w_[s.e.at], older) : older;
+    d[p] = out * T::broadcast(static_cast<double>(n));
+  }
+
+  void coefficient_of_sine_cosine(const Step& s, std::uint32_t p) {
+    V* const a = w_ + s.a.at;
+    V* const b = w_ + s.b.at;
+    V* const w = w_ + s.out.at;
+    const std::int64_t n = p;
+    const bool newest = !s.a_unknown;
+    V* const c = w_ + s.c.at;
+    V sine = over(history(b, c, n), k_.order, p), cosine = over(history(b, w, n), k_.order, p);
+    if (newest) {
+      sine = T::fma(a[p], c[0], sine);
+      cosine = T::fma(a[p], w[0], cosine);
+    }
+    w[p] = sine;
+    c[p] = -cosine;
+  }
+
+  // w' = f'(u) u'
+  void coefficient_of_function(const Step& s, std::uint32_t p) {
+    V* const a = w_ + s.a.at;
+    V* const b = w_ + s.b.at;
+    V& out = *at(s.out, p);
+    const std::int64_t n = p;
+    const bool newest = !s.a_unknown;
+    V* const c = w_ + s.c.at;
+    if (s.b_constant) {
+      out = s.a_unknown ? T::broadcast(0) : V(b[0] * a[p]);
+    } else {
+      const V older = over(history(c, b, n), k_.order, p);
+      out = newest ? T::fma(a[p], b[0], older) : older;
+    }
+  }
+
+  void coefficient_of_arctan2(const Step& s, std::uint32_t p) {
+    V* const a = w_ + s.a.at;
+    V* const b = w_ + s.b.at;
+    V& out = *at(s.out, p);
+    const std::int64_t n = p;
+    const bool newest = !s.a_unknown, newest_b = !s.b_unknown;
+    V* const c = w_ + s.c.at;
+    V* const d = w_ + s.d.at;
+    V r = T::broadcast(0);
+    if (!s.a_constant) r += history(w_ + s.e.at, c, n);
+    if (!s.b_constant) r += history(w_ + s.f.at, d, n);
+    r = over(r, k_.order, p);
+    if (!s.a_constant && newest) r = T::fma(a[p], c[0], r);
+    if (!s.b_constant && newest_b) r = T::fma(b[p], d[0], r);
+    out = r;
+  }
+
   void coefficient(const Step& s, std::uint32_t p) {
     V* const a = w_ + s.a.at;
     V* const b = w_ + s.b.at;
@@ -330,49 +393,18 @@ class Sweep final : public SweepSteps<L> {
       out = r * (T::broadcast(0.5) / w[0]);
       break;
     }
-    case Act::power: {
-      // u_0 w_p = (r sum (j u_j) w_(p-j) - sum (j w_j) u_(p-j)) / p + r u_p w_0, j = 1..p - 1
-      V* const c = w_ + s.c.at;
-      V* const d = w_ + s.d.at;
-      const V older =
-          over(T::fma(T::broadcast(s.value), history(c, w, n), -history(d, a, n)), k_.order, p) * w_[s.b.at];
-      out = newest ? T::fma(a[p], w_[s.e.at], older) : older;
-      d[p] = out * T::broadcast(static_cast<double>(n));
+    case Act::power:
+      coefficient_of_power(s, p);
       break;
-    }
-    case Act::sine_cosine: {
-      V* const c = w_ + s.c.at;
-      V sine = over(history(b, c, n), k_.order, p), cosine = over(history(b, w, n), k_.order, p);
-      if (newest) {
-        sine = T::fma(a[p], c[0], sine);
-        cosine = T::fma(a[p], w[0], cosine);
-      }
-      w[p] = sine;
-      c[p] = -cosine;
+    case Act::sine_cosine:
+      coefficient_of_sine_cosine(s, p);
       break;
-    }
-    case Act::function: {
-      V* const c = w_ + s.c.at;
-      if (s.b_constant) {
-        out = s.a_unknown ? T::broadcast(0) : V(b[0] * a[p]);
-      } else {
-        const V older = over(history(c, b, n), k_.order, p);
-        out = newest ? T::fma(a[p], b[0], older) : older;
-      }
+    case Act::function:
+      coefficient_of_function(s, p);
       break;
-    }
-    case Act::arctan2: {
-      V* const c = w_ + s.c.at;
-      V* const d = w_ + s.d.at;
-      V r = T::broadcast(0);
-      if (!s.a_constant) r += history(w_ + s.e.at, c, n);
-      if (!s.b_constant) r += history(w_ + s.f.at, d, n);
-      r = over(r, k_.order, p);
-      if (!s.a_constant && newest) r = T::fma(a[p], c[0], r);
-      if (!s.b_constant && newest_b) r = T::fma(b[p], d[0], r);
-      out = r;
+    case Act::arctan2:
+      coefficient_of_arctan2(s, p);
       break;
-    }
     case Act::weigh:
       out = *at(s.a, p) * T::broadcast(static_cast<double>(n));
       break;
