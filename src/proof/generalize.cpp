@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "expr/diff.h"
-#include "numeric/number.h"
+#include "expr/function_value.h"
 
 namespace anholon {
 
@@ -18,17 +18,6 @@ long double arbitrary(std::uint64_t seed) {
   std::uint64_t h = seed * 0x9e3779b97f4a7c15ULL + 12345;
   for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
   return 0.55L + 0.8L * static_cast<long double>(h >> 40) / 16777216.0L;
-}
-
-long double apply(Function f, long double u) {
-  switch (f) {
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
-  case Function::name:                                                                                                 \
-    return name(u);
-#include "expr/elementary.def"
-#undef ROW
-  }
-  return u;
 }
 
 // The nodes below e in order, with their operands as positions, and their values at one point.
@@ -82,7 +71,7 @@ class Values {
         }
         break;
       case Kind::function:
-        v = apply(static_cast<Function>(n.index), value_[terms_[i][0].first]), s = std::abs(v);
+        v = function_value(static_cast<Function>(n.index), value_[terms_[i][0].first]), s = std::abs(v);
         break;
       case Kind::atan2:
         v = std::atan2(value_[terms_[i][0].first], value_[terms_[i][1].first]), s = std::abs(v);
