@@ -1,8 +1,8 @@
-#include "expr/generic_point.h"
+#include <set>
 
 #include <gtest/gtest.h>
 
-#include <set>
+#include "expr/generic_point.h"
 
 namespace anholon {
 namespace {
