@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/assert.h"
+#include "expr/function_value.h"
 #include "kernel/latency.h"
 
 namespace anholon {
@@ -52,16 +53,7 @@ double power_of(double x, double exponent) {
                             : std::pow(x, exponent);
 }
 
-double function_of(std::uint32_t function, double x) {
-  switch (static_cast<Function>(function)) {
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
-  case Function::name:                                                                                                 \
-    return name(x);
-#include "expr/elementary.def"
-#undef ROW
-  }
-  return x;
-}
+double function_of(std::uint32_t function, double x) { return function_value(static_cast<Function>(function), x); }
 
 void sine_and_cosine(double x, double& sine, double& cosine) { ::sincos(x, &sine, &cosine); }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "expr/degree.h"
+#include "expr/generic_point.h"
 #include "expr/normal.h"
 #include "tape/point.h"
 
@@ -38,13 +39,7 @@ bool each(const Vector& v, Test test) {
 // Values between -2 and 2 that depend on the symbol and the point alone; parameters and masses are positive.
 PointValues random_point(std::uint64_t point) {
   return PointValues([point](const Node& n) {
-    std::uint64_t h = point * 0x9e3779b97f4a7c15U + (static_cast<std::uint64_t>(n.kind) << 40) +
-                      (static_cast<std::uint64_t>(n.order) << 32) + n.index;
-    for (int k = 0; k < 3; ++k) {
-      h ^= h >> 33;
-      h *= 0xff51afd7ed558ccdU;
-    }
-    const double unit = static_cast<double>(h >> 11) / 9007199254740992.0;
+    const double unit = generic_value(n, point);
     return n.kind == Kind::parameter || n.kind == Kind::mass ? 0.4 + 1.2 * unit
            : n.kind == Kind::pi                              ? 3.14159265358979323846
                                                              : 4 * unit - 2;

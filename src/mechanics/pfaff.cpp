@@ -1,5 +1,6 @@
 #include "mechanics/pfaff.h"
 
+#include "expr/generic_point.h"
 #include "expr/normal.h"
 #include "tape/tape.h"
 
@@ -48,21 +49,13 @@ Column bracket(const VectorField& X, const VectorField& Y) {
   return b;
 }
 
-// A number in [0, 1) that depends only on the symbol and the seed.
-static double arbitrary(const Node& n, std::uint64_t seed) {
-  std::uint64_t h =
-      seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order;
-  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
-  return static_cast<double>(h >> 40) / 16777216.0;
-}
-
 FormPoint::FormPoint(const Mechanics& m, PointValues& near, std::uint64_t seed, bool other_parameters) {
   Graph& g = m.graph();
   Column es;
   for (const Parameter& p : m.model->parameters) es.push_back(p.value);
   std::vector<Multi> parameters = evaluate_parameters<Multi>(g, es);
   symbol_ = [&g, &near, seed, other_parameters, parameters = std::move(parameters)](const Node& n) {
-    const double u = arbitrary(n, seed);
+    const double u = generic_value(n, seed);
     if (n.kind == Kind::parameter && !other_parameters && n.index < parameters.size()) return parameters[n.index];
     if (n.kind != Kind::time && n.kind != Kind::jet) return Multi(0.6 + 0.8 * u);
     const double base = near(n.kind == Kind::time ? g.time() : g.jet(n.index, n.order));

@@ -1,17 +1,8 @@
 #include "proof/enclose.h"
 
-namespace anholon {
+#include "expr/function_value.h"
 
-static Ball apply(Function f, const Ball& u) {
-  switch (f) {
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
-  case Function::name:                                                                                                 \
-    return name(u);
-#include "expr/elementary.def"
-#undef ROW
-  }
-  return Ball::unknown();
-}
+namespace anholon {
 
 static Ball lookup(const StepFunction& f, const Ball& x) {
   std::size_t k = 0;
@@ -45,7 +36,7 @@ std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at) {
       for (const Term& t : g.terms(id)) v *= pow(value.at(t.node), g.rational(t.weight));
       break;
     case Kind::function:
-      v = apply(static_cast<Function>(n.index), value.at(g.terms(id)[0].node));
+      v = function_value(static_cast<Function>(n.index), value.at(g.terms(id)[0].node));
       break;
     case Kind::atan2:
       v = atan2(value.at(g.terms(id)[0].node), value.at(g.terms(id)[1].node));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "expr/generic_point.h"
 #include "expr/normal.h"
 #include "numeric/linear.h"
 
@@ -18,13 +19,13 @@ std::uint64_t key(const Node& n) {
   return (static_cast<std::uint64_t>(n.kind) << 40) | (static_cast<std::uint64_t>(n.order) << 32) | n.index;
 }
 
-double arbitrary(const Node& n, int attempt) {
-  std::uint64_t h = key(n) * 131 + static_cast<std::uint64_t>(attempt) * 7919 + 17;
-  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
-  const double r = 0.3 + 1.1 * static_cast<double>(h >> 40) / 16777216.0;
-  if (n.kind != Kind::jet || n.order == 0) return r;
+// A value for each symbol at an attempt: between 0.3 and 1.4, derivatives of either sign.
+double generic(const Node& n, int attempt) {
+  const double u = generic_value(n, static_cast<std::uint64_t>(attempt));
+  if (n.kind != Kind::jet || n.order == 0) return 0.3 + 1.1 * u;
+  const double r = 0.3 + 1.1 * std::abs(2 * u - 1);
   // Every third attempt has small velocities: a bounded speed leaves room for them.
-  return (h & 1 ? -r : r) / (1 << (attempt % 3));
+  return (u < 0.5 ? -r : r) / (1 << (attempt % 3));
 }
 
 // `above`: the attempt for accelerations, higher derivatives and multipliers.
@@ -32,7 +33,7 @@ PointValues values_of(std::unordered_map<std::uint64_t, double> known, int attem
   return PointValues([known = std::move(known), attempt, above](const Node& n) {
     const auto it = known.find(key(n));
     const bool is_above = n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order >= 2);
-    return it == known.end() ? arbitrary(n, is_above ? above : attempt) : it->second;
+    return it == known.end() ? generic(n, is_above ? above : attempt) : it->second;
   });
 }
 
@@ -81,7 +82,7 @@ std::optional<Expr> solved_for(Expr psi, Expr s) {
 
 }  // namespace
 
-PointValues arbitrary_values(int attempt) { return values_of({}, attempt, attempt); }
+PointValues generic_values(int attempt) { return values_of({}, attempt, attempt); }
 
 bool EquationsOfMotion::choose(Stage& s, const std::vector<std::size_t>& preferred, PointValues& at) const {
   const std::vector<std::size_t> all_rows = up_to(s.rows.size()), all = up_to(s.symbols.size());
@@ -163,7 +164,7 @@ bool EquationsOfMotion::find_point(int attempt, Symbols& known, Symbols* below) 
     const Graph& g = *s.symbols[0].graph;
     for (std::size_t j : s.chosen_symbols) {
       const Node& node = g.node(s.symbols[j].id);
-      known[key(node)] = arbitrary(node, attempt);
+      known[key(node)] = generic(node, attempt);
     }
     bool done = false;
     for (int step = 0; step < kNewtonSteps && !done; ++step) {

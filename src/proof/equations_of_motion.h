@@ -20,7 +20,7 @@ struct DerivedEquation {
 };
 
 // Values of all symbols, none of them near 0; each attempt gives another point.
-PointValues arbitrary_values(int attempt);
+PointValues generic_values(int attempt);
 
 class EquationsOfMotion {
  public:

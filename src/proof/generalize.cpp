@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "expr/diff.h"
-#include "numeric/number.h"
+#include "expr/function_value.h"
+#include "expr/generic_point.h"
 
 namespace anholon {
 
@@ -14,22 +15,8 @@ constexpr long double kVanishes = 1e-9L;       // relative to the largest interm
 constexpr std::size_t kShort = 12;             // nodes: a shorter subexpression is not replaced
 constexpr std::size_t kMostWork = 40'000'000;  // node evaluations
 
-long double arbitrary(std::uint64_t seed) {
-  std::uint64_t h = seed * 0x9e3779b97f4a7c15ULL + 12345;
-  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
-  return 0.55L + 0.8L * static_cast<long double>(h >> 40) / 16777216.0L;
-}
-
-long double apply(Function f, long double u) {
-  switch (f) {
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
-  case Function::name:                                                                                                 \
-    return name(u);
-#include "expr/elementary.def"
-#undef ROW
-  }
-  return u;
-}
+// The value of a free node, by its position.
+long double generic(std::uint64_t position) { return 0.55L + 0.8L * generic_number(position, 0); }
 
 // The nodes below e in order, with their operands as positions, and their values at one point.
 class Values {
@@ -62,7 +49,7 @@ class Values {
       if (free_[i] || n.view_count == 0) {
         value_[i] = !free_[i] && n.kind == Kind::number ? from_rational<long double>(g_.value(ids_[i]))
                     : !free_[i] && n.kind == Kind::pi   ? pi<long double>()
-                                                        : arbitrary(i);
+                                                        : generic(i);
         scale_[i] = std::abs(value_[i]);
         continue;
       }
@@ -82,7 +69,7 @@ class Values {
         }
         break;
       case Kind::function:
-        v = apply(static_cast<Function>(n.index), value_[terms_[i][0].first]), s = std::abs(v);
+        v = function_value(static_cast<Function>(n.index), value_[terms_[i][0].first]), s = std::abs(v);
         break;
       case Kind::atan2:
         v = std::atan2(value_[terms_[i][0].first], value_[terms_[i][1].first]), s = std::abs(v);

@@ -8,8 +8,8 @@ namespace anholon {
 
 namespace {
 
-const char* const kArithmetic[] = {"sin",  "cos", "tan", "asin", "acos", "atan", "sinh",  "cosh",
-                                   "tanh", "exp", "log", "sqrt", "abs",  "sign", "atan2", "D"};
+// Functions of numbers, which speak of no quantity of mechanics.
+bool is_arithmetic(const std::string& f) { return find_function(f) >= 0 || f == "sqrt" || f == "atan2" || f == "D"; }
 
 bool holds(Expr e, bool (*which)(const Node&)) {
   const std::vector<NodeId> ids = symbols({&e, 1});
@@ -41,8 +41,7 @@ bool speaks_of_quantities(const Syntax& s, Vocabulary& words) {
   case Syntax::Op::apply:
     return true;
   case Syntax::Op::call:
-    if (std::none_of(std::begin(kArithmetic), std::end(kArithmetic), [&](const char* f) { return s.text == f; }))
-      return true;
+    if (!is_arithmetic(s.text)) return true;
     break;
   case Syntax::Op::number:
   case Syntax::Op::quantity:

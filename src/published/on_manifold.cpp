@@ -43,7 +43,7 @@ bool Comparer::on_manifold(Expr P, bool regular, Comparison& out) {
     return true;
   }
   std::vector<PointValues> points;
-  for (int k = 0; k < kPoints; ++k) points.push_back(arbitrary_values(k));
+  for (int k = 0; k < kPoints; ++k) points.push_back(generic_values(k));
   const Column& a = contractions();
   Column by, leading;
   for (unsigned k = 2; k <= std::max(2U, E.m); ++k)

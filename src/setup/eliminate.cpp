@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "expr/generic_point.h"
+
 namespace anholon {
 
 namespace {
@@ -10,12 +12,8 @@ namespace {
 // Below this part of its size a pivot counts as zero.
 constexpr double kSingular = 1e-9;
 
-// A number in [0.6, 1.4) that depends on the symbol alone.
-double arbitrary(const Node& n) {
-  std::uint64_t h = static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order;
-  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
-  return 0.6 + 0.8 * static_cast<double>(h >> 40) / 16777216.0;
-}
+// A value in (0.6, 1.4) for a symbol whose value is not known.
+double generic(const Node& n) { return 0.6 + 0.8 * generic_value(n, 0); }
 
 Matrix<double> constraint_matrix(const Mechanics& m, const std::vector<std::size_t>& constraints, PointValues& at) {
   Matrix<double> phi(constraints.size(), m.q.size());
@@ -66,7 +64,7 @@ std::vector<std::size_t> dependent_coordinates(const Mechanics& m, const std::ve
     std::vector<std::size_t> pivots = best_pivots(m, constraints, at);
     // At a singular state any choice that is regular elsewhere serves for the equations themselves.
     if (pivots.size() < constraints.size()) {
-      PointValues elsewhere(arbitrary);
+      PointValues elsewhere(generic);
       pivots = best_pivots(m, constraints, elsewhere);
     }
     if (pivots.size() < constraints.size())
@@ -99,7 +97,7 @@ std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vecto
                       std::to_string(n - s),
                   "leave out " + std::to_string(list.size() - (n - s)));
   // At a singular state the rows that are regular elsewhere serve for the equations themselves.
-  PointValues elsewhere(arbitrary);
+  PointValues elsewhere(generic);
   Matrix<double> rows = constraint_matrix(m, constraints, at);
   const bool singular = choose_rows(rows, kSingular).independent.size() < s;
   if (singular) rows = constraint_matrix(m, constraints, elsewhere);
@@ -146,7 +144,7 @@ PointValues values_near(const Model& model, const std::vector<double>& parameter
     if (n.kind == Kind::parameter && n.index < parameters.size()) return parameters[n.index];
     if (known && n.kind == Kind::time) return state.t;
     if (const double* value = n.kind == Kind::jet || n.kind == Kind::state ? state.value(n) : nullptr) return *value;
-    return arbitrary(n);
+    return generic(n);
   });
 }
 
@@ -173,7 +171,7 @@ static Elimination elimination_of(const Mechanics& m, const std::vector<std::siz
   std::vector<std::size_t> rows = choose_rows(constraint_matrix(m, all, *at), kSingular).independent;
   if (rows.size() < all.size()) {
     // Fewer at a singular state only?
-    PointValues elsewhere(arbitrary);
+    PointValues elsewhere(generic);
     rows = choose_rows(constraint_matrix(m, all, elsewhere), kSingular).independent;
   }
   std::vector<std::size_t> chosen;

@@ -2,24 +2,13 @@
 #include <optional>
 
 #include "base/assert.h"
+#include "expr/function_value.h"
 #include "numeric/ball.h"
 #include "tape/tape.h"
 
 namespace anholon {
 
 namespace {
-
-template <Scalar N>
-N apply(Function f, const N& u) {
-  switch (f) {
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
-  case Function::name:                                                                                                 \
-    return name(u);
-#include "expr/elementary.def"
-#undef ROW
-  }
-  return u;
-}
 
 template <Scalar N>
 N constant_value(const Rational& r) {
@@ -225,7 +214,7 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
   case Op::function: {
     const N* u = series(in.a);
     if (p == 0) {
-      w[0] = apply(static_cast<Function>(in.index), u[0]);
+      w[0] = function_value(static_cast<Function>(in.index), u[0]);
       return;
     }
     if constexpr (std::same_as<N, Ball>)

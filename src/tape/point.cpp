@@ -3,21 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "expr/function_value.h"
+
 namespace anholon {
 
 namespace {
-
-template <Number N>
-N apply(Function f, const N& u) {
-  switch (f) {
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
-  case Function::name:                                                                                                 \
-    return name(u);
-#include "expr/elementary.def"
-#undef ROW
-  }
-  return u;
-}
 
 // Most weights are small integers.
 template <Number N>
@@ -50,7 +40,7 @@ N ValuesAt<N>::evaluate(const Graph& g, NodeId id) const {
     return p;
   }
   case Kind::function:
-    return apply(static_cast<Function>(n.index), known(g.terms(id)[0].node));
+    return function_value(static_cast<Function>(n.index), known(g.terms(id)[0].node));
   case Kind::atan2:
     return atan2(known(g.terms(id)[0].node), known(g.terms(id)[1].node));
   case Kind::time:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "expr/function_value.h"
 #include "integrate/series/sign_change.h"
 
 namespace anholon {
@@ -24,16 +25,7 @@ constexpr int kNoise = 64, kAcross = 16;
 
 template <Number N>
 N value_of(const Hiding& f, const N& u) {
-  [[maybe_unused]] const auto sign = [](const N& x) { return x > N(0) ? N(1) : x < N(0) ? N(-1) : N(0); };
-  if (f.function) {
-    switch (*f.function) {
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
-  case Function::name:                                                                                                 \
-    return name(u);
-#include "expr/elementary.def"
-#undef ROW
-    }
-  }
+  if (f.function) return function_value(*f.function, u);
   const N size = exp(N(f.exponent) * log(abs(u)));
   return u < N(0) && std::fmod(f.exponent, 2) != 0 ? N(-size) : size;
 }
