@@ -36,7 +36,7 @@ class NewFormat : public ::testing::Test {
     return cli::run_command_line(static_cast<int>(argv.size()), argv.data());
   }
   int simulate(const std::string& output) const {
-    return command({"simulate", "zoo/chaplygin-sleigh", "--to", "1", "--every", "0.25", "--quiet", "-o", path(output)});
+    return command({"simulate", "chaplygin-sleigh", "--to", "1", "--every", "0.25", "--quiet", "-o", path(output)});
   }
 
   std::filesystem::path folder_;
@@ -54,7 +54,7 @@ TEST_F(NewFormat, IsWrittenAndConverted) {
 
 TEST_F(NewFormat, IsRefusedWhereItHoldsNoSweeps) {
   try {
-    command({"sweep", "zoo/chaplygin-sleigh", "--vary", "m=1,2", "--to", "1", "-o", path("cases.tsv")});
+    command({"sweep", "chaplygin-sleigh", "--vary", "m=1,2", "--to", "1", "-o", path("cases.tsv")});
     FAIL();
   } catch (const cli::UsageError& e) {
     EXPECT_EQ(e.text, "error: .tsv files are not written yet\nhint: -o cases.csv or -o cases.json\n");
