@@ -32,23 +32,17 @@ Expr divided(Expr a, Expr b) {
   return expanded(q).value_or(q);
 }
 
-// The antiderivatives by u that are elementary and short.
-struct KnownAntiderivative {
-  Function f;
-  Expr (*by_u)(Expr u);
-};
-constexpr KnownAntiderivative kAntiderivatives[] = {
-    {Function::sin, [](Expr u) { return -cos(u); }},       {Function::cos, [](Expr u) { return sin(u); }},
-    {Function::tan, [](Expr u) { return -log(cos(u)); }},  {Function::sinh, [](Expr u) { return cosh(u); }},
-    {Function::cosh, [](Expr u) { return sinh(u); }},      {Function::exp, [](Expr u) { return exp(u); }},
-    {Function::log, [](Expr u) { return u * log(u) - u; }}};
-
 // The antiderivative of f(u)^k by u. Nodes are made in sequence: their order must not depend on the compiler.
 std::optional<Expr> of_function(Function f, Expr u, const Rational& k) {
   if (k == 1) {
-    for (const KnownAntiderivative& known : kAntiderivatives)
-      if (known.f == f) return known.by_u(u);
-    return std::nullopt;
+    constexpr std::nullopt_t none = std::nullopt;
+    switch (f) {
+#define ROW(name, derivative, antiderivative, ...)                                                                     \
+  case Function::name:                                                                                                 \
+    return antiderivative;
+#include "expr/elementary.def"
+#undef ROW
+    }
   }
   if (f == Function::exp) return (1 / k) * pow(exp(u), k);
   if (f != Function::sin && f != Function::cos) return std::nullopt;

@@ -11,35 +11,35 @@ namespace {
 
 enum class Parity : std::uint8_t { none, even, odd };
 
+enum Beyond : bool { shows = false, hides = true };
+
 constexpr std::array kFunctions = {
-#define ROW(name, derivative, parity, latex, domain) FunctionInfo{#name, latex, domain},
+#define ROW(name, derivative, antiderivative, parity, exact, beyond, latex, c, numpy, undefined)                       \
+  FunctionInfo{#name, latex, c, numpy, undefined, beyond},
 #include "expr/elementary.def"
 #undef ROW
 };
 
 constexpr std::array kParity = {
-#define ROW(name, derivative, parity, latex, domain) Parity::parity,
+#define ROW(name, derivative, antiderivative, parity, ...) Parity::parity,
 #include "expr/elementary.def"
 #undef ROW
 };
-
-// Exact values at a number: f(at) = value. An odd function that is defined at 0 is 0 there.
-struct ExactValue {
-  Function f;
-  int at, value;
-};
-constexpr ExactValue kExactValues[] = {{Function::cos, 0, 1}, {Function::cosh, 0, 1}, {Function::exp, 0, 1},
-                                       {Function::log, 1, 0}, {Function::acos, 1, 0}, {Function::acosh, 1, 0}};
 
 Parity parity(Function f) { return kParity[static_cast<std::size_t>(f)]; }
 
 // The value at a rational argument, if it is rational and known.
 std::optional<Rational> exact_value(Function f, const Rational& x) {
-  if (f == Function::abs) return Rational(::abs(x));
-  if (f == Function::sign) return Rational(sgn(x));
-  if (parity(f) == Parity::odd && x == 0) return Rational(0);
-  for (const ExactValue& row : kExactValues)
-    if (row.f == f && x == row.at) return Rational(row.value);
+  const auto at = [&](int argument, int value) {
+    return x == argument ? std::optional<Rational>(value) : std::nullopt;
+  };
+  switch (f) {
+#define ROW(name, derivative, antiderivative, parity, exact, ...)                                                      \
+  case Function::name:                                                                                                 \
+    return exact;
+#include "expr/elementary.def"
+#undef ROW
+  }
   return std::nullopt;
 }
 
@@ -87,6 +87,8 @@ std::optional<Rational> value_at_pi(const Graph& g, Function f, NodeId x) {
 }  // namespace
 
 const FunctionInfo& info(Function f) { return kFunctions[static_cast<std::size_t>(f)]; }
+
+std::span<const FunctionInfo> elementary_functions() { return kFunctions; }
 
 int find_function(const std::string& name) {
   for (std::size_t i = 0; i < kFunctions.size(); ++i)
@@ -137,7 +139,7 @@ Expr Graph::lookup(std::uint32_t f, Expr x) {
   return {this, intern(Node{Kind::lookup, 0, f}, operand, {})};
 }
 
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
+#define ROW(name, ...)                                                                                                 \
   Expr name(Expr u) { return u.graph->apply(Function::name, u); }
 #include "expr/elementary.def"
 #undef ROW

@@ -34,7 +34,7 @@ static bool is_symbol(Kind k) {
 
 Expr derivative(Function f, [[maybe_unused]] Expr u, [[maybe_unused]] Expr v) {
   switch (f) {
-#define ROW(name, formula, parity, latex, domain)                                                                      \
+#define ROW(name, formula, ...)                                                                                        \
   case Function::name:                                                                                                 \
     return formula;
 #include "expr/elementary.def"

@@ -64,7 +64,7 @@ struct StepFunction {
 };
 
 enum class Function : std::uint8_t {
-#define ROW(name, derivative, parity, latex, domain) name,
+#define ROW(name, ...) name,
 #include "expr/elementary.def"
 #undef ROW
 };
@@ -72,9 +72,12 @@ enum class Function : std::uint8_t {
 struct FunctionInfo {
   const char* name;
   const char* latex;
+  const char *c, *numpy;  // names in exported programs
   const char* undefined;  // where, in words; empty if defined everywhere
+  bool hides;             // may be almost constant where its series are known, and vary farther away
 };
 const FunctionInfo& info(Function f);
+std::span<const FunctionInfo> elementary_functions();
 // The function of that name, or -1.
 int find_function(const std::string& name);
 
@@ -226,7 +229,7 @@ Expr pow(Expr base, const Exponent& exponent);  // throws Failure for 0^negative
 inline Expr sqrt(Expr a) { return pow(a, {1, 2}); }
 Expr sum(std::span<const Expr> terms);  // all at once
 
-#define ROW(name, derivative, parity, latex, domain) Expr name(Expr u);
+#define ROW(name, ...) Expr name(Expr u);
 #include "expr/elementary.def"
 #undef ROW
 Expr atan2(Expr y, Expr x);

@@ -41,7 +41,7 @@ const std::vector<FunctionRow>& function_table() {
         {"matrix", "matrix([[…], […], […]])", "by rows; the columns are the new axes",
          "matrix([[0, -1, 0], [1, 0, 0], [0, 0, 1]])", DimensionRule::matrix},
     };
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
+#define ROW(name, derivative, antiderivative, parity, exact, beyond, latex, c, numpy, domain)                          \
   rows.push_back({#name, #name "(a)", std::string(domain).empty() ? "" : std::string("not defined ") + (domain),       \
                   #name "(0.3)", DimensionRule::pure});
 #include "expr/elementary.def"

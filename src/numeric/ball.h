@@ -122,28 +122,14 @@ class BallScope {
   slong before_;
 };
 
-#define ANHOLON_BALL_FUNCTION(name, arb_name)                                                                          \
+#define FUNCTION(name, mpfr_name, arb_name)                                                                            \
   inline Ball name(const Ball& x) {                                                                                    \
     Ball r;                                                                                                            \
     arb_name(r.raw(), x.raw(), Ball::working_bits());                                                                  \
     return std::move(r.settle());                                                                                      \
   }
-ANHOLON_BALL_FUNCTION(sin, arb_sin)
-ANHOLON_BALL_FUNCTION(cos, arb_cos)
-ANHOLON_BALL_FUNCTION(tan, arb_tan)
-ANHOLON_BALL_FUNCTION(asin, arb_asin)
-ANHOLON_BALL_FUNCTION(acos, arb_acos)
-ANHOLON_BALL_FUNCTION(atan, arb_atan)
-ANHOLON_BALL_FUNCTION(sinh, arb_sinh)
-ANHOLON_BALL_FUNCTION(cosh, arb_cosh)
-ANHOLON_BALL_FUNCTION(tanh, arb_tanh)
-ANHOLON_BALL_FUNCTION(asinh, arb_asinh)
-ANHOLON_BALL_FUNCTION(acosh, arb_acosh)
-ANHOLON_BALL_FUNCTION(atanh, arb_atanh)
-ANHOLON_BALL_FUNCTION(exp, arb_exp)
-ANHOLON_BALL_FUNCTION(log, arb_log)
-ANHOLON_BALL_FUNCTION(sqrt, arb_sqrt)
-#undef ANHOLON_BALL_FUNCTION
+#include "numeric/functions.def"
+#undef FUNCTION
 Ball abs(const Ball& x);
 Ball max(const Ball& x, const Ball& y);
 Ball hull(const Ball& x, const Ball& y);  // holds both

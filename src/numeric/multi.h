@@ -111,29 +111,19 @@ class PrecisionScope {
   mpfr_prec_t before_;
 };
 
-#define ANHOLON_MULTI_FUNCTION(name, mpfr_name)                                                                        \
+#define FUNCTION(name, mpfr_name, arb_name)                                                                            \
   inline Multi name(const Multi& x) {                                                                                  \
     Multi r;                                                                                                           \
     mpfr_name(r.raw(), x.raw(), MPFR_RNDN);                                                                            \
     return r;                                                                                                          \
   }
-ANHOLON_MULTI_FUNCTION(sin, mpfr_sin)
-ANHOLON_MULTI_FUNCTION(cos, mpfr_cos)
-ANHOLON_MULTI_FUNCTION(tan, mpfr_tan)
-ANHOLON_MULTI_FUNCTION(asin, mpfr_asin)
-ANHOLON_MULTI_FUNCTION(acos, mpfr_acos)
-ANHOLON_MULTI_FUNCTION(atan, mpfr_atan)
-ANHOLON_MULTI_FUNCTION(sinh, mpfr_sinh)
-ANHOLON_MULTI_FUNCTION(cosh, mpfr_cosh)
-ANHOLON_MULTI_FUNCTION(tanh, mpfr_tanh)
-ANHOLON_MULTI_FUNCTION(asinh, mpfr_asinh)
-ANHOLON_MULTI_FUNCTION(acosh, mpfr_acosh)
-ANHOLON_MULTI_FUNCTION(atanh, mpfr_atanh)
-ANHOLON_MULTI_FUNCTION(exp, mpfr_exp)
-ANHOLON_MULTI_FUNCTION(log, mpfr_log)
-ANHOLON_MULTI_FUNCTION(sqrt, mpfr_sqrt)
-ANHOLON_MULTI_FUNCTION(abs, mpfr_abs)
-#undef ANHOLON_MULTI_FUNCTION
+#include "numeric/functions.def"
+#undef FUNCTION
+inline Multi abs(const Multi& x) {
+  Multi r;
+  mpfr_abs(r.raw(), x.raw(), MPFR_RNDN);
+  return r;
+}
 inline Multi pow(const Multi& x, const Multi& y) {
   Multi r;
   mpfr_pow(r.raw(), x.raw(), y.raw(), MPFR_RNDN);

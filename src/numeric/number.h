@@ -15,9 +15,10 @@
 
 namespace anholon {
 
-using std::abs, std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh;
-using std::atan2;
-using std::tanh, std::asinh, std::acosh, std::atanh, std::exp, std::log, std::sqrt, std::pow;
+using std::abs, std::atan2, std::pow;
+#define FUNCTION(name, mpfr_name, arb_name) using std::name;
+#include "numeric/functions.def"
+#undef FUNCTION
 
 template <class N>
 concept Number =

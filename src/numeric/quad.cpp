@@ -53,21 +53,10 @@ Quad quad_of(mpfr_srcptr x) {
   return low == 0 ? static_cast<Quad>(high) : static_cast<Quad>(high) + low;
 }
 
-Quad sin(Quad x) { return apply(mpfr_sin, x); }
-Quad cos(Quad x) { return apply(mpfr_cos, x); }
-Quad tan(Quad x) { return apply(mpfr_tan, x); }
-Quad asin(Quad x) { return apply(mpfr_asin, x); }
-Quad acos(Quad x) { return apply(mpfr_acos, x); }
-Quad atan(Quad x) { return apply(mpfr_atan, x); }
-Quad sinh(Quad x) { return apply(mpfr_sinh, x); }
-Quad cosh(Quad x) { return apply(mpfr_cosh, x); }
-Quad tanh(Quad x) { return apply(mpfr_tanh, x); }
-Quad asinh(Quad x) { return apply(mpfr_asinh, x); }
-Quad acosh(Quad x) { return apply(mpfr_acosh, x); }
-Quad atanh(Quad x) { return apply(mpfr_atanh, x); }
-Quad exp(Quad x) { return apply(mpfr_exp, x); }
-Quad log(Quad x) { return apply(mpfr_log, x); }
-Quad sqrt(Quad x) { return apply(mpfr_sqrt, x); }
+#define FUNCTION(name, mpfr_name, arb_name)                                                                            \
+  Quad name(Quad x) { return apply(mpfr_name, x); }
+#include "numeric/functions.def"
+#undef FUNCTION
 
 Quad pow(Quad x, Quad y) {
   Exact u(x), v(y);

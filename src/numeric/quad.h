@@ -22,21 +22,9 @@ Quad quad_of(mpfr_srcptr x);
 inline Quad abs(Quad x) { return __builtin_fabsf128(x); }
 inline bool is_finite(Quad x) { return x - x == 0; }
 
-Quad sin(Quad x);
-Quad cos(Quad x);
-Quad tan(Quad x);
-Quad asin(Quad x);
-Quad acos(Quad x);
-Quad atan(Quad x);
-Quad sinh(Quad x);
-Quad cosh(Quad x);
-Quad tanh(Quad x);
-Quad asinh(Quad x);
-Quad acosh(Quad x);
-Quad atanh(Quad x);
-Quad exp(Quad x);
-Quad log(Quad x);
-Quad sqrt(Quad x);
+#define FUNCTION(name, mpfr_name, arb_name) Quad name(Quad x);
+#include "numeric/functions.def"
+#undef FUNCTION
 Quad pow(Quad x, Quad y);
 Quad atan2(Quad y, Quad x);
 

@@ -94,20 +94,6 @@ constexpr const char* kReserved[] = {"auto",
                                      "p",
                                      "out",
                                      "i",
-                                     "sin",
-                                     "cos",
-                                     "tan",
-                                     "asin",
-                                     "acos",
-                                     "atan",
-                                     "sinh",
-                                     "cosh",
-                                     "tanh",
-                                     "asinh",
-                                     "acosh",
-                                     "atanh",
-                                     "exp",
-                                     "log",
                                      "fabs",
                                      "sqrt",
                                      "pow",
@@ -137,6 +123,7 @@ std::string LocalNames::fresh(const std::string& wanted) {
 
 LocalNames::LocalNames(const System& s, const Structure& structure, const Motion& motion)
     : taken_(std::begin(kReserved), std::end(kReserved)) {
+  for (const FunctionInfo& f : elementary_functions()) taken_.insert(f.c);
   Graph& g = *s.model->graph;
   symbols_[g.time().id] = "t";
   if (!motion.inputs.empty()) taken_.insert({"u", "own"});

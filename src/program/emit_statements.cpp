@@ -19,44 +19,7 @@ constexpr std::size_t kLineWidth = 100;
 constexpr int kLargestProduct = 4;
 constexpr int kSum = 1, kProduct = 2, kPower = 3, kAtom = 4;
 
-const char* function_name(Function f, Language language) {
-  const bool c = language == Language::c;
-  switch (f) {
-  case Function::sin:
-    return c ? "sin" : "np.sin";
-  case Function::cos:
-    return c ? "cos" : "np.cos";
-  case Function::tan:
-    return c ? "tan" : "np.tan";
-  case Function::asin:
-    return c ? "asin" : "np.arcsin";
-  case Function::acos:
-    return c ? "acos" : "np.arccos";
-  case Function::atan:
-    return c ? "atan" : "np.arctan";
-  case Function::sinh:
-    return c ? "sinh" : "np.sinh";
-  case Function::cosh:
-    return c ? "cosh" : "np.cosh";
-  case Function::tanh:
-    return c ? "tanh" : "np.tanh";
-  case Function::asinh:
-    return c ? "asinh" : "np.arcsinh";
-  case Function::acosh:
-    return c ? "acosh" : "np.arccosh";
-  case Function::atanh:
-    return c ? "atanh" : "np.arctanh";
-  case Function::exp:
-    return c ? "exp" : "np.exp";
-  case Function::log:
-    return c ? "log" : "np.log";
-  case Function::abs:
-    return c ? "fabs" : "np.abs";
-  case Function::sign:
-    return c ? "$_sign" : "np.sign";
-  }
-  return "";
-}
+const char* function_name(Function f, Language language) { return language == Language::c ? info(f).c : info(f).numpy; }
 
 // The number of times that the text of a power contains its base.
 std::size_t bases(const Rational& exponent) {

@@ -8,6 +8,7 @@
 
 #include "base/diagnostic.h"
 #include "base/json.h"
+#include "proof/verify_functions.h"
 
 namespace anholon {
 
@@ -30,8 +31,11 @@ constexpr std::array kKinds = {"agree", "differ", "kernel", "pivot"};
 const char* name(Certificate::ClaimKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
 
 const std::vector<std::string>& Certificate::functions() {
-  static const std::vector<std::string> all{"sin",  "cos",   "tan",   "asin",  "acos", "atan", "sinh", "cosh",
-                                            "tanh", "asinh", "acosh", "atanh", "exp",  "log",  "abs",  "sign"};
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> names;
+    for (const verification::KnownFunction& f : verification::functions()) names.push_back(f.name);
+    return names;
+  }();
   return all;
 }
 

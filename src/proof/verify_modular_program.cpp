@@ -10,18 +10,6 @@ namespace anholon::verification {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostBits = 4096;  // of a coefficient inside an angle
 
-// The rule of each function; the others are keyed.
-static Family family(const std::string& function) {
-  static const std::map<std::string, Family> families = {
-      {"sin", Family::circle},       {"cos", Family::circle},       {"tan", Family::circle},
-      {"exp", Family::exponential},  {"sinh", Family::exponential}, {"cosh", Family::exponential},
-      {"tanh", Family::exponential}, {"abs", Family::branch},       {"sign", Family::branch},
-      {"asin", Family::odd},         {"atan", Family::odd},         {"asinh", Family::odd},
-      {"atanh", Family::odd},        {"acos", Family::complement}};
-  const auto row = families.find(function);
-  return row == families.end() ? Family::keyed : row->second;
-}
-
 static std::uint64_t name_of(const std::string& function) {
   const auto& all = Certificate::functions();
   return static_cast<std::uint64_t>(std::find(all.begin(), all.end(), function) - all.begin());
@@ -59,7 +47,7 @@ void ModularProgram::collect() {
 void ModularProgram::compile(Step& s) {
   const Certificate::Node& n = *s.node;
   if (n.operation == Operation::function) {
-    s.family = family(n.function);
+    s.family = function(n.function).family;
     s.name = name_of(s.family == Family::complement ? "asin" : n.function);
   }
   s.constant = n.operation == Operation::sum || n.operation == Operation::product || n.operation == Operation::number ||

@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "numeric/prime_field.h"
 #include "proof/certificate.h"
+#include "proof/verify_functions.h"
 #include "proof/verify_work.h"
 
 namespace anholon::verification {
@@ -40,15 +41,6 @@ struct Angle {
   unsigned twelfths = 0;  // multiple of π/12, exactly; circle functions only
 };
 
-// The rule by which a function is evaluated.
-enum class Family : std::uint8_t {
-  keyed,        // equal arguments have equal values
-  odd,          // and the value of -u is that of u with the other sign
-  complement,   // acos u = pi/2 - asin u
-  branch,       // abs, sign: they follow whether u is a square
-  circle,       // a rational function of a point of the circle group
-  exponential,  // a rational function of a square that is not 0
-};
 // Functions of sums of angles: their arguments are flattened.
 inline bool is_of_angle(Family f) { return f == Family::circle || f == Family::exponential; }
 

@@ -1,7 +1,8 @@
 #include "proof/verify_real.h"
 
 #include <algorithm>
-#include <map>
+
+#include "proof/verify_functions.h"
 
 namespace anholon::verification {
 
@@ -11,51 +12,6 @@ using Operation = Certificate::Operation;
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-struct Function {
-  Ball (*value)(const Ball& u);
-  Ball (*derivative)(const Ball& u, const Ball& v);  // v = value(u)
-};
-
-const Rational kMinusHalf(-1, 2);
-
-const Function& function(const std::string& name) {
-  static const std::map<std::string, Function> all{
-      {"sin", {[](const Ball& u) { return sin(u); }, [](const Ball& u, const Ball&) { return cos(u); }}},
-      {"cos", {[](const Ball& u) { return cos(u); }, [](const Ball& u, const Ball&) { return -sin(u); }}},
-      {"tan", {[](const Ball& u) { return tan(u); }, [](const Ball&, const Ball& v) { return Ball(1) + v * v; }}},
-      {"asin",
-       {[](const Ball& u) { return asin(u); },
-        [](const Ball& u, const Ball&) { return pow(Ball(1) - u * u, kMinusHalf); }}},
-      {"acos",
-       {[](const Ball& u) { return acos(u); },
-        [](const Ball& u, const Ball&) { return -pow(Ball(1) - u * u, kMinusHalf); }}},
-      {"atan",
-       {[](const Ball& u) { return atan(u); }, [](const Ball& u, const Ball&) { return Ball(1) / (Ball(1) + u * u); }}},
-      {"sinh", {[](const Ball& u) { return sinh(u); }, [](const Ball& u, const Ball&) { return cosh(u); }}},
-      {"cosh", {[](const Ball& u) { return cosh(u); }, [](const Ball& u, const Ball&) { return sinh(u); }}},
-      {"tanh", {[](const Ball& u) { return tanh(u); }, [](const Ball&, const Ball& v) { return Ball(1) - v * v; }}},
-      {"asinh",
-       {[](const Ball& u) { return asinh(u); },
-        [](const Ball& u, const Ball&) { return pow(Ball(1) + u * u, kMinusHalf); }}},
-      {"acosh",
-       {[](const Ball& u) { return acosh(u); },
-        [](const Ball& u, const Ball&) { return pow(u * u - Ball(1), kMinusHalf); }}},
-      {"atanh",
-       {[](const Ball& u) { return atanh(u); },
-        [](const Ball& u, const Ball&) { return Ball(1) / (Ball(1) - u * u); }}},
-      {"exp", {[](const Ball& u) { return exp(u); }, [](const Ball&, const Ball& v) { return v; }}},
-      {"log", {[](const Ball& u) { return log(u); }, [](const Ball& u, const Ball&) { return Ball(1) / u; }}},
-      // There is no derivative at the edge itself.
-      {"abs",
-       {[](const Ball& u) { return abs(u); },
-        [](const Ball& u, const Ball&) { return u.contains_zero() ? Ball::unknown() : sign(u); }}},
-      {"sign",
-       {[](const Ball& u) { return sign(u); },
-        [](const Ball& u, const Ball&) { return u.contains_zero() ? Ball::unknown() : Ball(0); }}},
-  };
-  return all.at(name);
-}
 
 }  // namespace
 

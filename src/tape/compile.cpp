@@ -272,100 +272,118 @@ class Compiler {
   }
 
   void emit(NodeId id) {
-    if (slot_.count(id)) return;
+    if (!slot_.count(id)) slot_[id] = slot_of(id);
+  }
+
+  // The slot of a node whose operands have theirs.
+  std::uint32_t slot_of(NodeId id) {
     const Node n = g_.node(id);
-    Instruction in{Op::constant};
     switch (n.kind) {
     case Kind::number:
-      in.constant = true;
-      in.index = rational(g_.value(id));
-      break;
+      return constant_of(Op::constant, rational(g_.value(id)));
     case Kind::pi:
-      in = {Op::pi, true};
-      break;
+      return constant_of(Op::pi, 0);
     case Kind::parameter:
-      in = {Op::parameter, true};
-      in.index = n.index;
-      break;
-    case Kind::time:
+      return constant_of(Op::parameter, n.index);
     case Kind::jet:
+      if (n.index >= rates_from_ && n.index - rates_from_ < rates_.size())
+        return rate(rates_[n.index - rates_from_], n.order);
+      return input(id);
+    case Kind::time:
     case Kind::multiplier:
-    case Kind::state: {
-      if (n.kind == Kind::jet && n.index >= rates_from_ && n.index - rates_from_ < rates_.size()) {
-        const Expr of = rates_[n.index - rates_from_];
-        for (NodeId below : reachable({&of, 1})) emit(below);
-        if (n.order == 0) {
-          slot_[id] = slot_.at(of.id);
-          return;
-        }
-        in.op = Op::rate;
-        in.a = slot_.at(of.id);
-        in.index = n.order;
-        slot_[id] = push(in);
-        return;
-      }
-      in.op = Op::input;
-      in.index = static_cast<std::uint32_t>(tape_.inputs.size());
-      slot_[id] = push(in);
-      tape_.inputs.push_back({id, slot_[id]});
-      return;
-    }
+    case Kind::state:
+      return input(id);
     case Kind::mass:
     case Kind::given:
     case Kind::quasi:
     case Kind::control:
       ANHOLON_ASSERT(!"a frozen mass, an input or an unknown function in a tape");
-      return;
-    case Kind::sum: {
-      in.op = Op::linear;
-      in.constant = true;
-      in.first = static_cast<std::uint32_t>(tape_.linear_terms.size());
-      for (const Term& t : g_.summands(id)) {
-        const std::uint32_t x = slot_.at(t.node);
-        tape_.linear_terms.push_back({rational(g_.rational(t.weight)), x});
-        in.constant = in.constant && constant(x);
-        ++in.count;
-      }
-      break;
-    }
+      return 0;
+    case Kind::sum:
+      return sum(id);
     case Kind::product:
-      slot_[id] = product(id);
-      return;
+      return product(id);
     case Kind::function:
-      in.op = Op::function;
-      in.a = slot_.at(g_.terms(id)[0].node);
-      in.index = n.index;
-      in.constant = constant(in.a);
-      slot_[id] = push(in);
-      pending_derivatives_.push_back({slot_[id], id});
-      return;
     case Kind::atan2:
-      in.op = Op::arctan2;
-      in.a = slot_.at(g_.terms(id)[0].node);
-      in.b = slot_.at(g_.terms(id)[1].node);
-      in.constant = constant(in.a) && constant(in.b);
-      slot_[id] = push(in);
-      pending_derivatives_.push_back({slot_[id], id});
-      return;
+      return function(id, n);
     case Kind::select:
-      in.op = Op::select;
-      in.first = slot_.at(g_.terms(id)[0].node);
-      in.a = slot_.at(g_.terms(id)[1].node);
-      in.b = slot_.at(g_.terms(id)[2].node);
-      in.constant = constant(in.first) && constant(in.a) && constant(in.b);
-      break;
-    case Kind::lookup: {
-      in.op = Op::lookup;
-      in.a = slot_.at(g_.terms(id)[0].node);
-      in.constant = constant(in.a);
-      const auto [it, fresh] =
-          step_function_.try_emplace(n.index, static_cast<std::uint32_t>(tape_.step_functions.size()));
-      if (fresh) tape_.step_functions.push_back(g_.step_function(n.index));
-      in.index = it->second;
-      break;
+      return select(id);
+    case Kind::lookup:
+      return lookup(id, n);
     }
+    return 0;
+  }
+
+  std::uint32_t operand(NodeId id, std::size_t k) const { return slot_.at(g_.terms(id)[k].node); }
+
+  std::uint32_t constant_of(Op op, std::uint32_t index) {
+    Instruction in{op, true};
+    in.index = index;
+    return push(in);
+  }
+
+  std::uint32_t input(NodeId id) {
+    Instruction in{Op::input};
+    in.index = static_cast<std::uint32_t>(tape_.inputs.size());
+    const std::uint32_t slot = push(in);
+    tape_.inputs.push_back({id, slot});
+    return slot;
+  }
+
+  // A derivative of an expression, which is compiled before.
+  std::uint32_t rate(Expr of, std::uint32_t order) {
+    for (NodeId below : reachable({&of, 1})) emit(below);
+    if (order == 0) return slot_.at(of.id);
+    Instruction in{Op::rate};
+    in.a = slot_.at(of.id);
+    in.index = order;
+    return push(in);
+  }
+
+  std::uint32_t sum(NodeId id) {
+    Instruction in{Op::linear, true};
+    in.first = static_cast<std::uint32_t>(tape_.linear_terms.size());
+    for (const Term& t : g_.summands(id)) {
+      const std::uint32_t x = slot_.at(t.node);
+      tape_.linear_terms.push_back({rational(g_.rational(t.weight)), x});
+      in.constant = in.constant && constant(x);
+      ++in.count;
     }
-    slot_[id] = push(in);
+    return push(in);
+  }
+
+  // The slots of its derivatives follow later.
+  std::uint32_t function(NodeId id, const Node& n) {
+    Instruction in{n.kind == Kind::function ? Op::function : Op::arctan2};
+    in.a = operand(id, 0);
+    in.constant = constant(in.a);
+    if (in.op == Op::function)
+      in.index = n.index;
+    else
+      in.b = operand(id, 1), in.constant = in.constant && constant(in.b);
+    const std::uint32_t slot = push(in);
+    pending_derivatives_.push_back({slot, id});
+    return slot;
+  }
+
+  std::uint32_t select(NodeId id) {
+    Instruction in{Op::select};
+    in.first = operand(id, 0);
+    in.a = operand(id, 1);
+    in.b = operand(id, 2);
+    in.constant = constant(in.first) && constant(in.a) && constant(in.b);
+    return push(in);
+  }
+
+  std::uint32_t lookup(NodeId id, const Node& n) {
+    Instruction in{Op::lookup};
+    in.a = operand(id, 0);
+    in.constant = constant(in.a);
+    const auto [it, fresh] =
+        step_function_.try_emplace(n.index, static_cast<std::uint32_t>(tape_.step_functions.size()));
+    if (fresh) tape_.step_functions.push_back(g_.step_function(n.index));
+    in.index = it->second;
+    return push(in);
   }
 
   void spread_leads(std::span<const int> leads) {

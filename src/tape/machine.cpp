@@ -94,6 +94,23 @@ N either(const N& a, const N& b) {
     return a;
 }
 
+// The coefficient of order p of a product of series.
+template <Scalar N>
+N product(const N* a, const N* b, std::size_t p) {
+  N s(0);
+  for (std::size_t j = 0; j <= p; ++j) addmul(s, a[j], b[p - j]);
+  return s;
+}
+
+template <Scalar N>
+N square(const N* a, std::size_t p) {
+  N s(0);
+  for (std::size_t j = 0; 2 * j < p; ++j) addmul(s, a[j], a[p - j]);
+  s = s + s;
+  if (p % 2 == 0) addmul(s, a[p / 2], a[p / 2]);
+  return s;
+}
+
 // All values of a step function on a ball.
 template <Scalar N>
 N any_value(const std::vector<N>& knots, const std::vector<N>& values, const N& x) {
@@ -139,6 +156,7 @@ void Machine<N>::sweep(int stage, std::uint32_t from, std::uint32_t to) {
   }
 }
 
+// Row by row: how the coefficient of order p follows from the operands' coefficients up to p, and from its own below p.
 template <Scalar N>
 void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) {
   N* w = series(slot);
@@ -152,133 +170,127 @@ void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) 
   case Op::input:
   case Op::parameter:
     return;
-  case Op::linear: {
-    N s(0);
-    for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
-      const LinearTerm& t = tape_->linear_terms[k];
-      if (p > 0 && tape_->code[t.slot].constant) continue;
-      addmul(s, rationals_[t.coefficient], series(t.slot)[p]);
-    }
-    w[p] = s;
+  case Op::linear:
+    w[p] = sum(in, p);
     return;
-  }
   case Op::scale:
     w[p] = series(in.a)[0] * series(in.b)[p];
     return;
-  case Op::multiply: {
-    const N *a = series(in.a), *b = series(in.b);
-    N s(0);
-    for (std::size_t j = 0; j <= p; ++j) addmul(s, a[j], b[p - j]);
-    w[p] = s;
+  case Op::multiply:
+    w[p] = product(series(in.a), series(in.b), p);
+    return;
+  case Op::square:
+    w[p] = square(series(in.a), p);
+    return;
+  case Op::divide:
+    w[p] = quotient(in, w, p);
+    return;
+  case Op::power:
+    w[p] = power(in, w, p);
+    return;
+  case Op::function:
+    w[p] = p == 0 ? function_value(static_cast<Function>(in.index), series(in.a)[0]) : function(in, p);
+    return;
+  case Op::arctan2:
+    w[p] = p == 0 ? atan2(series(in.a)[0], series(in.b)[0]) : arctan2(in, p);
+    return;
+  case Op::select:
+    w[p] = chosen(in, p);
+    return;
+  case Op::lookup:
+    w[p] = looked_up(in, p);
+    return;
+  case Op::rate:
+    w[p] = rate(in, p);
     return;
   }
-  case Op::square: {
-    const N* a = series(in.a);
-    N s(0);
-    for (std::size_t j = 0; 2 * j < p; ++j) addmul(s, a[j], a[p - j]);
-    s = s + s;
-    if (p % 2 == 0) addmul(s, a[p / 2], a[p / 2]);
-    w[p] = s;
-    return;
+}
+
+template <Scalar N>
+N Machine<N>::sum(const Instruction& in, std::size_t p) const {
+  N s(0);
+  for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
+    const LinearTerm& t = tape_->linear_terms[k];
+    if (p > 0 && tape_->code[t.slot].constant) continue;
+    addmul(s, rationals_[t.coefficient], series(t.slot)[p]);
   }
-  case Op::divide: {
-    const N *a = series(in.a), *b = series(in.b);
-    N s = p == 0 || !tape_->code[in.a].constant ? a[p] : N(0);
-    if (!tape_->code[in.b].constant)
-      for (std::size_t j = 1; j <= p; ++j) addmul(s, N(-b[j]), w[p - j]);
-    w[p] = s / b[0];
-    return;
+  return s;
+}
+
+template <Scalar N>
+N Machine<N>::quotient(const Instruction& in, const N* w, std::size_t p) const {
+  const N *a = series(in.a), *b = series(in.b);
+  N s = p == 0 || !tape_->code[in.a].constant ? a[p] : N(0);
+  if (!tape_->code[in.b].constant)
+    for (std::size_t j = 1; j <= p; ++j) addmul(s, N(-b[j]), w[p - j]);
+  return s / b[0];
+}
+
+// u w' = r w u'. Multiples of, say, r = 1/3 would be rounded in the same way at every step.
+template <Scalar N>
+N Machine<N>::power(const Instruction& in, const N* w, std::size_t p) const {
+  const N* u = series(in.a);
+  const N& r = rationals_[in.index];
+  if (p == 0) return power_value(u[0], r, tape_->rationals[in.index]);
+  // A positive power of a series that is zero up to the known order is zero up to that order.
+  if (sgn(tape_->rationals[in.index]) > 0 && vanishes(u, p)) return N(0);
+  N rates_of_u(0), rates_of_w(0);
+  for (std::size_t j = 0; j < p; ++j) {
+    const N product = u[p - j] * w[j];
+    addmul(rates_of_u, N(static_cast<int>(p - j)), product);
+    addmul(rates_of_w, N(static_cast<int>(j)), product);
   }
-  case Op::power: {
-    const N* u = series(in.a);
-    const N& r = rationals_[in.index];
-    if (p == 0) {
-      w[0] = power_value(u[0], r, tape_->rationals[in.index]);
-      return;
-    }
-    if (sgn(tape_->rationals[in.index]) > 0 && vanishes(u, p)) {
-      // A positive power of a series that is zero up to the known order is zero up to that order.
-      w[p] = N(0);
-      return;
-    }
-    // u w' = r w u'. Multiples of, say, r = 1/3 would be rounded in the same way at every step.
-    N rates_of_u(0), rates_of_w(0);
-    for (std::size_t j = 0; j < p; ++j) {
-      const N product = u[p - j] * w[j];
-      addmul(rates_of_u, N(static_cast<int>(p - j)), product);
-      addmul(rates_of_w, N(static_cast<int>(j)), product);
-    }
-    w[p] = (r * rates_of_u - rates_of_w) / (N(static_cast<int>(p)) * u[0]);
-    return;
+  return (r * rates_of_u - rates_of_w) / (N(static_cast<int>(p)) * u[0]);
+}
+
+// w' = f'(u) u', p > 0.
+template <Scalar N>
+N Machine<N>::function(const Instruction& in, std::size_t p) const {
+  const N *u = series(in.a), *g = series(in.b);
+  if constexpr (std::same_as<N, Ball>)
+    if (!smooth(static_cast<Function>(in.index), u[0])) return Ball::unknown();
+  if (tape_->code[in.b].constant) return g[0] * u[p];
+  N s(0);
+  for (std::size_t j = 1; j <= p; ++j) addmul(s, N(N(static_cast<int>(j)) * u[j]), g[p - j]);
+  return s / N(static_cast<int>(p));
+}
+
+// w' = gy y' + gx x', p > 0.
+template <Scalar N>
+N Machine<N>::arctan2(const Instruction& in, std::size_t p) const {
+  const N *y = series(in.a), *x = series(in.b), *gy = series(in.first), *gx = series(in.count);
+  if constexpr (std::same_as<N, Ball>)
+    if (!smooth(y[0], x[0])) return Ball::unknown();
+  N s(0);
+  for (std::size_t j = 1; j <= p; ++j) {
+    const N k(static_cast<int>(j));
+    if (!tape_->code[in.a].constant) addmul(s, N(k * y[j]), gy[p - j]);
+    if (!tape_->code[in.b].constant) addmul(s, N(k * x[j]), gx[p - j]);
   }
-  case Op::function: {
-    const N* u = series(in.a);
-    if (p == 0) {
-      w[0] = function_value(static_cast<Function>(in.index), u[0]);
-      return;
-    }
-    if constexpr (std::same_as<N, Ball>)
-      if (!smooth(static_cast<Function>(in.index), u[0])) {
-        w[p] = Ball::unknown();
-        return;
-      }
-    // w' = f'(u) u'
-    const N* g = series(in.b);
-    if (tape_->code[in.b].constant) {
-      w[p] = g[0] * u[p];
-      return;
-    }
-    N s(0);
-    for (std::size_t j = 1; j <= p; ++j) addmul(s, N(N(static_cast<int>(j)) * u[j]), g[p - j]);
-    w[p] = s / N(static_cast<int>(p));
-    return;
-  }
-  case Op::arctan2: {
-    const N *y = series(in.a), *x = series(in.b), *gy = series(in.first), *gx = series(in.count);
-    if (p == 0) {
-      w[0] = atan2(y[0], x[0]);
-      return;
-    }
-    if constexpr (std::same_as<N, Ball>)
-      if (!smooth(y[0], x[0])) {
-        w[p] = Ball::unknown();
-        return;
-      }
-    N s(0);
-    for (std::size_t j = 1; j <= p; ++j) {
-      const N k(static_cast<int>(j));
-      if (!tape_->code[in.a].constant) addmul(s, N(k * y[j]), gy[p - j]);
-      if (!tape_->code[in.b].constant) addmul(s, N(k * x[j]), gx[p - j]);
-    }
-    w[p] = s / N(static_cast<int>(p));
-    return;
-  }
-  case Op::select: {
-    const int side = branch(series(in.first)[0]);
-    const std::uint32_t from = side > 0 ? in.a : in.b;
-    if (side == 0)
-      w[p] = p == 0 ? either(series(in.a)[0], series(in.b)[0]) : unknown<N>();
-    else
-      w[p] = p > 0 && tape_->code[from].constant ? N(0) : series(from)[p];
-    return;
-  }
-  case Op::lookup: {
-    if (p > 0) {
-      w[p] = N(0);
-      return;
-    }
-    const auto [k, sure] = below(steps_[in.index].knots, series(in.a)[0]);
-    w[0] =
-        sure ? steps_[in.index].values[k] : any_value(steps_[in.index].knots, steps_[in.index].values, series(in.a)[0]);
-    return;
-  }
-  case Op::rate: {
-    N s = series(in.a)[p + in.index];
-    for (std::uint32_t k = 1; k <= in.index; ++k) s = s * N(static_cast<int>(p + k));
-    w[p] = s;
-    return;
-  }
-  }
+  return s / N(static_cast<int>(p));
+}
+
+template <Scalar N>
+N Machine<N>::chosen(const Instruction& in, std::size_t p) const {
+  const int side = branch(series(in.first)[0]);
+  if (side == 0) return p == 0 ? either(series(in.a)[0], series(in.b)[0]) : unknown<N>();
+  const std::uint32_t from = side > 0 ? in.a : in.b;
+  return p > 0 && tape_->code[from].constant ? N(0) : series(from)[p];
+}
+
+template <Scalar N>
+N Machine<N>::looked_up(const Instruction& in, std::size_t p) const {
+  if (p > 0) return N(0);
+  const auto& [knots, values] = steps_[in.index];
+  const auto [k, sure] = below(knots, series(in.a)[0]);
+  return sure ? values[k] : any_value(knots, values, series(in.a)[0]);
+}
+
+template <Scalar N>
+N Machine<N>::rate(const Instruction& in, std::size_t p) const {
+  N s = series(in.a)[p + in.index];
+  for (std::uint32_t k = 1; k <= in.index; ++k) s = s * N(static_cast<int>(p + k));
+  return s;
 }
 
 template <Scalar N>

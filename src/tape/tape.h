@@ -125,6 +125,15 @@ class Machine {
 
  private:
   void step(const Instruction& in, std::uint32_t slot, std::size_t p);
+  // The coefficient of order p of a slot; `w` is its series, known below p.
+  N sum(const Instruction& in, std::size_t p) const;
+  N quotient(const Instruction& in, const N* w, std::size_t p) const;
+  N power(const Instruction& in, const N* w, std::size_t p) const;
+  N function(const Instruction& in, std::size_t p) const;
+  N arctan2(const Instruction& in, std::size_t p) const;
+  N chosen(const Instruction& in, std::size_t p) const;
+  N looked_up(const Instruction& in, std::size_t p) const;
+  N rate(const Instruction& in, std::size_t p) const;
 
   const Tape* tape_;
   std::size_t stride_;

@@ -14,27 +14,8 @@ std::optional<Hiding> may_hide(const Tape& tape, const Instruction& in) {
   }
   if (in.op == Op::divide) return tape.code[in.b].constant ? std::nullopt : std::optional(Hiding{std::nullopt, -1});
   if (in.op != Op::function) return std::nullopt;
-  switch (const Function f = static_cast<Function>(in.index)) {
-  case Function::exp:
-  case Function::tanh:
-  case Function::sinh:
-  case Function::cosh:
-  case Function::atan:
-    return Hiding{f, 0};
-  case Function::sin:
-  case Function::cos:
-  case Function::tan:
-  case Function::asin:
-  case Function::acos:
-  case Function::asinh:
-  case Function::acosh:
-  case Function::atanh:
-  case Function::log:
-  case Function::abs:
-  case Function::sign:
-    break;
-  }
-  return std::nullopt;
+  const Function f = static_cast<Function>(in.index);
+  return info(f).hides ? std::optional(Hiding{f, 0}) : std::nullopt;
 }
 
 }  // namespace anholon
