@@ -134,8 +134,7 @@ Outcome JacobianGuard<N>::check(Expansion<N>& at, const W& t, StepRecord<N>& rec
   const auto larger = [](const N& a, const N& b) { return abs(a) < abs(b); };
   const bool of_constraints =
       std::max_element(v.begin(), v.end(), larger) - v.begin() >= static_cast<std::ptrdiff_t>(coordinates_);
-  if (of_constraints && sigma_ < record.first_sigma * unit_roundoff<N>() * N(kNoDigits))
-    return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
+  if (of_constraints && sigma_ < record.first_sigma * unit_roundoff<N>() * N(kNoDigits)) return becomes_singular();
   return {};
 }
 

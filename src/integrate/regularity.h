@@ -9,6 +9,11 @@
 
 namespace anholon {
 
+// `when`: " at t = …", if the time is known.
+inline Outcome becomes_singular(const std::string& when = {}) {
+  return {OutcomeKind::singular, "the system Jacobian becomes singular" + when, "end the motion before"};
+}
+
 // With A = J0^-1 (J1 - J0) of spectral radius below 1 every J on the line from J0 to J1 is regular. True if the radius,
 // estimated by the norm of the balanced A^8, is at most 1/2.
 template <Number N>

@@ -5,6 +5,7 @@
 
 #include "base/assert.h"
 #include "integrate/series/kinks.h"
+#include "integrate/step_budget.h"
 
 namespace anholon {
 
@@ -12,19 +13,6 @@ namespace {
 
 // Steps smaller than this many round-offs of the time are a collapse.
 constexpr int kCollapsedRoundoffs = 16;
-// So many steps tell how many more it will take.
-constexpr std::size_t kStepsToJudge = 1000;
-
-Outcome becomes_singular() {
-  return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
-}
-
-// Functions that go on as others where their argument passes a point.
-bool may_turn(const Instruction& in) {
-  return in.op == Op::select || in.op == Op::lookup ||
-         (in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) ||
-                                    in.index == static_cast<std::uint32_t>(Function::sign)));
-}
 
 }  // namespace
 
@@ -58,10 +46,7 @@ Outcome Stepper<N>::step(const W& end) {
 
 template <Number N>
 bool Stepper<N>::begin_step() {
-  if (settings_.cancelled && settings_.cancelled())
-    return fail({OutcomeKind::interrupted, "interrupted", "what was computed is kept"});
-  if (record().steps >= settings_.most_steps)
-    return fail({OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"});
+  if (Outcome o = may_step(settings_, record().steps); !o.ok()) return fail(std::move(o));
   if (phase_ != Phase::expanded) begin_expansion();
   end_.begin();
   return true;
@@ -275,10 +260,7 @@ Outcome Stepper<N>::look_back() {
   expand_again(last);
   PresentStep<N> step = present();
   const std::optional<W> met = guard_.singular_within(step, now.motion.t - last.motion.t, W(0));
-  if (met)
-    return {OutcomeKind::singular,
-            "the system Jacobian becomes singular at t = " + number_text(to_double(W(last.motion.t + *met)), 12),
-            "end the motion before"};
+  if (met) return becomes_singular(" at t = " + number_text(to_double(W(last.motion.t + *met)), 12));
   record().careful = true;
   const Outcome o = expand_here(now.motion.leading);
   track_.begun().at = now;
@@ -319,11 +301,7 @@ bool Stepper<N>::aim_with_care(const W& end) {
   if (!(h > floor))
     return fail({OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
                  "the motion approaches a singularity: stop before it, or look at the last good state"});
-  if (out_of_reach(h, left))
-    return fail({OutcomeKind::interrupted,
-                 "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " +
-                     number_text(to_double(h), 2) + " long",
-                 "end the motion earlier, or take what is very fast or very stiff out of the model"});
+  if (out_of_reach(h, left)) return fail(end_out_of_reach(settings_, to_double(h)));
   if (guard_.singular_ahead()) return fail(becomes_singular());
   const W whole = h;
   if (!(h < abs(left))) h = abs(left);
@@ -383,13 +361,10 @@ bool Stepper<N>::aim_one_sided(const W& left) {
   return true;
 }
 
-// At the present pace, and at that of the whole motion so far, the end lies beyond the step limit.
 template <Number N>
 bool Stepper<N>::out_of_reach(const W& h, const W& left) const {
-  const std::size_t steps = record().steps;
-  if (steps < kStepsToJudge) return false;
-  const double mean = std::abs(to_double(W(time() - started_))) / static_cast<double>(steps);
-  return std::abs(to_double(left)) > std::max(mean, to_double(h)) * static_cast<double>(settings_.most_steps - steps);
+  return anholon::out_of_reach(settings_, record().steps,
+                               {to_double(W(time() - started_)), to_double(h), to_double(left)});
 }
 
 // ---- where it starts ------------------------------------------------------------------------------------------------
@@ -477,10 +452,7 @@ template <Number N>
 void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane)
   requires std::same_as<N, double>
 {
-  const Tape& tape = program_->tape;
-  const bool kinks = std::any_of(tape.code.begin(), tape.code.begin() + end_.slots(),
-                                 [](const Instruction& in) { return !in.constant && may_turn(in); });
-  if (kinks || !events_.empty()) return;
+  if (may_have_kinks(program_->tape, end_.slots()) || !events_.empty()) return;
   leave_kernel();
   track_.now.own.clear();
   expander_.accelerate(KernelExpansion(std::move(kernel), lane, *program_, order_, settings_.log_tolerance));

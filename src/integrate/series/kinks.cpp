@@ -25,6 +25,10 @@ bool turns_at_zero(const Instruction& in) {
                                    in.index == static_cast<std::uint32_t>(Function::sign));
 }
 
+bool may_turn(const Instruction& in) {
+  return !in.constant && (in.op == Op::select || in.op == Op::lookup || turns_at_zero(in));
+}
+
 template <Number N>
 class Search {
  public:
@@ -102,6 +106,10 @@ class Search {
 
 }  // namespace
 
+bool may_have_kinks(const Tape& tape, std::uint32_t end) {
+  return std::any_of(tape.code.begin(), tape.code.begin() + end, may_turn);
+}
+
 template <Number N>
 Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) {
   return Search<N>(machine, end, degree, h).run();
@@ -113,7 +121,7 @@ double kinks_log_reach(const Machine<N>& machine, std::uint32_t end, int degree,
   double reach = 300;
   for (std::uint32_t slot = 0; slot < end; ++slot) {
     const Instruction& in = tape.code[slot];
-    if (in.constant || !(in.op == Op::select || in.op == Op::lookup || turns_at_zero(in))) continue;
+    if (!may_turn(in)) continue;
     const std::uint32_t argument = in.op == Op::select ? in.first : in.a;
     if (tape.code[argument].constant) continue;
     const N floor = unit_roundoff<N>() * N(kNoise) * machine.magnitude(argument);

@@ -12,6 +12,9 @@ struct Kink {
   N where{0};  // the first one ahead, from the point of the series
 };
 
+// Whether a slot below `end` goes on as another function where its argument passes a point.
+bool may_have_kinks(const Tape& tape, std::uint32_t end);
+
 // In (0, h], h of either sign, by the series of orders 0..degree, of the slots below `end`.
 template <Number N>
 Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h);

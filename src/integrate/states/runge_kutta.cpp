@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/assert.h"
+#include "integrate/step_budget.h"
 
 namespace anholon {
 
@@ -14,7 +15,6 @@ namespace method = dormand_prince;
 // Steps smaller than this many round-offs of the time are a collapse.
 constexpr int kCollapsedRoundoffs = 16;
 constexpr double kBlowUp = 1e100;
-constexpr std::size_t kStepsToJudge = 1000;
 // Each makes a step five times shorter where f has no value.
 constexpr int kMostRefusals = 40;
 // Kinks met so soon after another one are other kinks, until they are too many.
@@ -240,20 +240,10 @@ void RungeKutta::advance(MotionPoint& to, RoundOffs& carry, double h) {
   for (std::size_t i = 0; i < n; ++i) add(to.state[i], carry.state[i], h * change_[i]);
 }
 
-// Interrupted if the caller has cancelled the motion, or the end lies beyond the step limit.
 Outcome RungeKutta::may_go_on(long double left) const {
-  if (settings_.cancelled && settings_.cancelled())
-    return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
-  if (steps_ >= settings_.most_steps)
-    return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
-  if (steps_ < kStepsToJudge) return {};
-  const double mean = static_cast<double>(std::abs(now_.t - started_)) / static_cast<double>(steps_);
-  if (static_cast<double>(std::abs(left)) > std::max(mean, h_) * static_cast<double>(settings_.most_steps - steps_))
-    return {OutcomeKind::interrupted,
-            "the end lies more than " + std::to_string(settings_.most_steps) + " steps ahead: a step is about " +
-                number_text(h_, 2) + " long",
-            "end the motion earlier, or take what is very fast or very stiff out of the model"};
-  return {};
+  if (Outcome o = may_step(settings_, steps_); !o.ok()) return o;
+  const StepPace pace{static_cast<double>(now_.t - started_), h_, static_cast<double>(left)};
+  return out_of_reach(settings_, steps_, pace) ? end_out_of_reach(settings_, h_) : Outcome{};
 }
 
 Outcome RungeKutta::step(long double end) {
