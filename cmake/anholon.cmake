@@ -1,13 +1,14 @@
 # The functions CMakeLists.txt is written in.
 
 # anholon_layer(name [DEPENDS layers...] [LINKS targets...] [PRIVATE_LINKS targets...]
-#               [SOURCES generated...] [EXCLUDE file names...] [PRECOMPILED header])
+#               [SOURCES generated...] [EXCLUDE file names...] [ALONE file names...] [PRECOMPILED header])
 #
 # Static library anholon_<name> from src/<name>/**/*.cpp; INTERFACE if there are only headers.
+# Files are compiled in batches (ANHOLON_UNITY); those of ALONE have local names that others have, too.
 # A layer without files makes no target; whoever depends on it gets what it depended on, so the
 # chain below a missing layer is not lost.
 function(anholon_layer name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "PRECOMPILED" "DEPENDS;LINKS;PRIVATE_LINKS;SOURCES;EXCLUDE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "PRECOMPILED" "DEPENDS;LINKS;PRIVATE_LINKS;SOURCES;EXCLUDE;ALONE")
   set(folder "${PROJECT_SOURCE_DIR}/src/${name}")
   # Globbed although the folder may be missing: its first file then triggers a new configure.
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${folder}/*.cpp")
@@ -42,6 +43,9 @@ function(anholon_layer name)
       set(arg_PRECOMPILED mechanics)
     endif()
     anholon_use_precompiled(anholon_${name} ${arg_PRECOMPILED})
+    anholon_in_batches(anholon_${name})
+    list(TRANSFORM arg_ALONE PREPEND "${folder}/")
+    set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   else()
     add_library(anholon_${name} INTERFACE)
     target_link_libraries(anholon_${name} INTERFACE anholon_options ${links} ${arg_LINKS})
@@ -80,6 +84,14 @@ function(anholon_use_precompiled target name)
     target_precompile_headers(${target} REUSE_FROM anholon_precompiled_${name})
     # ccache needs it.
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  endif()
+endfunction()
+
+# Compiles the files of a target some at a time, which takes half of the time. Without ANHOLON_UNITY every file is
+# compiled by itself: better for work on one file.
+function(anholon_in_batches target)
+  if(ANHOLON_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
 endfunction()
 
@@ -132,6 +144,7 @@ function(anholon_compiler_module)
   target_include_directories(anholon_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
   target_link_libraries(anholon_jit PRIVATE LLVM anholon_options anholon_warnings)
   anholon_use_precompiled(anholon_jit compiler)
+  anholon_in_batches(anholon_jit)
   # The name of the build is part of the key of what is kept on disk.
   target_link_options(anholon_jit PRIVATE -Wl,--build-id=sha1)
   install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon")

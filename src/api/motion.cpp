@@ -41,7 +41,7 @@ class RowKeeper final : public inner::RowSink {
   Run::Data& data_;
 };
 
-Report to_public(const inner::SimulationReport& r) {
+Report public_report(const inner::SimulationReport& r) {
   Report p;
   p.newton = r.newton, p.projected = r.projected, p.constraints = r.constraints_kept;
   p.before_projection = r.constraints, p.power = r.power;
@@ -107,7 +107,7 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     RowKeeper rows(*data);
     const inner::SimulationReport r = inner::simulate_in(s, o, rows);
     data->outcome = to_public(r.outcome);
-    data->report = to_public(r);
+    data->report = public_report(r);
     data->report.notes.insert(data->report.notes.begin(), data->notes.begin(), data->notes.end());
     for (const inner::EventReport& e : r.events) {
       Event& event = data->events.emplace_back();
