@@ -150,7 +150,7 @@ int prove(const Options& o) {
       certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, sha256_text(all_text(in.source)));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SymbolNames names = model.names;
-  if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.names;
+  if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.free.names;
   if (!o.output.empty()) must_be_written(write_whole(o.output, to_json(c) + "\n"));
   if (o.json) {
     hand_out(json(model, p, c, names, seconds) + "\n");
