@@ -45,6 +45,6 @@ std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>&
   return std::nullopt;
 }
 
-std::size_t node_count(Expr e) { return reachable({&e, 1}).size(); }
+std::size_t number_of_nodes(Expr e) { return reachable({&e, 1}).size(); }
 
 }  // namespace anholon

@@ -16,6 +16,6 @@ bool is_not_zero(Expr e, PointValues& at);
 // The constant ratio of two expressions at all points, if it is a short fraction.
 std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>& points);
 // The number of nodes below e.
-std::size_t node_count(Expr e);
+std::size_t number_of_nodes(Expr e);
 
 }  // namespace anholon

@@ -101,7 +101,8 @@ bool Comparer::directly(Expr P, const DerivedEquation& e, EquationsOfMotion& mot
   for (std::size_t j = 0; j < symbols.size(); ++j) {
     if (is_zero(f[j]) || !is_not_zero(f[j], points[0])) continue;
     if (is_zero(p[j]) || !is_not_zero(p[j], points[0])) return false;
-    if (best == symbols.size() || node_count(f[j]) + node_count(p[j]) < node_count(f[best]) + node_count(p[best]))
+    if (best == symbols.size() ||
+        number_of_nodes(f[j]) + number_of_nodes(p[j]) < number_of_nodes(f[best]) + number_of_nodes(p[best]))
       best = j;
   }
   if (best == symbols.size()) return false;
@@ -161,8 +162,8 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
   // The shortest columns that determine the coefficients.
   std::vector<std::pair<std::size_t, std::size_t>> cost;
   for (std::size_t j = 0; j < motion.top.size(); ++j) {
-    std::size_t sum = node_count(p[j]);
-    for (std::size_t i : support) sum += node_count(K[i][j]);
+    std::size_t sum = number_of_nodes(p[j]);
+    for (std::size_t i : support) sum += number_of_nodes(K[i][j]);
     cost.push_back({sum, j});
   }
   std::sort(cost.begin(), cost.end());

@@ -18,7 +18,7 @@ constexpr std::size_t kPrinted = 5;           // differences that are arranged f
 // The length of an expression in print.
 std::size_t monomials(Expr e, const SymbolNames& names) {
   if (is_zero(e)) return 0;
-  std::size_t least = 1000 + node_count(e);
+  std::size_t least = 1000 + number_of_nodes(e);
   if (least > 1000 + kLongestCounted) return least;
   // Tries sines of sums and tangents unexpanded, then expanded.
   for (const bool angles : {true, false})
@@ -123,7 +123,7 @@ class Comparer::Nearest {
         out.what = o.what;
         out.identity = o.of == identity_;
       }
-      if (node_count(o.difference) > kLongestCounted) break;
+      if (number_of_nodes(o.difference) > kLongestCounted) break;
     }
   }
 
@@ -152,7 +152,7 @@ class Comparer::Nearest {
       if (!are_not_zero(p_by_[j], f[j])) continue;
       const auto constant = constant_ratio(p_by_[j], f[j], motion_.anywhere());
       const Expr factor = constant ? g_.number(*constant) : c_.tidy(p_by_[j] / f[j]);
-      if (node_count(factor) > kLongestFactor) continue;
+      if (number_of_nodes(factor) > kLongestFactor) continue;
       if (std::find(factors.begin(), factors.end(), factor) == factors.end()) factors.push_back(factor);
     }
     return factors;
