@@ -54,7 +54,7 @@ Expr operator*(Expr a, Expr b) { return a.b->add({Operation::product, 0, 0, "", 
 Expr operator/(Expr a, Expr b) { return a.b->add({Operation::product, 0, 0, "", {{1, a.node}, {-1, b.node}}}); }
 Expr pow(Expr a, const Rational& k) { return a.b->add({Operation::product, 0, 0, "", {{k, a.node}}}); }
 Expr sqrt(Expr a) { return pow(a, Rational(1, 2)); }
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
+#define ROW(name, ...)                                                                                                 \
   [[maybe_unused]] Expr name(Expr u) { return u.b->function(#name, u); }
 #include "expr/elementary.def"
 #undef ROW
