@@ -41,7 +41,7 @@ class Point {
 
 inline Multi apply(Function f, const Multi& u) {
   switch (f) {
-#define ROW(name, derivative, parity, latex, domain)                                                                   \
+#define ROW(name, ...)                                                                                                 \
   case Function::name:                                                                                                 \
     return name(u);
 #include "expr/elementary.def"
