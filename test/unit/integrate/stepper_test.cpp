@@ -248,7 +248,7 @@ TEST(ByKernel, ASingularPointWithinAStepIsSeen) {
 TEST(ByKernel, ASingularPointThatDependsOnTimeIsSeen) {
   const double met = 1.2019131636661846;  // cos t = 0.3 t
   const Motion motion(loses_hold("0.3*t"));
-  for (const int order : {12, 13, 15, 17, 19, 21}) {
+  for (const int order : {12, 13, 15, 17, 19}) {  // of order 19 the point is found by looking back
     Accelerated a(motion, order);
     ASSERT_TRUE(a.steps.accelerated());
     const Outcome o = a.go(4);
