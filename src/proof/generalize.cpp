@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "expr/diff.h"
-#include "expr/function_value.h"
 #include "proof/scattered.h"
+#include "tape/function_value.h"
 
 namespace anholon {
 
