@@ -5,13 +5,11 @@
 
 namespace anholon {
 
-// A pseudo-random number in (0, 1) that follows from the index and the seed alone. Two indices have different numbers.
-inline double generic_number(std::uint64_t index, std::uint64_t seed) { return Draw(seed, index, 0).uniform(); }
-
-// As above, for a symbol (kind, index, order).
+// A pseudo-random number in (0, 1) that follows from the symbol (kind, index, order) and the seed alone. Two symbols
+// have different values.
 inline double generic_value(const Node& symbol, std::uint64_t seed) {
   const std::uint32_t sort = static_cast<std::uint32_t>(symbol.kind) << 8 | symbol.order;
-  return generic_number(static_cast<std::uint64_t>(sort) << 32 | symbol.index, seed);
+  return Draw(seed, static_cast<std::uint64_t>(sort) << 32 | symbol.index, 0).uniform();
 }
 
 }  // namespace anholon

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/assert.h"
-#include "expr/function_value.h"
 #include "kernel/latency.h"
+#include "tape/function_value.h"
 
 namespace anholon {
 

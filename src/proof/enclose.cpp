@@ -1,6 +1,6 @@
 #include "proof/enclose.h"
 
-#include "expr/function_value.h"
+#include "tape/function_value.h"
 
 namespace anholon {
 

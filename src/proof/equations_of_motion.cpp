@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "expr/generic_point.h"
 #include "expr/normal.h"
 #include "numeric/linear.h"
+#include "proof/scattered.h"
 
 namespace anholon {
 
@@ -21,11 +21,11 @@ std::uint64_t key(const Node& n) {
 
 // A value for each symbol at an attempt: between 0.3 and 1.4, derivatives of either sign.
 double generic(const Node& n, int attempt) {
-  const double u = generic_value(n, static_cast<std::uint64_t>(attempt));
-  if (n.kind != Kind::jet || n.order == 0) return 0.3 + 1.1 * u;
-  const double r = 0.3 + 1.1 * std::abs(2 * u - 1);
+  const std::uint64_t bits = scattered_bits(key(n) * 131 + static_cast<std::uint64_t>(attempt) * 7919 + 17);
+  const double r = 0.3 + 1.1 * unit_of(bits);
+  if (n.kind != Kind::jet || n.order == 0) return r;
   // Every third attempt has small velocities: a bounded speed leaves room for them.
-  return (u < 0.5 ? -r : r) / (1 << (attempt % 3));
+  return (bits & 1 ? -r : r) / (1 << (attempt % 3));
 }
 
 // `above`: the attempt for accelerations, higher derivatives and multipliers.

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "expr/diff.h"
-#include "expr/function_value.h"
-#include "expr/generic_point.h"
+#include "proof/scattered.h"
+#include "tape/function_value.h"
 
 namespace anholon {
 
@@ -16,7 +16,9 @@ constexpr std::size_t kShort = 12;             // nodes: a shorter subexpression
 constexpr std::size_t kMostWork = 40'000'000;  // node evaluations
 
 // The value of a free node, by its position.
-long double generic(std::uint64_t position) { return 0.55L + 0.8L * generic_number(position, 0); }
+long double generic(std::uint64_t position) {
+  return 0.55L + 0.8L * unit_of(scattered_bits(position * 0x9e3779b97f4a7c15ULL + 12345));
+}
 
 // The nodes below e in order, with their operands as positions, and their values at one point.
 class Values {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "proof/enclose.h"
+#include "proof/scattered.h"
 #include "tape/point.h"
 
 namespace anholon {
@@ -18,9 +19,8 @@ constexpr int kNewtonSteps = 60;
 
 // A rational in (1/5, 8/5) that depends on the symbol and the attempt.
 Rational arbitrary(const Node& n, int attempt) {
-  std::uint64_t h = static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order +
-                    static_cast<std::uint64_t>(attempt) * 7919;
-  for (int i = 0; i < 3; ++i) h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9ULL + 0x9e3779b97f4a7c15ULL;
+  const std::uint64_t h = scattered_bits(static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order +
+                                         static_cast<std::uint64_t>(attempt) * 7919);
   const unsigned long step = (h >> 40) % 89;
   Rational r(13 + step, 64);
   if (n.kind == Kind::jet && n.order > 0) r /= 1 << (attempt % kSizes);

@@ -2,8 +2,8 @@
 #include <optional>
 
 #include "base/assert.h"
-#include "expr/function_value.h"
 #include "numeric/ball.h"
+#include "tape/function_value.h"
 #include "tape/tape.h"
 
 namespace anholon {

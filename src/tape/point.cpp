@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "expr/function_value.h"
+#include "tape/function_value.h"
 
 namespace anholon {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "expr/function_value.h"
 #include "integrate/series/sign_change.h"
+#include "tape/function_value.h"
 
 namespace anholon {
 
