@@ -1,5 +1,5 @@
 // Certificates: any bytes are read or refused; what is read is written and read back the same.
-#include "proof/certificate.h"
+#include "proof/checker/certificate.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -6,7 +6,7 @@
 #include "api/data.h"
 #include "base/hash.h"
 #include "proof/prove.h"
-#include "proof/verify.h"
+#include "proof/checker/verify.h"
 #include "setup/eliminate.h"
 
 namespace anholon::v1 {

@@ -13,7 +13,7 @@
 #include "cli/run_info.h"
 #include "cli/say.h"
 #include "observe/row_values.h"
-#include "proof/verify.h"
+#include "proof/checker/verify.h"
 #include "report/page/page.h"
 #include "result/file.h"
 

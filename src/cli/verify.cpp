@@ -1,5 +1,5 @@
-// anholon verify: src/proof/verify.h reads and checks a certificate; no other part of the program takes part.
-#include "proof/verify.h"
+// anholon verify: src/proof/checker/verify.h reads and checks a certificate; no other part of the program takes part.
+#include "proof/checker/verify.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,6 +10,7 @@ namespace anholon {
 namespace {
 
 using S = MotionSettings;
+using Part = MotionOption::Part;
 
 const char* not_a_tolerance(const Rational& x) {
   return x <= 0 || x >= 1 ? "the tolerance lies between 0 and 1" : nullptr;
@@ -41,14 +42,13 @@ std::string list_of(const std::vector<std::string>& names) {
 }  // namespace
 
 const std::vector<MotionOption>& motion_options() {
-  using enum MotionOption::Part;
   static const std::vector<MotionOption> rows = {
       {.name = "to",
        .key = "to",
        .value = "T",
        .help = "end time (absolute)",
        .in_file = "end time, absolute; it may lie before the start",
-       .part = times,
+       .part = Part::times,
        .member = &S::to,
        .mistake = too_late},
       {.name = "at",
@@ -56,14 +56,14 @@ const std::vector<MotionOption>& motion_options() {
        .value = "T,…",
        .help = "rows at exactly these times: 0.25,0.5",
        .in_file = "rows at these times",
-       .part = times,
+       .part = Part::times,
        .member = &S::at},
       {.name = "every",
        .key = "every",
        .value = "DT",
        .help = "rows at this interval",
        .in_file = "rows at this interval; at the accepted steps without it",
-       .part = times,
+       .part = Part::times,
        .member = &S::every,
        .mistake = not_positive},
       {.name = "tolerance",
@@ -71,7 +71,7 @@ const std::vector<MotionOption>& motion_options() {
        .value = "TOL",
        .help = "of each step, relative (default 1e-12)",
        .in_file = "of each step, relative; 1e-12 without it",
-       .part = accuracy,
+       .part = Part::accuracy,
        .member = &S::tolerance,
        .kept = true,
        .mistake = not_a_tolerance},
@@ -80,7 +80,7 @@ const std::vector<MotionOption>& motion_options() {
        .value = "N",
        .help = "more than 16: multiprecision, or quad if asked for",
        .in_file = "of the numbers; with more than 16 the motion is computed in multiprecision",
-       .part = accuracy,
+       .part = Part::accuracy,
        .member = &S::digits,
        .kept = true,
        .least = 1,
@@ -90,7 +90,7 @@ const std::vector<MotionOption>& motion_options() {
        .value = "KIND",
        .help = "double, long-double or quad (33 digits, tolerance 1e-32 unless given; faster than --digits)",
        .in_file = "in which the motion is computed",
-       .part = accuracy,
+       .part = Part::accuracy,
        .member = &S::numbers,
        .kept = true,
        .choices = kinds_of_numbers},
@@ -99,14 +99,14 @@ const std::vector<MotionOption>& motion_options() {
        .value = "N",
        .help = "bound the residuals of the dense output by ball arithmetic: at so many times, or all",
        .in_file = "bounds the residuals of the dense output by ball arithmetic: at so many times, or `\"all\"`",
-       .part = accuracy,
+       .part = Part::accuracy,
        .member = &S::rigorous},
       {.name = "order",
        .key = "order",
        .value = "N",
        .help = "order of the Taylor polynomials (default: from the tolerance)",
        .in_file = "of the Taylor polynomials; from the tolerance without it",
-       .part = accuracy,
+       .part = Part::accuracy,
        .member = &S::order,
        .kept = true,
        .least = 4,
@@ -116,7 +116,7 @@ const std::vector<MotionOption>& motion_options() {
        .value = "N",
        .help = "the motion ends after so many steps (default 50000000)",
        .in_file = "the motion ends after so many steps",
-       .part = accuracy,
+       .part = Part::accuracy,
        .member = &S::most_steps,
        .least = 1,
        .most = 2'000'000'000},
@@ -126,7 +126,7 @@ const std::vector<MotionOption>& motion_options() {
        .help = "taylor; rk: Runge-Kutta of order 8, for loose tolerances and kinks; bdf, for stiff motions; auto "
                "(default): Taylor\nunless another one is found to be much cheaper on the way",
        .in_file = "by which the motion is computed",
-       .part = accuracy,
+       .part = Part::accuracy,
        .member = &S::method,
        .choices = methods},
       {.name = "integrator",
@@ -134,7 +134,7 @@ const std::vector<MotionOption>& motion_options() {
        .value = "NAME",
        .help = "taylor, or a second opinion by SUNDIALS: cvode, ida; with its difference",
        .in_file = "SUNDIALS' for a second opinion",
-       .part = accuracy,
+       .part = Part::accuracy,
        .member = &S::integrator,
        .choices = second_opinions},
       {.name = "form",
@@ -142,7 +142,7 @@ const std::vector<MotionOption>& motion_options() {
        .value = "NAME",
        .help = "form of the equations (see `anholon forms`; derive: also all; motions: also auto)",
        .in_file = "the form of the equations, see `anholon forms`",
-       .part = form,
+       .part = Part::form,
        .member = &S::form,
        .kept = true},
       {.name = "error-estimate",
@@ -151,7 +151,7 @@ const std::vector<MotionOption>& motion_options() {
        .help = "digits to trust, by a second, sharper run: always, never, or of runs up to 5000 steps (short, the "
                "default)",
        .in_file = "digits to trust by a second, sharper run; without it, of runs up to 5000 steps",
-       .part = judgement,
+       .part = Part::judgement,
        .member = &S::error_estimate,
        .choices = times_of_estimates},
   };

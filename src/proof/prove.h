@@ -13,7 +13,7 @@
 #include <functional>
 
 #include "formulation/formulation.h"
-#include "proof/certificate.h"
+#include "proof/checker/certificate.h"
 #include "proof/difference.h"
 
 namespace anholon {

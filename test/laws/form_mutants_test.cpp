@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "proof/prove.h"
-#include "proof/verify.h"
+#include "proof/checker/verify.h"
 #include "setup/eliminate.h"
 #include "support/manifold.h"
 #include "support/models.h"

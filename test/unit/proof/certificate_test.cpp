@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/diagnostic.h"
-#include "proof/certificate.h"
+#include "proof/checker/certificate.h"
 
 namespace anholon {
 namespace {

@@ -1,4 +1,4 @@
-#include "proof/verify.h"
+#include "proof/checker/verify.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include "base/hash.h"
 #include "numeric/ball.h"
 #include "numeric/enclosure.h"
-#include "proof/verify_modular.h"
-#include "proof/verify_real.h"
+#include "proof/checker/modular.h"
+#include "proof/checker/real.h"
 
 namespace anholon {
 

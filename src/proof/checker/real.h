@@ -6,7 +6,7 @@
 
 #include "numeric/ball.h"
 #include "numeric/enclosure.h"
-#include "proof/certificate.h"
+#include "proof/checker/certificate.h"
 
 namespace anholon::verification {
 

@@ -6,7 +6,7 @@
 // symbols. It does not prove that the model describes the machine, nor that its energy, forces, constraints and the
 // postulate on reactions were translated to nodes correctly.
 //
-// "zero" is tested modulo primes at random points (verify_modular.h), with a bound on the probability that a false
+// "zero" is tested modulo primes at random points (modular.h), with a bound on the probability that a false
 // claim passes. The points depend on the seed and on the text of the certificate, so no certificate can be fitted to
 // them. At some real points the difference is enclosed as well: a claim is called contradicted only if a real point
 // shows it. "not zero" is a proof: at a rational point, or at the only root, proved to exist, of the witness's
@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "proof/certificate.h"
+#include "proof/checker/certificate.h"
 
 namespace anholon {
 

@@ -1,6 +1,6 @@
-// The nodes that claims need, compiled for evaluation in finite fields by the rules of verify_modular.h: angles as
-// combinations of atoms and bounds on degrees (verify_modular_program.cpp), values at random points
-// (verify_modular_points.cpp).
+// The nodes that claims need, compiled for evaluation in finite fields by the rules of modular.h: angles as
+// combinations of atoms and bounds on degrees (modular_program.cpp), values at random points
+// (modular_points.cpp).
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 #include "base/hash.h"
 #include "numeric/prime_field.h"
-#include "proof/certificate.h"
-#include "proof/verify_functions.h"
-#include "proof/verify_work.h"
+#include "proof/checker/certificate.h"
+#include "proof/checker/functions.h"
+#include "proof/checker/work.h"
 
 namespace anholon::verification {
 

@@ -1,4 +1,4 @@
-#include "proof/verify_modular_program.h"
+#include "proof/checker/modular_program.h"
 
 #include <algorithm>
 #include <cmath>

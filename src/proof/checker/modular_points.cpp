@@ -1,5 +1,5 @@
 // The program over a field, and its values at random points.
-#include "proof/verify_modular_program.h"
+#include "proof/checker/modular_program.h"
 
 namespace anholon::verification {
 

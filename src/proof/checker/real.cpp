@@ -1,8 +1,8 @@
-#include "proof/verify_real.h"
+#include "proof/checker/real.h"
 
 #include <algorithm>
 
-#include "proof/verify_functions.h"
+#include "proof/checker/functions.h"
 
 namespace anholon::verification {
 

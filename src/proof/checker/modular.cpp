@@ -1,11 +1,11 @@
-#include "proof/verify_modular.h"
+#include "proof/checker/modular.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
-#include "proof/verify_modular_program.h"
+#include "proof/checker/modular_program.h"
 
 namespace anholon::verification {
 

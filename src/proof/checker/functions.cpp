@@ -1,4 +1,4 @@
-#include "proof/verify_functions.h"
+#include "proof/checker/functions.h"
 
 #include <map>
 

@@ -26,8 +26,8 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "proof/certificate.h"
-#include "proof/verify_work.h"
+#include "proof/checker/certificate.h"
+#include "proof/checker/work.h"
 
 namespace anholon::verification {
 

@@ -1,4 +1,4 @@
-#include "proof/certificate.h"
+#include "proof/checker/certificate.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "base/diagnostic.h"
 #include "base/json.h"
-#include "proof/verify_functions.h"
+#include "proof/checker/functions.h"
 
 namespace anholon {
 
