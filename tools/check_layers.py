@@ -21,7 +21,7 @@ LEVEL = {
     "formulation/forms/quasi_velocities": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof/checker": 7.8, "proof": 8,
     "program": 9, "setup": 9.2, "kernel/plan": 9.4, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
     "integrate/series": 9.8, "integrate": 10, "integrate/states": 10.1, "result": 11, "motion": 11.5, "observe": 12, "linear": 12, "simulation": 12.2,
-    "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "report/page": 13.6, "api": 13.8, "cli": 14, "python": 14,
+    "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "report/page": 13.6, "api": 13.8, "cli": 14, "cli/models": 14.1, "cli/equations": 14.2, "cli/motions": 14.2, "cli/pictures": 14.3, "python": 14,
 }  # fmt: skip
 
 MODELFILE = {name for name in LEVEL if name.startswith("modelfile")}
@@ -170,7 +170,7 @@ def check(root):
                     if layer not in layers:
                         place = " and ".join(f"{x}/" for x in sorted(layers)) or "test/"
                         problems.append(f"{where}: {name} belongs into {place} only")
-        if layer == "cli" and str(inside) not in SAYS and path.suffix in (".cpp", ".h"):
+        if layer.startswith("cli") and str(inside) not in SAYS and path.suffix in (".cpp", ".h"):
             text = NO_CODE.sub(lambda m: "\n" * m[0].count("\n"), path.read_text(encoding="utf-8"))
             for match in SAYING.finditer(text):
                 problems.append(f"src/{inside}:{text.count(chr(10), 0, match.start()) + 1}: {match[1]}: the commands print by cli/say.h")

@@ -109,7 +109,8 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
   try {
     f = &named_form(wanted_form(o, model));
   } catch (Failure& e) {
-    if (!o.motion.form) e.diagnostic.span = model.simulate.form_span;
+    if (o.motion.form || !model.simulate.form) throw;
+    e.diagnostic.span = model.simulate.form_span;
     throw UsageError{print(e.diagnostic, model.source_text)};
   }
   if (mechanics) must_apply(*f, *mechanics);

@@ -13,13 +13,13 @@ using S = MotionSettings;
 using Part = MotionOption::Part;
 
 const char* not_a_tolerance(const Rational& x) {
-  return x <= 0 || x >= 1 ? "the tolerance lies between 0 and 1" : nullptr;
+  return x <= 0 || x >= 1 ? "lies between 0 and 1" : nullptr;
 }
 const char* too_late(const Rational& x) {
   static const Rational latest(mpz_class("1000000000000000000"));
-  return abs(x) > latest ? "an end time beyond 1e18" : nullptr;
+  return abs(x) > latest ? "is at most 1e18" : nullptr;
 }
-const char* not_positive(const Rational& x) { return x <= 0 ? "a positive time is expected" : nullptr; }
+const char* not_positive(const Rational& x) { return x <= 0 ? "is a positive time" : nullptr; }
 
 const std::vector<std::string>& kinds_of_numbers() {
   static const std::vector<std::string> names = {"double", "long-double", "quad"};
@@ -100,7 +100,8 @@ const std::vector<MotionOption>& motion_options() {
        .help = "bound the residuals of the dense output by ball arithmetic: at so many times, or all",
        .in_file = "bounds the residuals of the dense output by ball arithmetic: at so many times, or `\"all\"`",
        .part = Part::accuracy,
-       .member = &S::rigorous},
+       .member = &S::rigorous,
+       .also_number = true},
       {.name = "order",
        .key = "order",
        .value = "N",
@@ -175,7 +176,7 @@ class Setter {
 
   void operator()(std::optional<Rational> S::* member) {
     const Rational x = number();
-    if (const char* why = option_.mistake ? option_.mistake(x) : nullptr) throw Failure({}, called_ + ": " + why);
+    if (const char* why = option_.mistake ? option_.mistake(x) : nullptr) throw Failure({}, called_ + " " + why);
     settings_.*member = x;
   }
   void operator()(std::optional<int> S::* member) {
@@ -186,7 +187,7 @@ class Setter {
     settings_.*member = static_cast<int>(x.get_num().get_si());
   }
   void operator()(std::optional<std::string> S::* member) {
-    if (std::holds_alternative<Rational>(value_) && !option_.choices) {
+    if (std::holds_alternative<Rational>(value_) && option_.also_number) {
       settings_.*member = std::get<Rational>(value_).get_str();
       return;
     }

@@ -40,8 +40,10 @@ struct MotionOption {
   Member member;
   bool kept = false;                                  // a saved run goes on with the same value
   const std::vector<std::string>& (*choices)() = {};  // of a word; any other word is refused
+  bool also_number = false;                           // a word that may be a number
   int least = 0, most = 0;                            // of a whole number
-  const char* (*mistake)(const Rational&) = {};       // what is wrong with a number; nullptr if nothing is
+  // What a number has to be, if it is not: "is a positive time"; nullptr if it is.
+  const char* (*mistake)(const Rational&) = {};
 };
 const std::vector<MotionOption>& motion_options();
 // The row of a name, which must be there.

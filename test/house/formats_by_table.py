@@ -16,7 +16,7 @@ import tempfile
 TABLE = "src/result/formats.cpp"
 # A mark of a format that another file needs, and why.
 ALLOWED = {
-    ("src/cli/derive.cpp", '".json"'),  # of files that hold equations
+    ("src/cli/equations/derive.cpp", '".json"'),  # of files that hold equations
     ("src/api/motion.cpp", '#include "result/json_run.h"'),  # Run::json() promises JSON
 }
 

@@ -22,10 +22,20 @@ static OptionValue value(const Item& i, const MotionOption& option, Scope& scope
     return times;
   }
   const bool word = std::holds_alternative<std::optional<std::string> MotionSettings::*>(option.member);
-  if (!word || (i.kind != Item::Kind::string && !option.choices)) return rational(i, scope);
+  if (!word || (i.kind != Item::Kind::string && option.also_number)) return rational(i, scope);
   if (i.kind != Item::Kind::string)
-    throw Failure(i.span, "'" + i.key + "' is a name in quotes", i.key + " = \"" + option.choices().front() + "\"");
+    throw Failure(i.span, "'" + i.key + "' is a name in quotes",
+                  i.key + " = \"" + (option.choices ? option.choices().front() : "routh") + "\"");
   return i.text();
+}
+
+// method = "auto", "taylor", "rk" or "bdf"
+static std::string values_of(const MotionOption& option) {
+  const std::vector<std::string>& choices = option.choices();
+  std::string text = std::string(option.key) + " = ";
+  for (std::size_t k = 0; k < choices.size(); ++k)
+    text += (k == 0 ? "" : k + 1 < choices.size() ? ", " : " or ") + ("\"" + choices[k] + "\"");
+  return text;
 }
 
 static void check_times(const Item& section, const Model& model) {
@@ -52,7 +62,7 @@ void read_simulate(const Item& root, Scope& scope, Model& model, Diagnostics& di
       try {
         set(model.simulate, option, v, "'" + i->key + "'");
       } catch (const Failure& f) {
-        throw Failure(i->span, f.diagnostic.message, f.diagnostic.hint);
+        throw Failure(i->span, f.diagnostic.message, option.choices ? values_of(option) : f.diagnostic.hint);
       }
       if (option.member == motion_option("form").member) model.simulate.form_span = i->formula.whole();
     }

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "cli/child.h"
+#include "cli/pictures/child.h"
 #include "cli/input.h"
-#include "cli/recording.h"
+#include "cli/pictures/recording.h"
 
 namespace anholon::cli {
 namespace {

@@ -1,8 +1,8 @@
-#include "cli/motion_report.h"
+#include "cli/motions/motion_report.h"
 
 #include <cstdio>
 
-#include "cli/report_text.h"
+#include "cli/motions/report_text.h"
 #include "cli/say.h"
 
 namespace anholon::cli {

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "base/json.h"
-#include "cli/result_file.h"
-#include "cli/run_formulas.h"
+#include "cli/motions/result_file.h"
+#include "cli/motions/run_formulas.h"
 #include "cli/say.h"
 #include "plot/drawing.h"
 #include "plot/terminal.h"

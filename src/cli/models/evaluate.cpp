@@ -5,7 +5,7 @@
 #include "base/json.h"
 #include "cli/input.h"
 #include "cli/say.h"
-#include "cli/show.h"
+#include "cli/models/show.h"
 
 namespace anholon::cli {
 

@@ -1,4 +1,4 @@
-#include "cli/run_info.h"
+#include "cli/motions/run_info.h"
 
 #include "base/hash.h"
 #include "cli/model_options.h"

@@ -1,4 +1,4 @@
-#include "cli/progress.h"
+#include "cli/motions/progress.h"
 
 #include <algorithm>
 #include <csignal>

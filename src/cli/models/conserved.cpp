@@ -1,4 +1,4 @@
-#include "cli/conserved.h"
+#include "cli/models/conserved.h"
 
 #include <algorithm>
 

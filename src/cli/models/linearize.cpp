@@ -6,7 +6,7 @@
 #include "base/json.h"
 #include "cli/input.h"
 #include "cli/say.h"
-#include "cli/show.h"
+#include "cli/models/show.h"
 #include "linear/equilibrium.h"
 
 namespace anholon::cli {

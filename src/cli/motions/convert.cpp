@@ -1,4 +1,4 @@
-#include "cli/result_file.h"
+#include "cli/motions/result_file.h"
 #include "cli/say.h"
 
 namespace anholon::cli {

@@ -4,7 +4,7 @@
 
 #include "cli/input.h"
 #include "cli/say.h"
-#include "cli/show.h"
+#include "cli/models/show.h"
 #include "program/emit.h"
 #include "report/equations.h"
 #include "result/file.h"

@@ -1,4 +1,4 @@
-#include "cli/recording.h"
+#include "cli/pictures/recording.h"
 
 #include <charconv>
 #include <cmath>

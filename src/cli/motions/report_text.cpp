@@ -1,4 +1,4 @@
-#include "cli/report_text.h"
+#include "cli/motions/report_text.h"
 
 namespace anholon::cli {
 

@@ -1,8 +1,8 @@
-#include "cli/run_formulas.h"
+#include "cli/motions/run_formulas.h"
 
 #include <algorithm>
 
-#include "cli/run_info.h"
+#include "cli/motions/run_info.h"
 #include "formula/formula.h"
 #include "modelfile/read.h"
 #include "plot/figure.h"

@@ -1,4 +1,4 @@
-#include "cli/report.h"
+#include "cli/motions/report.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "base/hash.h"
-#include "cli/result_file.h"
-#include "cli/run_formulas.h"
-#include "cli/run_info.h"
+#include "cli/motions/result_file.h"
+#include "cli/motions/run_formulas.h"
+#include "cli/motions/run_info.h"
 #include "cli/say.h"
 #include "observe/row_values.h"
 #include "proof/checker/verify.h"

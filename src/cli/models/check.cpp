@@ -1,6 +1,6 @@
-#include "cli/check_report.h"
+#include "cli/models/check_report.h"
 #include "cli/input.h"
-#include "cli/show.h"
+#include "cli/models/show.h"
 #include "motion/start.h"
 
 namespace anholon::cli {

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <map>
 
-#include "cli/check_report.h"
-#include "cli/conserved.h"
+#include "cli/models/check_report.h"
+#include "cli/models/conserved.h"
 #include "cli/say.h"
 
 namespace anholon::cli {

@@ -1,4 +1,4 @@
-#include "cli/saved.h"
+#include "cli/motions/saved.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "cli/show.h"
+#include "cli/models/show.h"
 
 #include <cmath>
 #include <cstdio>

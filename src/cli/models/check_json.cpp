@@ -1,8 +1,8 @@
 #include <cstdio>
 
 #include "base/json.h"
-#include "cli/check_report.h"
-#include "cli/conserved.h"
+#include "cli/models/check_report.h"
+#include "cli/models/conserved.h"
 #include "cli/say.h"
 
 namespace anholon::cli {
