@@ -66,8 +66,8 @@ inner::MotionSettings settings_of(const MotionOptions& asked) {
     inner::set(settings, inner::motion_option(name), words, name,
                [&](const std::string& text) { return exact(Number(text), name); });
   };
-  for (const auto& [name, number] : {std::pair{"to", asked.to}, std::pair{"every", asked.every},
-                                     std::pair{"tolerance", asked.tolerance}})
+  for (const auto& [name, number] :
+       {std::pair{"to", asked.to}, std::pair{"every", asked.every}, std::pair{"tolerance", asked.tolerance}})
     if (number) set(name, {number->text()});
   std::vector<std::string> times;
   for (const Number& t : asked.at) times.push_back(t.text());
@@ -81,7 +81,8 @@ inner::MotionSettings settings_of(const MotionOptions& asked) {
     for (const inner::MotionOption& o : inner::motion_options()) known.emplace_back(o.name);
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       const std::string near = inner::did_you_mean(name, known);
-      throw inner::Failure({}, "there is no option '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+      throw inner::Failure({}, "there is no option '" + name + "'" +
+                                   (near.empty() ? "" : "; did you mean '" + near + "'?"));
     }
     if (name == "form") throw inner::Failure({}, "the form belongs to the system", "PrepareOptions::form");
     set(name, {word});

@@ -5,8 +5,8 @@
 #include "anholon/version.h"
 #include "api/data.h"
 #include "base/hash.h"
-#include "proof/prove.h"
 #include "proof/checker/verify.h"
+#include "proof/prove.h"
 #include "setup/eliminate.h"
 
 namespace anholon::v1 {

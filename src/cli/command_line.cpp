@@ -105,9 +105,7 @@ class CommandLine {
   void model_options(CLI::App* c, ModelOption::Of of) {
     for (const ModelOption& m : cli::model_options())
       if (m.of == of)
-        c->add_option("--" + std::string(m.name), o_.*m.words, m.help)
-            ->type_name(m.value)
-            ->allow_extra_args(m.assigns);
+        c->add_option("--" + std::string(m.name), o_.*m.words, m.help)->type_name(m.value)->allow_extra_args(m.assigns);
   }
   void parameters(CLI::App* c) { model_options(c, ModelOption::Of::parameters); }
   void state(CLI::App* c) {

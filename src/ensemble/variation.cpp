@@ -199,11 +199,13 @@ void Variation::finish(std::optional<std::size_t> cases, const std::string& call
   }
   cases_ = *cases;
   if (streams_ == 0 && cases_ != grid_)
-    throw Failure({}, "nothing is random, and the grid has " + std::to_string(grid_) + (grid_ == 1 ? " point" : " points"),
+    throw Failure({},
+                  "nothing is random, and the grid has " + std::to_string(grid_) + (grid_ == 1 ? " point" : " points"),
                   "leave out " + called);
   if (cases_ < grid_)
-    throw Failure({}, called + " " + std::to_string(cases_) + " leaves out points of the grid, which has " +
-                          std::to_string(grid_),
+    throw Failure({},
+                  called + " " + std::to_string(cases_) + " leaves out points of the grid, which has " +
+                      std::to_string(grid_),
                   called + " " + std::to_string(grid_) + " or more");
 }
 

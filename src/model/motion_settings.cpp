@@ -12,9 +12,7 @@ namespace {
 using S = MotionSettings;
 using Part = MotionOption::Part;
 
-const char* not_a_tolerance(const Rational& x) {
-  return x <= 0 || x >= 1 ? "lies between 0 and 1" : nullptr;
-}
+const char* not_a_tolerance(const Rational& x) { return x <= 0 || x >= 1 ? "lies between 0 and 1" : nullptr; }
 const char* too_late(const Rational& x) {
   static const Rational latest(mpz_class("1000000000000000000"));
   return abs(x) > latest ? "is at most 1e18" : nullptr;
@@ -243,9 +241,7 @@ void set(MotionSettings& settings, const MotionOption& option, const std::vector
   set(settings, option, OptionValue(number(words.back())), called);
 }
 
-bool is_set(const MotionSettings& settings, const MotionOption& option) {
-  return !words(settings, option).empty();
-}
+bool is_set(const MotionSettings& settings, const MotionOption& option) { return !words(settings, option).empty(); }
 
 std::vector<std::string> words(const MotionSettings& settings, const MotionOption& option) {
   struct {

@@ -48,7 +48,8 @@ void must_have_motions(const Formulation& f, const Mechanics& m) {
 static std::size_t place(const std::vector<std::string>& names, const std::string& name, const std::string& what,
                          const std::string& called) {
   const auto it = std::find(names.begin(), names.end(), name);
-  if (it == names.end()) throw Failure({}, called + "there is no " + what + " '" + name + "'" + suggestion(name, names));
+  if (it == names.end())
+    throw Failure({}, called + "there is no " + what + " '" + name + "'" + suggestion(name, names));
   return static_cast<std::size_t>(it - names.begin());
 }
 

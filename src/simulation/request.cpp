@@ -91,9 +91,8 @@ void note_raised(const MethodInfo& method, const SimulationOptions& o, const Ask
 // SUNDIALS computes in double, and not below its own least tolerance.
 Method integrator(const MotionSettings& settings, const Model& model, const SimulationOptions& o, const Asker& asker) {
   const Method chosen =
-      settings.integrator
-          ? find_method(*settings.integrator, MethodInfo::Use::second_opinion).value_or(Method::taylor)
-          : Method::taylor;
+      settings.integrator ? find_method(*settings.integrator, MethodInfo::Use::second_opinion).value_or(Method::taylor)
+                          : Method::taylor;
   if (chosen == Method::taylor) return chosen;
   const MethodInfo& method = info(chosen);
   const auto refuse = [&](const std::string& what, const std::string& option) {
@@ -151,8 +150,7 @@ void must_go_forwards(const Scenario& s, const Rational& start, const Rational& 
 }
 
 Method method(const MotionSettings& settings, const Scenario& s, const SimulationOptions& o, const Asker& asker) {
-  const Method chosen =
-      settings.method ? find_method(*settings.method).value_or(Method::automatic) : Method::automatic;
+  const Method chosen = settings.method ? find_method(*settings.method).value_or(Method::automatic) : Method::automatic;
   if (chosen == Method::automatic || chosen == Method::taylor) return chosen;
   const MethodInfo& method = info(chosen);
   const auto refuse = [&](const std::string& what, const std::string& remedy) {

@@ -8,7 +8,7 @@ namespace anholon {
 template <class N>
 N function_value(Function f, const N& u) {
   switch (f) {
-#define ROW(name, ...)                                                                   \
+#define ROW(name, ...)                                                                                                 \
   case Function::name:                                                                                                 \
     return name(u);
 #include "expr/elementary.def"

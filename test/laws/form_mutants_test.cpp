@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "proof/prove.h"
 #include "proof/checker/verify.h"
+#include "proof/prove.h"
 #include "setup/eliminate.h"
 #include "support/manifold.h"
 #include "support/models.h"

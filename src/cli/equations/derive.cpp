@@ -3,8 +3,8 @@
 #include <map>
 
 #include "cli/input.h"
-#include "cli/say.h"
 #include "cli/models/show.h"
+#include "cli/say.h"
 #include "program/emit.h"
 #include "report/equations.h"
 #include "result/file.h"
@@ -56,7 +56,8 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   }
   EmitOptions options;
   options.name = std::filesystem::path(o.model).stem().string();
-  options.made_by = "anholon derive " + o.model + " --format " + o.format + (o.motion.form ? " --form " + *o.motion.form : "");
+  options.made_by =
+      "anholon derive " + o.model + " --format " + o.format + (o.motion.form ? " --form " + *o.motion.form : "");
   for (const std::string& set : o.set) options.made_by += " --set " + set;
   options.start = {s.state.t, s.state.q, s.state.qd};
   // What constraints settle is solved for in wider numbers, as for a motion.

@@ -5,10 +5,10 @@
 
 #include <unistd.h>
 
+#include "base/installed.h"
 #include "base/json.h"
 #include "base/read_file.h"
 #include "base/utf8.h"
-#include "base/installed.h"
 #include "cli/input.h"
 #include "cli/say.h"
 #include "published/decide.h"

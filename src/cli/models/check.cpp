@@ -1,5 +1,5 @@
-#include "cli/models/check_report.h"
 #include "cli/input.h"
+#include "cli/models/check_report.h"
 #include "cli/models/show.h"
 #include "motion/start.h"
 

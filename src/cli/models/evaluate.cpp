@@ -4,8 +4,8 @@
 
 #include "base/json.h"
 #include "cli/input.h"
-#include "cli/say.h"
 #include "cli/models/show.h"
+#include "cli/say.h"
 
 namespace anholon::cli {
 
@@ -113,7 +113,8 @@ int evaluate(const Options& o) {
   }
   if (!o.show.empty()) return show(o, s);
   StateReport report;
-  if (outcome.ok()) outcome = evaluate(s, choice, precision(o.motion, Precision::long_real, asker(o)), o.digits(), report);
+  if (outcome.ok())
+    outcome = evaluate(s, choice, precision(o.motion, Precision::long_real, asker(o)), o.digits(), report);
   if (!outcome.ok()) {
     if (o.json) {
       JsonWriter j;

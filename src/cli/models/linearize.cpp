@@ -5,8 +5,8 @@
 
 #include "base/json.h"
 #include "cli/input.h"
-#include "cli/say.h"
 #include "cli/models/show.h"
+#include "cli/say.h"
 #include "linear/equilibrium.h"
 
 namespace anholon::cli {

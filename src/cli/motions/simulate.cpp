@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "cli/input.h"
+#include "cli/models/show.h"
 #include "cli/motions/motion_report.h"
 #include "cli/motions/progress.h"
 #include "cli/motions/report.h"
@@ -16,7 +17,6 @@
 #include "cli/motions/run_info.h"
 #include "cli/motions/saved.h"
 #include "cli/say.h"
-#include "cli/models/show.h"
 #include "result/file.h"
 #include "result/format.h"
 #include "simulation/report_json.h"

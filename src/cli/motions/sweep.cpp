@@ -7,10 +7,10 @@
 
 #include "base/json.h"
 #include "cli/input.h"
+#include "cli/models/show.h"
 #include "cli/motions/progress.h"
 #include "cli/motions/report_text.h"
 #include "cli/say.h"
-#include "cli/models/show.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
 #include "result/format.h"

@@ -11,10 +11,10 @@
 #include <unistd.h>
 
 #include "base/json.h"
-#include "cli/pictures/child.h"
 #include "cli/motions/progress.h"
-#include "cli/pictures/recording.h"
 #include "cli/motions/report.h"
+#include "cli/pictures/child.h"
+#include "cli/pictures/recording.h"
 #include "cli/say.h"
 #include "numeric/number.h"
 #include "report/assets.h"

@@ -25,7 +25,7 @@ namespace anholon {
 
 struct SundialsSettings {
   Method integrator = Method::cvode;  // or ida
-  double tolerance = 1e-12;                   // relative and absolute, of each step
+  double tolerance = 1e-12;           // relative and absolute, of each step
   std::size_t most_steps = 50'000'000;
   std::function<bool()> cancelled;    // asked between steps
   double integral_tolerance = 1e-12;  // of BDF: integrals carry no error on

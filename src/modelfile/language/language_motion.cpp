@@ -216,10 +216,7 @@ reach  = "norm(P) - 2"
 
 - Numbers to watch along the motion: columns, with their range in the report. May hold `lambda.NAME`, `reaction(B)` and derivatives of any order, also through `[define]`.
 )md"},
-      {"simulate",
-       Form::keys,
-       any,
-       keys_of_simulate(),
+      {"simulate", Form::keys, any, keys_of_simulate(),
        R"md(```toml
 [simulate]
 to = 10

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "cli/pictures/child.h"
 #include "cli/input.h"
+#include "cli/pictures/child.h"
 #include "cli/pictures/recording.h"
 
 namespace anholon::cli {

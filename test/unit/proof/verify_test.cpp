@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "numeric/ball.h"
-#include "proof/checker/verify.h"
 #include "proof/checker/modular.h"
 #include "proof/checker/modular_program.h"
 #include "proof/checker/real.h"
+#include "proof/checker/verify.h"
 
 namespace anholon {
 namespace {
