@@ -11,13 +11,13 @@ using Use = MethodInfo::Use;
 // The least tolerance is the round-off of f in double; that of BDF, of order 5 at most, is one that it reaches in a
 // bearable time.
 static constexpr MethodInfo kMethods[] = {
-    // use, name, title, citation, wide numbers, resumes, encloses, has an order, least tolerance, raised to it
-    {Use::motion, "auto", "Taylor", "", true, true, true, true, 0, true},
-    {Use::both, "taylor", "Taylor", "", true, true, true, true, 0, true},
-    {Use::motion, "rk", "Runge-Kutta 8", "PrinceDormand1981", false, false, false, false, 1e-14, true},
-    {Use::motion, "bdf", "BDF", "Hindmarsh2005", false, false, false, false, 1e-10, false},
-    {Use::second_opinion, "cvode", "CVODE", "Hindmarsh2005", false, false, false, true, 1e-14, true},
-    {Use::second_opinion, "ida", "IDA", "Hindmarsh2005", false, false, false, true, 1e-14, true},
+    // use, name, title, citation, wide numbers, resumes, encloses, order can be chosen, order, least tolerance, raised
+    {Use::motion, "auto", "Taylor", "", true, true, true, true, 0, 0, true},
+    {Use::both, "taylor", "Taylor", "", true, true, true, true, 0, 0, true},
+    {Use::motion, "rk", "Runge-Kutta 8", "PrinceDormand1981", false, false, false, false, 8, 1e-14, true},
+    {Use::motion, "bdf", "BDF", "Hindmarsh2005", false, false, false, false, 5, 1e-10, false},
+    {Use::second_opinion, "cvode", "CVODE", "Hindmarsh2005", false, false, false, true, 0, 1e-14, true},
+    {Use::second_opinion, "ida", "IDA", "Hindmarsh2005", false, false, false, true, 0, 1e-14, true},
 };
 static_assert(std::size(kMethods) == static_cast<std::size_t>(Method::ida) + 1);
 

@@ -21,6 +21,7 @@ struct MethodInfo {
   bool resumes;          // a saved run goes on with the same bits
   bool encloses;         // has a dense output that can be enclosed in balls
   bool has_order;        // its order can be chosen
+  int order;             // of its steps; 0: it follows from the tolerance
   double least_tolerance;
   bool raises_tolerance;  // to the least one; else a smaller one is refused
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "integrate/states/dormand_prince.h"
 
 namespace anholon {
 
@@ -164,14 +163,8 @@ void MethodCourse::turn(MethodChoice::Turn to) {
 }
 
 int MethodCourse::order() const {
-  switch (report_.last) {
-  case Method::runge_kutta:
-    return dormand_prince::kOrder;
-  case Method::bdf:
-    return 5;
-  default:
-    return motion_.stepper().order();
-  }
+  const int fixed = info(report_.last).order;
+  return fixed > 0 ? fixed : motion_.stepper().order();
 }
 
 MethodCourse::W MethodCourse::worst_constraint() const {

@@ -62,6 +62,16 @@ void motion(const anholon::System& system) {
   expect(stopped && stopped->outcome().kind == anholon::OutcomeKind::interrupted && stopped->rows() > 0,
          "a cancelled motion keeps its rows");
 
+  // Options that have no member are set by their names.
+  anholon::MotionOptions wide;
+  wide.at = {1};
+  wide.others = {{"numbers", "quad"}};
+  const auto quad = anholon::simulate(system, wide);
+  expect(quad && quad->text(0, "theta").size() > 25, "quad gives more digits");
+  wide.others = {{"numbres", "quad"}};
+  const auto unknown = anholon::simulate(system, wide);
+  expect(!unknown && unknown.error().text.find("did you mean 'numbers'") != std::string::npos, "a wrong name is told");
+
   // Two threads use one system, and get the bits of one.
   std::vector<double> first, second;
   const auto go = [&system](std::vector<double>& to) {
@@ -84,6 +94,20 @@ void sweep(const anholon::System& system) {
   expect(all->varied("theta'")[4] == 1 && all->column("theta'")[4] != 1,
          "a velocity at the end is not that at the start");
   expect(all->column("theta")[0] == all->column("theta")[5], "the mass of a pendulum has no influence");
+
+  options.vary = {{"m", {}, "uniform(1,2)"}};
+  const auto endless = anholon::sweep(system, options);
+  expect(!endless && endless.error().text.find("how many cases") != std::string::npos, "random values want a number");
+  options.cases = 5;
+  const auto drawn = anholon::sweep(system, options), again = anholon::sweep(system, options);
+  expect(drawn && again && drawn->cases() == 5, "random cases are computed");
+  if (!drawn || !again) return;
+  for (std::size_t k = 0; k < 5; ++k)
+    expect(drawn->varied("m")[k] > 1 && drawn->varied("m")[k] < 2 && drawn->varied("m")[k] == again->varied("m")[k],
+           "a draw follows from seed and number");
+  options.seed = 1;
+  const auto other = anholon::sweep(system, options);
+  expect(other && other->varied("m")[0] != drawn->varied("m")[0], "another seed draws other values");
 }
 
 }  // namespace

@@ -225,8 +225,19 @@ every = 0.1
 form = "routh"
 integrator = "taylor"
 ```
+```toml
+[simulate]
+to = 10
+numbers = "quad"
+digits = 30
+order = 24
+method = "taylor"
+most_steps = 100000
+rigorous = 64
+error_estimate = "always"
+```
 
-- Options on the command line win.
+- Each key is an option of `anholon simulate`, too. Options on the command line win.
 )md"},
       {"view",
        Form::named,
