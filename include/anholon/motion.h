@@ -14,13 +14,13 @@ struct MotionOptions {
   std::vector<Number> at = {};           // rows at these times and at no other
   std::optional<Number> tolerance = {};  // relative, of each step; 1e-12 if neither the file nor you say otherwise
   int order = 0;                         // of the Taylor polynomials; 0: from the tolerance
-  std::string method = "auto";           // auto, taylor, rk or bdf
+  std::string method = {};               // auto, taylor, rk or bdf; empty: that of the file, or auto
   int digits = 16;                       // more than 16: multiple precision
   bool error_estimate = true;            // by a second, sharper run, where there are no more than 5000 steps
   // Any option of `anholon simulate` that changes the motion, by its name: {{"numbers", "quad"}, {"rigorous", "64"}}.
   std::map<std::string, std::string> others = {};
-  std::size_t most_steps = 50'000'000;
-  std::function<bool()> cancelled = {};  // asked at every step; true ends the motion
+  std::optional<std::size_t> most_steps = {};  // the motion ends after so many; empty: that of the file, or 50 million
+  std::function<bool()> cancelled = {};        // asked at every step; true ends the motion
   std::function<void(double t, std::size_t steps)> progress = {};
 };
 

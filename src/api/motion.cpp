@@ -74,8 +74,9 @@ inner::MotionSettings settings_of(const MotionOptions& asked) {
   if (!times.empty()) set("at", times);
   if (asked.order != 0) set("order", {std::to_string(asked.order)});
   if (asked.digits != 16) set("digits", {std::to_string(asked.digits)});
-  set("method", {asked.method});
-  set("error-estimate", {asked.error_estimate ? "short" : "never"});
+  if (!asked.method.empty()) set("method", {asked.method});
+  if (!asked.error_estimate) set("error-estimate", {"never"});
+  if (asked.most_steps) set("most-steps", {std::to_string(*asked.most_steps)});
   for (const auto& [name, word] : asked.others) {
     std::vector<std::string> known;
     for (const inner::MotionOption& o : inner::motion_options()) known.emplace_back(o.name);
@@ -101,7 +102,6 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     auto data = std::make_shared<Run::Data>();
     const inner::Asker asker{"", "", [&](const std::string& note) { data->notes.push_back(note); }};
     inner::ask(inner::merged(settings_of(asked), s.model->simulate), s, asker, o);
-    o.most_steps = asked.most_steps;
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
     if (!inner::sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);

@@ -80,7 +80,7 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
     o.cases = variation.cases();
     o.numbers = [&variation](std::size_t number) { return inner::EnsembleCase{variation(number), {}}; };
     auto data = std::make_shared<Sweep::Data>();
-    for (const inner::Varied& v : o.varied) data->names.push_back(v.name);
+    for (const Vary& v : asked.vary) data->names.push_back(v.name);
     inner::MotionSettings settings;
     const auto number = [&](const char* name, const std::optional<Number>& given) {
       if (given)

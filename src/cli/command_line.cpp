@@ -298,13 +298,8 @@ class CommandLine {
     c->add_option("--threads", o_.threads, "default: as many as the machine has; the numbers are the same for any")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));
-    for (const char* name : {"to", "tolerance", "order"}) motion_option(c, name);
-    motion_option(c, "method",
-                  "taylor; rk or bdf, as for simulate: one case after the other on each core; auto (default): Taylor, "
-                  "in the lanes of the processor");
-    motion_option(c, "error-estimate",
-                  "digits to trust, by a second, sharper run of a few cases: always, never, or of cases up to 5000 "
-                  "steps (short, the default)");
+    for (const MotionOption& row : anholon::motion_options())
+      if (row.in_sweep) motion_option(c, row.name, row.in_sweep);
     c->add_option("-o,--output", o_.output, known_files("FILE", sweep_formats()) + plain_output())->type_name("FILE");
   }
 

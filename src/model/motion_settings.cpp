@@ -48,6 +48,7 @@ const std::vector<MotionOption>& motion_options() {
        .in_file = "end time, absolute; it may lie before the start",
        .part = Part::times,
        .member = &S::to,
+       .in_sweep = "end time (absolute)",
        .mistake = too_late},
       {.name = "at",
        .key = "at",
@@ -71,6 +72,7 @@ const std::vector<MotionOption>& motion_options() {
        .in_file = "of each step, relative; 1e-12 without it",
        .part = Part::accuracy,
        .member = &S::tolerance,
+       .in_sweep = "of each step, relative (default 1e-12)",
        .kept = true,
        .mistake = not_a_tolerance},
       {.name = "digits",
@@ -107,6 +109,7 @@ const std::vector<MotionOption>& motion_options() {
        .in_file = "of the Taylor polynomials; from the tolerance without it",
        .part = Part::accuracy,
        .member = &S::order,
+       .in_sweep = "order of the Taylor polynomials (default: from the tolerance)",
        .kept = true,
        .least = 4,
        .most = 500},
@@ -117,6 +120,7 @@ const std::vector<MotionOption>& motion_options() {
        .in_file = "the motion ends after so many steps",
        .part = Part::accuracy,
        .member = &S::most_steps,
+       .in_sweep = "a case ends after so many steps (default 50000000)",
        .least = 1,
        .most = 2'000'000'000},
       {.name = "method",
@@ -127,6 +131,8 @@ const std::vector<MotionOption>& motion_options() {
        .in_file = "by which the motion is computed",
        .part = Part::accuracy,
        .member = &S::method,
+       .in_sweep = "taylor; rk or bdf, as for simulate: one case after the other on each core; auto (default): Taylor, "
+                   "in the lanes of the processor",
        .choices = methods},
       {.name = "integrator",
        .key = "integrator",
@@ -152,6 +158,8 @@ const std::vector<MotionOption>& motion_options() {
        .in_file = "digits to trust by a second, sharper run; without it, of runs up to 5000 steps",
        .part = Part::judgement,
        .member = &S::error_estimate,
+       .in_sweep = "digits to trust, by a second, sharper run of a few cases: always, never, or of cases up to 5000 "
+                   "steps (short, the default)",
        .choices = times_of_estimates},
   };
   return rows;

@@ -38,6 +38,7 @@ struct MotionOption {
   const char* in_file;  // of [simulate]
   Part part;
   Member member;
+  const char* in_sweep = nullptr;                     // its help for sweeps; nullptr if they do not take it
   bool kept = false;                                  // a saved run goes on with the same value
   const std::vector<std::string>& (*choices)() = {};  // of a word; any other word is refused
   bool also_number = false;                           // a word that may be a number

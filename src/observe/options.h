@@ -14,7 +14,6 @@ enum class ErrorEstimate : std::uint8_t { never, short_runs, always };
 inline constexpr std::size_t kShortRun = 5000;  // steps
 
 struct SimulationOptions {
-  MotionSettings settings;  // as asked for: what needs no preparation is read from here
   StateChoice state;
   std::optional<Rational> to;
   std::vector<Rational> at;  // exactly these rows, ascending, on one side of the start

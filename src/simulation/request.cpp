@@ -35,7 +35,7 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   if (!o.at.empty() && o.at.front() < start && o.at.back() > start)
     throw Failure({}, "the time " + o.at.front().get_str() + " lies before the start, t = " + start.get_str());
   if (o.at.empty() && !o.to)
-    throw Failure({}, "no end time", asker.called("to") + " 10, or [simulate] to = 10 in the model file");
+    throw Failure({}, "no end time", asker.example("to", "10") + ", or [simulate] to = 10 in the model file");
   const Rational end = o.at.empty() ? *o.to : o.at.front() < start ? o.at.front() : o.at.back();
   if (end < start)
     asker.note("the end lies before the start, t = " + number_text(start.get_d()) +
@@ -56,7 +56,7 @@ std::optional<std::size_t> rigorous(const MotionSettings& settings, const Asker&
     throw Failure({},
                   asker.called("rigorous") + " takes a number of times up to " + std::to_string(kMostTimes) +
                       ", or the word all, not '" + *settings.rigorous + "'",
-                  asker.called("rigorous") + " 64");
+                  asker.example("rigorous", "64"));
   return n->get_num().get_ui();
 }
 
@@ -97,7 +97,7 @@ Method integrator(const MotionSettings& settings, const Model& model, const Simu
   const MethodInfo& method = info(chosen);
   const auto refuse = [&](const std::string& what, const std::string& option) {
     throw Failure({}, "the integrator '" + std::string(method.name) + "' " + what,
-                  "leave out " + option + ", or use " + asker.called("integrator") + " taylor");
+                  "leave out " + option + ", or use " + asker.example("integrator", "taylor"));
   };
   if (const auto refused = refusal(method, demands(o, asker))) refuse(refused->why, option_of(refused->of, o, asker));
   if (std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return e.ends_step(); }))
@@ -118,8 +118,8 @@ bool sets_values(const Model& model) {
 Precision precision(const MotionSettings& settings, Precision usual, const Asker& asker) {
   const int digits = settings.digits.value_or(16);
   if (settings.numbers == "quad" && digits > kQuadDigits)
-    throw Failure({}, asker.called("numbers") + " quad holds " + std::to_string(kQuadDigits) + " digits",
-                  asker.called("digits") + " " + std::to_string(digits) + " without " + asker.called("numbers") +
+    throw Failure({}, asker.example("numbers", "quad") + " holds " + std::to_string(kQuadDigits) + " digits",
+                  asker.example("digits", std::to_string(digits)) + " without " + asker.called("numbers") +
                       " computes in multiprecision");
   if (settings.numbers == "quad") return Precision::quad;
   if (digits > 16) return Precision::multi;
@@ -155,21 +155,25 @@ Method method(const MotionSettings& settings, const Scenario& s, const Simulatio
   const MethodInfo& method = info(chosen);
   const auto refuse = [&](const std::string& what, const std::string& remedy) {
     throw Failure({}, "the method '" + std::string(method.name) + "' " + what,
-                  (remedy.empty() ? "" : remedy + ", or ") + "use " + asker.called("method") + " taylor");
+                  (remedy.empty() ? "" : remedy + ", or ") + "use " + asker.example("method", "taylor"));
   };
   const auto refused = refusal(method, demands(o, asker));
   const bool tolerance = refused && refused->of == MethodRefusal::Of::tolerance;
   if (refused && !tolerance) refuse(refused->why, "leave out " + option_of(refused->of, o, asker));
   if (const std::string why = only_taylor(*s.model, program(s.system, s.structure)); !why.empty()) refuse(why, "");
-  if (tolerance) refuse(refused->why, asker.called("tolerance") + " 1e-8");
+  if (tolerance) refuse(refused->why, asker.example("tolerance", "1e-8"));
   note_raised(method, o, asker);
   return chosen;
+}
+
+std::size_t most_steps(const MotionSettings& settings) {
+  return settings.most_steps ? static_cast<std::size_t>(*settings.most_steps) : SimulationOptions().most_steps;
 }
 
 Rational ask(const MotionSettings& settings, const Scenario& s, const Asker& asker, SimulationOptions& o) {
   // The tolerance of quad without --digits: it leaves some digits for round-off.
   constexpr int kQuadTolerance = 32;
-  o.settings = settings;
+  o.most_steps = most_steps(settings);
   o.estimate = error_estimate(settings);
   o.order = settings.order.value_or(0);
   const Rational last = set_times(settings, s, asker, o);

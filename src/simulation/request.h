@@ -15,6 +15,10 @@ struct Asker {
   std::function<void(const std::string&)> note;
 
   std::string called(const std::string& option) const { return prefix + option; }
+  // The option with a value, as one writes it: "--to 10" or "to = 10".
+  std::string example(const std::string& option, const std::string& value) const {
+    return called(option) + (prefix.empty() ? " = " : " ") + value;
+  }
 };
 
 // All of these throw Failure without a place.
@@ -24,6 +28,7 @@ Precision precision(const MotionSettings& settings, Precision usual, const Asker
 // Never below what the numbers can hold, and then with a note.
 Rational tolerance(const MotionSettings& settings, Precision precision, const Asker& asker);
 ErrorEstimate error_estimate(const MotionSettings& settings);
+std::size_t most_steps(const MotionSettings& settings);
 // Throws if events would have to be undone on the way from `start` to `end`.
 void must_go_forwards(const Scenario& scenario, const Rational& start, const Rational& end);
 // The method, which can meet what the options demand.

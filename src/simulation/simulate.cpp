@@ -17,7 +17,6 @@ namespace {
 
 StepSettings step_settings(const SimulationOptions& o) {
   StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
-  if (o.settings.most_steps) s.most_steps = static_cast<std::size_t>(*o.settings.most_steps);
   s.integrals = 1;  // the power
   s.multipliers = o.rigorous.has_value();
   return s;

@@ -102,6 +102,8 @@ void print_text(const Scenario& s, const StateReport& r, int digits) {
 }  // namespace
 
 int evaluate(const Options& o) {
+  if (o.motion.numbers == "double")
+    throw UsageError{"error: a state is evaluated in long double at least\nhint: --numbers long-double or quad\n"};
   const Reader in = read(o);
   const StateChoice choice = state_choice(o, *in.model);
   Scenario s;

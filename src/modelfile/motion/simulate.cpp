@@ -59,6 +59,7 @@ void read_simulate(const Item& root, Scope& scope, Model& model, Diagnostics& di
   for (const MotionOption& option : motion_options())
     if (const Item* i = s->find(option.key)) {
       const OptionValue v = value(*i, option, scope);
+      if (const auto* times = std::get_if<std::vector<WrittenTime>>(&v); times && times->empty()) continue;
       try {
         set(model.simulate, option, v, "'" + i->key + "'");
       } catch (const Failure& f) {
