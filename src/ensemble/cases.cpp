@@ -59,8 +59,9 @@ void EnsemblePlan::make() {
   }
 }
 
-void EnsemblePlan::compile_if_long() const {
-  if (const std::unique_lock lock(compiling_, std::try_to_lock); lock) code_.step(kernel, lanes);
+void EnsemblePlan::compile_if_long(std::size_t next) const {
+  if (const std::unique_lock lock(compiling_, std::try_to_lock); lock)
+    code_.step(kernel, static_cast<double>(next), static_cast<double>(options.cases), lanes);
 }
 
 CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shared_ptr<Kernel>& kernel, int lane) {
@@ -202,7 +203,7 @@ static bool contained(CaseResult& r, const Work& work) {
 
 // A lane takes the next case when it has done one. Its bits do not depend on the other lanes.
 void CaseWorker::integrate(std::span<CaseResult> results) {
-  plan_.compile_if_long();
+  if (!results.empty()) plan_.compile_if_long(results.front().number);
   if (plan_.kernel && !kernel_) kernel_ = std::make_shared<Kernel>(plan_.kernel, plan_.lanes);
   while (walks_.size() < static_cast<std::size_t>(plan_.lanes)) walks_.emplace_back();
   std::size_t next = 0, walking = 0;

@@ -33,7 +33,7 @@ class EnsemblePlan {
   // scenario, those of `simulate` at the start of the case: the last digits may differ. Machine code with the same bits
   // is made beside the cases when these have taken a while.
   std::shared_ptr<const KernelPlan> kernel;
-  void compile_if_long() const;
+  void compile_if_long(std::size_t next) const;
   int lanes = 1;  // of the kernels of cases: as many as the machine has
   std::optional<Tape> outputs;
   struct Entry {

@@ -47,6 +47,7 @@ class ReferenceExpander {
   MotionState<N> motion(const MotionTrack<N>& track, bool) const { return track.now; }
   StepperState<N> begun(const MotionTrack<N>& track, const std::vector<int>&) const { return track.begun().at; }
   void take_back(MotionTrack<N>&, bool) {}
+  static constexpr void round_state() {}
 
   // The expansion of the reference: that of the present step if no kernel has made that.
   Expansion<N>& series() { return reference_.series(); }
@@ -110,6 +111,9 @@ class GuardedExpander {
   StepperState<double> begun(const MotionTrack<double>& track, const std::vector<int>& sides) const;
   void take_back(MotionTrack<double>& track, bool expanded) {
     if (kernel_) kernel_->take_back(track, expanded);
+  }
+  void round_state() {
+    if (kernel_) kernel_->round_state();
   }
 
   Expansion<double>& series() { return reference_.series(); }

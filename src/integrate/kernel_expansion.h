@@ -44,6 +44,10 @@ class KernelExpansion {
   // Reads all of it; the motion is then not in the lane any more.
   void take_back(MotionTrack<double>& track, bool expanded);
   void drop() { holds_ = false; }
+  // The lane's motion is rounded as by take_back() and load().
+  void round_state() {
+    if (holds_) kernel_->round_state(lane_);
+  }
   // The kernel's expansion is not to be: the motion is where it was begun.
   void take_back_as_begun(MotionTrack<double>& track);
 

@@ -1,11 +1,16 @@
 // When the smallest singular value sigma of the system Jacobian is measured again, which only the reference does.
 #pragma once
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 
 namespace anholon {
 
-// After so many steps, ever more rarely, but at least at every 256th.
-constexpr bool sigma_is_due(std::size_t steps) { return steps % 256 == 0 || (steps & (steps - 1)) == 0; }
+// After so many steps: at powers of two, at every 256th up to 4096, and sixteen times up to each further power of two.
+constexpr bool sigma_is_due(std::size_t steps) {
+  constexpr std::size_t kOften = 256, kTimes = 16;
+  return steps % std::max(kOften, std::bit_floor(steps) / kTimes) == 0 || std::has_single_bit(steps);
+}
 // And whenever the pivots of the kernel have become this much smaller than they were before.
 inline constexpr double kPivotDropToRecheck = 0.8;
 

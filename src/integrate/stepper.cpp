@@ -477,7 +477,7 @@ typename Stepper<N>::W Stepper<N>::quadrature(std::size_t i, const W& dt) const 
 template <Number N>
 Outcome Stepper<N>::at(const W& t, Expansion<W>& point, bool leading) const {
   std::vector<W> state, guess;
-  expander_.state_at(track_, t - before_, state, guess);
+  foretell(t, state, guess);
   point.load(t, state, guess);
   Outcome o = point.prepare();
   if (o.ok()) o = point.project();

@@ -63,6 +63,8 @@ class Stepper {
   [[nodiscard]] EndOfStep look_at_end(const W& end);
   [[nodiscard]] bool finish_step();
   Outcome trouble() { return std::exchange(trouble_, {}); }
+  // Rounds the state as it is rounded when it is taken out of a kernel's lane and put back.
+  void round_state() { expander_.round_state(); }
   // Takes the motion out of a kernel's lane. The next expansion puts it back.
   void leave_kernel() { expander_.take_back(track_, expanded()); }
 
@@ -83,6 +85,14 @@ class Stepper {
   const Expansion<W>& point(bool values = false) const { return expander_.point(track_, values); }
   // … and anywhere in the last step, in an expansion of the caller; on request without what leads the state.
   Outcome at(const W& t, Expansion<W>& point, bool leading = true) const;
+  // The state anywhere in the last step by its polynomials, not projected, and a guess of the leading derivatives.
+  void foretell(const W& t, std::vector<W>& state, std::vector<W>& leading) const {
+    expander_.state_at(track_, t - before_, state, leading);
+  }
+  // Whether the last step's polynomials end with the leading derivatives, as formulas have no derivatives there.
+  bool one_sided() const { return one_sided_.has_value(); }
+  // Unknown j where the last step began.
+  W begun_value(std::size_t j) const { return convert<W>(expander_.coefficient(j, 0)); }
   // The dense output of the last step as it is: x_j is the sum of dense(j, k) (t - before())^k, k = 0..degree(j).
   // Coefficients up to that of the leading derivative come from the wider point.
   std::size_t unknowns() const { return program_->unknowns(); }

@@ -133,6 +133,8 @@ class Kernel {
   // loads states that come from elsewhere; then `begin` (the expansions at the set times) and `advance` (over the set
   // steps) alternate.
   void place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading);
+  // Stores each number of the state after `advance` as `place` stores its sum in long double.
+  void round_state(int lane);
   void set_time(int lane, double t) {
     double& now = number(plan_->plan().time, lane);
     if (now != t) drop_next();

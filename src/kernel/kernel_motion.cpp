@@ -27,6 +27,19 @@ void Kernel::place(int lane, const std::vector<long double>& state, const std::v
   gone_on_ = true;
 }
 
+void Kernel::round_state(int lane) {
+  if (!gone_on_) return;
+  bool same = true;
+  for (std::uint32_t i = 0; i < plan_->tables().state_size; ++i) {
+    double &high = number(next_ + i, lane), &low = number(next_ + plan_->tables().state_size + i, lane);
+    const long double sum = static_cast<long double>(high) + low;
+    const double rounded = static_cast<double>(sum), rest = static_cast<double>(sum - rounded);
+    same = same && rounded == high && std::bit_cast<std::uint64_t>(rest) == std::bit_cast<std::uint64_t>(low);
+    high = rounded, low = rest;
+  }
+  if (!same) drop_next();
+}
+
 void Kernel::begin() {
   const Code* code = this->code();
   if (started_) {

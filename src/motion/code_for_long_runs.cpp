@@ -1,5 +1,6 @@
 #include "motion/code_for_long_runs.h"
 
+#include <cmath>
 #include <mutex>
 #include <vector>
 
@@ -47,19 +48,23 @@ void CodeForLongRuns::leave() {
   left_behind().push_back({compilation_.done, std::move(compilation_.thread)});
 }
 
-void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, int lanes) {
-  // A compilation takes 0.1 to 2 s, on another core if there is one.
-  constexpr std::chrono::milliseconds kLong(400);
+void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes) {
+  // Seconds: what is observed before, what the compiler takes to be loaded, and for each step of a stage; it works on
+  // another core if there is one.
+  constexpr double kObserved = 0.02, kLoaded = 0.1, kEachStep = 0.002;
   constexpr std::size_t kSometimes = 64;
+  if (!from_) from_ = at;
   if (!plan || compilation_.plan == plan || (lanes == 1 && ++asked_ % kSometimes != 0) ||
       (compilation_.done && !*compilation_.done))
     return;
-  if (std::chrono::steady_clock::now() - since_ < kLong) return;
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - since_).count();
+  const double compilation = kLoaded + kEachStep * static_cast<double>(plan->plan().stage.size());
+  if (elapsed < kObserved || !(elapsed * std::abs(end - at) > compilation * std::abs(at - *from_))) return;
   leave();
-  const auto done = std::make_shared<std::atomic<bool>>(false);
-  compilation_ = {plan, done, std::thread([plan, lanes, done] {
+  const auto ready = std::make_shared<std::atomic<bool>>(false);
+  compilation_ = {plan, ready, std::thread([plan, lanes, ready] {
                     plan->compile(code_cache(), lanes);
-                    *done = true;
+                    *ready = true;
                   })};
 }
 

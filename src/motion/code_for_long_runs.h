@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "kernel/kernel.h"
@@ -17,8 +18,9 @@ class CodeForLongRuns {
   CodeForLongRuns(const CodeForLongRuns&) = delete;
   CodeForLongRuns& operator=(const CodeForLongRuns&) = delete;
 
-  // Asked at every step, by one thread at a time: begins one for this plan, or none.
-  void step(const std::shared_ptr<const KernelPlan>& plan, int lanes = 1);
+  // Asked at every step, by one thread at a time: begins a compilation for this plan if what is left to do takes longer
+  // than that. `at`: how far the work has come on its way to `end`.
+  void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1);
 
  private:
   struct Compilation {
@@ -30,6 +32,7 @@ class CodeForLongRuns {
 
   Compilation compilation_;
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  std::optional<double> from_;  // `at` when it was asked first
   std::size_t asked_ = 0;
 };
 

@@ -99,7 +99,7 @@ std::optional<Outcome> MethodCourse::step_by_other(const W& end) {
   if (choice_ && choice_->slower_than_taylor(stepper))
     return return_to_taylor("it had come to cost more than Taylor's steps before");
   if (motion_.pivot_is_small(other_->begin_step())) return help_from(stepper.now(), 1);
-  code_.step(steppers_.plan());
+  code_.step(steppers_.plan(), to_double(stepper.now().t), to_double(end));
   const std::size_t steps = stepper.steps();
   const Outcome o = other_->step(end);
   // Taylor stops at a singular point, or finds that J is regular.

@@ -41,6 +41,7 @@ class TaylorCourse {
   const Expansion<W>& point() const { return motion_.point(); }
   // Where the last step began, its derivatives.
   const Expansion<W>& begun() const { return motion_.stepper().point(); }
+  W begun_coordinate(std::size_t a) const { return motion_.stepper().begun_value(a); }
 
   // Taylor's motion; where the last step was another method's, it lags behind.
   Motion<N>& taylor() { return motion_; }
@@ -79,6 +80,9 @@ class MethodCourse {
   Outcome at(const W& t) { return by_other_ ? other_->at(t) : motion_.at(t); }
   const Expansion<W>& point() const { return by_other_ ? other_->point() : motion_.point(); }
   const Expansion<W>& begun() const { return by_other_ ? other_->begun() : motion_.stepper().point(); }
+  W begun_coordinate(std::size_t a) const {
+    return by_other_ ? other_->begun().derivative(a, 0) : motion_.stepper().begun_value(a);
+  }
 
   Motion<double>& taylor() { return motion_; }
   const Motion<double>& taylor() const { return motion_; }

@@ -96,7 +96,7 @@ template <Number N>
 Outcome Motion<N>::step(const W& end) {
   if (stepped_ && leg_->pivots && pivot_is_small(present())) eliminate_again();
   if (stepped_) write_anew();
-  code_.step(leg_->plan);
+  code_.step(leg_->plan, to_double(leg_->stepper.time()), to_double(end));
   const Mark before{choices_.size(), chosen_};
   const std::size_t expansions = leg_->stepper.expansions();
   Outcome o = leg_->stepper.step(end);
@@ -104,19 +104,30 @@ Outcome Motion<N>::step(const W& end) {
   // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
   if (!o.ok() && leg_->pivots && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
   // The next step begins with the state as a sum in the wider type: a lane may have it as another sum of two doubles.
-  if (o.ok()) leg_->stepper.leave_kernel();
+  if (o.ok()) leg_->stepper.round_state();
   stepped_ = true;
   return o;
 }
 
 template <Number N>
 Outcome Motion<N>::at(const W& t) {
-  leg_->stepper.leave_kernel();
   if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
     o.message += " at t = " + number_text(to_double(t), 12);
     return o;
   }
   return stages_ > 0 ? leg_->point.extend() : Outcome{};
+}
+
+template <Number N>
+Outcome Motion<N>::settle_at(const Start<W>& place) {
+  Expansion<W>& point = leg_->point;
+  point.load(place.t, place.state, place.leading);
+  Outcome o = point.prepare();
+  if (o.ok()) o = point.project();
+  if (o.ok()) o = point.solve();
+  if (o.ok() && stages_ > 0) o = point.extend();
+  if (!o.ok()) o.message += " at t = " + number_text(to_double(place.t), 12);
+  return o;
 }
 
 // Keeps an eye on what the elimination divides by.

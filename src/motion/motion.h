@@ -44,10 +44,14 @@ class Motion {
   // From the consistent state; on request from one that differs from it by some round-offs.
   void start_in_other_digits(bool other) { other_digits_ = other; }
   Outcome start(const StateChoice& choice);
+  // The state at the start of the whole motion.
+  const Start<W>& start_state() const { return start_; }
   // What is needed to go on from where the last expansion was made, and how: with the same bits as if the run had never
   // ended.
   void save(SavedRun& to) const;
   Outcome resume(const StateChoice& choice, const SavedRun& from);
+  // The solution at a place that was foretold (integrate/stepper.h), in `point()`.
+  Outcome settle_at(const Start<W>& place);
   // One step towards `end`, with another elimination where this one fails or its pivots have become small.
   Outcome step(const W& end);
   // The solution anywhere in the last step, with the orders beyond where there are any.

@@ -1,6 +1,7 @@
 #include "observe/angles.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "expr/normal.h"
 
@@ -57,8 +58,7 @@ std::vector<AngleTriple> angle_triples(const Model& model) {
   return list;
 }
 
-template <Number W>
-Column AngleWatch<W>::expressions(const std::vector<AngleTriple>& triples) {
+Column AngleWatch::expressions(const std::vector<AngleTriple>& triples) {
   Column es;
   for (const AngleTriple& t : triples) {
     es.push_back(dot(t.rates[0], cross(t.rates[1], t.rates[2])));
@@ -67,27 +67,19 @@ Column AngleWatch<W>::expressions(const std::vector<AngleTriple>& triples) {
   return es;
 }
 
-template <Number W>
-AngleWatch<W>::AngleWatch(Workspace& s, const std::vector<W>& parameters)
+AngleWatch::AngleWatch(Workspace& s, const std::vector<double>& parameters)
     : triples(angle_triples(*s.model)), least(triples.size()) {
   if (!triples.empty()) outputs_.emplace(s, expressions(triples), parameters);
 }
 
-template <Number W>
-void AngleWatch<W>::see(const Expansion<W>& point) {
-  if (!outputs_) return;
-  OutputTape<W>& out = *outputs_;
-  out.evaluate(point);
+void AngleWatch::note(double t) {
+  const OutputTape<double>& out = *outputs_;
   for (std::size_t i = 0; i < triples.size(); ++i) {
     const std::size_t at = 4 * i;
-    const W lengths = sqrt(W(out[at + 1] * out[at + 2] * out[at + 3]));
-    const double value = lengths > W(0) ? to_double(W(abs(out[at]) / lengths)) : 0;
-    if (value < least[i].value) least[i] = {value, point.time()};
+    const double lengths = std::sqrt(out[at + 1] * out[at + 2] * out[at + 3]);
+    const double value = lengths > 0 ? std::abs(out[at]) / lengths : 0;
+    if (value < least[i].value) least[i] = {value, t};
   }
 }
-
-template class AngleWatch<long double>;
-template class AngleWatch<Quad>;
-template class AngleWatch<Multi>;
 
 }  // namespace anholon

@@ -16,29 +16,31 @@ struct AngleTriple {
 // Of the bodies with three angles, each set of angles once.
 std::vector<AngleTriple> angle_triples(const Model& model);
 
-template <Number W>
+// In doubles, whatever the numbers of the motion are: a measure of nearness needs no more.
 class AngleWatch {
  public:
-  AngleWatch(Workspace& scenario, const std::vector<W>& parameters);
-  void see(const Expansion<W>& point);
-  void set_parameters(const std::vector<W>& parameters) {
+  AngleWatch(Workspace& scenario, const std::vector<double>& parameters);
+  // At a time of the motion; coordinate(a) is the value of coordinate a there.
+  template <class F>
+  void see(double t, F coordinate) {
+    if (!outputs_) return;
+    outputs_->evaluate_at([&](const Node& n, NodeId) { return n.kind == Kind::time ? t : coordinate(n.index); });
+    note(t);
+  }
+  void set_parameters(const std::vector<double>& parameters) {
     if (outputs_) outputs_->set_parameters(parameters);
   }
   // The smallest value so far and when, for every triple.
   struct Least {
-    double value = 1;
-    W t{0};
+    double value = 1, t = 0;
   };
   std::vector<AngleTriple> triples;
   std::vector<Least> least;
 
  private:
   static Column expressions(const std::vector<AngleTriple>& triples);
-  std::optional<OutputTape<W>> outputs_;  // where there are any
+  void note(double t);
+  std::optional<OutputTape<double>> outputs_;  // if there are any
 };
-
-extern template class AngleWatch<long double>;
-extern template class AngleWatch<Quad>;
-extern template class AngleWatch<Multi>;
 
 }  // namespace anholon

@@ -44,6 +44,7 @@ struct SimulationReport {
   Outcome outcome;
   double t = std::numeric_limits<double>::quiet_NaN();  // reached
   std::size_t steps = 0, rows = 0;
+  std::size_t rows_looked_at = 0;  // by the residual report
   int order = 0;
   double seconds = 0;
   // In relation to the greatest of their terms so far (theory: certificate).

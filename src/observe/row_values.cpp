@@ -1,5 +1,7 @@
 #include "observe/row_values.h"
 
+#include <cmath>
+
 namespace anholon {
 
 // The unit of the derivative of that order.
@@ -62,27 +64,27 @@ std::vector<RunColumn> run_columns(const Scenario& s, int highest) {
   return columns;
 }
 
+RowExpressions::RowExpressions(const Scenario& s, const Column& others) {
+  const Model& model = *s.model;
+  Graph& g = *model.graph;
+  all = put_masses(model, s.mechanics->N);
+  const auto add = [&](Expr e) {
+    Sum sum{all.size(), {}};
+    all.push_back(e);
+    if (g.node(e.id).kind == Kind::sum)
+      for (const Term& t : g.summands(e.id)) {
+        all.push_back({&g, t.node});
+        sum.weights.push_back(std::abs(from_rational<double>(g.rational(t.weight))));
+      }
+    return sum;
+  };
+  for (const Monitor& m : model.monitors) monitors.push_back(add(m.value));
+  for (const Expr& e : others) further.push_back(add(e));
+}
+
 template <Number W>
 RowOutputs<W>::RowOutputs(Workspace& s, const std::vector<W>& parameters)
-    : s_(s), outputs_(s, expressions(), parameters), redundant_(s, parameters) {}
-
-// N, then the monitors, each followed by its terms where it is a sum.
-template <Number W>
-Column RowOutputs<W>::expressions() {
-  const Model& model = *s_.model;
-  Graph& g = *model.graph;
-  Column es = put_masses(model, s_.mechanics->N);
-  reactions_ = es.size();
-  for (const Monitor& m : model.monitors) {
-    MonitorPlace place{es.size() - reactions_, {}};
-    es.push_back(m.value);
-    if (g.node(m.value.id).kind == Kind::sum)
-      for (const Term& t : g.summands(m.value.id))
-        es.push_back({&g, t.node}), place.weights.push_back(abs(from_rational<W>(g.rational(t.weight))));
-    monitors_.push_back(std::move(place));
-  }
-  return es;
-}
+    : expressions_(s, {}), outputs_(s, expressions_.all, parameters), redundant_(s, parameters) {}
 
 template <Number W>
 void RowOutputs<W>::see(const Expansion<W>& point) {
@@ -92,11 +94,7 @@ void RowOutputs<W>::see(const Expansion<W>& point) {
 
 template <Number W>
 W RowOutputs<W>::monitor_terms(std::size_t i) const {
-  const MonitorPlace& m = monitors_[i];
-  if (m.weights.empty()) return abs(monitor(i));
-  W sum(0);
-  for (std::size_t k = 0; k < m.weights.size(); ++k) sum += m.weights[k] * abs(outputs_[reactions_ + m.value + 1 + k]);
-  return sum;
+  return RowExpressions::terms<W>(expressions_.monitors[i], [&](std::size_t k) -> const W& { return outputs_[k]; });
 }
 
 template class RowOutputs<long double>;

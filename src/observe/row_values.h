@@ -17,10 +17,10 @@ std::vector<RunColumn> columns_after_time(const Scenario& scenario, int highest)
 std::vector<RunColumn> run_columns(const Scenario& scenario, int highest);
 
 // The numbers of the columns after t at a point. `outputs` knows multipliers, reactions and monitors there.
-template <Number W, class Outputs>
-std::vector<W> row_values(const Scenario& s, int highest, const Expansion<W>& here, const Outputs& outputs) {
+template <Number W, class Point, class Outputs>
+void row_values(const Scenario& s, int highest, const Point& here, const Outputs& outputs, std::vector<W>& values) {
   const std::size_t n = s.system.coordinates;
-  std::vector<W> values;
+  values.clear();
   for (int k = 0; k <= highest; ++k)
     for (std::size_t a = 0; a < n; ++a) values.push_back(here.derivative(a, k));
   for (int k = 0; k <= multiplier_orders(s); ++k)
@@ -31,10 +31,36 @@ std::vector<W> row_values(const Scenario& s, int highest, const Expansion<W>& he
   for (std::size_t j = s.system.mechanical(); j < s.system.size(); ++j) values.push_back(here.derivative(j, 0));
   for (std::size_t a = 0; a < n; ++a) values.push_back(outputs.reaction(a));
   for (std::size_t i = 0; i < s.model->monitors.size(); ++i) values.push_back(outputs.monitor(i));
+}
+template <Number W, class Outputs>
+std::vector<W> row_values(const Scenario& s, int highest, const Expansion<W>& here, const Outputs& outputs) {
+  std::vector<W> values;
+  row_values(s, highest, here, outputs, values);
   return values;
 }
 
-// What of a row is no derivative of an unknown, without the residuals that a Watch computes beside it.
+// What of a row is no derivative of an unknown, as a list of expressions: the reactions N, the monitors, and further
+// numbers that are watched. Monitors and further numbers are each followed by their terms, if they are sums.
+struct RowExpressions {
+  RowExpressions(const Scenario& scenario, const Column& further);
+  struct Sum {
+    std::size_t at;               // its place in `all`; its terms follow
+    std::vector<double> weights;  // the magnitudes of the coefficients of the terms; empty if it is no sum
+  };
+  Column all;
+  std::vector<Sum> monitors, further;
+
+  // The sum of the magnitudes of the terms; value(k): of expression k.
+  template <Number N, class F>
+  static N terms(const Sum& s, F value) {
+    if (s.weights.empty()) return abs(N(value(s.at)));
+    N sum(0);
+    for (std::size_t k = 0; k < s.weights.size(); ++k) sum += N(s.weights[k]) * abs(N(value(s.at + 1 + k)));
+    return sum;
+  }
+};
+
+// Their values at a point, without the residuals that a Watch computes beside them.
 template <Number W>
 class RowOutputs {
  public:
@@ -47,21 +73,13 @@ class RowOutputs {
 
   const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
-  const W& monitor(std::size_t i) const { return outputs_[reactions_ + monitors_[i].value]; }
+  const W& monitor(std::size_t i) const { return outputs_[expressions_.monitors[i].at]; }
   // The sum of the magnitudes of what a monitor is the sum of: a difference of large terms is known no better than they
   // are.
   W monitor_terms(std::size_t i) const;
 
  private:
-  struct MonitorPlace {
-    std::size_t value = 0;   // its terms follow
-    std::vector<W> weights;  // of the terms
-  };
-  Column expressions();
-
-  const Scenario& s_;
-  std::size_t reactions_ = 0;
-  std::vector<MonitorPlace> monitors_;
+  RowExpressions expressions_;
   OutputTape<W> outputs_;
   Redundant<W> redundant_;
   std::vector<W> multipliers_;

@@ -1,6 +1,7 @@
 #include "observe/watch.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace anholon {
 
@@ -63,6 +64,14 @@ void Track<W>::see(const W& value, const W& terms, MadeOf made_of) {
 }
 
 template <Number W>
+void Track<W>::see_double(double value, double terms, double made_of) {
+  see(W(value));
+  size = std::max(size, W(terms));
+  const double v = relative_miss(to_double(W(W(value) - first)), to_double(size), [&] { return made_of; });
+  if (W(v) > missed || !std::isfinite(v)) missed = W(v);
+}
+
+template <Number W>
 Watch<W>::Watch(Workspace& s, const Power& power, const std::vector<Conserved>& conserved,
                 const std::vector<W>& parameters)
     : s_(s), outputs_(s, expressions(power, conserved), parameters), redundant_(s, parameters) {}
@@ -98,6 +107,7 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
     constant_.push_back(true);
   }
   tracks_.resize(terms_.size());
+  made_of_.resize(terms_.size(), 0);
   return es;
 }
 
@@ -202,11 +212,10 @@ void Watch<W>::track() {
       tracks_[i].see(value);
       continue;
     }
-    tracks_[i].see(value, terms, [&] {
-      W made(0);
-      for (std::size_t k = at - terms_[i]; k < at; ++k) made += outputs_.made_of(k);
-      return made;
-    });
+    W made(0);
+    for (std::size_t k = at - terms_[i]; k < at; ++k) made += outputs_.made_of(k);
+    made_of_[i] = to_double(made);
+    tracks_[i].see(value, terms, [&] { return made; });
   }
 }
 

@@ -35,6 +35,8 @@ struct Track {
   // made of (numeric/relative.h).
   template <class MadeOf>
   void see(const W& value, const W& terms, MadeOf made_of);
+  // The same of a number that was computed in doubles.
+  void see_double(double value, double terms, double made_of);
   // Of its size; or of its terms, if it ought to be constant.
   double relative_change() const { return to_double(missed > W(0) || change == W(0) ? missed : W(change / size)); }
 };
@@ -48,7 +50,23 @@ class Watch {
   // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows
   // from the others.
   Outcome see(const Expansion<W>& point, SimulationReport& report);
-  // That alone.
+  // What is tracked alone, at a row that was computed in doubles: value(k) and terms(k) of the k-th sum of the monitors
+  // and the integrals, one after the other.
+  template <class Value, class Terms>
+  void track(Value value, Terms terms) {
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      double sum = 0, size = 0;
+      for (std::size_t k = 0; k < terms_[i]; ++k, ++at) sum += value(at), size += constant_[i] ? terms(at) : 0;
+      if (constant_[i])
+        tracks_[i].see_double(sum, size, made_of_[i]);
+      else
+        tracks_[i].see(W(sum));
+    }
+  }
+  // Whether constraints are left out that have to follow from the others.
+  bool any_redundant() const { return redundant_.any(); }
+  // Whether they do.
   Outcome still_redundant(const Expansion<W>& point, SimulationReport& report);
   // The monitors of the model, then the integrals.
   const std::vector<Track<W>>& tracks() const { return tracks_; }
@@ -80,6 +98,7 @@ class Watch {
   std::vector<Track<W>> tracks_;
   std::vector<std::size_t> terms_;  // of which each is the sum
   std::vector<bool> constant_;      // which ought to be
+  std::vector<double> made_of_;     // of the numbers behind their terms, at the point seen last
   // Constraints that no derivative hides: their accelerations, … are solved for with the equations.
   std::vector<std::size_t> open_;
   std::size_t first_open_ = 0, first_monitor_ = 0;  // among the outputs

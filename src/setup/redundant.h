@@ -10,6 +10,7 @@ class Redundant {
  public:
   Redundant(Workspace& scenario, const std::vector<W>& parameters);
 
+  bool any() const { return outputs_.has_value(); }
   // Not ok if one no longer holds at a point of the motion; `worst` is the largest miss, in relation to the state.
   // Where the point is the start the constraints contradict one another.
   Outcome hold(const Expansion<W>& point, bool start, double& worst);

@@ -139,8 +139,11 @@ class OutputTape {
  public:
   OutputTape(Workspace& s, const Column& es, const std::vector<N>& parameters)
       : system_(s.system), tape_(compile(put(s, es))), machine_(tape_, 0, parameters) {}
-  void evaluate(const Expansion<N>& point) {
-    bind(machine_, *system_.model->graph, ValueAt<N>{system_, point});
+  void evaluate(const Expansion<N>& point) { evaluate_at(ValueAt<N>{system_, point}); }
+  // As above with the rule of tape/bind.h.
+  template <class Rule>
+  void evaluate_at(const Rule& rule) {
+    bind(machine_, *system_.model->graph, rule);
     machine_.evaluate();
     sizes_.clear();
   }

@@ -1,6 +1,7 @@
 #include "simulation/simulate.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 
 #include "observe/judge.h"
@@ -10,6 +11,7 @@
 #include "simulation/schedule.h"
 #include "simulation/shown_motion.h"
 #include "simulation/trust.h"
+#include "simulation/waiting_rows.h"
 
 namespace anholon {
 
@@ -29,6 +31,13 @@ Method method(const SimulationOptions& o) {
              : o.method;
 }
 
+// Rows at which the residual report looks: the first ones, then ever fewer, so that they are not what takes the time of
+// a run.
+bool looked_at(std::size_t row) {
+  constexpr std::size_t kFirst = 64;
+  return row % std::bit_ceil(row / kFirst + 1) == 0;
+}
+
 Column monitored(const Model& model) {
   Column es;
   for (const Monitor& m : model.monitors) es.push_back(m.value);
@@ -42,10 +51,10 @@ class Run {
   using W = Wider<N>;
   Run(Workspace& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), power_(anholon::power(*s.mechanics)),
-        course_(s, step_settings(o), method(o), watched_quadratures(s, power_),
-                std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
-        shown_(course_), rows_(sink, o.digits), watch_(s, power_, o.conserved, motion().parameters()),
-        angles_(s, motion().parameters()), judge_(s, o), supports_(s), paces_(s.model->events) {
+        stages_(std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
+        course_(s, step_settings(o), method(o), watched_quadratures(s, power_), stages_), shown_(course_),
+        rows_(sink, o.digits), watch_(s, power_, o.conserved, motion().parameters()),
+        angles_(s, doubles(motion().parameters())), judge_(s, o), supports_(s), paces_(s.model->events) {
     report_.model = s.model->title;
     report_.form = s.system.form->name;
     report_.constraints_each = constraint_reports(s);
@@ -67,6 +76,11 @@ class Run {
   Motion<N>& motion() { return course_.taylor(); }
   const Motion<N>& motion() const { return course_.taylor(); }
 
+  static std::vector<double> doubles(const std::vector<W>& numbers) {
+    std::vector<double> list;
+    for (const W& x : numbers) list.push_back(to_double(x));
+    return list;
+  }
   int highest() const { return largest_order(s_, motion().program().d); }
 
   void note(const std::string& text) {
@@ -79,6 +93,7 @@ class Run {
   Outcome begin() {
     if (Outcome o = course_.start(o_.state); !o.ok()) return o;
     schedule_ = RowSchedule<W>(o_, course_.time());
+    prepare_rows();
     if (course_.at(schedule_.start()).ok()) watch_.start(course_.point());
     if (Outcome o = motion().within_bounds(); !o.ok()) return o;
     if (schedule_.forward())
@@ -89,6 +104,7 @@ class Run {
   // Another integrator, whose motion is then the one that is written.
   void show_second() {
     if (o_.integrator == Method::taylor) return;
+    waiting_.reset();
     if constexpr (std::same_as<N, double>)
       shown_.show(std::make_unique<SecondMotion>(
           s_, o_.state, watched_quadratures(s_, power_)[0],
@@ -108,6 +124,7 @@ class Run {
 
   // Stores the state from which a run goes on with the same bits.
   void save() {
+    settle_rows();
     SavedRun to;
     motion().save(to);
     watch_.save(to);
@@ -118,7 +135,7 @@ class Run {
     to.set_numbers<double>("given", {static_cast<double>(rows_.rows()), static_cast<double>(steps)});
     std::vector<double> worst, angles;
     for (const double* x : carried()) worst.push_back(*x);
-    for (const auto& least : angles_.least) angles.insert(angles.end(), {least.value, to_double(least.t)});
+    for (const auto& least : angles_.least) angles.insert(angles.end(), {least.value, least.t});
     to.set_numbers("residuals", worst);
     to.set_numbers("angles", angles);
     o_.save(to);
@@ -137,8 +154,9 @@ class Run {
     const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
     for (std::size_t i = 0; i < worst.size(); ++i) *residuals[i] = worst[i];
     const std::vector<double> angles = from.numbers<double>("angles", 2 * angles_.least.size());
-    for (std::size_t i = 0; i < angles_.least.size(); ++i) angles_.least[i] = {angles[2 * i], W(angles[2 * i + 1])};
+    for (std::size_t i = 0; i < angles_.least.size(); ++i) angles_.least[i] = {angles[2 * i], angles[2 * i + 1]};
     schedule_ = RowSchedule<W>(o_, start, given_until);
+    prepare_rows();
     return {};
   }
 
@@ -167,6 +185,7 @@ class Run {
       saved = std::chrono::steady_clock::now();
       pause = std::min(kLonger * pause, o_.save_seconds);
     }
+    settle_rows();
     if (report_.outcome.ok() && course_.steps() > 0 && shown_.at(course_.time()).ok())
       watch_.end(shown_.point(), shown_.work(), report_);
     if (o_.save) save();
@@ -177,8 +196,9 @@ class Run {
   bool step() {
     watch_.turn_over(course_.integrals()[0]);
     if (report_.outcome = course_.step(schedule_.end()); !report_.outcome.ok()) return false;
-    angles_.see(course_.begun());
-    if (report_.outcome = watch_.still_redundant(course_.begun(), report_); !report_.outcome.ok()) return false;
+    angles_.see(to_double(course_.before()), [&](std::size_t a) { return to_double(course_.begun_coordinate(a)); });
+    if (watch_.any_redundant())
+      if (report_.outcome = watch_.still_redundant(course_.begun(), report_); !report_.outcome.ok()) return false;
     const MassLimit<W> masses = masses_positive_until<N>(*s_.model, course_);
     if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
@@ -210,7 +230,7 @@ class Run {
       reached_ = motion().stepper().time();
       return false;
     }
-    angles_.set_parameters(motion().parameters());
+    angles_.set_parameters(doubles(motion().parameters()));
     if (motion().at(motion().stepper().time()).ok()) watch_.enter(motion().point(), motion().parameters());
     if (!goes_on) ended();
     return goes_on && report_.outcome.ok();
@@ -254,23 +274,91 @@ class Run {
 
   // The rows that lie in the last step.
   void rows_until(const W& stop) {
-    while (report_.outcome.ok() && schedule_.due(stop)) row(schedule_.take());
+    while (report_.outcome.ok() && schedule_.due(stop)) {
+      const auto due = schedule_.take();
+      row_in_step(due.t, due.label);
+    }
     if (schedule_.reaches(*schedule_.given(), stop)) return;
-    if (schedule_.every_step() && report_.outcome.ok()) row(stop, "");
+    if (schedule_.every_step() && report_.outcome.ok()) row_in_step(stop, "");
     schedule_.set_given(stop);
+  }
+
+  // Rows of Taylor's steps may be computed side by side.
+  void prepare_rows() {
+    if constexpr (std::same_as<N, double>)
+      if (motion().stepper().accelerated())
+        waiting_ = WaitingRows::make(s_, o_.conserved, stages_, motion().parameters(), motion().start_state(),
+                                     to_double(schedule_.end()));
+  }
+
+  void row_in_step(const W& t, const std::string& label) {
+    if constexpr (std::same_as<N, double>)
+      if (waiting_ && course_.by_taylor() && !motion().stepper().one_sided()) {
+        waiting_->add(motion().stepper(), t, label);
+        if (waiting_->full()) compute_rows();
+        return;
+      }
+    settle_rows();
+    if (report_.outcome.ok()) row(t, label);
+  }
+
+  // Computes the rows that wait. What has ended the motion stands, unless one of them has no solution.
+  void settle_rows() {
+    Outcome why = std::exchange(report_.outcome, {});
+    compute_rows();
+    if (report_.outcome.ok()) report_.outcome = std::move(why);
+  }
+
+  void compute_rows() {
+    if constexpr (std::same_as<N, double>)
+      if (waiting_)
+        waiting_->compute([&](const WaitingRows::Computed& row) {
+          computed(row);
+          return report_.outcome.ok();
+        });
+  }
+
+  // The reference looks at a row that was computed side by side with others, if it is one of those that are looked at,
+  // and makes it if it has to.
+  void computed(const WaitingRows::Computed& row) {
+    const RowPlace& place = row.place();
+    const bool good = row.good();
+    if (!good || looked_at(report_.rows)) {
+      report_.outcome = motion().settle_at(place);
+      if (report_.outcome.ok()) report_.outcome = see(motion().point());
+      if (!report_.outcome.ok()) return;
+    } else {
+      watch_.track([&](std::size_t k) { return row.sum(k); }, [&](std::size_t k) { return row.terms(k); });
+    }
+    if (good)
+      row_values(s_, highest(), row, row, numbers_);
+    else
+      row_values(s_, highest(), motion().point(), watch_, numbers_);
+    write_row(place.t, row.label(),
+              [&](std::size_t r) { return good ? row.multiplier(r) : to_double(watch_.multiplier(r)); });
   }
 
   void row(const typename RowSchedule<W>::Due& due) { row(due.t, due.label); }
 
+  // A row by the reference.
   void row(const W& t, const std::string& label) {
     report_.outcome = shown_.at(t);
     if (!report_.outcome.ok()) return;
-    const Expansion<W>& here = shown_.point();
-    report_.outcome = watch_.see(here, report_);
-    const std::vector<W> numbers = row_values(s_, highest(), here, watch_);
-    judge_.row(t, label, numbers, course_);
-    supports_.see(to_double(t), [&](std::size_t r) { return to_double(watch_.multiplier(r)); });
-    rows_.row(t, label, numbers);
+    report_.outcome = see(shown_.point());
+    row_values(s_, highest(), shown_.point(), watch_, numbers_);
+    write_row(t, label, [&](std::size_t r) { return to_double(watch_.multiplier(r)); });
+  }
+
+  Outcome see(const Expansion<W>& point) {
+    ++report_.rows_looked_at;
+    return watch_.see(point, report_);
+  }
+
+  template <class Multiplier>
+  void write_row(const W& t, const std::string& label, const Multiplier& multiplier) {
+    judge_.row(t, label, numbers_, course_);
+    supports_.see(to_double(t), multiplier);
+    rows_.row(t, label, numbers_);
     ++report_.rows;
   }
 
@@ -320,12 +408,15 @@ class Run {
   Workspace& s_;
   const SimulationOptions& o_;
   Power power_;
+  int stages_;  // orders beyond the leading derivatives that rows show
   Course<N> course_;
   ShownMotion<N> shown_;
   RowSchedule<W> schedule_;
+  std::unique_ptr<WaitingRows> waiting_;  // null if rows are made by the reference
+  std::vector<W> numbers_;                // of a row
   RowWriter<N> rows_;
   Watch<W> watch_;
-  AngleWatch<W> angles_;
+  AngleWatch angles_;
   Judge<N> judge_;
   SupportWatch supports_;
   EventPaces<W> paces_;

@@ -63,7 +63,7 @@ std::vector<std::string> passed_limits(const Model& model, const Motion<N>& moti
 // angles near their singularity.
 template <Number N>
 std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const Watch<Wider<N>>& watch,
-                              const AngleWatch<Wider<N>>& angles) {
+                              const AngleWatch& angles) {
   constexpr double kNearSingular = 1e-3;
   // Far above what integration and round-off leave.
   constexpr double kConserved = 1e-6;
@@ -89,7 +89,7 @@ std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const
     if (angles.least[i].value < kNearSingular)
       list.push_back(
           {"the angles " + angles.triples[i].angles +
-               " come near their singularity at t = " + number_text(to_double(angles.least[i].t), 6),
+               " come near their singularity at t = " + number_text(angles.least[i].t, 6),
            "describe the orientation of '" + angles.triples[i].body + "' by a quaternion: quat(e0, e1, e2, e3)"});
   return list;
 }

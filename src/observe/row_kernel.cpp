@@ -1,0 +1,44 @@
+#include "observe/row_kernel.h"
+
+#include <cmath>
+
+#include "base/assert.h"
+
+namespace anholon {
+
+std::unique_ptr<RowKernel> RowKernel::make(Workspace& s, const Column& outputs, int stages,
+                                           const std::vector<long double>& parameters, const RowPlace& here,
+                                           double end) {
+  const Column put = OutputTape<long double>::put(s, outputs);
+  if (!s.elimination.pivots().empty() || !s.redundant.empty() || s.routh || !s.model->events.empty() ||
+      orders_needed(s, put) > 0)
+    return nullptr;
+  auto program = std::make_shared<const Program>(anholon::program(s.system, s.structure, put));
+  if (!no_plan(*program).empty()) return nullptr;
+  const std::vector<double> state(here.state.begin(), here.state.end());
+  auto plan = KernelPlan::make(std::move(program), std::max(1, stages), parameters, static_cast<double>(here.t), state,
+                               Company::in_lanes);
+  return plan ? std::unique_ptr<RowKernel>(new RowKernel(std::move(plan), parameters, end)) : nullptr;
+}
+
+RowKernel::RowKernel(std::shared_ptr<const KernelPlan> plan, const std::vector<long double>& parameters, double end)
+    : plan_(std::move(plan)), kernel_(plan_, tiers().back().lanes), end_(end) {
+  for (int lane = 0; lane < kernel_.lanes(); ++lane) kernel_.set_parameters(lane, parameters);
+}
+
+void RowKernel::compute(std::span<const RowPlace> places) {
+  ANHOLON_ASSERT(!places.empty() && places.size() <= lanes());
+  code_.step(plan_, static_cast<double>(places.front().t), end_, kernel_.lanes());
+  for (std::size_t lane = 0; lane < lanes(); ++lane) {
+    const RowPlace& p = places[std::min(lane, places.size() - 1)];
+    kernel_.place(static_cast<int>(lane), p.state, p.leading);
+    kernel_.set_time(static_cast<int>(lane), static_cast<double>(p.t));
+  }
+  kernel_.begin();
+}
+
+bool RowKernel::good(std::size_t lane) const {
+  return kernel_.pivots(static_cast<int>(lane)).health > kHealthy && kernel_.reaches(static_cast<int>(lane));
+}
+
+}  // namespace anholon

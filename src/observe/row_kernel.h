@@ -1,0 +1,47 @@
+// The numbers of rows in doubles, several rows side by side: a kernel projects the states on the hidden constraints,
+// solves for the leading derivatives, and computes what else a row shows.
+//
+// A row depends on its own time and state alone: its bits are the same in any lane, beside any other rows, and with or
+// without machine code.
+#pragma once
+#include <memory>
+
+#include "motion/code_for_long_runs.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+// A time of a motion, the state there (x_j^(k), k < d_j) and a guess of the leading derivatives.
+using RowPlace = Start<long double>;
+
+class RowKernel {
+ public:
+  // `outputs`: expressions whose values the rows need. `stages`: how many orders beyond the leading derivatives. `here`:
+  // the start of the motion; `end`: its end.
+  // Returns null if rows need the reference: the form eliminates coordinates, constraints are redundant, events change
+  // the parameters, an expression holds derivatives that are not solved for, or there is no kernel for the equations.
+  static std::unique_ptr<RowKernel> make(Workspace& scenario, const Column& outputs, int stages,
+                                         const std::vector<long double>& parameters, const RowPlace& here, double end);
+
+  std::size_t lanes() const { return static_cast<std::size_t>(kernel_.lanes()); }
+  // Puts the places into the lanes, at most `lanes()` of them, and computes.
+  void compute(std::span<const RowPlace> places);
+
+  // Whether the pivots of a lane are large enough for its numbers to be trusted; else the reference has to make the row.
+  bool good(std::size_t lane) const;
+  // x_j^(k), k <= d_j + stages.
+  double derivative(std::size_t j, int k, std::size_t lane) const {
+    return kernel_.derivative(j, k, static_cast<int>(lane));
+  }
+  double output(std::size_t i, std::size_t lane) const { return kernel_.quadrature(i, 0, static_cast<int>(lane)); }
+
+ private:
+  RowKernel(std::shared_ptr<const KernelPlan> plan, const std::vector<long double>& parameters, double end);
+
+  std::shared_ptr<const KernelPlan> plan_;
+  Kernel kernel_;
+  double end_;
+  CodeForLongRuns code_;
+};
+
+}  // namespace anholon
