@@ -19,6 +19,8 @@ SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, cons
   RunToJudge<long double> run;
   run.columns = ensemble_places(columns_after_time(s, largest_order(s, s.structure.d)));
   run.knows_resets = false;
+  run.by_kernel = o.kernel;
+  report.steps = r.steps;
   const auto end = from_rational<long double>(numbers.to ? *numbers.to : o.to);
   const auto add = [&](long double t, auto begin, auto last) {
     run.rows.add(t, std::vector<long double>(begin, last), 0);

@@ -20,7 +20,8 @@ struct StepSettings {
   bool measure = true;              // how regular J is, where the kernel does not ask for it
   std::size_t integrals =
       0;  // so many of the first quadratures are integrated to the tolerance; the others as the motion's steps have it
-  bool multipliers = false;  // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
+  bool other_rounding = false;  // of a kernel's coefficients (Rounding::other)
+  bool multipliers = false;     // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
 };
 
 // ceil(-ln(tolerance)/2 + 1), and at least 4: the order of least work for the tolerance if that grows with the square

@@ -444,7 +444,8 @@ void Stepper<N>::accelerate(std::shared_ptr<const KernelPlan> plan)
 {
   if (!plan) return;
   auto kernel = std::make_shared<Kernel>(std::move(plan));
-  kernel->set_parameters(0, expander_.wide_parameters());
+  kernel->set_parameters(0, expander_.wide_parameters(),
+                         settings_.other_rounding ? Rounding::other : Rounding::nearest);
   accelerate(std::move(kernel), 0);
 }
 

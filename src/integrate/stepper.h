@@ -89,6 +89,9 @@ class Stepper {
   void foretell(const W& t, std::vector<W>& state, std::vector<W>& leading) const {
     expander_.state_at(track_, t - before_, state, leading);
   }
+  // The dense output in the numbers of the expansion, for a rough measure. Kernels in unknowns of their own know no
+  // multipliers.
+  N coefficient(std::size_t j, int k) const { return expander_.coefficient(j, k); }
   // Whether the last step's polynomials end with the leading derivatives, as formulas have no derivatives there.
   bool one_sided() const { return one_sided_.has_value(); }
   // Unknown j where the last step began.

@@ -315,8 +315,8 @@ void Kernel::set_shrink(double shrink) {
   set_all(plan_->tables().margin, -(shrink + 0.7 / plan_->plan().stages) * kLog2e);
 }
 
-void Kernel::set_parameters(int lane, const std::vector<long double>& parameters) {
-  const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters);
+void Kernel::set_parameters(int lane, const std::vector<long double>& parameters, Rounding rounding) {
+  const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters, rounding);
   for (std::size_t i = 0; i < values.size(); ++i) number(static_cast<std::uint32_t>(i), lane) = values[i];
   if (!plan_->map()) return;
   while (readers_.size() < static_cast<std::size_t>(lanes_)) readers_.emplace_back(*plan_->map(), parameters);

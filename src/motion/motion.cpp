@@ -27,20 +27,24 @@ Motion<N>::Motion(Workspace& s, const StepSettings& settings, std::vector<Expr> 
   begun_parameters_ = parameters_;
 }
 
-// Each number by another multiple of its round-off: changes that are alike could be such as the constraints take back.
+// Each number by another multiple of a round-off: changes that are alike could be such as the constraints take back.
 template <Number W>
-static void change_last_digits(std::vector<W>& state) {
+static void change_last_digits(std::vector<W>& state, const W& roundoff) {
   constexpr int kMost = 5, kPeriod = 2 * kMost + 1, kStride = 7, kFirst = 3;
   for (std::size_t i = 0; i < state.size(); ++i) {
     const int by = (static_cast<int>(i % kPeriod) * kStride + kFirst) % kPeriod - kMost;
-    state[i] += state[i] * unit_roundoff<W>() * W(by == 0 ? kMost : by);
+    state[i] += state[i] * roundoff * W(by == 0 ? kMost : by);
   }
 }
 
 template <Number N>
 Outcome Motion<N>::start(const StateChoice& choice) {
   if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
-  if (other_digits_) change_last_digits(start_.state);
+  // Those of a motion in doubles may depend on the round-off of each, though its state is wider: a fifth of it here.
+  constexpr double kOfKernel = 0.2;
+  if (other_digits_)
+    change_last_digits(start_.state, settings_.other_rounding ? W(convert<W>(unit_roundoff<N>()) * W(kOfKernel))
+                                                              : unit_roundoff<W>());
   accelerate(*leg_);
   Outcome o = leg_->stepper.start(start_.t, start_.state, start_.leading);
   if (o.kind == OutcomeKind::not_a_number) o.message += " at t = " + number_text(to_double(start_.t), 12);

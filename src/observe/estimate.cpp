@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "observe/waiting_rows.h"
 #include "observe/watch.h"
 
 namespace anholon {
@@ -25,7 +26,7 @@ class SharperRun {
   SharperRun(Workspace& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<V>& run)
       : s_(s), o_(o), motion_(s, settings, {}, orders_of_rows(s)), outputs_(s, motion_.parameters()),
         highest_(largest_order(s, motion_.program().d)), tolerance_(std::exp(settings.log_tolerance)), run_(run),
-        rows_(run.rows.take()) {
+        rows_(run.rows.take()), by_kernel_(settings.kernel) {
     for (const SampledRow<V>& r : rows_) times_.push_back(time_of(r));
     compared_.resize(rows_.size());
   }
@@ -38,6 +39,16 @@ class SharperRun {
     t0_ = motion_.stepper().time();
     end_ = times_.back();
     forward_ = end_ > t0_;
+    if constexpr (std::same_as<M, double>)
+      if (by_kernel_ && motion_.stepper().accelerated())
+        waiting_ =
+            WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(), to_double(end_));
+    const Outcome o = follow();
+    const Outcome last = compare_waiting();
+    return o.ok() ? last : o;
+  }
+
+  Outcome follow() {
     for (;;) {
       if (Outcome o = rows_of_step(); !o.ok()) return o;
       bool goes_on = true;
@@ -190,37 +201,76 @@ class SharperRun {
 
   Outcome compare(std::size_t i) {
     const W t = times_[i];
-    if (Outcome at = motion_.at(t); !at.ok()) return at;
+    if constexpr (std::same_as<M, double>)
+      if (waiting_ && motion_.stepper().steps() > 0 && !motion_.stepper().one_sided()) {
+        waiting_->add(motion_.stepper(), t, {});
+        foretold_.push_back({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
+        return waiting_->full() ? compare_waiting() : Outcome{};
+      }
+    const Outcome at = motion_.at(t);
+    if (at.ok()) compare_with_point({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
+    return at;
+  }
+
+  // What the polynomials of a step say of the leading derivatives of the coordinates at a row; the length of the step,
+  // or 0 where the row is not inside of a step that ends by itself.
+  struct Foretold {
+    std::size_t row;
+    std::vector<W> leading;
+    double step;
+  };
+
+  Outcome compare_waiting() {
+    Outcome o;
+    if constexpr (std::same_as<M, double>)
+      if (waiting_) {
+        std::size_t next = 0;
+        waiting_->compute([&](const WaitingRows::Computed& row) {
+          const Foretold& foretold = foretold_[next++];
+          if (row.good())
+            compare(foretold, row, row);
+          else if (o = motion_.settle_at(row.place()); o.ok())
+            compare_with_point(foretold);
+          return o.ok();
+        });
+        foretold_.clear();
+      }
+    return o;
+  }
+
+  void compare_with_point(const Foretold& foretold) {
     outputs_.see(motion_.point());
-    std::vector<W> run;
+    compare(foretold, motion_.point(), outputs_);
+  }
+
+  template <class Point, class Outputs>
+  void compare(const Foretold& foretold, const Point& here, const Outputs& outputs) {
+    const std::size_t i = foretold.row;
+    std::vector<W> run, sharper;
     for (const V& v : rows_[i].values) run.push_back(convert<W>(v));
-    const std::vector<double> missed = kept(missed_at(t));
-    RowComparison::Row row =
-        difference(s_, to_double(t), run, kept(row_values(s_, highest_, motion_.point(), outputs_)), outputs_);
+    row_values(s_, highest_, here, outputs, sharper);
+    const std::vector<double> missed = kept(missed_at(foretold, here));
+    RowComparison::Row row = difference(s_, to_double(times_[i]), run, kept(std::move(sharper)), outputs);
     for (std::size_t j = 0; j < row.differences.size(); ++j) row.differences[j] += missed[j];
     if (!compared_[i] || weight(row) < weight(*compared_[i])) compared_[i] = std::move(row);
-    return {};
   }
 
   // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the
   // equations at a row, by far more than the tolerance, the state misses their difference times the step. Kinks and
   // events make jumps at its ends.
-  std::vector<double> missed_at(const W& t) {
+  template <class Point>
+  std::vector<double> missed_at(const Foretold& foretold, const Point& here) {
     constexpr double kFarMore = 1e4;
-    const Stepper<M>& stepper = motion_.stepper();
-    const Expansion<W>& here = motion_.point();
     const std::size_t n = s_.system.coordinates;
     std::vector<double> missed(columns_after_time(s_, highest_).size(), 0.0);
-    const bool inside =
-        forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
-    if (!inside || at_kink_ || was_kink_ || motion_.fired()) return missed;
-    const double h = to_double(last_step());
+    const double h = foretold.step;
+    if (h == 0) return missed;
     for (std::size_t a = 0; a < n; ++a) {
       const int d = motion_.program().d[a];
       if (d == 0) continue;
-      const W leading = here.derivative(a, d);
-      const double by = to_double(W(abs(W(leading_of_polynomial(a, t) - leading)))) * h,
-                   size = std::max(1.0, std::abs(to_double(here.derivative(a, d - 1))));
+      const W leading = W(here.derivative(a, d));
+      const double by = to_double(W(abs(W(foretold.leading[a] - leading)))) * h,
+                   size = std::max(1.0, std::abs(to_double(W(here.derivative(a, d - 1)))));
       if (!(by > kFarMore * tolerance_ * size)) continue;
       missed[static_cast<std::size_t>(d - 1) * n + a] = by;
       if (d > 1) missed[static_cast<std::size_t>(d - 2) * n + a] = by * h;
@@ -228,7 +278,18 @@ class SharperRun {
     return missed;
   }
 
-  // The derivative that leads unknown j, of the last step's polynomial.
+  bool inside_step(const W& t) const {
+    const Stepper<M>& stepper = motion_.stepper();
+    if (at_kink_ || was_kink_ || motion_.fired()) return false;
+    return forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
+  }
+
+  // The derivatives that lead the coordinates, of the last step's polynomials.
+  std::vector<W> leading_of_polynomials(const W& t) const {
+    std::vector<W> list;
+    for (std::size_t a = 0; a < s_.system.coordinates; ++a) list.push_back(leading_of_polynomial(a, t));
+    return list;
+  }
   W leading_of_polynomial(std::size_t j, const W& t) const {
     const Stepper<M>& stepper = motion_.stepper();
     const int d = motion_.program().d[j];
@@ -237,7 +298,7 @@ class SharperRun {
     for (int k = stepper.degree(j); k >= d; --k) {
       W factor(1);
       for (int i = 0; i < d; ++i) factor *= W(k - i);
-      sum = sum * dt + factor * stepper.dense(j, k);
+      sum = sum * dt + factor * convert<W>(stepper.coefficient(j, k));
     }
     return sum;
   }
@@ -249,7 +310,7 @@ class SharperRun {
     return w;
   }
 
-  const Scenario& s_;
+  Workspace& s_;
   const SimulationOptions& o_;
   Motion<M> motion_;
   RowOutputs<W> outputs_;
@@ -259,6 +320,9 @@ class SharperRun {
   std::vector<SampledRow<V>> rows_;
   std::vector<W> times_;
   std::vector<std::optional<RowComparison::Row>> compared_;
+  bool by_kernel_;
+  std::unique_ptr<WaitingRows> waiting_;  // null if rows are made by the reference
+  std::vector<Foretold> foretold_;        // of the rows that wait
   std::vector<EventMoment<W>> met_;
   W t0_{0}, end_{0};
   bool forward_ = true, extended_ = false, at_kink_ = false, was_kink_ = false;
@@ -328,19 +392,6 @@ std::vector<SampledRow<W>> SampledRows<W>::take() {
   return rows;
 }
 
-template <Number W>
-RowComparison::Row difference(const Scenario& s, double t, const std::vector<W>& run, const std::vector<W>& sharper,
-                              const RowOutputs<W>& outputs) {
-  RowComparison::Row row{t, {}, {}, {}};
-  const std::size_t n = sharper.size(), monitors = s.model->monitors.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    row.differences.push_back(to_double(W(abs(W(run[j] - sharper[j])))));
-    row.magnitudes.push_back(to_double(W(abs(sharper[j]))));
-    row.terms.push_back(j + monitors < n ? row.magnitudes.back() : to_double(outputs.monitor_terms(j + monitors - n)));
-  }
-  return row;
-}
-
 template <Number N>
 double written_roundoff(const SimulationOptions& o) {
   const double of_text = 0.5 * std::pow(10.0, -(o.digits + 1));
@@ -352,10 +403,21 @@ double written_roundoff(const SimulationOptions& o) {
     return to_double(unit_roundoff<N>());
 }
 
+// Whether the second run of a motion in doubles is made by a kernel in doubles, with other roundings. Where the
+// tolerance is near the round-off of doubles, and in a few steps, it would not differ from the motion by enough.
+static bool in_doubles(const SimulationOptions& o, bool by_kernel, std::size_t steps) {
+  constexpr std::size_t kFew = 32;
+  constexpr double kLastDigits = 1e-13;
+  return by_kernel && steps > kFew && o.tolerance.get_d() >= kLastDigits * (1 - 1e-9);
+}
+
 template <Number N>
 void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N>>& run, SimulationReport& report) {
-  const Rational tolerance = o.tolerance / kSharper;
+  Rational tolerance = o.tolerance / kSharper;
+  const bool doubles = std::same_as<N, double> && in_doubles(o, run.by_kernel, report.steps);
+  if (doubles) tolerance = std::max(tolerance, Rational(1, 100'000'000'000'000));
   StepSettings settings{natural_logarithm(tolerance), 0, o.most_steps, o.cancelled};
+  settings.other_rounding = doubles;
   // A stiff motion that is short by another method is long for Taylor.
   if (o.estimate == ErrorEstimate::short_runs)
     settings.most_steps = std::min(settings.most_steps, kMostTimesLonger * kShortRun);
@@ -367,6 +429,9 @@ void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N
   } else if constexpr (std::same_as<N, Quad>) {
     const PrecisionScope precision(kQuadDigits + kMoreDigits);
     compare<Multi, Quad>(s, o, settings, run, report);
+  } else if (doubles) {
+    numbers = "with other roundings";
+    if constexpr (std::same_as<N, double>) compare<double, double>(s, o, settings, run, report);
   } else {
     bool wide_enough = true;
     if constexpr (std::same_as<N, long double>) wide_enough = !(tolerance.get_d() < to_double(unit_roundoff<N>()));
@@ -381,14 +446,9 @@ void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N
                           std::to_string(settings.order);
 }
 
-#define INSTANTIATE(W)                                                                                                 \
-  template class SampledRows<W>;                                                                                       \
-  template RowComparison::Row difference(const Scenario&, double, const std::vector<W>&, const std::vector<W>&,        \
-                                         const RowOutputs<W>&);
-INSTANTIATE(long double)
-INSTANTIATE(Quad)
-INSTANTIATE(Multi)
-#undef INSTANTIATE
+template class SampledRows<long double>;
+template class SampledRows<Quad>;
+template class SampledRows<Multi>;
 
 #define INSTANTIATE(N)                                                                                                 \
   template void estimate_error<N>(Workspace&, const SimulationOptions&, RunToJudge<Wider<N>>&, SimulationReport&);     \

@@ -1,8 +1,7 @@
-// The global error of a run, by a second and sharper one: in wider numbers where there are any, at a tolerance 100
-// times smaller
-// and two orders higher, from a start that differs in its last digits where both would round it alike. The two are
-// compared in every column, at
-// rows all along the run. A motion that forgets its start (a double pendulum after long) shows as digits lost.  (theory: integrals)
+// The global error of a run, by a second and sharper one: at a tolerance 100 times smaller and two orders higher, in
+// wider numbers where there are any, or by a kernel in doubles that rounds its coefficients otherwise; from a start that
+// differs in its last digits where both would round it alike. The two are compared in every column, at rows all along
+// the run. A motion that forgets its start (a double pendulum after long) shows as digits lost.  (theory: integrals)
 #pragma once
 #include "motion/motion.h"
 #include "observe/options.h"
@@ -59,6 +58,7 @@ struct RunToJudge {
   std::vector<std::size_t> columns;  // of a row, that its values are; none: all
   std::optional<W> since;            // events up to there are not counted: it goes on with an earlier run
   bool knows_resets = true;          // else an event may have changed the state any number of times
+  bool by_kernel = false;            // its expansions were made by a kernel in doubles
 };
 
 // N: the numbers of the run. Fills `error`, or `no_error`.
@@ -70,10 +70,20 @@ void estimate_error(Workspace& scenario, const SimulationOptions& options, RunTo
 template <Number N>
 double written_roundoff(const SimulationOptions& options);
 
-// The differences of two rows.
-template <Number W>
-RowComparison::Row difference(const Scenario& scenario, double t, const std::vector<W>& run,
-                              const std::vector<W>& sharper, const RowOutputs<W>& outputs);
+// The differences of two rows; `outputs` are of the sharper one.
+template <Number W, class Outputs>
+RowComparison::Row difference(const Scenario& s, double t, const std::vector<W>& run, const std::vector<W>& sharper,
+                              const Outputs& outputs) {
+  RowComparison::Row row{t, {}, {}, {}};
+  const std::size_t n = sharper.size(), monitors = s.model->monitors.size();
+  for (std::size_t j = 0; j < n; ++j) {
+    row.differences.push_back(to_double(W(abs(W(run[j] - sharper[j])))));
+    row.magnitudes.push_back(to_double(W(abs(sharper[j]))));
+    row.terms.push_back(j + monitors < n ? row.magnitudes.back()
+                                         : to_double(W(outputs.monitor_terms(j + monitors - n))));
+  }
+  return row;
+}
 
 extern template class SampledRows<long double>;
 extern template class SampledRows<Quad>;

@@ -50,6 +50,8 @@ void Judge<N>::estimate(const Course<N>& course, SimulationReport& report) {
   } else if (!wanted(course)) {
     report.no_error = "the run has more than " + std::to_string(kShortRun) + " steps: --error-estimate makes one";
   } else {
+    if constexpr (std::same_as<N, double>)
+      run_.by_kernel = o_.kernel && course.taylor().stepper().accelerated() && course.report().steps == 0;
     estimate_error<N>(s_, o_, run_, report);
   }
   if (!report.error || !report.error->lost) return;

@@ -87,6 +87,7 @@ class ReportWriter {
     number("constraints_before_projection", r.constraints);
     number("power", r.power);
     number("smallest_sigma", r.smallest_sigma);
+    if (r.rows_looked_at > 0) count("rows", r.rows_looked_at);
     j_.close();
   }
 
@@ -332,6 +333,7 @@ SimulationReport report(const Fields& f, OutcomeKind kind) {
   r.constraints_kept = residuals.number("constraints");
   r.constraints = residuals.number("constraints_before_projection");
   r.power = residuals.number("power"), r.smallest_sigma = residuals.number("smallest_sigma");
+  if (residuals.has("rows")) r.rows_looked_at = residuals.count("rows");
   r.smallest_sigma_t = f.number("smallest_sigma_t"), r.t = f.number("t");
   r.steps = f.count("steps"), r.order = f.integer("order");
   if (f.has("eliminations")) r.eliminations = f.count("eliminations");

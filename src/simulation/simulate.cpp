@@ -6,12 +6,12 @@
 
 #include "observe/judge.h"
 #include "observe/supports.h"
+#include "observe/waiting_rows.h"
 #include "simulation/event_paces.h"
 #include "simulation/row_writer.h"
 #include "simulation/schedule.h"
 #include "simulation/shown_motion.h"
 #include "simulation/trust.h"
-#include "simulation/waiting_rows.h"
 
 namespace anholon {
 

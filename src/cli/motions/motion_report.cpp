@@ -83,10 +83,14 @@ void print_report(const Scenario& s, const SimulationReport& r) {
   // `check` prints the notes that concern the model itself; here only those of the state follow.
   for (const std::string& n : s.state.notes) say(stderr, "note: %s\n", n.c_str());
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
+  const std::string looked_at =
+      r.rows_looked_at < r.rows ? ", at " + std::to_string(r.rows_looked_at) + " of " + std::to_string(r.rows) + " rows"
+                                : "";
   say(stderr,
-      "residual report (relative): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance %s\n",
-      small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(), before.c_str(),
-      worst_constraint(r).c_str(), small(r.power).c_str());
+      "residual report (relative%s): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance "
+      "%s\n",
+      looked_at.c_str(), small(r.newton).c_str(), small(r.projected).c_str(), small(r.constraints_kept).c_str(),
+      before.c_str(), worst_constraint(r).c_str(), small(r.power).c_str());
   if (r.error)
     say(stderr, "digits to trust%s\n", digits_to_trust(*r.error).c_str());
   else if (!r.no_error.empty())

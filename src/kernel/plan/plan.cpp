@@ -2,8 +2,15 @@
 
 namespace anholon {
 
+// The double on the other side of x; x itself if a double holds it.
+static double other_side(long double x) {
+  const double nearest = static_cast<double>(x);
+  const long double rest = x - nearest;
+  return rest == 0 || !std::isfinite(nearest) ? nearest : std::nextafter(nearest, rest > 0 ? HUGE_VAL : -HUGE_VAL);
+}
+
 std::vector<double> coefficient_values(const Plan& plan, const Program& program,
-                                       const std::vector<long double>& parameters) {
+                                       const std::vector<long double>& parameters, Rounding rounding) {
   const Machine<long double> machine(program.tape, 0, parameters);
   std::vector<double> values;
   for (const Coefficient& c : plan.coefficients) {
@@ -12,7 +19,7 @@ std::vector<double> coefficient_values(const Plan& plan, const Program& program,
       const long double x = machine.series(s & ~Coefficient::kReciprocal)[0];
       v = s & Coefficient::kReciprocal ? v / x : v * x;
     }
-    values.push_back(static_cast<double>(v));
+    values.push_back(rounding == Rounding::nearest ? static_cast<double>(v) : other_side(v));
   }
   return values;
 }

@@ -148,8 +148,12 @@ struct Plan {
   double work() const;
 };
 
+// How numbers that no double holds are rounded: to the nearest double, or to the other one of the two doubles between
+// which they lie. What two motions with different roundings have in common does not come from them.
+enum class Rounding : std::uint8_t { nearest, other };
 // The values of the coefficients; the values of slots are given in long double and rounded once.
 std::vector<double> coefficient_values(const Plan& plan, const Program& program,
-                                       const std::vector<long double>& parameters);
+                                       const std::vector<long double>& parameters,
+                                       Rounding rounding = Rounding::nearest);
 
 }  // namespace anholon

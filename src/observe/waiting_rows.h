@@ -33,6 +33,7 @@ class WaitingRows {
     }
     double reaction(std::size_t coordinate) const { return output(coordinate); }
     double monitor(std::size_t i) const { return output(rows_.expressions_.monitors[i].at); }
+    double monitor_terms(std::size_t i) const { return terms(i); }
     // Sum k of the monitors and the terms of the integrals, and the magnitude of its terms, as Watch::track() asks.
     double sum(std::size_t k) const { return output(rows_.sum(k).at); }
     double terms(std::size_t k) const {

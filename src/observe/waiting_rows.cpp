@@ -1,4 +1,4 @@
-#include "simulation/waiting_rows.h"
+#include "observe/waiting_rows.h"
 
 namespace anholon {
 
