@@ -255,6 +255,9 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
   for (const std::vector<Step>* list : {&plan_.point, &plan_.after})
     for (const Step& s : *list)
       if (s.act == Act::lookup) return "tables are looked up";
+  Compiled& made = lanes == 1 ? one_ : several_;
+  const std::lock_guard lock(made.making);
+  if (this->code(lanes)) return {};
   Code code;
   std::string message;
   const Tier& tier = tiers().back();
@@ -263,7 +266,6 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
       {power_of, function_of, lanes == 1 ? tier.sines_of_one : tier.sines_of_all, tier.sines_of_all, tier.lanes}, cache,
       code, message);
   if (!code.values) return message;
-  Compiled& made = lanes == 1 ? one_ : several_;
   made.code = std::move(code);
   made.lanes = lanes;
   made.ready.store(&made.code, std::memory_order_release);

@@ -5,6 +5,7 @@
 // static: if `health` is small, the reference makes the step.
 #pragma once
 #include <atomic>
+#include <mutex>
 #include <optional>
 #include <span>
 
@@ -82,6 +83,7 @@ class KernelPlan {
   int levels_ = 0, waits_ = 0;
   Company company_;
   struct Compiled {
+    std::mutex making;
     Code code;
     int lanes = 1;
     std::atomic<const Code*> ready{nullptr};

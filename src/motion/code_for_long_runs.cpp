@@ -53,13 +53,13 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
   // another core if there is one.
   constexpr double kObserved = 0.02, kLoaded = 0.1, kEachStep = 0.002;
   constexpr std::size_t kSometimes = 64;
-  if (!from_) from_ = at;
-  if (!plan || compilation_.plan == plan || (lanes == 1 && ++asked_ % kSometimes != 0) ||
+  if (!first_) first_ = {.at = at};
+  if (!plan || compilation_.plan == plan || plan->code(lanes) || (lanes == 1 && ++asked_ % kSometimes != 0) ||
       (compilation_.done && !*compilation_.done))
     return;
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - since_).count();
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - first_->when).count();
   const double compilation = kLoaded + kEachStep * static_cast<double>(plan->plan().stage.size());
-  if (elapsed < kObserved || !(elapsed * std::abs(end - at) > compilation * std::abs(at - *from_))) return;
+  if (elapsed < kObserved || !(elapsed * std::abs(end - at) > compilation * std::abs(at - first_->at))) return;
   leave();
   const auto ready = std::make_shared<std::atomic<bool>>(false);
   compilation_ = {plan, ready, std::thread([plan, lanes, ready] {

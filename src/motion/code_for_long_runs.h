@@ -31,8 +31,11 @@ class CodeForLongRuns {
   void leave();
 
   Compilation compilation_;
-  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
-  std::optional<double> from_;  // `at` when it was asked first
+  struct First {
+    std::chrono::steady_clock::time_point when = std::chrono::steady_clock::now();
+    double at;
+  };
+  std::optional<First> first_;  // when it was asked first, and where
   std::size_t asked_ = 0;
 };
 

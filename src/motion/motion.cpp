@@ -57,6 +57,11 @@ template <Number N>
 void Motion<N>::accelerate(Leg& leg) const {
   if constexpr (std::same_as<N, double>) {
     if (!settings_.kernel || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return;
+    if (given_) {
+      leg.stepper.accelerate(given_->plan);
+      leg.plan = given_->plan, leg.unmapped_plan = given_->unmapped_plan, leg.writing = given_->writing;
+      return;
+    }
     std::vector<double> state;
     for (const W& x : start_.state) state.push_back(to_double(x));
     const double t = to_double(start_.t);
@@ -81,8 +86,9 @@ void Motion<N>::accelerate(Leg& leg) const {
 template <Number N>
 void Motion<N>::write_anew() {
   const WritingEffort effort = effort_after(leg_->stepper.steps());
-  if (effort == effort_ || leg_->pivots || !leg_->stepper.accelerated()) return;
+  if (effort <= effort_ || leg_->pivots || !leg_->stepper.accelerated()) return;
   effort_ = effort;
+  given_.reset();
   auto next = same_leg();
   accelerate(*next);
   if (next->writing == leg_->writing || !next->stepper.take_over(leg_->stepper).ok()) return;

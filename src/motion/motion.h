@@ -41,6 +41,12 @@ class Motion {
   // leading derivatives the points know.
   Motion(Workspace& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
 
+  // A second motion of the same equations with the same orders: it takes the kernel's plans of the first one as they are.
+  // Before the start.
+  void use_plans_of(const Motion& first) {
+    given_ = GivenPlans{first.leg_->plan, first.leg_->unmapped_plan, first.leg_->writing};
+    effort_ = first.effort_;
+  }
   // From the consistent state; on request from one that differs from it by some round-offs.
   void start_in_other_digits(bool other) { other_digits_ = other; }
   Outcome start(const StateChoice& choice);
@@ -100,6 +106,10 @@ class Motion {
     std::unique_ptr<OutputTape<W>> pivots;  // of the elimination, where there are any
   };
 
+  struct GivenPlans {
+    std::shared_ptr<const KernelPlan> plan, unmapped_plan;
+    Writing writing;
+  };
   // Every choice of dependent coordinates on the way: whoever resumes makes the last one that was taken again.
   struct Choice {
     InitialState<double> here;
@@ -141,6 +151,7 @@ class Motion {
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;
   bool stepped_ = false, other_digits_ = false;
+  std::optional<GivenPlans> given_;
   std::vector<double> chosen_;  // what the pivots were when the elimination was chosen
   std::vector<Choice> choices_;
   Mark mark_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "observe/waiting_rows.h"
 #include "observe/watch.h"
 
 namespace anholon {
@@ -24,9 +23,9 @@ class SharperRun {
   using V = Wider<N>;
 
   SharperRun(Workspace& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<V>& run)
-      : s_(s), o_(o), motion_(s, settings, {}, orders_of_rows(s)), outputs_(s, motion_.parameters()),
+      : s_(s), o_(o), motion_(s, settings, run.quadratures, orders_of_rows(s)), outputs_(s, motion_.parameters()),
         highest_(largest_order(s, motion_.program().d)), tolerance_(std::exp(settings.log_tolerance)), run_(run),
-        rows_(run.rows.take()), by_kernel_(settings.kernel) {
+        rows_(run.rows.take()) {
     for (const SampledRow<V>& r : rows_) times_.push_back(time_of(r));
     compared_.resize(rows_.size());
   }
@@ -35,14 +34,20 @@ class SharperRun {
   Outcome go() {
     // Both runs in one type of numbers would round their start alike, and grow alike from what is lost there.
     motion_.start_in_other_digits(std::same_as<W, V> && s_.model->events.empty());
+    if constexpr (std::same_as<M, double>)
+      if (run_.motion) motion_.use_plans_of(*run_.motion);
     if (Outcome o = motion_.start(o_.state); !o.ok()) return o;
     t0_ = motion_.stepper().time();
     end_ = times_.back();
     forward_ = end_ > t0_;
     if constexpr (std::same_as<M, double>)
-      if (by_kernel_ && motion_.stepper().accelerated())
-        waiting_ =
-            WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(), to_double(end_));
+      if (motion_.stepper().accelerated()) {
+        waiting_ = run_.waiting;
+        if (!waiting_)
+          own_waiting_ = WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(),
+                                           to_double(end_));
+        if (!waiting_) waiting_ = own_waiting_.get();
+      }
     const Outcome o = follow();
     const Outcome last = compare_waiting();
     return o.ok() ? last : o;
@@ -320,8 +325,8 @@ class SharperRun {
   std::vector<SampledRow<V>> rows_;
   std::vector<W> times_;
   std::vector<std::optional<RowComparison::Row>> compared_;
-  bool by_kernel_;
-  std::unique_ptr<WaitingRows> waiting_;  // null if rows are made by the reference
+  WaitingRows* waiting_ = nullptr;  // null if rows are made by the reference
+  std::unique_ptr<WaitingRows> own_waiting_;
   std::vector<Foretold> foretold_;        // of the rows that wait
   std::vector<EventMoment<W>> met_;
   W t0_{0}, end_{0};
@@ -422,6 +427,8 @@ void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N
   if (o.estimate == ErrorEstimate::short_runs)
     settings.most_steps = std::min(settings.most_steps, kMostTimesLonger * kShortRun);
   settings.order = taylor_order(settings.log_tolerance) + 2;
+  if constexpr (std::same_as<N, double>)
+    if (doubles && run.motion) settings.order = run.motion->stepper().order();
   std::string numbers = "with " + std::to_string(kMoreDigits) + " digits more";
   if constexpr (std::same_as<N, Multi>) {
     const PrecisionScope precision(o.digits + 12 + kMoreDigits);

@@ -7,6 +7,7 @@
 #include "observe/options.h"
 #include "observe/report.h"
 #include "observe/row_comparison.h"
+#include "observe/waiting_rows.h"
 
 namespace anholon {
 
@@ -59,6 +60,10 @@ struct RunToJudge {
   std::optional<W> since;            // events up to there are not counted: it goes on with an earlier run
   bool knows_resets = true;          // else an event may have changed the state any number of times
   bool by_kernel = false;            // its expansions were made by a kernel in doubles
+  // If there are any: the motion, whose plans the second one uses, what is integrated along it, and its rows.
+  const Motion<double>* motion = nullptr;
+  std::vector<Expr> quadratures = {};
+  WaitingRows* waiting = nullptr;
 };
 
 // N: the numbers of the run. Fills `error`, or `no_error`.

@@ -35,7 +35,8 @@ void Judge<N>::events(const std::vector<Occurrence<W>>& occurrences) {
 
 // Of the rows of another integrator the motion beside it tells, of others a second run.
 template <Number N>
-void Judge<N>::estimate(const Course<N>& course, SimulationReport& report) {
+void Judge<N>::estimate(const Course<N>& course, const std::vector<Expr>& quadratures, WaitingRows* waiting,
+                        SimulationReport& report) {
   constexpr double kBeside = 2;  // that motion has an error, too
   if (o_.estimate == ErrorEstimate::never) return;
   if (report.outcome.kind == OutcomeKind::not_a_number) {
@@ -51,7 +52,8 @@ void Judge<N>::estimate(const Course<N>& course, SimulationReport& report) {
     report.no_error = "the run has more than " + std::to_string(kShortRun) + " steps: --error-estimate makes one";
   } else {
     if constexpr (std::same_as<N, double>)
-      run_.by_kernel = o_.kernel && course.taylor().stepper().accelerated() && course.report().steps == 0;
+      if (o_.kernel && course.taylor().stepper().accelerated() && course.report().steps == 0)
+        run_.by_kernel = true, run_.motion = &course.taylor(), run_.quadratures = quadratures, run_.waiting = waiting;
     estimate_error<N>(s_, o_, run_, report);
   }
   if (!report.error || !report.error->lost) return;

@@ -22,8 +22,10 @@ class Judge {
   void row(const W& t, const std::string& label, const std::vector<W>& numbers, const Course<N>& course);
   // What fired at one moment.
   void events(const std::vector<Occurrence<W>>& occurrences);
-  // Fills `error`, or `no_error`, of a run that has ended.
-  void estimate(const Course<N>& course, SimulationReport& report);
+  // Fills `error`, or `no_error`, of a run that has ended. `quadratures`: what was integrated along it; `waiting`: what
+  // computed its rows, or null.
+  void estimate(const Course<N>& course, const std::vector<Expr>& quadratures, WaitingRows* waiting,
+                SimulationReport& report);
 
  private:
   bool wanted(const Course<N>& course) const {

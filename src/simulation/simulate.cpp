@@ -382,7 +382,7 @@ class Run {
     for (const std::string& text : supports_.notes()) note(text);
     const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
     report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
-    judge_.estimate(course_, report_);
+    judge_.estimate(course_, watched_quadratures(s_, power_), waiting_.get(), report_);
   }
 
   void report_watched() {

@@ -65,13 +65,13 @@ void StateSolver<N>::start_values(const std::function<bool(const Node&)>& wanted
 template <Number N>
 Outcome StateSolver<N>::solve(const StartPlan::Stages& stages, const std::function<StartPlan::Stages()>& without) {
   const InitialState<N> before = state_;
-  const Outcome o = attempt(stages);
+  const Outcome o = attempt(stages, p_.overrides.empty());
   if (o.ok() || p_.overrides.empty()) return o;
   const InitialState<N> failed = std::exchange(state_, before);
   for (Expr u : stages->unknowns)
     if (Origin& origin = *state_.origin(node(u)); origin == Origin::given && !overridden(node(u)))
       origin = Origin::guessed;
-  const Outcome against_laws = attempt(without());
+  const Outcome against_laws = attempt(without(), true);
   if (against_laws.ok()) return {};
   state_ = failed;
   return against_laws;
@@ -88,8 +88,9 @@ StartPlan::Stages StateSolver<N>::kept_of(const StartPlan::Stages& s) const {
   return planned(m_, left_of(s->equations, s->unknowns, p_.overrides, m_.graph()), s->unknowns, s->metric, p_.mass);
 }
 
+// `tell`: whether the message of a failure is asked for.
 template <Number N>
-Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
+Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   if (!stages) return {};
   const Column& unknowns = stages->unknowns;
   Stage<N> stage(m_, stages, p_.parameters);
@@ -100,6 +101,8 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
     if (*state_.origin(stage.unknown(j)) != Origin::given) free.push_back(j);
   }
   std::size_t worst = 0;
+  const auto failed = [&] { return Outcome{OutcomeKind::inconsistent, {}, {}}; };
+  if (!tell && stage.linear() && stage.evaluate(state_) && stage.contradicts(free)) return failed();
   if (!find_by_least_change(stage, state_, free, p_.near)) return no_value(stage);
   mark_derived(stage, before, free);
   N miss = stage.worst(&worst);
@@ -117,7 +120,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages) {
     }
     miss = stage.worst(&worst);
   }
-  return clash(stage, worst, before);
+  return tell ? clash(stage, worst, before) : failed();
 }
 
 // Marks values that occur in an equation as derived, and so values that these move through the mass matrix by more than

@@ -50,8 +50,11 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   jacobian = Matrix<N>(size(), n);
   metric = Matrix<N>(n, n);
   N largest_unknown(1);
-  for (std::size_t j = 0; j < n; ++j)
-    if (N v = abs(*s.value(unknown(j))); v > largest_unknown) largest_unknown = v;
+  at_.resize(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    at_[j] = *s.value(unknown(j));
+    if (N v = abs(at_[j]); v > largest_unknown) largest_unknown = v;
+  }
   for (std::size_t i = 0; i < size(); ++i) {
     if (!kept_.empty() && !kept_[i]) {
       scale[i] = N(1);
@@ -64,7 +67,8 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
     for (std::size_t j = 0; j < n; ++j) {
       jacobian(i, j) = machine_.value(size() + i * n + j);
       if (!is_finite(jacobian(i, j))) return false;
-      if (N part = abs(N(jacobian(i, j) * *s.value(unknown(j)))); part > scale[i]) scale[i] = part;
+      if (!(abs(jacobian(i, j)) > N(0))) continue;
+      if (N part = abs(N(jacobian(i, j) * at_[j])); part > scale[i]) scale[i] = part;
       if (N part = abs(jacobian(i, j)) * largest_unknown * unit_roundoff<N>(); part > floor_[i]) floor_[i] = part;
     }
     if (floor_[i] > scale[i]) scale[i] = floor_[i];
@@ -90,6 +94,15 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
     metric(i, i) += largest * N(1e-12);
   }
   return true;
+}
+
+template <Number N>
+bool Stage<N>::contradicts(const std::vector<std::size_t>& free) const {
+  for (std::size_t i = 0; i < size(); ++i)
+    if (abs(residual[i]) > N(kRounded) * scale[i] &&
+        std::none_of(free.begin(), free.end(), [&](std::size_t j) { return abs(jacobian(i, j)) > N(0); }))
+      return true;
+  return false;
 }
 
 template <Number N>
@@ -162,7 +175,7 @@ class Iteration {
       std::vector<N> step;
       if (!least_step(a, rows.independent, nearest, step)) return true;
       if (!search(step)) return false;
-      if (in_vain_ > kMostInVain) return true;
+      if (in_vain_ > kMostInVain || (s_.linear() && solved())) return true;
       N moved(0), size(0);
       for (std::size_t j = 0; j < free_.size(); ++j) {
         if (N v = abs(step[j]); v > moved) moved = v;
@@ -255,7 +268,7 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
     newton.go_to(newton.guess());
   }
   const bool value = newton.run(true);
-  if ((value && newton.solved()) || free.empty()) return value;
+  if ((value && newton.solved()) || free.empty() || s.linear()) return value;
   const InitialState<N> first = state;
   std::vector<N> best;
   N least(0);

@@ -71,6 +71,9 @@ class Stage {
       if (abs(jacobian(i, j)) > N(0)) return true;
     return false;
   }
+  // True if an equation does not depend on any of these unknowns, and is missed by more than rounded values explain.
+  // REQUIRES: the equations are linear.
+  bool contradicts(const std::vector<std::size_t>& free) const;
   // The largest residual relative to its scale, and its index. Residuals below the round-off of the unknowns count as
   // zero.
   N worst(std::size_t* which = nullptr) const { return worst(scale, which); }
@@ -82,8 +85,8 @@ class Stage {
   std::size_t undefined = 0;
 
  private:
-  std::vector<N> floor_;
-  std::vector<bool> kept_;  // empty: all
+  std::vector<N> floor_, at_;  // the values of the unknowns
+  std::vector<bool> kept_;     // empty: all
 
   const Mechanics& m_;
   std::shared_ptr<const StagePlan> plan_;
